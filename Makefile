@@ -1,0 +1,59 @@
+# make demo   emit every example for every target into out/ and compile all of it
+# make test   the tests        make lint   ruff and mypy
+# make bench  the benchmarks   make setup  what the others need, done once: .venv, system packages, compilers
+
+PYTHON := $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
+	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
+BIN := .venv/bin
+STAMPS := build/stamps
+NODE_PACKAGES := webgpu@0.6.2
+# Has no wheels on the index: built here once, for two minutes, and kept apart from .venv.
+BUILT_PACKAGES := compushady==0.17.5
+PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
+
+export PYTHONUTF8 := 1
+.DELETE_ON_ERROR:
+.PHONY: setup demo test lint bench clean
+
+setup: $(STAMPS)/python $(STAMPS)/node
+
+demo: setup
+	rm -rf out
+	$(BIN)/sssgen emit $(wildcard examples/*/*.toml) --target all --form shader -o out
+	$(BIN)/sssgen emit $(wildcard examples/*/*.toml) --target all --form functions -o out
+	$(BIN)/python -m sssgen.harness.report out
+
+test: setup
+	$(BIN)/python -m pytest -q
+
+lint: setup
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy --strict src
+
+bench: setup
+	for file in $(wildcard benchmarks/bench_*.py); do $(BIN)/python $$file || exit 1; done
+
+clean:
+	rm -rf .venv build out
+
+$(STAMPS)/system: tools/install_system.sh
+	@test -n "$(PYTHON)" || { echo "Python 3.11 or later is needed"; exit 1; }
+	@mkdir -p $(STAMPS)
+	sh tools/install_system.sh $(PYTHON)
+	@touch $@
+
+$(STAMPS)/wheels: $(STAMPS)/system Makefile
+	@test -x $(BIN)/python || $(PYTHON) -m venv .venv
+	@ls build/wheels/*.whl >/dev/null 2>&1 || echo "building $(BUILT_PACKAGES): about two minutes, once"
+	$(PIP) wheel --no-deps --find-links build/wheels --wheel-dir build/wheels $(BUILT_PACKAGES)
+	@touch $@
+
+$(STAMPS)/python: pyproject.toml $(STAMPS)/wheels $(wildcard .venv/pyvenv.cfg)
+	@test -x $(BIN)/python || $(PYTHON) -m venv .venv
+	$(PIP) install --find-links build/wheels --editable '.[dev]'
+	@touch $@
+
+$(STAMPS)/node: $(STAMPS)/system Makefile
+	npm install --prefix build/node --no-audit --no-fund --loglevel=error $(NODE_PACKAGES)
+	@touch $@

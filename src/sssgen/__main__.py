@@ -1,0 +1,6 @@
+"""`python -m sssgen` is `sssgen`."""
+
+from .cli import main
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,126 @@
+"""`sssgen emit`: materials × targets → files."""
+
+from __future__ import annotations
+
+import sys
+from argparse import Namespace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..cli import OK, print_json
+from ..diagnostics import Diagnostic, SssgenError, did_you_mean, failure
+from ..material import Material, load_material
+from ..output import write_files
+
+if TYPE_CHECKING:
+    from ..compiler import Compiled
+
+
+def run(arguments: Namespace) -> int:
+    """Compiles everything, then writes everything: where one text fails, none is written."""
+    from ..compiler import compile
+
+    wrong: list[Diagnostic] = []
+    names = chosen_targets(arguments.target, wrong)
+    templates = _templates(arguments.templates, wrong)
+    materials = _materials(arguments.MATERIAL, wrong)
+    files: dict[str, str] = {}
+    sources: dict[str, tuple[str, str]] = {}
+    warnings: list[Diagnostic] = []
+    for material in materials:
+        for name in names:
+            try:
+                compiled = compile(material, name, arguments.form, templates)
+            except SssgenError as error:
+                wrong += error.diagnostics
+            else:
+                _collect(compiled, (material.name, name), files, sources, wrong)
+                warnings += compiled.warnings
+    if wrong:
+        raise SssgenError(dict.fromkeys(wrong))
+    warnings = list(dict.fromkeys(warnings))
+    written = write_files(Path(arguments.output), files)
+    if arguments.json:
+        rows = [
+            {"file": one.path.as_posix(), "material": material, "target": target, "changed": one.changed}
+            for one, (material, target) in zip(written, sources.values(), strict=True)
+        ]
+        print_json(
+            {
+                "ok": True,
+                "form": arguments.form,
+                "files": rows,
+                "diagnostics": [one.as_json() for one in warnings],
+            }
+        )
+        return OK
+    print_warnings(warnings)
+    for one in written:
+        print(f"{'wrote' if one.changed else 'kept '} {one.path.as_posix()}")
+    return OK
+
+
+def chosen_targets(text: str, wrong: list[Diagnostic]) -> list[str]:
+    """The targets that `T,T` or `all` names, each once; unknown ones are added to `wrong`."""
+    from ..compiler import targets
+
+    known = list(targets())
+    names = [name.strip() for name in text.split(",") if name.strip()]
+    if "all" in names:
+        return known
+    if not names:
+        wrong += failure("no target is named", f"targets: {', '.join(known)}, or all").diagnostics
+    for name in names:
+        if name not in known:
+            hint = did_you_mean(name, [*known, "all"]) or f"targets: {', '.join(known)}, or all"
+            wrong += failure(f"unknown target '{name}'", hint).diagnostics
+    return [name for name in dict.fromkeys(names) if name in known]
+
+
+def print_warnings(warnings: list[Diagnostic]) -> None:
+    """Warnings go beside the result, not into it."""
+    for warning in warnings:
+        print(f"{warning.render()}\n", file=sys.stderr)
+
+
+def _templates(folder: str | None, wrong: list[Diagnostic]) -> Path | None:
+    if folder is None:
+        return None
+    path = Path(folder)
+    if not path.is_dir():
+        wrong += failure(
+            "no such folder of templates", "give the folder that holds TARGET/*.j2", path.as_posix()
+        ).diagnostics
+    return path
+
+
+def _materials(arguments: list[str], wrong: list[Diagnostic]) -> list[Material]:
+    found: dict[str, Material] = {}
+    for argument in arguments:
+        try:
+            material = load_material(argument)
+        except SssgenError as error:
+            wrong += error.diagnostics
+            continue
+        other = found.setdefault(material.name, material)
+        if other is not material:
+            message = f"two materials are called '{material.name}': their files would have the same names"
+            wrong += failure(
+                message, f"the other one is {other.path.as_posix()}", material.path.as_posix()
+            ).diagnostics
+    return list(found.values())
+
+
+def _collect(
+    compiled: Compiled,
+    source: tuple[str, str],
+    files: dict[str, str],
+    sources: dict[str, tuple[str, str]],
+    wrong: list[Diagnostic],
+) -> None:
+    """Adds the files of one text; two sources of one file are an error."""
+    for name, text in compiled.files.items():
+        if name in files:
+            message = f"'{name}' comes from {' for '.join(sources[name])} and from {' for '.join(source)}"
+            wrong += failure(message, "give the target's files other names").diagnostics
+        files[name], sources[name] = text, source

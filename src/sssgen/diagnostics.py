@@ -1,0 +1,108 @@
+"""Errors for people: a file, a line, a column, a caret, and what to do.
+
+A run collects every error it can find and raises them together as one `SssgenError`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+from .ir.nodes import NOWHERE, Span
+
+
+class Diagnostic(NamedTuple):
+    """One error or warning. `source_line` is the text of the line that `span` begins on, where there is one."""
+
+    severity: str
+    message: str
+    span: Span = NOWHERE
+    hint: str = ""
+    source_line: str = ""
+
+    def render(self) -> str:
+        """The diagnostic as it is shown in a terminal."""
+        lines = [f"{self.severity}: {self.message}"]
+        span = self.span
+        if span.file:
+            place = f"{span.file}:{span.line}:{span.column}" if span.line else span.file
+            lines.append(f"  --> {place}")
+        if self.source_line.strip():
+            text, column, end = _window(self.source_line, span)
+            gutter = str(span.line)
+            lines.append(f" {gutter} | {text}")
+            lines.append(f" {' ' * len(gutter)} | {' ' * (column - 1)}{'^' * max(1, end - column)}")
+        if self.hint:
+            lines.append(f"  help: {self.hint}")
+        return "\n".join(lines)
+
+    def as_json(self) -> dict[str, Any]:
+        """The diagnostic for editors: 1-based positions, the end exclusive."""
+        span = self.span
+        return {
+            "severity": self.severity,
+            "message": self.message,
+            "file": span.file,
+            "line": span.line,
+            "column": span.column,
+            "end_line": span.end_line,
+            "end_column": span.end_column,
+            "help": self.hint,
+        }
+
+
+def _window(line: str, span: Span, width: int = 120) -> tuple[str, int, int]:
+    """A readable part of a possibly very long line, with the caret's columns in it."""
+    end = span.end_column if span.end_line == span.line else len(line) + 1
+    line, column = line.replace("\t", " "), span.column
+    start = max(0, column - 1 - width // 2) if len(line) > width else 0
+    shown = line[start : start + width]
+    return shown, column - start, min(end - start, len(shown) + 1)
+
+
+class SssgenError(Exception):
+    """Everything that was wrong with an input. `diagnostics` is never empty."""
+
+    def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
+        self.diagnostics = list(diagnostics)
+        super().__init__("\n".join(diagnostic.render() for diagnostic in self.diagnostics))
+
+
+def failure(message: str, hint: str = "", file: str = "") -> SssgenError:
+    """An error that has no place in a source text (a missing file, a bad argument)."""
+    return SssgenError([Diagnostic("error", message, Span(file, 0, 0, 0, 0), hint)])
+
+
+class Reporter:
+    """Collects the diagnostics of one source text."""
+
+    def __init__(self, file: str, text: str) -> None:
+        self.file = file
+        self.lines = text.splitlines()
+        self.diagnostics: list[Diagnostic] = []
+
+    def error(self, span: Span, message: str, hint: str = "") -> None:
+        """Notes an error; the same message at the same place is noted once."""
+        diagnostic = Diagnostic("error", message, span, hint, self.line(span))
+        if diagnostic not in self.diagnostics:
+            self.diagnostics.append(diagnostic)
+
+    def line(self, span: Span) -> str:
+        """The text of the line that the span begins on."""
+        return self.lines[span.line - 1] if 0 < span.line <= len(self.lines) else ""
+
+    def check(self) -> None:
+        """Raises what has been collected, in source order, if there is any."""
+        if self.diagnostics:
+            raise SssgenError(sorted(self.diagnostics, key=lambda found: found.span[1:3]))
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """`did you mean 'x'?` for the nearest known name, or ''."""
+    import difflib
+
+    near = difflib.get_close_matches(word, list(known), n=1, cutoff=0.6)
+    if not near:
+        folded = {name.lower(): name for name in known}
+        near = [folded[word.lower()]] if word.lower() in folded else []
+    return f"did you mean '{near[0]}'?" if near else ""

@@ -1,0 +1,1 @@
+"""What runs the generated text: compilers that this project did not write, and a report of what they said."""

@@ -1,0 +1,80 @@
+"""The words shared by every compiler: what is checked, what comes back, and how a missing compiler says so."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, replace
+from typing import Literal
+
+Stage = Literal["vertex", "fragment", "library"]
+Severity = Literal["error", "warning", "info"]
+
+LANGUAGES: dict[str, frozenset[str]] = {
+    "gl": frozenset({"glsl-330", "glsl-es-300"}),
+    "glslang": frozenset({"glsl-330", "glsl-es-300", "hlsl"}),
+    "dxc": frozenset({"hlsl"}),
+    "naga": frozenset({"wgsl"}),
+    "tint": frozenset({"wgsl"}),
+    "unity": frozenset({"unity-builtin", "unity-urp", "unity-shadergraph"}),
+    "python": frozenset({"numpy"}),
+}
+"""Every compiler, and the languages it reads, whether or not this machine has it."""
+
+
+@dataclass(frozen=True)
+class Source:
+    """One shader text as a compiler sees it.
+
+    `language` is a target's name ("glsl-330", "hlsl", "unity-urp", …). Stage "library" means functions without an
+    entry point: each compiler calls them from an entry of its own, appended so that line numbers stay true.
+    `companion` is the text of the other stage; the GL driver links the two, so a mismatched interface is an error.
+    """
+
+    text: str
+    language: str
+    stage: Stage = "fragment"
+    entry: str = "main"
+    name: str = "shader"
+    companion: str = ""
+
+    def with_text(self, text: str) -> Source:
+        """The same source with another text."""
+        return replace(self, text=text)
+
+
+@dataclass(frozen=True)
+class Message:
+    """One thing a compiler said. Line and column count from 1; 0 where the compiler does not tell."""
+
+    severity: Severity
+    line: int
+    column: int
+    text: str
+
+    def __str__(self) -> str:
+        place = f"{self.line}:{self.column}: " if self.column else f"{self.line}: " if self.line else ""
+        return f"{place}{self.severity}: {self.text}"
+
+
+class CompilerMissing(Exception):
+    """Raised by a family's `find()` where the compiler cannot be had; the text says how to get it."""
+
+
+class Compiler(ABC):
+    """A compiler that this project did not write, ready to check text."""
+
+    name: str
+    languages: frozenset[str]
+
+    @abstractmethod
+    def version(self) -> str:
+        """What the compiler calls itself, for reports."""
+
+    @abstractmethod
+    def check(self, source: Source) -> list[Message]:
+        """Compile and report. No message of severity "error" means that the text compiled."""
+
+
+def errors(messages: list[Message]) -> list[Message]:
+    """Only what stops the text from compiling."""
+    return [m for m in messages if m.severity == "error"]

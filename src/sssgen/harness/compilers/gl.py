@@ -1,0 +1,103 @@
+"""GLSL in the OpenGL driver, through moderngl: on a machine without a GPU that is Mesa's llvmpipe."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from sssgen.harness.compilers.base import LANGUAGES, Compiler, CompilerMissing, Message, Severity, Source
+from sssgen.harness.compilers.calls import glsl_entry
+
+_HEADERS = {
+    "glsl-330": "#version 330\n",
+    "glsl-es-300": "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler3D;\n",
+}
+_EGL: Any = {"backend": "egl"}
+_SEVERITY: dict[str, Severity] = {"error": "error", "warning": "warning"}
+
+
+def with_version(text: str, language: str) -> str:
+    """`text` with the language's `#version` in front where it has none; line numbers stay as they were."""
+    if re.search(r"^\s*#\s*version\b", text, re.MULTILINE):
+        return text
+    return f"{_HEADERS[language]}#line 1\n{text}"
+
+
+class DriverGL(Compiler):
+    """Compiles and links with the system's OpenGL driver."""
+
+    name = "gl"
+    languages = LANGUAGES["gl"]
+
+    def __init__(self, context: Any) -> None:
+        self._context = context
+
+    def version(self) -> str:
+        code = self._context.version_code
+        return f"OpenGL {code // 100}.{code // 10 % 10} on {self._context.info['GL_RENDERER']}"
+
+    def check(self, source: Source) -> list[Message]:
+        text = with_version(source.text, source.language)
+        if source.stage == "library":
+            text = glsl_entry(text)
+        if source.stage == "vertex":
+            vertex, fragment = text, source.companion or _empty_fragment(source.language)
+        else:
+            vertex, fragment = source.companion or _matching_vertex(text, source.language), text
+        try:
+            with self._context:  # other libraries (wgpu) make contexts of their own current
+                self._context.program(vertex_shader=vertex, fragment_shader=fragment).release()
+        except Exception as error:  # noqa: BLE001
+            return _messages(str(error))
+        return []
+
+
+def find() -> Compiler:
+    """The driver behind an off-screen context.
+
+    Raises CompilerMissing where moderngl or a driver for it is lacking.
+    """
+    try:
+        import moderngl
+    except ImportError:
+        raise CompilerMissing("pip install moderngl") from None
+    try:
+        return DriverGL(moderngl.create_context(standalone=True, **_EGL))
+    except Exception as egl:  # noqa: BLE001
+        try:
+            return DriverGL(moderngl.create_context(standalone=True))  # Windows and macOS have no EGL
+        except Exception:  # noqa: BLE001
+            packages = "libegl1 libgl1 libgl1-mesa-dri"
+            raise CompilerMissing(f"an OpenGL driver (Debian: {packages}): {egl}") from None
+
+
+def _empty_fragment(language: str) -> str:
+    return f"{_HEADERS[language]}out vec4 sssgen_check_color;\nvoid main() {{ sssgen_check_color = vec4(0.0); }}\n"
+
+
+def _matching_vertex(fragment: str, language: str) -> str:
+    """A vertex stage that feeds the `in` variables of `fragment`, so that it links on its own."""
+    inputs = re.findall(
+        r"(?:^|;)[ \t]*(?:layout\s*\(([^)]*)\)\s*)?((?:flat|smooth|centroid)\s+)?in\s+((?:highp|mediump|lowp)\s+)?(\w+)\s+(\w+)\s*;",
+        fragment,
+        re.MULTILINE,
+    )
+    lines = [_HEADERS[language].rstrip("\n")]
+    lines += [f"{flat}out {precision}{kind} {name};" for _, flat, precision, kind, name in inputs]
+    lines += ["void main() {", *(f"    {name} = {kind}(0);" for _, _, _, kind, name in inputs)]
+    return "\n".join([*lines, "    gl_Position = vec4(0.0);", "}", ""])
+
+
+def _messages(log: str) -> list[Message]:
+    """Mesa says `0:4(18): error: …`, NVIDIA `0(4) : error C1008: …`, the linker `error: …`."""
+    found = []
+    for line in log.splitlines():
+        if match := re.match(r"\d+:(\d+)\((\d+)\): (error|warning): (.*)", line):
+            found.append(Message(_SEVERITY[match[3]], int(match[1]), int(match[2]), match[4]))
+        elif match := re.match(r"\d+\((\d+)\) : (error|warning) (.*)", line):
+            found.append(Message(_SEVERITY[match[2]], int(match[1]), 0, match[3]))
+        elif match := re.match(r"(?:ERROR: \d+:(\d+): |error: )(.*)", line):
+            found.append(Message("error", int(match[1] or 0), 0, match[2]))
+    # Mesa lists every overload of the function that did not fit; the first line says which that was
+    told = [m for m in found if not m.text.startswith("   ") and "sssgen_check" not in m.text]
+    return told or found or [Message("error", 0, 0, log.strip())]

@@ -1,0 +1,83 @@
+"""Khronos' reference compiler: GLSL, and HLSL from its own front end (shader model 5; 3 with `dx9_samplers`)."""
+
+from __future__ import annotations
+
+import re
+
+from sssgen.harness.compilers.base import LANGUAGES, Compiler, CompilerMissing, Message, Severity, Source
+from sssgen.harness.compilers.calls import glsl_entry, hlsl_entry
+from sssgen.harness.compilers.gl import with_version
+
+_STAGES = {"vertex": "vert", "fragment": "frag", "library": "frag"}
+_SEVERITY: dict[str, Severity] = {"ERROR": "error", "WARNING": "warning"}
+LIBRARY_ENTRY = "sssgen_check_main"
+
+
+class Glslang(Compiler):
+    """Runs one `glslangValidator` process a check; it reads standard input and writes nothing into the folder."""
+
+    name = "glslang"
+    languages = LANGUAGES["glslang"]
+
+    def __init__(self, program: str) -> None:
+        self._program = program
+
+    def version(self) -> str:
+        import subprocess
+
+        text = subprocess.run(
+            [self._program, "--version"], capture_output=True, text=True, check=False
+        ).stdout
+        match = re.search(r"Glslang Version: \S*?(\d+(?:\.\d+)+)", text)
+        return f"glslang {match[1]}" if match else text.splitlines()[0]
+
+    def check(self, source: Source) -> list[Message]:
+        text = source.text
+        if source.language == "hlsl":
+            if source.stage == "library":
+                return self.check_hlsl(hlsl_entry(text), "fragment", LIBRARY_ENTRY)
+            return self.check_hlsl(text, source.stage, source.entry)
+        text = with_version(text, source.language)
+        text = glsl_entry(text) if source.stage == "library" else text
+        return self._run(text, ["-S", _STAGES[source.stage]])
+
+    def check_hlsl(self, text: str, stage: str, entry: str, dx9_samplers: bool = False) -> list[Message]:
+        """HLSL to SPIR-V. `dx9_samplers` allows `sampler2D` and `tex2D`, as Unity's built-in pipeline writes them."""
+        import os
+        import tempfile
+
+        with tempfile.TemporaryDirectory() as folder:
+            options = ["-D", "-V", "-S", _STAGES[stage], "-e", entry]
+            options += ["--auto-map-bindings", "--auto-map-locations"]
+            options += ["--hlsl-dx9-compatible"] if dx9_samplers else []
+            return self._run(text, [*options, "-o", os.path.join(folder, "out.spv")])
+
+    def _run(self, text: str, options: list[str]) -> list[Message]:
+        import subprocess
+
+        command = [self._program, "--stdin", *options]
+        done = subprocess.run(command, input=text, capture_output=True, encoding="utf-8", check=False)
+        messages = _messages(done.stdout + done.stderr)
+        if done.returncode and not any(m.severity == "error" for m in messages):
+            messages.append(Message("error", 0, 0, done.stdout.strip() or f"exit status {done.returncode}"))
+        return messages
+
+
+def find() -> Glslang:
+    """The program on the path; SSSGEN_GLSLANG names another. Raises CompilerMissing where there is none."""
+    import os
+    import shutil
+
+    program = shutil.which(os.environ.get("SSSGEN_GLSLANG", "glslangValidator")) or shutil.which("glslang")
+    if program is None:
+        raise CompilerMissing("Debian: glslang-tools · elsewhere: the Vulkan SDK")
+    return Glslang(program)
+
+
+def _messages(log: str) -> list[Message]:
+    found = []
+    for line in log.splitlines():
+        match = re.match(r"(ERROR|WARNING): (?:\w+:(\d+): )?(.*)", line)
+        if match and not re.search(r"compilation terminated|\d+ compilation errors", match[3]):
+            found.append(Message(_SEVERITY[match[1]], int(match[2] or 0), 0, match[3].strip()))
+    return found

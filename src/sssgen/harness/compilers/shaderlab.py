@@ -1,0 +1,187 @@
+"""Reads Unity's ShaderLab as far as a check needs it: the properties, the passes, and the HLSL inside them.
+
+Unity's own ShaderLab parser cannot be had apart from the editor, so what this one refuses is what the manual rules
+out (docs.unity3d.com, "ShaderLab: defining material properties"): an unbalanced brace, a block that does not end, a
+property of an unknown type, or one whose default does not fit its type.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+
+from sssgen.harness.compilers.base import Message
+
+_BLOCK = re.compile(
+    r"^[ \t]*(CG|HLSL)(PROGRAM|INCLUDE)\b[ \t]*\n(.*?)^[ \t]*END(CG|HLSL)\b", re.DOTALL | re.MULTILINE
+)
+_STRAY = re.compile(r"^[ \t]*(?:CG|HLSL)(?:PROGRAM|INCLUDE)\b|^[ \t]*END(?:CG|HLSL)\b", re.MULTILINE)
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_PROPERTY = re.compile(
+    r"\s*((?:\[[^\]]*\]\s*)*)(\w+)\s*\(\s*\"[^\"\n]*\"\s*,\s*(Range\s*\([^()]*\)|\w+)\s*\)\s*=\s*"
+    rf"({_NUMBER}|\([^()]*\)|\"\w*\"\s*(?:\{{[^{{}}]*\}})?)"
+)
+_PRAGMA = re.compile(r"^[ \t]*#[ \t]*pragma[ \t]+(\w+)[ \t]*(.*?)[ \t]*$", re.MULTILINE)
+_DEFAULTS = {
+    "float": _NUMBER, "int": _NUMBER, "integer": _NUMBER, "range": _NUMBER,
+    "color": rf"\((?:\s*{_NUMBER}\s*,){{2,3}}\s*{_NUMBER}\s*\)", "vector": rf"\((?:\s*{_NUMBER}\s*,){{2,3}}\s*{_NUMBER}\s*\)",
+    "2d": r"\".*", "3d": r"\".*", "cube": r"\".*", "2darray": r"\".*", "cubearray": r"\".*",
+}  # fmt: skip
+_TEXTURES = frozenset({"2d", "3d", "cube", "2darray", "cubearray"})
+
+
+@dataclass(frozen=True)
+class Program:
+    """One CGPROGRAM or HLSLPROGRAM: its HLSL with the shared INCLUDE blocks in front, and what `#pragma` says.
+
+    `code` carries `#line` directives, so that compilers report the lines of the .shader file.
+    """
+
+    code: str
+    dialect: str  # "CG" | "HLSL"; Unity includes its own headers into CG only
+    name: str
+    pragmas: tuple[tuple[str, str], ...]
+
+    def pragma(self, key: str) -> str | None:
+        """What stands behind the first `#pragma KEY`."""
+        return next((value for k, value in self.pragmas if k == key), None)
+
+    def keyword_sets(self, stage: str) -> list[list[str]]:
+        """Variants in which every two choices of two `multi_compile` or `shader_feature` lines meet at least once.
+
+        The full product has thousands; most mistakes need two keywords at most.
+        """
+        lists = [choices for key, value in self.pragmas if (choices := _keywords(key, value, stage))]
+        return [[word for word in row if word] for row in _pairwise(lists)]
+
+
+@dataclass
+class Shader:
+    """A parsed .shader file."""
+
+    properties: dict[str, str] = field(default_factory=dict)  # name → type in lower case
+    programs: list[Program] = field(default_factory=list)
+    messages: list[Message] = field(default_factory=list)
+
+    def scalar_properties(self) -> list[str]:
+        """The properties that live in a constant buffer: all but textures."""
+        return [name for name, kind in self.properties.items() if kind not in _TEXTURES]
+
+
+def parse(text: str, name: str) -> Shader:
+    """The shader in `text`; what is wrong with its ShaderLab stands in `messages`."""
+    shader = Shader()
+    text = text.replace("\r\n", "\n")
+    shell = _BLOCK.sub(lambda m: re.sub(r"[^\n]", " ", m[0]), text)
+    shell = re.sub(r"//[^\n]*|/\*.*?\*/", lambda m: re.sub(r"[^\n]", " ", m[0]), shell, flags=re.DOTALL)
+    for stray in _STRAY.finditer(shell):
+        shader.messages.append(_error(shell, stray.start(), f"{stray[0].strip()} without its other end"))
+    _check_braces(shell, shader.messages)
+    if not re.match(r'\s*Shader\s*"[^"\n]+"\s*\{', shell):
+        shader.messages.append(Message("error", 1, 1, 'a shader begins with Shader "Path/Name" {'))
+    _read_properties(shell, shader)
+    shared = ""
+    for block in _BLOCK.finditer(text):
+        line = text.count("\n", 0, block.start(3)) + 1
+        code = f'#line {line} "{name}"\n{block[3]}\n'
+        if block[2] == "INCLUDE":
+            shared += code
+            continue
+        names = re.findall(r'\bName\s*"([^"]*)"', shell[: block.start()])
+        pragmas = tuple((m[1], re.sub(r"\s*//.*", "", m[2])) for m in _PRAGMA.finditer(shared + code))
+        number = len(shader.programs) + 1
+        pass_name = names[-1] if names else f"pass {number}"
+        shader.programs.append(Program(shared + code, block[1], pass_name, pragmas))
+    if not shader.programs:
+        shader.messages.append(Message("error", 1, 1, "no CGPROGRAM or HLSLPROGRAM"))
+    return shader
+
+
+def _pairwise(lists: list[list[str]]) -> list[list[str]]:
+    """Rows, one choice from each list, that cover every pair of choices: greedy, and the same each time."""
+    places = [(i, j) for j in range(len(lists)) for i in range(j)]
+    wanted = {(i, a, j, b) for i, j in places for a in lists[i] for b in lists[j]}
+    rows = [[choices[0] for choices in lists]]
+    if len(lists) == 1:
+        return [[choice] for choice in lists[0]]
+    while wanted := {(i, a, j, b) for i, a, j, b in wanted if not any(r[i] == a and r[j] == b for r in rows)}:
+        i, a, j, b = min(wanted)
+        row = [choices[0] for choices in lists]
+        row[i], row[j] = a, b
+        settled = {i, j}
+        for k in (k for k in range(len(lists)) if k not in settled):
+            near = [pair for pair in wanted if k in (pair[0], pair[2])]
+            gains = [sum(_agrees(row, settled, k, choice, pair) for pair in near) for choice in lists[k]]
+            row[k] = lists[k][gains.index(max(gains))]
+            settled.add(k)
+        rows.append(row)
+    return rows
+
+
+def _agrees(row: list[str], settled: set[int], k: int, choice: str, pair: tuple[int, str, int, str]) -> bool:
+    """Whether `choice` at place `k` completes `pair` with a place that is settled."""
+    i, a, j, b = pair
+    other, value, own = (j, b, a) if i == k else (i, a, b)
+    return own == choice and other in settled and row[other] == value
+
+
+def _keywords(pragma: str, value: str, stage: str) -> list[str]:
+    """The variants of one pragma line for a stage; Unity's shorthands stand for their usual keywords."""
+    words = ["" if set(word) == {"_"} else word for word in value.split()]
+    if pragma.endswith({"vertex": "_fragment", "fragment": "_vertex"}[stage]):
+        return []
+    kind = re.sub(r"_(?:local|vertex|fragment)", "", pragma)
+    if kind == "multi_compile":
+        return words
+    if kind == "shader_feature":
+        return ["", *words] if len(words) == 1 else words
+    return {
+        "multi_compile_fog": ["", "FOG_LINEAR"],
+        "multi_compile_instancing": ["", "INSTANCING_ON"],
+        "multi_compile_fwdbase": ["DIRECTIONAL"],
+        "multi_compile_fwdadd": ["POINT", "DIRECTIONAL"],
+        "multi_compile_fwdadd_fullshadows": ["POINT", "DIRECTIONAL"],
+        "multi_compile_shadowcaster": ["SHADOWS_DEPTH"],
+    }.get(pragma, [])
+
+
+def _read_properties(shell: str, shader: Shader) -> None:
+    block = re.search(r"\bProperties\s*\{", shell)
+    if not block:
+        return
+    position = block.end()
+    while True:
+        while position < len(shell) and shell[position].isspace():
+            position += 1
+        if shell[position : position + 1] in ("}", ""):
+            return
+        found = _PROPERTY.match(shell, position)
+        if not found:
+            line = shell[position:].split("\n", 1)[0].strip()
+            shader.messages.append(_error(shell, position, f"not a property: {line}"))
+            return
+        name, kind, default = found[2], re.sub(r"\s*\(.*", "", found[3]).lower(), found[4]
+        if kind not in _DEFAULTS:
+            shader.messages.append(_error(shell, found.start(3), f"unknown property type {found[3]}"))
+        elif not re.fullmatch(_DEFAULTS[kind], default, re.DOTALL):
+            shader.messages.append(_error(shell, found.start(4), f"{default} is no default for a {found[3]}"))
+        if name in shader.properties:
+            shader.messages.append(_error(shell, found.start(2), f"property {name} is there twice"))
+        shader.properties[name] = kind
+        position = found.end()
+
+
+def _check_braces(shell: str, messages: list[Message]) -> None:
+    depth = 0
+    for match in re.finditer(r'[{}]|"[^"\n]*"', shell):
+        depth += (match[0] == "{") - (match[0] == "}")
+        if depth < 0:
+            messages.append(_error(shell, match.start(), "} without {"))
+            return
+    if depth:
+        messages.append(_error(shell, len(shell.rstrip()), f"{depth} brace(s) not closed"))
+
+
+def _error(text: str, position: int, message: str) -> Message:
+    line = text.count("\n", 0, position) + 1
+    return Message("error", line, position - text.rfind("\n", 0, position), message)

@@ -1,0 +1,169 @@
+"""What Unity makes around a surface shader, as far as a compile check needs it.
+
+The editor turns `#pragma surface` into vertex and fragment entries (docs.unity3d.com, "Writing Surface Shaders":
+the fields of `Input`, the order surface function → GI function → lighting function). That generator cannot be had
+apart from the editor, so this module writes entries of its own that make the same calls with the same types.
+Like the editor's, they declare `NAME_ST` for each `uvNAME` input: a shader that declares it too does not compile.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+BUILTIN_LIGHTING = {"Standard": "SurfaceOutputStandard", "StandardSpecular": "SurfaceOutputStandardSpecular"}
+
+# Defined by the editor in front of the shader's own code, not by a header.
+PRELUDE = """\
+#define INTERNAL_DATA half3 internalSurfaceTtoW0; half3 internalSurfaceTtoW1; half3 internalSurfaceTtoW2;
+#define WorldNormalVector(data, n) half3(dot(data.internalSurfaceTtoW0, n), dot(data.internalSurfaceTtoW1, n), \
+dot(data.internalSurfaceTtoW2, n))
+#define WorldReflectionVector(data, n) reflect(data.worldRefl, WorldNormalVector(data, n))
+"""
+
+_VERTEX = """
+struct sssgen_varyings {{
+    float4 pos : SV_POSITION;
+    float4 uv : TEXCOORD0;
+    float3 worldPos : TEXCOORD1;
+    float3 worldNormal : TEXCOORD2;
+    float3 worldTangent : TEXCOORD3;
+    float3 worldBitangent : TEXCOORD4;
+    float4 color : COLOR0;
+    UNITY_SHADOW_COORDS(5)
+}};
+sssgen_varyings sssgen_vertex(appdata_full v) {{
+    sssgen_varyings i;
+    UNITY_INITIALIZE_OUTPUT(sssgen_varyings, i);
+{modifier}
+    i.pos = UnityObjectToClipPos(v.vertex);
+    i.uv = float4(v.texcoord.xy, v.texcoord1.xy);
+    i.worldPos = mul(unity_ObjectToWorld, v.vertex).xyz;
+    i.worldNormal = UnityObjectToWorldNormal(v.normal);
+    i.worldTangent = UnityObjectToWorldDir(v.tangent.xyz);
+    i.worldBitangent = cross(i.worldNormal, i.worldTangent) * v.tangent.w * unity_WorldTransformParams.w;
+    i.color = v.color;
+    return i;
+}}
+"""
+
+_FRAGMENT = """
+float4 sssgen_fragment(sssgen_varyings i) : SV_Target0 {{
+    float3 worldViewDir = normalize(UnityWorldSpaceViewDir(i.worldPos));
+    Input surfIN;
+    UNITY_INITIALIZE_OUTPUT(Input, surfIN);
+{inputs}
+    {output} o;
+    UNITY_INITIALIZE_OUTPUT({output}, o);
+    o.Normal = half3(0, 0, 1);
+    {surface}(surfIN, o);
+    UNITY_LIGHT_ATTENUATION(atten, i, i.worldPos)
+    float3 n = o.Normal;
+    o.Normal = normalize(n.x * i.worldTangent + n.y * i.worldBitangent + n.z * i.worldNormal);
+    UnityGI gi;
+    UNITY_INITIALIZE_OUTPUT(UnityGI, gi);
+    gi.light.color = _LightColor0.rgb;
+    gi.light.dir = normalize(UnityWorldSpaceLightDir(i.worldPos));
+#ifdef UNITY_PASS_FORWARDBASE
+    UnityGIInput giInput;
+    UNITY_INITIALIZE_OUTPUT(UnityGIInput, giInput);
+    giInput.light = gi.light;
+    giInput.worldPos = i.worldPos;
+    giInput.worldViewDir = worldViewDir;
+    giInput.atten = atten;
+    giInput.probeHDR[0] = unity_SpecCube0_HDR;
+    giInput.probeHDR[1] = unity_SpecCube1_HDR;
+    {lighting}_GI(o, giInput, gi);
+#else
+    gi.light.color *= atten;
+#endif
+    float4 c = {lighting}(o, worldViewDir, gi);
+    c.rgb += o.Emission;
+    return c;
+}}
+"""
+
+_INPUTS = {
+    "viewDir": "worldViewDir",
+    "worldPos": "i.worldPos",
+    "worldNormal": "i.worldNormal",
+    "worldRefl": "reflect(-worldViewDir, i.worldNormal)",
+    "screenPos": "ComputeScreenPos(i.pos)",
+    "color": "i.color",
+    "facing": "1.0",
+    "internalSurfaceTtoW0": "half3(i.worldTangent.x, i.worldBitangent.x, i.worldNormal.x)",
+    "internalSurfaceTtoW1": "half3(i.worldTangent.y, i.worldBitangent.y, i.worldNormal.y)",
+    "internalSurfaceTtoW2": "half3(i.worldTangent.z, i.worldBitangent.z, i.worldNormal.z)",
+}
+
+
+class SurfaceError(ValueError):
+    """The surface pragma and the code do not fit together."""
+
+
+@dataclass(frozen=True)
+class _Pragma:
+    surface: str
+    model: str
+    vertex: str | None
+
+
+def entries(code: str, pragma: str) -> str:
+    """Entries `sssgen_vertex` and `sssgen_fragment` to stand behind `code`, whose `#pragma surface` says `pragma`.
+
+    Raises SurfaceError where the pragma names a function that `code` lacks.
+    """
+    asked = _read(pragma)
+    output = _output_type(code, asked)
+    modifier = re.search(rf"\bvoid\s+{asked.vertex}\s*\(([^)]*)\)", code) if asked.vertex else None
+    if asked.vertex and not modifier:
+        raise SurfaceError(f"no vertex function {asked.vertex}")
+    second = modifier is not None and "," in modifier[1]
+    call = f"    Input custom; {asked.vertex}(v{', custom' if second else ''});" if modifier else ""
+    fields = _input_fields(code)
+    textures = sorted({m[1] for name in fields if (m := re.fullmatch(r"uv\d?(_\w+)", name))})
+    inputs = [f"    surfIN.{name} = {value};" for name, value in map(_input, fields) if value]
+    return (
+        "".join(f"float4 {texture}_ST;\n" for texture in textures)
+        + _VERTEX.format(modifier=call)
+        + _FRAGMENT.format(
+            inputs="\n".join(inputs), output=output, surface=asked.surface, lighting=f"Lighting{asked.model}"
+        )
+    )
+
+
+def _read(pragma: str) -> _Pragma:
+    words = pragma.split()
+    if len(words) < 2:
+        raise SurfaceError("#pragma surface names a surface function and a lighting model")
+    vertex = next((w.partition(":")[2] for w in words[2:] if w.startswith("vertex:")), None)
+    return _Pragma(words[0], words[1], vertex)
+
+
+def _output_type(code: str, asked: _Pragma) -> str:
+    surface = re.search(rf"\bvoid\s+{asked.surface}\s*\(\s*Input\s+\w+\s*,\s*inout\s+(\w+)\s+\w+\s*\)", code)
+    if not surface:
+        raise SurfaceError(f"no function void {asked.surface}(Input, inout SurfaceOutput…)")
+    own = BUILTIN_LIGHTING.get(asked.model)
+    if own is None and not re.search(rf"\bLighting{asked.model}\s*\(", code):
+        raise SurfaceError(f"no lighting function Lighting{asked.model}")
+    if own not in (None, surface[1]):
+        raise SurfaceError(
+            f"lighting model {asked.model} wants {own}, the surface function gives {surface[1]}"
+        )
+    return surface[1]
+
+
+def _input_fields(code: str) -> list[str]:
+    struct = re.search(r"\bstruct\s+Input\s*\{(.*?)\}\s*;", code, re.DOTALL)
+    if not struct:
+        raise SurfaceError("no struct Input")
+    body = re.sub(r"//[^\n]*|/\*.*?\*/|:\s*\w+", "", struct[1], flags=re.DOTALL)
+    fields = re.findall(r"\w+\s+(\w+)\s*;", body)
+    return fields + [f"internalSurfaceTtoW{k}" for k in range(3) if "INTERNAL_DATA" in body]
+
+
+def _input(name: str) -> tuple[str, str]:
+    if match := re.fullmatch(r"uv(\d?)(_\w+)", name):
+        return name, f"i.uv.{'zw' if match[1] == '2' else 'xy'} * {match[2]}_ST.xy + {match[2]}_ST.zw"
+    return name, _INPUTS.get(name, "")

@@ -1,0 +1,119 @@
+"""WGSL in Tint, Chrome's compiler, from the npm package `webgpu` with its null back end: no GPU, uniformity check on."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from sssgen.harness.compilers.base import LANGUAGES, Compiler, CompilerMissing, Message, Source
+from sssgen.harness.compilers.calls import wgsl_entry
+
+# One process answers for all checks. Dawn prints warnings of its own to standard output, so a reply starts with "@@".
+_SERVER = """
+import { createInterface } from 'node:readline';
+import { createRequire } from 'node:module';
+import { pathToFileURL } from 'node:url';
+const path = createRequire(process.argv[1] + '/').resolve('webgpu');
+const { create } = await import(pathToFileURL(path));
+const gpu = create(['backend=null']);  // kept: Dawn goes down with it
+const adapter = await gpu.requestAdapter();
+const wanted = ['shader-f16'].filter((f) => adapter.features.has(f));
+const device = await adapter.requestDevice({ requiredFeatures: wanted });
+const reply = (value) => process.stdout.write('@@' + JSON.stringify(value) + '\\n');
+reply('ready');
+for await (const line of createInterface({ input: process.stdin })) {
+  device.pushErrorScope('validation');
+  const shader = device.createShaderModule({ code: JSON.parse(line) });
+  const info = await shader.getCompilationInfo();
+  const error = await device.popErrorScope();
+  const messages = info.messages.map((m) => [m.type, m.lineNum, m.linePos, m.message]);
+  if (error && !messages.some((m) => m[0] === 'error')) messages.push(['error', 0, 0, error.message]);
+  reply(messages);
+}
+process.exit(gpu ? 0 : 1);
+"""
+
+
+class Tint(Compiler):
+    """Talks to one node process, kept alive, in lines of JSON; a check takes about two milliseconds."""
+
+    name = "tint"
+    languages = LANGUAGES["tint"]
+
+    def __init__(self, node: str, modules: Path) -> None:
+        import atexit
+
+        self._command = [node, "--input-type=module", "-e", _SERVER, str(modules.parent)]
+        self._modules = modules
+        self._process: Any = None
+        self._start()
+        atexit.register(self.close)
+
+    def version(self) -> str:
+        package = json.loads((self._modules / "webgpu" / "package.json").read_text(encoding="utf-8"))
+        return f"Tint in npm webgpu {package['version']}"
+
+    def check(self, source: Source) -> list[Message]:
+        text = wgsl_entry(source.text) if source.stage == "library" else source.text
+        if self._process.poll() is not None:  # a shader that crashed it was reported then
+            self._start()
+        try:
+            self._process.stdin.write(json.dumps(text) + "\n")
+            self._process.stdin.flush()
+            answer = self._answer()
+        except (EOFError, OSError):
+            return [Message("error", 0, 0, "Tint crashed on this shader")]
+        return [Message(kind, line, column, message) for kind, line, column, message in answer]
+
+    def close(self) -> None:
+        """End the process."""
+        import contextlib
+
+        with contextlib.suppress(OSError):
+            self._process.stdin.close()
+        self._process.wait(timeout=10)
+
+    def _start(self) -> None:
+        import subprocess
+
+        self._process = subprocess.Popen(
+            self._command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            encoding="utf-8",
+        )
+        try:
+            self._answer()
+        except EOFError:
+            raise CompilerMissing(
+                f"npm webgpu does not load: {self._process.stderr.read().strip()}"
+            ) from None
+
+    def _answer(self) -> Any:
+        for line in self._process.stdout:
+            if line.startswith("@@"):
+                return json.loads(line[2:])
+        raise EOFError
+
+
+def find() -> Tint:
+    """Tint in node. SSSGEN_NODE_MODULES names the folder that npm filled, else it is build/node/node_modules.
+
+    Raises CompilerMissing where node or the package is lacking.
+    """
+    import os
+    import shutil
+
+    from sssgen.data import folder
+
+    node = shutil.which("node") or shutil.which("nodejs")
+    if node is None:
+        raise CompilerMissing("node (Debian: nodejs npm)")
+    named = os.environ.get("SSSGEN_NODE_MODULES")
+    modules = Path(named) if named else folder("build") / "node" / "node_modules"
+    if not (modules / "webgpu" / "package.json").is_file():
+        raise CompilerMissing("npm install --prefix build/node webgpu@0.6.2 (make setup does it)")
+    return Tint(node, modules.resolve())

@@ -1,0 +1,55 @@
+"""From emitted files to what compilers are given: which language, stages and entry points a file name stands for."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import cast
+
+from sssgen.harness.compilers import Source, Stage
+from sssgen.targets import descriptor
+
+_OTHER_STAGE = {"vertex": "fragment", "fragment": "vertex"}
+
+
+def sources(files: Mapping[str, str]) -> list[Source]:
+    """The sources in `files` (file name → text), by the names that the targets' descriptors give their files.
+
+    A file with several entry points gives one source each, a GLSL stage has the other one beside it as `companion`,
+    and a .shader file is one source. Files of no target (a reflection) are left out.
+    """
+    found = []
+    for name, text in files.items():
+        for target, material, output in _outputs(name):
+            stages = output.stages
+            if name.endswith(".shader"):  # holds all its stages, and says itself where they begin
+                stages = dict(list(stages.items())[:1])
+            for stage, entry in stages.items():
+                companion = _companion(files, name, target, material, stage)
+                found.append(Source(text, target.name, cast(Stage, stage), entry or "main", name, companion))
+    return found
+
+
+def _outputs(name: str) -> list[tuple[descriptor.Target, str, descriptor.OutputFile]]:
+    """(target, material, its file entry) of a file name; the longest pattern wins."""
+    matches = []
+    base = name.rpartition("/")[2]
+    for target in map(descriptor.load, descriptor.names()):
+        for output in (entry for entries in target.files.values() for entry in entries):
+            pattern = re.escape(output.name).replace(re.escape("{material}"), r"(\w+)")
+            if match := re.fullmatch(pattern, base):
+                matches.append((len(output.name), target, match[1], output))
+    longest = max((length for length, *_ in matches), default=0)
+    return [(target, material, output) for length, target, material, output in matches if length == longest]
+
+
+def _companion(
+    files: Mapping[str, str], name: str, target: descriptor.Target, material: str, stage: str
+) -> str:
+    if target.language != "glsl":
+        return ""
+    folder = name[: len(name) - len(name.rpartition("/")[2])]
+    for output in (entry for entries in target.files.values() for entry in entries):
+        if _OTHER_STAGE.get(stage) in output.stages:
+            return files.get(folder + output.name.replace("{material}", material), "")
+    return ""

@@ -1,0 +1,642 @@
+"""The intrinsic table: everything the project knows about each builtin function, in one place.
+
+From it come the checker's overloads, the printers' text, the polyfills, the static cost, the documentation
+(`docs/intrinsics.md`), and an executed test of every builtin on every target. It holds the functions of chapter 8 of
+the GLSL ES 3.00 specification, and two of our own: `saturate`, and the truncated remainder `fmod`. Left out are modf,
+whose second result is an out parameter, and the texture reads with an offset or a projection or of other samplers.
+
+Signatures are written as in that specification: `genF` stands for float, vec2, vec3 and vec4 alike (one size throughout
+a signature), `vecF` for the vectors alone; likewise genI, genU, genB, vecI, vecU, vecB; `mat` for mat2, mat3 and mat4.
+`ir.signatures` reads them.
+
+`texts` maps a language to how the builtin is written there. A language that is not named uses the builtin's own name.
+A key may name one signature by its parameters, as in `"hlsl/genF,genF"`; it goes before the language's own.
+A value is one of
+- a name: `"lerp"` is called with the arguments as they stand;
+- `"op:<"`: the binary (two arguments) or unary (one argument) operator;
+- a pattern: `"{texture}.Sample({sampler}, {1})"`, where `{0}`, `{1}`… are arguments, `{texture}` and `{sampler}` the two
+  halves of argument 0, `{dim}` its dimension (2D, 3D, CUBE) and `{type}` the result's type as the target spells it;
+  arguments stand only where a call's argument could;
+- `""`: the language has no such builtin, and `polyfill` is put in its place; without a polyfill it is refused there.
+The dialects `hlsl-dx9` (Unity's built-in pipeline) and `hlsl-macros` (Unity's SRP) fall back to `hlsl`.
+NumPy has a function of the builtin's own name for every row, in `targets/numpy_runtime.py` (`not_` for `not`).
+
+`polyfill` is source in the project's own language, generic in the same way as the signatures; it is parsed by the same
+front end, instantiated for the types at hand, and inlined where it is one expression. It defines every signature that
+some language lacks, each in a function of its own.
+
+Test vectors' arguments are exact in float32; their results are correctly rounded to float64. Where the table grants
+more than 4 ulp, WGSL means its section "Accuracy of Concrete Floating Point Expressions", Vulkan its appendix
+"Precision and Operation of SPIR-V Instructions", and D3D the Direct3D 11.3 functional specification.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import NamedTuple
+
+
+class Builtin(NamedTuple):
+    """One row of the table."""
+
+    name: str
+    signatures: tuple[str, ...]
+    doc: str
+    domain: str = ""
+    """Where the result is defined, with x, y, z for the arguments in their order; '' means everywhere."""
+    texts: Mapping[str, str] = MappingProxyType({})
+    polyfill: str = ""
+    splat: tuple[str, ...] = ("wgsl",)
+    """Languages in which a scalar beside vectors must be widened to a vector first."""
+    kind: str = "alu"
+    """What it costs: alu, transcendental, fetch or derivative."""
+    cost: int = 1
+    """Operations per component, for the static cost."""
+    ulp: float = 4.0
+    """The float32 error allowed against the float64 oracle, in units in the last place of the result's magnitude."""
+    absolute: float = 0.0
+    """The absolute error allowed instead, where that is larger."""
+    clause: str = ""
+    """Where a specification allows more than 4 ulp: which, and what it says."""
+    vectors: tuple[tuple[tuple[object, ...], object], ...] = ()
+    """At least three test vectors: (arguments, result); vectors are tuples, matrices tuples of columns."""
+
+
+def _table(*rows: Builtin) -> dict[str, Builtin]:
+    return {row.name: row for row in rows}
+
+
+_F1 = ("genF(genF)",)
+_F2 = ("genF(genF, genF)",)
+_PLAIN = _F1[0], "genI(genI)"
+_ONES = ("float", "int", "uint")
+_PAIR = tuple(f"gen{k}(gen{k}, {other})" for k, one in zip("FIU", _ONES) for other in (f"gen{k}", one))
+_SAMPLE = ("vec4(sampler2D, vec2", "vec4(sampler3D, vec3", "vec4(samplerCube, vec3")
+_REDUCE = ("float(vecF, vecF)", "float(float, float)")
+_LOG = "WGSL, Vulkan: 3 ulp, but an absolute error of 2^-21 for x in [0.5, 2]"
+_EXP = "WGSL, Vulkan: 3 + 2·|x| ulp; taken at |x| = 10"
+_TRIG = "WGSL, Vulkan: absolute error of 2^-11 in [-pi, pi]; D3D: 0.0008"
+_ATAN = "WGSL, Vulkan: 4096 ulp"
+_BY_LOG = "WGSL, Vulkan: that of the formula with log, whose own error is absolute"
+_BY_EXP = "WGSL, Vulkan: that of the formula with exp, which cancels near 0"
+_SUM = "WGSL, Vulkan: that of the formula, whose sum rounds in any order"
+_NAN, _INF = float("nan"), float("inf")
+_HALF_PI, _PI = 1.5707963267948966, 3.141592653589793
+
+
+def _relation(name: str, op: str, below: bool, same: bool, above: bool) -> Builtin:
+    """A componentwise comparison, and what it gives for x below, the same as, and above y."""
+    kinds = "FIUB" if op in ("==", "!=") else "FIU"
+    vectors = (
+        (((1, 2, 3), (3, 2, 1)), (below, same, above)),
+        (((1.0, 1.0), (1.0, 2.0)), (same, below)),
+        (((0.0, 2.0), (-0.0, 1.0)), (same, above)),
+    )
+    return Builtin(
+        name, tuple(f"vecB(vec{k}, vec{k})" for k in kinds), f"Componentwise x {op} y.",
+        texts={"hlsl": f"op:{op}", "wgsl": f"op:{op}"}, vectors=vectors,
+    )
+
+
+# fmt: off (a table: several fields to a line)
+BUILTINS: dict[str, Builtin] = _table(
+    # 8.1 Angle and trigonometry
+    Builtin("radians", _F1, "Degrees to radians: x·pi/180.",
+        vectors=(((90.0,), _HALF_PI), ((0.0,), 0.0), ((-30.0,), -0.5235987755982989)),
+    ),
+    Builtin("degrees", _F1, "Radians to degrees: x·180/pi.",
+        vectors=(((1.0,), 57.29577951308232), ((0.0,), 0.0), ((-0.5,), -28.64788975654116)),
+    ),
+    Builtin("sin", _F1, "Sine of an angle in radians.",
+        domain="accurate for |x| <= pi", kind="transcendental", cost=4, absolute=2.0**-11, clause=_TRIG,
+        vectors=(((1.0,), 0.8414709848078965), ((0.0,), 0.0), ((-0.5,), -0.479425538604203)),
+    ),
+    Builtin("cos", _F1, "Cosine of an angle in radians.",
+        domain="accurate for |x| <= pi", kind="transcendental", cost=4, absolute=2.0**-11, clause=_TRIG,
+        vectors=(((1.0,), 0.5403023058681398), ((0.0,), 1.0), ((2.5,), -0.8011436155469337)),
+    ),
+    Builtin("tan", _F1, "Tangent of an angle in radians.",
+        domain="cos(x) != 0; accurate for |x| <= 1", kind="transcendental", cost=12, ulp=8192.0,
+        absolute=2.0**-10, clause="WGSL, Vulkan: that of sin(x)/cos(x)",
+        vectors=(((1.0,), 1.5574077246549023), ((0.0,), 0.0), ((-0.5,), -0.5463024898437905)),
+    ),
+    Builtin("asin", _F1, "Arc sine, in [-pi/2, pi/2].",
+        domain="-1 <= x <= 1", kind="transcendental", cost=16, ulp=4096.0, absolute=6.81e-5,
+        clause="WGSL: absolute error of 6.81e-5, or that of atan(x, sqrt(1 - x·x)); Vulkan: the latter",
+        vectors=(((1.0,), _HALF_PI), ((0.0,), 0.0), ((-0.5,), -0.5235987755982989)),
+    ),
+    Builtin("acos", _F1, "Arc cosine, in [0, pi].",
+        domain="-1 <= x <= 1", kind="transcendental", cost=16, ulp=4096.0, absolute=6.77e-5,
+        clause="WGSL: absolute error of 6.77e-5, or that of atan(sqrt(1 - x·x), x); Vulkan: the latter",
+        vectors=(((1.0,), 0.0), ((0.5,), 1.0471975511965979), ((-1.0,), _PI)),
+    ),
+    Builtin("atan", ("genF(genF)", "genF(genF, genF)"),
+        "Arc tangent: of x, in [-pi/2, pi/2]; of x/y in the quadrant of (y, x), in [-pi, pi].",
+        domain="with two arguments: x != 0 or y != 0",
+        texts={"hlsl/genF,genF": "atan2", "wgsl/genF,genF": "atan2"}, kind="transcendental", cost=16,
+        ulp=4096.0, clause=_ATAN,
+        vectors=(
+            ((1.0,), 0.7853981633974483), ((-3.0,), -1.2490457723982544), ((0.0,), 0.0),
+            ((1.0, -1.0), 2.356194490192345), ((0.0, -1.0), _PI), ((-2.0, 0.0), -_HALF_PI),
+        ),
+    ),
+    Builtin("sinh", _F1, "Hyperbolic sine.",
+        domain="|x| < 88", kind="transcendental", cost=11, ulp=32.0, absolute=2.0**-20, clause=_BY_EXP,
+        vectors=(((1.0,), 1.1752011936438014), ((0.0,), 0.0), ((-0.5,), -0.5210953054937474)),
+    ),
+    Builtin("cosh", _F1, "Hyperbolic cosine.",
+        domain="|x| < 88", kind="transcendental", cost=11, ulp=32.0, clause=_EXP,
+        vectors=(((1.0,), 1.5430806348152437), ((0.0,), 1.0), ((-2.0,), 3.7621956910836314)),
+    ),
+    Builtin("tanh", _F1, "Hyperbolic tangent.",
+        domain="|x| < 44, as sinh(x)/cosh(x) may overflow beyond", kind="transcendental", cost=14, ulp=32.0,
+        absolute=1e-5, clause="WGSL: absolute error of 1e-5, or that of sinh(x)/cosh(x); Vulkan: the latter",
+        vectors=(((0.5,), 0.46211715726000974), ((0.0,), 0.0), ((-20.0,), -1.0)),
+    ),
+    Builtin("asinh", _F1, "Inverse hyperbolic sine.",
+        domain="|x| < 1e19", texts={"hlsl": ""},
+        polyfill="genF asinh(genF x) { return sign(x) * log(abs(x) + sqrt(x * x + 1.0)); }",
+        kind="transcendental", cost=14, absolute=2.0**-20, clause=_BY_LOG,
+        vectors=(((1.0,), 0.881373587019543), ((0.0,), 0.0), ((-2.0,), -1.4436354751788103)),
+    ),
+    Builtin("acosh", _F1, "Inverse hyperbolic cosine, not negative.",
+        domain="1 <= x < 1e19", texts={"hlsl": ""},
+        polyfill="genF acosh(genF x) { return log(x + sqrt((x - 1.0) * (x + 1.0))); }", kind="transcendental",
+        cost=13, absolute=2.0**-20, clause=_BY_LOG,
+        vectors=(((1.0,), 0.0), ((1.5,), 0.9624236501192069), ((2.0,), 1.3169578969248168)),
+    ),
+    Builtin("atanh", _F1, "Inverse hyperbolic tangent.",
+        domain="-1 < x < 1", texts={"hlsl": ""},
+        polyfill="genF atanh(genF x) { return 0.5 * log((1.0 + x) / (1.0 - x)); }", kind="transcendental",
+        cost=12, absolute=2.0**-20, clause=_BY_LOG,
+        vectors=(((0.5,), 0.5493061443340549), ((0.0,), 0.0), ((-0.25,), -0.25541281188299536)),
+    ),
+    # 8.2 Exponentials
+    Builtin("pow", _F2, "x to the power y.",
+        domain="x >= 0 and (x > 0 or y > 0)", kind="transcendental", cost=9, ulp=64.0,
+        clause="WGSL, Vulkan: that of exp2(y·log2(x))",
+        vectors=(((2.0, -1.5), 0.3535533905932738), ((3.0, 2.0), 9.0), ((0.0, 0.5), 0.0), ((5.0, 0.0), 1.0)),
+    ),
+    Builtin("exp", _F1, "e to the power x.",
+        domain="x < 88", kind="transcendental", cost=5, ulp=23.0, clause=_EXP,
+        vectors=(((1.0,), 2.718281828459045), ((0.0,), 1.0), ((-2.0,), 0.1353352832366127)),
+    ),
+    Builtin("log", _F1, "Natural logarithm.",
+        domain="x > 0", kind="transcendental", cost=5, absolute=2.0**-21, clause=_LOG,
+        vectors=(((1.0,), 0.0), ((10.0,), 2.302585092994046), ((0.5,), -0.6931471805599453)),
+    ),
+    Builtin("exp2", _F1, "2 to the power x.",
+        domain="x < 128", kind="transcendental", cost=4, ulp=23.0, clause=_EXP,
+        vectors=(((0.5,), 1.4142135623730951), ((0.0,), 1.0), ((-3.0,), 0.125)),
+    ),
+    Builtin("log2", _F1, "Binary logarithm.",
+        domain="x > 0", kind="transcendental", cost=4, absolute=2.0**-21, clause=_LOG,
+        vectors=(((3.0,), 1.584962500721156), ((1.0,), 0.0), ((0.125,), -3.0)),
+    ),
+    Builtin("sqrt", _F1, "Square root.",
+        domain="x >= 0", kind="transcendental", cost=4, ulp=6.0,
+        clause="WGSL, Vulkan: that of 1/inversesqrt(x), with 2 and 2.5 ulp",
+        vectors=(((2.0,), 1.4142135623730951), ((0.0,), 0.0), ((0.0625,), 0.25)),
+    ),
+    Builtin("inversesqrt", _F1, "1/sqrt(x).",
+        domain="x > 0", texts={"hlsl": "rsqrt", "wgsl": "inverseSqrt"}, kind="transcendental", cost=4,
+        vectors=(((2.0,), 0.7071067811865476), ((1.0,), 1.0), ((0.0625,), 4.0)),
+    ),
+    # 8.3 Common
+    Builtin("abs", _PLAIN, "Absolute value.",
+        domain="for an int: x > -2147483648",
+        vectors=(((-1.5,), 1.5), ((0.0,), 0.0), ((-7,), 7), (((1, -2),), (1, 2))),
+    ),
+    Builtin("sign", _PLAIN, "1 for x > 0, -1 for x < 0, else 0.",
+        texts={"hlsl/genF": "{type}(sign({0}))"},
+        vectors=(((-2.5,), -1.0), ((0.0,), 0.0), ((0.125,), 1.0), ((-3,), -1), ((0,), 0)),
+    ),
+    Builtin("floor", _F1, "Largest integer not above x.",
+        vectors=(((1.75,), 1.0), ((-0.25,), -1.0), ((-2.0,), -2.0)),
+    ),
+    Builtin("ceil", _F1, "Smallest integer not below x.",
+        vectors=(((1.25,), 2.0), ((-1.75,), -1.0), ((2.0,), 2.0)),
+    ),
+    Builtin("trunc", _F1, "Nearest integer not larger in size: x rounded towards 0.",
+        vectors=(((1.75,), 1.0), ((-1.75,), -1.0), ((3.0,), 3.0)),
+    ),
+    Builtin("round", _F1,
+        "Nearest integer; of two, the even one (GLSL leaves that choice open, so it is written roundEven there).",
+        texts={"glsl": "roundEven"}, vectors=(((1.75,), 2.0), ((0.5,), 0.0), ((-1.5,), -2.0), ((2.5,), 2.0)),
+    ),
+    Builtin("roundEven", _F1, "Nearest integer; of two, the even one.",
+        texts={"hlsl": "round", "wgsl": "round"},
+        vectors=(((1.25,), 1.0), ((0.5,), 0.0), ((1.5,), 2.0), ((-2.5,), -2.0)),
+    ),
+    Builtin("fract", _F1, "x - floor(x), in [0, 1); may round to 1 for a tiny negative x.",
+        texts={"hlsl": "frac"}, vectors=(((1.75,), 0.75), ((-0.25,), 0.75), ((-3.0,), 0.0)),
+    ),
+    Builtin("mod", ("genF(genF, genF)", "genF(genF, float)"),
+        "Floored remainder x - y·floor(x/y); has the sign of y. Not HLSL's fmod, which truncates.",
+        domain="y != 0", texts={"hlsl": "", "wgsl": ""},
+        polyfill="""
+genF mod(genF x, genF y) { return x - y * floor(x / y); }
+vecF mod(vecF x, float y) { return x - y * floor(x / y); }
+""",
+        cost=4, ulp=16.0,
+        clause="WGSL, Vulkan: that of the formula; where x is near a multiple of y the result may wrap",
+        vectors=(
+            ((5.5, 2.0), 1.5), ((-0.5, 2.0), 1.5), ((5.5, -2.0), -0.5), (((5.5, -0.5), 2.0), (1.5, 1.5)),
+        ),
+    ),
+    Builtin("fmod", ("genF(genF, genF)", "genF(genF, float)"),
+        "Truncated remainder x - y·trunc(x/y), as in C and HLSL; has the sign of x.",
+        domain="y != 0", texts={"glsl": "", "wgsl": "op:%"},
+        polyfill="""
+genF fmod(genF x, genF y) { return x - y * trunc(x / y); }
+vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
+""",
+        splat=(), cost=4, ulp=16.0,
+        clause="WGSL, Vulkan: that of the formula; where x is near a multiple of y the result may wrap",
+        vectors=(
+            ((5.5, 2.0), 1.5), ((-0.5, 2.0), -0.5), ((5.5, -2.0), 1.5), (((5.5, -0.5), 2.0), (1.5, -0.5)),
+        ),
+    ),
+    Builtin("min", _PAIR, "The smaller; either one where one is NaN.",
+        domain="neither is NaN",
+        vectors=(
+            ((1.0, -2.0), -2.0), ((3, 3), 3), (((1.0, 4.0), 2.0), (1.0, 2.0)), (((1, -4), (-1, 2)), (-1, -4)),
+        ),
+    ),
+    Builtin("max", _PAIR, "The larger; either one where one is NaN.",
+        domain="neither is NaN",
+        vectors=(
+            ((1.0, -2.0), 1.0), ((3, 3), 3), (((1.0, 4.0), 2.0), (2.0, 4.0)), (((1, -4), (-1, 2)), (1, 2)),
+        ),
+    ),
+    Builtin("clamp",
+        tuple(f"gen{k}(gen{k}, {bound}, {bound})" for k, one in zip("FIU", _ONES) for bound in (f"gen{k}", one)),
+        "min(max(x, y), z).",
+        domain="y <= z; x is not NaN", cost=2,
+        vectors=(
+            ((0.5, 0.0, 1.0), 0.5), ((-0.5, 0.0, 1.0), 0.0), ((7, 1, 4), 4),
+            (((-1.0, 3.0), 0.0, 2.0), (0.0, 2.0)),
+        ),
+    ),
+    Builtin("saturate", _F1, "clamp(x, 0, 1). Of our own: HLSL and WGSL have it, GLSL has not.",
+        domain="x is not NaN", texts={"glsl": ""},
+        polyfill="genF saturate(genF x) { return clamp(x, 0.0, 1.0); }",
+        vectors=(((0.25,), 0.25), ((-1.0,), 0.0), ((1.5,), 1.0), (((2.0, -0.0, 1.0),), (1.0, 0.0, 1.0))),
+    ),
+    Builtin("mix", ("genF(genF, genF, genF)", "genF(genF, genF, float)", "genF(genF, genF, genB)"),
+        "Linear blend x·(1 - z) + y·z; with a bool, z ? y : x, where the other one may be infinite or NaN.",
+        domain="x and y finite, unless z is a bool",
+        texts={"hlsl": "lerp", "hlsl/genF,genF,genB": "", "wgsl/genF,genF,genB": "select"},
+        polyfill="""
+float mix(float x, float y, bool a) { return a ? y : x; }
+vec2 mix(vec2 x, vec2 y, bvec2 a) { return vec2(a.x ? y.x : x.x, a.y ? y.y : x.y); }
+vec3 mix(vec3 x, vec3 y, bvec3 a) { return vec3(a.x ? y.x : x.x, a.y ? y.y : x.y, a.z ? y.z : x.z); }
+vec4 mix(vec4 x, vec4 y, bvec4 a) {
+    return vec4(a.x ? y.x : x.x, a.y ? y.y : x.y, a.z ? y.z : x.z, a.w ? y.w : x.w);
+}
+""",
+        splat=(), cost=2,
+        vectors=(
+            ((0.0, 10.0, 0.25), 2.5), ((1.0, 3.0, 0.0), 1.0), (((0.0, 2.0), (4.0, 4.0), 0.5), (2.0, 3.0)),
+            (((1.0, 2.0), (3.0, 4.0), (True, False)), (3.0, 2.0)), ((_INF, 4.0, True), 4.0),
+        ),
+    ),
+    Builtin("step", ("genF(genF, genF)", "genF(float, genF)"), "0 for y < x, else 1.",
+        vectors=(((0.5, 0.25), 0.0), ((0.5, 0.5), 1.0), ((1.0, (0.0, 2.0)), (0.0, 1.0))),
+    ),
+    Builtin("smoothstep", ("genF(genF, genF, genF)", "genF(float, float, genF)"),
+        "Cubic step t·t·(3 - 2·t) with t = clamp((z - x)/(y - x), 0, 1).",
+        domain="x < y", cost=8, ulp=16.0,
+        clause="WGSL, Vulkan: that of the formula, with 2.5 ulp for the division",
+        vectors=(((0.0, 2.0, 0.5), 0.15625), ((0.0, 1.0, 0.0), 0.0), ((0.0, 1.0, (0.5, 3.0)), (0.5, 1.0))),
+    ),
+    Builtin("isnan", ("genB(genF)",),
+        "Whether x is not a number. By its bits in HLSL and WGSL, whose compilers may take it that no NaN occurs.",
+        texts={"hlsl": "", "wgsl": ""},
+        polyfill="""
+bool isnan(float x) { return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u; }
+vecB isnan(vecF x) { return greaterThan(floatBitsToUint(x) & vecU(0x7fffffffu), vecU(0x7f800000u)); }
+""",
+        cost=2, vectors=(((_NAN,), True), ((_INF,), False), ((0.0,), False), (((1.0, _NAN),), (False, True))),
+    ),
+    Builtin("isinf", ("genB(genF)",), "Whether x is infinite. By its bits in HLSL and WGSL, as isnan.",
+        texts={"hlsl": "", "wgsl": ""},
+        polyfill="""
+bool isinf(float x) { return (floatBitsToUint(x) & 0x7fffffffu) == 0x7f800000u; }
+vecB isinf(vecF x) { return equal(floatBitsToUint(x) & vecU(0x7fffffffu), vecU(0x7f800000u)); }
+""",
+        cost=2,
+        vectors=(((-_INF,), True), ((_NAN,), False), ((2.0**127,), False), (((1.0, _INF),), (False, True))),
+    ),
+    Builtin("floatBitsToInt", ("genI(genF)",), "The float32's bits, as an int.",
+        texts={"hlsl": "asint", "wgsl": "bitcast<{type}>({0})"},
+        vectors=(((1.0,), 0x3F800000), ((-2.0,), -0x40000000), ((0.0,), 0)),
+    ),
+    Builtin("floatBitsToUint", ("genU(genF)",), "The float32's bits, as a uint.",
+        texts={"hlsl": "asuint", "wgsl": "bitcast<{type}>({0})"},
+        vectors=(((1.0,), 0x3F800000), ((-2.0,), 0xC0000000), ((0.0,), 0)),
+    ),
+    Builtin("intBitsToFloat", ("genF(genI)",), "The float32 with these bits.",
+        domain="the bits are those of a finite float",
+        texts={"hlsl": "asfloat", "wgsl": "bitcast<{type}>({0})"},
+        vectors=(((0x3F800000,), 1.0), ((-0x40000000,), -2.0), ((0,), 0.0)),
+    ),
+    Builtin("uintBitsToFloat", ("genF(genU)",), "The float32 with these bits.",
+        domain="the bits are those of a finite float",
+        texts={"hlsl": "asfloat", "wgsl": "bitcast<{type}>({0})"},
+        vectors=(((0x3F800000,), 1.0), ((0xC0000000,), -2.0), ((0,), 0.0)),
+    ),
+    # 8.4 Packing; the first component goes into the low bits
+    Builtin("packSnorm2x16", ("uint(vec2)",),
+        "Two numbers in [-1, 1], each as a signed 16-bit fraction of 32767.",
+        texts={"hlsl": "", "wgsl": "pack2x16snorm"},
+        polyfill="""
+uint packSnorm2x16(vec2 x) {
+    ivec2 i = ivec2(round(clamp(x, -1.0, 1.0) * 32767.0));
+    return (uint(i.x) & 0xffffu) | (uint(i.y) << 16u);
+}
+""",
+        cost=9, vectors=((((-1.0, 1.0),), 0x7FFF8001), (((0.0, 0.0),), 0), (((4.0, -4.0),), 0x80017FFF)),
+    ),
+    Builtin("packUnorm2x16", ("uint(vec2)",), "Two numbers in [0, 1], each as a 16-bit fraction of 65535.",
+        texts={"hlsl": "", "wgsl": "pack2x16unorm"},
+        polyfill="""
+uint packUnorm2x16(vec2 x) {
+    uvec2 u = uvec2(round(clamp(x, 0.0, 1.0) * 65535.0));
+    return u.x | (u.y << 16u);
+}
+""",
+        cost=8, vectors=((((0.0, 1.0),), 0xFFFF0000), (((0.0, 0.0),), 0), (((2.0, -1.0),), 0xFFFF)),
+    ),
+    Builtin("packHalf2x16", ("uint(vec2)",), "Two numbers as float16.",
+        domain="representable in float16: the rounding is the target's",
+        texts={"hlsl": "dot(f32tof16({0}), uint2(1u, 65536u))", "hlsl-dx9": "", "wgsl": "pack2x16float"},
+        cost=3,
+        vectors=((((1.0, -2.0),), 0xC0003C00), (((0.5, 0.0),), 0x3800), (((65504.0, 0.25),), 0x34007BFF)),
+    ),
+    Builtin("unpackSnorm2x16", ("vec2(uint)",),
+        "Two numbers in [-1, 1] from signed 16-bit fractions of 32767.",
+        texts={"hlsl": "", "wgsl": "unpack2x16snorm"},
+        polyfill="""
+vec2 unpackSnorm2x16(uint x) {
+    return clamp(vec2(float(int(x << 16u) >> 16), float(int(x) >> 16)) / 32767.0, -1.0, 1.0);
+}
+""",
+        cost=4,
+        vectors=(((0x80007FFF,), (1.0, -1.0)), ((0,), (0.0, 0.0)), ((0x4000,), (0.500015259254738, 0.0))),
+    ),
+    Builtin("unpackUnorm2x16", ("vec2(uint)",), "Two numbers in [0, 1] from 16-bit fractions of 65535.",
+        texts={"hlsl": "", "wgsl": "unpack2x16unorm"},
+        polyfill="vec2 unpackUnorm2x16(uint x) { return vec2(float(x & 65535u), float(x >> 16u)) / 65535.0; }",
+        cost=3,
+        vectors=(((0xFFFF,), (1.0, 0.0)), ((0,), (0.0, 0.0)), ((0x80000000,), (0.0, 0.5000076295109483))),
+    ),
+    Builtin("unpackHalf2x16", ("vec2(uint)",), "Two numbers from float16.",
+        domain="both are finite",
+        texts={"hlsl": "f16tof32(({0}) >> uint2(0u, 16u))", "hlsl-dx9": "", "wgsl": "unpack2x16float"},
+        cost=2,
+        vectors=(((0xC0003C00,), (1.0, -2.0)), ((0x3800,), (0.5, 0.0)), ((0x34007BFF,), (65504.0, 0.25))),
+    ),
+    # 8.5 Geometry
+    Builtin("length", ("float(genF)",), "Euclidean length.",
+        domain="dot(x, x) does not overflow: |x| < 1e19", kind="transcendental", cost=6, ulp=8.0,
+        clause="WGSL, Vulkan: that of sqrt(dot(x, x))",
+        vectors=((((3.0, 4.0),), 5.0), (((0.0, 0.0, 0.0),), 0.0), ((-2.0,), 2.0)),
+    ),
+    Builtin("distance", _REDUCE, "Length of x - y.",
+        domain="|x - y| < 1e19", texts={"hlsl/float,float": "abs(({0}) - ({1}))"}, kind="transcendental",
+        cost=7, ulp=8.0, clause="WGSL, Vulkan: that of length(x - y)",
+        vectors=(
+            (((4.0, 6.0), (1.0, 2.0)), 5.0), (((1.0, 2.0, 3.0), (1.0, 2.0, 3.0)), 0.0), ((1.0, -1.5), 2.5),
+        ),
+    ),
+    Builtin("dot", _REDUCE, "Sum of the products of the components.",
+        texts={"hlsl/float,float": "op:*", "wgsl/float,float": "op:*"}, cost=2, ulp=8.0, clause=_SUM,
+        vectors=(
+            (((1.0, 2.0, 3.0), (4.0, -5.0, 6.0)), 12.0), (((0.0, 1.0), (1.0, 0.0)), 0.0), ((2.0, -3.0), -6.0),
+        ),
+    ),
+    Builtin("cross", ("vec3(vec3, vec3)",), "Cross product, right-handed: x-axis with y-axis gives z-axis.",
+        cost=3, ulp=8.0, clause=_SUM,
+        vectors=(
+            (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)), (0.0, 0.0, 1.0)),
+            (((1.0, 2.0, 3.0), (4.0, 5.0, 6.0)), (-3.0, 6.0, -3.0)),
+            (((2.0, 4.0, 6.0), (1.0, 2.0, 3.0)), (0.0, 0.0, 0.0)),
+        ),
+    ),
+    Builtin("normalize", ("vecF(vecF)", "float(float)"), "x / length(x).",
+        domain="dot(x, x) > 0 and does not overflow", texts={"hlsl/float": "", "wgsl/float": ""},
+        polyfill="float normalize(float x) { return sign(x); }", kind="transcendental", cost=7, ulp=8.0,
+        clause="WGSL, Vulkan: that of x / length(x)",
+        vectors=(
+            (((3.0, 4.0),), (0.6, 0.8)),
+            (((1.0, 2.0, 3.0),), (0.2672612419124244, 0.5345224838248488, 0.8017837257372732)),
+            (((0.0, 0.0, -0.5),), (0.0, 0.0, -1.0)), ((-2.0,), -1.0),
+        ),
+    ),
+    Builtin("faceforward", ("vecF(vecF, vecF, vecF)", "float(float, float, float)"),
+        "x where dot(z, y) < 0, else -x: the normal x turned against the direction of incidence y.",
+        texts={"hlsl/float,float,float": "", "wgsl": "faceForward", "wgsl/float,float,float": ""},
+        polyfill="float faceforward(float x, float y, float z) { return z * y < 0.0 ? x : -x; }", cost=4,
+        vectors=(
+            (((0.0, 1.0), (0.0, -1.0), (0.0, 1.0)), (0.0, 1.0)),
+            (((0.0, 1.0), (0.0, 1.0), (0.0, 1.0)), (0.0, -1.0)),
+            (((0.0, 0.5, 1.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)), (0.0, -0.5, -1.0)),
+        ),
+    ),
+    Builtin("reflect", ("vecF(vecF, vecF)", "float(float, float)"),
+        "x - 2·dot(y, x)·y: direction x mirrored at the unit normal y.",
+        domain="dot(y, y) = 1", texts={"hlsl/float,float": "", "wgsl/float,float": ""},
+        polyfill="float reflect(float x, float y) { return x - 2.0 * y * x * y; }", cost=4, ulp=8.0,
+        clause=_SUM,
+        vectors=(
+            (((1.0, -1.0), (0.0, 1.0)), (1.0, 1.0)), (((0.0, 0.0, -1.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0)),
+            (((1.0, 2.0, 3.0), (1.0, 0.0, 0.0)), (-1.0, 2.0, 3.0)),
+        ),
+    ),
+    Builtin("refract", ("vecF(vecF, vecF, float)", "float(float, float, float)"),
+        "Direction x refracted at the unit normal y, z = n_from/n_into; 0 on total internal reflection.",
+        domain="dot(x, x) = dot(y, y) = 1 and z > 0",
+        texts={"hlsl/float,float,float": "", "wgsl/float,float,float": ""},
+        polyfill="""
+float refract(float x, float y, float z) {
+    float c = y * x;
+    float k = 1.0 - z * z * (1.0 - c * c);
+    return k < 0.0 ? 0.0 : z * x - (z * c + sqrt(max(k, 0.0))) * y;
+}
+""",
+        splat=(), kind="transcendental", cost=12, ulp=16.0, absolute=2.0**-20,
+        clause="WGSL, Vulkan: that of the formula, with sqrt near total internal reflection",
+        vectors=(
+            (((0.0, -1.0), (0.0, 1.0), 0.75), (0.0, -1.0)), (((1.0, 0.0), (0.0, 1.0), 1.5), (0.0, 0.0)),
+            (((1.0, 0.0, 0.0), (0.0, 0.0, 1.0), 0.25), (0.25, 0.0, -0.9682458365518543)),
+        ),
+    ),
+    # 8.6 Matrices
+    Builtin("matrixCompMult", ("mat(mat, mat)",), "Componentwise product.",
+        texts={"hlsl": "op:*", "wgsl": ""},
+        polyfill="""
+mat2 matrixCompMult(mat2 x, mat2 y) { return mat2(x[0] * y[0], x[1] * y[1]); }
+mat3 matrixCompMult(mat3 x, mat3 y) { return mat3(x[0] * y[0], x[1] * y[1], x[2] * y[2]); }
+mat4 matrixCompMult(mat4 x, mat4 y) { return mat4(x[0] * y[0], x[1] * y[1], x[2] * y[2], x[3] * y[3]); }
+""",
+        vectors=(
+            ((((1.0, 2.0), (3.0, 4.0)), ((5.0, 6.0), (7.0, 8.0))), ((5.0, 12.0), (21.0, 32.0))),
+            ((((1.0, 0.0), (0.0, 1.0)), ((5.0, 6.0), (7.0, 8.0))), ((5.0, 0.0), (0.0, 8.0))),
+            ((((0.0, 0.0), (0.0, 0.0)), ((5.0, 6.0), (7.0, 8.0))), ((0.0, 0.0), (0.0, 0.0))),
+        ),
+    ),
+    Builtin("outerProduct", ("mat2(vec2, vec2)", "mat3(vec3, vec3)", "mat4(vec4, vec4)"),
+        "The matrix whose column i is x·y[i].",
+        texts={"hlsl": "", "wgsl": ""},
+        polyfill="""
+mat2 outerProduct(vec2 x, vec2 y) { return mat2(x * y.x, x * y.y); }
+mat3 outerProduct(vec3 x, vec3 y) { return mat3(x * y.x, x * y.y, x * y.z); }
+mat4 outerProduct(vec4 x, vec4 y) { return mat4(x * y.x, x * y.y, x * y.z, x * y.w); }
+""",
+        vectors=(
+            (((1.0, 2.0), (3.0, 4.0)), ((3.0, 6.0), (4.0, 8.0))),
+            (((0.0, 0.0), (3.0, 4.0)), ((0.0, 0.0), (0.0, 0.0))),
+            (((1.0, 0.0, 2.0), (0.0, 1.0, -1.0)), ((0.0, 0.0, 0.0), (1.0, 0.0, 2.0), (-1.0, 0.0, -2.0))),
+        ),
+    ),
+    Builtin("transpose", ("mat(mat)",), "Rows for columns.",
+        cost=0,
+        vectors=(
+            ((((1.0, 2.0), (3.0, 4.0)),), ((1.0, 3.0), (2.0, 4.0))),
+            ((((1.0, 0.0), (0.0, 1.0)),), ((1.0, 0.0), (0.0, 1.0))),
+            ((((1.0, 2.0, 3.0), (4.0, 5.0, 6.0), (7.0, 8.0, 9.0)),), ((1.0, 4.0, 7.0), (2.0, 5.0, 8.0), (3.0, 6.0, 9.0))),
+        ),
+    ),
+    Builtin("determinant", ("float(mat)",), "Determinant.",
+        cost=8, ulp=32.0, clause="WGSL: no bound",
+        vectors=(
+            ((((1.0, 2.0), (3.0, 4.0)),), -2.0), ((((1.0, 2.0), (2.0, 4.0)),), 0.0),
+            ((((2.0, 0.0, 0.0), (1.0, 3.0, 0.0), (5.0, 7.0, 4.0)),), 24.0),
+        ),
+    ),
+    Builtin("inverse", ("mat(mat)",), "Inverse matrix.",
+        domain="determinant(x) != 0, and well away from it for accuracy", texts={"hlsl": "", "wgsl": ""},
+        polyfill="""
+mat2 inverse(mat2 x) {
+    return mat2(x[1].y, -x[0].y, -x[1].x, x[0].x) * (1.0 / (x[0].x * x[1].y - x[1].x * x[0].y));
+}
+mat3 inverse(mat3 x) {
+    vec3 a = cross(x[1], x[2]);
+    return transpose(mat3(a, cross(x[2], x[0]), cross(x[0], x[1]))) * (1.0 / dot(x[0], a));
+}
+mat4 inverse(mat4 x) {
+    vec3 a = cross(x[0].xyz, x[1].xyz);
+    vec3 b = cross(x[2].xyz, x[3].xyz);
+    vec3 c = x[0].xyz * x[1].w - x[1].xyz * x[0].w;
+    vec3 d = x[2].xyz * x[3].w - x[3].xyz * x[2].w;
+    float s = 1.0 / (dot(a, d) + dot(b, c));
+    return transpose(mat4(
+        vec4(cross(x[1].xyz, d) + b * x[1].w, -dot(x[1].xyz, b)),
+        vec4(cross(d, x[0].xyz) - b * x[0].w, dot(x[0].xyz, b)),
+        vec4(cross(x[3].xyz, c) + a * x[3].w, -dot(x[3].xyz, a)),
+        vec4(cross(c, x[2].xyz) - a * x[2].w, dot(x[2].xyz, a))
+    )) * s;
+}
+""",
+        cost=16, ulp=64.0, clause="GLSL ES 3.00: no bound, and undefined where ill-conditioned",
+        vectors=(
+            ((((1.0, 2.0), (3.0, 4.0)),), ((-2.0, 1.0), (1.5, -0.5))),
+            ((((2.0, 0.0, 0.0), (0.0, 4.0, 0.0), (6.0, 8.0, 1.0)),), ((0.5, 0.0, 0.0), (0.0, 0.25, 0.0), (-3.0, -2.0, 1.0))),
+            ((((2.0, 0.0, 0.0, 0.0), (0.0, 0.0, -1.0, 0.0), (0.0, 1.0, 0.0, 0.0), (4.0, 3.0, 2.0, 1.0)),), ((0.5, 0.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0), (0.0, -1.0, 0.0, 0.0), (-2.0, 2.0, -3.0, 1.0))),
+        ),
+    ),
+    # 8.7 Vector relations
+    _relation("lessThan", "<", True, False, False),
+    _relation("lessThanEqual", "<=", True, True, False),
+    _relation("greaterThan", ">", False, False, True),
+    _relation("greaterThanEqual", ">=", False, True, True),
+    _relation("equal", "==", False, True, False),
+    _relation("notEqual", "!=", True, False, True),
+    Builtin("any", ("bool(vecB)",), "Whether some component is true.",
+        vectors=((((False, True),), True), (((False, False, False),), False), (((True, True),), True)),
+    ),
+    Builtin("all", ("bool(vecB)",), "Whether every component is true.",
+        vectors=((((False, True),), False), (((False, False, False),), False), (((True, True),), True)),
+    ),
+    Builtin("not", ("vecB(vecB)",), "Componentwise negation.",
+        texts={"hlsl": "op:!", "wgsl": "op:!"},
+        vectors=(
+            (((False, True),), (True, False)), (((True, True, True),), (False, False, False)),
+            (((False, False),), (True, True)),
+        ),
+    ),
+    # 8.8 Texture reads
+    Builtin("textureSize", ("ivec2(sampler2D, int)", "ivec3(sampler3D, int)", "ivec2(samplerCube, int)"),
+        "Size in texels of level y. HLSL has it only as a statement, so it is refused there.",
+        domain="the level exists", texts={"hlsl": "", "wgsl": "{type}(textureDimensions({texture}, {1}))"},
+        splat=(), kind="fetch",
+    ),
+    Builtin("texture", (*(f"{read})" for read in _SAMPLE), *(f"{read}, float)" for read in _SAMPLE)),
+        "Filtered texture read; the level comes from screen-space derivatives, with z added to it.",
+        domain="uniform control flow",
+        texts={
+            "hlsl": "{texture}.Sample({sampler}, {1})",
+            "hlsl/sampler2D,vec2,float": "{texture}.SampleBias({sampler}, {1}, {2})",
+            "hlsl/sampler3D,vec3,float": "{texture}.SampleBias({sampler}, {1}, {2})",
+            "hlsl/samplerCube,vec3,float": "{texture}.SampleBias({sampler}, {1}, {2})",
+            "hlsl-dx9": "tex{dim}({texture}, {1})",
+            "hlsl-dx9/sampler2D,vec2,float": "tex2Dbias({texture}, float4({1}, 0.0, {2}))",
+            "hlsl-dx9/sampler3D,vec3,float": "tex3Dbias({texture}, float4({1}, {2}))",
+            "hlsl-dx9/samplerCube,vec3,float": "texCUBEbias({texture}, float4({1}, {2}))",
+            "hlsl-macros": "SAMPLE_TEXTURE{dim}({texture}, {sampler}, {1})",
+            "hlsl-macros/sampler2D,vec2,float": "SAMPLE_TEXTURE2D_BIAS({texture}, {sampler}, {1}, {2})",
+            "hlsl-macros/sampler3D,vec3,float": "{texture}.SampleBias({sampler}, {1}, {2})",
+            "hlsl-macros/samplerCube,vec3,float": "SAMPLE_TEXTURECUBE_BIAS({texture}, {sampler}, {1}, {2})",
+            "wgsl": "textureSample({texture}, {sampler}, {1})",
+            "wgsl/sampler2D,vec2,float": "textureSampleBias({texture}, {sampler}, {1}, {2})",
+            "wgsl/sampler3D,vec3,float": "textureSampleBias({texture}, {sampler}, {1}, {2})",
+            "wgsl/samplerCube,vec3,float": "textureSampleBias({texture}, {sampler}, {1}, {2})",
+        },
+        splat=(), kind="fetch",
+    ),
+    Builtin("textureLod", tuple(f"{read}, float)" for read in _SAMPLE), "Filtered texture read at level z.",
+        texts={
+            "hlsl": "{texture}.SampleLevel({sampler}, {1}, {2})",
+            "hlsl-dx9": "tex{dim}lod({texture}, float4({1}, {2}))",
+            "hlsl-dx9/sampler2D,vec2,float": "tex2Dlod({texture}, float4({1}, 0.0, {2}))",
+            "hlsl-macros": "SAMPLE_TEXTURE{dim}_LOD({texture}, {sampler}, {1}, {2})",
+            "wgsl": "textureSampleLevel({texture}, {sampler}, {1}, {2})",
+        },
+        splat=(), kind="fetch",
+    ),
+    Builtin("textureGrad",
+        ("vec4(sampler2D, vec2, vec2, vec2)", *(f"{read}, vec3, vec3)" for read in _SAMPLE[1:])),
+        "Filtered texture read; the level comes from the given derivatives of the coordinate along screen x and y.",
+        texts={
+            "hlsl": "{texture}.SampleGrad({sampler}, {1}, {2}, {3})",
+            "hlsl-dx9": "tex{dim}grad({texture}, {1}, {2}, {3})",
+            "hlsl-macros/sampler2D,vec2,vec2,vec2": "SAMPLE_TEXTURE2D_GRAD({texture}, {sampler}, {1}, {2}, {3})",
+            "wgsl": "textureSampleGrad({texture}, {sampler}, {1}, {2}, {3})",
+        },
+        splat=(), kind="fetch",
+    ),
+    Builtin("texelFetch", ("vec4(sampler2D, ivec2, int)", "vec4(sampler3D, ivec3, int)"),
+        "The texel at y of level z, unfiltered.",
+        domain="the texel and the level exist",
+        texts={
+            "hlsl": "{texture}.Load(int3({1}, {2}))",
+            "hlsl/sampler3D,ivec3,int": "{texture}.Load(int4({1}, {2}))", "hlsl-dx9": "",
+            "hlsl-macros": "LOAD_TEXTURE{dim}_LOD({texture}, {1}, {2})",
+            "wgsl": "textureLoad({texture}, {1}, {2})",
+        },
+        splat=(), kind="fetch",
+    ),
+    # 8.9 Derivatives
+    Builtin("dFdx", _F1, "Change of x from one pixel to the next, to the right.",
+        domain="uniform control flow", texts={"hlsl": "ddx", "wgsl": "dpdx"}, kind="derivative",
+    ),
+    Builtin("dFdy", _F1,
+        "Change of x from one pixel to the next along framebuffer y: up in OpenGL, down in D3D and WebGPU.",
+        domain="uniform control flow", texts={"hlsl": "ddy", "wgsl": "dpdy"}, kind="derivative",
+    ),
+    Builtin("fwidth", _F1, "abs(dFdx(x)) + abs(dFdy(x)).",
+        domain="uniform control flow", kind="derivative", cost=3,
+    ),
+)

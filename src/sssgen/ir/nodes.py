@@ -1,0 +1,304 @@
+"""The nodes of the IR: small immutable tuples, each with the span of source it came from.
+
+Every expression carries its type; no overload, implicit conversion or name is left to resolve. Assignments are
+statements, so expressions have no side effect but through a call's out parameters. Nodes are named tuples: they are
+cheap to make and cannot be changed. Compare nodes by identity or by their text form (`ir.text`), not with `==`, which
+for tuples looks at the fields and not at the class.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple, TypeAlias
+
+from .types import Type
+
+
+class Span(NamedTuple):
+    """Where a node stands in its source: 1-based lines and columns, the end exclusive."""
+
+    file: str
+    line: int
+    column: int
+    end_line: int
+    end_column: int
+
+
+NOWHERE = Span("", 0, 0, 0, 0)
+
+
+# Expressions
+
+
+class Literal(NamedTuple):
+    """A constant scalar."""
+
+    type: Type
+    value: float | int | bool
+    span: Span
+
+
+class Local(NamedTuple):
+    """A parameter or local variable of the function."""
+
+    type: Type
+    name: str
+    span: Span
+
+
+class Global(NamedTuple):
+    """A uniform, a texture or a module constant."""
+
+    type: Type
+    name: str
+    span: Span
+
+
+class Unary(NamedTuple):
+    """`-x`, `!x` or `~x`."""
+
+    type: Type
+    op: str
+    operand: Expr
+    span: Span
+
+
+class Binary(NamedTuple):
+    """`left op right`. On matrices `*` is the matrix product; `==` and `!=` give one bool."""
+
+    type: Type
+    op: str
+    left: Expr
+    right: Expr
+    span: Span
+
+
+class Select(NamedTuple):
+    """`condition ? yes : no`; only the chosen arm is evaluated."""
+
+    type: Type
+    condition: Expr
+    yes: Expr
+    no: Expr
+    span: Span
+
+
+class Call(NamedTuple):
+    """A call of a function of the module, named by its key (see `Function.key`)."""
+
+    type: Type
+    function: str
+    args: tuple[Expr, ...]
+    span: Span
+
+
+class Intrinsic(NamedTuple):
+    """A call of a builtin of the intrinsic table."""
+
+    type: Type
+    name: str
+    args: tuple[Expr, ...]
+    span: Span
+
+
+class Construct(NamedTuple):
+    """`vec3(a, b)`, `float(i)`, `mat3(x, y, z)`, `Surface(…)`, `float[2](a, b)`: conversion or assembly."""
+
+    type: Type
+    args: tuple[Expr, ...]
+    span: Span
+
+
+class Swizzle(NamedTuple):
+    """`value.zyx`; `components` is spelt with x, y, z, w."""
+
+    type: Type
+    value: Expr
+    components: str
+    span: Span
+
+
+class Index(NamedTuple):
+    """`value[index]`: an array's element, a vector's component or a matrix's column."""
+
+    type: Type
+    value: Expr
+    index: Expr  # type: ignore[assignment]  # hides tuple.index, which no node needs
+    span: Span
+
+
+class Member(NamedTuple):
+    """`value.field` of a struct."""
+
+    type: Type
+    value: Expr
+    field: str
+    span: Span
+
+
+Expr: TypeAlias = (
+    Literal | Local | Global | Unary | Binary | Select | Call | Intrinsic | Construct | Swizzle | Index | Member
+)
+
+
+# Statements
+
+
+class Declare(NamedTuple):
+    """A local variable; without a value it is not yet defined."""
+
+    name: str
+    type: Type
+    value: Expr | None
+    span: Span
+
+
+class Assign(NamedTuple):
+    """`target op= value`; `op` is '' for plain assignment."""
+
+    target: Expr
+    op: str
+    value: Expr
+    span: Span
+
+
+class Evaluate(NamedTuple):
+    """A call made for its out parameters alone."""
+
+    call: Expr
+    span: Span
+
+
+class If(NamedTuple):
+    """Two-armed choice; `otherwise` may be empty."""
+
+    condition: Expr
+    then: Block
+    otherwise: Block
+    span: Span
+
+
+class For(NamedTuple):
+    """A bounded loop."""
+
+    init: Stmt | None
+    condition: Expr | None
+    step: Stmt | None
+    body: Block
+    span: Span
+
+
+class While(NamedTuple):
+    """A loop whose bound the checker has seen."""
+
+    condition: Expr
+    body: Block
+    span: Span
+
+
+class Break(NamedTuple):
+    """Leaves the innermost loop."""
+
+    span: Span
+
+
+class Continue(NamedTuple):
+    """Goes on with the innermost loop's next step."""
+
+    span: Span
+
+
+class Return(NamedTuple):
+    """Leaves the function."""
+
+    value: Expr | None
+    span: Span
+
+
+class Discard(NamedTuple):
+    """Drops the fragment."""
+
+    span: Span
+
+
+Stmt: TypeAlias = Declare | Assign | Evaluate | If | For | While | Break | Continue | Return | Discard
+Block: TypeAlias = tuple[Stmt, ...]
+
+
+# Declarations
+
+
+class Param(NamedTuple):
+    """A parameter; `direction` is in, out or inout; `quantity` its quantity type or ''."""
+
+    name: str
+    type: Type
+    direction: str
+    quantity: str
+    span: Span
+
+
+class Function(NamedTuple):
+    """A function; `body` is None for a slot that a material has still to bind.
+
+    `key` tells overloads apart: the name and the parameter types, as in `box(vec3,vec3)`.
+    """
+
+    name: str
+    params: tuple[Param, ...]
+    result: Type
+    quantity: str
+    body: Block | None
+    doc: str
+    span: Span
+
+    @property
+    def key(self) -> str:
+        return function_key(self.name, [param.type for param in self.params])
+
+
+class Uniform(NamedTuple):
+    """A value or texture set from outside. `default` holds its components, empty for a texture.
+
+    `hints` are the declaration's hints with their arguments, as in `("hint_range", (0.0, 1.0))`.
+    """
+
+    name: str
+    type: Type
+    default: tuple[float, ...]
+    hints: tuple[tuple[str, tuple[float | str, ...]], ...]
+    quantity: str
+    doc: str
+    span: Span
+
+
+class Constant(NamedTuple):
+    """A module constant."""
+
+    name: str
+    type: Type
+    value: Expr
+    span: Span
+
+
+class StructDecl(NamedTuple):
+    """The declaration of a struct type (the type itself holds the fields)."""
+
+    type: Type
+    doc: str
+    span: Span
+
+
+class Module(NamedTuple):
+    """One program or library, in source order; a function stands after those it calls once linked."""
+
+    structs: tuple[StructDecl, ...] = ()
+    constants: tuple[Constant, ...] = ()
+    uniforms: tuple[Uniform, ...] = ()
+    functions: tuple[Function, ...] = ()
+
+
+def function_key(name: str, types: list[Type]) -> str:
+    """The key under which a function with these parameter types is called."""
+    from .types import spell
+
+    return f"{name}({','.join(map(spell, types))})"

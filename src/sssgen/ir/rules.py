@@ -1,0 +1,170 @@
+"""The typing rules of the IR, in one place: the checker applies them, the reader infers with them, the verifier asks them.
+
+GLSL ES 3.00, sections 5.4 to 5.9, without what `lang` has already made explicit: there are no implicit conversions,
+and a constructor's arguments have its own kind.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+from .nodes import Binary, Block, Discard, Expr, If, Index, Intrinsic, Member, Return, Select, Swizzle, Unary
+from .signatures import resolve
+from .types import (
+    BOOL,
+    INT,
+    UINT,
+    Array,
+    Matrix,
+    Sampler,
+    Scalar,
+    Struct,
+    Type,
+    Vector,
+    Void,
+    components,
+    is_numeric,
+    kind_of,
+    vector_of,
+)
+
+FLOAT_MAX = 3.4028234663852886e38
+"""The largest finite float32; what is written larger rounds to infinity or is not portable."""
+
+
+def prefix_type(op: str, operand: Type) -> Type | None:
+    """The type of `op operand`, or None where it is not defined."""
+    fits = {"-": is_numeric(operand), "!": operand == BOOL, "~": kind_of(operand) in ("int", "uint")}
+    return operand if fits.get(op, False) else None
+
+
+def operator_type(op: str, left: Type, right: Type) -> Type | None:
+    """The type of `left op right`, or None where it is not defined (GLSL ES 3.00, sections 5.8 and 5.9)."""
+    if op in ("&&", "||", "^^"):
+        return BOOL if left == right == BOOL else None
+    if op in ("==", "!="):
+        return BOOL if left == right and not isinstance(left, Sampler | Void) else None
+    if op in ("<", ">", "<=", ">="):
+        return BOOL if left == right and isinstance(left, Scalar) and is_numeric(left) else None
+    if op not in ("+", "-", "*", "/", "%", "<<", ">>", "&", "|", "^"):
+        return None
+    kind = kind_of(left)
+    if op in ("<<", ">>"):
+        whole = kind in ("int", "uint") and kind_of(right) in ("int", "uint")
+        return left if whole and components(right) in (1, components(left)) else None
+    if not is_numeric(left) or kind != kind_of(right) or (op in ("%", "&", "|", "^") and kind == "float"):
+        return None
+    if left == right or isinstance(right, Scalar):
+        return left
+    if isinstance(left, Scalar):
+        return right
+    if op == "*" and isinstance(left, Matrix) and isinstance(right, Vector) and left.size == right.size:
+        return right
+    if op == "*" and isinstance(left, Vector) and isinstance(right, Matrix) and left.size == right.size:
+        return left
+    return None
+
+
+def element_type(type: Type) -> tuple[Type, int] | None:
+    """What an index picks from a value of this type, and how many of them there are; None if it has no elements."""
+    if isinstance(type, Array):
+        return type.element, type.length
+    if isinstance(type, Vector):
+        return Scalar(type.kind), type.size
+    if isinstance(type, Matrix):
+        return Vector("float", type.size), type.size
+    return None
+
+
+def swizzle_type(type: Type, letters: str) -> Type | None:
+    """The type of `.letters` of a vector."""
+    if not isinstance(type, Vector) or not 1 <= len(letters) <= 4 or not set(letters) <= set("xyzw"[: type.size]):
+        return None
+    return vector_of(type.kind, len(letters))
+
+
+def inferred(expr: Expr) -> Type | None:
+    """The type that follows from the types of the operands; None where there is none.
+
+    For what does not carry its type elsewhere: all but literals, names, calls and constructors.
+    """
+    if isinstance(expr, Binary):
+        return operator_type(expr.op, expr.left.type, expr.right.type)
+    if isinstance(expr, Intrinsic):
+        return resolve(expr.name, [arg.type for arg in expr.args])
+    if isinstance(expr, Swizzle):
+        return swizzle_type(expr.value.type, expr.components)
+    if isinstance(expr, Unary):
+        return prefix_type(expr.op, expr.operand.type)
+    if isinstance(expr, Select):
+        same = expr.yes.type == expr.no.type and expr.condition.type == BOOL
+        return expr.yes.type if same and not isinstance(expr.yes.type, Sampler | Void) else None
+    if isinstance(expr, Index):
+        found = element_type(expr.value.type)
+        return found[0] if found is not None and expr.index.type in (INT, UINT) else None
+    if isinstance(expr, Member):
+        fields = expr.value.type.fields if isinstance(expr.value.type, Struct) else ()
+        return next((field.type for field in fields if field.name == expr.field), None)
+    raise TypeError(f"{type(expr).__name__} has no rule")
+
+
+def constructs(type: Type, args: Sequence[Type]) -> bool:
+    """Whether `type(args…)` is a constructor as the IR has them.
+
+    A struct takes its fields and an array its elements. Of the others, one argument is a conversion of the same shape
+    to another kind, a scalar to fill a vector or a matrix's diagonal, or a matrix to cut or to extend; several are put
+    together, and their components are as many as the result's. A vector is cut short by a swizzle, not by this.
+    """
+    if isinstance(type, Struct):
+        return [field.type for field in type.fields] == list(args)
+    if isinstance(type, Array):
+        return [type.element] * type.length == list(args)
+    kind = kind_of(type)
+    if not kind or not args:
+        return False
+    if len(args) == 1 and kind_of(args[0]) != kind:
+        return _same_shape(type, args[0])
+    if any(kind_of(arg) != kind for arg in args):
+        return False
+    if len(args) == 1:
+        filled = isinstance(args[0], Scalar) and not isinstance(type, Scalar)
+        resized = isinstance(type, Matrix) and isinstance(args[0], Matrix) and type != args[0]
+        return filled or resized
+    pieces = all(isinstance(arg, Scalar | Vector) for arg in args)
+    return pieces and sum(map(components, args)) == components(type)
+
+
+def _same_shape(one: Type, other: Type) -> bool:
+    if isinstance(one, Vector) and isinstance(other, Vector):
+        return one.size == other.size
+    return isinstance(one, Scalar) and isinstance(other, Scalar)
+
+
+def is_type(type: Type) -> bool:
+    """Whether a type is one of the IR's, all the way down."""
+    if isinstance(type, Scalar | Vector):
+        sized = isinstance(type, Scalar) or type.size in (2, 3, 4)
+        return sized and type.kind in ("float", "int", "uint", "bool")
+    if isinstance(type, Matrix):
+        return type.size in (2, 3, 4) and type.kind == "float"
+    if isinstance(type, Array):
+        flat = not isinstance(type.element, Array | Sampler | Void)
+        return flat and 1 <= type.length <= 65536 and is_type(type.element)
+    if isinstance(type, Struct):
+        names = sorted(field.name for field in type.fields)
+        unique = bool(names) and all(one != two for one, two in pairwise(names))
+        return unique and all(is_type(f.type) and not isinstance(f.type, Sampler | Void) for f in type.fields)
+    if isinstance(type, Sampler):
+        return type.dim in ("2D", "3D", "Cube")
+    return isinstance(type, Void)
+
+
+def returns(block: Block) -> bool:
+    """Whether every way through a block ends in a return or a discard."""
+    for stmt in block:
+        if isinstance(stmt, Return | Discard):
+            return True
+        if isinstance(stmt, If) and returns(stmt.then) and returns(stmt.otherwise):
+            return True
+    return False

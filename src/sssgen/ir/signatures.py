@@ -1,0 +1,90 @@
+"""The overloads of the builtins: reads the intrinsic table's signatures, each when its builtin is first asked for.
+
+There are no implicit conversions: an overload matches when every type is the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from .intrinsics import BUILTINS
+from .types import BY_NAME, Matrix, Type, vector_of
+
+_KINDS = {"F": "float", "I": "int", "U": "uint", "B": "bool"}
+
+
+class Overload(NamedTuple):
+    """One overload: its result, and the parameters of the signature it comes from, as in `genF,float`."""
+
+    result: Type
+    params: str
+
+
+_overloads: dict[str, dict[tuple[Type, ...], Overload]] = {}
+
+
+def overload(name: str, types: Sequence[Type]) -> Overload | None:
+    """The overload of the builtin `name` for exactly these types; None if there is none or no such builtin."""
+    known = _overloads.get(name)
+    if known is None:
+        known = _overloads[name] = _expand(name)
+    return known.get(tuple(types))
+
+
+def resolve(name: str, types: Sequence[Type]) -> Type | None:
+    """The result type of the builtin `name` for exactly these types; None if it has no such overload."""
+    found = overload(name, types)
+    return found.result if found else None
+
+
+def candidates(name: str) -> list[str]:
+    """The signatures of the builtin for messages, as in `genF mix(genF, genF, float)`; empty if there is none."""
+    row = BUILTINS.get(name)
+    return [signature.replace("(", f" {name}(", 1) for signature in row.signatures] if row else []
+
+
+def text(name: str, language: str, types: Sequence[Type]) -> str:
+    """How this overload is written in a language or dialect: an entry of `Builtin.texts`, see there.
+
+    Looks for the dialect's text of the overload, the dialect's, then the same for the language before the first `-`.
+    Raises KeyError where there is no such overload.
+    """
+    found = overload(name, types)
+    if found is None:
+        raise KeyError(name, *types)
+    texts = BUILTINS[name].texts
+    base = language.partition("-")[0]
+    for key in (f"{language}/{found.params}", language, f"{base}/{found.params}", base):
+        if key in texts:
+            return texts[key]
+    return name
+
+
+def parse(signature: str) -> list[str]:
+    """The type names of a signature, the result first: `"genF(genF, float)"` gives genF, genF, float."""
+    result, _, params = signature.rstrip(")").partition("(")
+    return [result, *(param.strip() for param in params.split(",") if param.strip())]
+
+
+def instantiate(name: str, size: int) -> Type | None:
+    """The type a name of a signature stands for at one size; None where the size is not its own, as vecF at 1."""
+    family, kind = name[:-1], _KINDS.get(name[-1])
+    if kind and family in ("gen", "vec"):
+        return vector_of(kind, size) if size > 1 or family == "gen" else None
+    if name == "mat":
+        return Matrix(size) if size > 1 else None
+    return BY_NAME[name]
+
+
+def _expand(name: str) -> dict[tuple[Type, ...], Overload]:
+    overloads: dict[tuple[Type, ...], Overload] = {}
+    row = BUILTINS.get(name)
+    for signature in row.signatures if row else ():
+        names = parse(signature)
+        for size in (1, 2, 3, 4):
+            result, *params = (instantiate(type_name, size) for type_name in names)
+            if result is not None and None not in params:
+                key = tuple(param for param in params if param is not None)
+                overloads.setdefault(key, Overload(result, ",".join(names[1:])))
+    return overloads

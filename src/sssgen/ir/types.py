@@ -1,0 +1,124 @@
+"""The types of the IR: GLSL's, and nothing a target adds.
+
+Types are immutable values and compare by content. Matrices are square and column-major (`M * v`), as in GLSL.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple, TypeAlias
+
+
+class Scalar(NamedTuple):
+    """One number or truth value; `kind` is float, int, uint or bool."""
+
+    kind: str
+
+
+class Vector(NamedTuple):
+    """2 to 4 scalars of one kind."""
+
+    kind: str
+    size: int
+
+
+class Matrix(NamedTuple):
+    """`size` columns of `size` floats."""
+
+    size: int
+    kind: str = "float"
+
+
+class Array(NamedTuple):
+    """A fixed number of elements of one type."""
+
+    element: Type
+    length: int
+
+
+class Field(NamedTuple):
+    """A member of a struct. `quantity` is the quantity type it was declared with, or ''."""
+
+    name: str
+    type: Type
+    quantity: str = ""
+
+
+class Struct(NamedTuple):
+    """A named record."""
+
+    name: str
+    fields: tuple[Field, ...]
+
+
+class Sampler(NamedTuple):
+    """A texture together with its sampler; `dim` is 2D, 3D or Cube."""
+
+    dim: str
+
+
+class Void(NamedTuple):
+    """The result of a function that returns nothing."""
+
+
+Type: TypeAlias = Scalar | Vector | Matrix | Array | Struct | Sampler | Void
+
+FLOAT, INT, UINT, BOOL, VOID = Scalar("float"), Scalar("int"), Scalar("uint"), Scalar("bool"), Void()
+
+_VECTOR_NAMES = {"float": "vec", "int": "ivec", "uint": "uvec", "bool": "bvec"}
+
+BY_NAME: dict[str, Type] = {"void": VOID, "float": FLOAT, "int": INT, "uint": UINT, "bool": BOOL}
+for _kind, _prefix in _VECTOR_NAMES.items():
+    for _size in (2, 3, 4):
+        BY_NAME[f"{_prefix}{_size}"] = Vector(_kind, _size)
+for _size in (2, 3, 4):
+    BY_NAME[f"mat{_size}"] = BY_NAME[f"mat{_size}x{_size}"] = Matrix(_size)
+for _dim in ("2D", "3D", "Cube"):
+    BY_NAME[f"sampler{_dim}"] = Sampler(_dim)
+
+_NAMES: dict[Type, str] = {}
+for _name, _type in BY_NAME.items():
+    _NAMES.setdefault(_type, _name)
+
+VEC2, VEC3, VEC4 = Vector("float", 2), Vector("float", 3), Vector("float", 4)
+
+
+def spell(type: Type) -> str:
+    """The type as it is written in the language, for messages and the IR's text form."""
+    name = _NAMES.get(type)
+    if name is not None:
+        return name
+    if isinstance(type, Array):
+        return f"{spell(type.element)}[{type.length}]"
+    if isinstance(type, Struct):
+        return type.name
+    raise TypeError(f"not an IR type: {type!r}")
+
+
+def vector_of(kind: str, size: int) -> Type:
+    """The scalar (size 1) or vector type with `size` components of `kind`."""
+    return Scalar(kind) if size == 1 else Vector(kind, size)
+
+
+def components(type: Type) -> int:
+    """How many scalars a value of this type holds (0 for what holds none)."""
+    if isinstance(type, Scalar):
+        return 1
+    if isinstance(type, Vector):
+        return type.size
+    if isinstance(type, Matrix):
+        return type.size * type.size
+    if isinstance(type, Array):
+        return type.length * components(type.element)
+    if isinstance(type, Struct):
+        return sum(components(field.type) for field in type.fields)
+    return 0
+
+
+def kind_of(type: Type) -> str:
+    """The scalar kind inside a scalar, vector or matrix, else ''."""
+    return type.kind if isinstance(type, Scalar | Vector | Matrix) else ""
+
+
+def is_numeric(type: Type) -> bool:
+    """Whether arithmetic is defined on the type."""
+    return kind_of(type) in ("float", "int", "uint")

@@ -1,0 +1,392 @@
+"""The verifier: says where a module breaks the rules that every pass and every printer takes for granted.
+
+Each rule looks at one node and the types its operands claim, so that a fault is named where it is and once. Run after
+every pass in tests; the checker's own errors are for people and stand elsewhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from math import isfinite
+
+from .nodes import (
+    Assign,
+    Binary,
+    Block,
+    Break,
+    Call,
+    Construct,
+    Continue,
+    Declare,
+    Discard,
+    Evaluate,
+    Expr,
+    For,
+    Function,
+    Global,
+    If,
+    Index,
+    Intrinsic,
+    Literal,
+    Local,
+    Member,
+    Module,
+    Return,
+    Select,
+    Span,
+    Stmt,
+    Swizzle,
+    Unary,
+    Uniform,
+    While,
+)
+from .rules import FLOAT_MAX, constructs, element_type, inferred, is_type, operator_type, returns
+from .types import BOOL, FLOAT, INT, UINT, VOID, Array, Sampler, Struct, Type, components, kind_of, spell
+from .walk import callees, operands, subexpressions
+
+_READS_SURROUNDINGS = ("texture", "texel", "dF", "fwidth")
+"""How the builtins begin that no constant can use."""
+
+
+class InvalidIR(AssertionError):
+    """A module that breaks the rules; `problems` says how."""
+
+    def __init__(self, problems: list[str]) -> None:
+        self.problems = problems
+        super().__init__("invalid IR:\n" + "\n".join(problems))
+
+
+def check_module(module: Module, linked: bool = False) -> None:
+    """Raises InvalidIR unless the module is as it must be."""
+    problems = verify(module, linked)
+    if problems:
+        raise InvalidIR(problems)
+
+
+def verify(module: Module, linked: bool = False) -> list[str]:
+    """What is wrong with a module, each with its place. `linked`: no slots are left, and callees come first."""
+    verifier = _Verifier(module, linked)
+    verifier.module()
+    return verifier.problems
+
+
+class _Verifier:
+    def __init__(self, module: Module, linked: bool) -> None:
+        self.whole = module
+        self.linked = linked
+        self.problems: list[str] = []
+        self.structs: dict[str, Struct] = {}
+        self.globals: dict[str, Type] = {}
+        self.functions = {function.key: function for function in module.functions}
+        self.function_at_hand: Function | None = None
+        self.scopes: list[dict[str, Type]] = []
+
+    def report(self, span: Span, message: str) -> None:
+        place = f"{span.file}:{span.line}:{span.column}: " if span.file else ""
+        inside = f" (in {self.function_at_hand.key})" if self.function_at_hand is not None else ""
+        self.problems.append(f"{place}{message}{inside}")
+
+    # Declarations
+
+    def module(self) -> None:
+        whole = self.whole
+        self.unique(
+            [(struct.type.name, struct.span) for struct in whole.structs if isinstance(struct.type, Struct)]
+            + [(constant.name, constant.span) for constant in whole.constants]
+            + [(uniform.name, uniform.span) for uniform in whole.uniforms]
+            + list({function.name: (function.name, function.span) for function in whole.functions}.values()),
+            "is declared twice in the module",
+        )
+        self.unique([(function.key, function.span) for function in whole.functions], "is defined twice")
+        for struct in whole.structs:
+            if not isinstance(struct.type, Struct) or not is_type(struct.type):
+                self.report(struct.span, f"not a struct type: {struct.type!r}")
+                continue
+            for field in struct.type.fields:
+                self.type(field.type, struct.span)
+            self.structs[struct.type.name] = struct.type
+        for uniform in whole.uniforms:
+            self.uniform(uniform)
+        constants = set()
+        for constant in whole.constants:
+            self.type(constant.type, constant.span)
+            self.expression(constant.value)
+            self.same(constant.value.type, constant.type, constant.span, f"constant '{constant.name}'")
+            for part in subexpressions(constant.value):
+                reads = isinstance(part, Intrinsic) and part.name.startswith(_READS_SURROUNDINGS)
+                varies = isinstance(part, Local | Call) or (isinstance(part, Global) and part.name not in constants)
+                if reads or varies:
+                    self.report(part.span, f"the value of '{constant.name}' is not constant")
+            constants.add(constant.name)
+            self.globals[constant.name] = constant.type
+        self.calls()
+        for function in whole.functions:
+            self.function_at_hand = function
+            self.function(function)
+            self.function_at_hand = None
+
+    def unique(self, names: Iterable[tuple[str, Span]], message: str) -> None:
+        seen = set()
+        for name, span in names:
+            if name in seen:
+                self.report(span, f"'{name}' {message}")
+            seen.add(name)
+
+    def type(self, type_: Type, span: Span, among: tuple[type, ...] = ()) -> None:
+        """A type that is used: well made, its structs declared, and none of the kinds in `among`."""
+        if isinstance(type_, among) or not is_type(type_):
+            self.report(span, f"this cannot be {type_!r}")
+            return
+        innermost = type_.element if isinstance(type_, Array) else type_
+        if isinstance(innermost, Struct) and self.structs.get(innermost.name) != innermost:
+            self.report(span, f"struct '{innermost.name}' is not declared so")
+
+    def uniform(self, uniform: Uniform) -> None:
+        type_, span, name = uniform.type, uniform.span, uniform.name
+        self.globals[name] = type_
+        self.type(type_, span, (Struct, type(VOID)))
+        innermost = type_.element if isinstance(type_, Array) else type_
+        if isinstance(innermost, Struct):
+            self.report(span, f"uniform '{name}' is made of structs")
+        elif len(uniform.default) != components(type_):
+            self.report(span, f"uniform '{name}' has {len(uniform.default)} defaults, not {components(type_)}")
+        elif not all(_fits(value, kind_of(innermost)) for value in uniform.default):
+            self.report(span, f"uniform '{name}' has a default that no {spell(innermost)} holds: {uniform.default}")
+
+    def calls(self) -> None:
+        """Every call goes to a function of the module and none comes back; linked, only to earlier ones."""
+        position = {function.key: index for index, function in enumerate(self.whole.functions)}
+        pending = {key: {name for name in callees(self.functions[key]) if name in position} for key in position}
+        if self.linked:
+            for function in self.whole.functions:
+                late = [name for name in pending[function.key] if position[name] >= position[function.key]]
+                for name in sorted(late):
+                    self.report(function.span, f"{function.key} calls {name}, which stands behind it")
+        while ready := [key for key, wanted in pending.items() if not wanted]:
+            for key in ready:
+                del pending[key]
+            for wanted in pending.values():
+                wanted.difference_update(ready)
+        for key in pending:
+            self.report(self.functions[key].span, f"{key} is recursive, or calls what is")
+
+    def function(self, function: Function) -> None:
+        span = function.span
+        self.type(function.result, span, (Sampler,))
+        self.scopes = [{}]
+        for param in function.params:
+            self.type(param.type, param.span, (type(VOID),))
+            if param.direction not in ("in", "out", "inout"):
+                self.report(param.span, f"'{param.direction}' is no direction")
+            if isinstance(param.type, Sampler) and param.direction != "in":
+                self.report(param.span, f"a sampler cannot be {param.direction}")
+            self.declare(param.name, param.type, param.span)
+        if function.body is None:
+            if self.linked:
+                self.report(span, f"slot {function.key} is not bound")
+            return
+        self.block(function.body, loop=False)
+        if function.result != VOID and not returns(function.body):
+            self.report(span, "this can end without returning")
+
+    # Statements
+
+    def declare(self, name: str, type_: Type, span: Span) -> None:
+        if self.local(name) is not None:
+            self.report(span, f"'{name}' hides a variable of the same name")
+        self.scopes[-1][name] = type_
+
+    def local(self, name: str) -> Type | None:
+        return next((scope[name] for scope in reversed(self.scopes) if name in scope), None)
+
+    def block(self, block: Block, loop: bool) -> None:
+        for stmt in block:
+            self.statement(stmt, loop)
+
+    def inner(self, block: Block, loop: bool) -> None:
+        self.scopes.append({})
+        self.block(block, loop)
+        self.scopes.pop()
+
+    def statement(self, stmt: Stmt, loop: bool) -> None:
+        if isinstance(stmt, Declare):
+            self.type(stmt.type, stmt.span, (Sampler, type(VOID)))
+            if stmt.value is not None:
+                self.expression(stmt.value)
+                self.same(stmt.value.type, stmt.type, stmt.span, f"'{stmt.name}'")
+            self.declare(stmt.name, stmt.type, stmt.span)
+        elif isinstance(stmt, Assign):
+            self.assign(stmt)
+        elif isinstance(stmt, Evaluate):
+            if not isinstance(stmt.call, Call):
+                self.report(stmt.span, f"a {type(stmt.call).__name__} is evaluated and dropped")
+            self.expression(stmt.call, nothing=True)
+        elif isinstance(stmt, If):
+            self.condition(stmt.condition)
+            self.inner(stmt.then, loop)
+            self.inner(stmt.otherwise, loop)
+        elif isinstance(stmt, While):
+            self.condition(stmt.condition)
+            self.inner(stmt.body, True)
+        elif isinstance(stmt, For):
+            self.loop(stmt)
+        elif isinstance(stmt, Break | Continue):
+            if not loop:
+                self.report(stmt.span, f"{type(stmt).__name__.lower()} outside a loop")
+        elif isinstance(stmt, Return):
+            self.leave(stmt)
+        elif not isinstance(stmt, Discard):
+            self.report(Span("", 0, 0, 0, 0), f"not a statement: {stmt!r}")
+
+    def assign(self, stmt: Assign) -> None:
+        self.expression(stmt.target)
+        self.expression(stmt.value)
+        self.writable(stmt.target)
+        target, value = stmt.target.type, stmt.value.type
+        if not stmt.op:
+            self.same(value, target, stmt.span, "an assignment")
+        elif operator_type(stmt.op, target, value) != target or target == BOOL:
+            self.report(stmt.span, f"'{stmt.op}=' is not defined for {spell(target)} and {spell(value)}")
+
+    def loop(self, stmt: For) -> None:
+        self.scopes.append({})
+        for part in (stmt.init, stmt.step):
+            if part is not None:
+                if not isinstance(part, Declare | Assign | Evaluate) or (part is stmt.step and isinstance(part, Declare)):
+                    self.report(stmt.span, f"a {type(part).__name__} in the head of a for")
+                    continue
+                self.statement(part, False)
+        if stmt.condition is not None:
+            self.condition(stmt.condition)
+        self.inner(stmt.body, True)
+        self.scopes.pop()
+
+    def leave(self, stmt: Return) -> None:
+        wanted = self.function_at_hand.result if self.function_at_hand is not None else VOID
+        if stmt.value is not None:
+            self.expression(stmt.value)
+        found = stmt.value.type if stmt.value is not None else VOID
+        self.same(found, wanted, stmt.span, "the return")
+
+    def condition(self, expr: Expr) -> None:
+        self.expression(expr)
+        self.same(expr.type, BOOL, expr.span, "a condition")
+
+    def same(self, found: Type, wanted: Type, span: Span, what: str) -> None:
+        if found != wanted:
+            self.report(span, f"{what} is a {_name(wanted)}, but gets a {_name(found)}")
+
+    # Expressions
+
+    def writable(self, target: Expr) -> None:
+        inner = target
+        while isinstance(inner, Swizzle | Index | Member):
+            if isinstance(inner, Swizzle) and len(set(inner.components)) != len(inner.components):
+                self.report(target.span, f"'.{inner.components}' names a component twice and cannot be assigned to")
+            inner = inner.value
+        if not isinstance(inner, Local) or isinstance(target.type, Sampler):
+            self.report(target.span, f"a {type(inner).__name__} of type {_name(target.type)} cannot be assigned to")
+
+    def expression(self, expr: Expr, nothing: bool = False) -> None:
+        """An expression and everything in it; `nothing` says that it may be a call without a result."""
+        if expr.type == VOID and not nothing:
+            self.report(expr.span, "a call without a result is used as a value")
+        for node in subexpressions(expr):
+            if not isinstance(node, _EXPRESSIONS):
+                self.report(Span("", 0, 0, 0, 0), f"not an expression: {node!r}")
+                return
+            for problem in self.node(node):
+                self.report(node.span, problem)
+            for operand in operands(node):
+                if operand.type == VOID:
+                    self.report(operand.span, "a call without a result is used as a value")
+                passed = isinstance(node, Call | Intrinsic) and isinstance(operand, Local | Global)
+                if isinstance(operand.type, Sampler) and not passed:
+                    self.report(operand.span, "a sampler can only be named, and only as an argument")
+
+    def node(self, node: Expr) -> Iterator[str]:
+        """What is wrong with one node, its operands taken as they are."""
+        if isinstance(node, Literal):
+            if node.type not in (FLOAT, INT, UINT, BOOL) or not _is_value(node.value, kind_of(node.type)):
+                yield f"{node.value!r} is no {_name(node.type)}"
+        elif isinstance(node, Local):
+            yield from self.named(node, self.local(node.name) if self.scopes else None)
+        elif isinstance(node, Global):
+            yield from self.named(node, self.globals.get(node.name))
+        elif isinstance(node, Construct):
+            if not constructs(node.type, [arg.type for arg in node.args]):
+                yield f"{_name(node.type)} cannot be constructed from {_names(node.args)}"
+        elif isinstance(node, Call):
+            yield from self.call(node)
+        else:
+            wanted = inferred(node)
+            if wanted is None:
+                yield f"{_what(node)} is not defined for {_names(operands(node))}"
+            elif wanted != node.type:
+                yield f"{_what(node)} of {_names(operands(node))} is a {_name(wanted)}, not a {_name(node.type)}"
+            elif isinstance(node, Index) and isinstance(node.index, Literal):
+                found = element_type(node.value.type)
+                if found is not None and not 0 <= node.index.value < found[1]:
+                    yield f"index {node.index.value} is outside {_name(node.value.type)}"
+
+    def named(self, node: Local | Global, declared: Type | None) -> Iterator[str]:
+        if declared is None:
+            yield f"'{node.name}' is not declared here"
+        elif declared != node.type:
+            yield f"'{node.name}' is a {_name(declared)}, not a {_name(node.type)}"
+
+    def call(self, node: Call) -> Iterator[str]:
+        function = self.functions.get(node.function)
+        if function is None:
+            yield f"there is no function {node.function}"
+            return
+        if [param.type for param in function.params] != [arg.type for arg in node.args]:
+            yield f"{node.function} is called with {_names(node.args)}"
+        if function.result != node.type:
+            yield f"{node.function} gives a {_name(function.result)}, not a {_name(node.type)}"
+        for param, arg in zip(function.params, node.args, strict=False):
+            if param.direction != "in":
+                self.writable(arg)
+
+
+_EXPRESSIONS = (
+    Literal, Local, Global, Unary, Binary, Select, Call, Intrinsic, Construct, Swizzle, Index, Member,
+)  # fmt: skip
+
+
+def _is_value(value: object, kind: str) -> bool:
+    """Whether a literal's value has the Python type and the range of its kind."""
+    if kind == "float":
+        return type(value) is float and _fits(value, kind)
+    if kind == "bool":
+        return type(value) is bool
+    return type(value) is int and _fits(value, kind)
+
+
+def _fits(value: float, kind: str) -> bool:
+    """Whether a number lies in the range of a kind."""
+    if kind == "float":
+        return isfinite(value) and abs(value) <= FLOAT_MAX
+    low, high = {"bool": (0, 1), "int": (-(2**31), 2**31 - 1), "uint": (0, 2**32 - 1)}[kind]
+    return low <= value <= high and value == int(value)
+
+
+def _name(type_: Type) -> str:
+    return spell(type_) if is_type(type_) else repr(type_)
+
+
+def _names(args: Iterable[Expr]) -> str:
+    return f"({', '.join(_name(arg.type) for arg in args)})"
+
+
+def _what(node: Expr) -> str:
+    """A node in a word or two."""
+    if isinstance(node, Unary | Binary):
+        return f"'{node.op}'"
+    if isinstance(node, Intrinsic):
+        return node.name
+    if isinstance(node, Swizzle):
+        return f"'.{node.components}'"
+    if isinstance(node, Member):
+        return f"'.{node.field}'"
+    return "an index" if isinstance(node, Index) else "a choice"

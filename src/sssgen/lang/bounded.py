@@ -1,0 +1,91 @@
+"""What a GPU cannot do without bound: loops that may not end, and calls that come back to where they began."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+
+from ..ir import nodes as ir
+from ..ir.types import INT, UINT
+from ..ir.walk import all_expressions, callees, root, statements, subexpressions
+
+OutArgs = Callable[[ir.Call], Iterable[ir.Expr]]
+"""The arguments of a call that it writes to."""
+
+
+def ends(condition: ir.Expr, steps: ir.Block, body: ir.Block, out_args: OutArgs) -> bool:
+    """Whether the condition fails at last: an integer counter is stepped, once and always, towards a bound that stays.
+
+    `steps` are the statements that run in every round, `body` those that may run besides.
+    """
+    if not isinstance(condition, ir.Binary):
+        return False
+    if condition.op == "&&":
+        return ends(condition.left, steps, body, out_args) or ends(condition.right, steps, body, out_args)
+    written = writes((*steps, *body, ir.Return(condition, condition.span)), out_args)
+    return any(
+        _approaches(counter, op, bound, steps, written)
+        for counter, op, bound in (
+            (condition.left, condition.op, condition.right),
+            (condition.right, condition.op.translate(str.maketrans("<>", "><")), condition.left),
+        )
+    )
+
+
+def writes(block: ir.Block, out_args: OutArgs) -> list[str]:
+    """The variables that a block writes, one entry for each place that does."""
+    targets = [stmt.target for stmt in statements(block) if isinstance(stmt, ir.Assign)]
+    for expr in all_expressions(block):
+        if type(expr) is ir.Call:
+            targets.extend(out_args(expr))
+    return [variable.name for target in targets if (variable := root(target)) is not None]
+
+
+def _approaches(counter: ir.Expr, op: str, bound: ir.Expr, steps: ir.Block, written: list[str]) -> bool:
+    """Whether `counter op bound` fails at last."""
+    if not isinstance(counter, ir.Local) or counter.type not in (INT, UINT) or written.count(counter.name) != 1:
+        return False
+    if any(isinstance(part, ir.Call) or _is_written(part, written) for part in subexpressions(bound)):
+        return False
+    step = next((size for stmt in steps if (size := _step(stmt, counter.name)) is not None), 0)
+    limit = bound.value if isinstance(bound, ir.Literal) else None
+    if step > 0:
+        return op == "<" or (op == "<=" and limit not in (2**31 - 1, 2**32 - 1)) or (op == "!=" and step == 1)
+    if counter.type == UINT:  # below 0 it would go on at the top
+        return step == -1 and (op in (">", "!=") or (op == ">=" and limit is not None and limit > 0))
+    return step < 0 and (op == ">" or (op == ">=" and limit != -(2**31)) or (op == "!=" and step == -1))
+
+
+def _is_written(part: ir.Expr, written: list[str]) -> bool:
+    return isinstance(part, ir.Local) and part.name in written
+
+
+def _step(stmt: ir.Stmt, counter: str) -> int | None:
+    """By how much a statement steps the counter (`i++`, `i -= 2`, `i = i + 1`), or None if it is no such step."""
+    if not isinstance(stmt, ir.Assign) or not _is_written(stmt.target, [counter]):
+        return None
+    op, value = stmt.op, stmt.value
+    if not op and isinstance(value, ir.Binary) and _is_written(value.left, [counter]):
+        op, value = value.op, value.right
+    if op not in ("+", "-") or not isinstance(value, ir.Literal):
+        return None
+    return int(value.value) if op == "+" else -int(value.value)
+
+
+def cycles(functions: Mapping[str, ir.Function]) -> Iterator[list[str]]:
+    """The cycles of calls, each as the keys along it, the first again at the end. Iterative: chains may be long."""
+    done: set[str] = set()
+    for start in functions:
+        path: dict[str, None] = {}
+        pending: list[Iterator[str]] = [iter((start,))]
+        while pending:
+            key = next(pending[-1], None)
+            if key is None:
+                pending.pop()
+                if path:
+                    done.add(path.popitem()[0])
+            elif key in path:
+                along = list(path)
+                yield [*along[along.index(key) :], key]
+            elif key in functions and key not in done:
+                path[key] = None
+                pending.append(iter(callees(functions[key])))

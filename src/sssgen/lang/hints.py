@@ -1,0 +1,77 @@
+"""The hints on a uniform: which there are, what they take, and whether the default agrees with them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..diagnostics import did_you_mean
+from ..ir.nodes import Span
+from ..ir.types import Sampler, Type, kind_of
+from . import quantities as q
+from . import syntax as s
+
+if TYPE_CHECKING:
+    from .expressions import ExpressionChecker
+
+Hints = tuple[tuple[str, tuple[float | str, ...]], ...]
+
+# Hint → (the fewest and most arguments, their kind, whether it is for textures).
+HINTS = {
+    "hint_range": (2, 3, float, False),
+    "source_color": (0, 0, str, None),
+    "unit": (1, 1, str, False),
+    "alias": (1, 8, str, None),
+    "default_white": (0, 0, str, True),
+    "default_black": (0, 0, str, True),
+    "default_gray": (0, 0, str, True),
+    "default_bump": (0, 0, str, True),
+    "normal_map": (0, 0, str, True),
+    "holds": (1, 1, str, True),
+}
+
+
+def check_hints(
+    checker: ExpressionChecker, uniform: s.UniformSyntax, type_: Type, default: tuple[float, ...]
+) -> tuple[Hints, str]:
+    """Checks a uniform's hints; returns them with the quantity that a texture holds ('' for none)."""
+    found: dict[str, tuple[float | str, ...]] = {}
+    held = ""
+    for hint in uniform.hints:
+        name, span = hint.name.text, hint.name.span
+        if name not in HINTS:
+            raise checker.fail(span, f"unknown hint '{name}'", did_you_mean(name, HINTS))
+        if name in found:
+            raise checker.fail(span, f"hint '{name}' is given twice")
+        fewest, most, kind, for_texture = HINTS[name]
+        if not fewest <= len(hint.args) <= most or any(not isinstance(arg, kind) for arg in hint.args):
+            raise checker.fail(span, f"{name} takes {_arguments(fewest, most, kind)}")
+        if for_texture is not None and for_texture != isinstance(type_, Sampler):
+            raise checker.fail(span, f"{name} is for {'textures' if for_texture else 'values'} only")
+        if name == "hint_range":
+            _check_range(checker, span, hint.args, type_, default)
+        if name == "holds":
+            held = str(hint.args[0])
+            if held not in q.SCALARS:
+                raise checker.fail(span, f"a texture cannot hold '{held}'", f"it holds one of {', '.join(q.SCALARS)}")
+        found[name] = hint.args
+    return tuple(found.items()), held
+
+
+def _check_range(
+    checker: ExpressionChecker, span: Span, args: tuple[float | str, ...], type_: Type, default: tuple[float, ...]
+) -> None:
+    low, high = float(args[0]), float(args[1])
+    if kind_of(type_) not in ("float", "int", "uint"):
+        raise checker.fail(span, "hint_range is for numbers only")
+    if not low < high:
+        raise checker.fail(span, f"the range {low:g} to {high:g} is empty")
+    for value in default:
+        if not low <= value <= high:
+            raise checker.fail(span, f"the default {value:g} is outside the range {low:g} to {high:g}")
+
+
+def _arguments(fewest: int, most: int, kind: type) -> str:
+    what = "numbers" if kind is float else "names or texts"
+    if most == 0:
+        return "no arguments"
+    return f"{fewest} {what}" if fewest == most else f"{fewest} to {most} {what}"

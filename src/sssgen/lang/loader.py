@@ -1,0 +1,148 @@
+"""Loads source files: follows `#include`, checks, and keeps the result by content so that it is checked once.
+
+The cache holds pickled IR under the hash of the text, of what it includes and of the front end itself.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from .. import cache
+from ..diagnostics import Diagnostic, SssgenError, failure
+from ..ir.nodes import Module, Span
+
+MAX_BYTES = 4 << 20
+"""The largest source file that is read. Shader libraries of thousands of functions stay below 1 MB."""
+
+_INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"([^"\n]*)"', re.MULTILINE)
+
+_memory: dict[str, Module] = {}
+_stamp = ""
+
+
+def load_file(path: Path, shown: str, roots: Sequence[Path] = ()) -> Module:
+    """The checked module of a file and all it includes.
+
+    `shown` is the file's name in messages; `roots` are the folders in which `#include "x"` is looked for, after the
+    file's own. Raises SssgenError for a missing, unreadable, too large or faulty file.
+    """
+    return load_text(read_text(path, shown), shown, (path.parent, *roots))
+
+
+def load_text(text: str, shown: str, roots: Sequence[Path] = (), _within: tuple[str, ...] = ()) -> Module:
+    """The checked module of a source text; see `load_file`."""
+    included = Module()
+    for match in _INCLUDE.finditer(text):
+        line = text.count("\n", 0, match.start()) + 1
+        place = Span(shown, line, match.start(1) - text.rfind("\n", 0, match.start(1)), line, match.end(1) + 1)
+        included = merge(included, _include(match.group(1), place, text, roots, (*_within, shown)))
+    key = _key(text, shown, included)
+    module = _memory.get(key)
+    if module is None:
+        module = _read_cached(key)
+        if module is None:
+            from .check import check
+            from .parser import parse
+
+            module = check(parse(text, shown), text, included)
+            _write_cached(key, module)
+        _memory[key] = module
+    return module
+
+
+def read_text(path: Path, shown: str) -> str:
+    """The text of a source file. Raises SssgenError where it is missing or is not text."""
+    try:
+        size = path.stat().st_size
+        if size > MAX_BYTES:
+            raise failure(f"the file is too large: {size} bytes; at most {MAX_BYTES} are read", file=shown)
+        data = path.read_bytes()
+    except FileNotFoundError:
+        raise failure("no such file", file=shown) from None
+    except OSError as error:
+        raise failure(f"cannot read the file: {error.strerror}", file=shown) from None
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        column = error.start - data.rfind(b"\n", 0, error.start)
+        place = Span(shown, line, column, line, column + 1)
+        raise SssgenError([Diagnostic("error", "this is not UTF-8 text", place)]) from None
+    if "\x00" in text:
+        raise failure("this is not a text file: it holds a zero byte", file=shown)
+    return text.replace("\r\n", "\n")
+
+
+def merge(first: Module, second: Module) -> Module:
+    """Both modules' declarations, what both bring (by its place in the source) once."""
+    return Module(*(_union(one, two) for one, two in zip(first, second, strict=True)))
+
+
+def _union(first: tuple, second: tuple) -> tuple:  # type: ignore[type-arg]  # a tuple of any kind of declaration
+    known = {declaration.span for declaration in first}
+    return first + tuple(declaration for declaration in second if declaration.span not in known)
+
+
+def _include(name: str, place: Span, text: str, roots: Sequence[Path], within: tuple[str, ...]) -> Module:
+    """The module of an included file."""
+    line = text.splitlines()[place.line - 1]
+    for root in roots:
+        path = root / name
+        if path.is_file():
+            if name in within:
+                message = f"'{name}' includes itself: {' → '.join((*within, name))}"
+                raise SssgenError([Diagnostic("error", message, place, "", line)])
+            return load_text(read_text(path, name), name, (path.parent, *roots), within)
+    hint = "it is looked for beside the file and in the technique library"
+    raise SssgenError([Diagnostic("error", f"cannot find '{name}' to include", place, hint, line)])
+
+
+def _key(text: str, shown: str, included: Module) -> str:
+    from hashlib import blake2b
+
+    digest = blake2b(f"{front_end_stamp()}\0{shown}\0{text}".encode(), digest_size=16)
+    for function in included.functions:
+        digest.update(repr((function.key, function.span)).encode())
+    for uniform in included.uniforms:
+        digest.update(repr((uniform.name, uniform.span)).encode())
+    return digest.hexdigest()
+
+
+def front_end_stamp() -> str:
+    """Tells one state of the project's own sources from another, so that no stale result is used."""
+    global _stamp
+    if not _stamp:
+        here = Path(__file__).parent
+        parts = []
+        for folder in (here, here.parent / "ir"):
+            for entry in sorted(os.scandir(folder), key=lambda entry: entry.name):
+                if entry.name.endswith((".py", ".lark")):
+                    status = entry.stat()
+                    parts.append(f"{entry.name}:{status.st_size}:{status.st_mtime_ns}")
+        _stamp = ";".join(parts)
+    return _stamp
+
+
+def _read_cached(key: str) -> Module | None:
+    folder = cache.folder()
+    if folder is None:
+        return None
+    import pickle
+
+    try:
+        module = pickle.loads((folder / f"{key}.ir").read_bytes())
+    except Exception:  # a missing or damaged entry is made again, whatever is wrong with it
+        return None
+    return module if isinstance(module, Module) else None
+
+
+def _write_cached(key: str, module: Module) -> None:
+    folder = cache.folder()
+    if folder is None:
+        return
+    import pickle
+
+    cache.write(folder / f"{key}.ir", pickle.dumps(module, protocol=5))

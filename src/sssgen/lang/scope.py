@@ -1,0 +1,77 @@
+"""Names and what they stand for while a function is checked."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ..ir.nodes import Span
+from ..ir.types import Type
+
+
+class Variable(NamedTuple):
+    """A parameter or local variable. `ir_name` differs from the written name where an outer one is hidden."""
+
+    ir_name: str
+    type: Type
+    quantity: str
+    writable: bool
+    faulty: bool = False
+    """Its declaration has an error, so that nothing more is said about its use."""
+
+
+class GlobalValue(NamedTuple):
+    """A uniform, texture or constant; `value` is a constant's integer value where it has one."""
+
+    type: Type
+    quantity: str
+    value: int | None = None
+    constant: bool = False
+
+
+class Signature(NamedTuple):
+    """What a call needs to know of a function."""
+
+    key: str
+    names: tuple[str, ...]
+    types: tuple[Type, ...]
+    directions: tuple[str, ...]
+    quantities: tuple[str, ...]
+    result: Type
+    quantity: str
+    span: Span
+
+
+class Scopes:
+    """The nested scopes of one function."""
+
+    def __init__(self) -> None:
+        self.stack: list[dict[str, Variable]] = [{}]
+
+    def push(self) -> None:
+        self.stack.append({})
+
+    def pop(self) -> None:
+        self.stack.pop()
+
+    def find(self, name: str) -> Variable | None:
+        for scope in reversed(self.stack):
+            if name in scope:
+                return scope[name]
+        return None
+
+    def declare(
+        self, name: str, type: Type, quantity: str, writable: bool, faulty: bool = False
+    ) -> Variable | None:
+        """Adds a variable to the innermost scope; None if this scope has the name already."""
+        if name in self.stack[-1]:
+            return None
+        visible = {variable.ir_name for scope in self.stack for variable in scope.values()}
+        ir_name, count = name, 2
+        while ir_name in visible:
+            ir_name, count = f"{name}_{count}", count + 1
+        variable = Variable(ir_name, type, quantity, writable, faulty)
+        self.stack[-1][name] = variable
+        return variable
+
+    def names(self) -> list[str]:
+        return [name for scope in self.stack for name in scope]

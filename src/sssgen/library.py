@@ -1,0 +1,126 @@
+"""The technique library: finding technique files, loading them, and reading their documentation."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from .diagnostics import SssgenError, did_you_mean, failure
+from .ir.nodes import Function, Module, Uniform
+from .lang.loader import load_file
+
+TECHNIQUES = Path(__file__).parent / "techniques"
+
+ROLES = (
+    "geometry",
+    "coordinates",
+    "thickness",
+    "conversion",
+    "surface",
+    "translucency",
+    "lighting",
+    "output",
+    "distance",
+)
+"""The roles of a material's chain, in the order they run; `distance` functions are bound to slots."""
+
+
+class Technique(NamedTuple):
+    """One technique: the last function of its file, which has the file's name."""
+
+    name: str
+    role: str
+    path: Path
+    module: Module
+    function: Function
+    doc: dict[str, str]
+    """The doc comment's sections: `summary` and its `key: text` entries."""
+
+    @property
+    def baseline(self) -> bool:
+        """Whether this is a source as published, kept to be compared with."""
+        return "baseline" in self.doc
+
+    @property
+    def slots(self) -> tuple[Function, ...]:
+        """The functions that a material has to bind."""
+        return tuple(function for function in self.module.functions if function.body is None)
+
+    @property
+    def uniforms(self) -> tuple[Uniform, ...]:
+        """The parameters and textures of the technique."""
+        return self.module.uniforms
+
+
+@functools.cache
+def index() -> dict[str, Path]:
+    """Every technique of the library by name."""
+    found = {}
+    for path in sorted(TECHNIQUES.glob("*/*.sss")):
+        if path.parent.name != "common":
+            found[path.stem] = path
+    return found
+
+
+def shown_name(path: Path) -> str:
+    """A file's name in messages and reflection: library files by their place in the library."""
+    try:
+        return path.relative_to(TECHNIQUES).as_posix()
+    except ValueError:
+        return path.as_posix()
+
+
+def load(name: str) -> Technique:
+    """A technique of the library by name, or of a file by path (`my/lobe.sss`).
+
+    Raises SssgenError for an unknown name or a faulty file.
+    """
+    if name.endswith((".sss", ".glsl")):
+        return load_path(Path(name))
+    path = index().get(name)
+    if path is None:
+        raise failure(f"unknown technique '{name}'", did_you_mean(name, index()) or "see: sssgen list techniques")
+    return load_path(path)
+
+
+@functools.cache
+def load_path(path: Path) -> Technique:
+    """The technique that a file holds."""
+    shown = shown_name(path)
+    module = load_file(path, shown, (TECHNIQUES,))
+    function = next((f for f in reversed(module.functions) if f.name == path.stem and f.body is not None), None)
+    if function is None:
+        raise failure(f"the file has no function '{path.stem}'", "a technique is named like its file", shown)
+    doc = sections(function.doc)
+    role = doc.get("role", path.parent.name)
+    if role not in ROLES:
+        raise failure(f"unknown role '{role}'", did_you_mean(role, ROLES) or f"roles: {', '.join(ROLES)}", shown)
+    return Technique(path.stem, role, path, module, function, doc)
+
+
+def load_all() -> Iterator[Technique]:
+    """Every technique of the library. Raises SssgenError with the errors of all faulty ones."""
+    wrong = []
+    for path in index().values():
+        try:
+            yield load_path(path)
+        except SssgenError as error:
+            wrong += error.diagnostics
+    if wrong:
+        raise SssgenError(wrong)
+
+
+def sections(doc: str) -> dict[str, str]:
+    """A doc comment's first paragraph as `summary`, and its `key: text` sections."""
+    found: dict[str, str] = {}
+    key = "summary"
+    for line in doc.splitlines():
+        word, colon, rest = line.partition(":")
+        if colon and word.isidentifier() and word.islower() and not line.startswith(" "):
+            key = word
+            found[key] = rest.strip()
+        elif line.strip():
+            found[key] = f"{found.get(key, '')} {line.strip()}".strip()
+    return found

@@ -1,0 +1,171 @@
+"""Links the techniques of a material into one module: slots are bound, uniforms get one name each, nothing is double.
+
+First of all passes: everything after it sees one closed module without slots. A function that two stages use alike
+appears once; one that they use differently (another distance function behind its slot, say) appears once for each.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
+
+from ..ir.nodes import Call, Constant, Expr, Function, Global, Module, Span, StructDecl, Uniform
+from ..ir.types import Struct
+from ..ir.walk import all_expressions, rewrite, rewrite_function, subexpressions
+
+Bound = tuple[Module, Function]
+
+
+class LinkStage(NamedTuple):
+    """One stage of a chain, as the linker sees it."""
+
+    technique: str
+    role: str
+    module: Module
+    function: Function
+    bindings: Mapping[str, Bound]
+    """Slot name → the function put in its place, with its module."""
+    values: Mapping[str, tuple[float, ...]]
+    """Uniform → the default that the material gives it."""
+    fixed: frozenset[str]
+    """Uniforms that the material folds into the text."""
+
+
+class Linked(NamedTuple):
+    """One module for all stages."""
+
+    module: Module
+    functions: tuple[Function, ...]
+    """The linked function of each stage."""
+    fixed: dict[str, tuple[float, ...]]
+    """The uniforms to fold, by their name in `module`, with their values."""
+    owners: dict[str, tuple[str, str]]
+    """Each uniform's technique and its name there."""
+
+
+class LinkError(Exception):
+    """Something that cannot be linked, with its place."""
+
+    def __init__(self, message: str, span: Span) -> None:
+        super().__init__(message)
+        self.message, self.span = message, span
+
+
+def link(stages: Sequence[LinkStage]) -> Linked:
+    """Links the stages. Raises LinkError for an unbound slot or two structs of one name."""
+    linker = _Linker()
+    functions = tuple(linker.stage(index, stage) for index, stage in enumerate(stages))
+    module = Module(
+        tuple(linker.structs.values()),
+        tuple(linker.constants.values()),
+        tuple(linker.uniforms.values()),
+        tuple(linker.functions.values()),
+    )
+    return Linked(module, functions, linker.fixed, linker.owners)
+
+
+class _Linker:
+    def __init__(self) -> None:
+        self.structs: dict[str, StructDecl] = {}
+        self.constants: dict[str, Constant] = {}
+        self.uniforms: dict[str, Uniform] = {}
+        self.functions: dict[str, Function] = {}
+        self.fixed: dict[str, tuple[float, ...]] = {}
+        self.owners: dict[str, tuple[str, str]] = {}
+        self.instances: dict[object, Function] = {}
+        self.global_names: dict[object, str] = {}
+
+    def stage(self, index: int, stage: LinkStage) -> Function:
+        return self.function(stage.function, stage.module, index, stage)
+
+    def function(self, function: Function, module: Module, index: int, stage: LinkStage) -> Function:
+        """The linked instance of a function as this stage uses it."""
+        if function.body is None:
+            bound = stage.bindings.get(function.name)
+            if bound is None:
+                raise LinkError(f"slot '{function.name}' of {stage.technique} is not bound", function.span)
+            return self.function(bound[1], bound[0], index, stage)
+        by_key = {other.key: other for other in module.functions}
+        calls: dict[str, str] = {}
+        names: dict[str, str] = {}
+        for expr in all_expressions(function.body):
+            if type(expr) is Call and expr.function not in calls:
+                calls[expr.function] = self.function(by_key[expr.function], module, index, stage).key
+            elif type(expr) is Global and expr.name not in names:
+                names[expr.name] = self.global_name(expr.name, module, index, stage)
+        identity = (function.span, tuple(calls.items()), tuple(names.items()))
+        if identity in self.instances:
+            return self.instances[identity]
+        for struct in module.structs:
+            self.struct(struct)
+        name, count = function.name, 2
+        while function._replace(name=name).key in self.functions:
+            name, count = f"{function.name}_{count}", count + 1
+        linked = rewrite_function(function._replace(name=name), _renaming(calls, names))
+        self.instances[identity] = self.functions[linked.key] = linked
+        return linked
+
+    def struct(self, struct: StructDecl) -> None:
+        assert isinstance(struct.type, Struct)
+        known = self.structs.setdefault(struct.type.name, struct)
+        if known.type != struct.type:
+            raise LinkError(f"two different structs are called '{struct.type.name}'", struct.span)
+
+    def global_name(self, name: str, module: Module, index: int, stage: LinkStage) -> str:
+        """The name that a uniform or constant of `module` has in the linked module."""
+        for uniform in module.uniforms:
+            if uniform.name == name:
+                return self.uniform(uniform, index, stage)
+        constant = next(constant for constant in module.constants if constant.name == name)
+        if constant.span not in self.global_names:
+            value = constant.value
+            inner = {
+                expr.name: self.global_name(expr.name, module, index, stage)
+                for expr in subexpressions(value)
+                if type(expr) is Global
+            }
+            if any(old != new for old, new in inner.items()):
+                value = rewrite(value, _renaming({}, inner))
+            free = self.free_name(name, stage.technique)
+            self.global_names[constant.span] = free
+            self.constants[free] = constant._replace(name=free, value=value)
+        return self.global_names[constant.span]
+
+    def uniform(self, uniform: Uniform, index: int, stage: LinkStage) -> str:
+        """A technique's own uniforms are the stage's; those of shared files and bound functions are everyone's."""
+        own = uniform.span.file == stage.function.span.file
+        identity = (uniform.span, index if own else None)
+        name = self.global_names.get(identity)
+        if name is None:
+            name = self.free_name(uniform.name, stage.technique)
+            self.global_names[identity] = name
+            self.uniforms[name] = uniform._replace(name=name)
+            self.owners[name] = (stage.technique, uniform.name)
+        value = stage.values.get(uniform.name)
+        if value is not None:
+            self.uniforms[name] = self.uniforms[name]._replace(default=value)
+        if uniform.name in stage.fixed:
+            self.fixed[name] = self.uniforms[name].default
+        return name
+
+    def free_name(self, name: str, technique: str) -> str:
+        taken = self.uniforms.keys() | self.constants.keys()
+        candidates = [name, f"{technique}_{name}"]
+        count = 2
+        while candidates[0] in taken:
+            candidates.pop(0)
+            if not candidates:
+                candidates.append(f"{technique}_{name}_{count}")
+                count += 1
+        return candidates[0]
+
+
+def _renaming(calls: Mapping[str, str], names: Mapping[str, str]) -> Callable[[Expr], Expr]:
+    def change(expr: Expr) -> Expr:
+        if type(expr) is Call and calls.get(expr.function, expr.function) != expr.function:
+            return expr._replace(function=calls[expr.function])
+        if type(expr) is Global and names.get(expr.name, expr.name) != expr.name:
+            return expr._replace(name=names[expr.name])
+        return expr
+
+    return change

@@ -1,0 +1,298 @@
+"""Makes names legal for a target, and keeps the author's wherever it can.
+
+Why: every target reserves other words, and some have no overloads; a shader's author should still find their names.
+Place: last, just before printing, as every pass before it may bring new names and new overloads.
+
+A name is changed if the target reserves it, if no shading language allows it (`__` inside, `gl_` in front), if it is
+taken, or if it hides something that its function uses. A changed name gets `_` at its end, or a number if that is taken
+too. A name that merely ends in digits is as good as any other.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Container, Mapping
+
+from ..ir.nodes import (
+    Block,
+    Call,
+    Construct,
+    Declare,
+    Expr,
+    Function,
+    Global,
+    Intrinsic,
+    Member,
+    Module,
+    Stmt,
+    function_key,
+)
+from ..ir.types import Array, Field, Struct, Type, spell
+from ..ir.walk import RewriteExpr, all_expressions, rewrite, rewrite_block, statements
+from .scopes import declared, rename_locals
+
+
+def rename(
+    module: Module,
+    reserved: Container[str],
+    uniform_name: Callable[[str], str],
+    mangle_overloads: bool,
+    reserved_folded: Container[str] = frozenset(),
+) -> tuple[Module, dict[str, str]]:
+    """The module with legal names, and what was renamed, as old → new.
+
+    `reserved` holds the target's words, `reserved_folded` those it reserves in any case, in lower case. `uniform_name`
+    gives a uniform's name in the target's style. With `mangle_overloads` each function of an overloaded name gets its
+    parameters' types into its name. In the result, overloads that were told apart stand under their key (as in
+    `box(vec3)`), local names under `function.name`, members under `struct.name`.
+    """
+    return _Namer(module, reserved, uniform_name, mangle_overloads, reserved_folded).run()
+
+
+class _Namer:
+    def __init__(
+        self,
+        module: Module,
+        reserved: Container[str],
+        uniform_name: Callable[[str], str],
+        mangle_overloads: bool,
+        reserved_folded: Container[str],
+    ) -> None:
+        self.module = module
+        self.reserved, self.reserved_folded = reserved, reserved_folded
+        self.uniform_name, self.mangle_overloads = uniform_name, mangle_overloads
+        self.renamed: dict[str, str] = {}
+        self.structs: dict[Type, Type] = {}
+        self.members: dict[tuple[str, str], str] = {}
+        """New names of members, by the struct's new name and the member's old one."""
+        self.globals: dict[str, str] = {}
+        self.keys: dict[str, str] = {}
+        self.function_names: dict[str, str] = {}
+        """The new name of each function, by its old key."""
+        self.taken: set[str] = set()
+        """The new names of the module's declarations."""
+
+    def run(self) -> tuple[Module, dict[str, str]]:
+        self.name_declarations()
+        module = self.module
+        change = self.change()
+        structs, constants = module.structs, module.constants
+        if self.structs:
+            structs = tuple([struct._replace(type=self.retype(struct.type)) for struct in structs])
+        if change is not None:
+            constants = tuple(
+                [
+                    constant._replace(
+                        name=self.globals.get(constant.name, constant.name),
+                        type=self.retype(constant.type),
+                        value=rewrite(constant.value, change),
+                    )
+                    for constant in constants
+                ]
+            )
+        uniforms = tuple(
+            [
+                uniform._replace(name=self.globals[uniform.name]) if uniform.name in self.globals else uniform
+                for uniform in module.uniforms
+            ]
+        )
+        functions = tuple([self.function(function, change) for function in module.functions])
+        return Module(structs, constants, uniforms, functions), self.renamed
+
+    # The module's own names
+
+    def legal(self, name: str) -> bool:
+        return not (
+            name in self.reserved
+            or "__" in name
+            or name == "_"
+            or name.startswith("gl_")
+            or name.lower() in self.reserved_folded
+        )
+
+    def choose(self, name: str, taken: Container[str]) -> str:
+        """A legal name that is like `name` and is not taken."""
+        base = re.sub(r"__+", "_", name.removeprefix("gl_"))
+        if not base.strip("_"):
+            base = "value"
+        if self.free(base, taken):
+            return base
+        if not base.endswith("_") and self.free(f"{base}_", taken):
+            return f"{base}_"
+        base, count = base.rstrip("_"), 2
+        while not self.free(f"{base}_{count}", taken):
+            count += 1
+        return f"{base}_{count}"
+
+    def free(self, name: str, taken: Container[str]) -> bool:
+        return name not in taken and name not in self.taken and self.legal(name)
+
+    def name_declarations(self) -> None:
+        """Names structs, constants, uniforms and functions: they share one scope.
+
+        First come those that can have the name they want, so that as few as possible are changed.
+        """
+        module = self.module
+        wanted = {("struct", spell(struct.type)): spell(struct.type) for struct in module.structs}
+        wanted |= {("global", constant.name): constant.name for constant in module.constants}
+        wanted |= {("global", uniform.name): self.uniform_name(uniform.name) for uniform in module.uniforms}
+        mangled = self.mangled() if self.mangle_overloads else {}
+        for function in module.functions:
+            key = function.key
+            if key in mangled:
+                wanted["key", key] = mangled[key]
+            else:
+                wanted["function", function.name] = function.name
+        names: dict[tuple[str, str], str] = {}
+        for old, name in wanted.items():
+            if self.free(name, ()):
+                names[old] = name
+                self.taken.add(name)
+        for old, name in wanted.items():
+            if old not in names:
+                names[old] = self.choose(name, ())
+                self.taken.add(names[old])
+        self.renamed = {old[1]: new for old, new in names.items() if old[1] != new}
+        self.globals = {old[1]: new for old, new in names.items() if old[0] == "global" and old[1] != new}
+        self.name_structs(names)
+        for function in module.functions:
+            key = function.key
+            new = names["key", key] if key in mangled else names["function", function.name]
+            self.function_names[key] = new
+            if new != function.name or self.structs:
+                types = [self.retype(param.type) for param in function.params]
+                self.keys[key] = function_key(new, types)
+
+    def mangled(self) -> dict[str, str]:
+        """Names for overloads: as many parameters' types as it takes to tell them apart."""
+        overloads: dict[str, list[Function]] = {}
+        for function in self.module.functions:
+            overloads.setdefault(function.name, []).append(function)
+        result: dict[str, str] = {}
+        for name, functions in overloads.items():
+            if len(functions) > 1:
+                types = [[_word(param.type) for param in function.params] for function in functions]
+                for count in range(1, max(map(len, types)) + 1):
+                    words = ["_".join([name, *some[:count]]) for some in types]
+                    if len(set(words)) == len(words):
+                        break
+                result |= {function.key: word for function, word in zip(functions, words, strict=True)}
+        return result
+
+    def name_structs(self, names: Mapping[tuple[str, str], str]) -> None:
+        """Finds the structs that change: by name, by a member's name, or by a member's type."""
+        for declaration in self.module.structs:
+            struct = declaration.type
+            assert isinstance(struct, Struct)
+            members = {field.name for field in struct.fields}
+            fields = []
+            for field in struct.fields:
+                new = field.name
+                if not self.legal(new):
+                    new = self.member(new, members)
+                    self.renamed[f"{struct.name}.{field.name}"] = new
+                    self.members[names["struct", struct.name], field.name] = new
+                fields.append(Field(new, self.retype(field.type), field.quantity))
+            changed = Struct(names["struct", struct.name], tuple(fields))
+            if changed != struct:
+                self.structs[struct] = changed
+
+    def retype(self, type: Type) -> Type:
+        """A type with the new structs."""
+        if isinstance(type, Array):
+            element = self.retype(type.element)
+            return type if element is type.element else Array(element, type.length)
+        return self.structs.get(type, type)
+
+    def member(self, name: str, members: set[str]) -> str:
+        outer, self.taken = self.taken, members
+        new = self.choose(name, ())
+        self.taken = outer
+        members.add(new)
+        return new
+
+    # The functions
+
+    def change(self) -> RewriteExpr | None:
+        """What to do to each node that is no local name; None if nothing."""
+        keys, names, structs = self.keys, self.globals, self.structs
+        if structs:
+            return self.retyped
+        if not keys and not names:
+            return None
+
+        def change(node: Expr) -> Expr:
+            if type(node) is Global:
+                return Global(node.type, names[node.name], node.span) if node.name in names else node
+            if type(node) is Call and node.function in keys:
+                return node._replace(function=keys[node.function])
+            return node
+
+        return change
+
+    def retyped(self, node: Expr) -> Expr:
+        """A node with new names and new struct types."""
+        if isinstance(node, Global):
+            node = node._replace(name=self.globals.get(node.name, node.name))
+        elif isinstance(node, Call):
+            node = node._replace(function=self.keys.get(node.function, node.function))
+        elif isinstance(node, Member):
+            # its value comes before it, so that the struct has its new name already
+            node = node._replace(field=self.members.get((spell(node.value.type), node.field), node.field))
+        type_ = self.retype(node.type)
+        return node if type_ is node.type else node._replace(type=type_)
+
+    def function(self, function: Function, change: RewriteExpr | None) -> Function:
+        name = self.function_names[function.key]
+        hidden = self.hidden(function)
+        if self.structs:
+            function = self.retyped_function(function)
+        new, locals_ = rename_locals(
+            function, lambda local: local in hidden or not self.legal(local), self.choose, change
+        )
+        for old, local in locals_.items():
+            self.renamed[f"{function.name}.{old}"] = local
+        return new if name == new.name else new._replace(name=name)
+
+    def hidden(self, function: Function) -> set[str]:
+        """The names of a function's variables that are also those of declarations or builtins it uses."""
+        from ..ir.intrinsics import BUILTINS
+
+        names = {name for name in declared(function) if name in self.taken or name in BUILTINS}
+        return names & self.used(function) if names else names
+
+    def used(self, function: Function) -> set[str]:
+        """The new names of what a function uses of the module, and of the builtins it calls."""
+        used: set[str] = set()
+        types = [function.result, *(param.type for param in function.params)]
+        for expr in all_expressions(function.body or ()):
+            if isinstance(expr, Global):
+                used.add(self.globals.get(expr.name, expr.name))
+            elif isinstance(expr, Call):
+                used.add(self.function_names[expr.function])
+            elif isinstance(expr, Intrinsic):
+                used.add(expr.name)
+            elif isinstance(expr, Construct):
+                types.append(expr.type)
+        types += [stmt.type for stmt in statements(function.body or ()) if isinstance(stmt, Declare)]
+        for type_ in types:
+            while isinstance(type_, Array):
+                type_ = type_.element
+            if isinstance(type_, Struct):
+                used.add(spell(self.retype(type_)))
+        return used
+
+    def retyped_function(self, function: Function) -> Function:
+        """A function with new struct types in its declarations."""
+        params = tuple([param._replace(type=self.retype(param.type)) for param in function.params])
+
+        def restate(stmt: Stmt) -> Block | None:
+            return (stmt._replace(type=self.retype(stmt.type)),) if isinstance(stmt, Declare) else None
+
+        body = rewrite_block(function.body, lambda node: node, restate) if function.body is not None else None
+        return function._replace(params=params, result=self.retype(function.result), body=body)
+
+
+def _word(type: Type) -> str:
+    """A type as a part of a name."""
+    return re.sub(r"\W+", "", spell(type))

@@ -1,0 +1,1 @@
+"""Targets: descriptors, printers, layout, reflection, and putting a shader together."""

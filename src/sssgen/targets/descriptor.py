@@ -1,0 +1,139 @@
+"""Target descriptors: what is known of a language or engine beside its printer, read from `targets/*.toml`.
+
+A plug-in brings a target through the entry-point group `sssgen.targets`: an entry named like the target that gives a
+`Target`, or the path of a descriptor file with its templates beside it.
+"""
+
+from __future__ import annotations
+
+import functools
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from ..data import folder
+from ..diagnostics import did_you_mean, failure
+
+
+class OutputFile(NamedTuple):
+    """One file that a target writes: its name with `{material}`, its template, and its stages' entry points."""
+
+    name: str
+    template: str
+    stages: dict[str, str]
+
+
+class Target(NamedTuple):
+    """One target. The fields are keys of the descriptor file; all of it is in `table`, for templates and printers."""
+
+    name: str
+    title: str
+    language: str
+    """Which printer prints it: glsl, hlsl, wgsl or python, or `module:Class` of a plug-in."""
+    dialect: str
+    """The intrinsic table's language: glsl, hlsl, hlsl-dx9, hlsl-macros, wgsl."""
+    types: dict[str, str]
+    """Type as our language spells it → as the target does."""
+    files: dict[str, list[OutputFile]]
+    """Form (shader, functions) → the files it writes."""
+    inputs: dict[str, str]
+    """Chain input → the shell's expression for it."""
+    light_inputs: dict[str, str]
+    """The same, where it differs inside the loop over the lights."""
+    reserved: frozenset[str]
+    folded: frozenset[str]
+    """Reserved in any case, as some of HLSL's words are; lower case here."""
+    prefixes: tuple[str, ...]
+    """Names that begin so are reserved."""
+    capabilities: dict[str, bool]
+    """What the language can say without legalising; see `passes/legalise.py`."""
+    lighting: str
+    """The technique that lights a lit material where the target brings no lighting."""
+    output: str
+    """The technique that encodes the final colour for a display; '' where the engine or framebuffer does that."""
+    uniform_style: str
+    """plain keeps `distortion`; unity makes `_Distortion`."""
+    layout: str
+    """The rule for offsets in a uniform block: std140, hlsl, or '' where there is none."""
+    parameters: tuple[str, ...]
+    """The forms in which uniforms are passed to every function instead of being read as globals."""
+    textures: dict[str, str]
+    """How a texture is declared, passed and named: declaration, parameter, argument, sampler."""
+    table: dict[str, Any]
+    folder: Path
+    """Where the descriptor lies; a plug-in keeps its `templates` there."""
+
+    def can(self, capability: str) -> bool:
+        """Whether the language can say something; what the descriptor does not mention, it can."""
+        return bool(self.capabilities.get(capability, True))
+
+
+@functools.cache
+def names() -> tuple[str, ...]:
+    """The names of all targets, the project's own first."""
+    own = tuple(sorted(path.stem for path in folder("targets").glob("*.toml")))
+    return own + tuple(sorted(name for name in _plugins() if name not in own))
+
+
+@functools.cache
+def _plugins() -> dict[str, Any]:
+    from importlib.metadata import entry_points
+
+    return {entry.name: entry for entry in entry_points(group="sssgen.targets")}
+
+
+@functools.cache
+def load(name: str) -> Target:
+    """A target by name. Raises SssgenError for an unknown one."""
+    path = folder("targets") / f"{name}.toml"
+    if path.is_file():
+        return read(path)
+    if name in _plugins():
+        made = _plugins()[name].load()
+        made = made() if callable(made) else made
+        return made if isinstance(made, Target) else read(Path(made))
+    raise failure(f"unknown target '{name}'", did_you_mean(name, names()) or f"targets: {', '.join(names())}")
+
+
+def read(path: Path) -> Target:
+    """Reads a descriptor file. Raises SssgenError where it is faulty."""
+    import tomllib
+
+    try:
+        table = tomllib.loads(path.read_text("utf-8"))
+    except (OSError, ValueError) as error:
+        raise failure(f"cannot read the target descriptor: {error}", file=path.name) from None
+    names = table.get("names", {})
+    try:
+        return Target(
+            name=table.get("name", path.stem),
+            title=table["title"],
+            language=table["language"],
+            dialect=table.get("dialect", table["language"]),
+            types=table["types"],
+            files={form: [OutputFile(**entry) for entry in entries] for form, entries in table["files"].items()},
+            inputs=table.get("inputs", {}),
+            light_inputs=table.get("light_inputs", {}),
+            reserved=frozenset((names.get("reserved", "") + " " + names.get("shell", "")).split()),
+            folded=frozenset(word.lower() for word in names.get("case_insensitive", ())),
+            prefixes=tuple(names.get("prefixes", ())),
+            capabilities=table.get("capabilities", {}),
+            lighting=table.get("lighting", ""),
+            output=table.get("output", ""),
+            uniform_style=table.get("uniform_style", "plain"),
+            layout=table.get("layout", ""),
+            parameters=tuple(table.get("parameters", ("functions",))),
+            textures=table.get("textures", {}),
+            table=table,
+            folder=path.parent,
+        )
+    except (KeyError, TypeError) as error:
+        raise failure(f"the target descriptor is incomplete: {error}", file=path.name) from None
+
+
+@functools.cache
+def reserved_everywhere() -> tuple[frozenset[str], frozenset[str]]:
+    """What any of the project's own targets reserves, exactly and in any case: names keep clear of all of it."""
+    own = [load(name) for name in names() if (folder("targets") / f"{name}.toml").is_file()]
+    shaders = [target for target in own if target.language != "python"]
+    exact = frozenset().union(*(target.reserved for target in shaders))
+    return exact, frozenset().union(*(target.folded for target in shaders))

@@ -1,0 +1,290 @@
+"""Puts a shader together: prints the legal module, hands the text to the target's templates, and maps lines to source.
+
+Printed lines carry an invisible mark through the template, so that each line of the finished file is known by the span
+that it came from, wherever the template put it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from .. import cache
+from ..data import folder
+from ..diagnostics import failure
+from ..ir.nodes import Function, Module, Span, Uniform
+from ..ir.types import Sampler, Struct, kind_of, spell
+from .descriptor import Target
+from .layout import Member, place
+from .printer import Line, Printer
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+    from ..passes.chain import Entry
+
+_MARK = re.compile(r"\x02(\d+)\x03")
+
+_DEFAULTS = {"default_white": "white", "default_black": "black", "default_gray": "gray", "default_bump": "bump"}
+
+
+class Program(NamedTuple):
+    """A legal module with what the templates need to know of it."""
+
+    module: Module
+    entries: Mapping[str, tuple[Function, tuple[str, ...]]]
+    """Entry kind → its function as it is in `module`, and the inputs it takes."""
+    surface: Struct | None
+    source_names: Mapping[str, str]
+    """A uniform's name in `module` → its technique's own name for it."""
+    name: str
+    title: str
+    doc: str
+    shading: str
+
+
+class Emitted(NamedTuple):
+    """The finished files, each with the source span of its lines (1-based)."""
+
+    files: dict[str, str]
+    lines: dict[str, dict[int, Span]]
+    members: list[Member]
+    block_size: int
+
+
+def printer_for(target: Target, module: Module) -> Printer:
+    """The target's printer. Raises SssgenError where a plug-in names one that is not there."""
+    if target.language == "glsl":
+        from .glsl import GlslPrinter as Chosen
+    elif target.language == "hlsl":
+        from .hlsl import HlslPrinter as Chosen  # type: ignore[assignment]  # one of several printers
+    elif target.language == "wgsl":
+        from .wgsl import WgslPrinter as Chosen  # type: ignore[assignment]  # one of several printers
+    elif target.language == "python":
+        from .numpy_printer import NumpyPrinter as Chosen  # type: ignore[assignment]  # one of several printers
+    else:
+        import importlib
+
+        place, _, name = target.language.partition(":")
+        try:
+            Chosen = getattr(importlib.import_module(place), name)
+        except (ImportError, AttributeError):
+            raise failure(f"target '{target.name}' names a printer that is not there: {target.language}") from None
+    return Chosen(target, module)
+
+
+def emit(target: Target, program: Program, form: str, templates: Path | None = None) -> Emitted:
+    """Prints and renders every file of a form. Raises SssgenError for a faulty template."""
+    module = program.module
+    printer = printer_for(target, module)
+    members, size = place(module.uniforms, target.layout)
+    textures = [uniform for uniform in module.uniforms if isinstance(uniform.type, Sampler)]
+    marks: list[Span] = []
+    uniform_lines: list[Line] = []
+    if form not in target.parameters:
+        own = [] if "samplers" in target.table else textures
+        uniform_lines = printer.print_uniforms(members, own)
+    code = {
+        "types": _text([printer.print_struct(struct) for struct in module.structs], marks),
+        "constants": _text([[line for c in module.constants for line in printer.print_constant(c)]], marks),
+        "declarations": _text([uniform_lines], marks),
+        "functions": _text([printer.print_function(function) for function in module.functions], marks),
+    }
+    context = _context(target, program, printer, form, code)
+    files: dict[str, str] = {}
+    lines: dict[str, dict[int, Span]] = {}
+    environment = _environment(templates, target.folder)
+    for output in target.files.get(form, ()):
+        name = output.name.format(material=program.name)
+        files[name], lines[name] = _finish(_render(environment, output.template, context), marks)
+    return Emitted(files, lines, members, size)
+
+
+def _text(parts: Sequence[Sequence[Line]], marks: list[Span]) -> str:
+    """Lines as text, the parts separated by empty lines, every line with its mark."""
+    blocks = []
+    for part in parts:
+        texts = []
+        for line in part:
+            if line.span.file:
+                texts.append(f"{line.text}\x02{len(marks)}\x03")
+                marks.append(line.span)
+            else:
+                texts.append(line.text)
+        if texts:
+            blocks.append("\n".join(texts))
+    return "\n\n".join(blocks)
+
+
+def _context(target: Target, program: Program, printer: Printer, form: str, code: dict[str, str]) -> dict[str, Any]:
+    """What a template sees; documented in docs/templates.md."""
+    entries = {
+        kind: _entry(target, printer, kind, function, inputs)
+        for kind, (function, inputs) in program.entries.items()
+    }
+    inputs = {name for _, given in program.entries.values() for name in given}
+    surface = program.surface
+    return {
+        "material": {"name": program.name, "title": program.title, "doc": program.doc, "shading": program.shading},
+        "target": {**target.table, "name": target.name},
+        "form": form,
+        "header": _header(target, program),
+        "code": code,
+        "uniforms": [
+            _uniform(printer, uniform, program) for uniform in program.module.uniforms if not isinstance(uniform.type, Sampler)
+        ],
+        "textures": _textures(printer, program),
+        "entries": entries,
+        "inputs": inputs,
+        "surface_fields": [{"name": f.name, "type": printer.type(f.type)} for f in surface.fields] if surface else [],
+        "library": [function.name for function in program.module.functions],
+    }  # fmt: skip
+
+
+def _header(target: Target, program: Program) -> list[str]:
+    lines = [f"{program.title}: {program.doc}" if program.doc else program.title]
+    wrapped = []
+    import textwrap
+
+    for line in lines:
+        wrapped += textwrap.wrap(line, 100)
+    return [*wrapped, f"Made by sssgen for {target.title}. Change the material and emit it again rather than this file."]
+
+
+def _entry(target: Target, printer: Printer, kind: str, function: Function, inputs: tuple[str, ...]) -> dict[str, Any]:
+    """An entry with the text of its call: the shell's expressions for its inputs, then the passed-on uniforms."""
+    given = {**target.inputs, **(target.light_inputs if kind in ("translucency", "lighting") else {})}
+    leading = ["surface"] if len(function.params) > 0 and isinstance(function.params[0].type, Struct) else []
+    names = [*leading, *inputs]
+    params, args = [], []
+    for index, param in enumerate(function.params):
+        name = names[index] if index < len(names) else ""
+        text = given.get(name, name) if name else _passed(printer, param)
+        params.append({"name": param.name, "type": printer.type(param.type), "input": name})
+        args.append(text)
+    call = f"{function.name}({', '.join(args)})"
+    return {"name": function.name, "params": params, "result": printer.type(function.result), "call": call}
+
+
+def _passed(printer: Printer, param: Any) -> str:
+    from ..ir.nodes import Local
+
+    return printer.argument(Local(param.type, param.name, param.span), param)
+
+
+def _hint(uniform: Uniform, *names: str) -> tuple[str, tuple[Any, ...]]:
+    for name, args in uniform.hints:
+        if name in names:
+            return name, args
+    return "", ()
+
+
+def _uniform(printer: Printer, uniform: Uniform, program: Program) -> dict[str, Any]:
+    _, limits = _hint(uniform, "hint_range")
+    source = program.source_names.get(uniform.name, uniform.name)
+    return {
+        "name": uniform.name,
+        "source_name": source,
+        "type": printer.type(uniform.type),
+        "base": spell(uniform.type),
+        "default": list(uniform.default),
+        "range": (*limits, None)[:3] if limits else None,
+        "unit": (_hint(uniform, "unit")[1] or ("",))[0],
+        "hint": _hint(uniform, "source_color")[0],
+        "doc": " ".join(uniform.doc.split()),
+        "label": source.replace("_", " ").capitalize(),
+    }
+
+
+def _textures(printer: Printer, program: Program) -> list[dict[str, Any]]:
+    found = []
+    for uniform in program.module.uniforms:
+        if not isinstance(uniform.type, Sampler):
+            continue
+        source = program.source_names.get(uniform.name, uniform.name)
+        found.append(
+            {
+                "name": uniform.name,
+                "source_name": source,
+                "sampler": printer.sampler(uniform.name),
+                "dim": uniform.type.dim,
+                "default": _DEFAULTS.get(_hint(uniform, *_DEFAULTS)[0], "white"),
+                "hint": _hint(uniform, "normal_map")[0] or _hint(uniform, "source_color")[0],
+                "doc": " ".join(uniform.doc.split()),
+                "label": source.replace("_", " ").capitalize(),
+                "holds": uniform.quantity,
+                "binding": 1 + 2 * len(found),
+                "sampler_binding": 2 + 2 * len(found),
+            }
+        )
+    return found
+
+
+_environments: dict[tuple[Path | None, Path], Environment] = {}
+
+
+def _environment(templates: Path | None, beside: Path) -> Environment:
+    """The template environment: the user's folder before a plug-in's before ours, compiled templates kept on disk."""
+    key = (templates, beside)
+    if key not in _environments:
+        from jinja2 import FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
+
+        if templates is not None:
+            from jinja2.sandbox import SandboxedEnvironment as Chosen
+        else:
+            from jinja2 import Environment as Chosen  # type: ignore[assignment]  # the same without the sandbox
+        places = [templates] if templates is not None else []
+        kept = cache.folder()
+        _environments[key] = Chosen(
+            loader=FileSystemLoader([*places, beside / "templates", folder("templates")]),
+            undefined=StrictUndefined,
+            trim_blocks=True,
+            lstrip_blocks=True,
+            keep_trailing_newline=True,
+            bytecode_cache=FileSystemBytecodeCache(str(kept)) if kept else None,
+            auto_reload=templates is not None,
+        )
+    return _environments[key]
+
+
+def _render(environment: Environment, template: str, context: dict[str, Any]) -> str:
+    from jinja2 import TemplateError, TemplateNotFound, TemplateSyntaxError
+
+    try:
+        return environment.get_template(template).render(context)
+    except TemplateNotFound as error:
+        raise failure(f"there is no template '{error.name}'", file=template) from None
+    except TemplateSyntaxError as error:
+        raise failure(f"line {error.lineno}: {error.message}", file=error.name or template) from None
+    except TemplateError as error:
+        raise failure(f"the template cannot be rendered: {error.message}", "docs/templates.md lists what a template may use", file=template) from None  # fmt: skip
+    except (TypeError, ValueError, KeyError, ArithmeticError, RecursionError) as error:
+        raise failure(f"the template cannot be rendered: {error}", file=template) from None
+
+
+def _finish(text: str, marks: list[Span]) -> tuple[str, dict[int, Span]]:
+    """Takes the marks out, tidies blank lines, and says where each line came from."""
+    lines: list[str] = []
+    spans: dict[int, Span] = {}
+    for line in text.split("\n"):
+        found = _MARK.search(line)
+        if found is not None:
+            line = _MARK.sub("", line)
+        line = line.rstrip()
+        if not line and (not lines or not lines[-1] or lines[-1].endswith("{")):
+            continue
+        if lines and not lines[-1] and line.lstrip().startswith("}"):
+            lines.pop()
+        lines.append(line)
+        if found is not None:
+            spans[len(lines)] = marks[int(found.group(1))]
+    while lines and not lines[-1]:
+        lines.pop()
+    return "\n".join(lines) + "\n", spans
+
+
+def kind_name(uniform: Uniform) -> str:
+    """float, int, uint, bool, or the sampler's type."""
+    return kind_of(uniform.type) or spell(uniform.type)

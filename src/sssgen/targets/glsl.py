@@ -1,0 +1,30 @@
+"""Prints GLSL: 3.30 core and ES 3.00, the language that the IR is closest to."""
+
+from __future__ import annotations
+
+from ..ir import nodes as ir
+from ..ir.types import Array
+from .layout import Member
+from .printer import Line, Printer
+
+
+class GlslPrinter(Printer):
+    """Uniforms stand in the default block; everything else is as in the IR."""
+
+    def construct(self, construct: ir.Construct) -> tuple[str, int]:
+        if isinstance(construct.type, Array):
+            element = self.type(construct.type.element)
+            return f"{element}[{construct.type.length}]({self.arguments(construct.args)})", 15
+        return super().construct(construct)
+
+    def print_uniforms(self, members: list[Member], textures: list[ir.Uniform]) -> list[Line]:
+        """The uniform declarations, one a line."""
+        lines = [
+            Line(f"uniform {self.variable(member.uniform.type, member.uniform.name)};", member.uniform.span)
+            for member in members
+        ]
+        precision = self.target.table.get("sampler_precision", {})
+        return lines + [
+            Line(f"uniform {precision.get(self.type(texture.type), '')}{self.type(texture.type)} {texture.name};", texture.span)
+            for texture in textures
+        ]  # fmt: skip

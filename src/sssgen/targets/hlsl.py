@@ -1,0 +1,74 @@
+"""Prints HLSL: Shader Model 5 and 6, and the dialects of Unity's pipelines.
+
+Matrices. GLSL's `mat3(a, b, c)` has columns a, b, c; HLSL's `float3x3(a, b, c)` has rows a, b, c. We keep the same
+numbers in the same order: our column i is HLSL's row i, so `m[i]` and constructors mean the same. Products then
+flip their operands: `M * v` is `mul(v, M)` and `A * B` is `mul(B, A)`. A matrix in a constant buffer is declared
+`row_major`, so its rows, our columns, lie one after the other, as std140 lays out columns. What an engine hands over
+is not stored so (Unity's matrices multiply columns from the left, `mul(M, v)`), so there a matrix uniform is
+transposed where it is read.
+"""
+
+from __future__ import annotations
+
+from ..ir import nodes as ir
+from ..ir.types import Array, Matrix, Scalar, Vector
+from .layout import Member
+from .printer import POSTFIX, PRIMARY, UNARY, Line, Printer, wrap
+
+
+class HlslPrinter(Printer):
+    """One printer for all dialects; the descriptor says how textures and uniforms are written."""
+
+    constant = "static const"
+
+    @property
+    def engine_matrices(self) -> bool:
+        return self.target.uniform_style == "unity"
+
+    def binary(self, binary: ir.Binary) -> tuple[str, int]:
+        left, right = binary.left.type, binary.right.type
+        linear = isinstance(left, Matrix | Vector) and isinstance(right, Matrix | Vector)
+        if binary.op == "*" and linear and (isinstance(left, Matrix) or isinstance(right, Matrix)):
+            return f"mul({self.expr(binary.right)}, {self.expr(binary.left)})", PRIMARY
+        return super().binary(binary)
+
+    def construct(self, construct: ir.Construct) -> tuple[str, int]:
+        type_, args = construct.type, construct.args
+        if isinstance(type_, Array):
+            return "{ " + self.arguments(args) + " }", PRIMARY
+        if len(args) == 1 and not isinstance(type_, Scalar):  # a splat or a conversion is a cast here
+            text, binding = self.bound(args[0])
+            return f"({self.type(type_)}){text if binding >= POSTFIX else f'({text})'}", UNARY
+        return super().construct(construct)
+
+    def global_value(self, value: ir.Global) -> str:
+        engine_matrix = self.engine_matrices and isinstance(value.type, Matrix)
+        is_uniform = engine_matrix and any(uniform.name == value.name for uniform in self.module.uniforms)
+        return f"transpose({value.name})" if is_uniform else value.name
+
+    def print_uniforms(self, members: list[Member], textures: list[ir.Uniform]) -> list[Line]:
+        """The constant buffer's members (in a buffer unless the descriptor places them) and the textures."""
+        lines: list[Line] = []
+        for member in members:
+            for index in range(member.padding):
+                lines.append(Line(f"    float padding_{member.offset}_{index};"))
+            major = "row_major " if isinstance(member.uniform.type, Matrix) and not self.engine_matrices else ""
+            declared = self.variable(member.uniform.type, member.uniform.name)
+            lines += wrap(f"    {major}{declared};", member.uniform.span)
+        bindings = self.target.table.get("bindings")
+        if lines and bindings is not None:
+            head = f"cbuffer {bindings['material_block']} : register({bindings['material_register']}) {{"
+            lines = [Line(head), *lines, Line("};")]
+        else:
+            lines = [Line(line.text[4:], line.span) for line in lines]
+        for binding, texture in enumerate(textures):
+            pattern = self.target.textures.get("declaration", "{type} {name};")
+            text = pattern.format(
+                name=texture.name,
+                sampler=self.sampler(texture.name),
+                type=self.type(texture.type),
+                dim=texture.type.dim.upper(),  # type: ignore[union-attr]  # textures have sampler types
+                binding=binding,
+            )
+            lines += [Line(part, texture.span) for part in text.splitlines()]
+        return lines

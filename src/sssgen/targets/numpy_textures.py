@@ -1,0 +1,166 @@
+"""Textures for Python printed from a shader: OpenGL's sampling rules, on NumPy arrays in the runtime's layout."""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+Array: TypeAlias = npt.NDArray[Any]
+
+# For each face of a cube (+x, -x, +y, -y, +z, -z) the directions of its s and t and its outward normal: the table of
+# "Cube Map Texture Selection" in the OpenGL ES 3.0 specification.
+_FACES = np.array(
+    [
+        [[0, 0, -1], [0, -1, 0], [1, 0, 0]],
+        [[0, 0, 1], [0, -1, 0], [-1, 0, 0]],
+        [[1, 0, 0], [0, 0, 1], [0, 1, 0]],
+        [[1, 0, 0], [0, 0, -1], [0, -1, 0]],
+        [[1, 0, 0], [0, -1, 0], [0, 0, 1]],
+        [[-1, 0, 0], [0, -1, 0], [0, 0, -1]],
+    ]
+)
+
+
+class Texture:
+    """An image to sample.
+
+    `data` is (height, width, channels), (depth, height, width, channels), or for `dim="Cube"` (6, size, size,
+    channels) with the faces +x, -x, +y, -y, +z, -z; row 0 is at v = 0. Missing channels read as 0, alpha as 1.
+    Texel i of N has its centre at (i + 0.5)/N. `filter` is linear or nearest; `wrap` is repeat, clamp or mirror (a cube
+    wraps over its edges; at a corner one of the three faces gives the missing texel). With `mipmaps`, each level is
+    the box-filtered one before it, and reads blend the two nearest levels; without, there is level 0 alone.
+    Samples have the floating-point type of the coordinate.
+    """
+
+    def __init__(
+        self,
+        data: npt.ArrayLike,
+        filter: str = "linear",
+        wrap: str = "repeat",
+        dim: str = "",
+        mipmaps: bool = False,
+    ) -> None:
+        data = np.asarray(data)
+        self.dim = dim or {3: "2D", 4: "3D"}.get(data.ndim, "")
+        if data.ndim != {"2D": 3, "3D": 4, "Cube": 4}.get(self.dim) or not 1 <= data.shape[-1] <= 4:
+            raise ValueError(f"data of shape {data.shape} is no {self.dim or 'texture'}: see Texture")
+        if self.dim == "Cube" and (data.shape[0] != 6 or data.shape[1] != data.shape[2]):
+            raise ValueError(f"a cube has 6 square faces, not {data.shape[:-1]}")
+        if filter not in ("linear", "nearest") or wrap not in ("repeat", "clamp", "mirror"):
+            raise ValueError(f"filter={filter!r}, wrap={wrap!r}: see Texture")
+        self.filter, self.wrap = filter, wrap
+        filled = np.zeros((*data.shape[:-1], 4), np.result_type(data, np.float16))
+        filled[..., 3] = 1.0
+        filled[..., : data.shape[-1]] = data
+        self.levels = [filled]
+        while mipmaps and max(self.size(len(self.levels) - 1)) > 1:
+            self.levels.append(self._halve(self.levels[-1]))
+
+    def size(self, level: int = 0) -> tuple[int, ...]:
+        """Width, height and, for 3D, depth of a level in texels."""
+        shape: tuple[int, ...] = self.levels[level].shape[:-1]
+        return shape[:0:-1] if self.dim == "Cube" else shape[::-1]
+
+    def level(self, coord: Array, dx: Array, dy: Array) -> Array:
+        """The level of detail, (n,), for a coordinate that changes by dx and dy from pixel to pixel.
+
+        log2 of the longer of the two steps in texels; on a cube, of the step across the face's plane.
+        """
+        scale = np.array(self.size()).reshape(-1, 1)
+        if self.dim == "Cube":
+            scale = scale[:1] / (2.0 * np.abs(coord).max(axis=0))
+        with np.errstate(all="ignore"):
+            step = np.maximum(((dx * scale) ** 2).sum(axis=0), ((dy * scale) ** 2).sum(axis=0))
+            level: Array = (0.5 * np.log2(step)).astype(coord.dtype)
+        return level
+
+    def sample(self, coord: Array, level: float | Array = 0.0) -> Array:
+        """The filtered texels, (4, n), at coordinates (2, n) or (3, n); `level` is () or (n,)."""
+        with np.errstate(all="ignore"):
+            if len(self.levels) == 1:
+                return self._sample(0, coord)
+            detail = np.clip(np.asarray(level, coord.dtype), 0.0, len(self.levels) - 1)
+            result = np.zeros((4, *np.broadcast_shapes(detail.shape, coord.shape[-1:])), coord.dtype)
+            for number in range(len(self.levels)):
+                weight = np.maximum(1.0 - np.abs(detail - number), 0.0)
+                if weight.any():
+                    result += weight * self._sample(number, coord)
+            return result
+
+    def fetch(self, place: Array, level: int = 0) -> Array:
+        """The texels, (4, n), at integer places (2, n) or (3, n); 0 outside."""
+        size = np.array(self.size(level)).reshape(-1, 1)
+        inside = ((place >= 0) & (place < size)).all(axis=0)
+        return np.where(inside, self._texels(level, list(np.clip(place, 0, size - 1))), 0)
+
+    def _texels(self, level: int, places: list[Array]) -> Array:
+        """The texels at x, y, (z or face)."""
+        return np.moveaxis(self.levels[level][tuple(places[::-1])], -1, 0)
+
+    def _sample(self, level: int, coord: Array) -> Array:
+        size = self.size(level)
+        face = None
+        if self.dim == "Cube":
+            face, coord = _project(coord)
+        base = [c * n - (0.5 if self.filter == "linear" else 0.0) for c, n in zip(coord, size, strict=True)]
+        low = [np.nan_to_num(np.floor(b)) for b in base]
+        if self.filter == "nearest":
+            return self._wrapped(level, [p.astype(np.int64) for p in low], face).astype(coord.dtype)
+        result = np.zeros((4, *coord.shape[1:]), coord.dtype)
+        for corner in product((0, 1), repeat=len(base)):
+            weight = np.ones((), coord.dtype)
+            for b, p, bit in zip(base, low, corner, strict=True):
+                weight = weight * (b - p if bit else 1.0 - (b - p))
+            places = [p.astype(np.int64) + bit for p, bit in zip(low, corner, strict=True)]
+            result += weight * self._wrapped(level, places, face).astype(coord.dtype)
+        return result
+
+    def _wrapped(self, level: int, places: list[Array], face: Array | None) -> Array:
+        size = self.size(level)
+        if face is not None:
+            return self._texels(level, _over_edges(places, size[0], face))
+        wrapped = []
+        for p, n in zip(places, size, strict=True):
+            if self.wrap == "clamp":
+                p = np.clip(p, 0, n - 1)
+            elif self.wrap == "repeat":
+                p = p % n
+            else:
+                p = np.minimum(p % (2 * n), 2 * n - 1 - p % (2 * n))
+            wrapped.append(p)
+        return self._texels(level, wrapped)
+
+    def _halve(self, data: Array) -> Array:
+        """The next level: each axis of N texels averaged into N // 2; an odd N shares its texels by area."""
+        for axis in range(1 if self.dim == "Cube" else 0, data.ndim - 1):
+            data = np.moveaxis(data, axis, 0)
+            count = len(data) // 2
+            if len(data) > 1 and len(data) % 2 == 0:
+                data = (data[::2] + data[1::2]) / 2
+            elif len(data) > 1:
+                i = np.arange(count).reshape(-1, *(1,) * (data.ndim - 1)).astype(data.dtype)
+                data = (data[:-1:2] * (count - i) + data[1::2] * count + data[2::2] * (i + 1)) / len(data)
+            data = np.moveaxis(data, 0, axis)
+        return data
+
+
+def _project(direction: Array) -> tuple[Array, Array]:
+    """The face that a direction meets, (n,), and the coordinates there in [0, 1], (2, n)."""
+    along = np.einsum("fac,c...->fa...", _FACES.astype(direction.dtype), direction)
+    face = np.argmax(np.nan_to_num(along[:, 2]), axis=0)
+    s, t, m = np.take_along_axis(along, face[None, None], axis=0)[0]
+    return face, np.stack([s / m, t / m]) * 0.5 + 0.5
+
+
+def _over_edges(places: list[Array], size: int, face: Array) -> list[Array]:
+    """Texels that may lie one beyond an edge of their face, as x, y and face of the ones there.
+
+    The direction of the centre of a texel beyond the edge meets the neighbouring face within the texel wanted.
+    """
+    s, t = ((2.0 * p + 1.0) / size - 1.0 for p in places)
+    axes = np.moveaxis(_FACES[face], 0, -1)
+    face, coord = _project(axes[0] * s + axes[1] * t + axes[2])
+    return [*(np.clip(c * size, 0, size - 1).astype(np.int64) for c in coord), face]

@@ -1,0 +1,328 @@
+"""The precedence-aware printer that GLSL, HLSL and WGSL share. It prints legalised IR: there is nothing left to decide.
+
+A language's printer overrides what differs: types, declarations, parameters, calls. Every line it gives carries the
+span of source that it came from.
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+from typing import NamedTuple
+
+from ..ir import nodes as ir
+from ..ir import signatures
+from ..ir.operators import PRECEDENCE
+from ..ir.types import FLOAT, INT, UINT, Array, Sampler, Struct, Type, spell
+from ..ir.walk import expressions, root, statements, subexpressions
+from .descriptor import Target
+
+UNARY, POSTFIX, PRIMARY, TERNARY = 13, 14, 15, -1
+WIDTH = 110
+"""Lines longer than this are broken at a call's arguments."""
+
+
+class Line(NamedTuple):
+    """One printed line, without its line break, and where it came from."""
+
+    text: str
+    span: ir.Span = ir.NOWHERE
+
+
+class Printer:
+    """Prints one module for one target."""
+
+    constant = "const"
+    """What a module constant's declaration begins with."""
+
+    def __init__(self, target: Target, module: ir.Module) -> None:
+        self.target = target
+        self.module = module
+        self.by_key = {function.key: function for function in module.functions}
+        self.function: ir.Function | None = None
+        self.assigned: set[str] = set()
+
+    # Types and literals
+
+    def type(self, type_: Type) -> str:
+        """The type as the target writes it."""
+        if isinstance(type_, Struct):
+            return type_.name
+        return self.target.types[spell(type_)]
+
+    def variable(self, type_: Type, name: str) -> str:
+        """A declaration of a variable: C puts an array's length behind the name."""
+        if isinstance(type_, Array):
+            return f"{self.type(type_.element)} {name}[{type_.length}]"
+        return f"{self.type(type_)} {name}"
+
+    def literal(self, literal: ir.Literal) -> str:
+        if literal.type == FLOAT:
+            return float_text(float(literal.value))
+        if literal.type == INT:
+            return str(literal.value) if literal.value != -2147483648 else "(-2147483647 - 1)"
+        if literal.type == UINT:
+            return f"{literal.value}u"
+        return "true" if literal.value else "false"
+
+    # Expressions
+
+    def expr(self, expr: ir.Expr, least: int = TERNARY) -> str:
+        """The expression's text, in parentheses where it binds less tightly than `least`."""
+        text, binding = self.bound(expr)
+        return text if binding >= least else f"({text})"
+
+    def bound(self, expr: ir.Expr) -> tuple[str, int]:
+        """The expression's text and how tightly it binds."""
+        kind = type(expr)
+        if kind is ir.Local:
+            return self.local(expr), PRIMARY  # type: ignore[arg-type]  # narrowed by its exact class
+        if kind is ir.Literal:
+            text = self.literal(expr)  # type: ignore[arg-type]  # narrowed by its exact class
+            return text, UNARY if text[0] == "-" else PRIMARY
+        if isinstance(expr, ir.Binary):
+            return self.binary(expr)
+        if isinstance(expr, ir.Global):
+            return self.global_value(expr), PRIMARY
+        if isinstance(expr, ir.Intrinsic):
+            return self.intrinsic(expr)
+        if isinstance(expr, ir.Construct):
+            return self.construct(expr)
+        if isinstance(expr, ir.Call):
+            return self.call(expr), PRIMARY
+        if isinstance(expr, ir.Swizzle):
+            return f"{self.expr(expr.value, POSTFIX)}.{expr.components}", POSTFIX
+        if isinstance(expr, ir.Member):
+            return f"{self.expr(expr.value, POSTFIX)}.{expr.field}", POSTFIX
+        if isinstance(expr, ir.Unary):
+            operand = self.expr(expr.operand, UNARY)
+            return f"{expr.op}{f'({operand})' if operand[0] == expr.op else operand}", UNARY
+        if isinstance(expr, ir.Select):
+            return self.select(expr)
+        if isinstance(expr, ir.Index):
+            return f"{self.expr(expr.value, POSTFIX)}[{self.expr(expr.index)}]", POSTFIX
+        raise TypeError(f"not an expression: {expr!r}")
+
+    def local(self, local: ir.Local) -> str:
+        return local.name
+
+    def global_value(self, value: ir.Global) -> str:
+        return value.name
+
+    def binary(self, binary: ir.Binary) -> tuple[str, int]:
+        level = PRECEDENCE[binary.op]
+        left, right = self.expr(binary.left, level), self.expr(binary.right, level + 1)
+        if right[0] == "-" and binary.op in "+-":
+            right = f"({right})"
+        return f"{left} {binary.op} {right}", level
+
+    def select(self, select: ir.Select) -> tuple[str, int]:
+        condition = self.expr(select.condition, TERNARY + 1)
+        return f"{condition} ? {self.expr(select.yes, TERNARY + 1)} : {self.expr(select.no)}", TERNARY
+
+    def arguments(self, args: tuple[ir.Expr, ...]) -> str:
+        return ", ".join([self.expr(arg) for arg in args])
+
+    def construct(self, construct: ir.Construct) -> tuple[str, int]:
+        return f"{self.type(construct.type)}({self.arguments(construct.args)})", PRIMARY
+
+    def call(self, call: ir.Call) -> str:
+        function = self.by_key[call.function]
+        args = [self.argument(arg, param) for arg, param in zip(call.args, function.params, strict=True)]
+        return f"{function.name}({', '.join(args)})"
+
+    def argument(self, arg: ir.Expr, param: ir.Param) -> str:
+        """What is passed for a parameter of one of the module's own functions."""
+        if isinstance(arg.type, Sampler) and isinstance(arg, ir.Global | ir.Local):
+            return self.target.textures.get("argument", "{name}").format(name=arg.name, sampler=self.sampler(arg.name))
+        return self.expr(arg)
+
+    def intrinsic(self, call: ir.Intrinsic) -> tuple[str, int]:
+        """A builtin, as the intrinsic table says for this language."""
+        text = signatures.text(call.name, self.target.dialect, [arg.type for arg in call.args])
+        if "{" not in text:
+            return f"{text}({self.arguments(call.args)})", PRIMARY
+        named = {}
+        first = call.args[0]
+        if isinstance(first, ir.Global | ir.Local) and isinstance(first.type, Sampler):
+            named = {
+                "texture": first.name,
+                "sampler": self.sampler(first.name),
+                "dim": first.type.dim.upper(),
+            }
+        args = [self.expr(arg) if not isinstance(arg.type, Sampler) else "" for arg in call.args]
+        return text.format(*args, type=self.type(call.type), **named), PRIMARY
+
+    def sampler(self, texture: str) -> str:
+        """The name of a texture's sampler, where they are two things."""
+        return self.target.textures.get("sampler", "{name}_sampler").format(name=texture)
+
+    # Statements
+
+    def block(self, block: ir.Block, indent: int) -> list[Line]:
+        lines: list[Line] = []
+        for stmt in block:
+            lines.extend(self.statement(stmt, indent))
+        return lines
+
+    def statement(self, stmt: ir.Stmt, indent: int) -> list[Line]:
+        """A statement's lines."""
+        pad = "    " * indent
+        if isinstance(stmt, ir.If):
+            lines = [Line(f"{pad}if ({self.expr(stmt.condition)}) {{", stmt.span), *self.block(stmt.then, indent + 1)]
+            otherwise = stmt.otherwise
+            while len(otherwise) == 1 and isinstance(otherwise[0], ir.If):
+                inner = otherwise[0]
+                lines.append(Line(f"{pad}}} else if ({self.expr(inner.condition)}) {{", inner.span))
+                lines += self.block(inner.then, indent + 1)
+                otherwise = inner.otherwise
+            if otherwise:
+                lines += [Line(f"{pad}}} else {{"), *self.block(otherwise, indent + 1)]
+            return [*lines, Line(f"{pad}}}")]
+        if isinstance(stmt, ir.For):
+            return [
+                Line(f"{pad}for ({self.loop_header(stmt)}) {{", stmt.span),
+                *self.block(stmt.body, indent + 1),
+                Line(f"{pad}}}"),
+            ]
+        if isinstance(stmt, ir.While):
+            head = Line(f"{pad}while ({self.expr(stmt.condition)}) {{", stmt.span)
+            return [head, *self.block(stmt.body, indent + 1), Line(f"{pad}}}")]
+        return wrap(f"{pad}{self.simple(stmt)};", stmt.span)
+
+    def loop_header(self, loop: ir.For) -> str:
+        init = self.simple(loop.init) if loop.init is not None else ""
+        condition = self.expr(loop.condition) if loop.condition is not None else ""
+        step = self.simple(loop.step) if loop.step is not None else ""
+        return f"{init}; {condition}; {step}"
+
+    def simple(self, stmt: ir.Stmt) -> str:
+        """A statement without inner blocks, without its semicolon."""
+        if isinstance(stmt, ir.Declare):
+            return self.declare(stmt)
+        if isinstance(stmt, ir.Assign):
+            target = self.target_of(stmt.target)
+            one = isinstance(stmt.value, ir.Literal) and stmt.value.value == 1 and stmt.value.type in (INT, UINT)
+            if one and stmt.op in ("+", "-"):
+                return f"{target}{stmt.op * 2}"
+            return f"{target} {stmt.op}= {self.expr(stmt.value)}"
+        if isinstance(stmt, ir.Return):
+            return f"return {self.expr(stmt.value)}" if stmt.value is not None else "return"
+        if isinstance(stmt, ir.Evaluate):
+            return self.expr(stmt.call)
+        if isinstance(stmt, ir.Discard):
+            return "discard"
+        return "break" if isinstance(stmt, ir.Break) else "continue"
+
+    def target_of(self, target: ir.Expr) -> str:
+        return self.expr(target, POSTFIX)
+
+    def declare(self, declare: ir.Declare) -> str:
+        text = self.variable(declare.type, declare.name)
+        return f"{text} = {self.expr(declare.value)}" if declare.value is not None else text
+
+    # Declarations
+
+    def param(self, param: ir.Param) -> str:
+        """A parameter of a function."""
+        if isinstance(param.type, Sampler):
+            pattern = self.target.textures.get("parameter", "{type} {name}")
+            return pattern.format(name=param.name, sampler=self.sampler(param.name), type=self.type(param.type), dim=param.type.dim.upper())  # fmt: skip
+        text = self.variable(param.type, param.name)
+        return text if param.direction == "in" else f"{param.direction} {text}"
+
+    def signature(self, function: ir.Function) -> str:
+        params = ", ".join([self.param(param) for param in function.params])
+        return f"{self.type(function.result)} {function.name}({params})"
+
+    def print_function(self, function: ir.Function) -> list[Line]:
+        """A function with the first line of its documentation."""
+        body = function.body or ()
+        self.function = function
+        self.assigned = assigned_names(function, self.by_key)
+        lines = [Line(f"// {text}", function.span) for text in summary(function.doc)]
+        lines += wrap(f"{self.signature(function)} {{", function.span)
+        lines += self.block(body, 1)
+        lines.append(Line("}"))
+        return lines
+
+    def print_struct(self, struct: ir.StructDecl) -> list[Line]:
+        assert isinstance(struct.type, Struct)
+        fields = [Line(f"    {self.variable(field.type, field.name)};", struct.span) for field in struct.type.fields]
+        return [Line(f"struct {struct.type.name} {{", struct.span), *fields, Line("};")]
+
+    def print_constant(self, constant: ir.Constant) -> list[Line]:
+        declared = self.variable(constant.type, constant.name)
+        return wrap(f"{self.constant} {declared} = {self.expr(constant.value)};", constant.span)
+
+
+def float_text(value: float) -> str:
+    """The shortest decimal that reads back to the same float32, always with a point."""
+    if value == 0.0:
+        return "-0.0" if math.copysign(1.0, value) < 0.0 else "0.0"
+    (nearest,) = struct.unpack("f", struct.pack("f", value))
+    for digits in range(1, 10):
+        text = f"{nearest:.{digits}g}"
+        if struct.unpack("f", struct.pack("f", float(text)))[0] == nearest:
+            break
+    mantissa, _, exponent = text.partition("e")
+    if exponent and -5 < int(exponent) < 8:
+        mantissa, exponent = f"{float(text):.{max(1, digits - int(exponent) - 1)}f}", ""
+    if "." not in mantissa:
+        mantissa += ".0"
+    return f"{mantissa}e{int(exponent)}" if exponent else mantissa
+
+
+def summary(doc: str) -> list[str]:
+    """The first sentence or line of a doc comment."""
+    first = doc.strip().split("\n", 1)[0].strip()
+    return [first] if first else []
+
+
+def assigned_names(function: ir.Function, by_key: dict[str, ir.Function]) -> set[str]:
+    """The locals that are written after their declaration."""
+    names = set()
+    for stmt in statements(function.body or ()):
+        if isinstance(stmt, ir.Assign):
+            target = root(stmt.target)
+            if target is not None:
+                names.add(target.name)
+        elif isinstance(stmt, ir.Declare) and stmt.value is None:
+            names.add(stmt.name)
+        for expr in _expressions(stmt):
+            if isinstance(expr, ir.Call):
+                for arg, param in zip(expr.args, by_key[expr.function].params, strict=True):
+                    target = root(arg) if param.direction != "in" else None
+                    if target is not None:
+                        names.add(target.name)
+    return names
+
+
+def _expressions(stmt: ir.Stmt) -> list[ir.Expr]:
+
+    return [part for expr in expressions(stmt) for part in subexpressions(expr)]
+
+
+def wrap(text: str, span: ir.Span) -> list[Line]:
+    """Breaks a long line after a comma or before an operator, at the outermost parentheses that help."""
+    if len(text) <= WIDTH:
+        return [Line(text, span)]
+    indent = len(text) - len(text.lstrip())
+    best, best_score, depth = 0, -1000.0, 0
+    for index, char in enumerate(text):
+        depth += (char in "([") - (char in ")]")
+        breakable = index > indent + 8 and (text[index - 1 : index + 1] == ", " or text[index : index + 3] in (" + ", " - ", " * ", " ? ", " : "))  # fmt: skip
+        if breakable and index <= WIDTH:
+            score = index / WIDTH - 2.0 * depth
+            if score > best_score:
+                best, best_score = index, score
+    if best == 0:
+        return [Line(text, span)]
+    rest = " " * (indent + 4 if not text.startswith(" " * (indent + 1)) else 0) + text[best:].lstrip()
+    return [Line(text[:best].rstrip(), span), *_continue(rest, span, indent + 4)]
+
+
+def _continue(text: str, span: ir.Span, indent: int) -> list[Line]:
+    return [Line(line.text, span) for line in wrap(" " * indent + text.lstrip(), span)] if len(text) > WIDTH else [Line(" " * indent + text.lstrip(), span)]  # fmt: skip
+
+

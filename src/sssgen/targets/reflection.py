@@ -1,0 +1,103 @@
+"""The reflection JSON beside every shader: what the shader needs, where each line came from, and what it costs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from ..ir.nodes import Uniform
+from ..ir.types import Sampler, spell
+from .descriptor import Target
+from .emit import Emitted, Program
+
+if TYPE_CHECKING:
+    from ..passes.cost import Cost
+
+VERSION = 1
+"""The format's version; it grows when a reader of an older file would be wrong."""
+
+
+def reflect(
+    target: Target,
+    program: Program,
+    emitted: Emitted,
+    form: str,
+    owners: Mapping[str, tuple[str, str]],
+    renames: Mapping[str, str],
+    costs: Mapping[str, Cost],
+    warnings: list[str],
+) -> dict[str, Any]:
+    """Everything that an engine or a tool needs to bind the shader, as JSON."""
+    offsets = {member.uniform.name: member for member in emitted.members}
+    blocked = bool(target.layout) and form not in target.parameters
+    uniforms, textures = [], []
+    for uniform in program.module.uniforms:
+        source = program.source_names.get(uniform.name, uniform.name)
+        technique, own_name = owners.get(source, ("", source))
+        entry: dict[str, Any] = {"name": uniform.name, "type": spell(uniform.type)}
+        entry |= {"source_name": source, "technique": technique, "technique_name": own_name}
+        entry |= _described(uniform)
+        if isinstance(uniform.type, Sampler):
+            entry |= {"holds": uniform.quantity or None, "default": _default_texture(uniform)}
+            entry |= {"color_space": "linear" if not _has(uniform, "source_color") else "sRGB"}
+            if "bindings" in target.table and target.can("split_samplers"):
+                index = len(textures)
+                entry["binding"] = {"texture": 1 + 2 * index, "sampler": 2 + 2 * index} if target.language == "wgsl" else {"texture": index, "sampler": index}  # fmt: skip
+            textures.append(entry)
+        else:
+            entry |= {"default": list(uniform.default), "quantity": uniform.quantity or None}
+            if blocked:
+                entry |= {"offset": offsets[uniform.name].offset, "size": offsets[uniform.name].size}
+            uniforms.append(entry)
+    return {
+        "format": VERSION,
+        "material": program.name,
+        "target": target.name,
+        "form": form,
+        "files": [
+            {"name": output.name.format(material=program.name), "stages": output.stages}
+            for output in target.files.get(form, ())
+        ],
+        "uniforms": uniforms,
+        "uniform_block_size": emitted.block_size if blocked else None,
+        "textures": textures,
+        "entries": {
+            kind: {
+                "function": function.name,
+                "inputs": list(inputs),
+                "result": spell(function.result),
+                "cost": costs[kind]._asdict(),
+            }
+            for kind, (function, inputs) in program.entries.items()
+        },
+        "renames": dict(renames),
+        "conventions": target.table.get("conventions", {}),
+        "source_map": {
+            name: {str(line): f"{span.file}:{span.line}:{span.column}" for line, span in lines.items()}
+            for name, lines in emitted.lines.items()
+        },
+        "warnings": warnings,
+    }
+
+
+def _described(uniform: Uniform) -> dict[str, Any]:
+    hints = dict(uniform.hints)
+    limits = hints.get("hint_range")
+    return {
+        "range": list(limits) if limits else None,
+        "unit": hints.get("unit", (None,))[0],
+        "color": "source_color" in hints,
+        "aliases": list(hints.get("alias", ())),
+        "doc": " ".join(uniform.doc.split()),
+    }
+
+
+def _has(uniform: Uniform, hint: str) -> bool:
+    return any(name == hint for name, _ in uniform.hints)
+
+
+def _default_texture(uniform: Uniform) -> str:
+    for name, _ in uniform.hints:
+        if name.startswith("default_"):
+            return name.removeprefix("default_")
+    return "white"

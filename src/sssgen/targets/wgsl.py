@@ -1,0 +1,117 @@
+"""Prints WGSL, inside what naga and Tint both accept.
+
+Out parameters are pointers; what is never written after its declaration is a `let`; uniforms live in one struct.
+"""
+
+from __future__ import annotations
+
+from ..ir import nodes as ir
+from ..ir.operators import PRECEDENCE
+from ..ir.types import BOOL, INT, VOID, Array, Sampler, Struct, Type, Vector, kind_of
+from .layout import Member
+from .printer import PRIMARY, UNARY, Line, Printer, wrap
+
+
+
+class WgslPrinter(Printer):
+    """Declarations and parameters are WGSL's own; expressions differ in conversions and selects."""
+
+    def type(self, type_: Type) -> str:
+        if isinstance(type_, Array):
+            return f"array<{self.type(type_.element)}, {type_.length}>"
+        return super().type(type_)
+
+    def variable(self, type_: Type, name: str) -> str:
+        return f"{name}: {self.type(type_)}"
+
+    def pointers(self) -> set[str]:
+        """The parameters of the function at hand that are pointers."""
+        params = self.function.params if self.function is not None else ()
+        return {param.name for param in params if param.direction != "in"}
+
+    def bound(self, expr: ir.Expr) -> tuple[str, int]:
+        if type(expr) is ir.Local and expr.name in self.pointers():
+            return f"*{expr.name}", UNARY
+        return super().bound(expr)
+
+    def global_value(self, value: ir.Global) -> str:
+        if isinstance(value.type, Sampler) or not any(u.name == value.name for u in self.module.uniforms):
+            return value.name
+        return f"material.{value.name}"
+
+    def binary(self, binary: ir.Binary) -> tuple[str, int]:
+        level = PRECEDENCE[binary.op]
+        if binary.op in ("&", "|", "^", "<<", ">>"):
+            left, right = self.expr(binary.left, UNARY), self.expr(binary.right, UNARY)
+        elif binary.op in ("&&", "||"):
+            same = isinstance(binary.left, ir.Binary) and binary.left.op == binary.op
+            left, right = self.expr(binary.left, level if same else 6), self.expr(binary.right, 6)
+        elif binary.op in ("<", ">", "<=", ">=", "==", "!="):
+            left, right = self.expr(binary.left, 9), self.expr(binary.right, 9)
+        else:
+            return super().binary(binary)
+        return f"{left} {binary.op} {right}", level
+
+    def select(self, select: ir.Select) -> tuple[str, int]:
+        return f"select({self.expr(select.no)}, {self.expr(select.yes)}, {self.expr(select.condition)})", PRIMARY
+
+    def argument(self, arg: ir.Expr, param: ir.Param) -> str:
+        if param.direction == "in" or not isinstance(arg, ir.Local):
+            return super().argument(arg, param)
+        return arg.name if arg.name in self.pointers() else f"&{arg.name}"
+
+    def declare(self, declare: ir.Declare) -> str:
+        written = declare.name in self.assigned
+        word = "var" if written or declare.value is None else "let"
+        if declare.value is None:
+            return f"{word} {self.variable(declare.type, declare.name)}"
+        return f"{word} {declare.name} = {self.typed(declare.value, declare.type)}"
+
+    def typed(self, value: ir.Expr, type_: Type) -> str:
+        """An initialiser: a bare literal would be abstract, which `i32` and `f32` default to anyway."""
+        return self.expr(value)
+
+    def param(self, param: ir.Param) -> str:
+        if isinstance(param.type, Sampler) or param.direction == "in":
+            return super().param(param)
+        return f"{param.name}: ptr<function, {self.type(param.type)}>"
+
+    def signature(self, function: ir.Function) -> str:
+        params = ", ".join([self.param(param) for param in function.params])
+        result = "" if function.result == VOID else f" -> {self.type(function.result)}"
+        return f"fn {function.name}({params}){result}"
+
+    def print_struct(self, struct: ir.StructDecl) -> list[Line]:
+        assert isinstance(struct.type, Struct)
+        fields = [Line(f"    {self.variable(field.type, field.name)},", struct.span) for field in struct.type.fields]
+        return [Line(f"struct {struct.type.name} {{", struct.span), *fields, Line("}")]
+
+    def print_constant(self, constant: ir.Constant) -> list[Line]:
+        declared = self.variable(constant.type, constant.name)
+        return wrap(f"const {declared} = {self.expr(constant.value)};", constant.span)
+
+    def print_uniforms(self, members: list[Member], textures: list[ir.Uniform]) -> list[Line]:
+        """The uniform struct (WGSL's own alignment rules give std140's offsets) and the split textures."""
+        group = self.target.table.get("material_group", 1)
+        lines: list[Line] = []
+        if members:
+            lines.append(Line("struct Material {"))
+            for member in members:
+                type_ = member.uniform.type
+                text = self.type(block_type(type_))
+                lines.append(Line(f"    {member.uniform.name}: {text},", member.uniform.span))
+            lines += [Line("}"), Line(f"@group({group}) @binding(0) var<uniform> material: Material;")]
+        for index, texture in enumerate(textures):
+            binding = 1 + 2 * index
+            lines.append(Line(f"@group({group}) @binding({binding}) var {texture.name}: {self.type(texture.type)};", texture.span))
+            lines.append(Line(f"@group({group}) @binding({binding + 1}) var {self.sampler(texture.name)}: sampler;", texture.span))
+        return lines
+
+
+def block_type(type_: Type) -> Type:
+    """The type that stands for `type_` in a uniform block: no bool, and array elements of 16 bytes."""
+    if type_ == BOOL:
+        return INT
+    if isinstance(type_, Array):
+        return Array(Vector(kind_of(type_.element) or "float", 4), type_.length)
+    return type_

@@ -1,0 +1,200 @@
+"""The intrinsic table: its own order, its overloads, and its test vectors on the NumPy runtime."""
+
+from __future__ import annotations
+
+import keyword
+import re
+import subprocess
+import sys
+import warnings
+from collections.abc import Iterator
+from itertools import product
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sssgen.ir import signatures
+from sssgen.ir.intrinsics import BUILTINS, Builtin
+from sssgen.ir.signatures import candidates, overload, parse, resolve, text
+from sssgen.ir.types import (
+    BOOL,
+    FLOAT,
+    INT,
+    UINT,
+    VEC2,
+    VEC3,
+    VEC4,
+    Matrix,
+    Sampler,
+    Scalar,
+    Type,
+    Vector,
+    kind_of,
+)
+from sssgen.targets import numpy_runtime as rt
+
+# GLSL ES 3.00, chapter 8, without what the table's head says is left out.
+CHAPTER_8 = set(
+    """
+radians degrees sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh pow exp log exp2 log2 sqrt inversesqrt
+abs sign floor trunc round roundEven ceil fract mod min max clamp mix step smoothstep isnan isinf floatBitsToInt
+floatBitsToUint intBitsToFloat uintBitsToFloat packSnorm2x16 unpackSnorm2x16 packUnorm2x16 unpackUnorm2x16 packHalf2x16
+unpackHalf2x16 length distance dot cross normalize faceforward reflect refract matrixCompMult outerProduct transpose
+determinant inverse lessThan lessThanEqual greaterThan greaterThanEqual equal notEqual any all not textureSize texture
+textureLod textureGrad texelFetch dFdx dFdy fwidth
+""".split()  # noqa: SIM905 (eighty names)
+)
+LANGUAGES = ("glsl", "hlsl", "hlsl-dx9", "hlsl-macros", "wgsl")
+REFUSED = {("textureSize", "hlsl"), ("texelFetch", "hlsl-dx9"), ("packHalf2x16", "hlsl-dx9"), ("unpackHalf2x16", "hlsl-dx9")}
+VECTORS = [(row, *vector) for row in BUILTINS.values() for vector in row.vectors]
+
+
+def function(name: str) -> Any:
+    return getattr(rt, name + "_" * keyword.iskeyword(name))
+
+
+def types_of(value: object) -> Iterator[Type]:
+    """The types that a test vector's argument may have: an integer is an int or a uint."""
+    if isinstance(value, tuple):
+        for inner in types_of(value[0]):
+            yield Vector(inner.kind, len(value)) if isinstance(inner, Scalar) else Matrix(len(value))
+    elif isinstance(value, bool):
+        yield BOOL
+    elif isinstance(value, int):
+        if value < 2**31:
+            yield INT
+        if value >= 0:
+            yield UINT
+    else:
+        yield FLOAT
+
+
+def overload_of(row: Builtin, arguments: tuple[object, ...]) -> tuple[tuple[Type, ...], Type]:
+    for types in product(*map(types_of, arguments)):
+        result = resolve(row.name, types)
+        if result is not None:
+            return types, result
+    raise AssertionError(f"{row.name}{arguments} fits no overload")
+
+
+def dtype_of(type: Type, floating: str) -> str:
+    return {"float": floating, "int": "int32", "uint": "uint32", "bool": "bool"}[kind_of(type)]
+
+
+@pytest.mark.parametrize("row", BUILTINS.values(), ids=lambda row: row.name)
+def test_row_is_sane(row: Builtin) -> None:
+    assert row.doc.endswith(".")
+    assert row.kind in ("alu", "transcendental", "fetch", "derivative")
+    assert len(row.vectors) >= (0 if row.kind in ("fetch", "derivative") else 3)
+    assert row.ulp <= 4.0 and not row.absolute or row.clause
+    assert callable(function(row.name))
+    params = {",".join(parse(signature)[1:]) for signature in row.signatures}
+    assert len(params) == len(row.signatures)
+    for key, value in row.texts.items():
+        language, _, which = key.partition("/")
+        assert language in LANGUAGES
+        assert not which or which in params
+        for place in re.findall(r"\{(\w+)\}", value):
+            assert place in ("texture", "sampler", "dim", "type") or int(place) < max(p.count(",") + 1 for p in params)
+        if value == "":
+            assert row.polyfill or (row.name, language) in REFUSED
+    for definition in re.findall(r"^\w+ (\w+)\(", row.polyfill, re.MULTILINE):
+        assert definition == row.name
+
+
+def test_the_table_is_complete() -> None:
+    assert set(BUILTINS) == CHAPTER_8 | {"saturate", "fmod"}
+
+
+@pytest.mark.parametrize("row, arguments, expected", VECTORS, ids=lambda value: getattr(value, "name", None))
+@pytest.mark.parametrize("floating", ["float64", "float32", "float16"])
+def test_vector(row: Builtin, arguments: tuple[object, ...], expected: object, floating: str) -> None:
+    """Exact arguments, results within the limit for float32 (its ulp counted at the result's largest component)."""
+    types, result_type = overload_of(row, arguments)
+    values = []
+    with np.errstate(over="ignore"):
+        for argument, type in zip(arguments, types, strict=True):
+            dtype = dtype_of(type, floating)
+            value = np.asarray(argument, dtype)
+            if floating == "float32":
+                np.testing.assert_array_equal(value.astype("float64"), np.asarray(argument, "float64"))
+            elif floating == "float16" and not np.array_equal(value, np.asarray(argument), equal_nan=value.dtype.kind == "f"):
+                pytest.skip("an argument beyond float16")
+            values.append(value[..., None])
+        wanted = np.asarray(expected, dtype_of(result_type, "float64"))
+        if floating == "float16" and wanted.dtype.kind == "f" and np.abs(wanted).max() > 65504:
+            pytest.skip("a result beyond float16")
+    with rt.precision(floating), warnings.catch_warnings():
+        warnings.simplefilter("error")
+        got = function(row.name)(*values)
+    assert got.dtype == dtype_of(result_type, floating)
+    assert got.shape == (*wanted.shape, 1)
+    if wanted.dtype.kind == "f":
+        size = np.abs(wanted).max() * float(np.finfo(floating).eps)
+        np.testing.assert_allclose(got[..., 0], wanted, rtol=0, atol=2.0 * size)
+    else:
+        np.testing.assert_array_equal(got[..., 0], wanted)
+
+
+@pytest.mark.parametrize("row", [row for row in BUILTINS.values() if row.vectors], ids=lambda row: row.name)
+def test_lanes_and_python_numbers(row: Builtin) -> None:
+    """A vector's arguments repeated over lanes, or as Python numbers beside float32 ones, give the same."""
+    arguments, _ = row.vectors[0]
+    types, _ = overload_of(row, arguments)
+    values = [np.asarray(value, dtype_of(type, "float32")) for value, type in zip(arguments, types, strict=True)]
+    with rt.precision("float32"):
+        once = function(row.name)(*(value[..., None] for value in values))
+        lanes = function(row.name)(*(np.repeat(value[..., None], 5, -1) for value in values))
+        bare = function(row.name)(*(value[..., None] if value.ndim else value.item() for value in values))
+    np.testing.assert_array_equal(lanes, np.repeat(once, 5, -1))
+    np.testing.assert_array_equal(np.ravel(bare), np.ravel(once))
+    if types[0].kind != "uint":  # type: ignore[union-attr]
+        assert bare.dtype == once.dtype
+
+
+def test_resolve() -> None:
+    assert resolve("mix", [VEC3, VEC3, FLOAT]) == VEC3
+    assert resolve("mix", [VEC3, VEC3, Vector("bool", 3)]) == VEC3
+    assert resolve("mix", [VEC3, VEC3, VEC2]) is None
+    assert resolve("mix", [VEC3, VEC3, INT]) is None
+    assert resolve("dot", [VEC4, VEC4]) == FLOAT
+    assert resolve("lessThan", [FLOAT, FLOAT]) is None
+    assert resolve("lessThan", [VEC2, VEC2]) == Vector("bool", 2)
+    assert resolve("clamp", [Vector("int", 3), INT, INT]) == Vector("int", 3)
+    assert resolve("inverse", [Matrix(4)]) == Matrix(4)
+    assert resolve("outerProduct", [VEC2, VEC3]) is None
+    assert resolve("texture", [Sampler("Cube"), VEC3]) == VEC4
+    assert resolve("texture", [Sampler("2D"), VEC3]) is None
+    assert resolve("textureSize", [Sampler("3D"), INT]) == Vector("int", 3)
+    assert resolve("no_such", [FLOAT]) is None
+
+
+def test_text() -> None:
+    for row in BUILTINS.values():
+        for signature in row.signatures:
+            assert any(found.params == ",".join(parse(signature)[1:]) for found in expanded(row.name))
+    assert text("atan", "hlsl", [VEC2, VEC2]) == "atan2"
+    assert text("atan", "hlsl-dx9", [VEC2]) == "atan"
+    assert text("mix", "wgsl", [FLOAT, FLOAT, BOOL]) == "select"
+    assert text("mix", "hlsl-macros", [FLOAT, FLOAT, FLOAT]) == "lerp"
+    assert text("texelFetch", "hlsl-dx9", [Sampler("3D"), Vector("int", 3), INT]) == ""
+    assert text("texture", "hlsl-macros", [Sampler("3D"), VEC3, FLOAT]) == "{texture}.SampleBias({sampler}, {1}, {2})"
+    with pytest.raises(KeyError):
+        text("atan", "hlsl", [INT])
+
+
+def expanded(name: str) -> list[Any]:
+    overload(name, ())
+    return list(signatures._overloads[name].values())
+
+
+def test_candidates() -> None:
+    assert candidates("cross") == ["vec3 cross(vec3, vec3)"]
+    assert candidates("no_such") == []
+
+
+def test_signatures_import_nothing_heavy() -> None:
+    code = "import sys, sssgen.ir.signatures; print({'numpy', 'lark', 'jinja2'} & set(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "set()"

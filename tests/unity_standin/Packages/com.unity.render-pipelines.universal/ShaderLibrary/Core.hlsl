@@ -1,0 +1,113 @@
+// Stand-in (see the README above): what every pass includes first.
+#ifndef SSSGEN_STANDIN_CORE
+#define SSSGEN_STANDIN_CORE
+#include "Packages/com.unity.render-pipelines.core/ShaderLibrary/Common.hlsl"
+#include "Packages/com.unity.render-pipelines.core/ShaderLibrary/Packing.hlsl"
+#include "Packages/com.unity.render-pipelines.core/ShaderLibrary/UnityInstancing.hlsl"
+#include "Packages/com.unity.render-pipelines.core/ShaderLibrary/SpaceTransforms.hlsl"
+
+#if defined(_CLUSTERED_RENDERING)
+#define USE_CLUSTERED_LIGHTING 1
+#else
+#define USE_CLUSTERED_LIGHTING 0
+#endif
+#define MAX_VISIBLE_LIGHTS 256
+
+float4 unity_FogColor;
+float4 unity_FogParams;
+float4 _MainLightPosition;
+half4 _MainLightColor;
+half4 _AdditionalLightsCount;
+uint _AdditionalLightsDirectionalCount;
+float4 _AdditionalLightsPosition[MAX_VISIBLE_LIGHTS];
+half4 _AdditionalLightsColor[MAX_VISIBLE_LIGHTS];
+
+struct InputData
+{
+    float3 positionWS;
+    float4 positionCS;
+    half3 normalWS;
+    half3 viewDirectionWS;
+    float4 shadowCoord;
+    half fogCoord;
+    half3 vertexLighting;
+    half3 bakedGI;
+    float2 normalizedScreenSpaceUV;
+    half4 shadowMask;
+    half3x3 tangentToWorld;
+};
+
+struct VertexPositionInputs
+{
+    float3 positionWS;
+    float3 positionVS;
+    float4 positionCS;
+    float4 positionNDC;
+};
+
+struct VertexNormalInputs
+{
+    real3 tangentWS;
+    real3 bitangentWS;
+    float3 normalWS;
+};
+
+VertexPositionInputs GetVertexPositionInputs(float3 positionOS)
+{
+    VertexPositionInputs positions;
+    positions.positionWS = TransformObjectToWorld(positionOS);
+    positions.positionVS = mul(UNITY_MATRIX_V, float4(positions.positionWS, 1.0)).xyz;
+    positions.positionCS = TransformWorldToHClip(positions.positionWS);
+    positions.positionNDC = positions.positionCS;
+    return positions;
+}
+
+VertexNormalInputs GetVertexNormalInputs(float3 normalOS, float4 tangentOS)
+{
+    VertexNormalInputs frame;
+    frame.normalWS = TransformObjectToWorldNormal(normalOS);
+    frame.tangentWS = TransformObjectToWorldDir(tangentOS.xyz);
+    frame.bitangentWS = cross(frame.normalWS, frame.tangentWS) * tangentOS.w * GetOddNegativeScale();
+    return frame;
+}
+
+float3 GetCameraPositionWS()
+{
+    return _WorldSpaceCameraPos;
+}
+
+float3 GetCurrentViewPosition()
+{
+    return _WorldSpaceCameraPos;
+}
+
+float3 GetWorldSpaceViewDir(float3 positionWS)
+{
+    return _WorldSpaceCameraPos - positionWS;
+}
+
+float3 GetWorldSpaceNormalizeViewDir(float3 positionWS)
+{
+    return normalize(GetWorldSpaceViewDir(positionWS));
+}
+
+float2 GetNormalizedScreenSpaceUV(float4 positionCS)
+{
+    return positionCS.xy / _ScreenParams.xy;
+}
+
+real ComputeFogFactor(float zPositionCS)
+{
+    return zPositionCS * unity_FogParams.z + unity_FogParams.w;
+}
+
+half3 MixFog(half3 fragColor, half fogFactor)
+{
+#if defined(FOG_LINEAR) || defined(FOG_EXP) || defined(FOG_EXP2)
+    return lerp(unity_FogColor.rgb, fragColor, saturate(fogFactor));
+#else
+    return fragColor;
+#endif
+}
+
+#endif

@@ -1,0 +1,1 @@
+// Stand-in (see the README above): nothing that a node's function needs.
