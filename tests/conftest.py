@@ -16,7 +16,7 @@ settings.load_profile("steady")
 
 
 def compiler_or_skip(name: str) -> Compiler:
-    """The compiler of that name. Where it is missing the test is skipped; in CI (the variable CI is set) it fails."""
+    """The compiler of that name. Where it is missing the test is skipped; with CI set it fails."""
     try:
         return compilers.get(name)
     except CompilerMissing as reason:
@@ -36,10 +36,11 @@ def assert_compiles() -> Callable[[Source], None]:
     """`assert_compiles(source)`: every compiler for the source's language takes it."""
 
     def check(source: Source) -> None:
-        told = {name: errors(compiler_or_skip(name).check(source)) for name in compilers.readers(source.language)}
-        failures = [f"{name}: {message}" for name, messages in told.items() for message in messages]
-        numbered = "\n".join(f"{i:4} {line}" for i, line in enumerate(source.text.splitlines(), 1))
-        assert not failures, "\n".join([f"{source.name} ({source.language}, {source.stage})", *failures, numbered])
+        readers = map(compiler_or_skip, compilers.readers(source.language))
+        failures = [f"{reader.name}: {said}" for reader in readers for said in errors(reader.check(source))]
+        lines = [f"{i:4} {line}" for i, line in enumerate(source.text.splitlines(), 1)]
+        head = f"{source.name} ({source.language}, {source.stage})"
+        assert not failures, "\n".join([head, *failures, *lines])
 
     return check
 

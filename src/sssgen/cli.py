@@ -17,8 +17,6 @@ from typing import Any, NoReturn
 
 from .diagnostics import SssgenError, did_you_mean, failure
 
-ISSUES = "https://github.com/sssgen/sssgen/issues"
-
 OK, CHECK_FAILED, WRONG_INPUT, INTERNAL_ERROR, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 70, 130, 141
 
 
@@ -86,7 +84,7 @@ def _report(error: SssgenError, as_json: bool) -> int:
 def _report_internal(error: Exception, as_json: bool) -> int:
     what = " ".join(f"{type(error).__name__}: {error}".split())[:300]
     message = (
-        f"internal error: {what} — this is a fault of sssgen: please report it with the input at {ISSUES}"
+        f"internal error: {what}: a fault of sssgen; please report it with the input that shows it"
     )
     hint = "SSSGEN_DEBUG=1 shows where"
     if as_json:
@@ -155,7 +153,7 @@ def parser() -> argparse.ArgumentParser:
         "emit",
         "emit",
         "write the shaders of materials",
-        "examples:\n  sssgen emit ice --target all -o out\n  sssgen emit my_wax.toml -t wgsl,unity-urp -o out",
+        "examples:\n  sssgen emit ice --target all -o out\n  sssgen emit wax.toml -t wgsl,unity-urp -o out",
     )
     emit.add_argument("MATERIAL", nargs="+", help="a .toml file, or an example of `sssgen list materials`")
     emit.add_argument(

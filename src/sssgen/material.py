@@ -368,7 +368,9 @@ class _Reader:
         earlier = self.shared.setdefault(uniform.span, _Shared(value, stage.technique.name, span.line))
         if earlier.value != value:
             message = f"'{uniform.name}' has another value in '{earlier.technique}', line {earlier.line}"
-            self.document.error(span, message, f"both stages share it (it is in {uniform.span.file}): give it once")
+            self.document.error(
+                span, message, f"both stages share it (it is in {uniform.span.file}): give it once"
+            )
 
     # Slots
 

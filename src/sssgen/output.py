@@ -21,7 +21,7 @@ class Written(NamedTuple):
 
 
 def check_names(names: Iterable[str]) -> None:
-    """Raises SssgenError for every name that would leave its folder, or that some system cannot have as a file."""
+    """Raises SssgenError for every name that leaves its folder, or that some system cannot have."""
     wrong = [
         Diagnostic(
             "error",
@@ -55,9 +55,9 @@ def _fault(name: str) -> str:
 
 
 def write_files(folder: Path, files: Mapping[str, str]) -> list[Written]:
-    """Writes texts (UTF-8, `\\n`) into a folder, making it if need be; the names may have sub-folders.
+    """Writes texts (UTF-8, as they are) into a folder, making it if need be; names may have sub-folders.
 
-    All texts stand in temporary files before the first old file is replaced, and each is replaced in one step:
+    All texts stand in temporary files before the first old file is replaced, each in one step:
     whatever interrupts, every file is either the old or the new one, whole. Raises SssgenError where a name
     climbs out of the folder or the system refuses.
     """

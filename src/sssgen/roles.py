@@ -72,10 +72,9 @@ def check_chain(links: Sequence[Link], shading: str, report: Report) -> None:
                 colored = colored or (param.name == "color" and param.direction != "in")
         for quantity in sorted(written):
             if quantity in unread:
+                earlier = f"but that of '{given[quantity]}' has not been used"
                 report(
-                    span,
-                    f"'{technique.name}' gives {words(quantity)}, but that of '{given[quantity]}' has not been used",
-                    "remove one of the two",
+                    span, f"'{technique.name}' gives {words(quantity)}, {earlier}", "remove one of the two"
                 )
             given[quantity] = technique.name
             unread.add(quantity)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from pathlib import Path
 
 from . import library
@@ -13,7 +14,7 @@ from .lang.loader import load_file
 
 
 def needs(module: Module, function: Function) -> tuple[set[str], list[Function]]:
-    """The names of the globals that a function reads and the slots that it calls, itself or through others."""
+    """The names of the globals that a function reads and the slots it calls, itself or through others."""
     functions = {other.key: other for other in module.functions}
     constants = {constant.name: constant for constant in module.constants}
     names: set[str] = set()
@@ -115,23 +116,19 @@ def find(text: str, slot: Function, folder: Path) -> tuple[Module, Function]:
 
 def candidates(slot: Function) -> list[str]:
     """The library's functions that fit a slot, as a material writes them."""
-    found = []
+    found: list[str] = []
     for name, path in library.index().items():
-        if path.parent.name == "distance":
-            try:
-                module = library.load_path(path).module
-            except SssgenError:
-                continue
-            for function in module.functions:
-                if (
-                    function.span.file == library.shown_name(path)
-                    and fits(slot, function)
-                    and _is_public(module, function, name)
-                ):
-                    found.append(name if function.name == name else f"{name}:{function.name}")
+        if path.parent.name != "distance":
+            continue
+        with contextlib.suppress(SssgenError):  # a faulty file is reported where it is used
+            module = library.load_path(path).module
+            own = [
+                one
+                for one in module.functions
+                if one.span.file == library.shown_name(path) and fits(slot, one)
+            ]
+            offered = [
+                one.name for one in own if one.name == name or any(param.quantity for param in one.params)
+            ]
+            found += [name if one == name else f"{name}:{one}" for one in offered]
     return found
-
-
-def _is_public(module: Module, function: Function, name: str) -> bool:
-    """Whether a function is offered: a technique, or another that takes a quantity as techniques do."""
-    return function.name == name or any(param.quantity for param in function.params)

@@ -20,7 +20,11 @@ MAX_CHARACTERS = 1 << 18
 MAX_DEPTH = 32
 """How deeply brackets, and the parts of a dotted key, may nest."""
 
+MAX_WORD = 1000
+"""The longest key or number."""
+
 MAX_SYNTAX_ERRORS = 20
+MAX_ERRORS = 100
 
 Path = tuple[str | int, ...]
 """The way to a value: keys, and the indices of arrays."""
@@ -49,8 +53,10 @@ class Document:
         return self._places.get(path, Place(start, start))
 
     def error(self, span: Span, message: str, hint: str = "") -> None:
-        """Notes an error."""
-        self.reporter.error(span, message, hint)
+        """Notes an error; with the last that is worth reading, raises them all."""
+        self.reporter.error(span, _plain(message), _plain(hint))
+        if len(self.reporter.diagnostics) >= MAX_ERRORS:
+            self.reporter.check()
 
 
 def parse(text: str, file: str) -> Document:
@@ -64,27 +70,31 @@ def parse(text: str, file: str) -> Document:
         reporter.error(place_of(0, 1), message, "one file describes one material")
         reporter.check()
     tokens = list(_tokens(text))
-    for token in _too_deep(tokens):
-        reporter.error(place_of(token.start, token.end), f"nested more than {MAX_DEPTH} levels deep")
+    for token, message in _too_much(tokens):
+        reporter.error(place_of(token.start, token.end), message)
         reporter.check()
     remaining, line = text, 0
     while len(reporter.diagnostics) < MAX_SYNTAX_ERRORS:
         try:
             data = tomllib.loads(remaining)
             break
-        except tomllib.TOMLDecodeError as error:
+        except ValueError as error:
             before, line = line, _report(str(error), remaining, reporter)
         if line <= before:  # the text's end was reached: nothing more is to be found
             break
         lines = remaining.split("\n")
-        is_header = lines[line - 1].lstrip().startswith("[")
-        lines[line - 1] = (
-            f'["line {line}"]' if is_header else ""
-        )  # keys below a faulty header are none of the one above
+        # what stands below a faulty header is not part of the section above
+        lines[line - 1] = f'["line {line}"]' if lines[line - 1].lstrip().startswith("[") else ""
         remaining = "\n".join(lines)
     reporter.check()
     places = _Scanner(tokens, place_of).scan()
     return Document(data, places, reporter)
+
+
+def _plain(message: str) -> str:
+    """A message as one line for a terminal, whatever the file held."""
+    escaped = "".join(one if one.isprintable() else f"\\x{ord(one):02x}" for one in message)
+    return escaped if len(escaped) <= 600 else f"{escaped[:600]}…"
 
 
 _POSITION = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)$")
@@ -111,27 +121,23 @@ def _report(message: str, text: str, reporter: Reporter) -> int:
     """Notes one of tomllib's errors; returns its line, or 0 for one at the end of the text."""
     found = _POSITION.search(message)
     what = message[: found.start()] if found else message
-    for begin, ours, hint in _WORDING:
-        if what.startswith(begin):
-            break
-    else:
-        ours, hint = what[:1].lower() + what[1:], ""
-    lines = text.split("\n")
-    at_end = found is None or found.group(1) is None
-    line, column = (
-        (len(lines), len(lines[-1]) + 1) if found is None or at_end else (int(found[1]), int(found[2]))
+    ours, hint = next(
+        (row[1:] for row in _WORDING if what.startswith(row[0])), (what[:1].lower() + what[1:], "")
     )
-    if at_end:  # the place that helps is the last line with something on it
-        line = max((n for n, one in enumerate(lines, 1) if one.strip()), default=1)
-        column = len(lines[line - 1].rstrip()) + 1
-    end = column + 1
-    if ours.endswith("given twice"):  # tomllib stops behind it
-        column, end = (
-            len(lines[line - 1]) - len(lines[line - 1].lstrip()) + 1,
-            len(lines[line - 1].rstrip()) + 1,
-        )
-    reporter.error(Span(reporter.file, line, column, line, end), ours, hint)
-    return 0 if at_end else line
+    lines = text.split("\n")
+    if found and found[1]:
+        line, column = int(found[1]), int(found[2])
+        content = lines[line - 1].strip()
+        if ours.endswith("given twice"):  # tomllib stops behind it
+            column = lines[line - 1].find(content) + 1
+        end = column + max(1, len(content)) if ours.endswith("given twice") else column + 1
+        reporter.error(Span(reporter.file, line, column, line, end), ours, hint)
+        return line
+    # the end of the text: the place that helps is the last line with something on it
+    last = max((number for number, content in enumerate(lines, 1) if content.strip()), default=1)
+    column = len(lines[last - 1].rstrip()) + 1
+    reporter.error(Span(reporter.file, last, column, last, column + 1), ours, hint)
+    return 0
 
 
 class _Token(NamedTuple):
@@ -156,8 +162,8 @@ def _tokens(text: str) -> Iterator[_Token]:
             yield _Token(kind, match.group(), match.start(), match.end())
 
 
-def _too_deep(tokens: list[_Token]) -> Iterator[_Token]:
-    """The places where brackets or dotted keys nest too deeply."""
+def _too_much(tokens: list[_Token]) -> Iterator[tuple[_Token, str]]:
+    """The places where brackets or dotted keys nest too deeply, or a word is too long."""
     depth = dots = 0
     for token in tokens:
         if token.kind == "newline" or token.text in ("=", ","):
@@ -166,7 +172,9 @@ def _too_deep(tokens: list[_Token]) -> Iterator[_Token]:
             depth += (token.text in "[{") - (token.text in "]}")
             dots += token.text == "."
             if depth > MAX_DEPTH or dots > MAX_DEPTH:
-                yield token
+                yield token, f"nested more than {MAX_DEPTH} levels deep"
+        elif token.kind == "bare" and len(token.text) > MAX_WORD:
+            yield token, f"this word has {len(token.text)} characters; at most {MAX_WORD} are read"
 
 
 class _Positions:

@@ -8,7 +8,7 @@ from typing import Any
 from .. import library, slots
 from ..cli import OK, print_json
 from ..ir.nodes import Uniform
-from ..ir.types import Sampler, spell
+from ..ir.types import Sampler, kind_of, spell
 from ..library import Technique
 
 WIDTH = 100
@@ -55,7 +55,7 @@ def _uniform(uniform: Uniform) -> dict[str, Any]:
     hints = dict(uniform.hints)
     facts: dict[str, Any] = {"name": uniform.name, "type": spell(uniform.type)}
     if not isinstance(uniform.type, Sampler):
-        facts["default"] = list(uniform.default)
+        facts["default"] = _default(uniform)
     if "hint_range" in hints:
         facts["range"] = list(hints["hint_range"])
     if "unit" in hints:
@@ -66,6 +66,13 @@ def _uniform(uniform: Uniform) -> dict[str, Any]:
     if uniform.quantity:
         facts["holds"] = uniform.quantity
     return {**facts, "aliases": list(hints.get("alias", ())), "doc": uniform.doc}
+
+
+def _default(uniform: Uniform) -> list[float] | list[int] | list[bool]:
+    kind = kind_of(uniform.type)
+    if kind == "bool":
+        return [bool(value) for value in uniform.default]
+    return [int(value) for value in uniform.default] if kind in ("int", "uint") else list(uniform.default)
 
 
 def _text(facts: dict[str, Any]) -> str:

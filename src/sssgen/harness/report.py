@@ -1,8 +1,10 @@
-"""Compiles every shader under a folder with every compiler for its language, and prints a table of who took what.
+"""Compiles every shader under a folder with every compiler for its language, and prints a table of who took
+what.
 
     python -m sssgen.harness.report out/
 
-Exit status 1 where a shader does not compile, and, where the environment variable CI is set, where a compiler is missing.
+Exit status 1 where a shader does not compile, and, where the environment variable CI is set, where a
+compiler is missing.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""From emitted files to what compilers are given: which language, stages and entry points a file name stands for."""
+"""From emitted files to what compilers are given: the language, stages and entry points behind a file name."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ _OTHER_STAGE = {"vertex": "fragment", "fragment": "vertex"}
 
 
 def sources(files: Mapping[str, str]) -> list[Source]:
-    """The sources in `files` (file name → text), by the names that the targets' descriptors give their files.
+    """The sources in `files` (file name → text), by the file names in the targets' descriptors.
 
-    A file with several entry points gives one source each, a GLSL stage has the other one beside it as `companion`,
-    and a .shader file is one source. Files of no target (a reflection) are left out.
+    A file with several entry points gives one source each, a GLSL stage has the other one beside it as
+    `companion`, and a .shader file is one source. Files of no target (a reflection) are left out.
     """
     found = []
     for name, text in files.items():

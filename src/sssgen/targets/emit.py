@@ -82,14 +82,15 @@ def emit(target: Target, program: Program, form: str, templates: Path | None = N
     members, size = place(module.uniforms, target.layout)
     textures = [uniform for uniform in module.uniforms if isinstance(uniform.type, Sampler)]
     marks: list[Span] = []
-    uniform_lines: list[Line] = []
-    if form not in target.parameters:
-        own = [] if "samplers" in target.table else textures
-        uniform_lines = printer.print_uniforms(members, own)
+    declared = form not in target.parameters
+    uniform_lines: list[Line] = printer.print_uniforms(members) if declared else []
+    texture_lines: list[Line] = printer.print_textures(textures) if declared else []
     code = {
         "types": _text([printer.print_struct(struct) for struct in module.structs], marks),
         "constants": _text([[line for c in module.constants for line in printer.print_constant(c)]], marks),
-        "declarations": _text([uniform_lines], marks),
+        "uniforms": _text([uniform_lines], marks),
+        "textures": _text([texture_lines], marks),
+        "declarations": _text([uniform_lines, texture_lines], marks),
         "functions": _text([printer.print_function(function) for function in module.functions], marks),
     }
     context = _context(target, program, printer, form, code)

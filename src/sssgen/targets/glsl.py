@@ -17,14 +17,18 @@ class GlslPrinter(Printer):
             return f"{element}[{construct.type.length}]({self.arguments(construct.args)})", 15
         return super().construct(construct)
 
-    def print_uniforms(self, members: list[Member], textures: list[ir.Uniform]) -> list[Line]:
+    def print_uniforms(self, members: list[Member]) -> list[Line]:
         """The uniform declarations, one a line."""
-        lines = [
+        return [
             Line(f"uniform {self.variable(member.uniform.type, member.uniform.name)};", member.uniform.span)
             for member in members
         ]
+
+    def print_textures(self, textures: list[ir.Uniform]) -> list[Line]:
+        """The samplers, one a line; ES has no default precision for all of them."""
         precision = self.target.table.get("sampler_precision", {})
-        return lines + [
-            Line(f"uniform {precision.get(self.type(texture.type), '')}{self.type(texture.type)} {texture.name};", texture.span)
-            for texture in textures
-        ]  # fmt: skip
+        lines = []
+        for texture in textures:
+            type_ = self.type(texture.type)
+            lines.append(Line(f"uniform {precision.get(type_, '')}{type_} {texture.name};", texture.span))
+        return lines

@@ -46,23 +46,26 @@ class HlslPrinter(Printer):
         is_uniform = engine_matrix and any(uniform.name == value.name for uniform in self.module.uniforms)
         return f"transpose({value.name})" if is_uniform else value.name
 
-    def print_uniforms(self, members: list[Member], textures: list[ir.Uniform]) -> list[Line]:
-        """The constant buffer's members (in a buffer unless the descriptor places them) and the textures."""
+    def print_uniforms(self, members: list[Member]) -> list[Line]:
+        """The constant buffer; where a shell has one of its own (Unity), its members alone."""
         lines: list[Line] = []
+        bindings = self.target.table.get("bindings")
+        pad = "    " if bindings is not None else ""
         for member in members:
-            for index in range(member.padding):
-                lines.append(Line(f"    float padding_{member.offset}_{index};"))
+            lines += [Line(f"{pad}float padding_{member.offset}_{index};") for index in range(member.padding)]
             major = "row_major " if isinstance(member.uniform.type, Matrix) and not self.engine_matrices else ""
             declared = self.variable(member.uniform.type, member.uniform.name)
-            lines += wrap(f"    {major}{declared};", member.uniform.span)
-        bindings = self.target.table.get("bindings")
+            lines += wrap(f"{pad}{major}{declared};", member.uniform.span)
         if lines and bindings is not None:
             head = f"cbuffer {bindings['material_block']} : register({bindings['material_register']}) {{"
             lines = [Line(head), *lines, Line("};")]
-        else:
-            lines = [Line(line.text[4:], line.span) for line in lines]
+        return lines
+
+    def print_textures(self, textures: list[ir.Uniform]) -> list[Line]:
+        """The textures and their samplers, as the descriptor writes them."""
+        pattern = self.target.textures.get("declaration", "{type} {name};")
+        lines: list[Line] = []
         for binding, texture in enumerate(textures):
-            pattern = self.target.textures.get("declaration", "{type} {name};")
             text = pattern.format(
                 name=texture.name,
                 sampler=self.sampler(texture.name),

@@ -16,6 +16,7 @@ from ..ir.operators import PRECEDENCE
 from ..ir.types import FLOAT, INT, UINT, Array, Sampler, Struct, Type, spell
 from ..ir.walk import expressions, root, statements, subexpressions
 from .descriptor import Target
+from .layout import Member
 
 UNARY, POSTFIX, PRIMARY, TERNARY = 13, 14, 15, -1
 WIDTH = 110
@@ -250,6 +251,14 @@ class Printer:
         assert isinstance(struct.type, Struct)
         fields = [Line(f"    {self.variable(field.type, field.name)};", struct.span) for field in struct.type.fields]
         return [Line(f"struct {struct.type.name} {{", struct.span), *fields, Line("};")]
+
+    def print_uniforms(self, members: list[Member]) -> list[Line]:
+        """The declarations of the uniforms that are no textures."""
+        raise NotImplementedError
+
+    def print_textures(self, textures: list[ir.Uniform]) -> list[Line]:
+        """The declarations of the textures."""
+        raise NotImplementedError
 
     def print_constant(self, constant: ir.Constant) -> list[Line]:
         declared = self.variable(constant.type, constant.name)

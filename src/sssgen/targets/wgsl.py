@@ -90,21 +90,27 @@ class WgslPrinter(Printer):
         declared = self.variable(constant.type, constant.name)
         return wrap(f"const {declared} = {self.expr(constant.value)};", constant.span)
 
-    def print_uniforms(self, members: list[Member], textures: list[ir.Uniform]) -> list[Line]:
-        """The uniform struct (WGSL's own alignment rules give std140's offsets) and the split textures."""
-        group = self.target.table.get("material_group", 1)
-        lines: list[Line] = []
-        if members:
-            lines.append(Line("struct Material {"))
-            for member in members:
-                type_ = member.uniform.type
-                text = self.type(block_type(type_))
-                lines.append(Line(f"    {member.uniform.name}: {text},", member.uniform.span))
-            lines += [Line("}"), Line(f"@group({group}) @binding(0) var<uniform> material: Material;")]
+    def print_uniforms(self, members: list[Member]) -> list[Line]:
+        """The uniform struct; WGSL's own alignment rules give std140's offsets."""
+        if not members:
+            return []
+        lines = [Line("struct Material {")]
+        for member in members:
+            text = self.type(block_type(member.uniform.type))
+            lines.append(Line(f"    {member.uniform.name}: {text},", member.uniform.span))
+        place = f"@group({self.target.table['material_group']}) @binding(0)"
+        return [*lines, Line("}"), Line(f"{place} var<uniform> material: Material;")]
+
+    def print_textures(self, textures: list[ir.Uniform]) -> list[Line]:
+        """Each texture and its sampler, at the bindings after the uniform struct's."""
+        group = self.target.table["material_group"]
+        lines = []
         for index, texture in enumerate(textures):
-            binding = 1 + 2 * index
-            lines.append(Line(f"@group({group}) @binding({binding}) var {texture.name}: {self.type(texture.type)};", texture.span))
-            lines.append(Line(f"@group({group}) @binding({binding + 1}) var {self.sampler(texture.name)}: sampler;", texture.span))
+            for offset, (name, type_) in enumerate(
+                ((texture.name, self.type(texture.type)), (self.sampler(texture.name), "sampler"))
+            ):
+                place = f"@group({group}) @binding({1 + 2 * index + offset})"
+                lines.append(Line(f"{place} var {name}: {type_};", texture.span))
         return lines
 
 

@@ -1,4 +1,4 @@
-"""The words shared by every compiler: what is checked, what comes back, and how a missing compiler says so."""
+"""The words shared by all compilers: what is checked, what comes back, how a missing compiler says so."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ LANGUAGES: dict[str, frozenset[str]] = {
 class Source:
     """One shader text as a compiler sees it.
 
-    `language` is a target's name ("glsl-330", "hlsl", "unity-urp", …). Stage "library" means functions without an
-    entry point: each compiler calls them from an entry of its own, appended so that line numbers stay true.
-    `companion` is the text of the other stage; the GL driver links the two, so a mismatched interface is an error.
+    `language` is a target's name ("glsl-330", "hlsl", "unity-urp", …). Stage "library" means functions without
+    an entry point: each compiler calls them from an entry of its own, appended so that line numbers stay true.
+    `companion` is the text of the other stage; the GL driver links both, so that a mismatch is an error.
     """
 
     text: str

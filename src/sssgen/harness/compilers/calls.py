@@ -1,8 +1,9 @@
 """An entry point for text that has none, which calls every function once.
 
-Compilers treat a function that nobody calls lightly: GL drivers drop it, DXC makes no code for it, and WGSL's
-uniformity analysis reports only what an entry point reaches. So a library is checked through calls, with arguments
-that are not uniform. The entry is appended: the library's own line numbers stay true.
+Compilers treat a function that nobody calls lightly: GL drivers drop it, DXC makes no code for it, and
+WGSL's uniformity analysis reports only what an entry point reaches. So a library is checked through
+calls, with arguments that are not uniform. The entry is appended: the library's own line numbers stay
+true.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ _WGSL_FUNCTION = re.compile(
 )
 _OPAQUE = re.compile(r"[iu]?sampler|(?:RW)?Texture|Sampler|texture_")
 Opaque = tuple[str, str]
-"""For a type that has no local variables: a global declaration, and the expression of an argument; `{0}` is a name."""
+"""For a type that has no local variables: a global declaration and an argument; `{0}` is the name in both."""
 
 _QUALIFIERS = frozenset({"in", "out", "inout", "const", "uniform", "precise", "highp", "mediump", "lowp"})
 
@@ -52,14 +53,14 @@ def glsl_entry(text: str) -> str:
 
 
 def hlsl_entry(text: str, opaque: dict[str, Opaque] | None = None) -> str:
-    """`text` with a fragment entry that calls each of its functions; `opaque` adds to the textures and samplers."""
+    """`text` with a fragment entry that calls each of its functions; `opaque` adds to the texture types."""
     body, globals_ = _c_calls(functions(text), "{1} {0};", opaque or {})
     head = "float4 sssgen_check_main(float4 sssgen_check_position : SV_Position) : SV_Target0 {"
     return _append(text, [*globals_, head, *body, "    return float4(0.0, 0.0, 0.0, 1.0);", "}"])
 
 
 def wgsl_entry(text: str) -> str:
-    """`text` with a fragment entry that calls each of its functions; unchanged where it has an entry already."""
+    """`text` with a fragment entry that calls each of its functions; unchanged where it has an entry."""
     if re.search(r"@(?:vertex|fragment|compute)\b", _COMMENT.sub("", text)):
         return text
     globals_: list[str] = []

@@ -51,7 +51,7 @@ def find() -> Dxc:
         from importlib.metadata import version
 
         from compushady.shaders import hlsl
-    except Exception as error:  # noqa: BLE001
+    except Exception as error:
         hint = "pip install compushady (Debian, to build it: g++ libvulkan-dev)"
         raise CompilerMissing(hint if isinstance(error, ImportError) else f"{hint}: {error}") from None
     return Dxc(hlsl.compile, f"DXC in compushady {version('compushady')}")

@@ -10,7 +10,7 @@ from sssgen.harness.compilers.calls import glsl_entry
 
 _HEADERS = {
     "glsl-330": "#version 330\n",
-    "glsl-es-300": "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler3D;\n",
+    "glsl-es-300": "#version 300 es\nprecision highp float;\nprecision highp sampler3D;\n",
 }
 _EGL: Any = {"backend": "egl"}
 _SEVERITY: dict[str, Severity] = {"error": "error", "warning": "warning"}
@@ -47,9 +47,9 @@ class DriverGL(Compiler):
         try:
             with self._context:  # other libraries (wgpu) make contexts of their own current
                 self._context.program(vertex_shader=vertex, fragment_shader=fragment).release()
-        except Exception as error:  # noqa: BLE001
+        except Exception as error:
             return _messages(str(error))
-        return []
+        return _unfed(vertex, fragment) if source.companion else []
 
 
 def find() -> Compiler:
@@ -63,28 +63,40 @@ def find() -> Compiler:
         raise CompilerMissing("pip install moderngl") from None
     try:
         return DriverGL(moderngl.create_context(standalone=True, **_EGL))
-    except Exception as egl:  # noqa: BLE001
+    except Exception as egl:
         try:
             return DriverGL(moderngl.create_context(standalone=True))  # Windows and macOS have no EGL
-        except Exception:  # noqa: BLE001
+        except Exception:
             packages = "libegl1 libgl1 libgl1-mesa-dri"
             raise CompilerMissing(f"an OpenGL driver (Debian: {packages}): {egl}") from None
 
 
 def _empty_fragment(language: str) -> str:
-    return f"{_HEADERS[language]}out vec4 sssgen_check_color;\nvoid main() {{ sssgen_check_color = vec4(0.0); }}\n"
+    return f"{_HEADERS[language]}out vec4 sssgen_check;\nvoid main() {{ sssgen_check = vec4(0.0); }}\n"
+
+
+def _interface(text: str, direction: str) -> list[tuple[str, str, str, str]]:
+    """(interpolation, precision, type, name) of the stage's `in` or `out` variables."""
+    pattern = rf"(?:^|;)[ \t]*(?:layout\s*\([^)]*\)\s*)?((?:flat|smooth|centroid)\s+)?{direction}\s+"
+    pattern += r"((?:highp|mediump|lowp)\s+)?(\w+)\s+(\w+)\s*;"
+    return re.findall(pattern, text, re.MULTILINE)
+
+
+def _unfed(vertex: str, fragment: str) -> list[Message]:
+    """Fragment inputs that the vertex stage does not write: undefined, and no error in desktop OpenGL."""
+    fed = {name for *_, name in _interface(vertex, "out")}
+    names = [name for *_, name in _interface(fragment, "in") if name not in fed]
+    return [
+        Message("error", 0, 0, f"the vertex stage does not write the fragment's {name}") for name in names
+    ]
 
 
 def _matching_vertex(fragment: str, language: str) -> str:
     """A vertex stage that feeds the `in` variables of `fragment`, so that it links on its own."""
-    inputs = re.findall(
-        r"(?:^|;)[ \t]*(?:layout\s*\(([^)]*)\)\s*)?((?:flat|smooth|centroid)\s+)?in\s+((?:highp|mediump|lowp)\s+)?(\w+)\s+(\w+)\s*;",
-        fragment,
-        re.MULTILINE,
-    )
+    inputs = _interface(fragment, "in")
     lines = [_HEADERS[language].rstrip("\n")]
-    lines += [f"{flat}out {precision}{kind} {name};" for _, flat, precision, kind, name in inputs]
-    lines += ["void main() {", *(f"    {name} = {kind}(0);" for _, _, _, kind, name in inputs)]
+    lines += [f"{flat}out {precision}{kind} {name};" for flat, precision, kind, name in inputs]
+    lines += ["void main() {", *(f"    {name} = {kind}(0);" for _, _, kind, name in inputs)]
     return "\n".join([*lines, "    gl_Position = vec4(0.0);", "}", ""])
 
 

@@ -1,8 +1,9 @@
-"""Khronos' reference compiler: GLSL, and HLSL from its own front end (shader model 5; 3 with `dx9_samplers`)."""
+"""Khronos' reference compiler: GLSL, and HLSL with its own front end (shader model 5, or DX9's samplers)."""
 
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 from sssgen.harness.compilers.base import LANGUAGES, Compiler, CompilerMissing, Message, Severity, Source
 from sssgen.harness.compilers.calls import glsl_entry, hlsl_entry
@@ -14,7 +15,7 @@ LIBRARY_ENTRY = "sssgen_check_main"
 
 
 class Glslang(Compiler):
-    """Runs one `glslangValidator` process a check; it reads standard input and writes nothing into the folder."""
+    """Runs one `glslangValidator` process a check; it reads standard input and leaves no file."""
 
     name = "glslang"
     languages = LANGUAGES["glslang"]
@@ -42,15 +43,14 @@ class Glslang(Compiler):
         return self._run(text, ["-S", _STAGES[source.stage]])
 
     def check_hlsl(self, text: str, stage: str, entry: str, dx9_samplers: bool = False) -> list[Message]:
-        """HLSL to SPIR-V. `dx9_samplers` allows `sampler2D` and `tex2D`, as Unity's built-in pipeline writes them."""
-        import os
+        """HLSL to SPIR-V. `dx9_samplers` allows `sampler2D` and `tex2D`, as in Unity's built-in pipeline."""
         import tempfile
 
         with tempfile.TemporaryDirectory() as folder:
             options = ["-D", "-V", "-S", _STAGES[stage], "-e", entry]
             options += ["--auto-map-bindings", "--auto-map-locations"]
             options += ["--hlsl-dx9-compatible"] if dx9_samplers else []
-            return self._run(text, [*options, "-o", os.path.join(folder, "out.spv")])
+            return self._run(text, [*options, "-o", str(Path(folder) / "out.spv")])
 
     def _run(self, text: str, options: list[str]) -> list[Message]:
         import subprocess
@@ -77,7 +77,7 @@ def find() -> Glslang:
 def _messages(log: str) -> list[Message]:
     found = []
     for line in log.splitlines():
-        match = re.match(r"(ERROR|WARNING): (?:\w+:(\d+): )?(.*)", line)
+        match = re.match(r"(ERROR|WARNING): (?:(?:[A-Za-z]:)?[^:]*:(\d+): )?(.*)", line)
         if match and not re.search(r"compilation terminated|\d+ compilation errors", match[3]):
             found.append(Message(_SEVERITY[match[1]], int(match[2] or 0), 0, match[3].strip()))
     return found

@@ -49,7 +49,7 @@ def find() -> Compiler:
         adapter = wgpu.gpu.request_adapter_sync(power_preference="low-power")
         features: Any = sorted({"shader-f16"} & set(adapter.features))
         return Naga(adapter.request_device_sync(required_features=features), str(adapter.info["device"]))
-    except Exception as error:  # noqa: BLE001
+    except Exception as error:
         raise CompilerMissing(f"a Vulkan driver (Debian: mesa-vulkan-drivers libvulkan1): {error}") from None
 
 

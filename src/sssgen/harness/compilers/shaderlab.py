@@ -1,8 +1,8 @@
 """Reads Unity's ShaderLab as far as a check needs it: the properties, the passes, and the HLSL inside them.
 
-Unity's own ShaderLab parser cannot be had apart from the editor, so what this one refuses is what the manual rules
-out (docs.unity3d.com, "ShaderLab: defining material properties"): an unbalanced brace, a block that does not end, a
-property of an unknown type, or one whose default does not fit its type.
+Unity's own ShaderLab parser cannot be had apart from the editor, so what this one refuses is what the
+manual rules out (docs.unity3d.com, "ShaderLab: defining material properties"): an unbalanced brace, a
+block that does not end, a property of an unknown type, or one whose default does not fit its type.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ _BLOCK = re.compile(
 )
 _STRAY = re.compile(r"^[ \t]*(?:CG|HLSL)(?:PROGRAM|INCLUDE)\b|^[ \t]*END(?:CG|HLSL)\b", re.MULTILINE)
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_NUMBERS = rf"\((?:\s*{_NUMBER}\s*,){{2,3}}\s*{_NUMBER}\s*\)"  # three or four
 _PROPERTY = re.compile(
     r"\s*((?:\[[^\]]*\]\s*)*)(\w+)\s*\(\s*\"[^\"\n]*\"\s*,\s*(Range\s*\([^()]*\)|\w+)\s*\)\s*=\s*"
     rf"({_NUMBER}|\([^()]*\)|\"\w*\"\s*(?:\{{[^{{}}]*\}})?)"
@@ -24,7 +25,7 @@ _PROPERTY = re.compile(
 _PRAGMA = re.compile(r"^[ \t]*#[ \t]*pragma[ \t]+(\w+)[ \t]*(.*?)[ \t]*$", re.MULTILINE)
 _DEFAULTS = {
     "float": _NUMBER, "int": _NUMBER, "integer": _NUMBER, "range": _NUMBER,
-    "color": rf"\((?:\s*{_NUMBER}\s*,){{2,3}}\s*{_NUMBER}\s*\)", "vector": rf"\((?:\s*{_NUMBER}\s*,){{2,3}}\s*{_NUMBER}\s*\)",
+    "color": _NUMBERS, "vector": _NUMBERS,
     "2d": r"\".*", "3d": r"\".*", "cube": r"\".*", "2darray": r"\".*", "cubearray": r"\".*",
 }  # fmt: skip
 _TEXTURES = frozenset({"2d", "3d", "cube", "2darray", "cubearray"})
@@ -32,7 +33,7 @@ _TEXTURES = frozenset({"2d", "3d", "cube", "2darray", "cubearray"})
 
 @dataclass(frozen=True)
 class Program:
-    """One CGPROGRAM or HLSLPROGRAM: its HLSL with the shared INCLUDE blocks in front, and what `#pragma` says.
+    """One CGPROGRAM or HLSLPROGRAM: its HLSL behind the shared INCLUDE blocks, and what `#pragma` says.
 
     `code` carries `#line` directives, so that compilers report the lines of the .shader file.
     """
@@ -47,7 +48,7 @@ class Program:
         return next((value for k, value in self.pragmas if k == key), None)
 
     def keyword_sets(self, stage: str) -> list[list[str]]:
-        """Variants in which every two choices of two `multi_compile` or `shader_feature` lines meet at least once.
+        """Variants in which every two choices of two `multi_compile` or `shader_feature` lines meet.
 
         The full product has thousands; most mistakes need two keywords at most.
         """

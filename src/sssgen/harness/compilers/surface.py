@@ -1,9 +1,10 @@
 """What Unity makes around a surface shader, as far as a compile check needs it.
 
-The editor turns `#pragma surface` into vertex and fragment entries (docs.unity3d.com, "Writing Surface Shaders":
-the fields of `Input`, the order surface function → GI function → lighting function). That generator cannot be had
-apart from the editor, so this module writes entries of its own that make the same calls with the same types.
-Like the editor's, they declare `NAME_ST` for each `uvNAME` input: a shader that declares it too does not compile.
+The editor turns `#pragma surface` into vertex and fragment entries (docs.unity3d.com, "Writing Surface
+Shaders": the fields of `Input`, the order surface function → GI function → lighting function). That
+generator cannot be had apart from the editor, so this module writes entries of its own that make the same
+calls with the same types. Like the editor's, they declare `NAME_ST` for each `uvNAME` input: a shader
+that declares it too does not compile.
 """
 
 from __future__ import annotations
@@ -16,8 +17,8 @@ BUILTIN_LIGHTING = {"Standard": "SurfaceOutputStandard", "StandardSpecular": "Su
 # Defined by the editor in front of the shader's own code, not by a header.
 PRELUDE = """\
 #define INTERNAL_DATA half3 internalSurfaceTtoW0; half3 internalSurfaceTtoW1; half3 internalSurfaceTtoW2;
-#define WorldNormalVector(data, n) half3(dot(data.internalSurfaceTtoW0, n), dot(data.internalSurfaceTtoW1, n), \
-dot(data.internalSurfaceTtoW2, n))
+#define WorldNormalVector(data, n) half3(dot(data.internalSurfaceTtoW0, n), \
+dot(data.internalSurfaceTtoW1, n), dot(data.internalSurfaceTtoW2, n))
 #define WorldReflectionVector(data, n) reflect(data.worldRefl, WorldNormalVector(data, n))
 """
 
@@ -109,7 +110,7 @@ class _Pragma:
 
 
 def entries(code: str, pragma: str) -> str:
-    """Entries `sssgen_vertex` and `sssgen_fragment` to stand behind `code`, whose `#pragma surface` says `pragma`.
+    """`sssgen_vertex` and `sssgen_fragment`, to stand behind `code`, whose `#pragma surface` says `pragma`.
 
     Raises SurfaceError where the pragma names a function that `code` lacks.
     """

@@ -1,4 +1,4 @@
-"""WGSL in Tint, Chrome's compiler, from the npm package `webgpu` with its null back end: no GPU, uniformity check on."""
+"""WGSL in Tint, Chrome's compiler, uniformity check on: the npm package `webgpu` with its null back end."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 from sssgen.harness.compilers.base import LANGUAGES, Compiler, CompilerMissing, Message, Source
 from sssgen.harness.compilers.calls import wgsl_entry
 
-# One process answers for all checks. Dawn prints warnings of its own to standard output, so a reply starts with "@@".
+# One process answers for all checks. Dawn prints warnings to standard output too, so a reply begins with "@@".
 _SERVER = """
 import { createInterface } from 'node:readline';
 import { createRequire } from 'node:module';

@@ -1,8 +1,9 @@
 """Unity's shaders, compiled outside Unity: preprocessed with Unity's headers, then given to glslang or DXC.
 
-The headers are Unity's and no part of this project. SSSGEN_UNITY_INCLUDES names a folder that holds `CGIncludes/`
-and `Packages/com.unity.render-pipelines.{core,universal}/` (an installed Unity has both); without it the project's
-own stand-in headers serve, which declare only what is used. `version()` says which.
+The headers are Unity's and no part of this project. SSSGEN_UNITY_INCLUDES names a folder that holds
+`CGIncludes/` and `Packages/com.unity.render-pipelines.{core,universal}/` (an installed Unity has both);
+without it the project's own stand-in headers serve, which declare only what is used. `version()` says
+which.
 
 Built-in pipeline: HLSL with DX9 samplers, so glslang reads it. URP and Shader Graph: DXC.
 """
@@ -34,14 +35,15 @@ _LIBRARY_HEADERS = {
         *(_URP + name for name in ("Core.hlsl", "Lighting.hlsl", "ShaderGraphFunctions.hlsl")),
     ),
     "preview": (
-        *(_CORE + name for name in ("Common.hlsl", "Packing.hlsl", "Color.hlsl", "Texture.hlsl", "UnityInstancing.hlsl")),
-        *(_GRAPH + name for name in ("ShaderVariables.hlsl", "ShaderVariablesFunctions.hlsl", "Functions.hlsl")),
+        *(f"{_CORE}{name}.hlsl" for name in ("Common", "Packing", "Color", "Texture", "UnityInstancing")),
+        *(f"{_GRAPH}{name}.hlsl" for name in ("ShaderVariables", "ShaderVariablesFunctions", "Functions")),
     ),
 }  # fmt: skip
 _BUILTIN_MACROS = ("SHADER_API_D3D11=1", "SHADER_TARGET=30", "UNITY_VERSION=201940", "UNITY_PBS_USE_BRDF1=1")
 _URP_MACROS = ("SHADER_API_D3D11=1", "SHADER_TARGET=45", "UNITY_VERSION=202120", "UNITY_COMPILER_DXC=1")
-# Unity's preprocessor expands a macro's arguments before it joins them with ##; C's does not, so that instanced
-# matrices come out under this name. The built-in pipeline's headers cannot be helped like that: no instancing there.
+# Unity's preprocessor expands a macro's arguments before it joins them with ##; C's does not, so that the
+# instanced matrices come out under this name. The built-in pipeline's headers cannot be helped like that: there,
+# shaders are compiled without instancing.
 _INSTANCED = "UNITY_BUILTINS_WITH_WORLDTOOBJECTARRAYArray=unity_Builtins0Array"
 # The passes of a surface shader that is lit forward, without and with shadows.
 _SURFACE_PASSES = (
@@ -182,7 +184,7 @@ def _program_jobs(program: shaderlab.Program, language: str) -> Iterator[_Job]:
 
 
 def _check_batcher(shader: shaderlab.Shader) -> list[Message]:
-    """The SRP batcher wants one UnityPerMaterial, the same in every pass, that holds every property but textures."""
+    """The SRP batcher wants the same UnityPerMaterial in every pass, with every property but the textures."""
     buffers = {}
     for program in shader.programs:
         found = re.search(r"CBUFFER_START\s*\(UnityPerMaterial\)(.*?)CBUFFER_END", program.code, re.DOTALL)

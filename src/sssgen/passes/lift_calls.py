@@ -1,0 +1,238 @@
+"""Gives each call that writes something a statement of its own, and makes discarding a thing that calls say.
+
+Why: in Python a function returns what it writes, as in `d, normal = trace(p)`, so such a call cannot stand inside an
+expression. A function that may discard gets a last parameter `out bool discarded`; behind its call stands
+`if (discarded) discard;`. Place: before if-conversion, to which only these few forms of a call are left:
+`x = f(…)`, `T x = f(…)` and `f(…)` alone, with variables for all out and inout arguments.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ..ir.nodes import (
+    Assign,
+    Binary,
+    Block,
+    Break,
+    Call,
+    Declare,
+    Discard,
+    Evaluate,
+    Expr,
+    For,
+    Function,
+    If,
+    Index,
+    Literal,
+    Local,
+    Member,
+    Module,
+    Param,
+    Return,
+    Select,
+    Span,
+    Stmt,
+    Swizzle,
+    Unary,
+    While,
+)
+from ..ir.types import BOOL, VOID, Type
+from ..ir.walk import callees, operands, statements, subexpressions, with_operands
+from .scopes import declared, fresh
+
+Functions = Mapping[str, Function]
+
+DISCARDED = "discarded"
+
+
+def lift_calls(module: Module) -> Module:
+    """The module with its writing calls as statements. Functions stand after those that they call."""
+    lifted: dict[str, Function] = {}
+    old: dict[str, Function] = {}
+    for function in module.functions:
+        new = _announce_discard(function, old, {other.key for other in module.functions})
+        old[function.key] = new
+        lifted[new.key] = _Lifter(new, old).run()
+    return module._replace(functions=tuple(lifted.values()))
+
+
+def out_arguments(call: Expr, functions: Functions) -> list[str]:
+    """The variables that a lifted call writes."""
+    if not isinstance(call, Call):
+        return []
+    params = functions[call.function].params
+    return [arg.name for arg, param in zip(call.args, params, strict=True)
+            if param.direction != "in" and isinstance(arg, Local)]  # fmt: skip
+
+
+def discards(function: Function) -> bool:
+    """Whether the function says through its last parameter which lanes are discarded."""
+    return bool(function.params) and function.params[-1].name == DISCARDED and function.params[-1].direction == "out"
+
+
+def _announce_discard(function: Function, known: Functions, taken: set[str]) -> Function:
+    body = function.body or ()
+    inside = any(isinstance(stmt, Discard) for stmt in statements(body))
+    if not inside and not any(discards(known[key]) for key in callees(function) if key in known):
+        return function
+    new = function._replace(params=(*function.params, Param(DISCARDED, BOOL, "out", "", function.span)))
+    while new.key in taken:
+        new = new._replace(name=f"{new.name}_")
+    return new
+
+
+class _Lifter:
+    def __init__(self, function: Function, functions: Functions) -> None:
+        self.function = function
+        self.functions = functions
+        self.names = declared(function)
+        self.out: list[Stmt] = []
+
+    def run(self) -> Function:
+        body = self.function.body or ()
+        return self.function._replace(body=self.block(body)) if self.writes_in(body) else self.function
+
+    def writes(self, expr: Expr | None) -> bool:
+        """Whether a call inside the expression changes something beside its result."""
+        if expr is None:
+            return False
+        return any(
+            isinstance(part, Call) and any(param.direction != "in" for param in self.functions[part.function].params)
+            for part in subexpressions(expr)
+        )
+
+    def writes_in(self, body: Block) -> bool:
+        keys = callees(Function("", (), VOID, "", body, "", self.function.span))
+        evaluates = any(isinstance(stmt, Evaluate) for stmt in statements(body))
+        return evaluates or any(param.direction != "in" for key in keys for param in self.functions[key].params)
+
+    def local(self, type: Type, name: str, span: Span) -> Local:
+        name = fresh(name, self.names)
+        self.names.add(name)
+        return Local(type, name, span)
+
+    # Statements
+
+    def block(self, block: Block) -> Block:
+        outer, self.out = self.out, []
+        for stmt in block:
+            self.statement(stmt)
+        made, self.out = self.out, outer
+        return tuple(made)
+
+    def statement(self, stmt: Stmt) -> None:
+        if isinstance(stmt, Declare) and isinstance(stmt.value, Call) and self.writes_itself(stmt.value):
+            call, after = self.call(stmt.value)
+            self.out += [stmt._replace(value=call), *after]
+        elif isinstance(stmt, Declare) and stmt.value is not None:
+            self.out.append(stmt._replace(value=self.expr(stmt.value)))
+        elif isinstance(stmt, Assign):
+            self.assign(stmt)
+        elif isinstance(stmt, Evaluate):
+            if isinstance(stmt.call, Call) and self.writes_itself(stmt.call):
+                call, after = self.call(stmt.call)
+                self.out += [stmt._replace(call=call), *after]
+            else:
+                for operand in operands(stmt.call):
+                    self.expr(operand)  # the call itself does nothing; what its arguments call may
+        elif isinstance(stmt, Return) and stmt.value is not None:
+            self.out.append(stmt._replace(value=self.expr(stmt.value)))
+        elif isinstance(stmt, If):
+            condition = self.expr(stmt.condition)
+            self.out.append(If(condition, self.block(stmt.then), self.block(stmt.otherwise), stmt.span))
+        elif isinstance(stmt, For | While):
+            self.loop(stmt)
+        else:
+            self.out.append(stmt)
+
+    def assign(self, stmt: Assign) -> None:
+        target, value = self.expr(stmt.target), stmt.value
+        if isinstance(target, Local) and not stmt.op and isinstance(value, Call) and self.writes_itself(value):
+            call, after = self.call(value)
+            self.out += [Assign(target, "", call, stmt.span), *after]
+        else:
+            self.out.append(Assign(target, stmt.op, self.expr(value), stmt.span))
+
+    def loop(self, loop: For | While) -> None:
+        """A condition that writes goes into the body: `while (true) { if (!condition) break; … }`."""
+        init, step = (loop.init, loop.step) if isinstance(loop, For) else (None, None)
+        if isinstance(init, Declare) and init.value is not None:
+            init = init._replace(value=self.expr(init.value))
+        elif isinstance(init, Assign):
+            init = init._replace(value=self.expr(init.value))
+        body, condition = self.block(loop.body), loop.condition
+        if condition is not None and self.writes(condition):
+            leave = If(Unary(BOOL, "!", condition, condition.span), (Break(loop.span),), (), condition.span)
+            body = (*self.block((leave,)), *body)
+            condition = Literal(BOOL, True, condition.span)
+        if isinstance(loop, For):
+            self.out.append(For(init, condition, step, body, loop.span))
+        else:
+            assert condition is not None
+            self.out.append(While(condition, body, loop.span))
+
+    # Expressions
+
+    def writes_itself(self, call: Call) -> bool:
+        return any(param.direction != "in" for param in self.functions[call.function].params)
+
+    def expr(self, expr: Expr) -> Expr:
+        """The expression with what its calls write computed before it."""
+        if not self.writes(expr):
+            return expr
+        if isinstance(expr, Select) and (self.writes(expr.yes) or self.writes(expr.no)):
+            return self.choose(expr)
+        if isinstance(expr, Binary) and expr.op in ("&&", "||") and self.writes(expr.right):
+            constant = Literal(BOOL, expr.op == "||", expr.span)
+            arms = (expr.right, constant) if expr.op == "&&" else (constant, expr.right)
+            return self.choose(Select(BOOL, expr.left, *arms, expr.span))
+        if isinstance(expr, Call) and self.writes_itself(expr):
+            call, after = self.call(expr)
+            result = self.local(expr.type, self.functions[expr.function].name + "_value", expr.span)
+            self.out += [Declare(result.name, result.type, call, expr.span), *after]
+            return result
+        return with_operands(expr, tuple([self.expr(operand) for operand in operands(expr)]))
+
+    def choose(self, select: Select) -> Expr:
+        """A choice as an if, so that only the chosen arm's calls write."""
+        chosen = self.local(select.type, "chosen", select.span)
+        self.out.append(Declare(chosen.name, chosen.type, None, select.span))
+        yes, no = (Assign(chosen, "", arm, arm.span) for arm in (select.yes, select.no))
+        self.statement(If(select.condition, (yes,), (no,), select.span))
+        return chosen
+
+    def call(self, call: Call) -> tuple[Call, list[Stmt]]:
+        """A call with variables for its out arguments, and what is to be done after it."""
+        function = self.functions[call.function]
+        args: list[Expr] = []
+        after: list[Stmt] = []
+        for arg, param in zip(call.args, function.params, strict=False):
+            if param.direction == "in":
+                arg = self.expr(arg)
+            elif not isinstance(arg, Local):
+                place = self.expr(self.pinned(arg))
+                arg = self.local(arg.type, param.name, arg.span)
+                value = place if param.direction == "inout" else None
+                self.out.append(Declare(arg.name, arg.type, value, arg.span))
+                after.append(Assign(place, "", arg, arg.span))
+            args.append(arg)
+        if discards(function) and len(args) < len(function.params):
+            gone = self.local(BOOL, DISCARDED, call.span)
+            self.out.append(Declare(gone.name, BOOL, None, call.span))
+            args.append(gone)
+            after.append(If(gone, (Discard(call.span),), (), call.span))
+        return Call(call.type, function.key, tuple(args), call.span), after
+
+    def pinned(self, place: Expr) -> Expr:
+        """A place to write to, with its indices computed now, as the call may change what they depend on."""
+        if isinstance(place, Swizzle | Member):
+            return place._replace(value=self.pinned(place.value))
+        if isinstance(place, Index):
+            index = self.expr(place.index)
+            if not isinstance(index, Literal):
+                kept = self.local(index.type, "place", index.span)
+                self.out.append(Declare(kept.name, kept.type, index, index.span))
+                index = kept
+            return place._replace(value=self.pinned(place.value), index=index)
+        return place
