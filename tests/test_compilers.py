@@ -1,4 +1,4 @@
-"""The compilers take what is right and refuse what is wrong, at its line; and what is made of files and reports."""
+"""Compilers take what is right and refuse what is wrong, at its line; how files become sources and reports."""
 
 from __future__ import annotations
 
@@ -145,7 +145,7 @@ def test_unity_takes_the_samples(file: str, language: str, assert_compiles: Call
         ("surface.shader", "base.a;", "base.missing;", "missing"),
         ("surface.shader", "void shade(", "void other(", "no function void shade"),
         ("surface.shader", "half4 LightingBacklit(", "half4 LightingOther(", "no lighting function"),
-        ("surface.shader", "float _Strength;", "float _Strength; float4 _BaseMap_ST;", "redefinition"),  # Unity's own
+        ("surface.shader", "float _Strength;", "float _Strength; float4 _BaseMap_ST;", "which Unity"),
         ("surface.shader", "Range(0.5, 16)) = 4", 'Range(0.5, 16)) = "white" {}', "no default for a Range"),
         ("surface.shader", '"bump" {}', '"bump" {', "not a property"),
         ("surface.shader", "ENDCG", "", "CGPROGRAM without its other end"),
@@ -189,8 +189,8 @@ def test_keyword_variants_cover_every_pair() -> None:
     lists = [["", "A1", "A2"], ["", "B"], ["", "C"]]
     for first, second in itertools.combinations(lists, 2):
         for a, b in itertools.product(first, second):
-            met = [tuple(next((x for x in row if x in choices), "") for choices in (first, second)) for row in rows]
-            assert (a, b) in met
+            met = [[next((x for x in row if x in one), "") for one in (first, second)] for row in rows]
+            assert [a, b] in met
     assert len(rows) <= 7
     assert all("D" not in row for row in rows)
 

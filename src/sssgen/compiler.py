@@ -12,6 +12,7 @@ from . import library
 from .diagnostics import Diagnostic, SssgenError
 from .ir.nodes import Module
 from .ir.types import Struct
+from .lang.loader import comments_before
 from .lang.polyfills import polyfill
 from .material import Material
 from .passes.chain import ChainStage, Entry, assemble
@@ -200,7 +201,7 @@ def _finish(
     source_names = {uniform.name: old for uniform, old in zip(module.uniforms, before, strict=True)}
     surface = next((s.type for s in module.structs if isinstance(s.type, Struct) and s.type.name == "Surface"), None)
     name, title, doc, shading = info
-    program = Program(module, entries, surface, source_names, name, title, doc, shading)
+    program = Program(module, entries, surface, source_names, name, title, doc, shading, comments_before)
     emitted = emit(target, program, form, templates)
     messages = [warning.message for warning in middle.warnings]
     data = reflect(target, program, emitted, form, middle.owners, renames, middle.costs, messages)

@@ -1,4 +1,4 @@
-"""From emitted files to what compilers are given: the language, stages and entry points behind a file name."""
+"""From emitted files to what a compiler is given: language, stages and entry points of a file name."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 From it come the checker's overloads, the printers' text, the polyfills, the static cost, the documentation
 (`docs/intrinsics.md`), and an executed test of every builtin on every target. It holds the functions of chapter 8 of
-the GLSL ES 3.00 specification, and two of our own: `saturate`, and the truncated remainder `fmod`. Left out are modf,
+the GLSL ES 3.00 specification, and three of our own: `saturate`, the truncated remainder `fmod`, and `unpackNormal`. Left out are modf,
 whose second result is an out parameter, and the texture reads with an offset or a projection or of other samplers.
 
 Signatures are written as in that specification: `genF` stands for float, vec2, vec3 and vec4 alike (one size throughout
@@ -568,6 +568,15 @@ mat4 inverse(mat4 x) {
         ),
     ),
     # 8.8 Texture reads
+    Builtin("unpackNormal", ("vec3(vec4)",),
+        "The tangent-space normal of a normal map's texel, y up. Unity may pack it when it imports the map.",
+        texts={"glsl": "", "hlsl": "", "wgsl": "", "hlsl-dx9": "UnpackNormal", "hlsl-macros": "UnpackNormal"},
+        polyfill="vec3 unpackNormal(vec4 texel) { return texel.xyz * 2.0 - 1.0; }", cost=2,
+        vectors=(
+            (((0.5, 0.5, 1.0, 1.0),), (0.0, 0.0, 1.0)), (((1.0, 0.0, 0.5, 0.0),), (1.0, -1.0, 0.0)),
+            (((0.75, 0.25, 1.0, 1.0),), (0.5, -0.5, 1.0)),
+        ),
+    ),
     Builtin("textureSize", ("ivec2(sampler2D, int)", "ivec3(sampler3D, int)", "ivec2(samplerCube, int)"),
         "Size in texels of level y. HLSL has it only as a statement, so it is refused there.",
         domain="the level exists", texts={"hlsl": "", "wgsl": "{type}(textureDimensions({texture}, {1}))"},

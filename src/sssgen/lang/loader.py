@@ -20,6 +20,7 @@ MAX_BYTES = 4 << 20
 _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"([^"\n]*)"', re.MULTILINE)
 
 _memory: dict[str, Module] = {}
+_lines: dict[str, list[str]] = {}
 _stamp = ""
 
 
@@ -34,6 +35,7 @@ def load_file(path: Path, shown: str, roots: Sequence[Path] = ()) -> Module:
 
 def load_text(text: str, shown: str, roots: Sequence[Path] = (), _within: tuple[str, ...] = ()) -> Module:
     """The checked module of a source text; see `load_file`."""
+    _lines[shown] = text.split("\n")
     included = Module()
     for match in _INCLUDE.finditer(text):
         line = text.count("\n", 0, match.start()) + 1
@@ -51,6 +53,18 @@ def load_text(text: str, shown: str, roots: Sequence[Path] = (), _within: tuple[
             _write_cached(key, module)
         _memory[key] = module
     return module
+
+
+def comments_before(file: str, line: int) -> list[str]:
+    """The `//` comments that stand alone on the lines just before a line of a loaded file, without their marks."""
+    lines, found = _lines.get(file, []), []
+    while 1 < line <= len(lines):
+        text = lines[line - 2].strip()
+        if not text.startswith("//") or text.startswith("///"):
+            break
+        found.insert(0, text[2:].strip())
+        line -= 1
+    return found
 
 
 def read_text(path: Path, shown: str) -> str:

@@ -18,7 +18,7 @@ from ..ir.nodes import Function, Module, Span, Uniform
 from ..ir.types import Sampler, Struct, kind_of, spell
 from .descriptor import Target
 from .layout import Member, place
-from .printer import Line, Printer
+from .printer import Comments, Line, Printer, no_comments
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -43,6 +43,7 @@ class Program(NamedTuple):
     title: str
     doc: str
     shading: str
+    comments: Comments = no_comments
 
 
 class Emitted(NamedTuple):
@@ -79,6 +80,7 @@ def emit(target: Target, program: Program, form: str, templates: Path | None = N
     """Prints and renders every file of a form. Raises SssgenError for a faulty template."""
     module = program.module
     printer = printer_for(target, module)
+    printer.comments = program.comments
     members, size = place(module.uniforms, target.layout)
     textures = [uniform for uniform in module.uniforms if isinstance(uniform.type, Sampler)]
     marks: list[Span] = []

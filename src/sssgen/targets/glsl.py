@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..ir import nodes as ir
 from ..ir.types import Array
 from .layout import Member
-from .printer import Line, Printer
+from .printer import Line, Printer, documented
 
 
 class GlslPrinter(Printer):
@@ -20,7 +20,7 @@ class GlslPrinter(Printer):
     def print_uniforms(self, members: list[Member]) -> list[Line]:
         """The uniform declarations, one a line."""
         return [
-            Line(f"uniform {self.variable(member.uniform.type, member.uniform.name)};", member.uniform.span)
+            documented(f"uniform {self.variable(member.uniform.type, member.uniform.name)};", member.uniform)
             for member in members
         ]
 
@@ -30,5 +30,5 @@ class GlslPrinter(Printer):
         lines = []
         for texture in textures:
             type_ = self.type(texture.type)
-            lines.append(Line(f"uniform {precision.get(type_, '')}{type_} {texture.name};", texture.span))
+            lines.append(documented(f"uniform {precision.get(type_, '')}{type_} {texture.name};", texture))
         return lines

@@ -13,7 +13,7 @@ from __future__ import annotations
 from ..ir import nodes as ir
 from ..ir.types import Array, Matrix, Scalar, Vector
 from .layout import Member
-from .printer import POSTFIX, PRIMARY, UNARY, Line, Printer, wrap
+from .printer import POSTFIX, PRIMARY, UNARY, Line, Printer, documented
 
 
 class HlslPrinter(Printer):
@@ -55,7 +55,7 @@ class HlslPrinter(Printer):
             lines += [Line(f"{pad}float padding_{member.offset}_{index};") for index in range(member.padding)]
             major = "row_major " if isinstance(member.uniform.type, Matrix) and not self.engine_matrices else ""
             declared = self.variable(member.uniform.type, member.uniform.name)
-            lines += wrap(f"{pad}{major}{declared};", member.uniform.span)
+            lines.append(documented(f"{pad}{major}{declared};", member.uniform))
         if lines and bindings is not None:
             head = f"cbuffer {bindings['material_block']} : register({bindings['material_register']}) {{"
             lines = [Line(head), *lines, Line("};")]

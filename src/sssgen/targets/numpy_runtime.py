@@ -90,6 +90,11 @@ def saturate(x: Value) -> Value:
 
 
 @silent
+def unpackNormal(texel: Value) -> Value:  # noqa: N802 - the builtin's own name
+    return texel[:3] * 2.0 - 1.0
+
+
+@silent
 def mix(x: Value, y: Value, a: Value) -> Value:
     return np.where(a, y, x) if a.dtype.kind == "b" else x * (1.0 - a) + y * a
 

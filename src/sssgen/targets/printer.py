@@ -8,19 +8,32 @@ from __future__ import annotations
 
 import math
 import struct
+from collections.abc import Callable
 from typing import NamedTuple
 
 from ..ir import nodes as ir
 from ..ir import signatures
+from ..ir.intrinsics import BUILTINS
 from ..ir.operators import PRECEDENCE
 from ..ir.types import FLOAT, INT, UINT, Array, Sampler, Struct, Type, spell
 from ..ir.walk import expressions, root, statements, subexpressions
 from .descriptor import Target
 from .layout import Member
 
+_COLOR_LETTERS = str.maketrans("xyzw", "rgba")
+
 UNARY, POSTFIX, PRIMARY, TERNARY = 13, 14, 15, -1
 WIDTH = 110
 """Lines longer than this are broken at a call's arguments."""
+
+
+Comments = Callable[[str, int], list[str]]
+"""Gives the author's comments before a line of a source file."""
+
+
+def no_comments(file: str, line: int) -> list[str]:
+    """For modules that have no source at hand."""
+    return []
 
 
 class Line(NamedTuple):
@@ -41,6 +54,7 @@ class Printer:
         self.module = module
         self.by_key = {function.key: function for function in module.functions}
         self.function: ir.Function | None = None
+        self.comments: Comments = no_comments
         self.assigned: set[str] = set()
 
     # Types and literals
@@ -92,7 +106,10 @@ class Printer:
         if isinstance(expr, ir.Call):
             return self.call(expr), PRIMARY
         if isinstance(expr, ir.Swizzle):
-            return f"{self.expr(expr.value, POSTFIX)}.{expr.components}", POSTFIX
+            letters = expr.components
+            if isinstance(expr.value, ir.Intrinsic) and BUILTINS[expr.value.name].kind == "fetch":
+                letters = letters.translate(_COLOR_LETTERS)  # a texel's channels are colours to a reader
+            return f"{self.expr(expr.value, POSTFIX)}.{letters}", POSTFIX
         if isinstance(expr, ir.Member):
             return f"{self.expr(expr.value, POSTFIX)}.{expr.field}", POSTFIX
         if isinstance(expr, ir.Unary):
@@ -162,7 +179,12 @@ class Printer:
 
     def block(self, block: ir.Block, indent: int) -> list[Line]:
         lines: list[Line] = []
+        told: tuple[str, int] | None = None
         for stmt in block:
+            place = (stmt.span.file, stmt.span.line)
+            if place != told:
+                lines += [Line(f"{'    ' * indent}// {text}", stmt.span) for text in self.comments(*place)]
+                told = place
             lines.extend(self.statement(stmt, indent))
         return lines
 
@@ -263,6 +285,13 @@ class Printer:
     def print_constant(self, constant: ir.Constant) -> list[Line]:
         declared = self.variable(constant.type, constant.name)
         return wrap(f"{self.constant} {declared} = {self.expr(constant.value)};", constant.span)
+
+
+def documented(text: str, uniform: ir.Uniform) -> Line:
+    """A uniform's declaration with the first sentence of its documentation, where that fits on the line."""
+    words = " ".join(uniform.doc.split()).split(". ")[0].rstrip(".")
+    full = f"{text}  // {words}"
+    return Line(full if words and len(full) <= WIDTH else text, uniform.span)
 
 
 def float_text(value: float) -> str:

@@ -9,7 +9,7 @@ from ..ir import nodes as ir
 from ..ir.operators import PRECEDENCE
 from ..ir.types import BOOL, INT, VOID, Array, Sampler, Struct, Type, Vector, kind_of
 from .layout import Member
-from .printer import PRIMARY, UNARY, Line, Printer, wrap
+from .printer import PRIMARY, UNARY, Line, Printer, documented, wrap
 
 
 
@@ -60,6 +60,9 @@ class WgslPrinter(Printer):
             return super().argument(arg, param)
         return arg.name if arg.name in self.pointers() else f"&{arg.name}"
 
+    def target_of(self, target: ir.Expr) -> str:
+        return self.expr(target, UNARY)
+
     def declare(self, declare: ir.Declare) -> str:
         written = declare.name in self.assigned
         word = "var" if written or declare.value is None else "let"
@@ -97,7 +100,7 @@ class WgslPrinter(Printer):
         lines = [Line("struct Material {")]
         for member in members:
             text = self.type(block_type(member.uniform.type))
-            lines.append(Line(f"    {member.uniform.name}: {text},", member.uniform.span))
+            lines.append(documented(f"    {member.uniform.name}: {text},", member.uniform))
         place = f"@group({self.target.table['material_group']}) @binding(0)"
         return [*lines, Line("}"), Line(f"{place} var<uniform> material: Material;")]
 

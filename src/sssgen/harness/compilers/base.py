@@ -25,8 +25,8 @@ LANGUAGES: dict[str, frozenset[str]] = {
 class Source:
     """One shader text as a compiler sees it.
 
-    `language` is a target's name ("glsl-330", "hlsl", "unity-urp", …). Stage "library" means functions without
-    an entry point: each compiler calls them from an entry of its own, appended so that line numbers stay true.
+    `language` is a target's name ("glsl-330", "hlsl", …). Stage "library" means functions without
+    an entry: each compiler calls them from an entry of its own, appended so that line numbers stay true.
     `companion` is the text of the other stage; the GL driver links both, so that a mismatch is an error.
     """
 

@@ -58,10 +58,9 @@ def find() -> Dxc:
 
 
 def _messages(log: str) -> list[Message]:
-    found = []
-    for line in log.splitlines():
-        if match := re.match(
-            r"(?:(?:[A-Za-z]:)?[^:\n]*?:(\d+):(\d+): )?(fatal error|error|warning|note): (.*)", line
-        ):
-            found.append(Message(_SEVERITY[match[3]], int(match[1] or 0), int(match[2] or 0), match[4]))
+    pattern = r"^(?:(?:[A-Za-z]:)?[^:\n]*:(\d+):(\d+): )?(fatal error|error|warning|note): (.*)"
+    found = [
+        Message(_SEVERITY[kind], int(line or 0), int(column or 0), text)
+        for line, column, kind, text in re.findall(pattern, log, re.MULTILINE)
+    ]
     return found or [Message("error", 0, 0, log.strip())]

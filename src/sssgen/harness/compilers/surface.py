@@ -123,6 +123,9 @@ def entries(code: str, pragma: str) -> str:
     call = f"    Input custom; {asked.vertex}(v{', custom' if second else ''});" if modifier else ""
     fields = _input_fields(code)
     textures = sorted({m[1] for name in fields if (m := re.fullmatch(r"uv\d?(_\w+)", name))})
+    for texture in textures:
+        if re.search(rf"\b{texture}_ST\s*;", code):
+            raise SurfaceError(f"declares {texture}_ST, which Unity declares for the input uv{texture}")
     inputs = [f"    surfIN.{name} = {value};" for name, value in map(_input, fields) if value]
     return (
         "".join(f"float4 {texture}_ST;\n" for texture in textures)

@@ -9,7 +9,7 @@ from typing import Any
 from sssgen.harness.compilers.base import LANGUAGES, Compiler, CompilerMissing, Message, Source
 from sssgen.harness.compilers.calls import wgsl_entry
 
-# One process answers for all checks. Dawn prints warnings to standard output too, so a reply begins with "@@".
+# One process answers for all checks. Dawn prints warnings there as well, so a reply begins with "@@".
 _SERVER = """
 import { createInterface } from 'node:readline';
 import { createRequire } from 'node:module';

@@ -42,8 +42,8 @@ _LIBRARY_HEADERS = {
 _BUILTIN_MACROS = ("SHADER_API_D3D11=1", "SHADER_TARGET=30", "UNITY_VERSION=201940", "UNITY_PBS_USE_BRDF1=1")
 _URP_MACROS = ("SHADER_API_D3D11=1", "SHADER_TARGET=45", "UNITY_VERSION=202120", "UNITY_COMPILER_DXC=1")
 # Unity's preprocessor expands a macro's arguments before it joins them with ##; C's does not, so that the
-# instanced matrices come out under this name. The built-in pipeline's headers cannot be helped like that: there,
-# shaders are compiled without instancing.
+# instanced matrices come out under this name. The built-in pipeline's headers cannot be helped like that:
+# its shaders are compiled without instancing.
 _INSTANCED = "UNITY_BUILTINS_WITH_WORLDTOOBJECTARRAYArray=unity_Builtins0Array"
 # The passes of a surface shader that is lit forward, without and with shadows.
 _SURFACE_PASSES = (
