@@ -5,9 +5,8 @@
 PYTHON := $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
 BIN := .venv/bin
-STAMPS := build/stamps
 NODE_PACKAGES := webgpu@0.6.2
-# Has no wheels on the index: built here once, for two minutes, and kept apart from .venv.
+# The index has its source only: built here once, for two minutes, and kept apart from .venv.
 BUILT_PACKAGES := compushady==0.17.5
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
@@ -15,7 +14,7 @@ export PYTHONUTF8 := 1
 .DELETE_ON_ERROR:
 .PHONY: setup demo test lint bench clean
 
-setup: $(STAMPS)/python $(STAMPS)/node
+setup: .venv/done build/node/done
 
 demo: setup
 	rm -rf out
@@ -37,23 +36,23 @@ bench: setup
 clean:
 	rm -rf .venv build out
 
-$(STAMPS)/system: tools/install_system.sh
+build/system: tools/install_system.sh
 	@test -n "$(PYTHON)" || { echo "Python 3.11 or later is needed"; exit 1; }
-	@mkdir -p $(STAMPS)
 	sh tools/install_system.sh $(PYTHON)
-	@touch $@
+	@mkdir -p build && touch $@
 
-$(STAMPS)/wheels: $(STAMPS)/system Makefile
-	@test -x $(BIN)/python || $(PYTHON) -m venv .venv
-	@ls build/wheels/*.whl >/dev/null 2>&1 || echo "building $(BUILT_PACKAGES): about two minutes, once"
+.venv/pyvenv.cfg: | build/system
+	$(PYTHON) -m venv .venv
+
+build/wheels/done: Makefile | .venv/pyvenv.cfg
+	@test -e $@ || echo "building $(BUILT_PACKAGES): about two minutes, once"
 	$(PIP) wheel --no-deps --find-links build/wheels --wheel-dir build/wheels $(BUILT_PACKAGES)
 	@touch $@
 
-$(STAMPS)/python: pyproject.toml $(STAMPS)/wheels $(wildcard .venv/pyvenv.cfg)
-	@test -x $(BIN)/python || $(PYTHON) -m venv .venv
+.venv/done: pyproject.toml build/wheels/done | .venv/pyvenv.cfg
 	$(PIP) install --find-links build/wheels --editable '.[dev]'
 	@touch $@
 
-$(STAMPS)/node: $(STAMPS)/system Makefile
+build/node/done: Makefile | build/system
 	npm install --prefix build/node --no-audit --no-fund --loglevel=error $(NODE_PACKAGES)
 	@touch $@

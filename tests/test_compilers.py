@@ -1,4 +1,4 @@
-"""Compilers take what is right and refuse what is wrong, at its line; how files become sources and reports."""
+"""Compilers take what is right and refuse what is wrong, at its line; how files become sources and report."""
 
 from __future__ import annotations
 

@@ -110,6 +110,7 @@ _WORDING = (
     ("Unclosed array", "this list has no end", "close it with ]"),
     ("Unclosed inline table", "this table has no end", "close it with }"),
     ("Unterminated string", "this text has no end", "close it with a quote"),
+    ("Expected \"'''\"", "this text has no end", "close it with '''"),
     ("Expected '='", "'=' is missing after the key", "write: key = value"),
     ("Invalid initial character for a key", "a key is missing here", "write: key = value"),
     ("Illegal character '\\n'", "this text has no end", "close it with a quote"),

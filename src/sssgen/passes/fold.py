@@ -48,7 +48,7 @@ from .arithmetic import Number, Numbers
 from .scopes import separate
 
 
-def fold(module: Module, fixed: Mapping[str, tuple[float, ...]] = {}) -> Module:  # noqa: B006 - never changed
+def fold(module: Module, fixed: Mapping[str, tuple[float, ...]] = {}) -> Module:
     """The module with its constants computed; the uniforms named in `fixed` are replaced by these components.
 
     Raises ValueError where the components of a fixed uniform are not as many as its type has.

@@ -86,7 +86,7 @@ class _Lifter:
     def __init__(self, function: Function, functions: Functions) -> None:
         self.function = function
         self.functions = functions
-        self.names = declared(function)
+        self.names = set(declared(function))
         self.out: list[Stmt] = []
 
     def run(self) -> Function:
@@ -185,8 +185,8 @@ class _Lifter:
             return self.choose(expr)
         if isinstance(expr, Binary) and expr.op in ("&&", "||") and self.writes(expr.right):
             constant = Literal(BOOL, expr.op == "||", expr.span)
-            arms = (expr.right, constant) if expr.op == "&&" else (constant, expr.right)
-            return self.choose(Select(BOOL, expr.left, *arms, expr.span))
+            yes, no = (expr.right, constant) if expr.op == "&&" else (constant, expr.right)
+            return self.choose(Select(BOOL, expr.left, yes, no, expr.span))
         if isinstance(expr, Call) and self.writes_itself(expr):
             call, after = self.call(expr)
             result = self.local(expr.type, self.functions[expr.function].name + "_value", expr.span)

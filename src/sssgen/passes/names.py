@@ -16,6 +16,7 @@ from collections.abc import Callable, Container, Mapping
 from ..ir.nodes import (
     Block,
     Call,
+    Constant,
     Construct,
     Declare,
     Expr,
@@ -28,8 +29,8 @@ from ..ir.nodes import (
     function_key,
 )
 from ..ir.types import Array, Field, Struct, Type, spell
-from ..ir.walk import RewriteExpr, all_expressions, rewrite, rewrite_block, statements
-from .scopes import declared, rename_locals
+from ..ir.walk import all_expressions, rewrite, rewrite_block, statements
+from .scopes import Renamer, declared, rename_locals
 
 
 def rename(
@@ -61,6 +62,8 @@ class _Namer:
         self.module = module
         self.reserved, self.reserved_folded = reserved, reserved_folded
         self.uniform_name, self.mangle_overloads = uniform_name, mangle_overloads
+        self.known: dict[str, bool] = {}
+        """Whether a name is legal."""
         self.renamed: dict[str, str] = {}
         self.structs: dict[Type, Type] = {}
         self.members: dict[tuple[str, str], str] = {}
@@ -75,40 +78,33 @@ class _Namer:
     def run(self) -> tuple[Module, dict[str, str]]:
         self.name_declarations()
         module = self.module
-        change = self.change()
         structs, constants = module.structs, module.constants
         if self.structs:
             structs = tuple([struct._replace(type=self.retype(struct.type)) for struct in structs])
-        if change is not None:
-            constants = tuple(
-                [
-                    constant._replace(
-                        name=self.globals.get(constant.name, constant.name),
-                        type=self.retype(constant.type),
-                        value=rewrite(constant.value, change),
-                    )
-                    for constant in constants
-                ]
-            )
+        if self.structs or self.globals:
+            constants = tuple([self.constant(constant) for constant in constants])
         uniforms = tuple(
             [
                 uniform._replace(name=self.globals[uniform.name]) if uniform.name in self.globals else uniform
                 for uniform in module.uniforms
             ]
         )
-        functions = tuple([self.function(function, change) for function in module.functions])
+        functions = tuple([self.function(function) for function in module.functions])
         return Module(structs, constants, uniforms, functions), self.renamed
 
     # The module's own names
 
     def legal(self, name: str) -> bool:
-        return not (
-            name in self.reserved
-            or "__" in name
-            or name == "_"
-            or name.startswith("gl_")
-            or name.lower() in self.reserved_folded
-        )
+        known = self.known.get(name)
+        if known is None:
+            known = self.known[name] = not (
+                name in self.reserved
+                or "__" in name
+                or name == "_"
+                or name.startswith("gl_")
+                or name.lower() in self.reserved_folded
+            )
+        return known
 
     def choose(self, name: str, taken: Container[str]) -> str:
         """A legal name that is like `name` and is not taken."""
@@ -197,13 +193,6 @@ class _Namer:
             if changed != struct:
                 self.structs[struct] = changed
 
-    def retype(self, type: Type) -> Type:
-        """A type with the new structs."""
-        if isinstance(type, Array):
-            element = self.retype(type.element)
-            return type if element is type.element else Array(element, type.length)
-        return self.structs.get(type, type)
-
     def member(self, name: str, members: set[str]) -> str:
         outer, self.taken = self.taken, members
         new = self.choose(name, ())
@@ -211,54 +200,31 @@ class _Namer:
         members.add(new)
         return new
 
-    # The functions
+    # What uses the names
 
-    def change(self) -> RewriteExpr | None:
-        """What to do to each node that is no local name; None if nothing."""
-        keys, names, structs = self.keys, self.globals, self.structs
-        if structs:
-            return self.retyped
-        if not keys and not names:
-            return None
+    def constant(self, constant: Constant) -> Constant:
+        value = rewrite(constant.value, self.retyped) if self.structs else constant.value
+        value = Renamer(self.globals, self.keys).expression(value)
+        name = self.globals.get(constant.name, constant.name)
+        return Constant(name, self.retype(constant.type), value, constant.span)
 
-        def change(node: Expr) -> Expr:
-            if type(node) is Global:
-                return Global(node.type, names[node.name], node.span) if node.name in names else node
-            if type(node) is Call and node.function in keys:
-                return node._replace(function=keys[node.function])
-            return node
-
-        return change
-
-    def retyped(self, node: Expr) -> Expr:
-        """A node with new names and new struct types."""
-        if isinstance(node, Global):
-            node = node._replace(name=self.globals.get(node.name, node.name))
-        elif isinstance(node, Call):
-            node = node._replace(function=self.keys.get(node.function, node.function))
-        elif isinstance(node, Member):
-            # its value comes before it, so that the struct has its new name already
-            node = node._replace(field=self.members.get((spell(node.value.type), node.field), node.field))
-        type_ = self.retype(node.type)
-        return node if type_ is node.type else node._replace(type=type_)
-
-    def function(self, function: Function, change: RewriteExpr | None) -> Function:
+    def function(self, function: Function) -> Function:
         name = self.function_names[function.key]
-        hidden = self.hidden(function)
+        names = set(declared(function))
+        bad = [local for local in names if not self.legal(local)]
+        bad += self.hidden(function, names)
         if self.structs:
             function = self.retyped_function(function)
-        new, locals_ = rename_locals(
-            function, lambda local: local in hidden or not self.legal(local), self.choose, change
-        )
-        for old, local in locals_.items():
+        new, renamed = rename_locals(function, bad, self.choose, self.globals, self.keys)
+        for old, local in renamed.items():
             self.renamed[f"{function.name}.{old}"] = local
         return new if name == new.name else new._replace(name=name)
 
-    def hidden(self, function: Function) -> set[str]:
+    def hidden(self, function: Function, names: set[str]) -> set[str]:
         """The names of a function's variables that are also those of declarations or builtins it uses."""
         from ..ir.intrinsics import BUILTINS
 
-        names = {name for name in declared(function) if name in self.taken or name in BUILTINS}
+        names = {name for name in names if name in self.taken or name in BUILTINS}
         return names & self.used(function) if names else names
 
     def used(self, function: Function) -> set[str]:
@@ -282,14 +248,30 @@ class _Namer:
                 used.add(spell(self.retype(type_)))
         return used
 
+    # New structs, which are in the type of every node; this is rare
+
+    def retype(self, type: Type) -> Type:
+        """A type with the new structs."""
+        if isinstance(type, Array):
+            element = self.retype(type.element)
+            return type if element is type.element else Array(element, type.length)
+        return self.structs.get(type, type)
+
+    def retyped(self, node: Expr) -> Expr:
+        """A node with the new structs, after those inside it."""
+        if isinstance(node, Member):
+            node = node._replace(field=self.members.get((spell(node.value.type), node.field), node.field))
+        type_ = self.retype(node.type)
+        return node if type_ is node.type else node._replace(type=type_)
+
     def retyped_function(self, function: Function) -> Function:
-        """A function with new struct types in its declarations."""
+        """A function with the new structs; its calls keep their old keys."""
         params = tuple([param._replace(type=self.retype(param.type)) for param in function.params])
 
         def restate(stmt: Stmt) -> Block | None:
             return (stmt._replace(type=self.retype(stmt.type)),) if isinstance(stmt, Declare) else None
 
-        body = rewrite_block(function.body, lambda node: node, restate) if function.body is not None else None
+        body = rewrite_block(function.body, self.retyped, restate) if function.body is not None else None
         return function._replace(params=params, result=self.retype(function.result), body=body)
 
 

@@ -17,8 +17,6 @@ The result is ordinary IR with these conventions:
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from ..ir.nodes import (
     Assign,
     Binary,
@@ -45,8 +43,8 @@ from ..ir.nodes import (
     While,
 )
 from ..ir.types import BOOL, VOID, Type
-from ..ir.walk import expressions, root, statements, subexpressions
-from .lift_calls import DISCARDED, Functions, discards, lift_calls, out_arguments
+from ..ir.walk import expressions, root, statements
+from .lift_calls import DISCARDED, Functions, lift_calls, out_arguments
 from .masks import Mask, negated, settle, tidy, zero
 from .scopes import declared, fresh
 from .uniformity import Uniformity
@@ -75,12 +73,6 @@ class _Frame:
         """How many uniform ifs and loops of this frame we are in."""
 
 
-class _Place(NamedTuple):
-    """Something that a statement changes: the depth of the frame that it belongs to."""
-
-    depth: int
-
-
 _OUTSIDE = -1
 """The depth of what lives on when the function has returned."""
 
@@ -91,7 +83,7 @@ class _Converter:
     def __init__(self, function: Function, functions: Functions, constants: frozenset[str]) -> None:
         self.function, self.functions = function, functions
         self.facts = Uniformity(function, constants, functions)
-        self.names = declared(function) | constants | {other.name for other in functions.values()}
+        self.names = set(declared(function)) | constants | {other.name for other in functions.values()}
         self.made: set[str] = set()
         """The masks and results that this pass has made."""
         self.depths = {param.name: 0 if param.direction == "in" else _OUTSIDE for param in function.params}
@@ -108,15 +100,11 @@ class _Converter:
 
     def run(self) -> Function:
         function = self.function
-        for param in function.params:
-            if param.direction == "out":
-                start = Literal(BOOL, False, param.span) if discards(function) and param.name == DISCARDED else None
-                self.out.append(Declare(param.name, param.type, start, param.span))
         self.block(function.body or ())
         if self.result and not (self.out and isinstance(self.out[-1], Return)):
             self.out.append(Return(Local(function.result, self.result, function.span), function.span))
-        body = settle(tidy(tuple(self.out), self.made), self.functions)
-        return function._replace(body=body)
+        body = tidy(tuple(self.out), self.made, self.functions)
+        return function._replace(body=settle(body, function, self.functions))
 
     # Names
 
@@ -197,7 +185,7 @@ class _Converter:
 
     def mask_for(self, name: str) -> Mask | None:
         """The lanes in which a variable may change here, None if it may in all."""
-        return self.frame.mask if self.depths[name] < self.depth or self.depths[name] == _OUTSIDE else None
+        return self.frame.mask if self.depths[name] < self.depth else None
 
     def assign(self, stmt: Assign) -> None:
         target, span = stmt.target, stmt.span
@@ -261,7 +249,9 @@ class _Converter:
             mask = self.mask(condition)
         then_mask, else_mask = Mask(mask.name, inverted), Mask(mask.name, not inverted)
         if outer is not None:
-            then_mask, else_mask = (self.mask(outer.also(arm.expr(stmt.span))) for arm in (then_mask, else_mask))
+            then_mask = self.mask(outer.also(then_mask.expr(stmt.span)))
+        if stmt.otherwise and outer is not None:
+            else_mask = self.mask(outer.also(else_mask.expr(stmt.span)))
         elif stmt.otherwise and not shared:
             else_mask = self.mask(else_mask.expr(stmt.span))
         self.arms_to_come += bool(stmt.otherwise)
@@ -351,7 +341,8 @@ class _Converter:
         self.python_depth += 1
         if active:
             self.out.append(Declare(active, BOOL, start, span))
-        ended = self.block(loop.body) and not active
+        self.block(loop.body)
+        ended = bool(self.out) and isinstance(self.out[-1], Break)
         frame.mask = Mask(running)
         if masked and not ended:
             if step is not None:
@@ -443,7 +434,7 @@ class _Converter:
         else:
             if value is not None:
                 self.out.append(Assign(Local(value.type, self.result, span), "", value, span))
-            if self.loops or self.arms_to_come or any(frame.more for frame in self.frames[:-1]):
+            if self.loops or self.arms_to_come or any(frame.more for frame in self.frames):
                 self.update(self.returned, "||", gone.expr(span))
         self.leave(0, "return", span)
 
@@ -485,7 +476,3 @@ def _jumps_inside(block: Block) -> bool:
         isinstance(inner, jumps) for stmt in block if not isinstance(stmt, jumps) for inner in statements((stmt,))
     )
 
-
-__all__ = ["predicate"]
-
-_ = subexpressions

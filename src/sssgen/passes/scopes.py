@@ -1,25 +1,47 @@
-"""The local names of a function: finding, replacing and renaming them. Used by the passes that move or name code.
+"""The names in a function: finding, replacing and renaming them. Used by the passes that move or name code.
 
-In the IR no visible variable is hidden by another; sibling blocks may use one name each. A pass that moves statements
-to another block puts this right again with `separate`.
+In the IR no visible variable is hidden by another; sibling blocks may use one name each. A pass that moves
+statements to another block puts this right again with `separate`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterator, Mapping
+from collections.abc import Callable, Collection, Container, Mapping
+from typing import Any
 
-from ..ir.nodes import Assign, Block, Declare, Evaluate, Expr, For, Function, If, Local, Return, Stmt, While
-from ..ir.walk import RewriteExpr, inner_statements, rewrite
+from ..ir.nodes import (
+    Assign,
+    Binary,
+    Block,
+    Call,
+    Construct,
+    Declare,
+    Evaluate,
+    Expr,
+    For,
+    Function,
+    Global,
+    If,
+    Intrinsic,
+    Literal,
+    Local,
+    Return,
+    Stmt,
+    While,
+)
+from ..ir.walk import inner_statements, operands, rewrite, with_operands
+
+_NONE: Mapping[str, str] = {}
 
 
-def declared(function: Function) -> set[str]:
-    """The names of a function's parameters and of all its variables."""
-    names = {param.name for param in function.params}
+def declared(function: Function) -> list[str]:
+    """The names of a function's parameters and variables, each as often as it is declared."""
+    names = [param.name for param in function.params]
     stack = list(function.body or ())
     while stack:
         stmt = stack.pop()
         if isinstance(stmt, Declare):
-            names.add(stmt.name)
+            names.append(stmt.name)
         elif isinstance(stmt, (If, For, While)):
             stack.extend(inner_statements(stmt))
     return names
@@ -43,42 +65,47 @@ def substitute(expr: Expr, values: Mapping[str, Expr]) -> Expr:
 
 
 def separate(function: Function) -> Function:
-    """The function with every variable renamed that stands where its name is visible already."""
-    return rename_locals(function, lambda name: False, fresh)[0]
+    """The function with every variable renamed that is declared where its name is visible already."""
+    return rename_locals(function, (), fresh)[0]
 
 
 def rename_locals(
     function: Function,
-    bad: Callable[[str], bool],
+    bad: Collection[str],
     choose: Callable[[str, Container[str]], str],
-    change: RewriteExpr | None = None,
+    globals: Mapping[str, str] = _NONE,
+    calls: Mapping[str, str] = _NONE,
 ) -> tuple[Function, dict[str, str]]:
     """Renames variables whose name is `bad`, or visible already where they are declared; says which.
 
-    `choose` gives a new name that is not among those taken. `change` is applied to the nodes of all expressions that
-    are not local names.
+    `choose` gives a new name that is not among those taken. The module's declarations that the function uses are
+    renamed along: uniforms and constants by `globals`, the keys of functions by `calls`.
     """
-    planner = _Planner(function, bad, choose)
-    renamed = {old: new for old, new in planner.plan if old != new}
-    if not renamed and change is None:
-        return function, renamed
-    body = _Renamer(iter(planner.plan), bool(renamed), change).function(function)
-    return body, renamed
+    names = declared(function)
+    renamer = Renamer(globals, calls)
+    if bad or len(set(names)) < len(names):
+        renamer.plan = _Planner(bad, choose, set(names)).function(function)
+    renamed = {old: new for old, new in renamer.plan if old != new}
+    if renamed or globals or calls:
+        function = renamer.function(function, bool(renamed))
+    return function, renamed
 
 
 class _Planner:
     """Gives every declaration of a function its name, in the order of the text."""
 
     def __init__(
-        self, function: Function, bad: Callable[[str], bool], choose: Callable[[str, Container[str]], str]
+        self, bad: Container[str], choose: Callable[[str, Container[str]], str], taken: set[str]
     ) -> None:
-        self.function, self.bad, self.choose = function, bad, choose
+        self.bad, self.choose, self.taken = bad, choose, taken
         self.plan: list[tuple[str, str]] = []
-        self.taken: set[str] | None = None
+
+    def function(self, function: Function) -> list[tuple[str, str]]:
         visible = set[str]()
         for param in function.params:
             self.declare(param.name, visible)
         self.block(function.body or (), visible)
+        return self.plan
 
     def block(self, block: Block, visible: set[str]) -> None:
         for stmt in block:
@@ -97,59 +124,102 @@ class _Planner:
 
     def declare(self, name: str, visible: set[str]) -> None:
         new = name
-        if name in visible or self.bad(name):
-            if self.taken is None:
-                self.taken = declared(self.function)
+        if name in visible or name in self.bad:
             new = self.choose(name, self.taken)
             self.taken.add(new)
         visible.add(new)
         self.plan.append((name, new))
 
 
-class _Renamer:
-    """Rewrites a function to the planned names."""
+class Renamer:
+    """Rewrites a function to other names.
 
-    def __init__(self, plan: Iterator[tuple[str, str]], renames: bool, change: RewriteExpr | None) -> None:
-        self.plan, self.renames, self.inner = plan, renames, change
-        self.names: dict[str, str] = {}
+    The tables come first, as the lookups are all it does: it runs over every node for every target.
+    """
 
-    def function(self, function: Function) -> Function:
-        params = tuple([param._replace(name=self.declare()) for param in function.params])
-        params = function.params if params == function.params else params
-        body = self.block(function.body) if function.body is not None else None
-        if params is function.params and body is function.body:
+    def __init__(self, globals: Mapping[str, str], calls: Mapping[str, str]) -> None:
+        self.globals, self.calls = globals, calls
+        self.plan: list[tuple[str, str]] = []
+        """The old and new name of each variable, in the order of the text."""
+        self.locals: dict[str, str] = {}
+        """The variables in scope that have a new name."""
+        self.position = -1
+
+    def function(self, function: Function, locals: bool) -> Function:
+        """The function with new names; `locals` says whether the plan holds any."""
+        if function.body is None:
             return function
-        return function._replace(params=params, body=body)
+        if not locals:
+            self.position, self.plan = -1, []
+        params = function.params
+        if locals:
+            params = tuple([param._replace(name=self.declare(param.name)) for param in params])
+        body = self.block(function.body)
+        return (
+            function if body is function.body and not locals else function._replace(params=params, body=body)
+        )
 
-    def declare(self) -> str:
-        old, new = next(self.plan)
-        self.names[old] = new
+    def declare(self, name: str) -> str:
+        if not self.plan:
+            return name
+        self.position += 1
+        old, new = self.plan[self.position]
+        if old != new:
+            self.locals[old] = new
+        else:
+            self.locals.pop(old, None)
         return new
 
-    def change(self, node: Expr) -> Expr:
-        if type(node) is Local:
-            new = self.names.get(node.name, node.name)
-            return node if new is node.name else node._replace(name=new)
-        return node if self.inner is None else self.inner(node)
-
-    def expression(self, expr: Expr) -> Expr:
-        return rewrite(expr, self.change if self.renames or self.inner is None else self.inner)
+    def expression(self, expr: Any) -> Any:
+        """The expression with new names."""
+        kind = type(expr)
+        if kind is Local:
+            new = self.locals.get(expr.name)
+            return expr if new is None else Local(expr.type, new, expr.span)
+        if kind is Literal:
+            return expr
+        if kind is Binary:
+            left, right = self.expression(expr.left), self.expression(expr.right)
+            if left is expr.left and right is expr.right:
+                return expr
+            return Binary(expr.type, expr.op, left, right, expr.span)
+        if kind is Global:
+            new = self.globals.get(expr.name)
+            return expr if new is None else Global(expr.type, new, expr.span)
+        if kind is Intrinsic or kind is Construct or kind is Call:
+            args, old = tuple([self.expression(arg) for arg in expr.args]), expr.args
+            same = all(one is other for one, other in zip(args, old, strict=True))
+            if kind is Call:
+                key = self.calls.get(expr.function)
+                if key is not None or not same:
+                    return Call(expr.type, key or expr.function, args, expr.span)
+            if same:
+                return expr
+            if kind is Construct:
+                return Construct(expr.type, args, expr.span)
+            return Intrinsic(expr.type, expr.name, args, expr.span)
+        old = operands(expr)
+        parts = tuple([self.expression(part) for part in old])
+        same = all(one is other for one, other in zip(parts, old, strict=True))
+        return expr if same else with_operands(expr, parts)
 
     def scope(self, block: Block) -> Block:
-        outer = dict(self.names) if self.renames else self.names
+        """A block with a scope of its own."""
+        if not self.plan:
+            return self.block(block)
+        outer = dict(self.locals)
         new = self.block(block)
-        self.names = outer
+        self.locals = outer
         return new
 
     def block(self, block: Block) -> Block:
         new = [self.statement(stmt) for stmt in block]
-        same = all(one is other for one, other in zip(new, block, strict=True))
-        return block if same else tuple(new)
+        return block if all(one is other for one, other in zip(new, block, strict=True)) else tuple(new)
 
     def statement(self, stmt: Stmt) -> Stmt:
         if isinstance(stmt, Declare):
             value = self.expression(stmt.value) if stmt.value is not None else None
-            name = self.declare()
+            name = self.declare(stmt.name)
             if value is not stmt.value or name != stmt.name:
                 return Declare(name, stmt.type, value, stmt.span)
         elif isinstance(stmt, Assign):
@@ -178,11 +248,11 @@ class _Renamer:
         return stmt
 
     def loop(self, stmt: For) -> For:
-        outer = dict(self.names) if self.renames else self.names
+        outer = dict(self.locals)
         init = self.statement(stmt.init) if stmt.init is not None else None
         condition = self.expression(stmt.condition) if stmt.condition is not None else None
         step = self.statement(stmt.step) if stmt.step is not None else None
         body = self.block(stmt.body)
-        self.names = outer
+        self.locals = outer
         new = For(init, condition, step, body, stmt.span)
         return stmt if all(one is other for one, other in zip(new, stmt, strict=True)) else new

@@ -151,7 +151,10 @@ class Uniformity:
         jumps = self.jumps(body, False)
         own = _own_jumps(body)
         uniform = counted or (
-            loop.condition is not None and self.uniform(loop.condition) and not jumps and "continue" not in own
+            loop.condition is not None
+            and self.uniform(loop.condition)
+            and not jumps
+            and "continue" not in own
         )
         if not uniform and "continue" in own:
             jumps.add("continue")
@@ -165,7 +168,9 @@ class Uniformity:
         """Whether the counter and its bounds are uniform and stay as they are during the loop."""
         if not self.uniform(counter.start) or not self.uniform(counter.stop):
             return False
-        watched = {part.name for part in subexpressions(counter.stop) if isinstance(part, Local)} | {counter.name}
+        watched = {part.name for part in subexpressions(counter.stop) if isinstance(part, Local)} | {
+            counter.name
+        }
         for stmt in statements(body):
             target = root(stmt.target) if isinstance(stmt, Assign) else None
             if target is not None and target.name in watched:
@@ -185,14 +190,17 @@ class Uniformity:
             elif isinstance(stmt, If):
                 inner = diverged or not self.uniform(stmt.condition)
                 found |= self.jumps(stmt.then, inner) | self.jumps(stmt.otherwise, inner)
-            elif isinstance(stmt, For | While) and _returns(stmt.body):
-                if diverged or self.facts(stmt, False).diverges:
-                    found.add("return")
+            elif isinstance(stmt, For | While) and _returns(stmt.body) and (
+                diverged or self.facts(stmt, False).diverges
+            ):
+                found.add("return")
         return found
 
 
 def _kind(jump: Break | Continue | Return | Discard) -> str:
-    return {Break: "break", Continue: "continue"}.get(type(jump), "return")
+    if isinstance(jump, Break):
+        return "break"
+    return "continue" if isinstance(jump, Continue) else "return"
 
 
 def _returns(block: Block) -> bool:

@@ -7,6 +7,7 @@ A plug-in brings a target through the entry-point group `sssgen.targets`: an ent
 from __future__ import annotations
 
 import functools
+import sys
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -76,6 +77,12 @@ def names() -> tuple[str, ...]:
 
 @functools.cache
 def _plugins() -> dict[str, Any]:
+    """The plug-ins' entry points. `importlib.metadata` takes longer to import than a shader to emit, so it is asked
+    only where some installed package mentions our group."""
+    mentions = b"[sssgen.targets]"
+    places = (entry for root in sys.path for entry in Path(root or ".").glob("*.*-info/entry_points.txt"))
+    if not any(mentions in entry.read_bytes() for entry in places):
+        return {}
     from importlib.metadata import entry_points
 
     return {entry.name: entry for entry in entry_points(group="sssgen.targets")}

@@ -1,0 +1,93 @@
+"""Hands uniforms and textures to functions as parameters, for targets whose text has no place to declare them.
+
+Why: a function library to paste, or an engine's custom-function node, gets its parameters from its caller.
+Place: after `prune` and `hoist`, so that only what is read is passed on; before `legalise` and `names`, as it brings
+parameters to shape and names to make legal.
+"""
+
+from __future__ import annotations
+
+from ..ir.nodes import Call, Expr, Function, Global, Local, Module, Param, Uniform, function_key
+from ..ir.types import Sampler
+from ..ir.walk import all_expressions, rewrite_function
+from .scopes import declared, fresh, rename_locals
+
+
+def uniforms_to_parameters(module: Module, textures: bool = True) -> Module:
+    """The module with every function closed over the uniforms that it reads, itself or through what it calls.
+
+    They become parameters behind its own, in the order of the uniforms' declarations, with their names; a variable of
+    that name is renamed. `module.uniforms` stays for the documentation. Without `textures` these remain global. The
+    keys of functions change with their parameters.
+    """
+    uniforms = {
+        uniform.name: uniform
+        for uniform in module.uniforms
+        if textures or not isinstance(uniform.type, Sampler)
+    }
+    closer = _Closer(module, uniforms)
+    functions = tuple([closer.function(function) for function in module.functions])
+    return module._replace(functions=functions)
+
+
+class _Closer:
+    def __init__(self, module: Module, uniforms: dict[str, Uniform]) -> None:
+        self.uniforms = uniforms
+        self.functions = {function.key: function for function in module.functions}
+        self.order = {name: position for position, name in enumerate(uniforms)}
+        self.reads: dict[str, list[str]] = {}
+        self.names: dict[str, str] = {}
+        """The new name of each function, by its old key: another overload may have the new parameters already."""
+        self.keys: dict[str, str] = {}
+        taken = set[str]()
+        # functions that stay as they are come first, so that others make way for them
+        for key, function in sorted(self.functions.items(), key=lambda item: bool(self.read(item[0]))):
+            types = [param.type for param in function.params]
+            types += [uniforms[name].type for name in self.read(key)]
+            name, count = function.name, 2
+            while function_key(name, types) in taken:
+                name, count = f"{function.name}_{count}", count + 1
+            self.names[key], self.keys[key] = name, function_key(name, types)
+            taken.add(self.keys[key])
+
+    def read(self, key: str) -> list[str]:
+        """The uniforms that a function reads, in the order of their declaration."""
+        found = self.reads.get(key)
+        if found is None:
+            names = set[str]()
+            function = self.functions.get(key)
+            self.reads[key] = []
+            for expr in all_expressions(function.body or ()) if function is not None else ():
+                if type(expr) is Global:
+                    if expr.name in self.uniforms:
+                        names.add(expr.name)
+                elif type(expr) is Call:
+                    names.update(self.read(expr.function))
+            found = self.reads[key] = sorted(names, key=self.order.__getitem__)
+        return found
+
+    def function(self, function: Function) -> Function:
+        key = function.key
+        names = self.read(key)
+        if not names:
+            return function
+        hidden = set(names) & set(declared(function))
+        if hidden:
+            function, _ = rename_locals(function, hidden, fresh)
+
+        def change(node: Expr) -> Expr:
+            if type(node) is Global and node.name in self.uniforms:
+                return Local(node.type, node.name, node.span)
+            if type(node) is Call and self.reads.get(node.function):
+                extra = [
+                    Local(self.uniforms[name].type, name, node.span) for name in self.read(node.function)
+                ]
+                return Call(node.type, self.keys[node.function], (*node.args, *extra), node.span)
+            return node
+
+        function = rewrite_function(function, change)
+        params = [
+            Param(name, uniform.type, "in", uniform.quantity, uniform.span)
+            for name, uniform in ((name, self.uniforms[name]) for name in names)
+        ]
+        return function._replace(name=self.names[key], params=(*function.params, *params))
