@@ -82,7 +82,7 @@ def _report(error: SssgenError, as_json: bool) -> int:
 
 
 def _report_internal(error: Exception, as_json: bool) -> int:
-    what = " ".join(f"{type(error).__name__}: {error}".split())[:300]
+    what = " ".join(f"{type(error).__name__} {error}".split())[:300]
     message = f"internal error: {what}: a fault of sssgen; please report it with the input that shows it"
     hint = "SSSGEN_DEBUG=1 shows where"
     if as_json:

@@ -27,7 +27,7 @@ from .passes.prune import prune
 from .targets import descriptor
 from .targets.descriptor import Target
 from .targets.emit import Program, emit
-from .targets.reflection import reflect
+from .targets.reflection import as_text, reflect
 
 FORMS = ("shader", "functions")
 
@@ -206,10 +206,8 @@ def _finish(
     messages = [warning.message for warning in middle.warnings]
     data = reflect(target, program, emitted, form, middle.owners, renames, middle.costs, messages)
     files = dict(emitted.files)
-    import json
-
     suffix = "reflection" if form == "shader" else f"{form}.reflection"
-    files[f"{name}.{target.name}.{suffix}.json"] = json.dumps(data, indent=1) + "\n"
+    files[f"{name}.{target.name}.{suffix}.json"] = as_text(data)
     return Compiled(files, data, middle.warnings)
 
 

@@ -10,6 +10,12 @@ from typing import Any, NamedTuple
 
 from .ir.nodes import NOWHERE, Span
 
+MAX_ERRORS = 100
+"""How many errors of one file are collected; nobody reads more."""
+
+MAX_MESSAGE = 500
+"""How long a message may be: a name in it may be a megabyte."""
+
 
 class Diagnostic(NamedTuple):
     """One error or warning. `source_line` is the text of the line that `span` begins on, where there is one."""
@@ -22,18 +28,18 @@ class Diagnostic(NamedTuple):
 
     def render(self) -> str:
         """The diagnostic as it is shown in a terminal."""
-        lines = [f"{self.severity}: {self.message}"]
+        lines = [f"{self.severity}: {visible(self.message)}"]
         span = self.span
         if span.file:
             place = f"{span.file}:{span.line}:{span.column}" if span.line else span.file
-            lines.append(f"  --> {place}")
+            lines.append(f"  --> {visible(place)}")
         if self.source_line.strip():
             text, column, end = _window(self.source_line, span)
             gutter = str(span.line)
             lines.append(f" {gutter} | {text}")
             lines.append(f" {' ' * len(gutter)} | {' ' * (column - 1)}{'^' * max(1, end - column)}")
         if self.hint:
-            lines.append(f"  help: {self.hint}")
+            lines.append(f"  help: {visible(self.hint)}")
         return "\n".join(lines)
 
     def as_json(self) -> dict[str, Any]:
@@ -51,13 +57,26 @@ class Diagnostic(NamedTuple):
         }
 
 
+def visible(text: str) -> str:
+    """Text that does nothing to a terminal: what is not printable becomes one visible character."""
+    if text.isprintable():
+        return text
+    return "".join([char if char.isprintable() else _picture(char) for char in text])
+
+
+def _picture(char: str) -> str:
+    code = ord(char)
+    if char == "\t":
+        return " "
+    return chr(0x2400 + code) if code < 0x20 else "\u2421" if code == 0x7F else "\ufffd"
+
+
 def _window(line: str, span: Span, width: int = 120) -> tuple[str, int, int]:
     """A readable part of a possibly very long line, with the caret's columns in it."""
     end = span.end_column if span.end_line == span.line else len(line) + 1
-    line, column = line.replace("\t", " "), span.column
-    start = max(0, column - 1 - width // 2) if len(line) > width else 0
-    shown = line[start : start + width]
-    return shown, column - start, min(end - start, len(shown) + 1)
+    start = max(0, span.column - 1 - width // 2) if len(line) > width else 0
+    shown = visible(line[start : start + width])
+    return shown, span.column - start, min(end - start, len(shown) + 1)
 
 
 class SssgenError(Exception):
@@ -78,18 +97,24 @@ class Reporter:
 
     def __init__(self, file: str, text: str) -> None:
         self.file = file
-        self.lines = text.splitlines()
+        self.lines = text.split("\n")  # as the parser counts them: other line ends are white space to it
         self.diagnostics: list[Diagnostic] = []
+        self.seen: set[tuple[Span, str]] = set()
 
     def error(self, span: Span, message: str, hint: str = "") -> None:
-        """Notes an error; the same message at the same place is noted once."""
-        diagnostic = Diagnostic("error", message, span, hint, self.line(span))
-        if diagnostic not in self.diagnostics:
-            self.diagnostics.append(diagnostic)
+        """Notes an error; the same message at the same place is noted once. Raises when there are too many."""
+        message, hint = _cut(message), _cut(hint)
+        if (span, message) in self.seen:
+            return
+        self.seen.add((span, message))
+        self.diagnostics.append(Diagnostic("error", message, span, hint, self.line(span)))
+        if len(self.diagnostics) >= MAX_ERRORS:
+            self.diagnostics.append(Diagnostic("error", f"more than {MAX_ERRORS} errors; the rest is not looked at", span))
+            self.check()
 
     def line(self, span: Span) -> str:
         """The text of the line that the span begins on."""
-        return self.lines[span.line - 1] if 0 < span.line <= len(self.lines) else ""
+        return self.lines[span.line - 1].rstrip("\r") if 0 < span.line <= len(self.lines) else ""
 
     def check(self) -> None:
         """Raises what has been collected, in source order, if there is any."""
@@ -97,12 +122,19 @@ class Reporter:
             raise SssgenError(sorted(self.diagnostics, key=lambda found: found.span[1:3]))
 
 
+def _cut(text: str) -> str:
+    return text if len(text) <= MAX_MESSAGE else f"{text[:MAX_MESSAGE]}…"
+
+
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """`did you mean 'x'?` for the nearest known name, or ''."""
     import difflib
 
-    near = difflib.get_close_matches(word, list(known), n=1, cutoff=0.6)
+    if len(word) > 100:
+        return ""
+    names = [name for name in known if len(name) <= 100][:2000]
+    near = difflib.get_close_matches(word, names, n=1, cutoff=0.6)
     if not near:
-        folded = {name.lower(): name for name in known}
+        folded = {name.lower(): name for name in names}
         near = [folded[word.lower()]] if word.lower() in folded else []
     return f"did you mean '{near[0]}'?" if near else ""

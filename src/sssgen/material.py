@@ -1,4 +1,4 @@
-"""Materials: what they are, and how they are loaded. A material is a chain of techniques, described in TOML."""
+"""Materials: what they are, and how they are loaded. One is a chain of techniques, described in TOML."""
 
 from __future__ import annotations
 
@@ -72,16 +72,10 @@ def load_material(path_or_name: str | Path) -> Material:
         known = examples()
         if text not in known:
             beside = f"did you mean '{text}.toml'?" if Path(f"{text}.toml").is_file() else ""
-            hint = (
-                beside
-                or did_you_mean(text, known)
-                or f"give a path that ends in .toml, or one of: {', '.join(known)}"
-            )
-            raise failure(f"unknown material '{text}'", hint)
-        path = known[text]
-        return parse_material(
-            read_text(path, f"examples/{text}/{text}.toml"), path, f"examples/{text}/{text}.toml"
-        )
+            others = f"give a path that ends in .toml, or one of: {', '.join(known)}"
+            raise failure(f"unknown material '{text}'", beside or did_you_mean(text, known) or others)
+        shown = f"examples/{text}/{text}.toml"
+        return parse_material(read_text(known[text], shown), known[text], shown)
     path = Path(text)
     return parse_material(read_text(path, path.as_posix()), path)
 
@@ -101,13 +95,9 @@ def wrong_name(name: str) -> tuple[str, str] | None:
     """What is wrong with a material's name, and what to do; None where nothing is."""
     if not _NAME.fullmatch(name):
         near = re.sub(r"\W+", "_", name, flags=re.ASCII).strip("_").lower()
-        hint = "a name is letters, digits and _, begins with a letter, and has at most 64 characters"
-        return f"'{name[:80]}' cannot be a material's name", f"{hint}: '{near}'" if _NAME.fullmatch(
-            near
-        ) else hint
+        offer = f": '{near}'" if _NAME.fullmatch(near) else ""
+        rule = "a name is letters, digits and _, begins with a letter, and has at most 64 characters"
+        return f"'{name[:80]}' cannot be a material's name", rule + offer
     if name.lower() in _DEVICES:
-        return (
-            f"'{name}' cannot be the name of a file",
-            "Windows keeps this name for a device: choose another",
-        )
+        return f"'{name}' cannot be a file's name", "Windows keeps this name for a device: choose another"
     return None

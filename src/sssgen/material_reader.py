@@ -1,4 +1,4 @@
-"""Reads a material's TOML: every section, stage, parameter and binding, checked against the techniques it names."""
+"""Reads a material's TOML: sections, stages, parameters and bindings, checked against the techniques."""
 
 from __future__ import annotations
 
@@ -207,17 +207,17 @@ class _Reader:
             elif name in library.index():
                 technique = library.load(name)
             else:
-                at_home = _of_roles(allowed)
-                near = did_you_mean(name, at_home) or did_you_mean(name, library.index())
-                hint = near or f"techniques: {', '.join(at_home)}"
+                known = _of_roles(allowed)
+                near = did_you_mean(name, known) or did_you_mean(name, library.index())
+                hint = near or f"techniques: {', '.join(known)}"
                 error(span, f"unknown technique '{name}'", hint)
                 return None
         except SssgenError as faulty:
             self.foreign += [found for found in faulty.diagnostics if found not in self.foreign]
             return None
         if technique.role not in allowed:
-            at_home = "thickness" if technique.role == "conversion" else technique.role
-            hint = f"put it into [{at_home}]"
+            home = "thickness" if technique.role == "conversion" else technique.role
+            hint = f"put it into [{home}]"
             if technique.role == "distance":
                 hint = f'it is bound to a slot: bind = {{ … = "{name}" }}'
             error(span, f"'{name}' is a {technique.role} technique and cannot stand in [{section}]", hint)

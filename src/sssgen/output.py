@@ -25,7 +25,7 @@ def check_names(names: Iterable[str]) -> None:
     wrong = [
         Diagnostic(
             "error",
-            f"cannot write '{name[:200]}': {why}",
+            f"cannot write {name[:200]!r}: {why}",
             NOWHERE,
             "an output is named like `ice.wgsl` or `include/ice.hlsl`",
         )

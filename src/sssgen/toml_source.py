@@ -24,7 +24,6 @@ MAX_WORD = 1000
 """The longest key or number."""
 
 MAX_SYNTAX_ERRORS = 20
-MAX_ERRORS = 100
 
 Path = tuple[str | int, ...]
 """The way to a value: keys, and the indices of arrays."""
@@ -53,10 +52,8 @@ class Document:
         return self._places.get(path, Place(start, start))
 
     def error(self, span: Span, message: str, hint: str = "") -> None:
-        """Notes an error; with the last that is worth reading, raises them all."""
-        self.reporter.error(span, _plain(message), _plain(hint))
-        if len(self.reporter.diagnostics) >= MAX_ERRORS:
-            self.reporter.check()
+        """Notes an error. Raises SssgenError when there are too many to be read."""
+        self.reporter.error(span, message, hint)
 
 
 def parse(text: str, file: str) -> Document:
@@ -89,12 +86,6 @@ def parse(text: str, file: str) -> Document:
     reporter.check()
     places = _Scanner(tokens, place_of).scan()
     return Document(data, places, reporter)
-
-
-def _plain(message: str) -> str:
-    """A message as one line for a terminal, whatever the file held."""
-    escaped = "".join(one if one.isprintable() else f"\\x{ord(one):02x}" for one in message)
-    return escaped if len(escaped) <= 600 else f"{escaped[:600]}…"
 
 
 _POSITION = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)$")

@@ -12,12 +12,21 @@ from ..diagnostics import Reporter
 from ..ir.nodes import Span
 from ..ir.operators import PRECEDENCE
 from . import syntax as s
+from .comments import attach_docs
 
 if TYPE_CHECKING:
     from lark import Lark, Token
 
 MAX_DEPTH = 200
 """How deeply expressions and statements may nest. Hand-written shaders stay below 30."""
+
+_TOO_DEEP = (
+    f"nested more than {MAX_DEPTH} levels deep",
+    "name a part of it in a local variable or a function of its own",
+)
+
+MAX_OPERATORS = 1000
+"""How many operators one expression may have outside its brackets."""
 
 MAX_SYNTAX_ERRORS = 20
 
@@ -30,11 +39,11 @@ _TOKEN_NAMES = {
 
 def parse(text: str, file: str) -> s.File:
     """Parses a source file. Raises `SssgenError` with every syntax error found."""
-    from lark.exceptions import UnexpectedCharacters, UnexpectedEOF, UnexpectedInput, UnexpectedToken
+    from lark.exceptions import UnexpectedCharacters, UnexpectedToken
 
     reporter = Reporter(file, text)
-    if not _check_nesting(text, reporter):
-        reporter.check()
+    _check_nesting(text, reporter)
+    reporter.check()
     remaining = text
     for _ in range(MAX_SYNTAX_ERRORS):
         builder = _Builder(file)
@@ -42,23 +51,20 @@ def parse(text: str, file: str) -> s.File:
             externals = _parser(builder).parse(remaining)
             break
         except UnexpectedToken as error:
-            position, message = _describe(error)
-            span = Span(file, *position)
+            position, span, message, hint = _describe(error, remaining, file)
         except UnexpectedCharacters as error:
-            span = Span(file, error.line, error.column, error.line, error.column + 1)
-            message = f"{remaining[error.pos_in_stream]!r} has no meaning here"
-        except (UnexpectedEOF, UnexpectedInput) as error:  # pragma: no cover - LALR reports the end as a token
-            span, message = Span(file, max(1, error.line), 1, max(1, error.line), 2), "unexpected end of file"
-        reporter.error(span, message)
-        remaining = _blank_declaration(remaining, span.line, span.column)
+            position = error.pos_in_stream or 0
+            message, hint = _describe_character(remaining, position)
+            span = _place(remaining, position, file)
+        reporter.error(span, message, hint)
+        remaining = _blank_declaration(remaining, position)
         if not remaining.strip():
             break
     reporter.check()
-    comments = tuple(builder.comments)
-    documented = _attach_docs(externals, comments)
-    reporter.diagnostics += builder.errors(reporter)
-    reporter.check()
-    return s.File(file, documented, comments)
+    if builder.too_deep is not None:
+        reporter.error(builder.too_deep, *_TOO_DEEP)
+        reporter.check()
+    return s.File(file, attach_docs(externals, builder.comments, reporter.lines), tuple(builder.comments))
 
 
 _cached: Lark | None = None
@@ -103,16 +109,6 @@ class _Builder:
         self.file = file
         self.comments: list[tuple[int, int, str]] = []
         self.too_deep: Span | None = None
-
-    def errors(self, reporter: Reporter) -> list[Any]:
-        """What was found wrong while building."""
-        if self.too_deep is not None:
-            reporter.error(
-                self.too_deep,
-                f"nested more than {MAX_DEPTH} levels deep",
-                "name a part of it in a local variable or a function of its own",
-            )
-        return []
 
     def comment(self, token: Token) -> Token:
         self.comments.append((_line(token), _end_line(token), str(token)))
@@ -204,7 +200,8 @@ class _Builder:
         return s.TypeName(str(token), length, self.at(token))
 
     def array(self, children: list[Any]) -> Any:
-        return children[0] if children[0] is not None else s.Number("0", False, Span(self.file, 0, 0, 0, 0))
+        length, end = children
+        return length if length is not None else s.Number("0", False, self.at(end))
 
     def declarators(self, children: list[Any]) -> tuple[s.Declarator, ...]:
         return tuple(children)
@@ -356,109 +353,79 @@ def _end_line(token: Any) -> int:
     return int(token.line) + str(token).count("\n")
 
 
-def _describe(error: Any) -> tuple[tuple[int, int, int, int], str]:
-    """The place and the words for an unexpected token."""
+def _describe(error: Any, text: str, file: str) -> tuple[int, Span, str, str]:
+    """For an unexpected token: its position, its span, the words for it, and what to do."""
     token = error.token
-    wanted = sorted({_TOKEN_NAMES[name] for name in error.accepts or error.expected if name in _TOKEN_NAMES})
     if token.type == "$END":
-        line, column = max(1, token.line or 1), max(1, token.column or 1)
-        return (line, column, line, column + 1), "the file ends too early; is a '}' or ';' missing?"
-    position = (token.line, token.column, token.end_line, token.end_column)
+        position = len(text.rstrip())
+        return position, _place(text, max(0, position - 1), file), "the file ends too early; is a '}' or ';' missing?", ""
+    position = token.start_pos
+    for start in (position, position - 1):
+        if text.startswith("/*", max(0, start)):
+            return start, _place(text, start, file), "this comment is not closed", "add */ at its end"
+    wanted = sorted({_TOKEN_NAMES[name] for name in error.accepts or error.expected if name in _TOKEN_NAMES})
     message = f"'{_shorten(str(token))}' is not expected here"
     if 0 < len(wanted) <= 4:
         message += f"; expected {' or '.join(wanted)}"
-    return position, message
+    return position, Span(file, token.line, token.column, token.end_line, token.end_column), message, ""
+
+
+def _describe_character(text: str, position: int) -> tuple[str, str]:
+    """The words for a character that begins no token, and what to do."""
+    if text.startswith('"', position):
+        return "this text is not closed on its line", ""
+    if text.startswith("#", position):
+        return "there is no preprocessor", 'but for #include "file.sss"; write a const, a function or a uniform instead'
+    return f"{text[position]!r} has no meaning here", ""
 
 
 def _shorten(text: str, limit: int = 40) -> str:
     return text if len(text) <= limit else text[:limit] + "…"
 
 
-_SKELETON = re.compile(r'//[^\n]*|/\*[\s\S]*?\*/|"[^"\n]*"|[{}()\[\];\n]')
+_SKELETON = re.compile(r'//[^\n]*|/\*[\s\S]*?\*/|"[^"\n]*"|[{}()\[\];,\n]|[-+*/%<>=!&|^?]+')
 
 
-def _check_nesting(text: str, reporter: Reporter) -> bool:
-    """Refuses deep brackets before the parser's tree is built from them."""
-    depth, line, line_start = 0, 1, 0
+def _check_nesting(text: str, reporter: Reporter) -> None:
+    """Refuses, before the parser builds a tree of them, deep brackets and endless expressions."""
+    operators = [0]  # of the expression at hand and those around it
     for match in _SKELETON.finditer(text):
         token = match.group()
-        if token == "\n":
-            line, line_start = line + 1, match.end()
-        elif token[0] == "/":
-            line += token.count("\n")
-            if "\n" in token:
-                line_start = match.start() + token.rindex("\n") + 1
-        elif token in "{([":
-            depth += 1
-            if depth > MAX_DEPTH:
-                column = match.start() - line_start + 1
-                reporter.error(
-                    Span(reporter.file, line, column, line, column + 1),
-                    f"nested more than {MAX_DEPTH} levels deep",
-                    "name a part of it in a local variable or a function of its own",
-                )
-                return False
-        elif token in "})]":
-            depth = max(0, depth - 1)
-    return True
+        if token in "{([":
+            operators.append(0)
+            if len(operators) > MAX_DEPTH + 1:
+                reporter.error(_place(text, match.start(), reporter.file), *_TOO_DEEP)
+                return
+        elif token in "})]" and len(operators) > 1:
+            operators.pop()
+        elif token in ",;})]":
+            operators[-1] = 0
+        elif token[0] in "-+*/%<>=!&|^?" and not token.startswith(("//", "/*")):
+            operators[-1] += 1
+            if operators[-1] > MAX_OPERATORS:
+                message = f"more than {MAX_OPERATORS} operators in one expression"
+                reporter.error(_place(text, match.start(), reporter.file), message, _TOO_DEEP[1])
+                return
 
 
-def _blank_declaration(text: str, line: int, column: int) -> str:
-    """Replaces the top-level declaration around a place by blanks, keeping its line breaks."""
-    lines = text.splitlines(keepends=True)
-    place = sum(len(previous) for previous in lines[: line - 1]) + column - 1
+def _place(text: str, position: int, file: str) -> Span:
+    """The span of the character at a position."""
+    line, column = text.count("\n", 0, position) + 1, position - text.rfind("\n", 0, position)
+    return Span(file, line, column, line, column + 1)
+
+
+def _blank_declaration(text: str, place: int) -> str:
+    """Replaces the top-level declaration around a position by blanks, keeping its line breaks."""
     start, depth, end = 0, 0, len(text)
     for match in _SKELETON.finditer(text):
-        token, position = match.group(), match.start()
+        token = match.group()
         if token == "{":
             depth += 1
         elif token == "}":
             depth = max(0, depth - 1)
         if depth == 0 and token in "};":
-            if position < place:
-                start = match.end()
-            elif position >= place:
+            if match.start() >= place:
                 end = match.end()
                 break
+            start = match.end()
     return text[:start] + re.sub(r"[^\n]", " ", text[start:end]) + text[end:]
-
-
-def _attach_docs(externals: list[Any], comments: tuple[tuple[int, int, str], ...]) -> tuple[s.External, ...]:
-    """Gives each declaration the doc comment that ends on the line before it."""
-    by_end = {end: (first, text) for first, end, text in comments if text.startswith(("/**", "///"))}
-    documented = []
-    for external in externals:
-        if isinstance(external, s.FunctionSyntax):
-            line = external.result.span.line
-        elif isinstance(external, s.UniformSyntax):
-            line = external.type.span.line
-        elif isinstance(external, s.StructSyntax):
-            line = external.name.span.line
-        else:
-            documented.append(external)
-            continue
-        parts: list[str] = []
-        while line - 1 in by_end:
-            line, text = by_end[line - 1]
-            parts.insert(0, text)
-            if text.startswith("/**"):
-                break
-        documented.append(external._replace(doc=_strip_comment("\n".join(parts))))
-    return tuple(documented)
-
-
-def _strip_comment(text: str) -> str:
-    """The words of a doc comment, without its marks."""
-    lines = []
-    for line in text.splitlines():
-        line = line.strip()
-        if line.startswith("/**"):
-            line = line[3:]
-        elif line.startswith("///"):
-            line = line[3:]
-        elif line.startswith("*") and not line.startswith("*/"):
-            line = line[1:]
-        if line.endswith("*/"):
-            line = line[:-2]
-        lines.append(line[1:] if line.startswith(" ") else line)
-    return "\n".join(lines).strip("\n").rstrip()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Sequence
 
@@ -18,6 +19,11 @@ def polyfill(name: str, types: Sequence[Type]) -> Module:
 
     Raises KeyError where the table has none.
     """
+    return _polyfill(name, tuple(types))
+
+
+@functools.cache
+def _polyfill(name: str, types: tuple[Type, ...]) -> Module:
     from .loader import load_text
 
     found = overload(name, types)
@@ -25,7 +31,7 @@ def polyfill(name: str, types: Sequence[Type]) -> Module:
         raise KeyError(name)
     size = max(type_.size if isinstance(type_, Matrix) else components(type_) for type_ in types)
     for source in _definitions(BUILTINS[name].polyfill):
-        text = _GENERIC.sub(lambda match: spell(instantiate(match.group(), size)), source)
+        text = _GENERIC.sub(lambda match: _spelled(match.group(), size), source)
         params = re.search(rf"\b{name}\(([^)]*)\)", text)
         if params is None:
             continue
@@ -33,6 +39,12 @@ def polyfill(name: str, types: Sequence[Type]) -> Module:
         if wanted == [spell(type_) for type_ in types]:
             return load_text(text, f"intrinsics/{name}")
     raise KeyError(name, *types)
+
+
+def _spelled(generic: str, size: int) -> str:
+    """A generic type's name at one size; '' where it has no such size, which then matches nothing."""
+    type_ = instantiate(generic, size)
+    return spell(type_) if type_ is not None else ""
 
 
 def _definitions(source: str) -> list[str]:

@@ -190,8 +190,10 @@ class Uniformity:
             elif isinstance(stmt, If):
                 inner = diverged or not self.uniform(stmt.condition)
                 found |= self.jumps(stmt.then, inner) | self.jumps(stmt.otherwise, inner)
-            elif isinstance(stmt, For | While) and _returns(stmt.body) and (
-                diverged or self.facts(stmt, False).diverges
+            elif (
+                isinstance(stmt, For | While)
+                and _returns(stmt.body)
+                and (diverged or self.facts(stmt, False).diverges)
             ):
                 found.add("return")
         return found

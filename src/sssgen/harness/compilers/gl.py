@@ -31,10 +31,11 @@ class DriverGL(Compiler):
 
     def __init__(self, context: Any) -> None:
         self._context = context
+        code = context.version_code
+        self._version = f"OpenGL {code // 100}.{code // 10 % 10} on {context.info['GL_RENDERER']}"
 
     def version(self) -> str:
-        code = self._context.version_code
-        return f"OpenGL {code // 100}.{code // 10 % 10} on {self._context.info['GL_RENDERER']}"
+        return self._version
 
     def check(self, source: Source) -> list[Message]:
         text = with_version(source.text, source.language)

@@ -217,18 +217,13 @@ def find() -> Unity:
 
 
 def _preprocessor() -> Callable[[str, list[str], list[Path]], str]:
-    """A C preprocessor: gcc, clang, or the Python package pcpp."""
+    """A C preprocessor: gcc's or clang's."""
     import shutil
-    import sys
 
-    if program := next(filter(None, map(shutil.which, ("gcc", "clang", "cc"))), None):
-        command = [program, "-E", "-x", "c", "-undef", "-nostdinc", "-w"]
-    else:
-        from importlib.util import find_spec
-
-        if find_spec("pcpp") is None:
-            raise CompilerMissing("a C preprocessor (Debian: gcc · elsewhere: clang, or pip install pcpp)")
-        command = [sys.executable, "-m", "pcpp", "--passthru-unknown-exprs"]
+    program = next(filter(None, map(shutil.which, ("gcc", "clang", "cc"))), None)
+    if program is None:
+        raise CompilerMissing("a C preprocessor (Debian: gcc · elsewhere: clang)")
+    command = [program, "-E", "-x", "c", "-undef", "-nostdinc", "-w"]
 
     def preprocess(text: str, macros: list[str], folders: list[Path]) -> str:
         import subprocess

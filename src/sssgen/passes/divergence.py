@@ -1,0 +1,316 @@
+"""Finds where the pixels of a quad may go different ways, and what must not stand there. Used by `hoist`.
+
+A texture read that chooses its own level, or a derivative, compares a pixel with its neighbours, so they must all get
+there: control flow must be *uniform*. The analysis is that of WGSL, section 15.2, made simpler on the safe side. What
+depends on an entry's parameters or on a texture varies; uniforms and constants do not. After a branch that some pixels
+leave for good (by return, break, continue or discard), flow stays non-uniform to the end of the function or loop.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from functools import cache
+from typing import Any, NamedTuple
+
+from ..ir.nodes import (
+    Assign,
+    Binary,
+    Block,
+    Break,
+    Call,
+    Continue,
+    Declare,
+    Discard,
+    Evaluate,
+    Expr,
+    For,
+    Function,
+    If,
+    Intrinsic,
+    Literal,
+    Local,
+    Module,
+    Return,
+    Select,
+    Stmt,
+    While,
+)
+from ..ir.walk import expressions, operands, root, statements
+
+
+@cache
+def implicit() -> frozenset[str]:
+    """The builtins that want uniform control flow, as the intrinsic table says."""
+    from ..ir.intrinsics import BUILTINS
+
+    return frozenset(name for name, row in BUILTINS.items() if row.domain == "uniform control flow")
+
+
+@cache
+def varying_builtins() -> frozenset[str]:
+    """The builtins whose results differ from pixel to pixel whatever they are given."""
+    from ..ir.intrinsics import BUILTINS
+
+    kinds = ("fetch", "derivative")
+    return frozenset(name for name, row in BUILTINS.items() if row.kind in kinds and name != "textureSize")
+
+
+class Summary(NamedTuple):
+    """What a call of a function may do."""
+
+    compares: bool
+    """It has a builtin that wants uniform flow, itself or in what it calls."""
+    varies: bool
+    """Its result may vary even where its arguments do not."""
+    discards: bool
+    outs: tuple[int, ...]
+    """The positions of its out and inout parameters."""
+    callees: tuple[str, ...]
+
+    @property
+    def pure(self) -> bool:
+        """Whether a call does nothing but give its value."""
+        return not self.outs and not self.discards
+
+
+_UNKNOWN = Summary(False, True, True, (), ())
+
+
+def summaries(module: Module) -> dict[str, Summary]:
+    """A summary of each function of a module."""
+    functions = {function.key: function for function in module.functions}
+    found: dict[str, Summary] = {}
+
+    def visit(key: str) -> Summary:
+        known = found.get(key)
+        if known is None:
+            function = functions.get(key)
+            if function is None:
+                return _UNKNOWN
+            found[key] = _UNKNOWN
+            known = found[key] = _summary(function, visit)
+        return known
+
+    for key in functions:
+        visit(key)
+    return found
+
+
+def _summary(function: Function, visit: Any) -> Summary:
+    names: set[str] = set()
+    callees: dict[str, None] = {}
+    discards = function.body is None
+    for stmt in statements(function.body or ()):
+        discards = discards or type(stmt) is Discard
+        stack = list(expressions(stmt))
+        while stack:
+            node = stack.pop()
+            kind = type(node)
+            if kind is Local or kind is Literal:
+                continue
+            if isinstance(node, Call):
+                callees[node.function] = None
+            elif isinstance(node, Intrinsic):
+                names.add(node.name)
+            stack += operands(node)
+    called = [visit(key) for key in callees]
+    return Summary(
+        not names.isdisjoint(implicit()) or any(callee.compares for callee in called),
+        not names.isdisjoint(varying_builtins()) or any(callee.varies for callee in called),
+        discards or any(callee.discards for callee in called),
+        tuple([index for index, param in enumerate(function.params) if param.direction != "in"]),
+        tuple(callees),
+    )
+
+
+class Site(NamedTuple):
+    """How a function is called, all its calls taken together."""
+
+    uniform: bool
+    varying: frozenset[str]
+    """The parameters that vary."""
+
+
+def joined(one: Site | None, other: Site) -> Site:
+    """Both sites taken together."""
+    return other if one is None else Site(one.uniform and other.uniform, one.varying | other.varying)
+
+
+class Divergence:
+    """Where flow is not uniform in one function, called as `site` says."""
+
+    def __init__(
+        self,
+        function: Function,
+        site: Site,
+        summaries: Mapping[str, Summary],
+        functions: Mapping[str, Function],
+    ) -> None:
+        self.summaries, self.functions = summaries, functions
+        self.misplaced: set[int] = set()
+        """The expressions, by id, that want uniform flow and may not have it."""
+        self.inside: set[int] = set()
+        """The statements, by id, that are reached uniformly and in which flow diverges."""
+        self.after: set[int] = set()
+        """The statements, by id, that are reached uniformly and left otherwise."""
+        self.sites: dict[str, Site] = {}
+        """How the functions are called that want uniform flow."""
+        self.flow = site.uniform
+        self.varying = set(site.varying)
+        self.hits = 0
+        """How often something misplaced was met."""
+        self.escapes = 0
+        """Returns and discards met so far in non-uniform flow."""
+        self.jumps = 0
+        """Breaks and continues met so far in non-uniform flow, of the loop at hand."""
+        self.left: set[str] = set()
+        """What varied at some break or continue of the loop at hand."""
+        self.block(function.body or ())
+
+    # Statements
+
+    def block(self, block: Block) -> None:
+        for stmt in block:
+            self.statement(stmt)
+
+    def statement(self, stmt: Stmt) -> None:
+        before = self.flow
+        diverges = False
+        hits = self.hits
+        if isinstance(stmt, Declare):
+            varies = stmt.value is not None and self.varies(stmt.value)
+            self.store(stmt.name, varies, True)
+        elif isinstance(stmt, Assign):
+            varies = self.varies(stmt.value)
+            target = root(stmt.target)
+            for index in operands(stmt.target):
+                varies = self.varies(index) or varies
+            if target is not None:
+                self.store(target.name, varies, not stmt.op and stmt.target is target)
+        elif isinstance(stmt, If):
+            diverges = self.choice(stmt)
+        elif isinstance(stmt, For | While):
+            diverges = self.loop(stmt)
+        elif isinstance(stmt, Break | Continue):
+            self.jumps += not self.flow
+            self.left |= self.varying
+        elif isinstance(stmt, Return):
+            if stmt.value is not None:
+                self.varies(stmt.value)
+            self.escapes += not self.flow
+        elif isinstance(stmt, Discard):
+            self.escapes += not self.flow
+        elif isinstance(stmt, Evaluate):
+            self.varies(stmt.call)
+        if before:
+            if diverges or (self.hits > hits and not isinstance(stmt, If | For | While)):
+                self.inside.add(id(stmt))
+            if not self.flow:
+                self.after.add(id(stmt))
+
+    def store(self, name: str, varies: bool, whole: bool) -> None:
+        if varies or not self.flow:
+            self.varying.add(name)
+        elif whole:
+            self.varying.discard(name)
+
+    def choice(self, stmt: If) -> bool:
+        """Follows both arms; whether flow diverges."""
+        hits = self.hits
+        condition = self.varies(stmt.condition)
+        apart = self.flow and (condition or self.hits > hits)
+        before, left = self.flow, self.escapes + self.jumps
+        varying = set(self.varying)
+        self.flow = before and not condition
+        self.block(stmt.then)
+        flow, after = self.flow, self.varying
+        self.flow, self.varying = before and not condition, varying
+        self.block(stmt.otherwise)
+        self.varying = self.varying | after
+        if condition:
+            self.flow = before and self.escapes + self.jumps == left
+        else:
+            self.flow = self.flow and flow
+        return apart
+
+    def loop(self, stmt: For | While) -> bool:
+        """Follows a loop until nothing new is found; whether flow diverges in it."""
+        hits = self.hits
+        if isinstance(stmt, For) and stmt.init is not None:
+            self.statement(stmt.init)
+        apart = self.hits > hits
+        before, jumps, left, escapes = self.flow, self.jumps, self.left, self.escapes
+        uniform = before
+        while True:
+            start = set(self.varying)
+            self.flow, self.jumps, self.left, self.escapes = uniform, 0, set(), escapes
+            condition = stmt.condition is not None and self.varies(stmt.condition)
+            self.flow = uniform and not condition
+            self.block(stmt.body)
+            hits = self.hits
+            if isinstance(stmt, For) and stmt.step is not None:
+                self.statement(stmt.step)
+            apart = apart or self.hits > hits
+            again = self.flow and not self.jumps and self.escapes == escapes
+            self.varying |= start | self.left
+            if self.varying == start and uniform == (uniform and again):
+                break
+            uniform = uniform and again
+        self.jumps, self.left = jumps, left
+        self.flow = before and self.escapes == escapes
+        return before and (apart or not uniform)
+
+    # Expressions
+
+    def varies(self, expr: Expr) -> bool:
+        """Whether a value may differ from pixel to pixel. Notes what is misplaced on the way."""
+        if isinstance(expr, Local):
+            return expr.name in self.varying
+        if isinstance(expr, Binary) and expr.op in ("&&", "||"):
+            left = self.varies(expr.left)
+            return self.apart(left, (expr.right,)) or left
+        if isinstance(expr, Select):
+            condition = self.varies(expr.condition)
+            return self.apart(condition, (expr.yes, expr.no)) or condition
+        parts = [self.varies(operand) for operand in operands(expr)]
+        if isinstance(expr, Intrinsic):
+            if expr.name in implicit():
+                self.compare(expr)
+            return expr.name in varying_builtins() or any(parts)
+        if isinstance(expr, Call):
+            return self.call(expr, parts)
+        return any(parts)
+
+    def compare(self, expr: Intrinsic | Call) -> None:
+        """Notes something that wants uniform flow."""
+        if not self.flow:
+            self.misplaced.add(id(expr))
+            self.hits += 1
+
+    def apart(self, condition: bool, exprs: Iterable[Expr]) -> bool:
+        """Looks at expressions that are evaluated on a condition."""
+        before, escapes = self.flow, self.escapes
+        self.flow = before and not condition
+        varies = [self.varies(expr) for expr in exprs]
+        self.flow = before and self.escapes == escapes
+        return any(varies)
+
+    def call(self, expr: Call, args: list[bool]) -> bool:
+        summary = self.summaries.get(expr.function, _UNKNOWN)
+        varies = summary.varies or any(args)
+        if summary.compares:
+            self.compare(expr)
+            params = self.functions[expr.function].params
+            site = Site(
+                self.flow, frozenset(param.name for param, arg in zip(params, args, strict=True) if arg)
+            )
+            self.sites[expr.function] = joined(self.sites.get(expr.function), site)
+        for index in summary.outs:
+            target = root(expr.args[index])
+            if target is not None:
+                self.store(target.name, varies, False)
+        if summary.discards:
+            # it may discard for some pixels only
+            self.flow = False
+            self.escapes += 1
+        return varies

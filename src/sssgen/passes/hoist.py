@@ -1,0 +1,384 @@
+"""Moves derivatives, and texture reads that choose their own level, to where all pixels of a quad get to.
+
+Why: both compare a pixel with its neighbours. Where these went another way, GLSL and HLSL give just anything, and WGSL
+refuses the module; so one rule holds for every target. In this order, the remedies are
+1. the operation, or the whole call that has it, is computed before the branch, where its operands are the same there;
+2. a texture read gets its level from derivatives taken before the branch, of the coordinates as they were there;
+3. a texture read gets level 0, and a derivative is taken as 0. Of 2 and 3 a note tells the user.
+Place: after `prune`, so that nothing is moved that goes away; before what is done for one target alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
+
+from ..ir.nodes import (
+    Assign,
+    Binary,
+    Block,
+    Call,
+    Construct,
+    Declare,
+    Evaluate,
+    Expr,
+    For,
+    Function,
+    Global,
+    If,
+    Intrinsic,
+    Literal,
+    Local,
+    Module,
+    Return,
+    Span,
+    Stmt,
+    While,
+)
+from ..ir.types import FLOAT, Scalar, Type
+from ..ir.walk import all_expressions, operands, root, statements, subexpressions, with_operands
+from .divergence import Divergence, Site, Summary, joined, summaries
+from .scopes import declared, fresh
+
+_LARGEST = 64
+"""How many nodes an expression may have that is put in a variable's place."""
+
+
+class Note(NamedTuple):
+    """Something that the user should know of, though the shader works."""
+
+    message: str
+    span: Span
+
+
+def hoist(module: Module, entries: Iterable[str]) -> tuple[Module, list[Note]]:
+    """The module with every implicit derivative in uniform control flow, and notes on what that changed.
+
+    `entries` are the keys of the functions that are called from outside, for each pixel with other values.
+    """
+    known = summaries(module)
+    functions = {function.key: function for function in module.functions}
+    sites: dict[str, Site] = {}
+    for key in entries:
+        if known[key].compares:
+            sites[key] = Site(True, frozenset(param.name for param in functions[key].params))
+    notes: dict[Note, None] = {}
+    for key in _callers_first(sites, known):
+        function = functions[key]
+        flow = Divergence(function, sites[key], known, functions)
+        if flow.misplaced:
+            functions[key] = function = _Hoister(function, sites[key], flow, known, notes).run()
+            flow = Divergence(function, sites[key], known, functions)
+        for callee, site in flow.sites.items():
+            sites[callee] = joined(sites.get(callee), site)
+    changed = any(functions[function.key] is not function for function in module.functions)
+    if changed:
+        module = module._replace(functions=tuple([functions[function.key] for function in module.functions]))
+    return module, list(notes)
+
+
+def _callers_first(entries: Iterable[str], known: Mapping[str, Summary]) -> list[str]:
+    """The functions that compare pixels, each after those that call it."""
+    order: list[str] = []
+    seen: set[str] = set()
+
+    def visit(key: str) -> None:
+        if key not in seen and key in known and known[key].compares:
+            seen.add(key)
+            for callee in known[key].callees:
+                visit(callee)
+            order.append(key)
+
+    for key in entries:
+        visit(key)
+    return order[::-1]
+
+
+class _Region:
+    """Statements that not all pixels get to, and what is known before them."""
+
+    def __init__(self, visible: Iterable[str], reachable: bool = True) -> None:
+        self.available = set(visible)
+        """The variables that there are before the region."""
+        self.changed: set[str] = set()
+        """Those of them that have changed since."""
+        self.definitions: dict[str, Expr] = {}
+        """What variables hold, as expressions over what was available and has not changed."""
+        self.starts: dict[str, Expr] = {}
+        """What the region's own variables held first, in the same way."""
+        self.hoisted: list[Stmt] = []
+        self.made: dict[object, str] = {}
+        """The hoisted variables, by what they hold."""
+        self.reachable = reachable
+        """Whether there is a place before it; not so where the whole function is called from a branch."""
+
+    def change(self, names: Iterable[str]) -> None:
+        for name in names:
+            self.changed.add(name)
+            self.definitions.pop(name, None)
+
+
+class _Hoister:
+    """Rewrites one function."""
+
+    def __init__(
+        self,
+        function: Function,
+        site: Site,
+        flow: Divergence,
+        known: Mapping[str, Summary],
+        notes: dict[Note, None],
+    ) -> None:
+        self.source, self.flow, self.known, self.notes = function, flow, known, notes
+        self.taken = set(declared(function))
+        self.visible = [param.name for param in function.params]
+        self.depth = 0
+        """How many blocks enclose the statement at hand."""
+        self.depths = {param.name: 1 for param in function.params}
+        """How many enclose each variable's declaration."""
+        self.region = None if site.uniform else _Region((), False)
+
+    def run(self) -> Function:
+        return self.source._replace(body=self.block(self.source.body or ()))
+
+    # Statements
+
+    def block(self, block: Block) -> Block:
+        """A block with a scope of its own."""
+        scope = len(self.visible)
+        self.depth += 1
+        new = self.sequence(block)
+        self.depth -= 1
+        del self.visible[scope:]
+        return tuple(new)
+
+    def sequence(self, block: Block) -> list[Stmt]:
+        out: list[Stmt] = []
+        for index, stmt in enumerate(block):
+            if self.region is not None:
+                out.append(self.statement(stmt))
+                continue
+            region = _Region(self.visible)
+            if id(stmt) in self.flow.inside:
+                self.region = region
+                new = self.statement(stmt)
+                self.region = None
+            else:
+                new = self.statement(stmt)
+                region.change(self.assigned((stmt,)))
+            if id(stmt) in self.flow.after:
+                self.region = region
+                rest = self.sequence(block[index + 1 :])
+                self.region = None
+                return [*out, *region.hoisted, new, *rest]
+            out += [*region.hoisted, new]
+        return out
+
+    def statement(self, stmt: Stmt) -> Stmt:
+        if isinstance(stmt, Declare):
+            value = self.expression(stmt.value) if stmt.value is not None else None
+            self.visible.append(stmt.name)
+            self.depths[stmt.name] = self.depth
+            if self.region is not None:
+                self.region.starts.pop(stmt.name, None)
+                known = self.before(value) if value is not None else None
+                self.define(stmt.name, known)
+                if known is not None:
+                    self.region.starts[stmt.name] = known
+            return Declare(stmt.name, stmt.type, value, stmt.span)
+        if isinstance(stmt, If):
+            condition = self.expression(stmt.condition)
+            return If(condition, self.block(stmt.then), self.block(stmt.otherwise), stmt.span)
+        if isinstance(stmt, For | While):
+            return self.loop(stmt)
+        if isinstance(stmt, Assign):
+            target, value = self.expression(stmt.target), self.expression(stmt.value)
+            if self.region is not None:
+                self.assign(target, stmt.op, value)
+            return Assign(target, stmt.op, value, stmt.span)
+        if isinstance(stmt, Return) and stmt.value is not None:
+            return Return(self.expression(stmt.value), stmt.span)
+        if isinstance(stmt, Evaluate):
+            return Evaluate(self.expression(stmt.call), stmt.span)
+        return stmt
+
+    def define(self, name: str, value: Expr | None) -> None:
+        """Notes what a variable holds from here on, said with what there was before the region."""
+        assert self.region is not None
+        if value is not None and sum(1 for _ in subexpressions(value)) <= _LARGEST:
+            self.region.definitions[name] = value
+        else:
+            self.region.definitions.pop(name, None)
+
+    def assign(self, target: Expr, op: str, value: Expr) -> None:
+        """Notes what an assignment changes. In the variable's own block it is as good as a declaration."""
+        assert self.region is not None
+        variable = root(target)
+        if variable is None:
+            return
+        if target is variable and self.depths.get(variable.name, 0) == self.depth:
+            if op:
+                value = Binary(target.type, op, target, value, target.span)
+            known = self.before(value)
+            self.region.change((variable.name,))
+            self.define(variable.name, known)
+        else:
+            self.region.change((variable.name,))
+
+    def loop(self, stmt: For | While) -> Stmt:
+        if self.region is not None:
+            self.region.change(self.assigned((stmt,)))
+        if isinstance(stmt, While):
+            return While(self.expression(stmt.condition), self.block(stmt.body), stmt.span)
+        scope = len(self.visible)
+        init = self.statement(stmt.init) if stmt.init is not None else None
+        if self.region is not None and isinstance(stmt.init, Declare):
+            self.region.change((stmt.init.name,))
+        condition = self.expression(stmt.condition) if stmt.condition is not None else None
+        body = self.block(stmt.body)
+        step = self.statement(stmt.step) if stmt.step is not None else None
+        del self.visible[scope:]
+        return For(init, condition, step, body, stmt.span)
+
+    def assigned(self, block: Block) -> set[str]:
+        """The variables that a block may change."""
+        names = set()
+        for stmt in statements(block):
+            target = root(stmt.target) if isinstance(stmt, Assign) else None
+            if target is not None:
+                names.add(target.name)
+        for expr in all_expressions(block):
+            if isinstance(expr, Call):
+                names |= self.written(expr)
+        return names
+
+    def written(self, call: Call) -> set[str]:
+        targets = [root(call.args[index]) for index in self.known[call.function].outs]
+        return {target.name for target in targets if target is not None}
+
+    # Expressions
+
+    def expression(self, expr: Expr) -> Expr:
+        """The expression with what is misplaced in it put right, the outermost first."""
+        if id(expr) in self.flow.misplaced:
+            assert self.region is not None and isinstance(expr, Call | Intrinsic)
+            known = self.before(expr)
+            if known is not None:
+                return self.hoisted(known, _base_name(expr), expr.span)
+        old = operands(expr)
+        new = tuple([self.expression(operand) for operand in old])
+        if any(one is not other for one, other in zip(old, new, strict=True)):
+            changed = with_operands(expr, new)
+        else:
+            changed = expr
+        if self.region is not None and isinstance(expr, Call):
+            self.region.change(self.written(expr))
+        if id(expr) in self.flow.misplaced and isinstance(changed, Intrinsic):
+            return self.explicit(changed, expr)
+        return changed
+
+    def before(self, expr: Expr) -> Expr | None:
+        """An expression with the same value before the region, or None if there is none."""
+        region = self.region
+        if region is None or not region.reachable:
+            return None
+        if isinstance(expr, Local):
+            if expr.name in region.definitions:
+                return region.definitions[expr.name]
+            return expr if expr.name in region.available and expr.name not in region.changed else None
+        if isinstance(expr, Call) and not self.known[expr.function].pure:
+            return None
+        return self.over(expr, [self.before(operand) for operand in operands(expr)])
+
+    def over(self, expr: Expr, new: list[Expr | None]) -> Expr | None:
+        """`expr` with other operands, or None where one is missing."""
+        if not new:
+            return expr
+        whole = tuple([operand for operand in new if operand is not None])
+        if len(whole) < len(new):
+            return None
+        same = all(one is other for one, other in zip(whole, operands(expr), strict=True))
+        return expr if same else with_operands(expr, whole)
+
+    def hoisted(self, value: Expr, name: str, span: Span) -> Local:
+        """A variable before the region that holds a value."""
+        assert self.region is not None
+        key = _key(value)
+        known = self.region.made.get(key)
+        if known is None:
+            known = self.region.made[key] = fresh(name, self.taken)
+            self.taken.add(known)
+            self.region.available.add(known)
+            self.region.hoisted.append(Declare(known, value.type, value, span))
+        return Local(value.type, known, span)
+
+    # The level made explicit
+
+    def explicit(self, expr: Intrinsic, source: Expr) -> Expr:
+        """A builtin that cannot be moved, without the comparison of neighbours."""
+        if not expr.name.startswith("texture"):
+            self.note(f"{expr.name} is taken as 0 here", expr.span)
+            return _zero(expr.type, expr.span)
+        map_, at, *bias = expr.args
+        coordinates = self.start(operands(source)[1])
+        if coordinates is None or not any(isinstance(part, Local) for part in subexpressions(coordinates)):
+            self.note(f"{_words(map_)} is read at level 0 here", expr.span)
+            level = bias[0] if bias else Literal(FLOAT, 0.0, expr.span)
+            return Intrinsic(expr.type, "textureLod", (map_, at, level), expr.span)
+        name = coordinates.name if isinstance(coordinates, Local) else "coordinates"
+        slopes: list[Expr] = []
+        for builtin, ending in (("dFdx", "dx"), ("dFdy", "dy")):
+            slope = Intrinsic(at.type, builtin, (coordinates,), expr.span)
+            slopes.append(self.hoisted(slope, f"{name}_{ending}", expr.span))
+        if bias:
+            scale = Intrinsic(FLOAT, "exp2", (bias[0],), expr.span)
+            slopes = [Binary(at.type, "*", slope, scale, expr.span) for slope in slopes]
+        self.note(f"{_words(map_)} is read here at the level that its coordinates had before", expr.span)
+        return Intrinsic(expr.type, "textureGrad", (map_, at, *slopes), expr.span)
+
+    def start(self, expr: Expr) -> Expr | None:
+        """What coordinates start from before the region: as far as they are known, sums without what is not."""
+        region = self.region
+        if region is None or not region.reachable:
+            return None
+        if isinstance(expr, Local):
+            return expr if expr.name in region.available else region.starts.get(expr.name)
+        if isinstance(expr, Call) and not self.known[expr.function].pure:
+            return None
+        parts = [self.start(operand) for operand in operands(expr)]
+        if isinstance(expr, Binary) and expr.op in ("+", "-"):
+            left, right = parts
+            if left is None or right is None:
+                known = left if left is not None else right
+                return known if known is not None and known.type == expr.type else None
+        return self.over(expr, parts)
+
+    def note(self, message: str, span: Span) -> None:
+        why = "neighbouring pixels may go another way"
+        self.notes[Note(f"{message}: {why}, so their difference is not known", span)] = None
+
+
+def _base_name(expr: Call | Intrinsic) -> str:
+    """A readable name for the value of an operation that is moved."""
+    if isinstance(expr, Call):
+        return f"{expr.function.split('(')[0]}_value"
+    subject = expr.args[0]
+    name = subject.name if isinstance(subject, Local | Global) else ""
+    if expr.name.startswith("texture"):
+        return f"{name or 'texture'}_sample"
+    return f"{name or 'value'}_{ {'dFdx': 'dx', 'dFdy': 'dy'}.get(expr.name, 'width') }"
+
+
+def _words(map: Expr) -> str:
+    return f"'{map.name}'" if isinstance(map, Local | Global) else "a texture"
+
+
+def _zero(type: Type, span: Span) -> Expr:
+    zero = Literal(FLOAT, 0.0, span)
+    return zero if isinstance(type, Scalar) else Construct(type, (zero,), span)
+
+
+def _key(expr: Expr) -> object:
+    """What an expression says, wherever it stands."""
+    fields = [part for part in expr[:-1] if isinstance(part, (str, int, float))]
+    return (type(expr), expr.type, *fields, *[_key(operand) for operand in operands(expr)])

@@ -1,0 +1,260 @@
+"""Every builtin, and every technique, run on real back ends and compared with the numbers expected of it.
+
+One program a back end holds all overloads. What comes back is held against the intrinsic table's test vectors, and
+against the NumPy runtime in float64 on those and on random arguments, within the table's limits.
+"""
+
+from __future__ import annotations
+
+import keyword
+from collections.abc import Callable
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+from execute import HEIGHT, TARGETS, Backend, Call, backend
+from validate import code
+
+from sssgen.harness.compilers import CompilerMissing
+from sssgen.ir import signatures
+from sssgen.ir.intrinsics import BUILTINS, Builtin
+from sssgen.ir.types import Matrix, Sampler, Scalar, Type, Vector, components, kind_of, spell
+from sssgen.lang.loader import load_text
+from sssgen.targets import numpy_runtime as rt
+from sssgen.targets.numpy_textures import Texture
+
+LANES = 12
+DTYPES = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.bool_}
+
+# Where random arguments come from: (low, high) for all, or one for each; else [-2, 2].
+RANGES: dict[str, Any] = {
+    "asin": (-0.9, 0.9), "acos": (-0.9, 0.9), "atanh": (-0.9, 0.9), "acosh": (1.1, 4.0), "tan": (-1.0, 1.0),
+    "pow": ((0.1, 3.0), (-2.0, 2.0)), "log": (0.1, 10.0), "log2": (0.1, 10.0), "sqrt": (0.0, 10.0),
+    "inversesqrt": (0.1, 10.0), "mod": ((-3.0, 3.0), (0.5, 2.0)), "fmod": ((-3.0, 3.0), (0.5, 2.0)),
+    "clamp": ((-3.0, 3.0), (-2.0, 0.0), (0.0, 2.0)), "smoothstep": ((-1.0, 0.0), (0.5, 2.0), (-2.0, 3.0)),
+    "mix": ((-2.0, 2.0), (-2.0, 2.0), (0.0, 1.0)), "refract": ((-1.0, 1.0), (-1.0, 1.0), (0.25, 0.9)),
+    "dot": (0.25, 2.0), "textureLod": ((-1.0, 2.0), (0.0, 3.0)), "texture": ((-1.0, 2.0), (-1.0, 1.0)),
+}  # fmt: skip
+UNIT = {"reflect": (1,), "refract": (0, 1)}
+"""Arguments that are unit vectors."""
+
+
+class Overload(NamedTuple):
+    """One overload of a builtin, its arguments over all lanes, and how many lanes in front are test vectors."""
+
+    row: Builtin
+    params: tuple[Type, ...]
+    result: Type
+    args: tuple[Any, ...]
+    vectors: tuple[object, ...]
+
+    @property
+    def title(self) -> str:
+        return f"{self.row.name}({', '.join(map(spell, self.params))})"
+
+
+@cache
+def machine(name: str) -> Backend:
+    return backend(name)
+
+
+@pytest.fixture(params=TARGETS)
+def gpu(request: pytest.FixtureRequest, compiler: Callable[[str], Any]) -> Backend:
+    """Each back end; where one is missing, a skip, or in CI a failure."""
+    try:
+        return machine(request.param)
+    except CompilerMissing:
+        compiler({"wgpu": "naga"}.get(request.param, "gl"))
+        raise
+
+
+# Arguments
+
+
+def lane_of(value: object, type_: Type) -> np.ndarray[Any, Any]:
+    return np.asarray(value, DTYPES[kind_of(type_)])
+
+
+def fits(value: object, type_: Type) -> bool:
+    """Whether a test vector's value has a type; an integer is an int or a uint."""
+    if isinstance(type_, Vector | Matrix):
+        inner = Vector("float", type_.size) if isinstance(type_, Matrix) else Scalar(type_.kind)
+        return isinstance(value, tuple) and len(value) == type_.size and all(fits(part, inner) for part in value)
+    kind = kind_of(type_)
+    if kind == "uint":
+        return type(value) is int and value >= 0
+    return type(value).__name__ == kind and (kind != "int" or -(2**31) <= value < 2**31)  # type: ignore[operator]
+
+
+def from_vectors(row: Builtin, params: tuple[Type, ...]) -> tuple[list[tuple[Any, ...]], list[object]]:
+    """Lanes of arguments from the test vectors: those of this overload, and of its scalar one put together."""
+    given = [(args, result) for args, result in row.vectors if len(args) == len(params)]
+    own = [(args, result) for args, result in given if all(map(fits, args, params))]
+    lanes = [args for args, _ in own]
+    scalars = [Scalar(kind_of(type_)) for type_ in params]
+    alike = [args for args, _ in given if all(map(fits, args, scalars))]
+    if row.signatures[0].startswith("gen") and any(isinstance(type_, Vector) for type_ in params):
+        for lane in range(len(alike)):
+            lanes.append(tuple(
+                tuple(alike[(lane + part) % len(alike)][index] for part in range(type_.size))
+                if isinstance(type_, Vector) else alike[lane][index]
+                for index, type_ in enumerate(params)
+            ))  # fmt: skip
+    return lanes, [result for _, result in own]
+
+
+def drawn(name: str, index: int, type_: Type, rng: np.random.Generator) -> Any:
+    """A random argument, (components…)."""
+    kind, shape = kind_of(type_), (type_.size, type_.size) if isinstance(type_, Matrix) else (components(type_),)
+    if kind == "bool":
+        return rng.random(shape) < 0.5
+    if name == "unpackHalf2x16":
+        return rng.uniform(-2.0, 2.0, 2).astype(np.float16).view(np.uint32)
+    if name.endswith("BitsToFloat"):
+        return rng.uniform(-2.0, 2.0, shape).astype(np.float32).view(DTYPES[kind])
+    if kind in ("int", "uint"):
+        low, high = (-9, 9) if kind == "int" else (0, 2**32)
+        if name in ("texelFetch", "textureSize"):
+            low, high = 0, 4 if index == 1 and name == "texelFetch" else 2
+        elif name == "clamp" and index > 0:
+            low, high = (low, high // 4) if index == 1 else (high // 4, high)
+        return rng.integers(low, high, shape)
+    if isinstance(type_, Matrix):
+        return 2.0 * np.eye(type_.size) + rng.uniform(-0.5, 0.5, shape)
+    ranges = RANGES.get(name, (-2.0, 2.0))
+    if isinstance(ranges[0], tuple):
+        index -= name.startswith("texture")
+        ranges = ranges[min(index, len(ranges) - 1)]
+    value = rng.uniform(*ranges, shape)
+    if index in UNIT.get(name, ()) and shape != (1,):
+        value /= np.linalg.norm(value)
+    return value.astype(np.float16) if name == "packHalf2x16" else value
+
+
+@cache
+def overloads() -> list[Overload]:
+    """Every overload with its lanes: test vectors first, the rest random."""
+    rng = np.random.default_rng(7)
+    found = []
+    for row in BUILTINS.values():
+        signatures.overload(row.name, ())
+        for params, (result, _) in signatures._overloads[row.name].items():
+            plain = [type_ for type_ in params if not isinstance(type_, Sampler)]
+            lanes, vectors = from_vectors(row, params)
+            args: list[Any] = []
+            for index, type_ in enumerate(params):
+                if isinstance(type_, Sampler):
+                    args.append({"2D": "map", "3D": "volume", "Cube": "cube"}[type_.dim])
+                    continue
+                value = np.zeros((*_shape(type_), LANES), DTYPES[kind_of(type_)])
+                for lane in range(LANES):
+                    given = lanes[lane][index] if lane < len(lanes) else drawn(row.name, index, type_, rng)
+                    with np.errstate(over="ignore"):
+                        value[..., lane] = np.asarray(given).astype(value.dtype).reshape(_shape(type_))
+                args.append(value)
+            assert plain
+            found.append(Overload(row, params, result, tuple(args), tuple(vectors)))
+    return found
+
+
+def _shape(type_: Type) -> tuple[int, ...]:
+    if isinstance(type_, Matrix):
+        return type_.size, type_.size
+    return (type_.size,) if isinstance(type_, Vector) else ()
+
+
+def smooth(params: tuple[Type, ...]) -> tuple[Any, ...]:
+    """Arguments for derivatives: linear over the image, so that coarse and fine ones agree."""
+    x, y = np.arange(LANES) % (LANES // HEIGHT), np.arange(LANES) // (LANES // HEIGHT)
+    args = [(0.5 * x - 0.25 * y)[None] * np.arange(1, components(type_) + 1)[:, None] for type_ in params]
+    return tuple(arg.reshape(*_shape(type_), LANES).astype(np.float32) for arg, type_ in zip(args, params, strict=True))
+
+
+@cache
+def textures() -> dict[str, Texture]:
+    rng = np.random.default_rng(11)
+
+    def noise(*shape: int) -> np.ndarray[Any, Any]:
+        return rng.integers(0, 256, (*shape, 4)).astype(np.float16) / np.float16(256.0)
+
+    return {
+        "map": Texture(noise(8, 16), mipmaps=True),
+        "volume": Texture(noise(4, 4, 8)),
+        "cube": Texture(noise(6, 4, 4), dim="Cube"),
+    }
+
+
+# Running and comparing
+
+
+def unsupported(overload: Overload, dialect: str) -> bool:
+    text = signatures.text(overload.row.name, dialect, overload.params)
+    return text == "" and not overload.row.polyfill
+
+
+def run(gpu: Backend, chosen: list[Overload], uniform_flow: bool = False) -> list[np.ndarray[Any, Any]]:
+    """The results of all overloads, from one program of functions `case_N`."""
+    lines, calls = [], []
+    for number, overload in enumerate(chosen):
+        names = "abcd"[: len(overload.params)]
+        params = ", ".join(f"{spell(type_)} {name}" for type_, name in zip(overload.params, names, strict=True))
+        value = f"{overload.row.name}({', '.join(names)})"
+        lines.append(f"{spell(overload.result)} case_{number}({params}) {{ return {value}; }}")
+        calls.append(Call(f"case_{number}", overload.params, overload.result, overload.args))
+    text = code(load_text("\n".join(lines), "cases"), gpu.target.name)
+    used = {arg for overload in chosen for arg in overload.args if isinstance(arg, str)}
+    return gpu.run(text, calls, {name: textures()[name] for name in sorted(used)}, uniform_flow)
+
+
+def oracle(overload: Overload) -> np.ndarray[Any, Any]:
+    """What the NumPy runtime gives in float64."""
+    args = [
+        textures()[arg] if isinstance(arg, str) else arg.astype(np.float64) if arg.dtype.kind == "f" else arg
+        for arg in overload.args
+    ]
+    name = overload.row.name
+    if name in ("texelFetch", "textureSize"):  # of one level for all lanes
+        level = args[-1]
+        each = [getattr(rt, name)(*[arg[..., [i]] if isinstance(arg, np.ndarray) else arg for arg in args[:-1]], level[i]) for i in range(LANES)]
+        return np.concatenate(each, axis=-1)
+    with rt.precision("float64"), rt.grid(HEIGHT, LANES // HEIGHT):
+        return np.asarray(getattr(rt, name + "_" * keyword.iskeyword(name))(*args))
+
+
+def difference(row: Builtin, got: np.ndarray[Any, Any], wanted: np.ndarray[Any, Any]) -> str:
+    """How a result of one lane is wrong, or ''."""
+    if wanted.dtype.kind != "f":
+        return "" if np.array_equal(got, wanted) else f"{got} is not {wanted}"
+    size = float(np.abs(wanted).max())
+    limit = max(row.absolute, row.ulp * float(np.spacing(np.float32(size))))
+    if row.kind == "fetch":
+        limit = 2.0**-7 if row.name != "texelFetch" else 0.0  # weights have eight bits
+    error = np.abs(got.astype(np.float64) - wanted).max()
+    return "" if error <= limit else f"{got} is off {wanted} by {error:.3g}, of {limit:.3g} allowed"
+
+
+def compare(overload: Overload, got: np.ndarray[Any, Any]) -> list[str]:
+    """What is wrong with a result."""
+    dtype = np.float64 if kind_of(overload.result) == "float" else DTYPES[kind_of(overload.result)]
+    wanted = np.broadcast_to(oracle(overload), got.shape).astype(dtype)
+    wrong = []
+    for lane in range(LANES):
+        told = difference(overload.row, got[..., lane], wanted[..., lane])
+        if not told and lane < len(overload.vectors):
+            told = difference(overload.row, got[..., lane], np.asarray(overload.vectors[lane], dtype))
+        if told:
+            args = [arg if isinstance(arg, str) else arg[..., lane].tolist() for arg in overload.args]
+            wrong.append(f"{overload.title} at {args}: {told}")
+    return wrong[:2]
+
+
+def test_builtins(gpu: Backend) -> None:
+    uniform = {"texture", "dFdx", "dFdy", "fwidth"}
+    known = [overload for overload in overloads() if not unsupported(overload, gpu.target.dialect)]
+    chosen = [overload for overload in known if overload.row.name not in uniform]
+    results = list(zip(chosen, run(gpu, chosen), strict=True))
+    chosen = [o._replace(args=smooth(o.params)) if o.row.kind == "derivative" else o for o in known if o.row.name in uniform]
+    results += zip(chosen, run(gpu, chosen, uniform_flow=True), strict=True)
+    wrong = [line for overload, got in results for line in compare(overload, got)]
+    assert not wrong, "\n".join([f"{len(wrong)} of {len(known)}", *wrong])

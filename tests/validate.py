@@ -1,0 +1,96 @@
+"""One text of our language and what every target makes of it, side by side.
+
+    validate_all("saturate(x)", {"glsl": "clamp(x, 0.0, 1.0)", "hlsl": "saturate(x)", "wgsl": "saturate(x)"})
+
+An expression's free variables are typed by their names: x, y, z, t are floats, i, j, k ints, u, v, w uints, p, q bools, m, n
+matrices, and a digit behind the letter is the size: x3 is a vec3, p2 a bvec2, m4 a mat4. `map` is a sampler2D, `volume`
+a sampler3D, `cube` a samplerCube. What is compared is the text behind `return`, or, where a target needs more than that,
+its statements, with the functions that it calls above them.
+
+A text with a brace in it is one or more functions, and whole functions are compared.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from textwrap import dedent
+
+from sssgen.compiler import transpile
+from sssgen.ir import nodes as ir
+from sssgen.ir.types import BY_NAME, Type, spell, vector_of
+from sssgen.lang.loader import load_text
+
+TARGETS = {
+    "glsl": "glsl-330",
+    "glsl-es": "glsl-es-300",
+    "hlsl": "hlsl",
+    "dx9": "unity-builtin",
+    "urp": "unity-urp",
+    "wgsl": "wgsl",
+    "numpy": "numpy",
+}
+"""How the tests call the targets: `dx9` and `urp` are HLSL as Unity's two pipelines have it."""
+
+_KINDS = {"x": "float", "y": "float", "z": "float", "t": "float", "i": "int", "j": "int", "k": "int", "u": "uint", "v": "uint", "w": "uint",
+          "p": "bool", "q": "bool"}  # fmt: skip
+_SAMPLERS = {"map": "sampler2D", "volume": "sampler3D", "cube": "samplerCube"}
+_VARIABLE = re.compile(r"(?<![.\w])(?:[xyztijkuvwpq][234]?|[mn][234]|map|volume|cube)(?![\w(])")
+
+
+def validate_all(source: str, expected: Mapping[str, str]) -> None:
+    """Fails with all targets' texts where one is not what is expected."""
+    found = {target: printed(source, target) for target in expected}
+    wanted = {target: dedent(text).strip() for target, text in expected.items()}
+    texts = "\n".join(f"{target}:\n{text}" for target, text in found.items())
+    wrong = [target for target in expected if found[target] != wanted[target]]
+    assert not wrong, f"{', '.join(wrong)} of {source}\n{texts}"
+
+
+def printed(source: str, target: str) -> str:
+    """What a target makes of an expression or of functions."""
+    text = code(module_of(source), TARGETS.get(target, target))
+    if "{" in source:
+        return text
+    before, _, function = text.rpartition("\n\n")
+    statements = dedent("\n".join(function.splitlines()[1:-1]))
+    if not before and statements.startswith("return ") and ";\n" not in statements:
+        return " ".join(line.strip() for line in statements.splitlines()).removeprefix("return ").removesuffix(";")
+    return f"{before}\n\n{statements}".strip()
+
+
+def module_of(source: str) -> ir.Module:
+    """The module of functions, or of one function `f` that returns the expression."""
+    if "{" in source:
+        return load_text(dedent(source), "case")
+    variables = sorted(set(_VARIABLE.findall(source)))
+    params = ", ".join(f"{spell(variable_type(name))} {name}" for name in variables)
+    module = load_text(f"bool f({params}) {{ return ({source}) == ({source}); }}", "case")
+    (function,) = module.functions
+    assert function.body is not None
+    (stmt,) = function.body
+    assert isinstance(stmt, ir.Return) and isinstance(stmt.value, ir.Binary)
+    value = stmt.value.left
+    function = function._replace(result=value.type, body=(ir.Return(value, stmt.span),))
+    return module._replace(functions=(function,))
+
+
+def variable_type(name: str) -> Type:
+    """The type that a free variable's name stands for."""
+    if name in _SAMPLERS:
+        return BY_NAME[_SAMPLERS[name]]
+    if name[0] in "mn":
+        return BY_NAME[f"mat{name[1]}"]
+    return vector_of(_KINDS[name[0]], int(name[1:] or 1))
+
+
+def code(module: ir.Module, target: str) -> str:
+    """The functions form of a module without the file's head and include guard."""
+    files = transpile(module, target, "case").files
+    (text,) = [text for name, text in files.items() if not name.endswith(".json")]
+    lines = text.splitlines()
+    while lines and (not lines[0] or lines[0].startswith(("//", "#", '"""', "from", "import"))):
+        lines.pop(0)
+    while lines and (not lines[-1] or lines[-1].startswith("#endif")):
+        lines.pop()
+    return "\n".join(lines)
