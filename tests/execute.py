@@ -285,19 +285,13 @@ class _Gl(Backend):
         return _glsl_of(spirv(text, "sssgen_main", self.name.removeprefix("hlsl-")))
 
     def upload(self, texture: Texture) -> Any:
-        """The texture in OpenGL, with the same levels, filter and wrapping."""
-        levels = [np.ascontiguousarray(level, np.float16) for level in texture.levels]
-        if texture.dim == "2D":
-            made = self.context.texture(texture.size(), 4, levels[0].tobytes(), dtype="f2")
-            if len(levels) > 1:
-                made.build_mipmaps()
-                for number, level in enumerate(levels):
-                    made.write(level.tobytes(), level=number)
-        elif texture.dim == "3D":
-            made = self.context.texture3d(texture.size(), 4, levels[0].tobytes(), dtype="f2")
-        else:
-            made = self.context.texture_cube(texture.size(), 4, levels[0].tobytes(), dtype="f2")
-        smooth = self.context.LINEAR_MIPMAP_LINEAR if len(levels) > 1 else self.context.LINEAR
+        """The texture in OpenGL, whose driver makes the levels, with the same wrapping."""
+        level = np.ascontiguousarray(texture.levels[0], np.float16).tobytes()
+        make = {"2D": self.context.texture, "3D": self.context.texture3d, "Cube": self.context.texture_cube}[texture.dim]
+        made = make(texture.size(), 4, level, dtype="f2")
+        if len(texture.levels) > 1:
+            made.build_mipmaps()
+        smooth = self.context.LINEAR_MIPMAP_LINEAR if len(texture.levels) > 1 else self.context.LINEAR
         made.filter = (smooth, self.context.LINEAR)
         if texture.dim != "Cube":
             made.repeat_x = made.repeat_y = texture.wrap == "repeat"

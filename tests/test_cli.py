@@ -495,3 +495,28 @@ def test_a_file_that_is_no_text(run: Run, compiler: FakeCompiler) -> None:
     Path("zero.glsl").write_bytes(b"float f()\n\x00")
     texts = [run("transpile", name, "-t", "wgsl").err for name in ("bad.glsl", "zero.glsl")]
     check_snapshot("cli/language/no_text.txt", "\n".join(texts))
+
+
+# With the real compiler
+
+
+def test_the_starter_emits_for_every_target(run: Run) -> None:
+    from sssgen.compiler import targets
+
+    assert run("new", "wood").status == 0
+    ran = run("emit", "wood.toml", "--target", "all", "-o", "out", "--json")
+    said = json.loads(ran.out)
+    assert (ran.status, said["diagnostics"]) == (0, [])
+    assert {row["target"] for row in said["files"]} == set(targets())
+    names = set(folder_content())
+    assert {f"wood.{target}.reflection.json" for target in targets()} <= names
+
+
+def test_transpile_for_every_target(run: Run) -> None:
+    from sssgen.compiler import targets
+
+    Path("twice.glsl").write_text(GLSL, encoding="utf-8")
+    for target in targets():
+        ran = run("transpile", "twice.glsl", "-t", target)
+        assert (ran.status, ran.err) == (0, "")
+        assert "twice" in ran.out

@@ -45,8 +45,8 @@ determinant inverse lessThan lessThanEqual greaterThan greaterThanEqual equal no
 textureLod textureGrad texelFetch dFdx dFdy fwidth
 """.split()  # noqa: SIM905 (eighty names)
 )
-LANGUAGES = ("glsl", "hlsl", "hlsl-dx9", "hlsl-macros", "wgsl")
-REFUSED = {("textureSize", "hlsl"), ("texelFetch", "hlsl-dx9"), ("packHalf2x16", "hlsl-dx9"), ("unpackHalf2x16", "hlsl-dx9")}
+LANGUAGES = ("glsl", "glsl-330", "hlsl", "hlsl-dx9", "hlsl-macros", "wgsl")
+REFUSED = {("textureSize", "hlsl"), ("texelFetch", "hlsl-dx9")}
 VECTORS = [(row, *vector) for row in BUILTINS.values() for vector in row.vectors]
 
 

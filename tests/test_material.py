@@ -256,6 +256,7 @@ BAD = {
     "quantity_unused": HEAD
     + '[[thickness]]\ntechnique = "thickness_map"\n[[thickness]]\ntechnique = "constant_thickness"\n',
     "unlit_without_color": HEAD + 'shading = "unlit"\n[surface]\ntechnique = "base_color"\n',
+    "lit_raymarching": HEAD + "[[geometry]]\ntechnique = 'raymarch'\nbind.scene_distance = 'jelly_scene'\n",
     "technique_breaks_its_role": LOBE + '[surface]\ntechnique = "breaks_role.sss"\n',
     "all_at_once": '[material]\nname = "a b"\nshading = "x"\n[coordinates]\ntechnique = "parallax"\n'
     + '[surface]\ntechnique = "base_color"\ntint = [2.0, "x"]\nzzz = 1\n[thing]\n',

@@ -23,6 +23,7 @@ from .passes.legalise import Unsupported, legalise
 from .passes.link import LinkError, LinkStage, link
 from .passes.names import rename
 from .passes.parameters import uniforms_to_parameters
+from .passes.predicate import predicate
 from .passes.prune import prune
 from .targets import descriptor
 from .targets.descriptor import Target
@@ -185,6 +186,8 @@ def _finish(
         module = legalise(module, target.dialect, target.can, polyfill)
     except Unsupported as error:
         raise SssgenError([Diagnostic("error", f"{error.message} ({target.name})", error.span)]) from None
+    if not target.can("lane_control_flow"):
+        module = predicate(module)
     before = [uniform.name for uniform in module.uniforms]
     exact, folded = descriptor.reserved_everywhere()
     module, renames = rename(

@@ -305,7 +305,7 @@ class _Reader:
             return {}
         found: dict[str, Binding] = {}
         unbound: list[Function] = []
-        _, waiting = slots.needs(technique.module, technique.function)
+        waiting = list(slots.needs(technique.module, technique.function)[1])
         known: dict[str, Function] = {}
         while waiting:
             slot = waiting.pop(0)

@@ -79,6 +79,9 @@ def check_chain(links: Sequence[Link], shading: str, report: Report) -> None:
             given[quantity] = technique.name
             unread.add(quantity)
         colored = colored or technique.role == "lighting"
+        if technique.role == "geometry" and technique.function.result == BOOL and shading == "lit":
+            message = f"'{technique.name}' may miss, and then there is no surface for the engine to light"
+            report(span, message, 'write shading = "unlit", and add a [lighting] stage')
     if shading == "unlit" and links and not colored:
         names = ", ".join(sorted(name for name, path in index().items() if path.parent.name == "lighting"))
         report(

@@ -12,9 +12,23 @@ from .ir.types import spell
 from .ir.walk import all_expressions, subexpressions
 from .lang.loader import load_file
 
+Needs = tuple[frozenset[str], tuple[Function, ...]]
 
-def needs(module: Module, function: Function) -> tuple[set[str], list[Function]]:
+_known: dict[int, tuple[Module, Function, Needs]] = {}
+_KEPT = 4096
+
+
+def needs(module: Module, function: Function) -> Needs:
     """The names of the globals that a function reads and the slots it calls, itself or through others."""
+    kept = _known.get(id(function))
+    if kept is None or kept[0] is not module or kept[1] is not function:
+        if len(_known) >= _KEPT:
+            _known.clear()
+        kept = _known[id(function)] = (module, function, _needs(module, function))
+    return kept[2]
+
+
+def _needs(module: Module, function: Function) -> Needs:
     functions = {other.key: other for other in module.functions}
     constants = {constant.name: constant for constant in module.constants}
     names: set[str] = set()
@@ -33,7 +47,7 @@ def needs(module: Module, function: Function) -> tuple[set[str], list[Function]]
                 names.add(expr.name)  # type: ignore[union-attr]
     for name in list(names & constants.keys()):
         names |= {expr.name for expr in subexpressions(constants[name].value) if isinstance(expr, Global)}
-    return names, slots
+    return frozenset(names), tuple(slots)
 
 
 def signature(function: Function) -> str:

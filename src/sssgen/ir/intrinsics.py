@@ -18,7 +18,8 @@ A value is one of
   halves of argument 0, `{dim}` its dimension (2D, 3D, CUBE) and `{type}` the result's type as the target spells it;
   arguments stand only where a call's argument could;
 - `""`: the language has no such builtin, and `polyfill` is put in its place; without a polyfill it is refused there.
-The dialects `hlsl-dx9` (Unity's built-in pipeline) and `hlsl-macros` (Unity's SRP) fall back to `hlsl`.
+The dialects `hlsl-dx9` (Unity's built-in pipeline) and `hlsl-macros` (Unity's SRP) fall back to `hlsl`, and `glsl-330`,
+which lacks some of what ES 3.00 has, to `glsl`.
 NumPy has a function of the builtin's own name for every row, in `targets/numpy_runtime.py` (`not_` for `not`).
 
 `polyfill` is source in the project's own language, generic in the same way as the signatures; it is parsed by the same
@@ -77,6 +78,7 @@ _REDUCE = ("float(vecF, vecF)", "float(float, float)")
 _LOG = "WGSL, Vulkan: 3 ulp, but an absolute error of 2^-21 for x in [0.5, 2]"
 _EXP = "WGSL, Vulkan: 3 + 2·|x| ulp; taken at |x| = 10"
 _TRIG = "WGSL, Vulkan: absolute error of 2^-11 in [-pi, pi]; D3D: 0.0008"
+_ASIN = "GLSL: no bound (Mesa: absolute error of 2e-4); WGSL: 6.81e-5, or that of the formula with atan; Vulkan: the latter"
 _ATAN = "WGSL, Vulkan: 4096 ulp"
 _BY_LOG = "WGSL, Vulkan: that of the formula with log, whose own error is absolute"
 _BY_EXP = "WGSL, Vulkan: that of the formula with exp, which cancels near 0"
@@ -122,13 +124,11 @@ BUILTINS: dict[str, Builtin] = _table(
         vectors=(((1.0,), 1.5574077246549023), ((0.0,), 0.0), ((-0.5,), -0.5463024898437905)),
     ),
     Builtin("asin", _F1, "Arc sine, in [-pi/2, pi/2].",
-        domain="-1 <= x <= 1", kind="transcendental", cost=16, ulp=4096.0, absolute=6.81e-5,
-        clause="WGSL: absolute error of 6.81e-5, or that of atan(x, sqrt(1 - x·x)); Vulkan: the latter",
+        domain="-1 <= x <= 1", kind="transcendental", cost=16, ulp=4096.0, absolute=2.0**-11, clause=_ASIN,
         vectors=(((1.0,), _HALF_PI), ((0.0,), 0.0), ((-0.5,), -0.5235987755982989)),
     ),
     Builtin("acos", _F1, "Arc cosine, in [0, pi].",
-        domain="-1 <= x <= 1", kind="transcendental", cost=16, ulp=4096.0, absolute=6.77e-5,
-        clause="WGSL: absolute error of 6.77e-5, or that of atan(sqrt(1 - x·x), x); Vulkan: the latter",
+        domain="-1 <= x <= 1", kind="transcendental", cost=16, ulp=4096.0, absolute=2.0**-11, clause=_ASIN,
         vectors=(((1.0,), 0.0), ((0.5,), 1.0471975511965979), ((-1.0,), _PI)),
     ),
     Builtin("atan", ("genF(genF)", "genF(genF, genF)"),
@@ -350,7 +350,7 @@ vecB isinf(vecF x) { return equal(floatBitsToUint(x) & vecU(0x7fffffffu), vecU(0
     # 8.4 Packing; the first component goes into the low bits
     Builtin("packSnorm2x16", ("uint(vec2)",),
         "Two numbers in [-1, 1], each as a signed 16-bit fraction of 32767.",
-        texts={"hlsl": "", "wgsl": "pack2x16snorm"},
+        texts={"glsl-330": "", "hlsl": "", "wgsl": "pack2x16snorm"},
         polyfill="""
 uint packSnorm2x16(vec2 x) {
     ivec2 i = ivec2(round(clamp(x, -1.0, 1.0) * 32767.0));
@@ -360,7 +360,7 @@ uint packSnorm2x16(vec2 x) {
         cost=9, vectors=((((-1.0, 1.0),), 0x7FFF8001), (((0.0, 0.0),), 0), (((4.0, -4.0),), 0x80017FFF)),
     ),
     Builtin("packUnorm2x16", ("uint(vec2)",), "Two numbers in [0, 1], each as a 16-bit fraction of 65535.",
-        texts={"hlsl": "", "wgsl": "pack2x16unorm"},
+        texts={"glsl-330": "", "hlsl": "", "wgsl": "pack2x16unorm"},
         polyfill="""
 uint packUnorm2x16(vec2 x) {
     uvec2 u = uvec2(round(clamp(x, 0.0, 1.0) * 65535.0));
@@ -371,13 +371,23 @@ uint packUnorm2x16(vec2 x) {
     ),
     Builtin("packHalf2x16", ("uint(vec2)",), "Two numbers as float16.",
         domain="representable in float16: the rounding is the target's",
-        texts={"hlsl": "dot(f32tof16({0}), uint2(1u, 65536u))", "hlsl-dx9": "", "wgsl": "pack2x16float"},
+        texts={"glsl-330": "", "hlsl": "dot(f32tof16({0}), uint2(1u, 65536u))", "hlsl-dx9": "", "wgsl": "pack2x16float"},
+        polyfill="""
+uint packHalf2x16(vec2 x) {
+    uvec2 bits = floatBitsToUint(abs(x));
+    uvec2 normal = (bits - 0x37fff001u + ((bits >> 13u) & 1u)) >> 13u;
+    uvec2 tiny = uvec2(round(abs(x) * 16777216.0));
+    uvec2 half_bits = uvec2(bits.x < 0x38800000u ? tiny.x : normal.x, bits.y < 0x38800000u ? tiny.y : normal.y);
+    half_bits |= (floatBitsToUint(x) >> 16u) & 0x8000u;
+    return half_bits.x | (half_bits.y << 16u);
+}
+""",
         cost=3,
         vectors=((((1.0, -2.0),), 0xC0003C00), (((0.5, 0.0),), 0x3800), (((65504.0, 0.25),), 0x34007BFF)),
     ),
     Builtin("unpackSnorm2x16", ("vec2(uint)",),
         "Two numbers in [-1, 1] from signed 16-bit fractions of 32767.",
-        texts={"hlsl": "", "wgsl": "unpack2x16snorm"},
+        texts={"glsl-330": "", "hlsl": "", "wgsl": "unpack2x16snorm"},
         polyfill="""
 vec2 unpackSnorm2x16(uint x) {
     return clamp(vec2(float(int(x << 16u) >> 16), float(int(x) >> 16)) / 32767.0, -1.0, 1.0);
@@ -387,14 +397,26 @@ vec2 unpackSnorm2x16(uint x) {
         vectors=(((0x80007FFF,), (1.0, -1.0)), ((0,), (0.0, 0.0)), ((0x4000,), (0.500015259254738, 0.0))),
     ),
     Builtin("unpackUnorm2x16", ("vec2(uint)",), "Two numbers in [0, 1] from 16-bit fractions of 65535.",
-        texts={"hlsl": "", "wgsl": "unpack2x16unorm"},
+        texts={"glsl-330": "", "hlsl": "", "wgsl": "unpack2x16unorm"},
         polyfill="vec2 unpackUnorm2x16(uint x) { return vec2(float(x & 65535u), float(x >> 16u)) / 65535.0; }",
         cost=3,
         vectors=(((0xFFFF,), (1.0, 0.0)), ((0,), (0.0, 0.0)), ((0x80000000,), (0.0, 0.5000076295109483))),
     ),
     Builtin("unpackHalf2x16", ("vec2(uint)",), "Two numbers from float16.",
         domain="both are finite",
-        texts={"hlsl": "f16tof32(({0}) >> uint2(0u, 16u))", "hlsl-dx9": "", "wgsl": "unpack2x16float"},
+        texts={
+            "glsl-330": "", "hlsl": "f16tof32(({0}) >> uint2(0u, 16u))", "hlsl-dx9": "", "wgsl": "unpack2x16float",
+        },
+        polyfill="""
+vec2 unpackHalf2x16(uint x) {
+    uvec2 half_bits = uvec2(x & 0xffffu, x >> 16u);
+    uvec2 bits = half_bits & 0x7fffu;
+    vec2 normal = uintBitsToFloat((bits << 13u) + 0x38000000u);
+    vec2 tiny = vec2(bits) / 16777216.0;
+    vec2 size = vec2(bits.x < 1024u ? tiny.x : normal.x, bits.y < 1024u ? tiny.y : normal.y);
+    return uintBitsToFloat(floatBitsToUint(size) | ((half_bits & 0x8000u) << 16u));
+}
+""",
         cost=2,
         vectors=(((0xC0003C00,), (1.0, -2.0)), ((0x3800,), (0.5, 0.0)), ((0x34007BFF,), (65504.0, 0.25))),
     ),
@@ -475,7 +497,7 @@ float refract(float x, float y, float z) {
     ),
     # 8.6 Matrices
     Builtin("matrixCompMult", ("mat(mat, mat)",), "Componentwise product.",
-        texts={"hlsl": "op:*", "wgsl": ""},
+        texts={"hlsl": "", "wgsl": ""},
         polyfill="""
 mat2 matrixCompMult(mat2 x, mat2 y) { return mat2(x[0] * y[0], x[1] * y[1]); }
 mat3 matrixCompMult(mat3 x, mat3 y) { return mat3(x[0] * y[0], x[1] * y[1], x[2] * y[2]); }

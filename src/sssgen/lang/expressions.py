@@ -439,12 +439,8 @@ class ExpressionChecker:
             raise self.fail(span, f"'{name}' cannot be changed here; copy it to a local variable")
         if not isinstance(inner, ir.Local):
             raise self.fail(span, "this cannot be assigned to")
-        for scope in reversed(self.scopes.stack):
-            for variable in scope.values():
-                if variable.ir_name == inner.name:
-                    if not variable.writable:
-                        raise self.fail(span, f"'{inner.name}' is const and cannot be changed")
-                    return
+        if not self.scopes.visible[inner.name].writable:
+            raise self.fail(span, f"'{inner.name}' is const and cannot be changed")
 
 
 def _integer(text: str) -> int | None:

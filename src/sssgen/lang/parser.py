@@ -226,26 +226,30 @@ class _Builder:
     def as_statement(self, child: Any) -> Any:
         if child is None or isinstance(child, s.Statement):
             return child
-        return s.ExpressionStatement(child, child.span)
+        return s.ExpressionStatement(child, child.span, getattr(child, "depth", 0))
 
     def declaration(self, children: list[Any]) -> s.Declaration:
         const, type_, declarators = children
-        return s.Declaration(const is not None, type_, declarators, _join(type_.span, declarators[-1].name.span))
+        span = _join(type_.span, declarators[-1].name.span)
+        depth = self.deeper(span, *[declarator.value for declarator in declarators])
+        return s.Declaration(const is not None, type_, declarators, span, depth)
 
     def assignment(self, children: list[Any]) -> s.Assignment:
         target, op, value = children
-        return s.Assignment(target, str(op)[:-1], value, _join(target.span, value.span))
+        span = _join(target.span, value.span)
+        return s.Assignment(target, str(op)[:-1], value, span, self.deeper(span, target, value))
 
     def step(self, children: list[Any]) -> s.Assignment:
         first, second = children
         token, target = (second, first) if hasattr(first, "span") else (first, second)
-        return s.Assignment(target, str(token)[0], None, _join(target.span, self.at(token)))
+        span = _join(target.span, self.at(token))
+        return s.Assignment(target, str(token)[0], None, span, self.deeper(span, target))
 
     def if_(self, children: list[Any]) -> s.IfStatement:
         keyword, condition, then, *rest = children
         span = self.at(keyword)
         then, otherwise = self.body(then, span), self.as_statement(rest[0]) if rest else None
-        return s.IfStatement(condition, then, otherwise, span, self.deeper(span, then, otherwise))
+        return s.IfStatement(condition, then, otherwise, span, self.deeper(span, condition, then, otherwise))
 
     def body(self, child: Any, span: Span) -> Any:
         return s.Compound((), span, 0) if child is None else self.as_statement(child)
@@ -255,18 +259,19 @@ class _Builder:
         span = self.at(keyword)
         body = self.body(body, span)
         init, step = self.as_statement(init), self.as_statement(step)
-        return s.ForStatement(init, condition, step, body, span, self.deeper(span, body))
+        return s.ForStatement(init, condition, step, body, span, self.deeper(span, init, condition, step, body))
 
     def while_(self, children: list[Any]) -> s.WhileStatement:
         keyword, condition, body = children
         span = self.at(keyword)
         body = self.body(body, span)
-        return s.WhileStatement(condition, body, span, self.deeper(span, body))
+        return s.WhileStatement(condition, body, span, self.deeper(span, condition, body))
 
     def jump(self, children: list[Any]) -> s.Jump:
         value = children[1] if len(children) > 1 else None
         span = self.at(children[0])
-        return s.Jump(str(children[0]), value, _join(span, value.span) if value is not None else span)
+        whole = _join(span, value.span) if value is not None else span
+        return s.Jump(str(children[0]), value, whole, self.deeper(span, value))
 
     return_ = break_ = continue_ = discard_ = jump
 

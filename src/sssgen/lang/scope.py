@@ -46,12 +46,15 @@ class Scopes:
 
     def __init__(self) -> None:
         self.stack: list[dict[str, Variable]] = [{}]
+        self.visible: dict[str, Variable] = {}
+        """The variables of all scopes by their names in the IR."""
 
     def push(self) -> None:
         self.stack.append({})
 
     def pop(self) -> None:
-        self.stack.pop()
+        for variable in self.stack.pop().values():
+            del self.visible[variable.ir_name]
 
     def find(self, name: str) -> Variable | None:
         for scope in reversed(self.stack):
@@ -65,12 +68,11 @@ class Scopes:
         """Adds a variable to the innermost scope; None if this scope has the name already."""
         if name in self.stack[-1]:
             return None
-        visible = {variable.ir_name for scope in self.stack for variable in scope.values()}
         ir_name, count = name, 2
-        while ir_name in visible:
+        while ir_name in self.visible:
             ir_name, count = f"{name}_{count}", count + 1
         variable = Variable(ir_name, type, quantity, writable, faulty)
-        self.stack[-1][name] = variable
+        self.stack[-1][name] = self.visible[ir_name] = variable
         return variable
 
     def names(self) -> list[str]:

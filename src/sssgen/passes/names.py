@@ -60,6 +60,7 @@ class _Namer:
         reserved_folded: Container[str],
     ) -> None:
         self.module = module
+        self.keyed = [(function.key, function) for function in module.functions]
         self.reserved, self.reserved_folded = reserved, reserved_folded
         self.uniform_name, self.mangle_overloads = uniform_name, mangle_overloads
         self.known: dict[str, bool] = {}
@@ -89,7 +90,7 @@ class _Namer:
                 for uniform in module.uniforms
             ]
         )
-        functions = tuple([self.function(function) for function in module.functions])
+        functions = tuple([self.function(key, function) for key, function in self.keyed])
         return Module(structs, constants, uniforms, functions), self.renamed
 
     # The module's own names
@@ -133,8 +134,7 @@ class _Namer:
         wanted |= {("global", constant.name): constant.name for constant in module.constants}
         wanted |= {("global", uniform.name): self.uniform_name(uniform.name) for uniform in module.uniforms}
         mangled = self.mangled() if self.mangle_overloads else {}
-        for function in module.functions:
-            key = function.key
+        for key, function in self.keyed:
             if key in mangled:
                 wanted["key", key] = mangled[key]
             else:
@@ -151,8 +151,7 @@ class _Namer:
         self.renamed = {old[1]: new for old, new in names.items() if old[1] != new}
         self.globals = {old[1]: new for old, new in names.items() if old[0] == "global" and old[1] != new}
         self.name_structs(names)
-        for function in module.functions:
-            key = function.key
+        for key, function in self.keyed:
             new = names["key", key] if key in mangled else names["function", function.name]
             self.function_names[key] = new
             if new != function.name or self.structs:
@@ -161,18 +160,18 @@ class _Namer:
 
     def mangled(self) -> dict[str, str]:
         """Names for overloads: as many parameters' types as it takes to tell them apart."""
-        overloads: dict[str, list[Function]] = {}
-        for function in self.module.functions:
-            overloads.setdefault(function.name, []).append(function)
+        overloads: dict[str, list[tuple[str, Function]]] = {}
+        for key, function in self.keyed:
+            overloads.setdefault(function.name, []).append((key, function))
         result: dict[str, str] = {}
         for name, functions in overloads.items():
             if len(functions) > 1:
-                types = [[_word(param.type) for param in function.params] for function in functions]
+                types = [[_word(param.type) for param in function.params] for _, function in functions]
                 for count in range(1, max(map(len, types)) + 1):
                     words = ["_".join([name, *some[:count]]) for some in types]
                     if len(set(words)) == len(words):
                         break
-                result |= {function.key: word for function, word in zip(functions, words, strict=True)}
+                result |= {key: word for (key, _), word in zip(functions, words, strict=True)}
         return result
 
     def name_structs(self, names: Mapping[tuple[str, str], str]) -> None:
@@ -208,8 +207,8 @@ class _Namer:
         name = self.globals.get(constant.name, constant.name)
         return Constant(name, self.retype(constant.type), value, constant.span)
 
-    def function(self, function: Function) -> Function:
-        name = self.function_names[function.key]
+    def function(self, key: str, function: Function) -> Function:
+        name = self.function_names[key]
         names = set(declared(function))
         bad = [local for local in names if not self.legal(local)]
         bad += self.hidden(function, names)

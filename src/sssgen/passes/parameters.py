@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from ..ir.nodes import Call, Expr, Function, Global, Local, Module, Param, Uniform, function_key
 from ..ir.types import Sampler
-from ..ir.walk import all_expressions, rewrite_function
-from .scopes import declared, fresh, rename_locals
+from ..ir.walk import rewrite_function
+from .scopes import declared, fresh, mentions, rename_locals
 
 
 def uniforms_to_parameters(module: Module, textures: bool = True) -> Module:
@@ -26,7 +26,7 @@ def uniforms_to_parameters(module: Module, textures: bool = True) -> Module:
         if textures or not isinstance(uniform.type, Sampler)
     }
     closer = _Closer(module, uniforms)
-    functions = tuple([closer.function(function) for function in module.functions])
+    functions = tuple([closer.function(key, function) for key, function in closer.functions.items()])
     return module._replace(functions=functions)
 
 
@@ -54,20 +54,16 @@ class _Closer:
         """The uniforms that a function reads, in the order of their declaration."""
         found = self.reads.get(key)
         if found is None:
-            names = set[str]()
-            function = self.functions.get(key)
-            self.reads[key] = []
-            for expr in all_expressions(function.body or ()) if function is not None else ():
-                if type(expr) is Global:
-                    if expr.name in self.uniforms:
-                        names.add(expr.name)
-                elif type(expr) is Call:
-                    names.update(self.read(expr.function))
+            names, self.reads[key] = set[str](), []
+            if key in self.functions:
+                globals_, calls = mentions(self.functions[key])
+                names = globals_ & self.uniforms.keys()
+                for callee in calls:
+                    names.update(self.read(callee))
             found = self.reads[key] = sorted(names, key=self.order.__getitem__)
         return found
 
-    def function(self, function: Function) -> Function:
-        key = function.key
+    def function(self, key: str, function: Function) -> Function:
         names = self.read(key)
         if not names:
             return function

@@ -29,7 +29,7 @@ from ..ir.nodes import (
     Stmt,
     While,
 )
-from ..ir.walk import inner_statements, operands, rewrite, with_operands
+from ..ir.walk import expressions, inner_statements, operands, rewrite, statements, with_operands
 
 _NONE: Mapping[str, str] = {}
 
@@ -45,6 +45,25 @@ def declared(function: Function) -> list[str]:
         elif isinstance(stmt, (If, For, While)):
             stack.extend(inner_statements(stmt))
     return names
+
+
+def mentions(function: Function) -> tuple[set[str], set[str]]:
+    """The names of the uniforms and constants that a function reads, and the keys of the functions it calls."""
+    globals_, calls = set[str](), set[str]()
+    for stmt in statements(function.body or ()):
+        stack: list[Any] = [*expressions(stmt)]
+        while stack:
+            node = stack.pop()
+            kind = type(node)
+            if kind is Local or kind is Literal:
+                continue
+            if kind is Global:
+                globals_.add(node.name)
+                continue
+            if kind is Call:
+                calls.add(node.function)
+            stack += operands(node)
+    return globals_, calls
 
 
 def fresh(name: str, taken: Container[str]) -> str:

@@ -1,0 +1,239 @@
+"""The IR as text: printed, read back to an equal module, and diffed.
+
+    file 0 "wax.sss"
+    uniform@0:1:15-22 float density : thickness = (0.5) [hint_range(0.0, 1.0)]
+    doc "How much light is left behind a body."
+    function@0:3:7-16 float remaining(in@0:3:23-24 vec3 p) {
+        var@0:4:5-14 float d = $length(p@0:4:24-25)@0:4:16-26;
+        set@0:5:5-12 d += 1.0@0:5:10-12;
+        return@0:6:5-20 exp((- d))@0:6:12-19;
+    }
+
+Every binary operator, unary operator and choice has its brackets, so that there is no precedence. `$` marks what the
+module declares: `$density` is a global and `$remaining(x)` a call; a bare call is a builtin, a bare name a local, and
+braces construct: `vec3{x, y, z}`. `-1.0` is a literal and `(- 1.0)` a negation. Types stand where something is declared
+or constructed; those of all other expressions follow from the rules, so what is printed must be valid (`ir.verify`).
+
+A span follows the first token of a statement or declaration and the last of an expression: `@file:line:column-`, then
+`column` or `line:column` of its end. No span means NOWHERE; without spans, two modules are equal if their texts are.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from math import isfinite
+
+from .nodes import (
+    NOWHERE,
+    Assign,
+    Binary,
+    Block,
+    Break,
+    Call,
+    Constant,
+    Construct,
+    Continue,
+    Declare,
+    Discard,
+    Evaluate,
+    Expr,
+    For,
+    Function,
+    Global,
+    If,
+    Index,
+    Intrinsic,
+    Literal,
+    Local,
+    Member,
+    Module,
+    Param,
+    Return,
+    Select,
+    Span,
+    Stmt,
+    StructDecl,
+    Swizzle,
+    Unary,
+    Uniform,
+    While,
+    function_key,
+)
+from .rules import inferred
+from .types import BOOL, BY_NAME, FLOAT, INT, UINT, VOID, Array, Field, Struct, Type, spell
+
+
+class TextError(ValueError):
+    """A text that is no module, with the 1-based place where that shows."""
+
+    def __init__(self, message: str, line: int, column: int) -> None:
+        super().__init__(f"{line}:{column}: {message}")
+        self.message, self.line, self.column = message, line, column
+
+
+def print_module(module: Module, spans: bool = True) -> str:
+    """The text of a valid module. Raises ValueError for a number that is not finite."""
+    return _Printer(spans).module(module)
+
+
+def read_module(text: str) -> Module:
+    """The module that a text says. Raises TextError."""
+    return _Reader(text).module()
+
+
+# Printing
+
+
+class _Printer:
+    def __init__(self, spans: bool) -> None:
+        self.spans = spans
+        self.files: dict[str, int] = {}
+
+    def module(self, module: Module) -> str:
+        parts = [self.struct(struct) for struct in module.structs]
+        parts += [self.constant(constant) for constant in module.constants]
+        parts += [self.uniform(uniform) for uniform in module.uniforms]
+        parts += [self.function(function) for function in module.functions]
+        files = [f"file {index} {_quoted(name)}\n" for name, index in self.files.items()]
+        return "".join(files + parts)
+
+    def at(self, span: Span) -> str:
+        if not self.spans or span == NOWHERE:
+            return ""
+        file = self.files.setdefault(span.file, len(self.files))
+        end = f"{span.end_column}" if span.end_line == span.line else f"{span.end_line}:{span.end_column}"
+        return f"@{file}:{span.line}:{span.column}-{end}"
+
+    def struct(self, struct: StructDecl) -> str:
+        assert isinstance(struct.type, Struct)
+        fields = [f"    {spell(field.type)} {field.name}{_colon(field.quantity)};\n" for field in struct.type.fields]
+        return f"{_doc(struct.doc)}struct{self.at(struct.span)} {struct.type.name} {{\n{''.join(fields)}}}\n"
+
+    def constant(self, constant: Constant) -> str:
+        value = self.expr(constant.value)
+        return f"const{self.at(constant.span)} {spell(constant.type)} {constant.name} = {value}\n"
+
+    def uniform(self, uniform: Uniform) -> str:
+        head = f"uniform{self.at(uniform.span)} {spell(uniform.type)} {uniform.name}{_colon(uniform.quantity)}"
+        default = f" = ({', '.join(map(_number, uniform.default))})" if uniform.default else ""
+        hints = ", ".join([f"{name}({', '.join(map(_hint_argument, args))})" for name, args in uniform.hints])
+        return f"{_doc(uniform.doc)}{head}{default}{f' [{hints}]' if hints else ''}\n"
+
+    def function(self, function: Function) -> str:
+        params = [
+            f"{param.direction}{self.at(param.span)} {spell(param.type)} {param.name}{_colon(param.quantity)}"
+            for param in function.params
+        ]
+        head = f"function{self.at(function.span)} {spell(function.result)} {function.name}({', '.join(params)})"
+        body = " slot" if function.body is None else f" {self.block(function.body, 0)}"
+        return f"{_doc(function.doc)}{head}{_colon(function.quantity)}{body}\n"
+
+    def block(self, block: Block, depth: int) -> str:
+        inside = "    " * (depth + 1)
+        lines = "".join([f"{inside}{self.stmt(stmt, depth + 1)}\n" for stmt in block])
+        return f"{{\n{lines}{'    ' * depth}}}"
+
+    def stmt(self, stmt: Stmt, depth: int) -> str:
+        at = self.at(stmt.span)
+        if isinstance(stmt, Declare):
+            value = f" = {self.expr(stmt.value)}" if stmt.value is not None else ""
+            return f"var{at} {spell(stmt.type)} {stmt.name}{value};"
+        if isinstance(stmt, Assign):
+            return f"set{at} {self.expr(stmt.target)} {stmt.op}= {self.expr(stmt.value)};"
+        if isinstance(stmt, Evaluate):
+            return f"call{at} {self.expr(stmt.call)};"
+        if isinstance(stmt, If):
+            otherwise = f" else {self.block(stmt.otherwise, depth)}" if stmt.otherwise else ""
+            return f"if{at} {self.expr(stmt.condition)} then {self.block(stmt.then, depth)}{otherwise}"
+        if isinstance(stmt, For):
+            init = self.stmt(stmt.init, depth) if stmt.init is not None else ";"
+            condition = f" {self.expr(stmt.condition)}" if stmt.condition is not None else ""
+            step = f" {self.stmt(stmt.step, depth)}" if stmt.step is not None else " ;"
+            return f"for{at} ({init}{condition};{step}) {self.block(stmt.body, depth)}"
+        if isinstance(stmt, While):
+            return f"while{at} {self.expr(stmt.condition)} do {self.block(stmt.body, depth)}"
+        if isinstance(stmt, Return) and stmt.value is not None:
+            return f"return{at} {self.expr(stmt.value)};"
+        return f"{type(stmt).__name__.lower()}{at};"
+
+    def expr(self, expr: Expr) -> str:
+        return f"{self.bare(expr)}{self.at(expr.span)}"
+
+    def bare(self, expr: Expr) -> str:
+        if isinstance(expr, Local):
+            return expr.name
+        if isinstance(expr, Literal):
+            return _literal(expr)
+        if isinstance(expr, Binary):
+            return f"({self.expr(expr.left)} {expr.op} {self.expr(expr.right)})"
+        if isinstance(expr, Global):
+            return f"${expr.name}"
+        if isinstance(expr, Intrinsic):
+            return f"{expr.name}({self.list(expr.args)})"
+        if isinstance(expr, Swizzle):
+            return f"{self.expr(expr.value)}.{expr.components}"
+        if isinstance(expr, Construct):
+            return f"{spell(expr.type)}{{{self.list(expr.args)}}}"
+        if isinstance(expr, Call):
+            return f"${expr.function.split('(')[0]}({self.list(expr.args)})"
+        if isinstance(expr, Unary):
+            return f"({expr.op} {self.expr(expr.operand)})"
+        if isinstance(expr, Member):
+            return f"{self.expr(expr.value)}.{expr.field}"
+        if isinstance(expr, Index):
+            return f"{self.expr(expr.value)}[{self.expr(expr.index)}]"
+        return f"({self.expr(expr.condition)} ? {self.expr(expr.yes)} : {self.expr(expr.no)})"
+
+    def list(self, exprs: Iterable[Expr]) -> str:
+        return ", ".join([self.expr(expr) for expr in exprs])
+
+
+def _literal(literal: Literal) -> str:
+    if literal.type == FLOAT:
+        return _number(literal.value)
+    if literal.type == BOOL:
+        return "true" if literal.value else "false"
+    return f"{literal.value}u" if literal.type == UINT else f"{literal.value}"
+
+
+def _number(value: float) -> str:
+    """The shortest text that reads back as the same float64."""
+    if not isfinite(value):
+        raise ValueError(f"{value} has no text")
+    return repr(float(value))
+
+
+def _hint_argument(value: float | str) -> str:
+    return _quoted(value) if isinstance(value, str) else _number(value)
+
+
+def _colon(quantity: str) -> str:
+    return f" : {quantity}" if quantity else ""
+
+
+def _doc(doc: str) -> str:
+    """A documentation, one quoted line under the other."""
+    return f"doc {'\n    '.join(map(_quoted, doc.split(chr(10))))}\n" if doc else ""
+
+
+def _quoted(text: str) -> str:
+    return '"' + "".join([char if char.isprintable() and char not in '"\\' else _escaped(char) for char in text]) + '"'
+
+
+def _escaped(char: str) -> str:
+    return f"\\{char}" if char in '"\\' else f"\\{ord(char):x};"
+
+
+# Reading
+
+_TOKEN = re.compile(
+    r"""(?P<space>\s+)
+    | (?P<span>@\d+:\d+:\d+-\d+(?::\d+)?)
+    | (?P<number>-?\d+(?:\.\d+)?(?:e[+-]?\d+)?u?)
+    | (?P<name>\$?[A-Za-z_]\w*)
+    | (?P<text>"(?:[^"\\\n]|\\["\\]|\\[0-9a-f]+;)*")
+    | (?P<op>(?:<<|>>|[-+*/%&|^])=|&&|\|\||\^\^|==|!=|<=|>=|<<|>>|[-+*/%&|^<>!~?:=.,;()\[\]{}])""",
+    re.VERBOSE | re.ASCII,
+)
+_ESCAPE = re.compile(r'\\(["\\]|[0-9a-f]+;)')
