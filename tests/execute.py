@@ -388,7 +388,7 @@ def cross(module: bytes, *options: str) -> str:
 
 
 def _glsl_of(module: bytes) -> str:
-    return cross(module, "--version", "330", "--no-es")
+    return cross(module, "--version", "430", "--no-es")
 
 
 @cache

@@ -20,7 +20,6 @@ A span follows the first token of a statement or declaration and the last of an 
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from math import isfinite
 
@@ -29,13 +28,10 @@ from .nodes import (
     Assign,
     Binary,
     Block,
-    Break,
     Call,
     Constant,
     Construct,
-    Continue,
     Declare,
-    Discard,
     Evaluate,
     Expr,
     For,
@@ -48,9 +44,7 @@ from .nodes import (
     Local,
     Member,
     Module,
-    Param,
     Return,
-    Select,
     Span,
     Stmt,
     StructDecl,
@@ -58,31 +52,16 @@ from .nodes import (
     Unary,
     Uniform,
     While,
-    function_key,
 )
-from .rules import inferred
-from .types import BOOL, BY_NAME, FLOAT, INT, UINT, VOID, Array, Field, Struct, Type, spell
+from .reader import TextError, read_module
+from .types import BOOL, FLOAT, UINT, Struct, spell
 
-
-class TextError(ValueError):
-    """A text that is no module, with the 1-based place where that shows."""
-
-    def __init__(self, message: str, line: int, column: int) -> None:
-        super().__init__(f"{line}:{column}: {message}")
-        self.message, self.line, self.column = message, line, column
+__all__ = ["TextError", "print_module", "read_module"]
 
 
 def print_module(module: Module, spans: bool = True) -> str:
     """The text of a valid module. Raises ValueError for a number that is not finite."""
     return _Printer(spans).module(module)
-
-
-def read_module(text: str) -> Module:
-    """The module that a text says. Raises TextError."""
-    return _Reader(text).module()
-
-
-# Printing
 
 
 class _Printer:
@@ -214,26 +193,14 @@ def _colon(quantity: str) -> str:
 
 def _doc(doc: str) -> str:
     """A documentation, one quoted line under the other."""
-    return f"doc {'\n    '.join(map(_quoted, doc.split(chr(10))))}\n" if doc else ""
+    return "doc " + "\n    ".join(map(_quoted, doc.split("\n"))) + "\n" if doc else ""
 
 
 def _quoted(text: str) -> str:
-    return '"' + "".join([char if char.isprintable() and char not in '"\\' else _escaped(char) for char in text]) + '"'
+    return f'"{"".join(map(_escaped, text))}"'
 
 
 def _escaped(char: str) -> str:
-    return f"\\{char}" if char in '"\\' else f"\\{ord(char):x};"
-
-
-# Reading
-
-_TOKEN = re.compile(
-    r"""(?P<space>\s+)
-    | (?P<span>@\d+:\d+:\d+-\d+(?::\d+)?)
-    | (?P<number>-?\d+(?:\.\d+)?(?:e[+-]?\d+)?u?)
-    | (?P<name>\$?[A-Za-z_]\w*)
-    | (?P<text>"(?:[^"\\\n]|\\["\\]|\\[0-9a-f]+;)*")
-    | (?P<op>(?:<<|>>|[-+*/%&|^])=|&&|\|\||\^\^|==|!=|<=|>=|<<|>>|[-+*/%&|^<>!~?:=.,;()\[\]{}])""",
-    re.VERBOSE | re.ASCII,
-)
-_ESCAPE = re.compile(r'\\(["\\]|[0-9a-f]+;)')
+    if char in '"\\':
+        return f"\\{char}"
+    return char if char.isprintable() else f"\\{ord(char):x};"

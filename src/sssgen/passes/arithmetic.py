@@ -1,8 +1,8 @@
 """Arithmetic on constants, for `fold`: values as every target has them, or None where a target may differ.
 
-Floats are float32: operands are rounded to it, the result is computed in float64 and rounded once. Nothing gives inf,
-NaN or a denormal (which GPUs may flush to 0), nothing divides by zero. Ints and uints are of 32 bits and wrap. Builtins
-are computed within the domain that the intrinsic table gives.
+Floats are float32: operands are rounded to it, the result is computed in float64 and rounded once. Nothing
+gives inf, NaN or a denormal (which GPUs may flush to 0), nothing divides by zero. Ints and uints are of 32
+bits and wrap. Builtins are computed within the domain that the intrinsic table gives.
 """
 
 from __future__ import annotations
@@ -144,7 +144,8 @@ def _shift(shift: Callable[[int, int], int]) -> Callable[[int, int], int]:
 
 
 _COMPARISONS: dict[str, Callable[[Number, Number], bool]] = {
-    "==": operator.eq, "!=": operator.ne, "<": operator.lt, ">": operator.gt, "<=": operator.le, ">=": operator.ge,
+    "==": operator.eq, "!=": operator.ne,
+    "<": operator.lt, ">": operator.gt, "<=": operator.le, ">=": operator.ge,
 }  # fmt: skip
 _FLOAT: dict[str, Callable[..., Number]] = {
     "+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv,

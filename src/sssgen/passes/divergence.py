@@ -1,9 +1,10 @@
 """Finds where the pixels of a quad may go different ways, and what must not stand there. Used by `hoist`.
 
-A texture read that chooses its own level, or a derivative, compares a pixel with its neighbours, so they must all get
-there: control flow must be *uniform*. The analysis is that of WGSL, section 15.2, made simpler on the safe side. What
-depends on an entry's parameters or on a texture varies; uniforms and constants do not. After a branch that some pixels
-leave for good (by return, break, continue or discard), flow stays non-uniform to the end of the function or loop.
+A texture read that chooses its own level, or a derivative, compares a pixel with its neighbours, so they must
+all get there: control flow must be *uniform*. The analysis is that of WGSL, section 15.2, made simpler on the
+safe side. What depends on an entry's parameters or on a texture varies; uniforms and constants do not. After
+a branch that some pixels leave for good (by return, break, continue or discard), flow stays non-uniform to
+the end of the function or loop.
 """
 
 from __future__ import annotations

@@ -1,11 +1,13 @@
-"""Computes what is constant: parameters that a material fixes, literals' arithmetic, branches whose condition is known.
+"""Computes what is constant: parameters that a material fixes, literals' arithmetic, branches whose condition
+is known.
 
-Why: a fixed parameter costs nothing at run time and leaves no uniform; every target gets the same numbers; and WGSL
-computes constants itself, but refuses a module in which one is inf or NaN: such an expression is left as it is written.
+Why: a fixed parameter costs nothing at run time and leaves no uniform; every target gets the same numbers;
+and WGSL computes constants itself, but refuses a module in which one is inf or NaN: such an expression is
+left as it is written.
 Place: first after `link`, as dead branches and unused uniforms are then `prune`'s to find.
 
-Identities are only those that hold for every float: `x * 1.0`, `x + 0.0` (but for the sign of a zero), never `x * 0.0`.
-Module constants keep their names, for the reader, unless knowing them decides a condition.
+Identities are only those that hold for every float: `x * 1.0`, `x + 0.0` (but for the sign of a zero), never
+`x * 0.0`. Module constants keep their names, for the reader, unless knowing them decides a condition.
 """
 
 from __future__ import annotations
@@ -41,7 +43,7 @@ from ..ir.nodes import (
     Unary,
     While,
 )
-from ..ir.types import BOOL, Array, Matrix, Scalar, Struct, Type, Vector, components, kind_of
+from ..ir.types import BOOL, Array, Matrix, Scalar, Struct, Type, Vector, components, kind_of, vector_of
 from ..ir.walk import operands, rewrite, subexpressions, with_operands
 from . import arithmetic
 from .arithmetic import Number, Numbers
@@ -122,10 +124,6 @@ def _constant(expr: Expr) -> Numbers | None:
 def _calls(expr: Expr) -> bool:
     """Whether an expression calls a function, which may do more than give its value."""
     return any(type(node) is Call for node in subexpressions(expr))
-
-
-def _is_splat(expr: Construct) -> bool:
-    return len(expr.args) == 1 and isinstance(expr.args[0].type, Scalar) and isinstance(expr.type, Vector)
 
 
 class _Folder:
@@ -471,7 +469,7 @@ def _picked(value: Construct, indices: list[int], type: Type, span: Span) -> Exp
     constant = _constant(value)
     if constant is not None:
         return _literal(type, tuple([constant[index] for index in indices]), span)
-    if _is_splat(value):
+    if len(value.args) == 1 and isinstance(value.args[0].type, Scalar):
         return value.args[0] if len(indices) == 1 else Construct(type, value.args, span)
     if len(value.args) == 1:
         return None
@@ -496,6 +494,6 @@ def _piece(arg: Expr, parts: list[int], span: Span) -> Expr:
     """Some components of a vector, or a scalar as it is."""
     if not isinstance(arg.type, Vector) or parts == list(range(arg.type.size)):
         return arg
-    letters = "".join(["xyzw"[part] for part in parts])
-    piece_type: Type = Vector(arg.type.kind, len(parts)) if len(parts) > 1 else Scalar(arg.type.kind)
-    return Swizzle(piece_type, arg, letters, span)
+    value, letters = (arg.value, arg.components) if isinstance(arg, Swizzle) else (arg, "xyzw")
+    type_ = vector_of(kind_of(arg.type), len(parts))
+    return Swizzle(type_, value, "".join([letters[part] for part in parts]), span)

@@ -1,9 +1,11 @@
 """Moves derivatives, and texture reads that choose their own level, to where all pixels of a quad get to.
 
-Why: both compare a pixel with its neighbours. Where these went another way, GLSL and HLSL give just anything, and WGSL
-refuses the module; so one rule holds for every target. In this order, the remedies are
-1. the operation, or the whole call that has it, is computed before the branch, where its operands are the same there;
-2. a texture read gets its level from derivatives taken before the branch, of the coordinates as they were there;
+Why: both compare a pixel with its neighbours. Where these went another way, GLSL and HLSL give just anything,
+and WGSL refuses the module; so one rule holds for every target. In this order, the remedies are
+1. the operation, or the whole call that has it, is computed before the branch, where its operands are the
+   same there;
+2. a texture read gets its level from derivatives taken before the branch, of the coordinates as they were
+   there;
 3. a texture read gets level 0, and a derivative is taken as 0. Of 2 and 3 a note tells the user.
 Place: after `prune`, so that nothing is moved that goes away; before what is done for one target alone.
 """
@@ -337,7 +339,8 @@ class _Hoister:
         return Intrinsic(expr.type, "textureGrad", (map_, at, *slopes), expr.span)
 
     def start(self, expr: Expr) -> Expr | None:
-        """What coordinates start from before the region: as far as they are known, sums without what is not."""
+        """What coordinates start from before the region: as far as they are known, sums without what is
+        not."""
         region = self.region
         if region is None or not region.reachable:
             return None

@@ -1,10 +1,11 @@
 """Puts the body of small functions in the place of their calls.
 
 Why: a polyfill of one expression reads better in place, and some targets cannot call every function.
-Place: right after whatever brings such functions, and before `prune`, which drops those that nothing calls any more.
+Place: right after whatever brings such functions, and before `prune`, which drops those that nothing calls
+any more.
 
-Only functions that are one `return` are inlined. An argument takes its parameter's place where the parameter is used at
-most once, or where the argument costs nothing (a literal, a name, or components of one).
+Only functions that are one `return` are inlined. An argument takes its parameter's place where the parameter
+is used at most once, or where the argument costs nothing (a literal, a name, or components of one).
 """
 
 from __future__ import annotations
@@ -55,9 +56,9 @@ class _Body(NamedTuple):
 def inline(module: Module, should_inline: Callable[[Function], bool], insist: bool = False) -> Module:
     """The module with the functions of one `return` that `should_inline` chooses put in place of their calls.
 
-    With `insist`, arguments that cannot take their parameter's place are held in a variable before the statement;
-    otherwise such a call stays. A call in a loop's own condition or step stays in any case where that is needed. The
-    inlined functions themselves remain.
+    With `insist`, arguments that cannot take their parameter's place are held in a variable before the
+    statement; otherwise such a call stays. A call in a loop's own condition or step stays in any case where
+    that is needed. The inlined functions themselves remain.
     """
     chosen = {
         function.key: function
@@ -203,7 +204,7 @@ class _Inliner:
             self.held.append(Declare(variable, arg.type, arg, arg.span))
             values[name] = Local(arg.type, variable, arg.span)
         value = substitute(body.value, values)
-        # a call that could not be inlined in the function itself may be here, where variables can hold its arguments
+        # a call that had to stay in the function may be inlined here, where variables can hold its arguments
         return self.expression(value) if self.held is not None and self.calls(body.value) else value
 
     def fits(self, arg: Expr, name: str, body: _Body) -> bool:

@@ -68,7 +68,11 @@ def out_arguments(call: Expr, functions: Functions) -> list[str]:
 
 def discards(function: Function) -> bool:
     """Whether the function says through its last parameter which lanes are discarded."""
-    return bool(function.params) and function.params[-1].name == DISCARDED and function.params[-1].direction == "out"
+    return (
+        bool(function.params)
+        and function.params[-1].name == DISCARDED
+        and function.params[-1].direction == "out"
+    )
 
 
 def _announce_discard(function: Function, known: Functions, taken: set[str]) -> Function:
@@ -98,14 +102,17 @@ class _Lifter:
         if expr is None:
             return False
         return any(
-            isinstance(part, Call) and any(param.direction != "in" for param in self.functions[part.function].params)
+            isinstance(part, Call)
+            and any(param.direction != "in" for param in self.functions[part.function].params)
             for part in subexpressions(expr)
         )
 
     def writes_in(self, body: Block) -> bool:
         keys = callees(Function("", (), VOID, "", body, "", self.function.span))
         evaluates = any(isinstance(stmt, Evaluate) for stmt in statements(body))
-        return evaluates or any(param.direction != "in" for key in keys for param in self.functions[key].params)
+        return evaluates or any(
+            param.direction != "in" for key in keys for param in self.functions[key].params
+        )
 
     def local(self, type: Type, name: str, span: Span) -> Local:
         name = fresh(name, self.names)
@@ -148,7 +155,12 @@ class _Lifter:
 
     def assign(self, stmt: Assign) -> None:
         target, value = self.expr(stmt.target), stmt.value
-        if isinstance(target, Local) and not stmt.op and isinstance(value, Call) and self.writes_itself(value):
+        if (
+            isinstance(target, Local)
+            and not stmt.op
+            and isinstance(value, Call)
+            and self.writes_itself(value)
+        ):
             call, after = self.call(value)
             self.out += [Assign(target, "", call, stmt.span), *after]
         else:

@@ -82,9 +82,9 @@ def tidy(body: Block, made: Set[str], functions: Functions) -> Block:
         reads: dict[str, int] = {}
         written: set[str] = set()
         for stmt in statements(body):
-            for name in _reads((stmt,)):
+            for name in _own_reads(stmt):
                 reads[name] = reads.get(name, 0) + 1
-            written.update(_writes((stmt,), functions))
+            written.update(_own_writes(stmt, functions))
         single = {name for name in made - written if reads.get(name, 0) <= 1}
         new = _inline(body, single, reads, functions)
         if new is body:
@@ -95,7 +95,12 @@ def tidy(body: Block, made: Set[str], functions: Functions) -> Block:
 def _inline(block: Block, single: Set[str], reads: dict[str, int], functions: Functions) -> Block:
     """One step: drops or moves the first declaration that can be."""
     for index, stmt in enumerate(block):
-        if isinstance(stmt, Declare) and stmt.name in single and stmt.value is not None and not isinstance(stmt.value, Call):
+        if (
+            isinstance(stmt, Declare)
+            and stmt.name in single
+            and stmt.value is not None
+            and not isinstance(stmt.value, Call)
+        ):
             if stmt.name not in reads:
                 return block[:index] + block[index + 1 :]
             free = {part.name for part in subexpressions(stmt.value) if isinstance(part, Local)}
@@ -117,7 +122,9 @@ def _inline(block: Block, single: Set[str], reads: dict[str, int], functions: Fu
     return block
 
 
-def _inline_inside(stmt: If | For | While, single: Set[str], reads: dict[str, int], functions: Functions) -> Stmt:
+def _inline_inside(
+    stmt: If | For | While, single: Set[str], reads: dict[str, int], functions: Functions
+) -> Stmt:
     if isinstance(stmt, If):
         then = _inline(stmt.then, single, reads, functions)
         otherwise = _inline(stmt.otherwise, single, reads, functions)
@@ -152,7 +159,11 @@ def _join_arms(block: Block, functions: Functions) -> Block:
             stmt = stmt._replace(body=_join_arms(stmt.body, functions))
         elif isinstance(stmt, Assign) and isinstance(stmt.target, Local) and isinstance(stmt.value, Select):
             name, choice = stmt.target.name, stmt.value
-            if isinstance(choice.condition, Local) and _is(choice.yes, name) and not _mentions(choice.no, name):
+            if (
+                isinstance(choice.condition, Local)
+                and _is(choice.yes, name)
+                and not _mentions(choice.no, name)
+            ):
                 place = _other_arm(result, name, choice.condition.name, functions)
                 if place is not None:
                     other = result.pop(place)
@@ -167,7 +178,12 @@ def _other_arm(done: list[Stmt], name: str, mask: str, functions: Functions) -> 
     changed: set[str] = set()
     for place in range(len(done) - 1, -1, -1):
         stmt = done[place]
-        if isinstance(stmt, Assign) and not stmt.op and _is(stmt.target, name) and isinstance(stmt.value, Select):
+        if (
+            isinstance(stmt, Assign)
+            and not stmt.op
+            and _is(stmt.target, name)
+            and isinstance(stmt.value, Select)
+        ):
             choice = stmt.value
             free = {part.name for part in subexpressions(choice.yes) if isinstance(part, Local)} | {mask}
             fits = _is(choice.condition, mask) and _is(choice.no, name) and not free & changed
@@ -220,7 +236,11 @@ def _settle(block: Block, visible: dict[str, Type], functions: Functions) -> Blo
 def _set_first(block: Block, name: str, functions: Functions) -> bool:
     """Whether a variable is set whole, or not used at all, before anything reads it."""
     for stmt in block:
-        if isinstance(stmt, Declare) and stmt.name == name and (stmt.value is None or not _mentions(stmt.value, name)):
+        if (
+            isinstance(stmt, Declare)
+            and stmt.name == name
+            and (stmt.value is None or not _mentions(stmt.value, name))
+        ):
             return True
         reads = name in _reads((stmt,), functions)
         if not reads and isinstance(stmt, Assign) and _is(stmt.target, name):
@@ -267,12 +287,12 @@ def _reads(block: Block, functions: Functions | None = None) -> list[str]:
 
 
 def _writes(block: Block, functions: Functions) -> set[str]:
-    """The variables that statements change, not by declaring them."""
-    names: set[str] = set()
-    for stmt in statements(block):
-        target = root(stmt.target) if isinstance(stmt, Assign) else None
-        if target is not None:
-            names.add(target.name)
-        for expr in expressions(stmt):
-            names.update(out_arguments(expr, functions))
-    return names
+    """The variables that statements, and all inside them, change, not by declaring them."""
+    return {name for stmt in statements(block) for name in _own_writes(stmt, functions)}
+
+
+def _own_writes(stmt: Stmt, functions: Functions) -> list[str]:
+    """The same for the statement itself."""
+    names = [name for expr in expressions(stmt) for name in out_arguments(expr, functions)]
+    target = root(stmt.target) if isinstance(stmt, Assign) else None
+    return names if target is None else [*names, target.name]

@@ -1,11 +1,12 @@
 """Makes names legal for a target, and keeps the author's wherever it can.
 
-Why: every target reserves other words, and some have no overloads; a shader's author should still find their names.
+Why: every target reserves other words, and some have no overloads; a shader's author should still find their
+names.
 Place: last, just before printing, as every pass before it may bring new names and new overloads.
 
-A name is changed if the target reserves it, if no shading language allows it (`__` inside, `gl_` in front), if it is
-taken, or if it hides something that its function uses. A changed name gets `_` at its end, or a number if that is taken
-too. A name that merely ends in digits is as good as any other.
+A name is changed if the target reserves it, if no shading language allows it (`__` inside, `gl_` in front),
+if it is taken, or if it hides something that its function uses. A changed name gets `_` at its end, or a
+number if that is taken too. A name that merely ends in digits is as good as any other.
 """
 
 from __future__ import annotations
@@ -42,10 +43,10 @@ def rename(
 ) -> tuple[Module, dict[str, str]]:
     """The module with legal names, and what was renamed, as old → new.
 
-    `reserved` holds the target's words, `reserved_folded` those it reserves in any case, in lower case. `uniform_name`
-    gives a uniform's name in the target's style. With `mangle_overloads` each function of an overloaded name gets its
-    parameters' types into its name. In the result, overloads that were told apart stand under their key (as in
-    `box(vec3)`), local names under `function.name`, members under `struct.name`.
+    `reserved` holds the target's words, `reserved_folded` those it reserves in any case, in lower case.
+    `uniform_name` gives a uniform's name in the target's style. With `mangle_overloads` each function of an
+    overloaded name gets its parameters' types into its name. In the result, overloads that were told apart
+    stand under their key (as in `box(vec3)`), local names under `function.name`, members under `struct.name`.
     """
     return _Namer(module, reserved, uniform_name, mangle_overloads, reserved_folded).run()
 

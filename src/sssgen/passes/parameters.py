@@ -1,8 +1,9 @@
-"""Hands uniforms and textures to functions as parameters, for targets whose text has no place to declare them.
+"""Hands uniforms and textures to functions as parameters, for targets whose text has no place to declare
+them.
 
 Why: a function library to paste, or an engine's custom-function node, gets its parameters from its caller.
-Place: after `prune` and `hoist`, so that only what is read is passed on; before `legalise` and `names`, as it brings
-parameters to shape and names to make legal.
+Place: after `prune` and `hoist`, so that only what is read is passed on; before `legalise` and `names`, as it
+brings parameters to shape and names to make legal.
 """
 
 from __future__ import annotations
@@ -16,9 +17,9 @@ from .scopes import declared, fresh, mentions, rename_locals
 def uniforms_to_parameters(module: Module, textures: bool = True) -> Module:
     """The module with every function closed over the uniforms that it reads, itself or through what it calls.
 
-    They become parameters behind its own, in the order of the uniforms' declarations, with their names; a variable of
-    that name is renamed. `module.uniforms` stays for the documentation. Without `textures` these remain global. The
-    keys of functions change with their parameters.
+    They become parameters behind its own, in the order of the uniforms' declarations, with their names; a
+    variable of that name is renamed. `module.uniforms` stays for the documentation. Without `textures` these
+    remain global. The keys of functions change with their parameters.
     """
     uniforms = {
         uniform.name: uniform
@@ -37,7 +38,8 @@ class _Closer:
         self.order = {name: position for position, name in enumerate(uniforms)}
         self.reads: dict[str, list[str]] = {}
         self.names: dict[str, str] = {}
-        """The new name of each function, by its old key: another overload may have the new parameters already."""
+        """The new name of each function, by its old key: another overload may have the new parameters
+        already."""
         self.keys: dict[str, str] = {}
         taken = set[str]()
         # functions that stay as they are come first, so that others make way for them

@@ -283,7 +283,9 @@ class _Converter:
                 depths.append(0)
             elif isinstance(inner, Break | Continue):
                 depths.append(self.loops[-1] if self.loops else self.depth)
-            elif isinstance(inner, Discard) or (isinstance(inner, For | While) and self.facts.loops[id(inner)].diverges):
+            elif isinstance(inner, Discard) or (
+                isinstance(inner, For | While) and self.facts.loops[id(inner)].diverges
+            ):
                 depths.append(_OUTSIDE)
         return min(depths)
 
@@ -371,7 +373,9 @@ class _Converter:
     def clear(self, mask: Mask, gone: Mask | None, span: Span) -> None:
         """Takes lanes out of a mask; all of them for None."""
         if gone is None:
-            self.out.append(Assign(Local(BOOL, mask.name, span), "", Literal(BOOL, mask.inverted, span), span))
+            self.out.append(
+                Assign(Local(BOOL, mask.name, span), "", Literal(BOOL, mask.inverted, span), span)
+            )
         elif mask.inverted:
             self.update(mask.name, "||", gone.expr(span))
         else:
@@ -423,7 +427,13 @@ class _Converter:
 
     def leave_function(self, value: Expr | None, span: Span) -> None:
         if value is not None and self.returned:
-            value = Select(value.type, Local(BOOL, self.returned, span), Local(value.type, self.result, span), value, span)
+            value = Select(
+                value.type,
+                Local(BOOL, self.returned, span),
+                Local(value.type, self.result, span),
+                value,
+                span,
+            )
         if self.depth == 0:
             self.out.append(Return(value, span))
             return
@@ -473,6 +483,8 @@ def _jumps_inside(block: Block) -> bool:
     """Whether there is a jump in a statement of the block, beside the block's own."""
     jumps = (Break, Continue, Return, Discard)
     return any(
-        isinstance(inner, jumps) for stmt in block if not isinstance(stmt, jumps) for inner in statements((stmt,))
+        isinstance(inner, jumps)
+        for stmt in block
+        if not isinstance(stmt, jumps)
+        for inner in statements((stmt,))
     )
-

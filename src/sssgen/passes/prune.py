@@ -1,12 +1,13 @@
-"""Removes what a material does not use: functions, uniforms, constants, structs, and statements without effect.
+"""Removes what a material does not use: functions, uniforms, constants, structs, and statements without
+effect.
 
 Why: what a material leaves out must not appear in its shader, and an artist should not read dead code.
-Place: after `fold`, which makes branches and uniforms unused; before `hoist`, `parameters` and `names`, which then meet
-only what is there, callees before callers. It may run again after a pass that leaves remains.
+Place: after `fold`, which makes branches and uniforms unused; before `hoist`, `parameters` and `names`, which
+then meet only what is there, callees before callers. It may run again after a pass that leaves remains.
 
-A statement is kept if it has an effect (it returns, discards, leaves a kept loop, or writes an out parameter), if it
-writes a variable that a kept statement mentions, or if it contains a kept statement. Loops end (the checker has seen to
-it), so an unkept loop has no effect.
+A statement is kept if it has an effect (it returns, discards, leaves a kept loop, or writes an out
+parameter), if it writes a variable that a kept statement mentions, or if it contains a kept statement. Loops
+end (the checker has seen to it), so an unkept loop has no effect.
 """
 
 from __future__ import annotations
@@ -50,8 +51,8 @@ _T = TypeVar("_T")
 def prune(module: Module, roots: Iterable[str]) -> Module:
     """The part of a module that the functions with the keys `roots` use, without dead statements.
 
-    Functions come out with callees before callers, otherwise in the order they had. Raises KeyError for a root that the
-    module does not have.
+    Functions come out with callees before callers, otherwise in the order they had. Raises KeyError for a
+    root that the module does not have.
     """
     cleaner = _Cleaner(module)
     reached = set(roots)
@@ -175,8 +176,8 @@ class _Cleaner:
 class _FunctionCleaner:
     """Finds and drops what has no effect in one function.
 
-    Variables are numbered by declaration, as sibling blocks may use one name for several. In the IR no visible variable
-    is hidden, so a name stands for its latest declaration.
+    Variables are numbered by declaration, as sibling blocks may use one name for several. In the IR no
+    visible variable is hidden, so a name stands for its latest declaration.
     """
 
     def __init__(self, cleaner: _Cleaner, function: Function) -> None:

@@ -48,7 +48,8 @@ def declared(function: Function) -> list[str]:
 
 
 def mentions(function: Function) -> tuple[set[str], set[str]]:
-    """The names of the uniforms and constants that a function reads, and the keys of the functions it calls."""
+    """The names of the uniforms and constants that a function reads, and the keys of the functions it
+    calls."""
     globals_, calls = set[str](), set[str]()
     for stmt in statements(function.body or ()):
         stack: list[Any] = [*expressions(stmt)]
@@ -97,8 +98,8 @@ def rename_locals(
 ) -> tuple[Function, dict[str, str]]:
     """Renames variables whose name is `bad`, or visible already where they are declared; says which.
 
-    `choose` gives a new name that is not among those taken. The module's declarations that the function uses are
-    renamed along: uniforms and constants by `globals`, the keys of functions by `calls`.
+    `choose` gives a new name that is not among those taken. The module's declarations that the function uses
+    are renamed along: uniforms and constants by `globals`, the keys of functions by `calls`.
     """
     names = declared(function)
     renamer = Renamer(globals, calls)

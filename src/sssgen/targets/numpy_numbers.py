@@ -24,11 +24,14 @@ class Numbers:
         self.plain_results: set[str] = set()
         self.locals: dict[str, set[str]] = {function.key: set() for function in module.functions}
         self.counters: dict[str, dict[str, int | None]] = {}
-        """For each function its loop counters and how large they may get."""
+        """For each function its loop counters and the like, and how large they may get."""
+        self.ranges: dict[str, set[str]] = {function.key: set() for function in module.functions}
+        """For each function the counters that run through a Python range."""
         self.key = ""
         for function in module.functions:
             self.enter(function)
             self.find_counters(function)
+            self.counters[self.key] |= dict.fromkeys(_steppers(function), _STEPPED)
         while any([self.look(function) for function in module.functions]):
             pass
 
@@ -44,6 +47,7 @@ class Numbers:
                 known = [bound for bound in bounds if bound is not None]
                 counters[counter.name] = max(known) if len(known) == 2 else None
                 self.locals[self.key].add(counter.name)
+                self.ranges[self.key].add(counter.name)
 
     def look(self, function: ir.Function) -> bool:
         """Goes once through a function; whether that found something new."""
@@ -68,7 +72,11 @@ class Numbers:
         for arg, param in zip(call.args, self.functions[call.function].params, strict=True):
             if param.direction != "out" and self.plain(arg):
                 self.plain_params.add((call.function, param.name))
-            if param.direction != "in" and isinstance(arg, ir.Local) and kind_of(arg.type) in ("float", "int"):
+            if (
+                param.direction != "in"
+                and isinstance(arg, ir.Local)
+                and kind_of(arg.type) in ("float", "int")
+            ):
                 names.add(arg.name)
 
     def plain(self, expr: ir.Expr) -> bool:
@@ -79,7 +87,7 @@ class Numbers:
         if isinstance(expr, ir.Literal):
             return True
         if isinstance(expr, ir.Local):
-            names = self.locals[self.key] if kind != "uint" else self.counters[self.key]
+            names = self.locals[self.key] if kind != "uint" else self.ranges[self.key]
             return expr.name in names
         if kind in ("uint", "bool"):
             return False
@@ -119,6 +127,44 @@ class Numbers:
             if left is not None and right is not None:
                 return left * right if expr.op == "*" else left + right
         return None
+
+
+_STEPPED = 1 << 30
+"""What a variable that is only ever stepped by a little stays below: it would take millions of steps."""
+
+
+def _steppers(function: ir.Function) -> set[str]:
+    """The int variables that start from small literals and are only stepped by small ones."""
+    found = {
+        stmt.name
+        for stmt in statements(function.body or ())
+        if isinstance(stmt, ir.Declare) and stmt.type == INT
+    }
+
+    def small(expr: ir.Expr, name: str, largest: int) -> bool:
+        if isinstance(expr, ir.Select):
+            return small(expr.yes, name, largest) and small(expr.no, name, largest)
+        if isinstance(expr, ir.Binary) and expr.op in ("+", "-") and isinstance(expr.left, ir.Local):
+            return expr.left.name == name and small(expr.right, "", 256)
+        if isinstance(expr, ir.Literal):
+            return abs(int(expr.value)) <= largest
+        return isinstance(expr, ir.Local) and expr.name == name
+
+    for stmt in statements(function.body or ()):
+        if (
+            isinstance(stmt, ir.Declare)
+            and stmt.value is not None
+            and not small(stmt.value, stmt.name, 1 << 20)
+        ):
+            found.discard(stmt.name)
+        elif isinstance(stmt, ir.Assign) and isinstance(stmt.target, ir.Local):
+            name = stmt.target.name
+            if stmt.op not in ("", "+", "-") or not small(stmt.value, name, 256 if stmt.op else 1 << 20):
+                found.discard(name)
+        for expr in expressions(stmt):
+            if isinstance(expr, ir.Call):
+                found -= {arg.name for arg in expr.args if isinstance(arg, ir.Local)}
+    return found
 
 
 def nonzero(expr: ir.Expr) -> bool:

@@ -39,7 +39,10 @@ _LIBRARY_HEADERS = {
         *(f"{_GRAPH}{name}.hlsl" for name in ("ShaderVariables", "ShaderVariablesFunctions", "Functions")),
     ),
 }  # fmt: skip
-_BUILTIN_MACROS = ("SHADER_API_D3D11=1", "SHADER_TARGET=30", "UNITY_VERSION=201940", "UNITY_PBS_USE_BRDF1=1")
+# glslang takes the float1 of Unity's fog coordinate for a float, whose .x it will not assign to.
+_BUILTIN_MACROS = (
+    "SHADER_API_D3D11=1", "SHADER_TARGET=30", "UNITY_VERSION=201940", "UNITY_PBS_USE_BRDF1=1", "float1=float2",
+)  # fmt: skip
 _URP_MACROS = ("SHADER_API_D3D11=1", "SHADER_TARGET=45", "UNITY_VERSION=202120", "UNITY_COMPILER_DXC=1")
 # Unity's preprocessor expands a macro's arguments before it joins them with ##; C's does not, so that the
 # instanced matrices come out under this name. The built-in pipeline's headers cannot be helped like that:

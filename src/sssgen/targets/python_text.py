@@ -1,0 +1,70 @@
+"""Python text that does not depend on a module: long lines, and the defaults of uniforms and textures."""
+
+from __future__ import annotations
+
+import re
+
+from ..ir.nodes import Span, Uniform
+from ..ir.types import Array, Matrix, Sampler, Scalar, Type, components, kind_of
+from .printer import WIDTH, Line
+
+_TEXELS = {
+    "default_white": "1.0",
+    "default_black": "0.0",
+    "default_gray": "0.5",
+    "default_bump": "(0.5, 0.5, 1.0, 1.0)",
+}
+_SHAPES = {"2D": "1, 1, 4", "3D": "1, 1, 1, 4", "Cube": "6, 1, 1, 4"}
+_BREAK = re.compile(r"[(\[]|[)\]]|(?<=,) | (?=[-+*/&|<>]+ )")
+
+
+def wrap(text: str, span: ir.Span) -> list[Line]:
+    """Breaks a long line inside its outermost parentheses that help, after a comma or before an operator."""
+    indent = " " * (len(text) - len(text.lstrip()) + 4)
+    lines: list[Line] = []
+    open_ = 0
+    while len(text) > WIDTH:
+        depth, places = open_, []
+        for match in _BREAK.finditer(text):
+            depth += (match[0] in "([") - (match[0] in ")]")
+            if match[0] == " " and depth > 0 and len(indent) < match.start() <= WIDTH:
+                places.append((depth, -match.start()))
+        if not places:
+            break
+        place = -min(places)[1]
+        open_ += (
+            text.count("(", 0, place)
+            + text.count("[", 0, place)
+            - text.count(")", 0, place)
+            - text.count("]", 0, place)
+        )
+        lines.append(Line(text[:place], span))
+        text = indent + text[place:].lstrip()
+    return [*lines, Line(text, span)]
+
+
+def value_text(type_: Type, numbers: tuple[float, ...]) -> str:
+    """A value of the runtime from its components."""
+    if isinstance(type_, Array):
+        size = components(type_.element)
+        parts = [value_text(type_.element, numbers[at : at + size]) for at in range(0, len(numbers), size)]
+        return f"array({', '.join(parts)})"
+    kind = kind_of(type_)
+    texts = [
+        repr(float(number) if kind == "float" else bool(number) if kind == "bool" else int(number))
+        for number in numbers
+    ]
+    if kind == "uint":
+        texts[0] = f"to_uint({texts[0]})"
+    if isinstance(type_, Scalar):
+        return texts[0]
+    return f"{f'mat({type_.size}, ' if isinstance(type_, Matrix) else 'vec('}{', '.join(texts)})"
+
+
+def texture_text(texture: Uniform) -> str:
+    """A texture of one texel of the default that its hints name."""
+    assert isinstance(texture.type, Sampler)
+    hints = {name for name, _ in texture.hints}
+    texel = next((text for hint, text in _TEXELS.items() if hint in hints), "1.0")
+    dim = ', dim="Cube"' if texture.type.dim == "Cube" else ""
+    return f"Texture(np.full(({_SHAPES[texture.type.dim]}), {texel}){dim})"

@@ -1,0 +1,42 @@
+"""Writing emitted files: inside their folder only, whatever links and names say."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from snapshot import check_snapshot
+from sssgen.diagnostics import SssgenError
+from sssgen.output import check_names, write_files
+
+
+@pytest.fixture(autouse=True)
+def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def test_what_climbing_names_are_told() -> None:
+    with pytest.raises(SssgenError) as caught:
+        check_names(["fine.txt", "../x", "/x", "a\x00b"])
+    check_snapshot("cli/names_that_climb_out.txt", f"{caught.value}\n")
+
+
+def test_sub_folders_are_made_but_links_out_are_not_followed(tmp_path: Path) -> None:
+    write_files(Path("out"), {"include/wax.hlsl": "a\n"})
+    assert Path("out/include/wax.hlsl").read_bytes() == b"a\n"
+    (tmp_path / "elsewhere").mkdir()
+    Path("out/link").symlink_to(tmp_path / "elsewhere", target_is_directory=True)
+    with pytest.raises(SssgenError, match="a link out of the output folder"):
+        write_files(Path("out"), {"link/wax.hlsl": "a\n"})
+    with pytest.raises(SssgenError, match="a link out of the output folder"):
+        write_files(Path("out"), {"link/deeper/wax.hlsl": "a\n"})
+
+
+def test_a_linked_file_is_replaced_not_written_through() -> None:
+    Path("precious.txt").write_text("mine\n", encoding="utf-8")
+    Path("out").mkdir()
+    Path("out/wax.txt").symlink_to(Path("precious.txt").absolute())
+    write_files(Path("out"), {"wax.txt": "new\n"})
+    assert Path("precious.txt").read_text(encoding="utf-8") == "mine\n"
+    assert Path("out/wax.txt").read_text(encoding="utf-8") == "new\n"
