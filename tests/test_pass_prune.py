@@ -3,15 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from passes import assert_is, key, module_of
+from pass_cases import assert_is, key, module_of
 
 from sssgen.ir.verify import verify
 from sssgen.passes.prune import prune
-
-
-def pruned(source: str, *roots: str) -> object:
-    module = module_of(source)
-    return prune(module, [key(module, root) for root in roots or ("f",)])
 
 
 def becomes(before: str, after: str, *roots: str) -> None:

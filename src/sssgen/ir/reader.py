@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from math import isfinite
 
 from .nodes import (
@@ -71,7 +72,7 @@ _ESCAPE = re.compile(r'\\(["\\]|[0-9a-f]+;)')
 
 
 class _Reader:
-    """Reads by recursive descent; functions' bodies come last, when the results of all functions are known."""
+    """Reads by recursive descent; functions' bodies come last, when every function's result is known."""
 
     def __init__(self, text: str) -> None:
         self.text = text
@@ -177,7 +178,8 @@ class _Reader:
         bodies: dict[int, int] = {}
         try:
             while self.take("file"):
-                self.files[self.kind("number")] = self.string()
+                number = self.kind("number")
+                self.files[number] = self.string()
             while self.tokens[self.next][0] != "end":
                 doc = [self.string()] if self.take("doc") else []
                 while self.tokens[self.next][0] == "text":
@@ -409,4 +411,4 @@ class _Reader:
         return tuple(exprs)
 
 
-_JUMPS = {"break": Break, "continue": Continue, "discard": Discard}
+_JUMPS: dict[str, Callable[[Span], Stmt]] = {"break": Break, "continue": Continue, "discard": Discard}

@@ -1,7 +1,7 @@
-"""The typing rules of the IR, in one place: the checker applies them, the reader infers with them, the verifier asks them.
+"""The typing rules of the IR: the checker applies them, the reader infers with them, the verifier asks them.
 
-GLSL ES 3.00, sections 5.4 to 5.9, without what `lang` has already made explicit: there are no implicit conversions,
-and a constructor's arguments have its own kind.
+They are those of GLSL ES 3.00, sections 5.4 to 5.9, after `lang` has made explicit what is implicit there:
+nothing is converted but by a constructor, and a constructor's arguments have its own kind.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def operator_type(op: str, left: Type, right: Type) -> Type | None:
 
 
 def element_type(type: Type) -> tuple[Type, int] | None:
-    """What an index picks from a value of this type, and how many of them there are; None if it has no elements."""
+    """What an index picks from a value of this type, and how many there are; None if it has no elements."""
     if isinstance(type, Array):
         return type.element, type.length
     if isinstance(type, Vector):
@@ -79,9 +79,9 @@ def element_type(type: Type) -> tuple[Type, int] | None:
 
 def swizzle_type(type: Type, letters: str) -> Type | None:
     """The type of `.letters` of a vector."""
-    if not isinstance(type, Vector) or not 1 <= len(letters) <= 4 or not set(letters) <= set("xyzw"[: type.size]):
-        return None
-    return vector_of(type.kind, len(letters))
+    if isinstance(type, Vector) and 1 <= len(letters) <= 4 and set(letters) <= set("xyzw"[: type.size]):
+        return vector_of(type.kind, len(letters))
+    return None
 
 
 def inferred(expr: Expr) -> Type | None:
@@ -112,9 +112,10 @@ def inferred(expr: Expr) -> Type | None:
 def constructs(type: Type, args: Sequence[Type]) -> bool:
     """Whether `type(args…)` is a constructor as the IR has them.
 
-    A struct takes its fields and an array its elements. Of the others, one argument is a conversion of the same shape
-    to another kind, a scalar to fill a vector or a matrix's diagonal, or a matrix to cut or to extend; several are put
-    together, and their components are as many as the result's. A vector is cut short by a swizzle, not by this.
+    A struct takes its fields and an array its elements. Of the others, one argument is converted to another
+    kind in the same shape, or is a scalar that fills a vector or a matrix's diagonal, or a matrix to cut or
+    to extend; several are put together, with as many components as the result. A vector is cut by a swizzle,
+    not by this.
     """
     if isinstance(type, Struct):
         return [field.type for field in type.fields] == list(args)

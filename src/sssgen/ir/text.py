@@ -9,13 +9,15 @@
         return@0:6:5-20 exp((- d))@0:6:12-19;
     }
 
-Every binary operator, unary operator and choice has its brackets, so that there is no precedence. `$` marks what the
-module declares: `$density` is a global and `$remaining(x)` a call; a bare call is a builtin, a bare name a local, and
-braces construct: `vec3{x, y, z}`. `-1.0` is a literal and `(- 1.0)` a negation. Types stand where something is declared
-or constructed; those of all other expressions follow from the rules, so what is printed must be valid (`ir.verify`).
+Every operator and every choice has its brackets, so that there is no precedence. `$` marks what the module
+declares: `$density` is a global and `$remaining(x)` a call. A bare call is a builtin, a bare name a local,
+and braces construct: `vec3{x, y, z}`. `-1.0` is a literal and `(- 1.0)` a negation. Types stand where
+something is declared or constructed; those of all other expressions follow from the rules, so what is printed
+must be valid (`ir.verify`).
 
-A span follows the first token of a statement or declaration and the last of an expression: `@file:line:column-`, then
-`column` or `line:column` of its end. No span means NOWHERE; without spans, two modules are equal if their texts are.
+A span follows the first token of a statement or declaration and the last of an expression:
+`@file:line:column-`, then `column` or `line:column` of its end. No span means NOWHERE. Without spans, modules
+are equal if their texts are.
 """
 
 from __future__ import annotations
@@ -86,27 +88,29 @@ class _Printer:
 
     def struct(self, struct: StructDecl) -> str:
         assert isinstance(struct.type, Struct)
-        fields = [f"    {spell(field.type)} {field.name}{_colon(field.quantity)};\n" for field in struct.type.fields]
-        return f"{_doc(struct.doc)}struct{self.at(struct.span)} {struct.type.name} {{\n{''.join(fields)}}}\n"
+        fields = [f"    {spell(one.type)} {one.name}{_colon(one.quantity)};\n" for one in struct.type.fields]
+        head = f"{_doc(struct.doc)}struct{self.at(struct.span)} {struct.type.name}"
+        return f"{head} {{\n{''.join(fields)}}}\n"
 
     def constant(self, constant: Constant) -> str:
         value = self.expr(constant.value)
         return f"const{self.at(constant.span)} {spell(constant.type)} {constant.name} = {value}\n"
 
     def uniform(self, uniform: Uniform) -> str:
-        head = f"uniform{self.at(uniform.span)} {spell(uniform.type)} {uniform.name}{_colon(uniform.quantity)}"
+        declared = f"{spell(uniform.type)} {uniform.name}{_colon(uniform.quantity)}"
         default = f" = ({', '.join(map(_number, uniform.default))})" if uniform.default else ""
-        hints = ", ".join([f"{name}({', '.join(map(_hint_argument, args))})" for name, args in uniform.hints])
-        return f"{_doc(uniform.doc)}{head}{default}{f' [{hints}]' if hints else ''}\n"
+        hints = [f"{name}({', '.join(map(_hint_argument, args))})" for name, args in uniform.hints]
+        listed = f" [{', '.join(hints)}]" if hints else ""
+        return f"{_doc(uniform.doc)}uniform{self.at(uniform.span)} {declared}{default}{listed}\n"
 
     def function(self, function: Function) -> str:
         params = [
-            f"{param.direction}{self.at(param.span)} {spell(param.type)} {param.name}{_colon(param.quantity)}"
-            for param in function.params
+            f"{one.direction}{self.at(one.span)} {spell(one.type)} {one.name}{_colon(one.quantity)}"
+            for one in function.params
         ]
-        head = f"function{self.at(function.span)} {spell(function.result)} {function.name}({', '.join(params)})"
+        at, declared = self.at(function.span), f"{spell(function.result)} {function.name}({', '.join(params)})"
         body = " slot" if function.body is None else f" {self.block(function.body, 0)}"
-        return f"{_doc(function.doc)}{head}{_colon(function.quantity)}{body}\n"
+        return f"{_doc(function.doc)}function{at} {declared}{_colon(function.quantity)}{body}\n"
 
     def block(self, block: Block, depth: int) -> str:
         inside = "    " * (depth + 1)

@@ -1,7 +1,7 @@
 """The verifier: says where a module breaks the rules that every pass and every printer takes for granted.
 
-Each rule looks at one node and the types its operands claim, so that a fault is named where it is and once. Run after
-every pass in tests; the checker's own errors are for people and stand elsewhere.
+Each rule looks at one node and the types its operands claim, so that a fault is named where it is, and once.
+It runs after every pass in tests. The checker's errors are for people, these are for us.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def check_module(module: Module, linked: bool = False) -> None:
 
 
 def verify(module: Module, linked: bool = False) -> list[str]:
-    """What is wrong with a module, each with its place. `linked`: no slots are left, and callees come first."""
+    """What is wrong with a module, each with its place. `linked`: no slots left, and callees come first."""
     verifier = _Verifier(module, linked)
     verifier.module()
     return verifier.problems
@@ -94,7 +94,7 @@ class _Verifier:
             [(struct.type.name, struct.span) for struct in whole.structs if isinstance(struct.type, Struct)]
             + [(constant.name, constant.span) for constant in whole.constants]
             + [(uniform.name, uniform.span) for uniform in whole.uniforms]
-            + list({function.name: (function.name, function.span) for function in whole.functions}.values()),
+            + list({one.name: (one.name, one.span) for one in whole.functions}.values()),
             "is declared twice in the module",
         )
         self.unique([(function.key, function.span) for function in whole.functions], "is defined twice")
@@ -114,8 +114,8 @@ class _Verifier:
             self.same(constant.value.type, constant.type, constant.span, f"constant '{constant.name}'")
             for part in subexpressions(constant.value):
                 reads = isinstance(part, Intrinsic) and part.name.startswith(_READS_SURROUNDINGS)
-                varies = isinstance(part, Local | Call) or (isinstance(part, Global) and part.name not in constants)
-                if reads or varies:
+                varies = isinstance(part, Global) and part.name not in constants
+                if reads or varies or isinstance(part, Local | Call):
                     self.report(part.span, f"the value of '{constant.name}' is not constant")
             constants.add(constant.name)
             self.globals[constant.name] = constant.type
@@ -149,14 +149,14 @@ class _Verifier:
         if isinstance(innermost, Struct):
             self.report(span, f"uniform '{name}' is made of structs")
         elif len(uniform.default) != components(type_):
-            self.report(span, f"uniform '{name}' has {len(uniform.default)} defaults, not {components(type_)}")
+            self.report(span, f"'{name}' has {len(uniform.default)} defaults, not {components(type_)}")
         elif not all(_fits(value, kind_of(innermost)) for value in uniform.default):
-            self.report(span, f"uniform '{name}' has a default that no {spell(innermost)} holds: {uniform.default}")
+            self.report(span, f"'{name}' has a default that no {spell(innermost)} holds: {uniform.default}")
 
     def calls(self) -> None:
         """Every call goes to a function of the module and none comes back; linked, only to earlier ones."""
         position = {function.key: index for index, function in enumerate(self.whole.functions)}
-        pending = {key: {name for name in callees(self.functions[key]) if name in position} for key in position}
+        pending = {key: position.keys() & callees(self.functions[key]) for key in position}
         if self.linked:
             for function in self.whole.functions:
                 late = [name for name in pending[function.key] if position[name] >= position[function.key]]
@@ -252,10 +252,11 @@ class _Verifier:
         self.scopes.append({})
         for part in (stmt.init, stmt.step):
             if part is not None:
-                if not isinstance(part, Declare | Assign | Evaluate) or (part is stmt.step and isinstance(part, Declare)):
+                allowed = Assign | Evaluate if part is stmt.step else Declare | Assign | Evaluate
+                if isinstance(part, allowed):
+                    self.statement(part, False)
+                else:
                     self.report(stmt.span, f"a {type(part).__name__} in the head of a for")
-                    continue
-                self.statement(part, False)
         if stmt.condition is not None:
             self.condition(stmt.condition)
         self.inner(stmt.body, True)
@@ -282,10 +283,11 @@ class _Verifier:
         inner = target
         while isinstance(inner, Swizzle | Index | Member):
             if isinstance(inner, Swizzle) and len(set(inner.components)) != len(inner.components):
-                self.report(target.span, f"'.{inner.components}' names a component twice and cannot be assigned to")
+                self.report(target.span, f"'.{inner.components}' is assigned to, and names a component twice")
             inner = inner.value
         if not isinstance(inner, Local) or isinstance(target.type, Sampler):
-            self.report(target.span, f"a {type(inner).__name__} of type {_name(target.type)} cannot be assigned to")
+            what = f"a {type(inner).__name__} of type {_name(target.type)}"
+            self.report(target.span, f"{what} cannot be assigned to")
 
     def expression(self, expr: Expr, nothing: bool = False) -> None:
         """An expression and everything in it; `nothing` says that it may be a call without a result."""
@@ -323,7 +325,8 @@ class _Verifier:
             if wanted is None:
                 yield f"{_what(node)} is not defined for {_names(operands(node))}"
             elif wanted != node.type:
-                yield f"{_what(node)} of {_names(operands(node))} is a {_name(wanted)}, not a {_name(node.type)}"
+                given = _names(operands(node))
+                yield f"{_what(node)} of {given} is a {_name(wanted)}, not a {_name(node.type)}"
             elif isinstance(node, Index) and isinstance(node.index, Literal):
                 found = element_type(node.value.type)
                 if found is not None and not 0 <= node.index.value < found[1]:

@@ -38,12 +38,13 @@ from .wording import a_type, mixed_hint
 # GLSL ES 3.00, section 3.8: what GLSL itself keeps for later. Names that only other targets reserve are renamed there.
 RESERVED = frozenset(
     """attribute varying coherent volatile restrict readonly writeonly resource atomic_uint noperspective patch sample
-    subroutine common partition active asm class union enum typedef template this goto inline noinline public static
-    extern external interface long short long double half fixed unsigned superp input output filter sizeof cast namespace
-    using switch case default do layout centroid flat smooth invariant buffer shared precise packed const uniform in out
-    inout if else for while break continue return discard struct true false precision highp mediump lowp void float int
-    uint bool vec2 vec3 vec4 ivec2 ivec3 ivec4 uvec2 uvec3 uvec4 bvec2 bvec3 bvec4 dvec2 dvec3 dvec4 fvec2 fvec3 fvec4
-    hvec2 hvec3 hvec4 mat2 mat3 mat4 mat2x2 mat2x3 mat2x4 mat3x2 mat3x3 mat3x4 mat4x2 mat4x3 mat4x4""".split()  # noqa: SIM905 - eighty names
+    subroutine common partition active asm class union enum typedef template this goto inline noinline public
+    static extern external interface long short long double half fixed unsigned superp input output filter
+    sizeof cast namespace using switch case default do layout centroid flat smooth invariant buffer shared
+    precise packed const uniform in out inout if else for while break continue return discard struct true
+    false precision highp mediump lowp void float int uint bool vec2 vec3 vec4 ivec2 ivec3 ivec4 uvec2 uvec3
+    uvec4 bvec2 bvec3 bvec4 dvec2 dvec3 dvec4 fvec2 fvec3 fvec4 hvec2 hvec3 hvec4 mat2 mat3 mat4 mat2x2 mat2x3
+    mat2x4 mat3x2 mat3x3 mat3x4 mat4x2 mat4x3 mat4x4""".split()  # noqa: SIM905 - eighty names
 )
 _RESERVED_TYPES = re.compile(r"[iu]?(sampler|image)([123]D|Cube|Buffer)")
 

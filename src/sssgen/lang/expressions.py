@@ -1,6 +1,7 @@
 """Checks expressions: names, types, overloads and quantities, giving IR.
 
-Where something is wrong, it is reported and an `Untyped` goes up, which nothing complains about a second time.
+Where something is wrong, it is reported and an `Untyped` goes up, which nothing complains about a second
+time.
 """
 
 from __future__ import annotations

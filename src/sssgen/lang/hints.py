@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from ..diagnostics import did_you_mean
 from ..ir.nodes import Span
-from ..ir.types import Sampler, Type, kind_of
+from ..ir.rules import FLOAT_MAX
+from ..ir.types import Sampler, Type, components, kind_of
 from . import quantities as q
 from . import syntax as s
 
@@ -43,35 +44,49 @@ def check_hints(
         if name in found:
             raise checker.fail(span, f"hint '{name}' is given twice")
         fewest, most, kind, for_texture = HINTS[name]
+        if any(isinstance(arg, float) and not abs(arg) <= FLOAT_MAX for arg in hint.args):
+            raise checker.fail(span, f"a number of {name} does not fit in a float")
         if not fewest <= len(hint.args) <= most or any(not isinstance(arg, kind) for arg in hint.args):
             raise checker.fail(span, f"{name} takes {_arguments(fewest, most, kind)}")
         if for_texture is not None and for_texture != isinstance(type_, Sampler):
             raise checker.fail(span, f"{name} is for {'textures' if for_texture else 'values'} only")
+        if name == "source_color" and (kind_of(type_) != "float" or components(type_) not in (3, 4)):
+            raise checker.fail(span, "source_color is for vec3 and vec4 only")
         if name == "hint_range":
-            _check_range(checker, span, hint.args, type_, default)
+            _check_range(checker, span, hint.args, type_, default, uniform.value is not None)
         if name == "holds":
             held = str(hint.args[0])
             if held not in q.SCALARS:
-                raise checker.fail(span, f"a texture cannot hold '{held}'", f"it holds one of {', '.join(q.SCALARS)}")
+                known = f"it holds one of {', '.join(q.SCALARS)}"
+                raise checker.fail(span, f"a texture cannot hold '{held}'", known)
         found[name] = hint.args
     return tuple(found.items()), held
 
 
 def _check_range(
-    checker: ExpressionChecker, span: Span, args: tuple[float | str, ...], type_: Type, default: tuple[float, ...]
+    checker: ExpressionChecker,
+    span: Span,
+    args: tuple[float | str, ...],
+    type_: Type,
+    default: tuple[float, ...],
+    written: bool,
 ) -> None:
     low, high = float(args[0]), float(args[1])
     if kind_of(type_) not in ("float", "int", "uint"):
         raise checker.fail(span, "hint_range is for numbers only")
     if not low < high:
         raise checker.fail(span, f"the range {low:g} to {high:g} is empty")
+    if not all(float(step) > 0.0 for step in args[2:]):
+        raise checker.fail(span, "the step of a range is above 0")
     for value in default:
         if not low <= value <= high:
-            raise checker.fail(span, f"the default {value:g} is outside the range {low:g} to {high:g}")
+            message = f"the default {value:g} is outside the range {low:g} to {high:g}"
+            raise checker.fail(span, message, "" if written else f"give it one, such as = {low:g}")
 
 
 def _arguments(fewest: int, most: int, kind: type) -> str:
-    what = "numbers" if kind is float else "names or texts"
     if most == 0:
         return "no arguments"
-    return f"{fewest} {what}" if fewest == most else f"{fewest} to {most} {what}"
+    if most == 1:
+        return "one number" if kind is float else "one name or text"
+    return f"{fewest} to {most} {'numbers' if kind is float else 'names or texts'}"

@@ -27,8 +27,8 @@ _stamp = ""
 def load_file(path: Path, shown: str, roots: Sequence[Path] = ()) -> Module:
     """The checked module of a file and all it includes.
 
-    `shown` is the file's name in messages; `roots` are the folders in which `#include "x"` is looked for, after the
-    file's own. Raises SssgenError for a missing, unreadable, too large or faulty file.
+    `shown` is the file's name in messages; `roots` are the folders in which `#include "x"` is looked for,
+    after the file's own. Raises SssgenError for a missing, unreadable, too large or faulty file.
     """
     return load_text(read_text(path, shown), shown, (path.parent, *roots))
 
@@ -57,7 +57,8 @@ def load_text(text: str, shown: str, roots: Sequence[Path] = (), _within: tuple[
 
 def comments_before(file: str, line: int) -> list[str]:
     """The `//` comments that stand alone on the lines just before a line of a loaded file, without their marks."""
-    lines, found = _lines.get(file, []), []
+    lines = _lines.get(file, [])
+    found: list[str] = []
     while 1 < line <= len(lines):
         text = lines[line - 2].strip()
         if not text.startswith("//") or text.startswith("///"):

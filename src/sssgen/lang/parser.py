@@ -180,7 +180,9 @@ class _Builder:
             return str(token)[1:-1]
         if token.type == "NAME":
             return str(token)
-        value = float(str(token).rstrip("fFuU"))
+        text = str(token)
+        hexadecimal = text[:2] in ("0x", "0X")
+        value = float(int(text[:40].rstrip("uU"), 16)) if hexadecimal else float(text.rstrip("fFuU"))
         return -value if children[0] is not None and str(children[0]) == "-" else value
 
     def constant(self, children: list[Any]) -> s.ConstantSyntax:

@@ -1,8 +1,9 @@
 """Quantity types: what a number or vector measures, so that thickness, thinness and transmittance never mix unasked.
 
-A quantity is a name over a plain type. A quantity value may be used as its plain type anywhere; a plain value becomes
-a quantity only through the constructor of that name; one quantity never becomes another but by a named conversion.
-The idea of spaces as types is Gator's ("Geometry types for graphics programming", OOPSLA 2020).
+A quantity is a name over a plain type. A quantity value may be used as its plain type anywhere; a plain value
+becomes a quantity only through the constructor of that name; one quantity never becomes another but by a
+named conversion. The idea of spaces as types is Gator's ("Geometry types for graphics programming", OOPSLA
+2020).
 """
 
 from __future__ import annotations

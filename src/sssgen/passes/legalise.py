@@ -348,10 +348,11 @@ class _Legaliser:
                 value = self.keep(value, "diagonal")
             cells = [value if row == column else zero for column in range(type_.size) for row in range(type_.size)]
             return ir.Construct(type_, tuple(cells), span)
-        assert isinstance(value.type, Matrix)
         if not _cheap(value):
             value = self.keep(value, "matrix")
-        old, new, columns = value.type.size, type_.size, []
+        assert isinstance(value.type, Matrix)
+        old, new = value.type.size, type_.size
+        columns: list[ir.Expr] = []
         for column in range(new):
             index = ir.Index(Vector("float", old), value, ir.Literal(INT, column, span), span)
             unit = tuple(one if row == column else zero for row in range(old, new))

@@ -1,9 +1,9 @@
 """Gives each call that writes something a statement of its own, and makes discarding a thing that calls say.
 
-Why: in Python a function returns what it writes, as in `d, normal = trace(p)`, so such a call cannot stand inside an
-expression. A function that may discard gets a last parameter `out bool discarded`; behind its call stands
-`if (discarded) discard;`. Place: before if-conversion, to which only these few forms of a call are left:
-`x = f(…)`, `T x = f(…)` and `f(…)` alone, with variables for all out and inout arguments.
+Why: in Python a function returns what it writes, as in `d, normal = trace(p)`, so such a call cannot stand
+inside an expression. A function that may discard gets a last parameter `out bool discarded`; behind its call
+stands `if (discarded) discard;`. Place: before if-conversion, to which only these few forms of a call are
+left: `x = f(…)`, `T x = f(…)` and `f(…)` alone, with variables for all out and inout arguments.
 """
 
 from __future__ import annotations
@@ -169,9 +169,7 @@ class _Lifter:
     def loop(self, loop: For | While) -> None:
         """A condition that writes goes into the body: `while (true) { if (!condition) break; … }`."""
         init, step = (loop.init, loop.step) if isinstance(loop, For) else (None, None)
-        if isinstance(init, Declare) and init.value is not None:
-            init = init._replace(value=self.expr(init.value))
-        elif isinstance(init, Assign):
+        if isinstance(init, Declare | Assign) and init.value is not None:
             init = init._replace(value=self.expr(init.value))
         body, condition = self.block(loop.body), loop.condition
         if condition is not None and self.writes(condition):

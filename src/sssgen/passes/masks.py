@@ -1,7 +1,8 @@
-"""The masks that if-conversion makes, and its tidying: what is used once goes where it is used. Used by `predicate`."""
+"""What `predicate` is made of: masks, and the tidying of the code that they leave behind."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Set
 from typing import NamedTuple
 
@@ -26,8 +27,11 @@ from ..ir.nodes import (
     While,
 )
 from ..ir.types import BOOL, Array, Matrix, Scalar, Struct, Type, Vector
-from ..ir.walk import expressions, rewrite, root, statements, subexpressions
+from ..ir.walk import expressions, rewrite, rewrite_block, root, statements, subexpressions
 from .lift_calls import Functions, out_arguments
+from .scopes import fresh
+
+_NUMBER = re.compile(r"_\d+$")
 
 
 class Mask(NamedTuple):
@@ -76,7 +80,7 @@ def zero(type_: Type, span: Span) -> Expr:
 
 
 def tidy(body: Block, made: Set[str], functions: Functions) -> Block:
-    """Joins the two arms' assignments where that is possible, and drops or inlines what was made and is used once."""
+    """Joins the two arms' assignments where it can, and drops or inlines what was made and is used once."""
     body = _join_arms(body, functions)
     while True:
         reads: dict[str, int] = {}
@@ -194,11 +198,33 @@ def _other_arm(done: list[Stmt], name: str, mask: str, functions: Functions) -> 
     return None
 
 
+def renumber(body: Block, made: Set[str], taken: Set[str]) -> Block:
+    """Closes the gaps that tidying left in the numbers of the names that were made."""
+    names: dict[str, str] = {}
+    used = set(taken) - made
+    for stmt in statements(body):
+        if isinstance(stmt, Declare) and stmt.name in made and stmt.name not in names:
+            names[stmt.name] = fresh(_NUMBER.sub("", stmt.name), used)
+            used.add(names[stmt.name])
+
+    def change(expr: Expr) -> Expr:
+        return (
+            expr._replace(name=names[expr.name]) if isinstance(expr, Local) and expr.name in names else expr
+        )
+
+    def restate(stmt: Stmt) -> Block | None:
+        if isinstance(stmt, Declare) and stmt.name in names:
+            return (stmt._replace(name=names[stmt.name]),)
+        return None
+
+    return rewrite_block(body, change, restate)
+
+
 # Variables that lanes may not have set
 
 
 def settle(body: Block, function: Function, functions: Functions) -> Block:
-    """Gives a start to variables that may be read before they are set in all lanes; out parameters are such too.
+    """Gives a start to variables, out parameters too, that may be read before they are set in all lanes.
 
     What is declared a second time, as two arms may that now stand in one block, is assigned instead.
     """

@@ -1,18 +1,22 @@
 """If-conversion: turns control flow that differs from lane to lane into straight-line code under masks.
 
-Why: NumPy computes all lanes of a batch at once, so `if (c) x = a;` becomes `x = select(c, a, x)`, and a loop runs
-while any lane is in it. Place: after all other passes but `names`, as its result is for targets without control flow
-per lane, and is no longer meant to be read by other passes. What is uniform (see `uniformity`) stays as it is.
+Why: NumPy computes all lanes of a batch at once, so `if (c) x = a;` becomes `x = select(c, a, x)`, and a loop
+runs while any lane is in it. Place: after all other passes but `names`, as its result is for targets without
+control flow per lane, and no longer meant for other passes. What is uniform (see `uniformity`) stays as it
+is.
 
 The result is ordinary IR with these conventions:
-- a mask is a bool variable: `mask` (lanes in the arm of an if), `running` (still in the loop), `active` (not yet done
-  with this pass of the loop, where it has a continue), `returned` (done with the function, `result` their value);
-- `if`, `for` and `while` are left only where their condition is the same in all lanes, `for` only where it counts
-  (`uniformity.count`); a loop that lanes leave one by one runs `while (any_lane(running))`, an intrinsic of its own;
-- a call that writes stands alone (see `lift_calls`), and so does the discarding of lanes;
-- a variable is masked against those lanes only that may still read it: what is declared under a mask, or used no more
-  after a return, is assigned plainly, and lanes that are out hold garbage there. Loads and builtins run for all lanes,
-  so they must bear garbage: indices are clamped, divisions by 0 go on.
+- a mask is a bool variable: `mask` (lanes in the arm of an if), `running` (still in the loop), `active` (not
+  yet done with this pass of the loop, where it has a continue), `returned` (done with the function, `result`
+  is their value);
+- `if`, `for` and `while` are left only where their condition is the same in all lanes, `for` only where it
+  counts (`uniformity.count`); a loop that lanes leave one by one runs `while (any_lane(running))`, an
+  intrinsic of its own;
+- a call that writes stands alone (see `lift_calls`), and a function says in `out bool discarded` which lanes
+  are discarded;
+- a variable is masked only against lanes that may still read it: what is declared under a mask, or read no
+  more after a return, is assigned plainly, and lanes that are out hold garbage there. Loads and builtins run
+  for all lanes, so they must bear garbage: indices are clamped, divisions by 0 go on.
 """
 
 from __future__ import annotations
@@ -45,13 +49,13 @@ from ..ir.nodes import (
 from ..ir.types import BOOL, VOID, Type
 from ..ir.walk import expressions, root, statements
 from .lift_calls import DISCARDED, Functions, lift_calls, out_arguments
-from .masks import Mask, negated, settle, tidy, zero
+from .masks import Mask, negated, renumber, settle, tidy, zero
 from .scopes import declared, fresh
 from .uniformity import Uniformity
 
 
 def predicate(module: Module) -> Module:
-    """The module without control flow that differs from lane to lane. Its functions stand after those they call."""
+    """The module without control flow per lane. Its functions stand after those they call."""
     module = lift_calls(module)
     functions = {function.key: function for function in module.functions}
     constants = frozenset(constant.name for constant in module.constants)
@@ -64,7 +68,7 @@ class _Frame:
 
     def __init__(self, mask: Mask | None, running: str = "", active: str = "") -> None:
         self.mask = mask
-        """The lanes here, None for all. It need not be right for lanes that no one here asks about: see `base`."""
+        """The lanes here, None for all. It may be wrong for lanes that no one here asks about: see `base`."""
         self.running, self.active = running, active
         """A loop's masks, '' if it has none."""
         self.more = False
@@ -103,7 +107,7 @@ class _Converter:
         self.block(function.body or ())
         if self.result and not (self.out and isinstance(self.out[-1], Return)):
             self.out.append(Return(Local(function.result, self.result, function.span), function.span))
-        body = tidy(tuple(self.out), self.made, self.functions)
+        body = renumber(tidy(tuple(self.out), self.made, self.functions), self.made, self.names)
         return function._replace(body=settle(body, function, self.functions))
 
     # Names

@@ -69,10 +69,15 @@ def mentions(function: Function) -> tuple[set[str], set[str]]:
 
 def fresh(name: str, taken: Container[str]) -> str:
     """`name`, or the first of `name_2`, `name_3`, … that is not taken."""
-    new, count = name, 2
-    while new in taken:
-        new, count = f"{name.rstrip('_')}_{count}", count + 1
-    return new
+    if name not in taken:
+        return name
+    base, _, count = name.rpartition("_")
+    if not base or not count.isdecimal():
+        base = name.rstrip("_")
+    number = 2
+    while f"{base}_{number}" in taken:
+        number += 1
+    return f"{base}_{number}"
 
 
 def substitute(expr: Expr, values: Mapping[str, Expr]) -> Expr:

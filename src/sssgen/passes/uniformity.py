@@ -1,7 +1,7 @@
 """Finds the control flow that is the same in all lanes, where Python's own `if` and loops serve.
 
-A condition is uniform when it is made of literals, module constants and variables that hold nothing else. Everything
-that comes from outside (parameters, uniforms, textures) may differ from lane to lane. Used by `predicate`.
+A condition is uniform when it is made of literals, module constants and variables that hold nothing else.
+What comes from outside (parameters, uniforms, textures) may differ from lane to lane. Used by `predicate`.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from .lift_calls import Functions, out_arguments
 
 
 class Count(NamedTuple):
-    """A loop that counts: `name` goes from `start` towards `stop` by `step`; `stop` is included with `<=` and `>=`."""
+    """A loop that counts: `name` goes from `start` by `step` while `name op stop`."""
 
     name: str
     start: Expr

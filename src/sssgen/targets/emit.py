@@ -15,15 +15,13 @@ from .. import cache
 from ..data import folder
 from ..diagnostics import failure
 from ..ir.nodes import Function, Module, Span, Uniform
-from ..ir.types import Sampler, Struct, kind_of, spell
+from ..ir.types import Sampler, Struct, spell
 from .descriptor import Target
 from .layout import Member, place
-from .printer import Comments, Line, Printer, no_comments
+from .printer import Comments, Line, Printer, comment_text, no_comments
 
 if TYPE_CHECKING:
     from jinja2 import Environment
-
-    from ..passes.chain import Entry
 
 _MARK = re.compile(r"\x02(\d+)\x03")
 
@@ -53,27 +51,28 @@ class Emitted(NamedTuple):
     lines: dict[str, dict[int, Span]]
     members: list[Member]
     block_size: int
+    bindings: list[dict[str, int | str]]
+    """Where each texture and its sampler are bound; empty where the language does not say."""
+
+
+_PRINTERS = {
+    "glsl": "sssgen.targets.glsl:GlslPrinter",
+    "hlsl": "sssgen.targets.hlsl:HlslPrinter",
+    "wgsl": "sssgen.targets.wgsl:WgslPrinter",
+    "python": "sssgen.targets.numpy_printer:NumpyPrinter",
+}
 
 
 def printer_for(target: Target, module: Module) -> Printer:
     """The target's printer. Raises SssgenError where a plug-in names one that is not there."""
-    if target.language == "glsl":
-        from .glsl import GlslPrinter as Chosen
-    elif target.language == "hlsl":
-        from .hlsl import HlslPrinter as Chosen  # type: ignore[assignment]  # one of several printers
-    elif target.language == "wgsl":
-        from .wgsl import WgslPrinter as Chosen  # type: ignore[assignment]  # one of several printers
-    elif target.language == "python":
-        from .numpy_printer import NumpyPrinter as Chosen  # type: ignore[assignment]  # one of several printers
-    else:
-        import importlib
+    import importlib
 
-        place, _, name = target.language.partition(":")
-        try:
-            Chosen = getattr(importlib.import_module(place), name)
-        except (ImportError, AttributeError):
-            raise failure(f"target '{target.name}' names a printer that is not there: {target.language}") from None
-    return Chosen(target, module)
+    place, _, name = _PRINTERS.get(target.language, target.language).partition(":")
+    try:
+        printer: Printer = getattr(importlib.import_module(place), name)(target, module)
+    except (ImportError, AttributeError, ValueError):
+        raise failure(f"target '{target.name}' names a printer that is not there: {target.language}") from None
+    return printer
 
 
 def emit(target: Target, program: Program, form: str, templates: Path | None = None) -> Emitted:
@@ -102,7 +101,8 @@ def emit(target: Target, program: Program, form: str, templates: Path | None = N
     for output in target.files.get(form, ()):
         name = output.name.format(material=program.name)
         files[name], lines[name] = _finish(_render(environment, output.template, context), marks)
-    return Emitted(files, lines, members, size)
+    bindings = [printer.binding(index) for index in range(len(textures))] if declared else []
+    return Emitted(files, lines, members, size, [binding for binding in bindings if binding])
 
 
 def _text(parts: Sequence[Sequence[Line]], marks: list[Span]) -> str:
@@ -147,13 +147,13 @@ def _context(target: Target, program: Program, printer: Printer, form: str, code
 
 
 def _header(target: Target, program: Program) -> list[str]:
-    lines = [f"{program.title}: {program.doc}" if program.doc else program.title]
-    wrapped = []
+    """The comment at the head of a file: what it is, and where to change it."""
     import textwrap
 
-    for line in lines:
-        wrapped += textwrap.wrap(line, 100)
-    return [*wrapped, f"Made by sssgen for {target.title}. Change the material and emit it again rather than this file."]
+    words = f"{program.title}: {program.doc}" if program.doc else program.title
+    what = "the material" if program.entries else "the source"
+    made = f"Made by sssgen for {target.title}. Change {what} and emit it again rather than this file."
+    return [comment_text(line) for line in textwrap.wrap(words, 100)] + [made]
 
 
 def _entry(target: Target, printer: Printer, kind: str, function: Function, inputs: tuple[str, ...]) -> dict[str, Any]:
@@ -202,7 +202,7 @@ def _uniform(printer: Printer, uniform: Uniform, program: Program) -> dict[str, 
 
 
 def _textures(printer: Printer, program: Program) -> list[dict[str, Any]]:
-    found = []
+    found: list[dict[str, Any]] = []
     for uniform in program.module.uniforms:
         if not isinstance(uniform.type, Sampler):
             continue
@@ -286,8 +286,3 @@ def _finish(text: str, marks: list[Span]) -> tuple[str, dict[int, Span]]:
     while lines and not lines[-1]:
         lines.pop()
     return "\n".join(lines) + "\n", spans
-
-
-def kind_name(uniform: Uniform) -> str:
-    """float, int, uint, bool, or the sampler's type."""
-    return kind_of(uniform.type) or spell(uniform.type)

@@ -75,3 +75,8 @@ class HlslPrinter(Printer):
             )
             lines += [Line(part, texture.span) for part in text.splitlines()]
         return lines
+
+    def binding(self, index: int) -> dict[str, int | str]:
+        if "bindings" not in self.target.table:
+            return {}
+        return {"texture": f"t{index}", "sampler": f"s{index}"}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..ir import nodes as ir
-from ..ir.types import Array, Matrix, Scalar, Struct, Vector, components, kind_of
+from ..ir.types import INT, UINT, Array, Matrix, Scalar, Struct, Vector, components, kind_of
 from .descriptor import Target
 from .numpy_numbers import Numbers, nonzero
 from .printer import POSTFIX, PRIMARY, UNARY, Printer
@@ -28,7 +28,7 @@ class NumpyExpressions(Printer):
         return repr(literal.value)
 
     def typed(self, *exprs: ir.Expr) -> list[str]:
-        """Texts of values that go somewhere together: among uints that are all plain numbers, one says its type."""
+        """Texts of values that go somewhere together: of uints that are all plain, one says its type."""
         texts = [self.expr(expr) for expr in exprs]
         plain = [
             index
@@ -65,13 +65,9 @@ class NumpyExpressions(Printer):
             return f"not {self.expr(operand)}", 4
         if unary.op == "!":
             return f"not_({self.expr(operand)})", PRIMARY
-        text = self.expr(operand, UNARY) if kind_of(operand.type) != "uint" else self.typed(operand)[0]
-        if (
-            unary.op == "-"
-            and unary.type.kind == "int"
-            and self.numbers.plain(operand)
-            and self.numbers.may_wrap(unary)
-        ):  # type: ignore[union-attr]  # it has a kind
+        plain = self.numbers.plain(operand)
+        text = self.typed(operand)[0] if plain and unary.type == UINT else self.expr(operand, UNARY)
+        if plain and unary.type == INT and unary.op == "-" and self.numbers.may_wrap(unary):
             return f"to_int(-{text})", PRIMARY
         return f"{unary.op}{text}", UNARY
 
@@ -97,7 +93,7 @@ class NumpyExpressions(Printer):
         return text, level
 
     def operand(self, expr: ir.Expr, op: str, least: int) -> str:
-        """An operand; beside operators on bits, whose precedence nobody knows by heart, always in parentheses."""
+        """An operand; beside operators on bits, whose precedence few know by heart, always in parentheses."""
         mixed = op in ("&", "|", "^", "<<", ">>") and isinstance(expr, ir.Binary) and expr.op != op
         return self.expr(expr, UNARY if mixed else least)
 

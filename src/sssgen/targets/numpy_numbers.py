@@ -1,9 +1,10 @@
 """Which values may be plain Python numbers when the code printed for NumPy runs.
 
-Plain numbers adapt to the element type of what they meet, so literals stay as short as they are. But a plain int does
-not wrap at 32 bits, a plain division by 0 raises an error, and nothing tells a plain uint from an int. Where only plain
-numbers meet, the printer therefore goes through the runtime; this says where. Values from outside the module (what a
-function is called with, the default of a uniform aside) are taken to be NumPy's.
+Plain numbers adapt to the element type of what they meet, so literals stay as short as they are. But a plain
+int does not wrap at 32 bits, a plain division by 0 raises an error, and nothing tells a plain uint from an
+int. Where only plain numbers meet, the printer therefore goes through the runtime; this says where. What
+functions are called with from outside the module is taken to be NumPy's; uniforms may be plain floats and
+ints.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ class Numbers:
             self.enter(function)
             self.find_counters(function)
             self.counters[self.key] |= dict.fromkeys(_steppers(function), _STEPPED)
-        while any([self.look(function) for function in module.functions]):
+        while sum(self.look(function) for function in module.functions):
             pass
 
     def enter(self, function: ir.Function) -> None:

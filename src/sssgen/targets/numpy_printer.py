@@ -1,10 +1,10 @@
 """Prints Python on NumPy arrays: the oracle that the other targets are compared with.
 
-It prints modules that `passes.predicate` has been through: a function takes arrays with the lanes on the last axis (see
-`numpy_values`) and returns its result, then its out and inout parameters. Values are never changed in place, so that
-variables may share them: `v.x = 1.0` is `v = store_swizzle(v, "x", 1.0)`. Uniforms that are no parameters are read as
-the module's globals; constants that are no plain numbers are made in each function that uses them, as their element
-type is that of `with precision(…)` around the call.
+It prints modules that `passes.predicate` has been through: a function takes arrays with the lanes on the last
+axis (see `numpy_values`) and returns its result, then its out and inout parameters. Values are never changed
+in place, so that variables may share them: `v.x = 1.0` is `v = store_swizzle(v, "x", 1.0)`. Uniforms that are
+no parameters are read as the module's globals; constants that are no plain numbers are made in each function
+that uses them, as their element type is that of `with precision(…)` around the call.
 """
 
 from __future__ import annotations

@@ -170,8 +170,10 @@ def resize(size: int, matrix: Value) -> Value:
 
 
 def array(*elements: Value) -> Value:
-    """A fixed array; elements that are the same in all lanes are widened to the others."""
-    return np.stack(np.broadcast_arrays(*arrays(elements)))
+    """A fixed array; elements that are the same in all lanes are widened to the others. Of structs, a struct of arrays."""
+    if isinstance(elements[0], Record):
+        return Record(**{name: array(*[getattr(element, name) for element in elements]) for name in vars(elements[0])})
+    return np.stack(np.broadcast_arrays(*[np.atleast_1d(element) for element in arrays(elements)]))
 
 
 def to_float(value: Value) -> Value:
@@ -223,6 +225,8 @@ def store_swizzle(vector: Value, components: str, value: Value) -> Value:
 
 def index(value: Value, place: Value) -> Value:
     """`value[place]`, where each lane may have a place of its own; beyond the ends the nearest element."""
+    if isinstance(value, Record):
+        return Record(**{name: index(part, place) for name, part in vars(value).items()})
     place = np.clip(place, 0, len(value) - 1)
     if place.ndim == 0:
         return value[place]
@@ -232,6 +236,8 @@ def index(value: Value, place: Value) -> Value:
 
 def store_index(value: Value, place: Value, element: Value) -> Value:
     """What `value[place] = element` leaves behind; beyond the ends nothing is stored."""
+    if isinstance(value, Record):
+        return Record(**{name: store_index(part, place, getattr(element, name)) for name, part in vars(value).items()})
     element, value = np.asarray(element, value.dtype), np.asarray(value)
     places = np.arange(len(value)).reshape(-1, *(1,) * (value.ndim - 1))
     return np.where(places == place, element, value)

@@ -183,7 +183,7 @@ class Printer:
         for stmt in block:
             place = (stmt.span.file, stmt.span.line)
             if place != told:
-                lines += [Line(f"{'    ' * indent}// {text}", stmt.span) for text in self.comments(*place)]
+                lines += [Line(f"{'    ' * indent}// {comment_text(text)}", stmt.span) for text in self.comments(*place)]
                 told = place
             lines.extend(self.statement(stmt, indent))
         return lines
@@ -282,6 +282,10 @@ class Printer:
         """The declarations of the textures."""
         raise NotImplementedError
 
+    def binding(self, index: int) -> dict[str, int | str]:
+        """Where the texture at `index` is bound, where the language has a place for it."""
+        return {}
+
     def print_constant(self, constant: ir.Constant) -> list[Line]:
         declared = self.variable(constant.type, constant.name)
         return wrap(f"{self.constant} {declared} = {self.expr(constant.value)};", constant.span)
@@ -289,7 +293,7 @@ class Printer:
 
 def documented(text: str, uniform: ir.Uniform) -> Line:
     """A uniform's declaration with the first sentence of its documentation, where that fits on the line."""
-    words = " ".join(uniform.doc.split()).split(". ")[0].rstrip(".")
+    words = comment_text(" ".join(uniform.doc.split()).split(". ")[0].rstrip("."))
     full = f"{text}  // {words}"
     return Line(full if words and len(full) <= WIDTH else text, uniform.span)
 
@@ -311,10 +315,15 @@ def float_text(value: float) -> str:
     return f"{mantissa}e{int(exponent)}" if exponent else mantissa
 
 
+def comment_text(text: str) -> str:
+    """Text that is safe in a line comment: a backslash at its end would draw the next line in."""
+    return text.rstrip("\\ ")
+
+
 def summary(doc: str) -> list[str]:
     """The first sentence or line of a doc comment."""
     first = doc.strip().split("\n", 1)[0].strip()
-    return [first] if first else []
+    return [comment_text(first)] if first else []
 
 
 def assigned_names(function: ir.Function, by_key: dict[str, ir.Function]) -> set[str]:
@@ -342,25 +351,29 @@ def _expressions(stmt: ir.Stmt) -> list[ir.Expr]:
 
 
 def wrap(text: str, span: ir.Span) -> list[Line]:
-    """Breaks a long line after a comma or before an operator, at the outermost parentheses that help."""
-    if len(text) <= WIDTH:
-        return [Line(text, span)]
+    """Breaks a long line at the outermost commas and operators; what follows is indented once more."""
     indent = len(text) - len(text.lstrip())
+    lines = []
+    while len(text) > WIDTH:
+        place = _break_place(text)
+        if place == 0:
+            break
+        lines.append(Line(text[:place].rstrip(), span))
+        text = " " * (indent + 4) + text[place:].lstrip()
+    return [*lines, Line(text, span)]
+
+
+_BREAKS = (" + ", " - ", " * ", " ? ", " : ", " && ", " || ")
+
+
+def _break_place(text: str) -> int:
+    """Where to break a line: late in it, but first of all as little inside parentheses as can be; 0 for nowhere."""
     best, best_score, depth = 0, -1000.0, 0
-    for index, char in enumerate(text):
+    start = len(text) - len(text.lstrip()) + 8
+    for index, char in enumerate(text[:WIDTH]):
         depth += (char in "([") - (char in ")]")
-        breakable = index > indent + 8 and (text[index - 1 : index + 1] == ", " or text[index : index + 3] in (" + ", " - ", " * ", " ? ", " : "))  # fmt: skip
-        if breakable and index <= WIDTH:
+        if index > start and (text[index - 1 : index + 1] == ", " or text.startswith(_BREAKS, index)):
             score = index / WIDTH - 2.0 * depth
             if score > best_score:
                 best, best_score = index, score
-    if best == 0:
-        return [Line(text, span)]
-    rest = " " * (indent + 4 if not text.startswith(" " * (indent + 1)) else 0) + text[best:].lstrip()
-    return [Line(text[:best].rstrip(), span), *_continue(rest, span, indent + 4)]
-
-
-def _continue(text: str, span: ir.Span, indent: int) -> list[Line]:
-    return [Line(line.text, span) for line in wrap(" " * indent + text.lstrip(), span)] if len(text) > WIDTH else [Line(" " * indent + text.lstrip(), span)]  # fmt: skip
-
-
+    return best

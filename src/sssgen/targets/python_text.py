@@ -18,7 +18,7 @@ _SHAPES = {"2D": "1, 1, 4", "3D": "1, 1, 1, 4", "Cube": "6, 1, 1, 4"}
 _BREAK = re.compile(r"[(\[]|[)\]]|(?<=,) | (?=[-+*/&|<>]+ )")
 
 
-def wrap(text: str, span: ir.Span) -> list[Line]:
+def wrap(text: str, span: Span) -> list[Line]:
     """Breaks a long line inside its outermost parentheses that help, after a comma or before an operator."""
     indent = " " * (len(text) - len(text.lstrip()) + 4)
     lines: list[Line] = []

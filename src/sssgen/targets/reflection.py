@@ -30,7 +30,8 @@ def reflect(
     """Everything that an engine or a tool needs to bind the shader, as JSON."""
     offsets = {member.uniform.name: member for member in emitted.members}
     blocked = bool(target.layout) and form not in target.parameters
-    uniforms, textures = [], []
+    uniforms: list[dict[str, Any]] = []
+    textures: list[dict[str, Any]] = []
     for uniform in program.module.uniforms:
         source = program.source_names.get(uniform.name, uniform.name)
         technique, own_name = owners.get(source, ("", source))
@@ -40,9 +41,8 @@ def reflect(
         if isinstance(uniform.type, Sampler):
             entry |= {"holds": uniform.quantity or None, "default": _default_texture(uniform)}
             entry |= {"color_space": "linear" if not _has(uniform, "source_color") else "sRGB"}
-            if "bindings" in target.table and target.can("split_samplers"):
-                index = len(textures)
-                entry["binding"] = {"texture": 1 + 2 * index, "sampler": 2 + 2 * index} if target.language == "wgsl" else {"texture": index, "sampler": index}  # fmt: skip
+            if emitted.bindings:
+                entry["binding"] = emitted.bindings[len(textures)]
             textures.append(entry)
         else:
             entry |= {"default": list(uniform.default), "quantity": uniform.quantity or None}

@@ -106,15 +106,19 @@ class WgslPrinter(Printer):
 
     def print_textures(self, textures: list[ir.Uniform]) -> list[Line]:
         """Each texture and its sampler, at the bindings after the uniform struct's."""
-        group = self.target.table["material_group"]
         lines = []
         for index, texture in enumerate(textures):
-            for offset, (name, type_) in enumerate(
-                ((texture.name, self.type(texture.type)), (self.sampler(texture.name), "sampler"))
+            at = self.binding(index)
+            for half, name, type_ in (
+                ("texture", texture.name, self.type(texture.type)),
+                ("sampler", self.sampler(texture.name), "sampler"),
             ):
-                place = f"@group({group}) @binding({1 + 2 * index + offset})"
+                place = f"@group({at['group']}) @binding({at[half]})"
                 lines.append(Line(f"{place} var {name}: {type_};", texture.span))
         return lines
+
+    def binding(self, index: int) -> dict[str, int | str]:
+        return {"group": self.target.table["material_group"], "texture": 1 + 2 * index, "sampler": 2 + 2 * index}
 
 
 def block_type(type_: Type) -> Type:
