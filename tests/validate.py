@@ -7,7 +7,8 @@ matrices, and a digit behind the letter is the size: x3 is a vec3, p2 a bvec2, m
 a sampler3D, `cube` a samplerCube. What is compared is the text behind `return`, or, where a target needs more than that,
 its statements, with the functions that it calls above them.
 
-A text with a brace in it is one or more functions, and whole functions are compared.
+A text with a brace in it is one or more functions, and whole functions are compared. Where a target refuses, it is the
+message: `error: …`.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from collections.abc import Mapping
 from textwrap import dedent
 
 from sssgen.compiler import transpile
+from sssgen.diagnostics import SssgenError
 from sssgen.ir import nodes as ir
 from sssgen.ir.types import BY_NAME, Type, spell, vector_of
 from sssgen.lang.loader import load_text
@@ -49,13 +51,17 @@ def validate_all(source: str, expected: Mapping[str, str]) -> None:
 
 def printed(source: str, target: str) -> str:
     """What a target makes of an expression or of functions."""
-    text = code(module_of(source), TARGETS.get(target, target))
+    try:
+        text = code(module_of(source), TARGETS.get(target, target))
+    except SssgenError as error:
+        return "\n".join(f"error: {found.message}" for found in error.diagnostics)
     if "{" in source:
         return text
     before, _, function = text.rpartition("\n\n")
-    statements = dedent("\n".join(function.splitlines()[1:-1]))
+    lines = function.splitlines()[1:] if target == "numpy" else function.splitlines()[1:-1]
+    statements = dedent("\n".join(lines))
     if not before and statements.startswith("return ") and ";\n" not in statements:
-        return " ".join(line.strip() for line in statements.splitlines()).removeprefix("return ").removesuffix(";")
+        return " ".join(line.strip() for line in lines).removeprefix("return ").removesuffix(";")
     return f"{before}\n\n{statements}".strip()
 
 

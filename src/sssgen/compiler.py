@@ -26,8 +26,8 @@ from .passes.parameters import uniforms_to_parameters
 from .passes.predicate import predicate
 from .passes.prune import prune
 from .targets import descriptor
-from .targets.descriptor import Target
-from .targets.emit import Program, emit
+from .targets.descriptor import Target, Words
+from .targets.emit import About, Program, emit
 from .targets.reflection import as_text, reflect
 
 FORMS = ("shader", "functions")
@@ -91,8 +91,7 @@ def compile(  # noqa: A001 - the library's verb, used as sssgen.compile
     if known is not None and _middle_of(material, chosen) is not None:
         return known
     middle = _middle_of(material, chosen)
-    program_info = (material.name, material.title, material.doc, material.shading)
-    made = _finish(middle, chosen, form, templates, program_info)
+    made = _finish(middle, chosen, form, templates, _about(material))
     if templates is None:
         if len(_compiled) >= _KEPT:
             _compiled.clear()
@@ -107,7 +106,7 @@ def transpile(module: Module, target: str, name: str) -> Compiled:
     module = prune(fold(module), roots)
     warnings: list[Diagnostic] = []
     middle = _Middle(module, {}, None, {}, {}, warnings)
-    return _finish(middle, chosen, "functions", None, (name, name, "", "lit"))
+    return _finish(middle, chosen, "functions", None, About(name, name))
 
 
 def _middle_of(material: Material, target: Target) -> _Middle:
@@ -145,7 +144,7 @@ def _build(material: Material, lighting: str, drop_output: bool) -> _Middle:
             ChainStage(stage.role, stage.technique, function, span)
             for stage, function, span in zip(stages, linked.functions, spans, strict=True)
         ]
-        chain = assemble(linked.module, chained, lit)
+        chain = assemble(linked.module, chained, lit, material.alpha_mode == "opaque")
     except LinkError as error:
         raise SssgenError([Diagnostic("error", error.message, error.span)]) from None
     roots = [entry.function.key for entry in chain.entries.values()]
@@ -155,6 +154,11 @@ def _build(material: Material, lighting: str, drop_output: bool) -> _Middle:
     slots = _slot_functions(material, linked.module)
     costs = {kind: cost_of(module, entry.function.key, slots) for kind, entry in chain.entries.items()}
     return _Middle(module, dict(chain.entries), chain.surface, linked.owners, costs, warnings)
+
+
+def _about(material: Material) -> About:
+    raymarched = any(stage.technique.role == "geometry" for stage in material.stages)
+    return About(material.name, material.title, material.doc, material.shading, material.alpha_mode, raymarched)
 
 
 def _link_stage(stage: Any) -> LinkStage:
@@ -176,7 +180,7 @@ def _finish(
     target: Target,
     form: str,
     templates: Path | None,
-    info: tuple[str, str, str, str],
+    about: About,
 ) -> Compiled:
     """The target's own part: parameters, legalise, names, printing, templates, reflection."""
     module = middle.module
@@ -189,10 +193,10 @@ def _finish(
     if not target.can("lane_control_flow"):
         module = predicate(module)
     before = [uniform.name for uniform in module.uniforms]
-    exact, folded = descriptor.reserved_everywhere()
+    exact, folded, prefixes = descriptor.reserved_everywhere()
     module, renames = rename(
         module,
-        exact | target.reserved,
+        Words(exact | target.reserved, prefixes + target.prefixes),
         _uniform_style(target),
         not target.can("overloads"),
         folded | target.folded,
@@ -203,14 +207,13 @@ def _finish(
         entries[kind] = (found, entry.inputs)
     source_names = {uniform.name: old for uniform, old in zip(module.uniforms, before, strict=True)}
     surface = next((s.type for s in module.structs if isinstance(s.type, Struct) and s.type.name == "Surface"), None)
-    name, title, doc, shading = info
-    program = Program(module, entries, surface, source_names, name, title, doc, shading, comments_before)
+    program = Program(module, entries, surface, source_names, about, comments_before)
     emitted = emit(target, program, form, templates)
     messages = [warning.message for warning in middle.warnings]
     data = reflect(target, program, emitted, form, middle.owners, renames, middle.costs, messages)
     files = dict(emitted.files)
     suffix = "reflection" if form == "shader" else f"{form}.reflection"
-    files[f"{name}.{target.name}.{suffix}.json"] = as_text(data)
+    files[f"{about.name}.{target.name}.{suffix}.json"] = as_text(data)
     return Compiled(files, data, middle.warnings)
 
 

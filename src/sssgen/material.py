@@ -47,9 +47,12 @@ class Material(NamedTuple):
     stages: tuple[Stage, ...]
     """In the order they run (the roles' order, then the file's)."""
     path: Path
+    alpha_mode: str = "opaque"
+    """opaque, mask or blend, as in glTF: what the engine does with the alpha that techniques write"""
 
 
 SHADINGS = ("lit", "unlit")
+ALPHA_MODES = ("opaque", "mask", "blend")
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
 # Windows keeps these for devices, whatever follows the dot: no file can be called so.

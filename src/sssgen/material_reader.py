@@ -10,11 +10,15 @@ from .diagnostics import Diagnostic, SssgenError, did_you_mean
 from .ir.nodes import Function, Span, Uniform
 from .ir.types import Sampler
 from .library import Technique
-from .material import SHADINGS, Binding, Material, Stage, wrong_name
+from .material import ALPHA_MODES, SHADINGS, Binding, Material, Stage, wrong_name
 from .material_values import WrongValue, read_texture, read_value
 from .toml_source import Document, parse
 
-_MATERIAL_KEYS = ("name", "title", "doc", "shading")
+_MATERIAL_KEYS = ("name", "title", "doc", "shading", "alpha_mode")
+_CHOICES = {
+    "shading": (SHADINGS, "lit: the engine lights it; unlit: the chain gives the color"),
+    "alpha_mode": (ALPHA_MODES, "opaque: alpha is left out; mask: cut at one half; blend: see-through"),
+}
 
 
 class _Shared(NamedTuple):
@@ -69,7 +73,7 @@ class _Reader:
                     else "it belongs below [material]"
                 )
                 error(place(key).key, f"'{key}' stands outside any section", hint)
-        name, title, doc, shading = self.head(data.get("material"))
+        name, title, doc, shading, alpha_mode = self.head(data.get("material"))
         stages = [stage for section in roles.SECTIONS for stage in self.section(section, data.get(section))]
         if not any(section in data for section in roles.SECTIONS):
             hint = (
@@ -80,37 +84,37 @@ class _Reader:
             links = [roles.Link(stage.technique, stage.span) for stage in stages]
             roles.check_chain(links, shading, error)
         return Material(
-            name, title or name.replace("_", " ").capitalize(), doc, shading, tuple(stages), self.path
+            name, title or name.replace("_", " ").capitalize(), doc, shading, tuple(stages), self.path, alpha_mode
         )
 
     # The head
 
-    def head(self, table: Any) -> tuple[str, str, str, str]:
-        """The name, title, doc and shading of the [material] section."""
+    def head(self, table: Any) -> tuple[str, str, str, str, str]:
+        """The name, title, doc, shading and alpha mode of the [material] section."""
         error, place = self.document.error, self.document.place
         if table is None:
             error(place().key, "there is no [material] section", 'add: [material] and below it name = "…"')
-            return "", "", "", "lit"
+            return "", "", "", "lit", "opaque"
         if not isinstance(table, dict):
             error(place("material").key, "one file describes one material", "write [material], once")
-            return "", "", "", "lit"
+            return "", "", "", "lit", "opaque"
         for key in table:
             if key not in _MATERIAL_KEYS:
                 hint = did_you_mean(key, _MATERIAL_KEYS) or f"keys: {', '.join(_MATERIAL_KEYS)}"
                 error(place("material", key).key, f"unknown key '{key}' in [material]", hint)
         texts = {key: self.text(table.get(key, ""), key) for key in _MATERIAL_KEYS}
-        name, shading = texts["name"], texts["shading"] or "lit"
+        name = texts["name"]
         if "name" not in table:
             error(place("material").value, "the material has no name", 'add: name = "…"')
         elif isinstance(table["name"], str) and (wrong := wrong_name(name)):
             error(place("material", "name").value, *wrong)
-        if shading not in SHADINGS:
-            hint = (
-                did_you_mean(shading, SHADINGS)
-                or "lit: the engine lights it; unlit: the chain gives the color"
-            )
-            error(place("material", "shading").value, f"unknown shading '{shading}'", hint)
-        return name, texts["title"], texts["doc"], shading
+        chosen = {}
+        for key, (words, meaning) in _CHOICES.items():
+            chosen[key] = texts[key] or words[0]
+            if chosen[key] not in words:
+                message = f"unknown {key.replace('_', ' ')} '{chosen[key]}'"
+                error(place("material", key).value, message, did_you_mean(chosen[key], words) or meaning)
+        return name, texts["title"], texts["doc"], chosen["shading"], chosen["alpha_mode"]
 
     def text(self, raw: object, key: str) -> str:
         """A text of the head; only `doc` may have several lines."""

@@ -246,8 +246,9 @@ vecF mod(vecF x, float y) { return x - y * floor(x / y); }
         ),
     ),
     Builtin("fmod", ("genF(genF, genF)", "genF(genF, float)"),
-        "Truncated remainder x - y·trunc(x/y), as in C and HLSL; has the sign of x.",
-        domain="y != 0", texts={"glsl": "", "wgsl": "op:%"},
+        "Truncated remainder x - y·trunc(x/y), as in C and HLSL; has the sign of x. Written out in HLSL, where glslang "
+        "takes fmod for the floored one.",
+        domain="y != 0", texts={"glsl": "", "hlsl": "", "wgsl": "op:%"},
         polyfill="""
 genF fmod(genF x, genF y) { return x - y * trunc(x / y); }
 vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
@@ -427,8 +428,8 @@ vec2 unpackHalf2x16(uint x) {
         vectors=((((3.0, 4.0),), 5.0), (((0.0, 0.0, 0.0),), 0.0), ((-2.0,), 2.0)),
     ),
     Builtin("distance", _REDUCE, "Length of x - y.",
-        domain="|x - y| < 1e19", texts={"hlsl/float,float": "abs(({0}) - ({1}))"}, kind="transcendental",
-        cost=7, ulp=8.0, clause="WGSL, Vulkan: that of length(x - y)",
+        domain="|x - y| < 1e19", texts={"hlsl/float,float": ""}, polyfill="float distance(float x, float y) { return abs(x - y); }",
+        kind="transcendental", cost=7, ulp=8.0, clause="WGSL, Vulkan: that of length(x - y)",
         vectors=(
             (((4.0, 6.0), (1.0, 2.0)), 5.0), (((1.0, 2.0, 3.0), (1.0, 2.0, 3.0)), 0.0), ((1.0, -1.5), 2.5),
         ),

@@ -31,6 +31,14 @@ def ends(condition: ir.Expr, steps: ir.Block, body: ir.Block, out_args: OutArgs)
     )
 
 
+def skips(block: ir.Block) -> bool:
+    """Whether a block may go on with the next round of the loop that it is in."""
+    return any(
+        isinstance(stmt, ir.Continue) or (isinstance(stmt, ir.If) and (skips(stmt.then) or skips(stmt.otherwise)))
+        for stmt in block
+    )
+
+
 def writes(block: ir.Block, out_args: OutArgs) -> list[str]:
     """The variables that a block writes, one entry for each place that does."""
     targets = [stmt.target for stmt in statements(block) if isinstance(stmt, ir.Assign)]

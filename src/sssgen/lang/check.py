@@ -26,10 +26,10 @@ from ..ir.types import (
     kind_of,
     spell,
 )
-from ..ir.walk import statements, subexpressions
+from ..ir.walk import subexpressions
 from . import quantities as q
 from . import syntax as s
-from .bounded import cycles, ends
+from .bounded import cycles, ends, skips
 from .expressions import ExpressionChecker, Typed, Untyped
 from .hints import check_hints
 from .scope import GlobalValue, Scopes, Signature
@@ -345,8 +345,7 @@ class _FileChecker(ExpressionChecker):
         body = self.loop_body(statement.body)
         if condition is None or len(self.reporter.diagnostics) > errors:
             return []
-        skips = any(isinstance(inner, ir.Continue) for inner in statements(body))
-        if skips or not ends(condition, body, (), self.out_args):
+        if skips(body) or not ends(condition, body, (), self.out_args):
             raise self.fail(statement.span, "this loop cannot be seen to end", _LOOP_HINT)
         return [ir.While(condition, body, statement.span)]
 

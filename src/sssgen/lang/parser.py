@@ -215,15 +215,12 @@ class _Builder:
     # Statements
 
     def block(self, children: list[Any]) -> s.Compound:
-        statements = tuple([child for child in children[1:-1] if child is not None])
+        statements = tuple([self.as_statement(child) for child in children[1:-1] if child is not None])
         span = _join(self.at(children[0]), self.at(children[-1]))
         return s.Compound(statements, span, self.deeper(span, *statements))
 
     def empty(self, children: list[Any]) -> None:
         return None
-
-    def simple(self, children: list[Any]) -> Any:
-        return self.as_statement(children[0])
 
     def as_statement(self, child: Any) -> Any:
         if child is None or isinstance(child, s.Statement):

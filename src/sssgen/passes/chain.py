@@ -92,10 +92,10 @@ class Chain(NamedTuple):
     surface: Struct | None
 
 
-def assemble(module: Module, stages: Sequence[ChainStage], lit: bool) -> Chain:
-    """Adds the entries. Raises LinkError for a value that nothing supplies."""
+def assemble(module: Module, stages: Sequence[ChainStage], lit: bool, opaque: bool = False) -> Chain:
+    """Adds the entries; an opaque material has no alpha. Raises LinkError for a value that nothing supplies."""
     if not lit:
-        entry = _color_entry(stages)
+        entry = _color_entry(stages, opaque)
         return Chain(module._replace(functions=(*module.functions, entry.function)), {"color": entry}, None)
     outputs = [stage for stage in stages if stage.role == "output"]
     chained = [stage for stage in stages if stage.role not in ("lighting", "output")]
@@ -115,7 +115,8 @@ def assemble(module: Module, stages: Sequence[ChainStage], lit: bool) -> Chain:
     if "translucency" in surface.values:  # light that comes without a lamp: the surface gives it off itself
         surface.emit_translucency()
     crossing = [name for name in (*light.crossing, *shade.crossing) if name not in SURFACE_FIELDS]
-    fields = [name for name in SURFACE_FIELDS if name in surface.values] + list(dict.fromkeys(crossing))
+    own = [name for name in SURFACE_FIELDS if name in surface.values and not (opaque and name == "alpha")]
+    fields = own + list(dict.fromkeys(crossing))
     struct = Struct("Surface", tuple(Field(name, surface.values[name].type) for name in fields))
     entries: dict[str, Entry] = {"surface": surface.finish_surface(struct)}
     if late_stages:
@@ -165,12 +166,12 @@ def _value_name(param: Param) -> str:
     return param.quantity if param.quantity in QUANTITIES else param.name
 
 
-def _color_entry(stages: Sequence[ChainStage]) -> Entry:
+def _color_entry(stages: Sequence[ChainStage], opaque: bool) -> Entry:
     """The one entry of an unlit material: everything in order, what follows a hit inside its `if`."""
     body = _Body("evaluate_color")
     for stage in stages:
         body.add(stage)
-    return body.finish_color()
+    return body.finish_color(opaque)
 
 
 class _Value(NamedTuple):
@@ -326,7 +327,7 @@ class _Body:
         }.get(name if name == "translucency" else self.name, "")
         return Entry(self.function(type_, (*statements, Return(value, self.span)), doc, struct), tuple(self.inputs))
 
-    def finish_color(self) -> Entry:
+    def finish_color(self, opaque: bool) -> Entry:
         span = self.span
         if "color" not in self.values:
             raise LinkError("an unlit material needs a lighting technique that gives its color", span)
@@ -334,7 +335,8 @@ class _Body:
         if self.after_hit:
             statements.append(If(Local(BOOL, "hit", span), tuple(self.after_hit), (), span))
         statements += self.after
-        alpha: Expr = Local(FLOAT, "alpha", span) if "alpha" in self.values else Literal(FLOAT, 1.0, span)
+        given = "alpha" in self.values and not opaque
+        alpha: Expr = Local(FLOAT, "alpha", span) if given else Literal(FLOAT, 1.0, span)
         result = Construct(VEC4, (Local(VEC3, "color", span), alpha), span)
         body = (*statements, Return(result, span))
         return Entry(self.function(VEC4, body, "The colour of one fragment.", None), tuple(self.inputs))

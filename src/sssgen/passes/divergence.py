@@ -219,7 +219,7 @@ class Divergence:
         """Follows both arms; whether flow diverges."""
         hits = self.hits
         condition = self.varies(stmt.condition)
-        apart = self.flow and (condition or self.hits > hits)
+        apart = condition or self.hits > hits
         before, left = self.flow, self.escapes + self.jumps
         varying = set(self.varying)
         self.flow = before and not condition
@@ -259,7 +259,7 @@ class Divergence:
             uniform = uniform and again
         self.jumps, self.left = jumps, left
         self.flow = before and self.escapes == escapes
-        return before and (apart or not uniform)
+        return apart or not uniform
 
     # Expressions
 

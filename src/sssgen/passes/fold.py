@@ -43,6 +43,7 @@ from ..ir.nodes import (
     Unary,
     While,
 )
+from ..ir.rules import element_type
 from ..ir.types import BOOL, Array, Matrix, Scalar, Struct, Type, Vector, components, kind_of, vector_of
 from ..ir.walk import operands, rewrite, subexpressions, with_operands
 from . import arithmetic
@@ -235,7 +236,7 @@ class _Folder:
         def change(node: Expr) -> Expr:
             return start if type(node) is Local and node.name == name else node
 
-        first = self.known(rewrite(condition, change))
+        first = self.known(self.expression(rewrite(condition, change)))
         return isinstance(first, Literal) and not first.value
 
     # Conditions
@@ -305,11 +306,9 @@ class _Folder:
             return _literal(expr.type, values, expr.span) if values is not None else expr
         if op in ("&&", "||", "^^"):
             return _logic(expr, x, y)
-        if y is not None and left.type == expr.type and _is_neutral(op, right):
+        if left.type == expr.type and _is_neutral(op, right):
             return left
-        if x is not None and right.type == expr.type and op in ("*", "+", "|", "^") and _is_neutral(op, left):
-            return right
-        return expr
+        return right if right.type == expr.type and op in "*+|^" and _is_neutral(op, left) else expr
 
     def unary(self, expr: Unary) -> Expr:
         operand = self.expression(expr.operand)
@@ -374,9 +373,10 @@ class _Folder:
                 flat.append(arg)
         if len(flat) > len(args):
             new = Construct(type_, tuple(flat), new.span)
-        values = _flat_literals(flat)
-        if values is not None and all(_same(value, values[0]) for value in values):
-            return _literal(type_, values, new.span)
+        parts = [_constant(arg) or () for arg in flat]
+        numbers = tuple([number for part in parts for number in part])
+        if () not in parts and all(_same(number, numbers[0]) for number in numbers):
+            return _literal(type_, numbers, new.span)
         return new
 
     def swizzle(self, expr: Swizzle) -> Expr:
@@ -398,12 +398,19 @@ class _Folder:
         new = self.inside(expr)
         assert isinstance(new, Index)
         value, index = new.value, new.index
-        if isinstance(value, Construct) and isinstance(index, Literal):
-            if isinstance(value.type, Vector) and 0 <= index.value < value.type.size:
-                return _picked(value, [int(index.value)], expr.type, expr.span) or new
-            whole = all(arg.type == expr.type for arg in value.args)
-            if whole and len(value.args) > 1 and 0 <= index.value < len(value.args):
-                return _one_of(value, int(index.value)) or new
+        if not isinstance(index, Literal):
+            return new
+        last = (element_type(value.type) or (expr.type, 1))[1] - 1
+        if not 0 <= index.value <= last:
+            # nothing says what is there; targets refuse it if they see it
+            index = index._replace(value=0 if index.value < 0 else last)
+            new = Index(expr.type, value, index, expr.span)
+        if isinstance(value, Construct):
+            place = int(index.value)
+            if isinstance(value.type, Vector):
+                return _picked(value, [place], expr.type, expr.span) or new
+            if len(value.args) == last + 1 and all(arg.type == expr.type for arg in value.args):
+                return _one_of(value, place) or new
         return new
 
     def member(self, expr: Member) -> Expr:
@@ -436,26 +443,16 @@ def _is_neutral(op: str, right: Expr) -> bool:
 
 
 def _logic(expr: Binary, x: Numbers | None, y: Numbers | None) -> Expr:
-    """`&&`, `||` or `^^` with one side known."""
+    """`&&`, `||` or `^^`, of which one side may be known."""
     known, other = (x, expr.right) if x is not None else (y, expr.left)
-    assert known is not None
+    if known is None:
+        return expr
     if expr.op == "^^":
         return Unary(BOOL, "!", other, expr.span) if known[0] else other
     if known[0] == (expr.op == "&&"):
         return other
     # the right side is not evaluated where the left one decides; a left side with effects is
     return expr if x is None and _calls(other) else Literal(BOOL, known[0], expr.span)
-
-
-def _flat_literals(args: list[Expr]) -> Numbers | None:
-    """The components of vectors and scalars of literals put together."""
-    values: Numbers = ()
-    for arg in args:
-        part = _constant(arg)
-        if part is None:
-            return None
-        values += part
-    return values
 
 
 def _one_of(value: Construct, index: int) -> Expr | None:

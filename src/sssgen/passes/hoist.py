@@ -236,6 +236,7 @@ class _Hoister:
         init = self.statement(stmt.init) if stmt.init is not None else None
         if self.region is not None and isinstance(stmt.init, Declare):
             self.region.change((stmt.init.name,))
+            self.region.starts.pop(stmt.init.name, None)
         condition = self.expression(stmt.condition) if stmt.condition is not None else None
         body = self.block(stmt.body)
         step = self.statement(stmt.step) if stmt.step is not None else None

@@ -38,7 +38,7 @@ from ..ir.nodes import (
     While,
 )
 from ..ir.types import BOOL, VOID, Type
-from ..ir.walk import callees, operands, statements, subexpressions, with_operands
+from ..ir.walk import callees, operands, root, statements, subexpressions, with_operands
 from .scopes import declared, fresh
 
 Functions = Mapping[str, Function]
@@ -68,11 +68,7 @@ def out_arguments(call: Expr, functions: Functions) -> list[str]:
 
 def discards(function: Function) -> bool:
     """Whether the function says through its last parameter which lanes are discarded."""
-    return (
-        bool(function.params)
-        and function.params[-1].name == DISCARDED
-        and function.params[-1].direction == "out"
-    )
+    return bool(function.params) and function.params[-1].name == DISCARDED and function.params[-1].direction == "out"
 
 
 def _announce_discard(function: Function, known: Functions, taken: set[str]) -> Function:
@@ -102,17 +98,14 @@ class _Lifter:
         if expr is None:
             return False
         return any(
-            isinstance(part, Call)
-            and any(param.direction != "in" for param in self.functions[part.function].params)
+            isinstance(part, Call) and any(param.direction != "in" for param in self.functions[part.function].params)
             for part in subexpressions(expr)
         )
 
     def writes_in(self, body: Block) -> bool:
         keys = callees(Function("", (), VOID, "", body, "", self.function.span))
         evaluates = any(isinstance(stmt, Evaluate) for stmt in statements(body))
-        return evaluates or any(
-            param.direction != "in" for key in keys for param in self.functions[key].params
-        )
+        return evaluates or any(param.direction != "in" for key in keys for param in self.functions[key].params)
 
     def local(self, type: Type, name: str, span: Span) -> Local:
         name = fresh(name, self.names)
@@ -155,16 +148,12 @@ class _Lifter:
 
     def assign(self, stmt: Assign) -> None:
         target, value = self.expr(stmt.target), stmt.value
-        if (
-            isinstance(target, Local)
-            and not stmt.op
-            and isinstance(value, Call)
-            and self.writes_itself(value)
-        ):
+        alone = isinstance(target, Local) and not stmt.op and target.name not in self.written(value)
+        if alone and isinstance(value, Call) and self.writes_itself(value):
             call, after = self.call(value)
             self.out += [Assign(target, "", call, stmt.span), *after]
-        else:
-            self.out.append(Assign(target, stmt.op, self.expr(value), stmt.span))
+            return
+        self.out.append(Assign(target, stmt.op, self.expr(value), stmt.span))
 
     def loop(self, loop: For | While) -> None:
         """A condition that writes goes into the body: `while (true) { if (!condition) break; … }`."""
@@ -202,7 +191,30 @@ class _Lifter:
             result = self.local(expr.type, self.functions[expr.function].name + "_value", expr.span)
             self.out += [Declare(result.name, result.type, call, expr.span), *after]
             return result
-        return with_operands(expr, tuple([self.expr(operand) for operand in operands(expr)]))
+        return with_operands(expr, tuple(self.in_order(operands(expr))))
+
+    def written(self, expr: Expr) -> set[str]:
+        """The variables that the calls in an expression change."""
+        found: set[str] = set()
+        for part in subexpressions(expr):
+            if isinstance(part, Call):
+                params = self.functions[part.function].params
+                places = [root(arg) for arg, param in zip(part.args, params, strict=False) if param.direction != "in"]
+                found.update(place.name for place in places if place is not None)
+        return found
+
+    def in_order(self, exprs: tuple[Expr, ...]) -> list[Expr]:
+        """Expressions evaluated from left to right: what a later one changes is read before."""
+        done: list[Expr] = []
+        for index, expr in enumerate(exprs):
+            later = {name for other in exprs[index + 1 :] for name in self.written(other)}
+            value = self.expr(expr)
+            if any(isinstance(part, Local) and part.name in later for part in subexpressions(value)):
+                kept = self.local(value.type, "before", value.span)
+                self.out.append(Declare(kept.name, kept.type, value, value.span))
+                value = kept
+            done.append(value)
+        return done
 
     def choose(self, select: Select) -> Expr:
         """A choice as an if, so that only the chosen arm's calls write."""

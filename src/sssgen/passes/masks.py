@@ -79,6 +79,16 @@ def zero(type_: Type, span: Span) -> Expr:
 # Tidying
 
 
+class _Uses(NamedTuple):
+    """What tidying needs to know of a function's variables."""
+
+    made: Set[str]
+    single: Set[str]
+    """Of those made the ones that are set once and read at most once."""
+    reads: dict[str, int]
+    functions: Functions
+
+
 def tidy(body: Block, made: Set[str], functions: Functions) -> Block:
     """Joins the two arms' assignments where it can, and drops or inlines what was made and is used once."""
     body = _join_arms(body, functions)
@@ -90,52 +100,48 @@ def tidy(body: Block, made: Set[str], functions: Functions) -> Block:
                 reads[name] = reads.get(name, 0) + 1
             written.update(_own_writes(stmt, functions))
         single = {name for name in made - written if reads.get(name, 0) <= 1}
-        new = _inline(body, single, reads, functions)
+        new = _inline(body, _Uses(made, single, reads, functions))
         if new is body:
             return body
         body = new
 
 
-def _inline(block: Block, single: Set[str], reads: dict[str, int], functions: Functions) -> Block:
+def _inline(block: Block, uses: _Uses) -> Block:
     """One step: drops or moves the first declaration that can be."""
     for index, stmt in enumerate(block):
-        if (
-            isinstance(stmt, Declare)
-            and stmt.name in single
-            and stmt.value is not None
-            and not isinstance(stmt.value, Call)
-        ):
-            if stmt.name not in reads:
-                return block[:index] + block[index + 1 :]
-            free = {part.name for part in subexpressions(stmt.value) if isinstance(part, Local)}
-            for place in range(index + 1, len(block)):
-                user = block[place]
-                if not isinstance(user, For | While) and stmt.name in _own_reads(user):
-                    used = _put(user, stmt.name, stmt.value)
-                    return block[:index] + block[index + 1 : place] + (used,) + block[place + 1 :]
-                if free.intersection(_writes((user,), functions)):
-                    break
-        elif isinstance(stmt, If | For | While):
-            inner = _inline_inside(stmt, single, reads, functions)
-            if inner is not stmt:
-                return (*block[:index], inner, *block[index + 1 :])
+        if isinstance(stmt, Declare) and stmt.name in uses.single:
+            new = _inline_declaration(block, index, stmt, uses)
+            if new is not block:
+                return new
+        elif isinstance(stmt, If):
+            then, otherwise = _inline(stmt.then, uses), _inline(stmt.otherwise, uses)
+            if then is not stmt.then or otherwise is not stmt.otherwise:
+                return (*block[:index], stmt._replace(then=then, otherwise=otherwise), *block[index + 1 :])
+        elif isinstance(stmt, For | While):
+            body = _inline(stmt.body, uses)
+            if body is not stmt.body:
+                return (*block[:index], stmt._replace(body=body), *block[index + 1 :])
         elif isinstance(stmt, Return) and isinstance(stmt.value, Local) and index:
             before = block[index - 1]
-            if isinstance(before, Assign) and not before.op and _is(before.target, stmt.value.name):
+            if isinstance(before, Assign) and stmt.value.name in uses.made and _is(before.target, stmt.value.name):
                 return (*block[: index - 1], Return(before.value, stmt.span), *block[index + 1 :])
     return block
 
 
-def _inline_inside(
-    stmt: If | For | While, single: Set[str], reads: dict[str, int], functions: Functions
-) -> Stmt:
-    if isinstance(stmt, If):
-        then = _inline(stmt.then, single, reads, functions)
-        otherwise = _inline(stmt.otherwise, single, reads, functions)
-        same = then is stmt.then and otherwise is stmt.otherwise
-        return stmt if same else stmt._replace(then=then, otherwise=otherwise)
-    body = _inline(stmt.body, single, reads, functions)
-    return stmt if body is stmt.body else stmt._replace(body=body)
+def _inline_declaration(block: Block, index: int, declare: Declare, uses: _Uses) -> Block:
+    name, value = declare.name, declare.value
+    if value is None or isinstance(value, Call):
+        return block
+    if name not in uses.reads:
+        return block[:index] + block[index + 1 :]
+    free = {part.name for part in subexpressions(value) if isinstance(part, Local)}
+    for place in range(index + 1, len(block)):
+        user = block[place]
+        if not isinstance(user, For | While) and name in _own_reads(user):
+            return block[:index] + block[index + 1 : place] + (_put(user, name, value),) + block[place + 1 :]
+        if free.intersection(_writes((user,), uses.functions)):
+            break
+    return block
 
 
 def _put(stmt: Stmt, name: str, value: Expr) -> Stmt:
@@ -163,11 +169,7 @@ def _join_arms(block: Block, functions: Functions) -> Block:
             stmt = stmt._replace(body=_join_arms(stmt.body, functions))
         elif isinstance(stmt, Assign) and isinstance(stmt.target, Local) and isinstance(stmt.value, Select):
             name, choice = stmt.target.name, stmt.value
-            if (
-                isinstance(choice.condition, Local)
-                and _is(choice.yes, name)
-                and not _mentions(choice.no, name)
-            ):
+            if isinstance(choice.condition, Local) and _is(choice.yes, name) and not _mentions(choice.no, name):
                 place = _other_arm(result, name, choice.condition.name, functions)
                 if place is not None:
                     other = result.pop(place)
@@ -182,12 +184,7 @@ def _other_arm(done: list[Stmt], name: str, mask: str, functions: Functions) -> 
     changed: set[str] = set()
     for place in range(len(done) - 1, -1, -1):
         stmt = done[place]
-        if (
-            isinstance(stmt, Assign)
-            and not stmt.op
-            and _is(stmt.target, name)
-            and isinstance(stmt.value, Select)
-        ):
+        if isinstance(stmt, Assign) and not stmt.op and _is(stmt.target, name) and isinstance(stmt.value, Select):
             choice = stmt.value
             free = {part.name for part in subexpressions(choice.yes) if isinstance(part, Local)} | {mask}
             fits = _is(choice.condition, mask) and _is(choice.no, name) and not free & changed
@@ -208,9 +205,7 @@ def renumber(body: Block, made: Set[str], taken: Set[str]) -> Block:
             used.add(names[stmt.name])
 
     def change(expr: Expr) -> Expr:
-        return (
-            expr._replace(name=names[expr.name]) if isinstance(expr, Local) and expr.name in names else expr
-        )
+        return expr._replace(name=names[expr.name]) if isinstance(expr, Local) and expr.name in names else expr
 
     def restate(stmt: Stmt) -> Block | None:
         if isinstance(stmt, Declare) and stmt.name in names:
@@ -232,7 +227,7 @@ def settle(body: Block, function: Function, functions: Functions) -> Block:
     starts = tuple(
         Assign(Local(param.type, param.name, param.span), "", zero(param.type, param.span), param.span)
         for param in unset
-        if not _set_first(body, param.name, functions)
+        if not _set_first((*body, Return(None, param.span)), param.name, functions, out=True)
     )
     visible = {param.name: param.type for param in function.params}
     return starts + _settle(body, visible, functions)
@@ -259,16 +254,13 @@ def _settle(block: Block, visible: dict[str, Type], functions: Functions) -> Blo
     return tuple(result)
 
 
-def _set_first(block: Block, name: str, functions: Functions) -> bool:
-    """Whether a variable is set whole, or not used at all, before anything reads it."""
+def _set_first(block: Block, name: str, functions: Functions, out: bool = False) -> bool:
+    """Whether a variable is set whole, or not used at all, before anything reads it; returns read an `out` one."""
     for stmt in block:
-        if (
-            isinstance(stmt, Declare)
-            and stmt.name == name
-            and (stmt.value is None or not _mentions(stmt.value, name))
-        ):
+        if isinstance(stmt, Declare) and stmt.name == name and (stmt.value is None or not _mentions(stmt.value, name)):
             return True
         reads = name in _reads((stmt,), functions)
+        reads = reads or (out and any(isinstance(inner, Return) for inner in statements((stmt,))))
         if not reads and isinstance(stmt, Assign) and _is(stmt.target, name):
             return True
         if not reads and any(name in out_arguments(expr, functions) for expr in expressions(stmt)):

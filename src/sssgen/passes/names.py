@@ -118,6 +118,10 @@ class _Namer:
         if not base.endswith("_") and self.free(f"{base}_", taken):
             return f"{base}_"
         base, count = base.rstrip("_"), 2
+        if not self.legal(f"{base}_{count}"):  # its beginning is reserved, so that no ending helps
+            base = f"own_{base}"
+            if self.free(base, taken):
+                return base
         while not self.free(f"{base}_{count}", taken):
             count += 1
         return f"{base}_{count}"

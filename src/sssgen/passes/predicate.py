@@ -377,9 +377,7 @@ class _Converter:
     def clear(self, mask: Mask, gone: Mask | None, span: Span) -> None:
         """Takes lanes out of a mask; all of them for None."""
         if gone is None:
-            self.out.append(
-                Assign(Local(BOOL, mask.name, span), "", Literal(BOOL, mask.inverted, span), span)
-            )
+            self.out.append(Assign(Local(BOOL, mask.name, span), "", Literal(BOOL, mask.inverted, span), span))
         elif mask.inverted:
             self.update(mask.name, "||", gone.expr(span))
         else:
@@ -487,8 +485,5 @@ def _jumps_inside(block: Block) -> bool:
     """Whether there is a jump in a statement of the block, beside the block's own."""
     jumps = (Break, Continue, Return, Discard)
     return any(
-        isinstance(inner, jumps)
-        for stmt in block
-        if not isinstance(stmt, jumps)
-        for inner in statements((stmt,))
+        isinstance(inner, jumps) for stmt in block if not isinstance(stmt, jumps) for inner in statements((stmt,))
     )

@@ -51,7 +51,7 @@ class LoopFacts(NamedTuple):
     counted: bool
     """As `for … in range(…)`."""
     masked: bool
-    """Its own condition differs from lane to lane."""
+    """As a `while` with a mask, as its own condition differs from lane to lane, or lanes leave it."""
     jumps: frozenset[str]
     """break, continue and return (also for discard), where some lanes do it and others do not."""
 
@@ -151,10 +151,7 @@ class Uniformity:
         jumps = self.jumps(body, False)
         own = _own_jumps(body)
         uniform = counted or (
-            loop.condition is not None
-            and self.uniform(loop.condition)
-            and not jumps
-            and "continue" not in own
+            loop.condition is not None and self.uniform(loop.condition) and not jumps and "continue" not in own
         )
         if not uniform and "continue" in own:
             jumps.add("continue")
@@ -162,15 +159,13 @@ class Uniformity:
             jumps.add("break")
         if (inside or jumps or not uniform) and _returns(body):
             jumps.add("return")
-        return LoopFacts(counted, not uniform, frozenset(jumps))
+        return LoopFacts(counted, not uniform or bool(jumps and not counted), frozenset(jumps))
 
     def fixed(self, counter: Count, body: Block) -> bool:
         """Whether the counter and its bounds are uniform and stay as they are during the loop."""
         if not self.uniform(counter.start) or not self.uniform(counter.stop):
             return False
-        watched = {part.name for part in subexpressions(counter.stop) if isinstance(part, Local)} | {
-            counter.name
-        }
+        watched = {part.name for part in subexpressions(counter.stop) if isinstance(part, Local)} | {counter.name}
         for stmt in statements(body):
             target = root(stmt.target) if isinstance(stmt, Assign) else None
             if target is not None and target.name in watched:
@@ -191,9 +186,7 @@ class Uniformity:
                 inner = diverged or not self.uniform(stmt.condition)
                 found |= self.jumps(stmt.then, inner) | self.jumps(stmt.otherwise, inner)
             elif (
-                isinstance(stmt, For | While)
-                and _returns(stmt.body)
-                and (diverged or self.facts(stmt, False).diverges)
+                isinstance(stmt, For | While) and _returns(stmt.body) and (diverged or self.facts(stmt, False).diverges)
             ):
                 found.add("return")
         return found

@@ -137,10 +137,21 @@ def read(path: Path) -> Target:
         raise failure(f"the target descriptor is incomplete: {error}", file=path.name) from None
 
 
+class Words:
+    """The names that are not free: words, words in any case, and whatever begins with certain letters."""
+
+    def __init__(self, words: frozenset[str], prefixes: tuple[str, ...]) -> None:
+        self.words, self.prefixes = words, prefixes
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.words or (isinstance(name, str) and name.startswith(self.prefixes))
+
+
 @functools.cache
-def reserved_everywhere() -> tuple[frozenset[str], frozenset[str]]:
-    """What any of the project's own targets reserves, exactly and in any case: names keep clear of all of it."""
+def reserved_everywhere() -> tuple[frozenset[str], frozenset[str], tuple[str, ...]]:
+    """What the project's own targets reserve: words, words in any case, prefixes. Names keep clear of all of it."""
     own = [load(name) for name in names() if (folder("targets") / f"{name}.toml").is_file()]
     shaders = [target for target in own if target.language != "python"]
     exact = frozenset().union(*(target.reserved for target in shaders))
-    return exact, frozenset().union(*(target.folded for target in shaders))
+    folded = frozenset().union(*(target.folded for target in shaders))
+    return exact, folded, tuple(sorted({prefix for target in shaders for prefix in target.prefixes}))

@@ -28,6 +28,18 @@ _MARK = re.compile(r"\x02(\d+)\x03")
 _DEFAULTS = {"default_white": "white", "default_black": "black", "default_gray": "gray", "default_bump": "bump"}
 
 
+class About(NamedTuple):
+    """What a material says of itself; templates see it as `material`."""
+
+    name: str
+    title: str
+    doc: str = ""
+    shading: str = "lit"
+    alpha_mode: str = "opaque"
+    raymarched: bool = False
+    """Whether the chain makes its own geometry, so that the shell needs no mesh."""
+
+
 class Program(NamedTuple):
     """A legal module with what the templates need to know of it."""
 
@@ -37,10 +49,7 @@ class Program(NamedTuple):
     surface: Struct | None
     source_names: Mapping[str, str]
     """A uniform's name in `module` → its technique's own name for it."""
-    name: str
-    title: str
-    doc: str
-    shading: str
+    about: About
     comments: Comments = no_comments
 
 
@@ -99,7 +108,7 @@ def emit(target: Target, program: Program, form: str, templates: Path | None = N
     lines: dict[str, dict[int, Span]] = {}
     environment = _environment(templates, target.folder)
     for output in target.files.get(form, ()):
-        name = output.name.format(material=program.name)
+        name = output.name.format(material=program.about.name)
         files[name], lines[name] = _finish(_render(environment, output.template, context), marks)
     bindings = [printer.binding(index) for index in range(len(textures))] if declared else []
     return Emitted(files, lines, members, size, [binding for binding in bindings if binding])
@@ -130,7 +139,7 @@ def _context(target: Target, program: Program, printer: Printer, form: str, code
     inputs = {name for _, given in program.entries.values() for name in given}
     surface = program.surface
     return {
-        "material": {"name": program.name, "title": program.title, "doc": program.doc, "shading": program.shading},
+        "material": program.about._asdict(),
         "target": {**target.table, "name": target.name},
         "form": form,
         "header": _header(target, program),
@@ -150,7 +159,8 @@ def _header(target: Target, program: Program) -> list[str]:
     """The comment at the head of a file: what it is, and where to change it."""
     import textwrap
 
-    words = f"{program.title}: {program.doc}" if program.doc else program.title
+    about = program.about
+    words = f"{about.title}: {about.doc}" if about.doc else about.title
     what = "the material" if program.entries else "the source"
     made = f"Made by sssgen for {target.title}. Change {what} and emit it again rather than this file."
     return [comment_text(line) for line in textwrap.wrap(words, 100)] + [made]

@@ -30,11 +30,7 @@ class NumpyExpressions(Printer):
     def typed(self, *exprs: ir.Expr) -> list[str]:
         """Texts of values that go somewhere together: of uints that are all plain, one says its type."""
         texts = [self.expr(expr) for expr in exprs]
-        plain = [
-            index
-            for index, expr in enumerate(exprs)
-            if kind_of(expr.type) == "uint" and self.numbers.plain(expr)
-        ]
+        plain = [index for index, expr in enumerate(exprs) if kind_of(expr.type) == "uint" and self.numbers.plain(expr)]
         if plain and not any(kind_of(expr.type) == "uint" and not self.numbers.plain(expr) for expr in exprs):
             texts[plain[0]] = f"to_uint({texts[plain[0]]})"
         return texts
@@ -54,8 +50,10 @@ class NumpyExpressions(Printer):
         if isinstance(expr, ir.Select):
             return f"select({self.expr(expr.condition)}, {', '.join(self.typed(expr.yes, expr.no))})", PRIMARY
         if isinstance(expr, ir.Index):
-            if isinstance(expr.index, ir.Literal) and not isinstance(expr.type, Struct):
-                return f"{self.expr(expr.value, POSTFIX)}[{expr.index.value}]", POSTFIX
+            length = expr.value.type.length if isinstance(expr.value.type, Array) else components(expr.value.type)
+            inside = isinstance(expr.index, ir.Literal) and 0 <= expr.index.value < length
+            if inside and not isinstance(expr.type, Struct):
+                return f"{self.expr(expr.value, POSTFIX)}[{self.expr(expr.index)}]", POSTFIX
             return f"index({self.expr(expr.value)}, {self.expr(expr.index)})", PRIMARY
         return super().bound(expr)
 
@@ -121,9 +119,7 @@ class NumpyExpressions(Printer):
 
     def call(self, call: ir.Call) -> str:
         function = self.by_key[call.function]
-        given = [
-            arg for arg, param in zip(call.args, function.params, strict=True) if param.direction != "out"
-        ]
+        given = [arg for arg, param in zip(call.args, function.params, strict=True) if param.direction != "out"]
         return f"{function.name}({', '.join([self.typed(arg)[0] for arg in given])})"
 
     def construct(self, construct: ir.Construct) -> tuple[str, int]:
@@ -133,11 +129,7 @@ class NumpyExpressions(Printer):
             fields = [f"{field.name}={text}" for field, text in zip(type_.fields, texts, strict=True)]
             return f"Record({', '.join(fields)})", PRIMARY
         if isinstance(type_, Array):
-            texts = (
-                self.typed(*args)
-                if kind_of(type_.element) != "uint"
-                else [self.typed(arg)[0] for arg in args]
-            )
+            texts = self.typed(*args) if kind_of(type_.element) != "uint" else [self.typed(arg)[0] for arg in args]
             repeated = len(texts) > 4 and len(set(texts)) == 1
             return (
                 f"array(*[{texts[0]}] * {len(texts)})" if repeated else f"array({', '.join(texts)})",
@@ -162,6 +154,4 @@ class NumpyExpressions(Printer):
         """The arguments of a constructor, each as its kind."""
         texts = self.typed(*args)
         foreign = [kind_of(arg.type) != kind for arg in args]
-        return ", ".join(
-            f"to_{kind}({text})" if far else text for text, far in zip(texts, foreign, strict=True)
-        )
+        return ", ".join(f"to_{kind}({text})" if far else text for text, far in zip(texts, foreign, strict=True))

@@ -73,11 +73,7 @@ class Numbers:
         for arg, param in zip(call.args, self.functions[call.function].params, strict=True):
             if param.direction != "out" and self.plain(arg):
                 self.plain_params.add((call.function, param.name))
-            if (
-                param.direction != "in"
-                and isinstance(arg, ir.Local)
-                and kind_of(arg.type) in ("float", "int")
-            ):
+            if param.direction != "in" and isinstance(arg, ir.Local) and kind_of(arg.type) in ("float", "int"):
                 names.add(arg.name)
 
     def plain(self, expr: ir.Expr) -> bool:
@@ -136,11 +132,7 @@ _STEPPED = 1 << 30
 
 def _steppers(function: ir.Function) -> set[str]:
     """The int variables that start from small literals and are only stepped by small ones."""
-    found = {
-        stmt.name
-        for stmt in statements(function.body or ())
-        if isinstance(stmt, ir.Declare) and stmt.type == INT
-    }
+    found = {stmt.name for stmt in statements(function.body or ()) if isinstance(stmt, ir.Declare) and stmt.type == INT}
 
     def small(expr: ir.Expr, name: str, largest: int) -> bool:
         if isinstance(expr, ir.Select):
@@ -152,11 +144,7 @@ def _steppers(function: ir.Function) -> set[str]:
         return isinstance(expr, ir.Local) and expr.name == name
 
     for stmt in statements(function.body or ()):
-        if (
-            isinstance(stmt, ir.Declare)
-            and stmt.value is not None
-            and not small(stmt.value, stmt.name, 1 << 20)
-        ):
+        if isinstance(stmt, ir.Declare) and stmt.value is not None and not small(stmt.value, stmt.name, 1 << 20):
             found.discard(stmt.name)
         elif isinstance(stmt, ir.Assign) and isinstance(stmt.target, ir.Local):
             name = stmt.target.name

@@ -96,11 +96,7 @@ class NumpyPrinter(NumpyExpressions):
         if isinstance(stmt, ir.Assign):
             if isinstance(stmt.target, ir.Local) and not stmt.op:
                 return self.assignment([stmt.target.name], stmt.value)
-            value = (
-                ir.Binary(stmt.target.type, stmt.op, stmt.target, stmt.value, stmt.span)
-                if stmt.op
-                else stmt.value
-            )
+            value = ir.Binary(stmt.target.type, stmt.op, stmt.target, stmt.value, stmt.span) if stmt.op else stmt.value
             return self.store(stmt.target, self.typed(value)[0])
         if isinstance(stmt, ir.Evaluate):
             assert isinstance(stmt.call, ir.Call)
@@ -120,9 +116,7 @@ class NumpyPrinter(NumpyExpressions):
     def store(self, target: ir.Expr, value: str) -> str:
         """The assignment that puts a new value into a variable or a part of one."""
         if isinstance(target, ir.Swizzle):
-            return self.store(
-                target.value, f'store_swizzle({self.expr(target.value)}, "{target.components}", {value})'
-            )
+            return self.store(target.value, f'store_swizzle({self.expr(target.value)}, "{target.components}", {value})')
         if isinstance(target, ir.Index):
             place = self.expr(target.index)
             return self.store(target.value, f"store_index({self.expr(target.value)}, {place}, {value})")
@@ -144,8 +138,7 @@ class NumpyPrinter(NumpyExpressions):
         given = ", ".join([param.name for param in function.params if param.direction != "out"])
         lines = [Line(""), *wrap(f"def {function.name}({given}):", function.span)]
         lines += [
-            Line('    """' + text.replace("\\", "\\\\").replace('"', "'") + '"""')
-            for text in summary(function.doc)
+            Line('    """' + text.replace("\\", "\\\\").replace('"', "'") + '"""') for text in summary(function.doc)
         ]
         for name in self.local_constants(function):
             constant = self.constants[name]

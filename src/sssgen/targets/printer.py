@@ -23,6 +23,8 @@ from .layout import Member
 _COLOR_LETTERS = str.maketrans("xyzw", "rgba")
 
 UNARY, POSTFIX, PRIMARY, TERNARY = 13, 14, 15, -1
+_SUM, _RELATIONAL, _EQUALITY = PRECEDENCE["+"], PRECEDENCE["<"], PRECEDENCE["=="]
+_ALONE = frozenset(("<<", ">>", "&", "|", "^", "&&", "||"))
 WIDTH = 110
 """Lines longer than this are broken at a call's arguments."""
 
@@ -128,18 +130,33 @@ class Printer:
         return value.name
 
     def binary(self, binary: ir.Binary) -> tuple[str, int]:
-        level = PRECEDENCE[binary.op]
-        left, right = self.expr(binary.left, level), self.expr(binary.right, level + 1)
-        if right[0] == "-" and binary.op in "+-":
+        """In parentheses go what binds too loosely, and what few know the precedence of: bits, shifts, && beside ||.
+
+        WGSL, which mixes none of these without them, and compilers' warnings ask for the same.
+        """
+        op, level = binary.op, PRECEDENCE[binary.op]
+        least, least_right = level, level + 1
+        if op in _ALONE:
+            chained = op not in ("<<", ">>") and isinstance(binary.left, ir.Binary) and binary.left.op == op
+            least_right = _EQUALITY if op in ("&&", "||") else UNARY
+            least = level if chained else least_right
+        elif level in (_RELATIONAL, _EQUALITY):
+            least = least_right = _SUM
+        left, right = self.expr(binary.left, least), self.expr(binary.right, least_right)
+        if right[0] == "-" and op in "+-":
             right = f"({right})"
-        return f"{left} {binary.op} {right}", level
+        return f"{left} {op} {right}", level
 
     def select(self, select: ir.Select) -> tuple[str, int]:
         condition = self.expr(select.condition, TERNARY + 1)
         return f"{condition} ? {self.expr(select.yes, TERNARY + 1)} : {self.expr(select.no)}", TERNARY
 
     def arguments(self, args: tuple[ir.Expr, ...]) -> str:
-        return ", ".join([self.expr(arg) for arg in args])
+        return self.listed([self.expr(arg) for arg in args])
+
+    def listed(self, texts: list[str]) -> str:
+        """Arguments one after the other."""
+        return ", ".join(texts)
 
     def construct(self, construct: ir.Construct) -> tuple[str, int]:
         return f"{self.type(construct.type)}({self.arguments(construct.args)})", PRIMARY
@@ -147,7 +164,7 @@ class Printer:
     def call(self, call: ir.Call) -> str:
         function = self.by_key[call.function]
         args = [self.argument(arg, param) for arg, param in zip(call.args, function.params, strict=True)]
-        return f"{function.name}({', '.join(args)})"
+        return f"{function.name}({self.listed(args)})"
 
     def argument(self, arg: ir.Expr, param: ir.Param) -> str:
         """What is passed for a parameter of one of the module's own functions."""

@@ -51,11 +51,11 @@ def reflect(
             uniforms.append(entry)
     return {
         "format": VERSION,
-        "material": program.name,
+        "material": program.about.name,
         "target": target.name,
         "form": form,
         "files": [
-            {"name": output.name.format(material=program.name), "stages": output.stages}
+            {"name": output.name.format(material=program.about.name), "stages": output.stages}
             for output in target.files.get(form, ())
         ],
         "uniforms": uniforms,

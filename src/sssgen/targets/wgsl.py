@@ -6,7 +6,6 @@ Out parameters are pointers; what is never written after its declaration is a `l
 from __future__ import annotations
 
 from ..ir import nodes as ir
-from ..ir.operators import PRECEDENCE
 from ..ir.types import BOOL, INT, VOID, Array, Sampler, Struct, Type, Vector, kind_of
 from .layout import Member
 from .printer import PRIMARY, UNARY, Line, Printer, documented, wrap
@@ -39,21 +38,12 @@ class WgslPrinter(Printer):
             return value.name
         return f"material.{value.name}"
 
-    def binary(self, binary: ir.Binary) -> tuple[str, int]:
-        level = PRECEDENCE[binary.op]
-        if binary.op in ("&", "|", "^", "<<", ">>"):
-            left, right = self.expr(binary.left, UNARY), self.expr(binary.right, UNARY)
-        elif binary.op in ("&&", "||"):
-            same = isinstance(binary.left, ir.Binary) and binary.left.op == binary.op
-            left, right = self.expr(binary.left, level if same else 6), self.expr(binary.right, 6)
-        elif binary.op in ("<", ">", "<=", ">=", "==", "!="):
-            left, right = self.expr(binary.left, 9), self.expr(binary.right, 9)
-        else:
-            return super().binary(binary)
-        return f"{left} {binary.op} {right}", level
-
     def select(self, select: ir.Select) -> tuple[str, int]:
-        return f"select({self.expr(select.no)}, {self.expr(select.yes)}, {self.expr(select.condition)})", PRIMARY
+        return f"select({self.arguments((select.no, select.yes, select.condition))})", PRIMARY
+
+    def listed(self, texts: list[str]) -> str:
+        """Arguments; `(x < y)` goes into parentheses, as `x < y, z > t` would be read as a template x<y, z>."""
+        return ", ".join([*(f"({text})" if _has_open_less(text) else text for text in texts[:-1]), *texts[-1:]])
 
     def argument(self, arg: ir.Expr, param: ir.Param) -> str:
         if param.direction == "in" or not isinstance(arg, ir.Local):
@@ -119,6 +109,16 @@ class WgslPrinter(Printer):
 
     def binding(self, index: int) -> dict[str, int | str]:
         return {"group": self.target.table["material_group"], "texture": 1 + 2 * index, "sampler": 2 + 2 * index}
+
+
+def _has_open_less(text: str) -> bool:
+    """Whether a `<` stands in no parentheses."""
+    depth = 0
+    for index, char in enumerate(text):
+        depth += (char in "([") - (char in ")]")
+        if depth == 0 and text.startswith(" < ", index):
+            return True
+    return False
 
 
 def block_type(type_: Type) -> Type:

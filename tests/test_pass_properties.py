@@ -1,0 +1,178 @@
+"""Random programs say the same after a pass as before it."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from random import Random
+from typing import Any
+
+import pytest
+from hypothesis import assume, given, reject
+from hypothesis import strategies as st
+from ir_interpreter import BUILTINS, Discarded, Interpreter, componentwise, flat
+from pass_cases import key
+from random_programs import Programs
+
+from sssgen.diagnostics import SssgenError
+from sssgen.ir.nodes import Function, Module
+from sssgen.ir.verify import verify
+from sssgen.lang.check import check
+from sssgen.lang.parser import parse
+from sssgen.passes.fold import fold
+from sssgen.passes.hoist import Note, hoist
+from sssgen.passes.inline import inline
+from sssgen.passes.names import rename
+from sssgen.passes.parameters import uniforms_to_parameters
+from sssgen.passes.prune import prune
+
+SEEDS = st.integers(0, 1 << 32)
+UNIFORMS = "uniform sampler2D map; uniform float level = 2.0; uniform int mode = 1; uniform vec3 tint = vec3(0.5, 1.0, 2.0);\n"
+HELPERS = """
+float look(float x) { return texture(map, vec2(x, level)).y; }
+float shine(vec2 at, inout float c) { if (level > 0.5) { c += texture(map, at).x; } return c * tint.y; }
+float twice(float x) { return x + x * level; }
+float pick(float x, float y) { return x > 1.0 ? y : 0.5; }
+"""
+VALUES = {"map": None, "level": 2.0, "mode": 1, "tint": (0.5, 1.0, 2.0)}
+ARGUMENTS = [(0.5, 1.5, 1, 0.0), (-2.0, 5.0, 2, 3.0), (4.5, -0.5, 0, 1.0), (0.0, 0.0, 3, -4.0)]
+
+
+class ShadedPrograms(Programs):
+    """Random programs that read uniforms and textures too."""
+
+    def program(self) -> str:
+        text = super().program()
+        at = text.index("float f(")
+        return UNIFORMS + text[:at] + HELPERS + text[at:]
+
+    def number(self, depth: int = 2) -> str:
+        if depth and self.chance(30):
+            inner = [super(ShadedPrograms, self).number(depth - 1) for _ in range(2)]
+            return self.random.choice(
+                [
+                    f"texture(map, vec2({inner[0]}, {inner[1]})).x", f"look({inner[0]})", f"twice({inner[0]})",
+                    f"pick({inner[0]}, {inner[1]})", "level", "tint.z", f"texture(map, v.xy + {inner[0]}).y",
+                    f"shine(vec2({inner[0]}), {self.random.choice(self.floats)})",
+                ]
+            )  # fmt: skip
+        return super().number(depth)
+
+    def condition(self, depth: int = 2) -> str:
+        if self.chance(25):
+            return self.random.choice(["level > 1.0", "mode == 1", "tint.x < 0.25", "TWO > 1"])
+        return super().condition(depth)
+
+
+def texel(map_: None, at: Any, *rest: Any) -> Any:
+    """What a texture holds at a place, whatever its level."""
+    total = sum(part if math.isfinite(part) else 0.0 for part in at)
+    return tuple(math.fmod(total * scale, 4.0) for scale in (1.0, -0.5, 0.25, 2.0))
+
+
+READS: dict[str, Callable[..., Any]] = {
+    "texture": texel, "textureLod": texel, "textureGrad": texel, "exp2": lambda x: 1.0,
+    "dFdx": lambda x: componentwise(lambda part: part, x), "dFdy": lambda x: componentwise(lambda part: -part, x),
+}  # fmt: skip
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _reads() -> Any:
+    """The interpreter's builtins, with texture reads."""
+    BUILTINS.update(READS)
+    yield
+    for name in READS:
+        del BUILTINS[name]
+
+
+def outcomes(module: Module, name: str = "f", extra: tuple[Any, ...] = ()) -> list[str]:
+    """What `f` gives for each set of arguments; NaN is like NaN, and 0 like -0."""
+    results = []
+    for arguments in ARGUMENTS:
+        machine = Interpreter(module, VALUES)
+        try:
+            given_back = machine.call(key(module, name), *arguments, *extra)
+            numbers = [round(number, 9) + 0.0 for number in flat(given_back)]
+            results.append(" ".join(map(str, numbers)))
+        except Discarded:
+            results.append("discard")
+        except OverflowError:
+            results.append("overflow")
+    return results
+
+
+def module_for(seed: int, discards: bool) -> Module:
+    source = ShadedPrograms(Random(seed), discards).program()
+    try:
+        module = check(parse(source, "random.sss"), source)
+    except SssgenError:  # an index that is outside its array
+        reject()
+    assume(not verify(module))
+    return module
+
+
+def same(seed: int, discards: bool, change: Callable[[Module], Module], linked: bool = False) -> None:
+    module = module_for(seed, discards)
+    changed = change(module)
+    assert verify(changed, linked=linked) == []
+    assert outcomes(changed) == outcomes(module)
+
+
+@given(SEEDS, st.booleans())
+def test_prune(seed: int, discards: bool) -> None:
+    same(seed, discards, lambda module: prune(module, [key(module, "f")]), linked=True)
+
+
+@given(SEEDS, st.booleans())
+def test_fold(seed: int, discards: bool) -> None:
+    fixed: dict[str, tuple[float, ...]] = {"level": (2.0,), "mode": (1,), "tint": (0.5, 1.0, 2.0)}
+    same(seed, discards, lambda module: fold(module, fixed))
+    same(seed, discards, fold)
+
+
+@given(SEEDS, st.booleans(), st.booleans())
+def test_inline(seed: int, discards: bool, insist: bool) -> None:
+    def chosen(function: Function) -> bool:
+        return function.name != "f"
+
+    same(seed, discards, lambda module: inline(module, chosen, insist))
+
+
+@given(SEEDS, st.booleans())
+def test_names(seed: int, discards: bool) -> None:
+    module = module_for(seed, discards)
+    reserved = {"a", "v", "x1", "x2", "x3", "i1", "i2", "k", "pair", "first", "look", "Pair", "split", "d"}
+    changed, names = rename(module, reserved, str, True, frozenset({"two", "list"}))
+    assert verify(changed) == []
+    assert outcomes(changed) == outcomes(module)
+    declared = {param.name for function in changed.functions for param in function.params}
+    assert not declared & reserved and names["f.a"] == "a_"
+
+
+@given(SEEDS, st.booleans())
+def test_parameters(seed: int, discards: bool) -> None:
+    module = module_for(seed, discards)
+    changed = uniforms_to_parameters(module)
+    assert verify(changed) == []
+    added = [param.name for param in changed.functions[-1].params[len(module.functions[-1].params) :]]
+    assert outcomes(changed, extra=tuple(VALUES[name] for name in added)) == outcomes(module)
+
+
+@given(SEEDS, st.booleans())
+def test_hoist(seed: int, discards: bool) -> None:
+    def change(module: Module) -> Module:
+        return hoist(module, [key(module, "f")])[0]
+
+    same(seed, discards, change)
+
+
+@given(SEEDS, st.booleans())
+def test_all_together(seed: int, discards: bool) -> None:
+    def change(module: Module) -> Module:
+        module = prune(fold(module, {"mode": (1,)}), [key(module, "f")])
+        module = hoist(module, [key(module, "f")])[0]
+        module = prune(inline(module, lambda function: function.name == "twice"), [key(module, "f")])
+        return rename(module, {"a", "b"}, str, True)[0]
+
+    same(seed, discards, change, linked=True)
