@@ -5,6 +5,7 @@ The part up to `legalise` is the same for every target of one kind and is done o
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -12,7 +13,7 @@ from . import library
 from .diagnostics import Diagnostic, SssgenError
 from .ir.nodes import Module
 from .ir.types import Struct
-from .lang.loader import comments_before
+from .lang.loader import comments_before, source_line
 from .lang.polyfills import polyfill
 from .material import Material
 from .passes.chain import ChainStage, Entry, assemble
@@ -25,6 +26,7 @@ from .passes.names import rename
 from .passes.parameters import uniforms_to_parameters
 from .passes.predicate import predicate
 from .passes.prune import prune
+from .passes.undefined import undefined_constants
 from .targets import descriptor
 from .targets.descriptor import Target, Words
 from .targets.emit import About, Program, emit
@@ -103,7 +105,7 @@ def transpile(module: Module, target: str, name: str) -> Compiled:
     """The functions form of a module of plain functions (no chain): what `sssgen transpile` writes."""
     chosen = descriptor.load(target)
     roots = [function.key for function in module.functions if function.body is not None]
-    module = prune(fold(module), roots)
+    module = prune(_folded(module, {}), roots)
     warnings: list[Diagnostic] = []
     middle = _Middle(module, {}, None, {}, {}, warnings)
     return _finish(middle, chosen, "functions", None, About(name, name))
@@ -146,14 +148,24 @@ def _build(material: Material, lighting: str, drop_output: bool) -> _Middle:
         ]
         chain = assemble(linked.module, chained, lit, material.alpha_mode == "opaque")
     except LinkError as error:
-        raise SssgenError([Diagnostic("error", error.message, error.span)]) from None
+        raise SssgenError([Diagnostic("error", error.message, error.span, "", source_line(error.span))]) from None
     roots = [entry.function.key for entry in chain.entries.values()]
-    module = prune(fold(chain.module, linked.fixed), roots)
+    module = prune(_folded(chain.module, linked.fixed), roots)
     module, notes = hoist(module, roots)
-    warnings = [Diagnostic("warning", note.message, note.span) for note in notes]
+    warnings = [Diagnostic("warning", note.message, note.span, "", source_line(note.span)) for note in notes]
     slots = _slot_functions(material, linked.module)
     costs = {kind: cost_of(module, entry.function.key, slots) for kind, entry in chain.entries.items()}
     return _Middle(module, dict(chain.entries), chain.surface, linked.owners, costs, warnings)
+
+
+def _folded(module: Module, fixed: Mapping[str, tuple[float, ...]]) -> Module:
+    """The folded module. Raises SssgenError for constants that are no numbers."""
+    module = fold(module, fixed)
+    wrong = undefined_constants(module)
+    if wrong:
+        hint = "WGSL refuses it, and the others compute inf or NaN"
+        raise SssgenError([Diagnostic("error", message, span, hint, source_line(span)) for message, span in wrong])
+    return module
 
 
 def _about(material: Material) -> About:
@@ -189,7 +201,8 @@ def _finish(
     try:
         module = legalise(module, target.dialect, target.can, polyfill)
     except Unsupported as error:
-        raise SssgenError([Diagnostic("error", f"{error.message} ({target.name})", error.span)]) from None
+        message = f"{error.message} ({target.name})"
+        raise SssgenError([Diagnostic("error", message, error.span, "", source_line(error.span))]) from None
     if not target.can("lane_control_flow"):
         module = predicate(module)
     before = [uniform.name for uniform in module.uniforms]

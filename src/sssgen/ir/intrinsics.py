@@ -15,7 +15,8 @@ A value is one of
 - a name: `"lerp"` is called with the arguments as they stand;
 - `"op:<"`: the binary (two arguments) or unary (one argument) operator;
 - a pattern: `"{texture}.Sample({sampler}, {1})"`, where `{0}`, `{1}`… are arguments, `{texture}` and `{sampler}` the two
-  halves of argument 0, `{dim}` its dimension (2D, 3D, CUBE) and `{type}` the result's type as the target spells it;
+  halves of argument 0 (`{bare_texture}` and `{bare_sampler}` where an engine wraps them into structs that lack the
+  method), `{dim}` its dimension (2D, 3D, CUBE) and `{type}` the result's type as the target spells it;
   arguments stand only where a call's argument could;
 - `""`: the language has no such builtin, and `polyfill` is put in its place; without a polyfill it is refused there.
 The dialects `hlsl-dx9` (Unity's built-in pipeline) and `hlsl-macros` (Unity's SRP) fall back to `hlsl`, and `glsl-330`,
@@ -619,7 +620,7 @@ mat4 inverse(mat4 x) {
             "hlsl-dx9/samplerCube,vec3,float": "texCUBEbias({texture}, float4({1}, {2}))",
             "hlsl-macros": "SAMPLE_TEXTURE{dim}({texture}, {sampler}, {1})",
             "hlsl-macros/sampler2D,vec2,float": "SAMPLE_TEXTURE2D_BIAS({texture}, {sampler}, {1}, {2})",
-            "hlsl-macros/sampler3D,vec3,float": "{texture}.SampleBias({sampler}, {1}, {2})",
+            "hlsl-macros/sampler3D,vec3,float": "{bare_texture}.SampleBias({bare_sampler}, {1}, {2})",
             "hlsl-macros/samplerCube,vec3,float": "SAMPLE_TEXTURECUBE_BIAS({texture}, {sampler}, {1}, {2})",
             "wgsl": "textureSample({texture}, {sampler}, {1})",
             "wgsl/sampler2D,vec2,float": "textureSampleBias({texture}, {sampler}, {1}, {2})",
@@ -644,6 +645,7 @@ mat4 inverse(mat4 x) {
         texts={
             "hlsl": "{texture}.SampleGrad({sampler}, {1}, {2}, {3})",
             "hlsl-dx9": "tex{dim}grad({texture}, {1}, {2}, {3})",
+            "hlsl-macros": "{bare_texture}.SampleGrad({bare_sampler}, {1}, {2}, {3})",
             "hlsl-macros/sampler2D,vec2,vec2,vec2": "SAMPLE_TEXTURE2D_GRAD({texture}, {sampler}, {1}, {2}, {3})",
             "wgsl": "textureSampleGrad({texture}, {sampler}, {1}, {2}, {3})",
         },

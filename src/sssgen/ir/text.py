@@ -4,7 +4,7 @@
     uniform@0:1:15-22 float density : thickness = (0.5) [hint_range(0.0, 1.0)]
     doc "How much light is left behind a body."
     function@0:3:7-16 float remaining(in@0:3:23-24 vec3 p) {
-        var@0:4:5-14 float d = $length(p@0:4:24-25)@0:4:16-26;
+        var@0:4:5-14 float d = length(p@0:4:23-24)@0:4:16-25;
         set@0:5:5-12 d += 1.0@0:5:10-12;
         return@0:6:5-20 exp((- d))@0:6:12-19;
     }

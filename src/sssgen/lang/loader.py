@@ -68,6 +68,12 @@ def comments_before(file: str, line: int) -> list[str]:
     return found
 
 
+def source_line(span: Span) -> str:
+    """The line that a span of a loaded file begins on, or ''."""
+    lines = _lines.get(span.file, [])
+    return lines[span.line - 1] if 0 < span.line <= len(lines) else ""
+
+
 def read_text(path: Path, shown: str) -> str:
     """The text of a source file. Raises SssgenError where it is missing or is not text."""
     try:

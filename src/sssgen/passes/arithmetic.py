@@ -20,6 +20,7 @@ Numbers = tuple[Number, ...]
 
 _FLOAT32 = Struct("f")
 _SMALLEST = 2.0**-126
+_LARGEST = 2.0**128 - 2.0**104
 
 
 def float32(value: float) -> float | None:
@@ -86,6 +87,22 @@ def builtin(name: str, args: Sequence[Numbers], types: Sequence[Type], result: T
         return None
     found = _each(compute, args, kind)
     return found if found is not None and len(found) == components(result) else None
+
+
+def outside(name: str, args: Sequence[Numbers]) -> bool:
+    """Whether constant arguments lie outside a builtin's domain, or its result outside the floats."""
+    try:
+        if name in _REDUCED:
+            values = _REDUCED[name](*args)
+        elif name in _COMPONENTWISE:
+            size = max(map(len, args))
+            wide = [arg if len(arg) == size else arg * size for arg in args]
+            values = [_COMPONENTWISE[name](*parts) for parts in zip(*wide, strict=True)]
+        else:
+            return False
+        return any(not abs(value) <= _LARGEST for value in values)
+    except (ArithmeticError, ValueError):
+        return True
 
 
 def _each(compute: Callable[..., Number], args: Sequence[Numbers], kind: str) -> Numbers | None:

@@ -65,7 +65,7 @@ def fold(module: Module, fixed: Mapping[str, tuple[float, ...]] = {}) -> Module:
         value = folder.expression(constant.value)
         constants.append(constant if value is constant.value else constant._replace(value=value))
         known = folder.known(value)
-        if isinstance(known, Literal) or _constant(known) is not None:
+        if isinstance(known, Literal) or constant_numbers(known) is not None:
             folder.constants[constant.name] = known
     functions = tuple([folder.function(function) for function in module.functions])
     uniforms = module.uniforms
@@ -103,7 +103,7 @@ def _same(one: Number, other: Number) -> bool:
     return one == other and copysign(1.0, one) == copysign(1.0, other)
 
 
-def _constant(expr: Expr) -> Numbers | None:
+def constant_numbers(expr: Expr) -> Numbers | None:
     """The components of a literal or of a vector of literals, floats as float32; else None."""
     if isinstance(expr, Literal):
         value = expr.value
@@ -114,7 +114,7 @@ def _constant(expr: Expr) -> Numbers | None:
     if isinstance(expr, Construct) and isinstance(expr.type, Vector):
         values: Numbers = ()
         for arg in expr.args:
-            part = _constant(arg) if isinstance(arg, Literal) else None
+            part = constant_numbers(arg) if isinstance(arg, Literal) else None
             if part is None:
                 return None
             values += part
@@ -229,7 +229,7 @@ class _Folder:
         ):
             return False
         start = self.known(init.value)
-        if _constant(start) is None:
+        if constant_numbers(start) is None:
             return False
         name = init.name if isinstance(init, Declare) else init.target.name  # type: ignore[union-attr]  # a Local
 
@@ -300,7 +300,7 @@ class _Folder:
     def simplified(self, expr: Binary) -> Expr:
         """The value of an operator with a constant operand or two, where that is simpler."""
         op, left, right = expr.op, expr.left, expr.right
-        x, y = _constant(left), _constant(right)
+        x, y = constant_numbers(left), constant_numbers(right)
         if x is not None and y is not None:
             values = arithmetic.binary(op, x, y, kind_of(left.type))
             return _literal(expr.type, values, expr.span) if values is not None else expr
@@ -312,7 +312,7 @@ class _Folder:
 
     def unary(self, expr: Unary) -> Expr:
         operand = self.expression(expr.operand)
-        values = _constant(operand)
+        values = constant_numbers(operand)
         if values is not None:
             result = arithmetic.unary(expr.op, values, kind_of(expr.type))
             if result is not None:
@@ -343,7 +343,7 @@ class _Folder:
         for arg in operands(new):
             if type(arg) is not Literal and type(arg) is not Construct:
                 return new
-            values = _constant(arg)
+            values = constant_numbers(arg)
             if values is None:
                 return new
             args.append(values)
@@ -360,7 +360,7 @@ class _Folder:
             only = args[0]
             if only.type == type_:
                 return only
-            values = _constant(only) if kind_of(only.type) != type_.kind else None
+            values = constant_numbers(only) if kind_of(only.type) != type_.kind else None
             converted = [arithmetic.converted(value, type_.kind) for value in values or ()]
             if converted and None not in converted:
                 return _literal(type_, tuple([value for value in converted if value is not None]), new.span)
@@ -373,7 +373,7 @@ class _Folder:
                 flat.append(arg)
         if len(flat) > len(args):
             new = Construct(type_, tuple(flat), new.span)
-        parts = [_constant(arg) or () for arg in flat]
+        parts = [constant_numbers(arg) or () for arg in flat]
         numbers = tuple([number for part in parts for number in part])
         if () not in parts and all(_same(number, numbers[0]) for number in numbers):
             return _literal(type_, numbers, new.span)
@@ -438,7 +438,7 @@ def _is_neutral(op: str, right: Expr) -> bool:
     neutral = _NEUTRAL.get(op)
     if neutral is None or isinstance(right.type, Matrix):
         return False
-    values = _constant(right)
+    values = constant_numbers(right)
     return values is not None and all(value == neutral for value in values)
 
 
@@ -463,7 +463,7 @@ def _one_of(value: Construct, index: int) -> Expr | None:
 
 def _picked(value: Construct, indices: list[int], type: Type, span: Span) -> Expr | None:
     """Components of an assembled vector, without assembling it; None where that is not simpler."""
-    constant = _constant(value)
+    constant = constant_numbers(value)
     if constant is not None:
         return _literal(type, tuple([constant[index] for index in indices]), span)
     if len(value.args) == 1 and isinstance(value.args[0].type, Scalar):

@@ -180,9 +180,12 @@ class Printer:
         named = {}
         first = call.args[0]
         if isinstance(first, ir.Global | ir.Local) and isinstance(first.type, Sampler):
+            texture, sampler, bare = first.name, self.sampler(first.name), self.target.textures.get("bare", "{name}")
             named = {
-                "texture": first.name,
-                "sampler": self.sampler(first.name),
+                "texture": texture,
+                "sampler": sampler,
+                "bare_texture": bare.format(name=texture),
+                "bare_sampler": self.target.textures.get("bare_sampler", "{name}").format(name=sampler),
                 "dim": first.type.dim.upper(),
             }
         args = [self.expr(arg) if not isinstance(arg.type, Sampler) else "" for arg in call.args]

@@ -182,8 +182,8 @@ def _program_jobs(program: shaderlab.Program, language: str) -> Iterator[_Job]:
                 raise surface.SurfaceError(f"{program.name}: no #pragma {stage}")
             common = _BUILTIN_MACROS if builtin else (*_URP_MACROS, _INSTANCED)
             on = (f"{word}=1" for word in keywords if not (builtin and word == "INSTANCING_ON"))
-            macros = (*common, f"SHADER_STAGE_{stage.upper()}=1", *on)
-            yield _Job(f"{program.name} {stage}", included, macros, program.code, stage, entry, builtin)
+            defines = (*common, f"SHADER_STAGE_{stage.upper()}=1", *on)
+            yield _Job(f"{program.name} {stage}", included, defines, program.code, stage, entry, builtin)
 
 
 def _check_batcher(shader: shaderlab.Shader) -> list[Message]:
