@@ -105,16 +105,16 @@ def quad(width: float, height: float) -> tuple[Any, Any]:
 
 
 def jelly_cubes(context: moderngl.Context) -> None:
-    """The whole scene is in the shader; a quad that fills the view runs it."""
+    """The whole scene is in the shader, which covers the screen."""
     context.disable_direct(gl.FRAMEBUFFER_SRGB)  # its output technique encodes
     drawn = shader(context, "jelly_cubes")
-    for name in ("model", "view_projection"):
-        drawn.put(name, np.identity(4))
-    drawn.put("time", 0.95)
-    drawn.put("aspect", 1.0)
-    drawn.put("look_at", (0.7, 0.35, 0.0))
-    drawn.put("focal_length", 2.6)
-    drawn.draw(*quad(2.0, 2.0))
+    for name, value in {"time": 1.2, "aspect": 1.0, "look_at": (0.72, 0.3, 0.0), "focal_length": 1.9}.items():
+        drawn.put(name, value)
+    drawn.put("orbit_height", 2.1)
+    drawn.put("jelly_color", (0.62, 0.16, 0.05))
+    drawn.put("sky_color", (0.35, 0.5, 0.75))
+    drawn.put("glow_strength", 1.6)
+    drawn.draw([], [])
 
 
 def paper_lantern(context: moderngl.Context) -> None:
@@ -128,7 +128,7 @@ def paper_lantern(context: moderngl.Context) -> None:
     drawn.picture("base_color_texture", texels(*blend((0.92, 0.88, 0.8), (0.16, 0.07, 0.03), rib)))
     drawn.picture("thickness_texture", texels(np.maximum(0.25 + 0.5 * (fibres - 0.5), rib)))
     drawn.picture("normal_texture", bumps(0.3 * fibres - 2.0 * away * 14.0, 1.6))
-    lights = [((0.0, 0.1, 0.0, 1.0), (0.42, 0.38, 0.32)), ((0.6, 0.8, 0.7, 0.0), (0.10, 0.11, 0.16))]
+    lights = [((0.0, 0.1, 0.0, 1.0), (0.8, 0.66, 0.5)), ((0.6, 0.8, 0.7, 0.0), (0.05, 0.055, 0.08))]
     gl.view(drawn, (0.0, 0.25, 3.25), (0.0, 0.0, 0.0), 1.0, lights, (0.02, 0.02, 0.03))
     drawn.draw(*gl.sphere(128, 256))
 
@@ -148,7 +148,8 @@ def wax_knot(context: moderngl.Context) -> None:
     drawn.picture("distance_map", (0.5 + 0.5 * distance).astype(np.float32)[..., None])
     drawn.put("box_min", [-extent] * 3)
     drawn.put("box_max", [extent] * 3)
-    lights = [((-1.6, 1.4, -1.6, 1.0), (7.5, 7.0, 6.2)), ((0.8, 0.9, 0.6, 0.0), (0.22, 0.22, 0.26))]
+    drawn.put("attenuation_distance", 0.2)
+    lights = [((-1.2, 1.6, -1.4, 1.0), (5.0, 4.8, 4.4)), ((0.8, 0.9, 0.6, 0.0), (0.10, 0.10, 0.12))]
     gl.view(drawn, (0.0, 0.3, 4.1), (0.0, 0.0, 0.0), 1.0, lights, (0.02, 0.02, 0.025))
     drawn.draw(*tube(knot, radius))
 
@@ -175,8 +176,8 @@ def ice_inlay(context: moderngl.Context) -> None:
     drawn.picture("thickness_texture", texels(np.clip(0.25 + 0.5 * clouds + 0.7 * leaves * (1.0 - veins), 0.0, 1.0)))
     drawn.put("depth", 0.1)
     drawn.put("uv_per_unit", (0.5, 0.5))
-    lights = [((-0.8, 0.9, -2.2, 1.0), (7.0, 6.8, 6.4)), ((-0.5, 1.0, 0.9, 0.0), (0.5, 0.52, 0.56))]
-    gl.view(drawn, (0.9, 0.5, 2.6), (0.0, 0.0, 0.0), 1.0, lights, (0.08, 0.09, 0.1))
+    lights = [((-0.9, -0.1, -1.2, 1.0), (3.2, 3.1, 2.9)), ((-0.5, 1.0, 0.9, 0.0), (0.45, 0.47, 0.5))]
+    gl.view(drawn, (1.3, 0.6, 2.7), (0.03, -0.03, 0.0), 1.0, lights, (0.04, 0.05, 0.06))
     drawn.draw(*quad(2.0, 2.0))
 
 

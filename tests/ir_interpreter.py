@@ -278,7 +278,9 @@ def binary(op: str, type_: Type, left_type: Type, right_type: Type, left: Value,
 
 def product(matrix: Value, vector: Value) -> Value:
     size = len(vector)
-    return tuple(sum((matrix[i][row] * vector[i] for i in range(1, size)), matrix[0][row] * vector[0]) for row in range(size))
+    return tuple(
+        sum((matrix[i][row] * vector[i] for i in range(1, size)), matrix[0][row] * vector[0]) for row in range(size)
+    )
 
 
 def dot(x: Value, y: Value) -> Value:
@@ -306,7 +308,14 @@ def arithmetic(op: str, kind: str, x: Value, y: Value) -> Value:
         return 0 if y == 0 else int(math.copysign(1, x)) * (abs(x) % abs(y))
     if op in ("<<", ">>"):
         return wrapped(kind, x << (y & 31) if op == "<<" else x >> (y & 31))
-    known = {"+": operator.add, "-": operator.sub, "*": operator.mul, "&": operator.and_, "|": operator.or_, "^": operator.xor}
+    known = {
+        "+": operator.add,
+        "-": operator.sub,
+        "*": operator.mul,
+        "&": operator.and_,
+        "|": operator.or_,
+        "^": operator.xor,
+    }
     return wrapped(kind, known[op](x, y))
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from ir_interpreter import Discarded, Interpreter
 
+from ir_interpreter import Discarded, Interpreter
 from sssgen.ir.nodes import Function, Module
-from sssgen.ir.types import Array, Matrix, Struct, Type, kind_of
+from sssgen.ir.types import Array, Matrix, Struct, Type, Vector, kind_of
 from sssgen.lang.check import check
 from sssgen.lang.parser import parse
 from sssgen.passes.names import rename
@@ -59,7 +59,9 @@ def lanes_of(type_: Type, values: list[Any]) -> Any:
         fields = enumerate(type_.element.fields)
         return Record(
             **{
-                field.name: lanes_of(Array(field.type, type_.length), [tuple(row[i] for row in each) for each in zip(*rows, strict=True)])
+                field.name: lanes_of(
+                    Array(field.type, type_.length), [tuple(row[i] for row in each) for each in zip(*rows, strict=True)]
+                )
                 for i, field in fields
             }
         )
@@ -130,4 +132,4 @@ def _shape(type_: Type) -> tuple[int, ...]:
         return (type_.length, *_shape(type_.element))
     if isinstance(type_, Matrix):
         return (type_.size, type_.size)
-    return (type_.size,) if hasattr(type_, "size") else ()
+    return (type_.size,) if isinstance(type_, Vector) else ()

@@ -36,7 +36,8 @@ class Programs:
         self.random = random
         self.discards = discards
         self.size = size
-        self.names = 0
+        self.declared: list[str] = []
+        """The names that may not be declared again here; sibling blocks use the same ones."""
         self.floats: list[str] = []
         self.ints: list[str] = []
         self.counters: list[str] = []
@@ -56,8 +57,11 @@ class Programs:
         return self.random.randrange(100) < percent
 
     def name(self, letter: str) -> str:
-        self.names += 1
-        return f"{letter}{self.names}"
+        count = 1
+        while f"{letter}{count}" in self.declared:
+            count += 1
+        self.declared.append(f"{letter}{count}")
+        return self.declared[-1]
 
     # Expressions
 
@@ -88,7 +92,8 @@ class Programs:
             return self.random.choice([*self.ints, *self.counters, "n"])
         if kind == 3:
             return f"int({self.number(0)})"
-        return f"({self.whole(depth - 1)} {self.random.choice('+-*/%')} {self.random.choice([*self.ints, *self.counters])})"
+        variable = self.random.choice([*self.ints, *self.counters])
+        return f"({self.whole(depth - 1)} {self.random.choice('+-*/%')} {variable})"
 
     def condition(self, depth: int = 2) -> str:
         kind = self.random.randrange(6 if depth else 3)
@@ -111,9 +116,9 @@ class Programs:
 
     def block(self, indent: int, size: int) -> str:
         """Up to `size` statements; what they declare is gone at the end."""
-        floats, ints = list(self.floats), list(self.ints)
+        floats, ints, declared = list(self.floats), list(self.ints), list(self.declared)
         text = "".join(self.statement(indent, size) for _ in range(self.random.randint(1, size)))
-        self.floats, self.ints = floats, ints
+        self.floats, self.ints, self.declared = floats, ints, declared
         return text
 
     def statement(self, indent: int, size: int) -> str:
@@ -138,6 +143,8 @@ class Programs:
             return f"{text}\n"
         if kind == 12:
             call = f"split({self.number(1)}, {self.place()}, k)"
+            if self.chance(30):
+                return f"{pad}if ({self.condition(1)}) {call};\n"
             return f"{pad}{self.place()} {self.random.choice(['=', '+='])} {call};\n"
         if kind == 13 and size > 2:
             return self.counting_while(pad, indent, size)
@@ -145,11 +152,11 @@ class Programs:
 
     def declaration(self, pad: str) -> str:
         if self.chance(30):
-            name = self.name("m")
+            name = self.name("t")
             text = f"{pad}int {name} = {self.whole()};\n"
             self.ints.append(name)
             return text
-        name = self.name("x")
+        name = self.name("t")
         if self.chance(50):
             text = f"{pad}float {name} = {self.number()};\n"
         else:
@@ -171,12 +178,15 @@ class Programs:
         name = self.name("i")
         bound = self.random.choice(["2", "3", "TWO", "n"])
         more = f" && {self.condition(1)}" if self.chance(20) else ""
+        head = f"int {name} = 0; {name} < {bound}{more}; {name}++"
+        if self.chance(20):
+            head = self.random.choice(["int {0} = 2; {0} >= 0; {0}--", "int {0} = -1; {0} <= 3; {0} += 2"]).format(name)
         self.counters.append(name)
         self.loops.append(True)
-        head = f"{pad}for (int {name} = 0; {name} < {bound}{more}; {name}++) {{\n"
-        text = f"{head}{self.block(indent + 1, size - 1)}{pad}}}\n"
+        text = f"{pad}for ({head}) {{\n{self.block(indent + 1, size - 1)}{pad}}}\n"
         self.loops.pop()
         self.counters.pop()
+        self.declared.remove(name)
         return text
 
     def counting_while(self, pad: str, indent: int, size: int) -> str:

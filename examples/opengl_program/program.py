@@ -51,11 +51,17 @@ class Shader:
             self.textures[name].build_mipmaps()
 
     def draw(self, vertices: Any, triangles: Any) -> None:
-        """Draws a mesh. A vertex is 12 numbers: position, normal, tangent with its handedness, uv."""
+        """Draws a mesh. A vertex is 12 numbers: position, normal, tangent with its handedness, uv.
+
+        A raymarched material needs no mesh: it covers the screen.
+        """
         for unit, (name, texture) in enumerate(self.textures.items()):
             texture.use(unit)
             self.put(name, unit)
         used = [name for name in ATTRIBUTES if name in self.program]
+        if not used:
+            self.context.vertex_array(self.program, []).render(vertices=3)
+            return
         layout = " ".join(
             text if name in used else f"{4 * int(text[0])}x" for name, text in ATTRIBUTES.items()
         )

@@ -106,7 +106,8 @@ class _FileChecker(ExpressionChecker):
                 self.faulty.update(_declared_names(external))
         for cycle in cycles(functions):
             names = " → ".join(key.split("(")[0] for key in cycle)
-            self.reporter.error(functions[cycle[0]].span, f"recursion is not possible in a shader: {names}", "rewrite it as a loop")  # fmt: skip
+            message = f"recursion is not possible in a shader: {names}"
+            self.reporter.error(functions[cycle[0]].span, message, "rewrite it as a loop")
         return ir.Module(tuple(structs), tuple(constants), tuple(uniforms), tuple(functions.values()))
 
     # Declarations
@@ -150,12 +151,14 @@ class _FileChecker(ExpressionChecker):
         default: tuple[float, ...] = ()
         if uniform.value is not None:
             if isinstance(type_, Sampler):
-                raise self.fail(uniform.value.span, "a texture has no default value", "use default_white, default_black, default_gray or default_bump")  # fmt: skip
+                hint = "use default_white, default_black, default_gray or default_bump"
+                raise self.fail(uniform.value.span, "a texture has no default value", hint)
             value = self.check(uniform.value)
             self.require(value._replace(quantity=""), type_, "", uniform.value.span, f"'{name}'")
             constants = _components(value.expr)
             if constants is None:
-                raise self.fail(uniform.value.span, "a default is a constant of literals, such as 0.2 or vec3(1.0, 0.5, 0.0)")
+                hint = "write it as 0.2 or vec3(1.0, 0.5, 0.0)"
+                raise self.fail(uniform.value.span, "a default is made of literals", hint)
             default = constants
         elif not isinstance(type_, Sampler):
             default = _identity(type_)
@@ -173,7 +176,8 @@ class _FileChecker(ExpressionChecker):
                 raise self.fail(declarator.name.span, f"const '{name}' needs a value")
             value = self.check_as(declarator.value, declared, quantity, f"'{name}'")
             if any(self.varies(part) for part in subexpressions(value)):
-                raise self.fail(declarator.value.span, f"the value of const '{name}' is not constant", "use literals, other constants and builtins")  # fmt: skip
+                message = f"the value of const '{name}' is not constant"
+                raise self.fail(declarator.value.span, message, "use literals, other constants and builtins")
             self.globals[name] = GlobalValue(declared, quantity, _int_value(value), True)
             found.append(ir.Constant(name, declared, value, declarator.name.span))
         return found
@@ -208,7 +212,8 @@ class _FileChecker(ExpressionChecker):
         errors = len(self.reporter.diagnostics)
         body = self.block(function.body, new_scope=False)
         if result != VOID and not returns(body) and len(self.reporter.diagnostics) == errors:
-            self.reporter.error(name.span, f"{name.text} can end without returning {a_type(result)}", "add a return at its end")
+            message = f"{name.text} can end without returning {a_type(result)}"
+            self.reporter.error(name.span, message, "add a return at its end")
         return made._replace(body=body)
 
     def declare_function(self, made: ir.Function, name: s.Name, has_body: bool) -> None:
@@ -216,7 +221,8 @@ class _FileChecker(ExpressionChecker):
         known, new = self.functions.setdefault(name.text, []), _signature(made)
         earlier = next((one for one in known if one.key == made.key), None)
         if earlier is not None:
-            there = f"first at line {earlier.span.line}" + f" of {earlier.span.file}" * (earlier.span.file != name.span.file)
+            elsewhere = f" of {earlier.span.file}" if earlier.span.file != name.span.file else ""
+            there = f"first at line {earlier.span.line}{elsewhere}"
             if has_body and earlier.span in self.defined:
                 raise self.fail(name.span, f"{made.key} is already defined", there)
             if earlier._replace(names=new.names, span=new.span) != new:

@@ -155,7 +155,8 @@ class ExpressionChecker:
             return Typed(ir.Literal(FLOAT, value, number.span))
         unsigned, whole = number.text[-1] in "uU", _integer(number.text)
         if whole is None:
-            raise self.fail(number.span, f"{number.text} is no octal number", "what begins with 0 is octal: leave the 0 out")
+            hint = "what begins with 0 is octal: leave the 0 out"
+            raise self.fail(number.span, f"{number.text} is no octal number", hint)
         if whole > 0xFFFFFFFF or (whole > 0x7FFFFFFF and not unsigned and number.text[:2] not in ("0x", "0X")):
             shown = number.text if len(number.text) <= 40 else f"{number.text[:40]}…"
             raise self.fail(number.span, f"{shown} does not fit in {'a uint' if unsigned else 'an int'}")

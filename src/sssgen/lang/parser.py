@@ -362,7 +362,8 @@ def _describe(error: Any, text: str, file: str) -> tuple[int, Span, str, str]:
     token = error.token
     if token.type == "$END":
         position = len(text.rstrip())
-        return position, _place(text, max(0, position - 1), file), "the file ends too early; is a '}' or ';' missing?", ""
+        last = _place(text, max(0, position - 1), file)
+        return position, last, "the file ends too early", "is a '}' or ';' missing?"
     position = token.start_pos
     for start in (position, position - 1):
         if text.startswith("/*", max(0, start)):

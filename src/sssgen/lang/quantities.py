@@ -29,6 +29,9 @@ _CONVERSIONS = {
     ("transmittance", "thickness"): "thickness_from_transmittance",
 }
 
+_FRAMES = {("world", "tangent"), ("tangent", "world"), ("world", "object"), ("object", "world")}
+"""The spaces between which common/frames.sss turns directions, from one to the other."""
+
 
 class Mixup(Exception):
     """Two quantities that do not belong together; carries the message and the remedy."""
@@ -40,7 +43,9 @@ class Mixup(Exception):
 
 def words(quantity: str) -> str:
     """A quantity as a person would say it: `a world direction`."""
-    return f"a {quantity.replace('_', ' ')}" if quantity else "a plain value"
+    if not quantity:
+        return "a plain value"
+    return f"{'an' if quantity.startswith('object') else 'a'} {quantity.replace('_', ' ')}"
 
 
 def space(quantity: str) -> str:
@@ -63,8 +68,11 @@ def conversion(source: str, target: str) -> str:
     if (source, target) in _CONVERSIONS:
         return f"convert it with {_CONVERSIONS[source, target]}(…)"
     if space(source) and space(target):
-        if space(source) != space(target):
+        turned = source.endswith("_direction") and target.endswith("_direction")
+        if turned and (space(source), space(target)) in _FRAMES:
             return f"convert it with {space(target)}_from_{space(source)}(…) of common/frames.sss"
+        if space(source) != space(target):
+            return f"bring it there with a matrix or a function of your own, and name what comes out: {target}(…)"
         return f"if it is meant as {words(target)}, write {target}(…) around its plain components"
     if not source:
         return f"if it is {words(target)}, say so: {target}(…)"

@@ -219,7 +219,7 @@ class Divergence:
         """Follows both arms; whether flow diverges."""
         hits = self.hits
         condition = self.varies(stmt.condition)
-        apart = condition or self.hits > hits
+        apart = condition or self.hits > hits or not self.flow
         before, left = self.flow, self.escapes + self.jumps
         varying = set(self.varying)
         self.flow = before and not condition

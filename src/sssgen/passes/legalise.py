@@ -26,7 +26,9 @@ from ..ir.types import (
     kind_of,
     vector_of,
 )
-from ..ir.walk import expressions, rewrite, root, statements, subexpressions
+from ..ir.walk import expressions, operands, rewrite, root, statements, subexpressions, with_operands
+from .lift_calls import is_awkward, lift
+from .stores import is_dynamic_store, is_swizzle_store, parts_of, whole_store
 
 Polyfill = Callable[[str, Sequence[Type]], ir.Module]
 """Gives the module whose last function stands in for a builtin with these argument types."""
@@ -67,10 +69,15 @@ class _Legaliser:
 
     def run(self) -> ir.Module:
         functions = [self.function(function) for function in self.module.functions]
-        constants = tuple(constant._replace(value=self.expr(constant.value)) for constant in self.module.constants)
+        constants = tuple(constant._replace(value=self.initial(constant.value)) for constant in self.module.constants)
         return self.module._replace(constants=constants, functions=(*self.helpers.values(), *functions))
 
     def function(self, function: ir.Function) -> ir.Function:
+        if isinstance(function.result, Array) and not self.can("array_constructors"):
+            raise Unsupported("a function cannot return an array for this target: give it an out parameter", function.span)
+        short_circuit = self.can("short_circuit")
+        if not self.can("out_parameters") or is_awkward(function, self.functions, short_circuit):
+            function = lift(function, self.functions)
         body = function.body or ()
         self.names = {param.name for param in function.params}
         self.names |= {stmt.name for stmt in statements(body) if isinstance(stmt, ir.Declare)}
@@ -124,62 +131,73 @@ class _Legaliser:
     def statement(self, stmt: ir.Stmt) -> list[ir.Stmt]:
         """A statement, after what it needs to have computed before."""
         outer, self.prelude = self.prelude, []
-        new: ir.Stmt = stmt
-        after: list[ir.Stmt] = []
+        new: ir.Stmt | None = stmt
         if isinstance(stmt, ir.Declare) and stmt.value is not None:
             new = self.declare(stmt, stmt.value)
         elif isinstance(stmt, ir.Assign):
             new = self.assign(stmt)
         elif isinstance(stmt, ir.Return) and stmt.value is not None:
-            new = ir.Return(self.expr(stmt.value), stmt.span)
+            new = ir.Return(self.leaving(stmt.value, stmt.span), stmt.span)
         elif isinstance(stmt, ir.Evaluate):
-            call = self.expr(stmt.call)
-            new = ir.Evaluate(call, stmt.span)
+            new = ir.Evaluate(self.expr(stmt.call), stmt.span)
         elif isinstance(stmt, ir.If):
-            condition = self.expr(stmt.condition)
-            before, self.prelude = self.prelude, []
-            new = ir.If(condition, self.block(stmt.then), self.block(stmt.otherwise), stmt.span)
-            self.prelude = before
+            new = ir.If(self.expr(stmt.condition), self.inner(stmt.then), self.inner(stmt.otherwise), stmt.span)
         elif isinstance(stmt, ir.For | ir.While):
             new = self.loop(stmt)
-        if not self.can("out_parameters"):
-            new, after = self.split_out_arguments(new)
-        result = [*self.prelude, new, *after]
+        result = self.prelude if new is None else [*self.prelude, new]
         self.prelude = outer
         return result
 
-    def declare(self, declare: ir.Declare, value: ir.Expr) -> ir.Stmt:
-        if isinstance(value, ir.Construct) and isinstance(value.type, Array):  # an initialiser is sayable everywhere
-            args = tuple(self.expr(arg) for arg in value.args)
-            return declare._replace(value=value._replace(args=args))
-        return declare._replace(value=self.expr(value))
+    def declare(self, declare: ir.Declare, value: ir.Expr) -> ir.Stmt | None:
+        place = ir.Local(declare.type, declare.name, declare.span)
+        if isinstance(value, ir.Select) and not self.can("ternary"):
+            value = self.select(value, place)
+            if value is place:
+                assert self.prelude is not None
+                self.prelude.insert(-1, declare._replace(value=None))
+                return None
+            return declare._replace(value=value)
+        return declare._replace(value=self.initial(value))
 
-    def assign(self, assign: ir.Assign) -> ir.Stmt:
-        target, value = self.expr(assign.target), self.expr(assign.value)
-        stores = isinstance(target, ir.Swizzle) and len(target.components) > 1
-        if isinstance(target, ir.Swizzle) and stores and not self.can("swizzle_store"):
-            return self.rebuild(target, assign.op, value, assign.span)
-        if assign.op and isinstance(target.type, Vector) and isinstance(value.type, Matrix):
-            return ir.Assign(target, "", self.binary(ir.Binary(target.type, assign.op, target, value, assign.span)), assign.span)  # fmt: skip
-        if assign.op == "*" and isinstance(target.type, Matrix) and isinstance(value.type, Matrix):
-            return ir.Assign(target, "", ir.Binary(target.type, "*", target, value, assign.span), assign.span)
-        return ir.Assign(target, assign.op, value, assign.span)
+    def initial(self, value: ir.Expr) -> ir.Expr:
+        """What a variable begins with: there the parts of an array or struct can be listed in every language."""
+        if isinstance(value, ir.Construct) and isinstance(value.type, Array | Struct):
+            return value._replace(args=tuple([self.initial(arg) for arg in value.args]))
+        return self.expr(value)
 
-    def rebuild(self, target: ir.Swizzle, op: str, value: ir.Expr, span: ir.Span) -> ir.Stmt:
-        """`v.xz = value` as `v = vec3(value.x, v.y, value.y)`."""
-        whole = target.value
-        assert isinstance(whole.type, Vector)
+    def assign(self, assign: ir.Assign) -> ir.Stmt | None:
+        op, span = assign.op, assign.span
+        if isinstance(assign.value, ir.Select) and isinstance(assign.target, ir.Local) and not (op or self.can("ternary")):
+            value = self.select(assign.value, assign.target)
+            return None if value is assign.target else assign._replace(value=value)
+        place, value = self.place(assign.target), self.expr(assign.value)
+        if any(map(self.refused, parts_of(place))):
+            if op:
+                value = self.binary(ir.Binary(place.type, op, place, value, span))
+            place, value = whole_store(place, value, self.refused, self.keep_cheap)
+            return ir.Assign(place, "", value, span)
         if op:
-            value = ir.Binary(target.type, op, target, value, span)
-        if not isinstance(value, ir.Local | ir.Global | ir.Literal) and components(value.type) > 1:
-            value = self.keep(value, f"{_base_name(whole)}_{target.components}")
-        parts = []
-        for letter in "xyzw"[: whole.type.size]:
-            index = target.components.find(letter)
-            source, letter = (whole, letter) if index < 0 else (value, "xyzw"[index])
-            single = isinstance(source.type, Scalar)
-            parts.append(source if single else ir.Swizzle(Scalar(whole.type.kind), source, letter, span))
-        return ir.Assign(whole, "", ir.Construct(whole.type, tuple(parts), span), span)
+            result = self.binary(ir.Binary(place.type, op, place, value, span))
+            linear = isinstance(value.type, Matrix) and op == "*"
+            if linear or not (isinstance(result, ir.Binary) and result.op == op and result.left is place):
+                return ir.Assign(place, "", result, span)
+            value = result.right
+        return ir.Assign(place, op, value, span)
+
+    def refused(self, part: ir.Expr) -> bool:
+        """Whether the target has no store into such a part."""
+        return (is_swizzle_store(part) and not self.can("swizzle_store")) or (
+            is_dynamic_store(part) and not self.can("dynamic_stores")
+        )
+
+    def leaving(self, value: ir.Expr, span: ir.Span) -> ir.Expr:
+        """What a function returns at last; of a choice that needs an if, the first arm leaves before."""
+        if not isinstance(value, ir.Select) or not self.branches(value):
+            return self.expr(value)
+        assert self.prelude is not None
+        condition, then = self.expr(value.condition), self.inner((ir.Return(value.yes, value.yes.span),))
+        self.prelude.append(ir.If(condition, then, (), span))
+        return self.leaving(value.no, span)
 
     def keep(self, value: ir.Expr, name: str) -> ir.Expr:
         """Computes a value before the statement, into a local."""
@@ -189,22 +207,27 @@ class _Legaliser:
         self.prelude.append(ir.Declare(name, value.type, value, value.span))
         return ir.Local(value.type, name, value.span)
 
+    def keep_cheap(self, value: ir.Expr, name: str) -> ir.Expr:
+        return value if is_cheap(value) else self.keep(value, name)
+
     def loop(self, loop: ir.For | ir.While) -> ir.Stmt:
+        """A loop; where its condition needs statements, the body begins with them and leaves by itself."""
+        condition, before = self.apart(loop.condition) if loop.condition is not None else (None, [])
+        body = self.inner(loop.body)
+        if before and condition is not None:
+            stop = ir.Unary(BOOL, "!", condition, condition.span)
+            body = (*before, ir.If(stop, (ir.Break(loop.span),), (), loop.span), *body)
+            condition = ir.Literal(BOOL, True, condition.span)
         if isinstance(loop, ir.While):
-            self_prelude, self.prelude = self.prelude, None
-            condition = self.expr(loop.condition)
-            self.prelude = self_prelude
-            return ir.While(condition, self.inner(loop.body), loop.span)
+            assert condition is not None
+            return ir.While(condition, body, loop.span)
         init = self.statement(loop.init) if loop.init is not None else []
         step = self.statement(loop.step) if loop.step is not None else []
-        self_prelude, self.prelude = self.prelude, None
-        test = self.expr(loop.condition) if loop.condition is not None else None
-        self.prelude = self_prelude
         assert self.prelude is not None
         self.prelude.extend(init[:-1])
         if len(step) > 1:
             raise Unsupported("this loop's step cannot be said for this target", loop.span)
-        return ir.For(init[-1] if init else None, test, step[0] if step else None, self.inner(loop.body), loop.span)
+        return ir.For(init[-1] if init else None, condition, step[0] if step else None, body, loop.span)
 
     def inner(self, block: ir.Block) -> ir.Block:
         outer, self.prelude = self.prelude, []
@@ -212,41 +235,30 @@ class _Legaliser:
         self.prelude = outer
         return result
 
-    def split_out_arguments(self, stmt: ir.Stmt) -> tuple[ir.Stmt, list[ir.Stmt]]:
-        """Where out parameters are pointers, only whole variables can be passed: parts go through a variable."""
-        after: list[ir.Stmt] = []
-
-        def change(expr: ir.Expr) -> ir.Expr:
-            if not isinstance(expr, ir.Call):
-                return expr
-            args = list(expr.args)
-            for index, param in enumerate(self.functions[expr.function].params):
-                target = args[index]
-                if param.direction == "in" or isinstance(target, ir.Local):
-                    continue
-                name = self.fresh(_base_name(target) + "_part")
-                value = target if param.direction == "inout" else None
-                assert self.prelude is not None
-                self.prelude.append(ir.Declare(name, target.type, value, target.span))
-                args[index] = ir.Local(target.type, name, target.span)
-                back = ir.Assign(target, "", args[index], target.span)
-                swizzled = isinstance(target, ir.Swizzle) and len(target.components) > 1
-                rebuild = isinstance(target, ir.Swizzle) and swizzled
-                after.append(self.rebuild(target, "", args[index], target.span) if rebuild else back)  # type: ignore[arg-type]  # it is a Swizzle
-            return expr._replace(args=tuple(args))
-
-        if isinstance(stmt, ir.Declare) and stmt.value is not None:
-            return stmt._replace(value=rewrite(stmt.value, change)), after
-        if isinstance(stmt, ir.Assign):
-            return stmt._replace(value=rewrite(stmt.value, change)), after
-        if isinstance(stmt, ir.Evaluate):
-            return stmt._replace(call=rewrite(stmt.call, change)), after
-        return stmt, after
+    def apart(self, expr: ir.Expr) -> tuple[ir.Expr, list[ir.Stmt]]:
+        """An expression, and what is to be computed before it, not yet said."""
+        outer, self.prelude = self.prelude, []
+        new = self.expr(expr)
+        before, self.prelude = self.prelude, outer
+        return new, before
 
     # Expressions
 
     def expr(self, expr: ir.Expr) -> ir.Expr:
-        return rewrite(expr, self.node)
+        if isinstance(expr, ir.Select) and not self.can("ternary"):
+            return self.select(expr)
+        old = operands(expr)
+        new = tuple([self.expr(operand) for operand in old])
+        same = all(one is other for one, other in zip(old, new, strict=True))
+        return self.node(expr if same else with_operands(expr, new))
+
+    def place(self, place: ir.Expr) -> ir.Expr:
+        """What is assigned to: only its indices are expressions."""
+        if isinstance(place, ir.Swizzle | ir.Member):
+            return place._replace(value=self.place(place.value))
+        if isinstance(place, ir.Index):
+            return place._replace(value=self.place(place.value), index=self.expr(place.index))
+        return place
 
     def node(self, expr: ir.Expr) -> ir.Expr:
         """One node whose operands are legal already."""
@@ -256,8 +268,6 @@ class _Legaliser:
             return self.construct(expr)
         if isinstance(expr, ir.Binary):
             return self.binary(expr)
-        if isinstance(expr, ir.Select) and not self.can("ternary"):
-            return self.select(expr)
         if isinstance(expr, ir.Global) and expr.name in self.block_bools:
             as_int = ir.Global(INT, expr.name, expr.span)
             return ir.Binary(BOOL, "!=", as_int, ir.Literal(INT, 0, expr.span), expr.span)
@@ -301,7 +311,7 @@ class _Legaliser:
                 if isinstance(part, ir.Local):
                     uses[part.name] = uses.get(part.name, 0) + 1
             args = {param.name: arg for param, arg in zip(function.params, call.args, strict=True)}
-            if all(uses.get(name, 0) <= 1 or _cheap(arg) for name, arg in args.items()):
+            if all(uses.get(name, 0) <= 1 or is_cheap(arg) for name, arg in args.items()):
                 placed = rewrite(value, lambda part: args[part.name] if isinstance(part, ir.Local) else part)
                 return self.expr(_respan(placed, call.span))
         for helper in module.functions:
@@ -327,15 +337,7 @@ class _Legaliser:
         if isinstance(type_, Matrix) and len(args) == 1 and not self.can("matrix_conversions"):
             return self.matrix_from(type_, args[0], span)
         if isinstance(type_, Struct) and not self.can("struct_constructors"):
-            name = self.fresh(type_.name[0].lower() + type_.name[1:])
-            if self.prelude is None:
-                raise Unsupported("a struct constructor cannot stand here for this target", span)
-            made = ir.Local(type_, name, span)
-            self.prelude.append(ir.Declare(name, type_, None, span))
-            for field, arg in zip(type_.fields, args, strict=True):
-                member = ir.Member(field.type, made, field.name, arg.span)
-                self.prelude.append(ir.Assign(member, "", arg, arg.span))
-            return made
+            return self.keep(construct, type_.name[0].lower() + type_.name[1:])
         if isinstance(type_, Array) and not self.can("array_constructors"):
             return self.keep(construct, "values")
         return construct
@@ -344,11 +346,11 @@ class _Legaliser:
         """A matrix from a scalar (its diagonal) or from another matrix, written out by columns."""
         zero, one = ir.Literal(FLOAT, 0.0, span), ir.Literal(FLOAT, 1.0, span)
         if isinstance(value.type, Scalar):
-            if not _cheap(value):
+            if not is_cheap(value):
                 value = self.keep(value, "diagonal")
             cells = [value if row == column else zero for column in range(type_.size) for row in range(type_.size)]
             return ir.Construct(type_, tuple(cells), span)
-        if not _cheap(value):
+        if not is_cheap(value):
             value = self.keep(value, "matrix")
         assert isinstance(value.type, Matrix)
         old, new = value.type.size, type_.size
@@ -370,11 +372,8 @@ class _Legaliser:
             return ir.Binary(BOOL, "!=", left, right, span)
         if op in ("==", "!=") and binary.type == BOOL and not isinstance(left.type, Scalar):
             return self.equality(binary) if not self.can("whole_equality") else binary
-        if op in ("<<", ">>") and not self.can("signed_shifts") and kind_of(right.type) == "int":
-            if isinstance(right, ir.Literal):
-                return binary._replace(right=ir.Literal(UINT, right.value, right.span))
-            size = components(right.type)
-            return binary._replace(right=ir.Construct(vector_of("uint", size), (right,), right.span))
+        if op in ("<<", ">>") and not self.can("signed_shifts"):
+            return binary._replace(right=_amount(right, components(left.type)))
         if not self.can("matrix_scalar_arithmetic"):
             if isinstance(left.type, Matrix) and isinstance(right.type, Scalar) and op == "/":
                 inverse = ir.Binary(FLOAT, "/", ir.Literal(FLOAT, 1.0, span), right, span)
@@ -387,7 +386,7 @@ class _Legaliser:
         """Componentwise matrix arithmetic, column by column."""
         assert isinstance(binary.type, Matrix)
         column = Vector("float", binary.type.size)
-        sides = [side if _cheap(side) else self.keep(side, "matrix") for side in (binary.left, binary.right)]
+        sides = [side if is_cheap(side) else self.keep(side, "matrix") for side in (binary.left, binary.right)]
 
         def part(side: ir.Expr, index: int) -> ir.Expr:
             place = ir.Literal(INT, index, side.span)
@@ -406,7 +405,7 @@ class _Legaliser:
         if isinstance(type_, Vector):
             parts = ir.Binary(Vector("bool", type_.size), binary.op, left, right, span)
             return ir.Intrinsic(BOOL, "all" if binary.op == "==" else "any", (parts,), span)
-        left, right = (side if _cheap(side) else self.keep(side, "compared") for side in (left, right))
+        left, right = (side if is_cheap(side) else self.keep(side, "compared") for side in (left, right))
         pairs: list[tuple[ir.Expr, ir.Expr]]
         if isinstance(type_, Struct):
             pairs = [
@@ -428,40 +427,58 @@ class _Legaliser:
         assert result is not None
         return result
 
-    def select(self, select: ir.Select) -> ir.Expr:
-        """A choice that evaluates both arms is fine for plain values; else the arms go into an if."""
+    def select(self, select: ir.Select, place: ir.Local | None = None) -> ir.Expr:
+        """A choice for a target whose own evaluates both arms: fine for plain values; else the arms go into an if.
+
+        Then it is `place` that gets the value and is returned, or a new variable.
+        """
+        span = select.span
+        condition = self.expr(select.condition)
+        if self.prelude is None:
+            return ir.Select(select.type, condition, self.expr(select.yes), self.expr(select.no), span)
+        arms = (select.yes, select.no)
+        if not self.branches(select):
+            (yes, before_yes), (no, before_no) = self.apart(select.yes), self.apart(select.no)
+            if not before_yes and not before_no:
+                return ir.Select(select.type, condition, yes, no, span)
+        if place is None:
+            place = ir.Local(select.type, self.fresh("chosen"), span)
+            self.prelude.append(ir.Declare(place.name, select.type, None, span))
+        then, otherwise = (self.inner((ir.Assign(place, "", arm, arm.span),)) for arm in arms)
+        self.prelude.append(ir.If(condition, then, otherwise, span))
+        return place
+
+    def branches(self, select: ir.Select) -> bool:
+        """Whether a choice is for an if: its arms are not plain values, or one of them calls or samples."""
+        if self.can("ternary") or self.prelude is None:
+            return False
         plain = isinstance(select.type, Scalar | Vector)
-        costly = any(_is_costly(part) for arm in (select.yes, select.no) for part in subexpressions(arm))
-        if (plain and not costly) or self.prelude is None:
-            return select
-        name = self.fresh("chosen")
-        chosen = ir.Local(select.type, name, select.span)
-        self.prelude.append(ir.Declare(name, select.type, None, select.span))
-        yes = ir.Assign(chosen, "", select.yes, select.yes.span)
-        no = ir.Assign(chosen, "", select.no, select.no.span)
-        self.prelude.append(ir.If(select.condition, (yes,), (no,), select.span))
-        return chosen
+        return not plain or any(_is_costly(part) for arm in (select.yes, select.no) for part in subexpressions(arm))
+
+
+def _amount(amount: ir.Expr, size: int) -> ir.Expr:
+    """By how much is shifted, as a uint or a vector of them."""
+    wanted = vector_of("uint", size)
+    if amount.type == wanted:
+        return amount
+    if isinstance(amount, ir.Literal):
+        amount = ir.Literal(UINT, amount.value, amount.span)
+    elif kind_of(amount.type) == "int":
+        amount = ir.Construct(vector_of("uint", components(amount.type)), (amount,), amount.span)
+    return amount if amount.type == wanted else ir.Construct(wanted, (amount,), amount.span)
 
 
 def _is_costly(expr: ir.Expr) -> bool:
     return isinstance(expr, ir.Call) or (isinstance(expr, ir.Intrinsic) and BUILTINS[expr.name].kind == "fetch")
 
 
-def _cheap(expr: ir.Expr) -> bool:
+def is_cheap(expr: ir.Expr) -> bool:
     """Whether writing an expression twice costs nothing."""
     if isinstance(expr, ir.Swizzle | ir.Member):
-        return _cheap(expr.value)
+        return is_cheap(expr.value)
     if isinstance(expr, ir.Construct) and len(expr.args) == 1:
-        return _cheap(expr.args[0])
+        return is_cheap(expr.args[0])
     return isinstance(expr, ir.Local | ir.Global | ir.Literal)
-
-
-def _base_name(target: ir.Expr) -> str:
-    while isinstance(target, ir.Swizzle | ir.Index):
-        target = target.value
-    if isinstance(target, ir.Member):
-        return target.field
-    return target.name if isinstance(target, ir.Local | ir.Global) else "value"
 
 
 def _respan(expr: ir.Expr, span: ir.Span) -> ir.Expr:

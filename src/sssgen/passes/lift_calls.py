@@ -38,7 +38,7 @@ from ..ir.nodes import (
     While,
 )
 from ..ir.types import BOOL, VOID, Type
-from ..ir.walk import callees, operands, root, statements, subexpressions, with_operands
+from ..ir.walk import all_expressions, callees, operands, root, statements, subexpressions, with_operands
 from .scopes import declared, fresh
 
 Functions = Mapping[str, Function]
@@ -55,6 +55,32 @@ def lift_calls(module: Module) -> Module:
         old[function.key] = new
         lifted[new.key] = _Lifter(new, old).run()
     return module._replace(functions=tuple(lifted.values()))
+
+
+def lift(function: Function, functions: Functions) -> Function:
+    """One function with its writing calls as statements; discarding stays as it is."""
+    return _Lifter(function, functions).run()
+
+
+def is_awkward(function: Function, functions: Functions, short_circuit: bool) -> bool:
+    """Whether languages would differ in what the function's expressions do.
+
+    Not all evaluate from left to right; and without `short_circuit` the right side of `&&` and both arms of a choice
+    are always evaluated.
+    """
+    lifter = _Lifter(function, functions)
+    if not lifter.writes_in(function.body or ()):
+        return False
+    for expr in all_expressions(function.body or ()):
+        parts = operands(expr)
+        chooses = isinstance(expr, Select) or (isinstance(expr, Binary) and expr.op in ("&&", "||"))
+        if chooses and not short_circuit and any(lifter.writes(part) for part in parts[1:]):
+            return True
+        reads = [{part.name for part in subexpressions(one) if isinstance(part, Local)} for one in parts]
+        for index, names in enumerate(map(lifter.written, parts)):
+            if not chooses and any(names & read for read in reads[:index] + reads[index + 1 :]):
+                return True
+    return False
 
 
 def out_arguments(call: Expr, functions: Functions) -> list[str]:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..data import folder
-from ..diagnostics import did_you_mean, failure
+from ..diagnostics import SssgenError, did_you_mean, failure
 
 
 class OutputFile(NamedTuple):
@@ -79,13 +79,19 @@ def names() -> tuple[str, ...]:
 def _plugins() -> dict[str, Any]:
     """The plug-ins' entry points. `importlib.metadata` takes longer to import than a shader to emit, so it is asked
     only where some installed package mentions our group."""
-    mentions = b"[sssgen.targets]"
     places = (entry for root in sys.path for entry in Path(root or ".").glob("*.*-info/entry_points.txt"))
-    if not any(mentions in entry.read_bytes() for entry in places):
+    if not any(_mentions_targets(entry) for entry in places):
         return {}
     from importlib.metadata import entry_points
 
     return {entry.name: entry for entry in entry_points(group="sssgen.targets")}
+
+
+def _mentions_targets(entry_points: Path) -> bool:
+    try:
+        return b"[sssgen.targets]" in entry_points.read_bytes()
+    except OSError:
+        return False
 
 
 @functools.cache
@@ -95,10 +101,26 @@ def load(name: str) -> Target:
     if path.is_file():
         return read(path)
     if name in _plugins():
-        made = _plugins()[name].load()
-        made = made() if callable(made) else made
-        return made if isinstance(made, Target) else read(Path(made))
+        return _from_plugin(name)
     raise failure(f"unknown target '{name}'", did_you_mean(name, names()) or f"targets: {', '.join(names())}")
+
+
+def _from_plugin(name: str) -> Target:
+    """The target that an entry point gives. Raises SssgenError for whatever goes wrong in the plug-in."""
+    entry = _plugins()[name]
+    try:
+        made = entry.load()
+        made = made() if callable(made) else made
+        target = made if isinstance(made, Target) else read(Path(made))
+    except SssgenError:
+        raise
+    except Exception as error:  # the plug-in's code: anything may be wrong in it
+        message = f"the plug-in of target '{name}' cannot be loaded: {type(error).__name__}: {error}"
+        raise failure(message, f"its entry point is {entry.value}") from None
+    if target.name != name:
+        message = f"the plug-in of target '{name}' gives a target called '{target.name}'"
+        raise failure(message, "give the entry point and the descriptor the same name")
+    return target
 
 
 def read(path: Path) -> Target:
@@ -133,7 +155,7 @@ def read(path: Path) -> Target:
             table=table,
             folder=path.parent,
         )
-    except (KeyError, TypeError) as error:
+    except (KeyError, TypeError, AttributeError) as error:
         raise failure(f"the target descriptor is incomplete: {error}", file=path.name) from None
 
 

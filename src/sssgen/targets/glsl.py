@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..ir import nodes as ir
-from ..ir.types import Array
+from ..ir.types import Array, Type
 from .layout import Member
 from .printer import Line, Printer, documented
 
@@ -11,11 +11,10 @@ from .printer import Line, Printer, documented
 class GlslPrinter(Printer):
     """Uniforms stand in the default block; everything else is as in the IR."""
 
-    def construct(self, construct: ir.Construct) -> tuple[str, int]:
-        if isinstance(construct.type, Array):
-            element = self.type(construct.type.element)
-            return f"{element}[{construct.type.length}]({self.arguments(construct.args)})", 15
-        return super().construct(construct)
+    def type(self, type_: Type) -> str:
+        if isinstance(type_, Array):
+            return f"{self.type(type_.element)}[{type_.length}]"
+        return super().type(type_)
 
     def print_uniforms(self, members: list[Member]) -> list[Line]:
         """The uniform declarations, one a line."""

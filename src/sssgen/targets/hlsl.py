@@ -11,7 +11,7 @@ transposed where it is read.
 from __future__ import annotations
 
 from ..ir import nodes as ir
-from ..ir.types import Array, Matrix, Scalar, Vector
+from ..ir.types import Array, Matrix, Scalar, Struct, Vector
 from .layout import Member
 from .printer import POSTFIX, PRIMARY, UNARY, Line, Printer, documented
 
@@ -34,7 +34,7 @@ class HlslPrinter(Printer):
 
     def construct(self, construct: ir.Construct) -> tuple[str, int]:
         type_, args = construct.type, construct.args
-        if isinstance(type_, Array):
+        if isinstance(type_, Array | Struct):  # only where a variable begins
             return "{ " + self.arguments(args) + " }", PRIMARY
         if len(args) == 1 and not isinstance(type_, Scalar):  # a splat or a conversion is a cast here
             text, binding = self.bound(args[0])

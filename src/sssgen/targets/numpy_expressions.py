@@ -13,6 +13,7 @@ PYTHON_PRECEDENCE = {
     "==": 5, "!=": 5, "<": 5, ">": 5, "<=": 5, ">=": 5, "|": 6, "^": 7, "&": 8, "<<": 9, ">>": 9,
     "+": 10, "-": 10, "*": 11, "/": 11,
 }  # fmt: skip
+_BITS = ("&", "|", "^", "<<", ">>")
 _NAMES = {"not": "not_", "any_lane": "any"}
 
 
@@ -91,8 +92,8 @@ class NumpyExpressions(Printer):
         return text, level
 
     def operand(self, expr: ir.Expr, op: str, least: int) -> str:
-        """An operand; beside operators on bits, whose precedence few know by heart, always in parentheses."""
-        mixed = op in ("&", "|", "^", "<<", ">>") and isinstance(expr, ir.Binary) and expr.op != op
+        """An operand; around operators on bits, whose precedence differs from GLSL's, always in parentheses."""
+        mixed = isinstance(expr, ir.Binary) and expr.op != op and (op in _BITS or expr.op in _BITS)
         return self.expr(expr, UNARY if mixed else least)
 
     def operator_function(self, binary: ir.Binary, plain: bool) -> str:

@@ -32,7 +32,6 @@ class Numbers:
         for function in module.functions:
             self.enter(function)
             self.find_counters(function)
-            self.counters[self.key] |= dict.fromkeys(_steppers(function), _STEPPED)
         while sum(self.look(function) for function in module.functions):
             pass
 
@@ -40,7 +39,8 @@ class Numbers:
         self.key = function.key
 
     def find_counters(self, function: ir.Function) -> None:
-        counters = self.counters[self.key] = {}
+        counters: dict[str, int | None] = dict.fromkeys(_steppers(function), _STEPPED)
+        self.counters[self.key] = counters
         for stmt in statements(function.body or ()):
             counter = count(stmt) if isinstance(stmt, ir.For) else None
             if counter is not None:
