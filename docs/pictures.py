@@ -54,8 +54,8 @@ def noise(width: int, height: int, seed: int, roughness: float = 2.0) -> Any:
 
 def texels(*channels: Any) -> Any:
     """Channels from 0 to 1 as RGBA texels; one alone is gray, alpha is 1."""
-    colour = [np.broadcast_to(channel, np.shape(channels[0])) for channel in channels * (3 if len(channels) == 1 else 1)]
-    full = [*colour, np.ones_like(colour[0])][:4]
+    colour = channels if len(channels) > 1 else channels * 3
+    full = [*np.broadcast_arrays(*colour), np.ones_like(colour[0])][:4]
     return np.round(255.0 * np.stack(full, axis=-1)).astype(np.uint8)
 
 
@@ -97,7 +97,11 @@ def tube(curve: Any, radius: float, around: int = 48) -> tuple[Any, Any]:
 
 def quad(width: float, height: float) -> tuple[Any, Any]:
     """A rectangle that looks along +z."""
-    corners = [(x * width / 2, y * height / 2, 0, 0, 0, 1, 1, 0, 0, 1, (x + 1) / 2, (y + 1) / 2) for y in (-1, 1) for x in (-1, 1)]
+    corners = [
+        (x * width / 2, y * height / 2, 0, 0, 0, 1, 1, 0, 0, 1, (x + 1) / 2, (y + 1) / 2)
+        for y in (-1, 1)
+        for x in (-1, 1)
+    ]
     return np.array(corners, float), np.array([(0, 1, 2), (2, 1, 3)])
 
 
@@ -120,7 +124,7 @@ def jelly_cubes(context: moderngl.Context) -> None:
 def paper_lantern(context: moderngl.Context) -> None:
     """A paper ball with ribs; the lamp is inside it."""
     drawn = shader(context, "paper_lantern")
-    u, v = grid(1024, 512)
+    _, v = grid(1024, 512)
     fibres = noise(1024, 512, 1, 1.2)
     away = np.abs((v * 14.0 + 0.5) % 1.0 - 0.5) / 14.0  # from the nearest rib
     rib = np.clip(1.6 - away / 0.0035, 0.0, 1.0)
@@ -160,7 +164,12 @@ def ice_inlay(context: moderngl.Context) -> None:
     u, v = grid(1024, 1024)
     leaves = np.zeros_like(u)
     veins = np.zeros_like(u)
-    for x, y, turn, size in ((0.33, 0.62, 0.5, 0.26), (0.68, 0.42, 2.4, 0.3), (0.36, 0.24, -0.5, 0.18), (0.74, 0.78, 1.3, 0.16)):
+    for x, y, turn, size in (
+        (0.33, 0.62, 0.5, 0.26),
+        (0.68, 0.42, 2.4, 0.3),
+        (0.36, 0.24, -0.5, 0.18),
+        (0.74, 0.78, 1.3, 0.16),
+    ):
         along = ((u - x) * np.cos(turn) + (v - y) * np.sin(turn)) / size
         across = ((v - y) * np.cos(turn) - (u - x) * np.sin(turn)) / size
         half = 0.36 * np.cos(np.clip(along, -1.0, 1.0) * np.pi / 2) * (1.0 - 0.3 * along)
@@ -205,7 +214,9 @@ def png(rows: Any) -> bytes:
     lines = np.insert((rows - above).reshape(height, -1), 0, 2, axis=1)
     head = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
     parts = ((b"IHDR", head), (b"IDAT", zlib.compress(lines.tobytes(), 9)), (b"IEND", b""))
-    chunks = (struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data)) for name, data in parts)
+    chunks = (
+        struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data)) for name, data in parts
+    )
     return b"\x89PNG\r\n\x1a\n" + b"".join(chunks)
 
 

@@ -134,19 +134,12 @@ class Backend:
         self.language = {"glsl": _GLSL, "hlsl": _HLSL, "wgsl": _WGSL}[self.target.language]
 
     def run(
-        self,
-        text: str,
-        calls: Sequence[Call],
-        textures: Mapping[str, Texture] | None = None,
-        uniform_flow: bool = False,
+        self, text: str, calls: Sequence[Call], textures: Mapping[str, Texture] | None = None
     ) -> list[np.ndarray[Any, Any]]:
-        """The results of the calls, all of which have the same number of lanes.
-
-        With `uniform_flow` every pixel makes all calls, as derivatives and implicit levels need it.
-        """
+        """The results of the calls, all of which have the same number of lanes; 0 where a call discards."""
         lanes = max(np.shape(arg)[-1] for call in calls for arg in call.args if not isinstance(arg, str))
         width = -(-lanes // HEIGHT)
-        program = self.program(text, calls, textures or {}, width, uniform_flow)
+        program = self.program(text, calls, textures or {}, width)
         data = np.concatenate(program.rows).reshape(-1, width, 4)
         image = self.draw(program.text, data, textures or {}, (width, program.slots * HEIGHT))
         words = image.reshape(program.slots, HEIGHT * width, 4)
@@ -161,9 +154,8 @@ class Backend:
         """The image, (height, width, 4) of uint32, that the program draws."""
         raise NotImplementedError
 
-    def program(
-        self, text: str, calls: Sequence[Call], textures: Mapping[str, Texture], width: int, uniform_flow: bool
-    ) -> Program:
+    def program(self, text: str, calls: Sequence[Call], textures: Mapping[str, Texture], width: int) -> Program:
+        """One branch a call: whole quads take it, so derivatives and implicit levels are defined in it."""
         rows: list[np.ndarray[Any, Any]] = []
         places: list[tuple[int, int]] = []
         body: list[str] = []
@@ -186,7 +178,7 @@ class Backend:
                 part = f"r{number}[{column}]" if isinstance(call.result, Matrix) else f"r{number}"
                 keep.append(f"if (slot == {slots + column}) {{ words = {self._words(call.result, part)}; }}")
             inside = f"if (slot >= {slots} && slot < {slots + columns}) {{"
-            body += [*before, *keep] if uniform_flow else [inside, *before, *keep, "}"]
+            body += [inside, *before, *keep, "}"]
             places.append((slots, columns))
             slots += columns
         declared = "\n".join(self._texture(name, texture, index) for index, (name, texture) in enumerate(textures.items()))

@@ -123,6 +123,8 @@ class Programs:
 
     def statement(self, indent: int, size: int) -> str:
         pad = "    " * indent
+        if self.loops and self.chance(20):
+            return self.jump(pad)
         kind = self.random.randrange(16 if size > 1 else 8)
         if kind in (0, 1, 2):
             return f"{pad}{self.place()} {self.random.choice(['=', '+=', '-=', '*='])} {self.number()};\n"

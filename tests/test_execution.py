@@ -7,18 +7,21 @@ against the NumPy runtime in float64 on those and on random arguments, within th
 from __future__ import annotations
 
 import keyword
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 from execute import HEIGHT, TARGETS, Backend, Call, backend
+from test_pitfalls import program as pitfalls
 from validate import code
 
+from sssgen.compiler import transpile
 from sssgen.harness.compilers import CompilerMissing
 from sssgen.ir import signatures
 from sssgen.ir.intrinsics import BUILTINS, Builtin
+from sssgen.ir.nodes import Function, Module
 from sssgen.ir.types import FLOAT, INT, Matrix, Sampler, Scalar, Type, Vector, components, kind_of, spell
 from sssgen.lang.loader import load_text
 from sssgen.targets import numpy_runtime as rt
@@ -212,7 +215,7 @@ def unsupported(overload: Overload, dialect: str) -> bool:
     return text == "" and not overload.row.polyfill
 
 
-def run(gpu: Backend, chosen: list[Overload], uniform_flow: bool = False) -> list[np.ndarray[Any, Any]]:
+def run(gpu: Backend, chosen: list[Overload]) -> list[np.ndarray[Any, Any]]:
     """The results of all overloads, from one program of functions `case_N`."""
     lines, calls = [], []
     for number, overload in enumerate(chosen):
@@ -223,7 +226,7 @@ def run(gpu: Backend, chosen: list[Overload], uniform_flow: bool = False) -> lis
         calls.append(Call(f"case_{number}", overload.params, overload.result, overload.args))
     text = code(load_text("\n".join(lines), "cases"), gpu.target.name)
     used = {arg for overload in chosen for arg in overload.args if isinstance(arg, str)}
-    return gpu.run(text, calls, {name: textures()[name] for name in sorted(used)}, uniform_flow)
+    return gpu.run(text, calls, {name: textures()[name] for name in sorted(used)})
 
 
 def oracle(overload: Overload) -> np.ndarray[Any, Any]:
@@ -268,10 +271,77 @@ def compare(overload: Overload, got: np.ndarray[Any, Any]) -> list[str]:
 
 def test_builtins(gpu: Backend) -> None:
     known = [overload for overload in overloads() if not unsupported(overload, gpu.target.dialect)]
-    neighbours = [overload for overload in known if overload.row.name in NEIGHBOURS]
-    chosen = [overload for overload in known if overload.row.name not in NEIGHBOURS]
-    results = list(zip(chosen, run(gpu, chosen), strict=True))
-    chosen = [over_the_image(overload) for overload in neighbours]
-    results += zip(chosen, run(gpu, chosen, uniform_flow=True), strict=True)
-    wrong = [line for overload, got in results for line in compare(overload, got)]
+    chosen = [over_the_image(one) if one.row.name in NEIGHBOURS else one for one in known]
+    wrong = [line for one, got in zip(chosen, run(gpu, chosen), strict=True) for line in compare(one, got)]
     assert not wrong, "\n".join([f"{len(wrong)} of {len(known)}", *wrong])
+
+
+# Whole functions, against the text that the numpy target makes of them
+
+
+def arguments(function: Function, rng: np.random.Generator) -> tuple[Any, ...]:
+    """Random arguments; beside a texture, coordinates are linear over the image and the rest constant in a quad."""
+    textured = any(isinstance(param.type, Sampler) for param in function.params)
+    x, y = np.arange(LANES) % (LANES // HEIGHT), np.arange(LANES) // (LANES // HEIGHT)
+    args: list[Any] = []
+    for param in function.params:
+        type_, shape = param.type, (*_shape(param.type), LANES)
+        if isinstance(type_, Sampler):
+            args.append({"2D": "map", "3D": "volume", "Cube": "cube"}[type_.dim])
+        elif kind_of(type_) == "bool":
+            args.append(rng.random(shape) < 0.5)
+        elif kind_of(type_) in ("int", "uint"):
+            args.append(rng.integers(1, 10 if kind_of(type_) == "int" else 2**16, shape).astype(DTYPES[kind_of(type_)]))
+        elif param.name == "uv":
+            args.append(np.array([x / 8.0 + 0.3, y / 4.0 + 0.4], np.float32))
+        elif textured:
+            args.append(rng.uniform(-2.0, 2.0, shape).astype(np.float32)[..., x // 2])
+        else:
+            args.append(rng.uniform(-2.0, 2.0, shape).astype(np.float32))
+    return tuple(args)
+
+
+def with_numpy(text: str, name: str, args: tuple[Any, ...]) -> np.ndarray[Any, Any]:
+    """The function's result in float64; 0 in the lanes that it discards."""
+    names: dict[str, Any] = {}
+    exec(compile(text, "numpy", "exec"), names)
+    given = [textures()[a] if isinstance(a, str) else a.astype(np.float64) if a.dtype.kind == "f" else a for a in args]
+    with rt.precision("float64"), rt.grid(HEIGHT, LANES // HEIGHT):
+        result = names[name](*given)
+    value, gone = result if isinstance(result, tuple) else (result, False)
+    return np.where(gone, 0, value)
+
+
+def differences(
+    gpu: Backend, module: Module, functions: Sequence[tuple[str, Function]], tolerance: float = 2e-5
+) -> list[str]:
+    """What a back end gives of functions that is not what the numpy target gives."""
+    rng = np.random.default_rng(3)
+    args = [arguments(function, rng) for _, function in functions]
+    calls = [
+        Call(function.name, tuple(param.type for param in function.params), function.result, given)
+        for (_, function), given in zip(functions, args, strict=True)
+    ]
+    oracle_text, wrong = transpiled(module, "numpy"), []
+    for (title, function), call, got in zip(functions, calls, gpu.run(code(module, gpu.target.name), calls, textures()), strict=True):
+        wanted = np.broadcast_to(with_numpy(oracle_text, function.name, call.args), got.shape)
+        if wanted.dtype.kind != "f":
+            good = got == wanted
+        else:
+            limit = 2.0**-6 if any(isinstance(arg, str) for arg in call.args) else tolerance
+            good = np.isclose(got, wanted, limit, limit, equal_nan=True)
+        for lane in np.flatnonzero(~good.reshape(-1, LANES).all(axis=0))[:1]:
+            at = [arg if isinstance(arg, str) else arg[..., lane].tolist() for arg in call.args]
+            wrong.append(f"{title}\n{at}: {got[..., lane]} is not {wanted[..., lane]}")
+    return wrong
+
+
+@cache
+def transpiled(module: Module, target: str) -> str:
+    return next(text for name, text in transpile(module, target, "cases").files.items() if not name.endswith(".json"))
+
+
+def test_pitfalls(gpu: Backend) -> None:
+    module, functions = pitfalls()
+    wrong = differences(gpu, module, [(case.source, function) for case, function in functions])
+    assert not wrong, "\n\n".join(wrong)

@@ -14,6 +14,11 @@ from hypothesis import strategies as st
 
 from numpy_cases import assert_agrees, compiled, module_of, python_of, run
 from random_programs import Programs
+from sssgen.ir.types import Sampler
+from sssgen.targets import numpy_runtime
+from sssgen.targets.descriptor import load
+from sssgen.targets.layout import place
+from sssgen.targets.numpy_printer import NumpyPrinter
 from sssgen.targets.numpy_textures import Texture
 from sssgen.targets.numpy_values import Record, precision, vec
 
@@ -188,6 +193,10 @@ float f(float x) {
 }
 """,
         [3, 105, 104, 103, 102, 100],
+    ),
+    "a break that holds for lanes that continued": (
+        "float f(float x) { float s = 0.0; for (int i = 0; i < 4; i++) { x += 1.0; if (x < 1.0) continue; if (x < 1.5) { s += 10.0; break; } s += x; } return s; }",
+        [10, 7.5, 10, 12, 14, 22],
     ),
     "a return inside a loop": ("float f(float x) { for (int i = 0; i < 4; i++) { x += 1.0; if (x > 2.5) return float(i); } return -x; }", [-2, 3, 2, 2, 1, 0]),
     "nested loops, a return inside both": (
@@ -425,3 +434,32 @@ def test_large_random_programs(seed: int) -> None:
     random = Random(seed)
     lanes = [(random.randrange(-4, 9) / 2, random.randrange(-4, 9) / 2, random.randrange(4), 1.0) for _ in range(16)]
     assert_agrees(Programs(random, seed % 3 == 0, size=6).program(), lanes)
+
+
+def test_uniforms_and_textures_are_declared_with_their_defaults() -> None:
+    source = """
+uniform vec2 a = vec2(1.0, 2.0);
+uniform uvec2 b = uvec2(3u, 4u);
+uniform mat2 c;
+uniform float d[2];
+uniform bool e = true;
+uniform sampler2D bumps : default_bump;
+uniform samplerCube sky;
+uniform sampler3D fog : default_black;
+"""
+    module = module_of(source)
+    printer = NumpyPrinter(load("numpy"), module)
+    members, _ = place(module.uniforms, "")
+    textures = [uniform for uniform in module.uniforms if isinstance(uniform.type, Sampler)]
+    lines = printer.print_uniforms(members) + printer.print_textures(textures)
+    assert [line.text for line in lines] == [
+        "a = vec(1.0, 2.0)",
+        "b = vec(to_uint(3), 4)",
+        "c = mat(2, 1.0, 0.0, 0.0, 1.0)",
+        "d = array(0.0, 0.0)",
+        "e = True",
+        "bumps = Texture([[[0.5, 0.5, 1.0, 1.0]]])",
+        'sky = Texture([[[[1.0, 1.0, 1.0, 1.0]]]] * 6, dim="Cube")',
+        "fog = Texture([[[[0.0, 0.0, 0.0, 1.0]]]])",
+    ]
+    exec("\n".join(line.text for line in lines), dict(vars(numpy_runtime)))

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from pass_cases import assert_is, module_of, text
 
+from pass_cases import assert_is, module_of, text
 from sssgen.ir.nodes import Literal, Module, Return
 from sssgen.passes.fold import fold
 

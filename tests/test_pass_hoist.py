@@ -2,8 +2,17 @@
 
 from __future__ import annotations
 
-from pass_cases import assert_is, module_of, text
+from collections.abc import Callable
 
+from hypothesis import given, reject, settings
+from hypothesis import strategies as st
+
+from pass_cases import assert_is, module_of, text
+from shaded_programs import module_for
+from sssgen.compiler import transpile
+from sssgen.diagnostics import SssgenError
+from sssgen.harness.compilers import Compiler, Source, errors
+from sssgen.harness.compilers.calls import functions
 from sssgen.passes.hoist import hoist
 
 HEAD = """
@@ -346,3 +355,46 @@ def test_a_variable_varies_from_where_it_is_set() -> None:
 def test_functions_that_entries_do_not_reach_are_left_alone() -> None:
     source = "vec4 f(vec2 uv) { return texture(map, uv); } vec4 g(vec2 uv) { if (uv.x > 0.0) { return texture(map, uv); } return vec4(0.0); }"
     stays(source)
+
+
+@given(st.integers(0, 1 << 32), st.booleans())
+@settings(max_examples=60)
+def test_tint_finds_all_flow_uniform(
+    compiler: Callable[[str], Compiler], seed: int, discards: bool
+) -> None:
+    module = module_for(seed, discards)
+    try:
+        files = transpile(module, "wgsl", "random").files
+    except SssgenError:  # a division by a constant 0
+        reject()
+    (library,) = [text for name, text in files.items() if name.endswith(".wgsl")]
+    source = Source(library + _entry(library), "wgsl", name=f"seed {seed}")
+    assert not errors(compiler("tint").check(source))
+
+
+def _entry(library: str) -> str:
+    """A fragment shader that calls `f` with a uniform's members where those are wanted, and else with what varies."""
+    (function,) = [function for function in functions(library, wgsl=True) if function.name == "f"]
+    inputs, before, args = [], [], []
+    for place, (kind, name, _) in enumerate(function.parameters):
+        if kind.startswith("texture") or kind == "sampler":
+            args.append("bound_map" if kind.startswith("texture") else "bound_sampler")
+        elif name in ("level", "mode", "tint"):
+            args.append(f"bound.{name}")
+        else:
+            pointer = kind.startswith("ptr")
+            inputs.append(f"@location({place}) @interpolate(flat) in{place}: {'f32' if pointer else kind}")
+            if pointer:
+                before.append(f"var held{place} = inputs.in{place};")
+            args.append(f"&held{place}" if pointer else f"inputs.in{place}")
+    return f"""
+struct Inputs {{ {", ".join(inputs)} }}
+struct Bound {{ level: f32, mode: i32, tint: vec3f }}
+@group(0) @binding(0) var<uniform> bound: Bound;
+@group(0) @binding(1) var bound_map: texture_2d<f32>;
+@group(0) @binding(2) var bound_sampler: sampler;
+@fragment fn main(inputs: Inputs) -> @location(0) vec4f {{
+    {" ".join(before)}
+    return vec4f(f({", ".join(args)}));
+}}
+"""

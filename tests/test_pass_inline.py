@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from pass_cases import assert_is, module_of
 
+from pass_cases import assert_is, module_of
 from sssgen.passes.inline import inline
 
 FUNCTIONS = """

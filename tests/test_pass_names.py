@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from pass_cases import assert_is, module_of, text
-
 from sssgen.ir.verify import verify
 from sssgen.passes.names import rename
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pass_cases import assert_is, key, module_of
-
 from sssgen.ir.verify import verify
 from sssgen.passes.parameters import uniforms_to_parameters
 

@@ -3,66 +3,28 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable
-from random import Random
 from typing import Any
 
 import pytest
-from hypothesis import assume, given, reject
+from hypothesis import given
 from hypothesis import strategies as st
+
 from ir_interpreter import BUILTINS, Discarded, Interpreter, componentwise, flat
 from pass_cases import key
-from random_programs import Programs
-
-from sssgen.diagnostics import SssgenError
+from shaded_programs import module_for
 from sssgen.ir.nodes import Function, Module
 from sssgen.ir.verify import verify
-from sssgen.lang.check import check
-from sssgen.lang.parser import parse
 from sssgen.passes.fold import fold
-from sssgen.passes.hoist import Note, hoist
+from sssgen.passes.hoist import hoist
 from sssgen.passes.inline import inline
 from sssgen.passes.names import rename
 from sssgen.passes.parameters import uniforms_to_parameters
 from sssgen.passes.prune import prune
 
 SEEDS = st.integers(0, 1 << 32)
-UNIFORMS = "uniform sampler2D map; uniform float level = 2.0; uniform int mode = 1; uniform vec3 tint = vec3(0.5, 1.0, 2.0);\n"
-HELPERS = """
-float look(float x) { return texture(map, vec2(x, level)).y; }
-float shine(vec2 at, inout float c) { if (level > 0.5) { c += texture(map, at).x; } return c * tint.y; }
-float twice(float x) { return x + x * level; }
-float pick(float x, float y) { return x > 1.0 ? y : 0.5; }
-"""
 VALUES = {"map": None, "level": 2.0, "mode": 1, "tint": (0.5, 1.0, 2.0)}
 ARGUMENTS = [(0.5, 1.5, 1, 0.0), (-2.0, 5.0, 2, 3.0), (4.5, -0.5, 0, 1.0), (0.0, 0.0, 3, -4.0)]
-
-
-class ShadedPrograms(Programs):
-    """Random programs that read uniforms and textures too."""
-
-    def program(self) -> str:
-        text = super().program()
-        at = text.index("float f(")
-        return UNIFORMS + text[:at] + HELPERS + text[at:]
-
-    def number(self, depth: int = 2) -> str:
-        if depth and self.chance(30):
-            inner = [super(ShadedPrograms, self).number(depth - 1) for _ in range(2)]
-            return self.random.choice(
-                [
-                    f"texture(map, vec2({inner[0]}, {inner[1]})).x", f"look({inner[0]})", f"twice({inner[0]})",
-                    f"pick({inner[0]}, {inner[1]})", "level", "tint.z", f"texture(map, v.xy + {inner[0]}).y",
-                    f"shine(vec2({inner[0]}), {self.random.choice(self.floats)})",
-                ]
-            )  # fmt: skip
-        return super().number(depth)
-
-    def condition(self, depth: int = 2) -> str:
-        if self.chance(25):
-            return self.random.choice(["level > 1.0", "mode == 1", "tint.x < 0.25", "TWO > 1"])
-        return super().condition(depth)
 
 
 def texel(map_: None, at: Any, *rest: Any) -> Any:
@@ -100,16 +62,6 @@ def outcomes(module: Module, name: str = "f", extra: tuple[Any, ...] = ()) -> li
         except OverflowError:
             results.append("overflow")
     return results
-
-
-def module_for(seed: int, discards: bool) -> Module:
-    source = ShadedPrograms(Random(seed), discards).program()
-    try:
-        module = check(parse(source, "random.sss"), source)
-    except SssgenError:  # an index that is outside its array
-        reject()
-    assume(not verify(module))
-    return module
 
 
 def same(seed: int, discards: bool, change: Callable[[Module], Module], linked: bool = False) -> None:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from pass_cases import assert_is, key, module_of
 
+from pass_cases import assert_is, key, module_of
 from sssgen.ir.verify import verify
 from sssgen.passes.prune import prune
 

@@ -65,13 +65,13 @@ def printed(source: str, target: str) -> str:
     return f"{before}\n\n{statements}".strip()
 
 
-def module_of(source: str) -> ir.Module:
+def module_of(source: str, file: str = "case") -> ir.Module:
     """The module of functions, or of one function `f` that returns the expression."""
     if "{" in source:
-        return load_text(dedent(source), "case")
+        return load_text(dedent(source), file)
     variables = sorted(set(_VARIABLE.findall(source)))
     params = ", ".join(f"{spell(variable_type(name))} {name}" for name in variables)
-    module = load_text(f"bool f({params}) {{ return ({source}) == ({source}); }}", "case")
+    module = load_text(f"bool f({params}) {{ return ({source}) == ({source}); }}", file)
     (function,) = module.functions
     assert function.body is not None
     (stmt,) = function.body

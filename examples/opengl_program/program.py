@@ -62,9 +62,7 @@ class Shader:
         if not used:
             self.context.vertex_array(self.program, []).render(vertices=3)
             return
-        layout = " ".join(
-            text if name in used else f"{4 * int(text[0])}x" for name, text in ATTRIBUTES.items()
-        )
+        layout = " ".join(text if name in used else f"{4 * int(text[0])}x" for name, text in ATTRIBUTES.items())
         buffer = self.context.buffer(np.asarray(vertices, "f4").tobytes())
         index = self.context.buffer(np.asarray(triangles, "i4").tobytes())
         self.context.vertex_array(self.program, [(buffer, layout, *used)], index).render()
@@ -112,13 +110,17 @@ def view(shader: Shader, eye: Any, target: Any, aspect: float, lights: Any, ambi
 def load(context: moderngl.Context, stem: str) -> Shader:
     """The shader of `out/NAME`: out/NAME.glsl-330.vert, .frag and .reflection.json."""
     texts = [Path(f"{stem}.glsl-330.{end}").read_text("utf-8") for end in ("vert", "frag", "reflection.json")]
-    return Shader(context, texts[0], texts[1], json.loads(texts[2]))
+    shader = Shader(context, texts[0], texts[1], json.loads(texts[2]))
+    if "thickness_texture" in shader.textures:  # here a program would load a picture: thin, with thick ribs
+        rows = np.where(np.arange(512) * 12 % 512 < 36, 255, 64).astype(np.uint8)
+        shader.picture("thickness_texture", np.tile(rows[:, None, None], (1, 4, 4)))
+    return shader
 
 
 def frame(shader: Shader, turn: float, size: tuple[int, int]) -> None:
     """One picture: the sphere, a lamp behind it that goes around with `turn`, and the sky above the eye."""
-    lamp = (2.0 * np.sin(turn), 0.5, -2.0 * np.cos(turn), 1.0)
-    lights = [(lamp, (12.0, 11.0, 9.0)), ((1.0, 2.0, 2.0, 0.0), (0.4, 0.4, 0.5))]
+    lamp = (1.6 * np.sin(turn), 0.6, -1.6 * np.cos(turn), 1.0)
+    lights = [(lamp, (2.4, 2.2, 1.9)), ((1.0, 2.0, 2.0, 0.0), (0.15, 0.15, 0.2))]
     view(shader, (0.0, 0.6, 3.4), (0.0, 0.0, 0.0), size[0] / size[1], lights, (0.05, 0.05, 0.06))
     shader.context.enable(moderngl.DEPTH_TEST)
     shader.context.enable_direct(FRAMEBUFFER_SRGB)  # the shader's colours are linear
@@ -128,7 +130,9 @@ def frame(shader: Shader, turn: float, size: tuple[int, int]) -> None:
 
 def off_screen(context: moderngl.Context, size: tuple[int, int]) -> moderngl.Framebuffer:
     """A framebuffer that encodes what is drawn into it, made current."""
-    target = context.framebuffer(context.texture(size, 4, internal_format=SRGB8_ALPHA8), context.depth_renderbuffer(size))
+    target = context.framebuffer(
+        context.texture(size, 4, internal_format=SRGB8_ALPHA8), context.depth_renderbuffer(size)
+    )
     target.use()
     return target
 

@@ -19,7 +19,7 @@ from .material import Material
 from .passes.chain import ChainStage, Entry, assemble
 from .passes.cost import Cost, cost_of
 from .passes.fold import fold
-from .passes.hoist import hoist
+from .passes.hoist import Note, hoist
 from .passes.legalise import Unsupported, legalise
 from .passes.link import LinkError, LinkStage, link
 from .passes.names import rename
@@ -105,9 +105,8 @@ def transpile(module: Module, target: str, name: str) -> Compiled:
     """The functions form of a module of plain functions (no chain): what `sssgen transpile` writes."""
     chosen = descriptor.load(target)
     roots = [function.key for function in module.functions if function.body is not None]
-    module = prune(_folded(module, {}), roots)
-    warnings: list[Diagnostic] = []
-    middle = _Middle(module, {}, None, {}, {}, warnings)
+    module, notes = hoist(prune(_folded(module, {}), roots), roots)
+    middle = _Middle(module, {}, None, {}, {}, _warnings(notes))
     return _finish(middle, chosen, "functions", None, About(name, name))
 
 
@@ -152,7 +151,7 @@ def _build(material: Material, lighting: str, drop_output: bool) -> _Middle:
     roots = [entry.function.key for entry in chain.entries.values()]
     module = prune(_folded(chain.module, linked.fixed), roots)
     module, notes = hoist(module, roots)
-    warnings = [Diagnostic("warning", note.message, note.span, "", source_line(note.span)) for note in notes]
+    warnings = _warnings(notes)
     slots = _slot_functions(material, linked.module)
     costs = {kind: cost_of(module, entry.function.key, slots) for kind, entry in chain.entries.items()}
     return _Middle(module, dict(chain.entries), chain.surface, linked.owners, costs, warnings)
@@ -171,6 +170,10 @@ def _folded(module: Module, fixed: Mapping[str, tuple[float, ...]]) -> Module:
 def _about(material: Material) -> About:
     raymarched = any(stage.technique.role == "geometry" for stage in material.stages)
     return About(material.name, material.title, material.doc, material.shading, material.alpha_mode, raymarched)
+
+
+def _warnings(notes: list[Note]) -> list[Diagnostic]:
+    return [Diagnostic("warning", note.message, note.span, "", source_line(note.span)) for note in notes]
 
 
 def _link_stage(stage: Any) -> LinkStage:

@@ -17,11 +17,15 @@ def ends(condition: ir.Expr, steps: ir.Block, body: ir.Block, out_args: OutArgs)
 
     `steps` are the statements that run in every round, `body` those that may run besides.
     """
+    return _fails(condition, steps, writes((*steps, *body, ir.Return(condition, condition.span)), out_args))
+
+
+def _fails(condition: ir.Expr, steps: ir.Block, written: list[str]) -> bool:
+    """Whether a condition fails at last, where the loop writes `written`."""
     if not isinstance(condition, ir.Binary):
         return False
     if condition.op == "&&":
-        return ends(condition.left, steps, body, out_args) or ends(condition.right, steps, body, out_args)
-    written = writes((*steps, *body, ir.Return(condition, condition.span)), out_args)
+        return _fails(condition.left, steps, written) or _fails(condition.right, steps, written)
     return any(
         _approaches(counter, op, bound, steps, written)
         for counter, op, bound in (

@@ -226,7 +226,7 @@ class ExpressionChecker:
                 mixed_hint(yes.expr, no.expr),
             )
         if isinstance(yes.expr.type, Sampler | Void):
-            raise self.fail(conditional.span, f"'?:' cannot choose between {a_type(yes.expr.type)} and another")
+            raise self.fail(conditional.span, f"'?:' cannot choose {a_type(yes.expr.type)}")
         if yes.quantity and no.quantity and yes.quantity != no.quantity:
             message = f"the two arms differ: {q.words(yes.quantity)} and {q.words(no.quantity)}"
             raise self.fail(conditional.span, message, q.conversion(no.quantity, yes.quantity))
@@ -303,16 +303,13 @@ class ExpressionChecker:
             if len(overloads) == 1:
                 chosen = overloads[0]
                 if len(chosen.types) != len(args):
-                    count = len(chosen.types)
-                    raise self.fail(
-                        call.span,
-                        f"{name} takes {count} argument{'s' if count != 1 else ''}, but {len(args)} are given",
-                        f"it is declared as {declared(name, chosen)}",
-                    )
+                    count, given = len(chosen.types), len(args)
+                    message = f"{name} takes {count} argument{'s' if count != 1 else ''}, but gets {given}"
+                    raise self.fail(call.span, message, f"it is declared as {declared(name, chosen)}")
             else:
                 listed = ", ".join(declared(name, overload) for overload in overloads)
-                given = ", ".join(map(spell, types))
-                raise self.fail(call.span, f"no overload of {name} takes ({given})", f"there are: {listed}")
+                shown = ", ".join(map(spell, types))
+                raise self.fail(call.span, f"no overload of {name} takes ({shown})", f"there are: {listed}")
         for index, (arg, written) in enumerate(zip(args, call.args, strict=True)):
             direction, quantity = chosen.directions[index], chosen.quantities[index]
             what = f"argument {index + 1} ('{chosen.names[index]}') of {name}"
@@ -339,11 +336,9 @@ class ExpressionChecker:
         try:
             if isinstance(types[0], Sampler):
                 quantity = q.texel_of(args[0].quantity)
-                for arg in args[1:]:
-                    if q.space(arg.quantity) not in ("", "uv"):
-                        wanted = "uv_position"
-                        raise q.Mixup(f"a texture is read at a uv position, but this is {q.words(arg.quantity)}",
-                                      q.conversion(arg.quantity, wanted))  # fmt: skip
+                if len(args) > 1 and args[1].quantity == "uv_direction":
+                    message = f"a texture is read at a position, but this is {q.words(args[1].quantity)}"
+                    raise q.Mixup(message, q.conversion(args[1].quantity, "uv_position"))
             else:
                 quantity = q.of_intrinsic(name, [arg.quantity for arg in args])
         except q.Mixup as mixup:
@@ -352,12 +347,11 @@ class ExpressionChecker:
 
     def construct(self, type_: Type, quantity: str, args: list[Typed], call: s.CallOf) -> Typed:
         """A constructor, with every argument brought to the type's own kind."""
-        if quantity and len(args) == 1 and args[0].expr.type == type_:
+        if quantity and len(args) == 1:
             try:
                 q.check_constructible(args[0].quantity, quantity)
             except q.Mixup as mixup:
                 raise self.fail(call.span, mixup.message, mixup.hint) from None
-            return Typed(args[0].expr, quantity)
         values = tuple(arg.expr for arg in args)
         wrong = self.constructor_error(type_, args, call)
         if wrong:

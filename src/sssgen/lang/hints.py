@@ -81,7 +81,7 @@ def _check_range(
     for value in default:
         if not low <= value <= high:
             message = f"the default {value:g} is outside the range {low:g} to {high:g}"
-            raise checker.fail(span, message, "" if written else f"give it one, such as = {low:g}")
+            raise checker.fail(span, message, "" if written else "it has no default of its own: give it one with =")
 
 
 def _arguments(fewest: int, most: int, kind: type) -> str:

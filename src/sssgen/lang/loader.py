@@ -33,26 +33,31 @@ def load_file(path: Path, shown: str, roots: Sequence[Path] = ()) -> Module:
     return load_text(read_text(path, shown), shown, (path.parent, *roots))
 
 
-def load_text(text: str, shown: str, roots: Sequence[Path] = (), _within: tuple[str, ...] = ()) -> Module:
+def load_text(text: str, shown: str, roots: Sequence[Path] = ()) -> Module:
     """The checked module of a source text; see `load_file`."""
+    return _load(text, shown, roots, ())[0]
+
+
+def _load(text: str, shown: str, roots: Sequence[Path], within: tuple[str, ...]) -> tuple[Module, str]:
+    """A text's module and the hash of all that it was made from."""
     _lines[shown] = text.split("\n")
-    included = Module()
+    included, parts = Module(), [front_end_stamp(), shown, text]
     for match in _INCLUDE.finditer(text):
         line = text.count("\n", 0, match.start()) + 1
         place = Span(shown, line, match.start(1) - text.rfind("\n", 0, match.start(1)), line, match.end(1) + 1)
-        included = merge(included, _include(match.group(1), place, text, roots, (*_within, shown)))
-    key = _key(text, shown, included)
-    module = _memory.get(key)
-    if module is None:
-        module = _read_cached(key)
-        if module is None:
-            from .check import check
-            from .parser import parse
+        module, key = _include(match.group(1), place, text, roots, (*within, shown))
+        included = merge(included, module)
+        parts.append(key)
+    key = _hash(parts)
+    known = _memory.get(key) or _read_cached(key)
+    if known is None:
+        from .check import check
+        from .parser import parse
 
-            module = check(parse(text, shown), text, included)
-            _write_cached(key, module)
-        _memory[key] = module
-    return module
+        known = check(parse(text, shown), text, included)
+        _write_cached(key, known)
+    _memory[key] = known
+    return known, key
 
 
 def comments_before(file: str, line: int) -> list[str]:
@@ -107,8 +112,10 @@ def _union(first: tuple, second: tuple) -> tuple:  # type: ignore[type-arg]  # a
     return first + tuple(declaration for declaration in second if declaration.span not in known)
 
 
-def _include(name: str, place: Span, text: str, roots: Sequence[Path], within: tuple[str, ...]) -> Module:
-    """The module of an included file."""
+def _include(
+    name: str, place: Span, text: str, roots: Sequence[Path], within: tuple[str, ...]
+) -> tuple[Module, str]:
+    """The module of an included file, and its hash."""
     line = text.splitlines()[place.line - 1]
     for root in roots:
         path = root / name
@@ -116,20 +123,15 @@ def _include(name: str, place: Span, text: str, roots: Sequence[Path], within: t
             if name in within:
                 message = f"'{name}' includes itself: {' → '.join((*within, name))}"
                 raise SssgenError([Diagnostic("error", message, place, "", line)])
-            return load_text(read_text(path, name), name, (path.parent, *roots), within)
+            return _load(read_text(path, name), name, (path.parent, *roots), within)
     hint = "it is looked for beside the file and in the technique library"
     raise SssgenError([Diagnostic("error", f"cannot find '{name}' to include", place, hint, line)])
 
 
-def _key(text: str, shown: str, included: Module) -> str:
+def _hash(parts: Sequence[str]) -> str:
     from hashlib import blake2b
 
-    digest = blake2b(f"{front_end_stamp()}\0{shown}\0{text}".encode(), digest_size=16)
-    for function in included.functions:
-        digest.update(repr((function.key, function.span)).encode())
-    for uniform in included.uniforms:
-        digest.update(repr((uniform.name, uniform.span)).encode())
-    return digest.hexdigest()
+    return blake2b("\0".join(parts).encode(), digest_size=16).hexdigest()
 
 
 def front_end_stamp() -> str:

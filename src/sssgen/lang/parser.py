@@ -368,11 +368,23 @@ def _describe(error: Any, text: str, file: str) -> tuple[int, Span, str, str]:
     for start in (position, position - 1):
         if text.startswith("/*", max(0, start)):
             return start, _place(text, start, file), "this comment is not closed", "add */ at its end"
-    wanted = sorted({_TOKEN_NAMES[name] for name in error.accepts or error.expected if name in _TOKEN_NAMES})
+    accepted = error.accepts or error.expected
+    end = _end_of_code(text, position)
+    if "SEMICOLON" in accepted and "LBRACE" not in accepted and "\n" in text[end:position]:
+        return position, _place(text, end, file), "a ';' is missing here", ""
+    wanted = sorted({_TOKEN_NAMES[name] for name in accepted if name in _TOKEN_NAMES})
     message = f"'{_shorten(str(token))}' is not expected here"
     if 0 < len(wanted) <= 4:
         message += f"; expected {' or '.join(wanted)}"
-    return position, Span(file, token.line, token.column, token.end_line, token.end_column), message, ""
+    hint = "an assignment is a statement of its own" if token.type in ("ASSIGN", "INCDEC") else ""
+    word = re.search(r"\b(do|switch|case|default)\b[^;{}]*$", text[max(0, end - 100) : end])
+    if word is not None:
+        hint = _MISSING[word[1]]
+    return position, Span(file, token.line, token.column, token.end_line, token.end_column), message, hint
+
+
+_MISSING = {"do": "there is no do-while: write while (…) { … }"}
+_MISSING |= dict.fromkeys(("switch", "case", "default"), "there is no switch: write if (…) … else if (…) …")
 
 
 def _describe_character(text: str, position: int) -> tuple[str, str]:
@@ -382,6 +394,15 @@ def _describe_character(text: str, position: int) -> tuple[str, str]:
     if text.startswith("#", position):
         return "there is no preprocessor", 'but for #include "file.sss"; write a const, a function or a uniform instead'
     return f"{text[position]!r} has no meaning here", ""
+
+
+def _end_of_code(text: str, position: int) -> int:
+    """Where the last token before a position ends: behind it there are but spaces and comments."""
+    end = 0
+    for match in re.finditer(r"//[^\n]*|/\*[\s\S]*?\*/|\s+|[^\s/]+|/", text[:position]):
+        if not match.group().isspace() and not match.group().startswith(("//", "/*")):
+            end = match.end()
+    return end
 
 
 def _shorten(text: str, limit: int = 40) -> str:

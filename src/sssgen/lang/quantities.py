@@ -8,7 +8,7 @@ named conversion. The idea of spaces as types is Gator's ("Geometry types for gr
 
 from __future__ import annotations
 
-from ..ir.types import FLOAT, VEC2, VEC3, Type
+from ..ir.types import FLOAT, VEC2, VEC3, Type, spell
 
 SPACES = ("world", "object", "tangent", "uv")
 
@@ -73,7 +73,7 @@ def conversion(source: str, target: str) -> str:
             return f"convert it with {space(target)}_from_{space(source)}(…) of common/frames.sss"
         if space(source) != space(target):
             return f"bring it there with a matrix or a function of your own, and name what comes out: {target}(…)"
-        return f"if it is meant as {words(target)}, write {target}(…) around its plain components"
+        return f"if it is meant as {words(target)}, write {target}({spell(QUANTITIES[target])}(…))"
     if not source:
         return f"if it is {words(target)}, say so: {target}(…)"
     return f"{words(source)} cannot become {words(target)}"

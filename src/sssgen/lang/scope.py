@@ -48,13 +48,22 @@ class Scopes:
         self.stack: list[dict[str, Variable]] = [{}]
         self.visible: dict[str, Variable] = {}
         """The variables of all scopes by their names in the IR."""
+        self.taken: list[list[str]] = [[]]
+        """The names in the IR of each scope's variables."""
 
     def push(self) -> None:
         self.stack.append({})
+        self.taken.append([])
 
-    def pop(self) -> None:
-        for variable in self.stack.pop().values():
-            del self.visible[variable.ir_name]
+    def pop(self, dissolve: bool = False) -> None:
+        """Leaves a scope. `dissolve`: it is none in the IR, so that its names stay taken in the one around it."""
+        self.stack.pop()
+        names = self.taken.pop()
+        if dissolve:
+            self.taken[-1] += names
+        else:
+            for name in names:
+                del self.visible[name]
 
     def find(self, name: str) -> Variable | None:
         for scope in reversed(self.stack):
@@ -73,6 +82,7 @@ class Scopes:
             ir_name, count = f"{name}_{count}", count + 1
         variable = Variable(ir_name, type, quantity, writable, faulty)
         self.stack[-1][name] = self.visible[ir_name] = variable
+        self.taken[-1].append(ir_name)
         return variable
 
     def names(self) -> list[str]:

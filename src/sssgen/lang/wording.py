@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from ..ir import nodes as ir
-from ..ir.signatures import candidates
-from ..ir.types import FLOAT, INT, Scalar, Struct, Type, Vector, kind_of, spell
+from ..ir.signatures import candidates, resolve
+from ..ir.types import FLOAT, INT, Scalar, Struct, Type, Vector, components, kind_of, spell, vector_of
 from .scope import Signature
 
 
 def a_type(type_: Type) -> str:
     """A type with its article."""
     name = spell(type_)
-    return f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
+    return f"{'an' if name[0] in 'aeio' else 'a'} {name}"
 
 
 def declared(name: str, signature: Signature) -> str:
@@ -51,7 +51,11 @@ def constructor_hint(type_: Type) -> str:
 
 
 def overload_hint(name: str, args: list[ir.Expr]) -> str:
-    """Which overloads a builtin has."""
-    if any(kind_of(arg.type) == "int" for arg in args) and any(kind_of(arg.type) == "float" for arg in args):
+    """Which overloads a builtin has, or that it is floats that it wants."""
+    as_floats = [vector_of("float", components(arg.type)) if kind_of(arg.type) == "int" else arg.type for arg in args]
+    if resolve(name, as_floats) is not None:
         return "there is no implicit conversion: write 1.0 for 1"
-    return "there are: " + ", ".join(candidates(name))
+    listed = ", ".join(candidates(name))
+    known = {"gen": "float, vec2, vec3 or vec4 alike", "vec": "vec2, vec3 or vec4 alike"}
+    families = [f"{family}F is {words}" for family, words in known.items() if f"{family}F" in listed]
+    return "; ".join([f"there are: {listed}", *families])

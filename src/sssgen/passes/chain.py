@@ -117,6 +117,9 @@ def assemble(module: Module, stages: Sequence[ChainStage], lit: bool, opaque: bo
     crossing = [name for name in (*light.crossing, *shade.crossing) if name not in SURFACE_FIELDS]
     own = [name for name in SURFACE_FIELDS if name in surface.values and not (opaque and name == "alpha")]
     fields = own + list(dict.fromkeys(crossing))
+    if not fields:  # no shading language has empty structs
+        surface.store("albedo", constant(*DEFAULTS["albedo"], surface.span), surface.statements, False, surface.span)
+        fields = ["albedo"]
     struct = Struct("Surface", tuple(Field(name, surface.values[name].type) for name in fields))
     entries: dict[str, Entry] = {"surface": surface.finish_surface(struct)}
     if late_stages:

@@ -262,22 +262,20 @@ class _Hoister:
     # Expressions
 
     def expression(self, expr: Expr) -> Expr:
-        """The expression with what is misplaced in it put right, the outermost first."""
-        if id(expr) in self.flow.misplaced:
-            assert self.region is not None and isinstance(expr, Call | Intrinsic)
-            known = self.before(expr)
-            if known is not None:
-                return self.hoisted(known, _base_name(expr), expr.span)
+        """The expression with what is misplaced in it put right, from the inside out."""
         old = operands(expr)
         new = tuple([self.expression(operand) for operand in old])
-        if any(one is not other for one, other in zip(old, new, strict=True)):
-            changed = with_operands(expr, new)
-        else:
-            changed = expr
+        same = all(one is other for one, other in zip(old, new, strict=True))
+        changed = expr if same else with_operands(expr, new)
+        if id(expr) in self.flow.misplaced:
+            assert isinstance(changed, Call | Intrinsic)
+            known = self.before(changed)
+            if known is not None:
+                return self.hoisted(known, _base_name(changed), expr.span)
+            if isinstance(changed, Intrinsic):
+                return self.explicit(changed)
         if self.region is not None and isinstance(expr, Call):
             self.region.change(self.written(expr))
-        if id(expr) in self.flow.misplaced and isinstance(changed, Intrinsic):
-            return self.explicit(changed, expr)
         return changed
 
     def before(self, expr: Expr) -> Expr | None:
@@ -317,13 +315,13 @@ class _Hoister:
 
     # The level made explicit
 
-    def explicit(self, expr: Intrinsic, source: Expr) -> Expr:
+    def explicit(self, expr: Intrinsic) -> Expr:
         """A builtin that cannot be moved, without the comparison of neighbours."""
         if not expr.name.startswith("texture"):
             self.note(f"{expr.name} is taken as 0 here", expr.span)
             return _zero(expr.type, expr.span)
         map_, at, *bias = expr.args
-        coordinates = self.start(operands(source)[1])
+        coordinates = self.start(at)
         if coordinates is None or not any(isinstance(part, Local) for part in subexpressions(coordinates)):
             self.note(f"{_words(map_)} is read at level 0 here", expr.span)
             level = bias[0] if bias else Literal(FLOAT, 0.0, expr.span)

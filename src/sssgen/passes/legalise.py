@@ -372,8 +372,10 @@ class _Legaliser:
             return ir.Binary(BOOL, "!=", left, right, span)
         if op in ("==", "!=") and binary.type == BOOL and not isinstance(left.type, Scalar):
             return self.equality(binary) if not self.can("whole_equality") else binary
-        if op in ("<<", ">>") and not self.can("signed_shifts"):
-            return binary._replace(right=_amount(right, components(left.type)))
+        if op in ("<<", ">>", "&", "|", "^") and not self.can("mixed_bits"):
+            size = max(components(left.type), components(right.type))
+            right = _amount(right, size) if op in ("<<", ">>") else _widened(right, size)
+            return binary._replace(left=_widened(left, size), right=right)
         if not self.can("matrix_scalar_arithmetic"):
             if isinstance(left.type, Matrix) and isinstance(right.type, Scalar) and op == "/":
                 inverse = ir.Binary(FLOAT, "/", ir.Literal(FLOAT, 1.0, span), right, span)
@@ -458,14 +460,18 @@ class _Legaliser:
 
 def _amount(amount: ir.Expr, size: int) -> ir.Expr:
     """By how much is shifted, as a uint or a vector of them."""
-    wanted = vector_of("uint", size)
-    if amount.type == wanted:
-        return amount
     if isinstance(amount, ir.Literal):
         amount = ir.Literal(UINT, amount.value, amount.span)
     elif kind_of(amount.type) == "int":
         amount = ir.Construct(vector_of("uint", components(amount.type)), (amount,), amount.span)
-    return amount if amount.type == wanted else ir.Construct(wanted, (amount,), amount.span)
+    return _widened(amount, size)
+
+
+def _widened(value: ir.Expr, size: int) -> ir.Expr:
+    """A scalar as a vector of this size, if that is more than one."""
+    if components(value.type) == size:
+        return value
+    return ir.Construct(Vector(kind_of(value.type), size), (value,), value.span)
 
 
 def _is_costly(expr: ir.Expr) -> bool:

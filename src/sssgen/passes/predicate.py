@@ -285,8 +285,9 @@ class _Converter:
         for inner in statements((stmt,)):
             if isinstance(inner, Return):
                 depths.append(0)
-            elif isinstance(inner, Break | Continue):
-                depths.append(self.loops[-1] if self.loops else self.depth)
+            elif isinstance(inner, Break | Continue) and self.loops:
+                target = self.loops[-1]  # or a loop inside; what goes on after a continue must not break
+                depths.append(target - 1 if self.frames[target].active and isinstance(inner, Break) else target)
             elif isinstance(inner, Discard) or (
                 isinstance(inner, For | While) and self.facts.loops[id(inner)].diverges
             ):

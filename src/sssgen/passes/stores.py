@@ -46,7 +46,7 @@ def base_name(place: ir.Expr) -> str:
 
 def parts_of(place: ir.Expr) -> list[ir.Expr]:
     """A place and what it is a part of, up to an array's element or a whole variable."""
-    parts = []
+    parts: list[ir.Expr] = []
     while isinstance(place, ir.Swizzle) or (isinstance(place, ir.Index) and _in_registers(place)):
         parts.append(place)
         place = place.value

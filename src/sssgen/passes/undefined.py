@@ -1,17 +1,21 @@
-"""Finds constants that are no number: 1.0 / 0.0, sqrt(-1.0), normalize(vec3(0.0)).
+"""Finds constants that are no number: 1.0 / 0.0, sqrt(-1.0), normalize(vec3(0.0)), 3e38 * 10.0, 1 << 32.
 
-Why: WGSL refuses a module that holds one, and every other target quietly gives inf or NaN; so they are an error here,
-with the place in the source. Place: after `fold`, which leaves exactly these constant expressions as they are written.
+Why: WGSL refuses a module that holds one, also where it comes about through module constants, and every other target
+quietly gives inf, NaN or just anything; so they are an error here, with the place in the source. Place: after `fold`,
+which leaves exactly these constant expressions as they are written.
 """
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import NamedTuple
 
-from ..ir.nodes import Binary, Expr, Intrinsic, Module, Span
-from ..ir.types import kind_of
-from ..ir.walk import all_expressions
-from .arithmetic import Numbers, outside
+from ..ir.nodes import Binary, Construct, Expr, Global, Intrinsic, Literal, Local, Module, Span, Swizzle, Unary
+from ..ir.rules import FLOAT_MAX
+from ..ir.types import Scalar, Vector, kind_of
+from ..ir.walk import expressions, operands, statements
+from . import arithmetic
+from .arithmetic import Numbers
 from .fold import constant_numbers
 
 
@@ -24,29 +28,94 @@ class Undefined(NamedTuple):
 
 def undefined_constants(module: Module) -> list[Undefined]:
     """The constant expressions of a folded module that have no finite value, each once."""
-    found: dict[Span, Undefined] = {}
+    checker = _Checker()
+    for constant in module.constants:
+        checker.constants[constant.name] = checker.numbers(constant.value)
     for function in module.functions:
-        for expr in all_expressions(function.body or ()):
-            message = _wrong(expr)
-            if message:
-                found.setdefault(expr.span, Undefined(message, expr.span))
-    return list(found.values())
+        for stmt in statements(function.body or ()):
+            for expr in expressions(stmt):
+                checker.numbers(expr)
+    return list(checker.found.values())
 
 
-def _wrong(expr: Expr) -> str:
-    if type(expr) is Binary and expr.op in "/%":
-        divisor = constant_numbers(expr.right)
-        if divisor is not None and 0 in divisor and kind_of(expr.right.type) in ("int", "uint"):
-            return f"'{expr.op}' by the constant 0 is undefined"
-        if divisor is not None and 0 in divisor and constant_numbers(expr.left) is not None:
-            return "a constant divided by 0 is not a number"
-    if type(expr) is Intrinsic:
-        args: list[Numbers] = []
-        for arg in expr.args:
-            numbers = constant_numbers(arg)
-            if numbers is None:
-                return ""
-            args.append(numbers)
-        if args and outside(expr.name, args):
-            return f"{expr.name} of these constants is not a finite number"
-    return ""
+class _Checker:
+    """Computes what is constant in expressions, and notes what cannot be."""
+
+    def __init__(self) -> None:
+        self.constants: dict[str, Numbers | None] = {}
+        self.found: dict[Span, Undefined] = {}
+
+    def numbers(self, expr: Expr) -> Numbers | None:
+        """The components of a constant scalar or vector; None for anything else."""
+        kind = type(expr)
+        if kind is Literal:
+            return constant_numbers(expr)
+        if kind is Local:
+            return None
+        if isinstance(expr, Global):
+            return self.constants.get(expr.name)
+        parts = [self.numbers(operand) for operand in operands(expr)]
+        if isinstance(expr, Binary):
+            return self.binary(expr, parts[0], parts[1])
+        known = [part for part in parts if part is not None]
+        if len(known) < len(parts):
+            return None
+        if isinstance(expr, Intrinsic):
+            return self.builtin(expr, known)
+        if isinstance(expr, Construct):
+            return _constructed(expr, known)
+        if isinstance(expr, Unary):
+            return arithmetic.unary(expr.op, known[0], kind_of(expr.type))
+        if isinstance(expr, Swizzle):
+            return tuple([known[0]["xyzw".index(letter)] for letter in expr.components])
+        return None
+
+    def binary(self, expr: Binary, left: Numbers | None, right: Numbers | None) -> Numbers | None:
+        op, kind = expr.op, kind_of(expr.right.type)
+        if right is not None and op in ("/", "%") and kind != "float" and 0 in right:
+            return self.wrong(f"'{op}' by the constant 0 is undefined", expr)
+        if right is not None and op in ("<<", ">>") and not all(0 <= count < 32 for count in right):
+            return self.wrong("a shift by as many bits as there are, or more, is undefined", expr)
+        if left is None or right is None:
+            return None
+        result = arithmetic.binary(op, left, right, kind)
+        if result is not None:
+            return result
+        if op == "/" and kind == "float" and 0.0 in right:
+            return self.wrong("a constant divided by 0 is not a number", expr)
+        if kind == "float" and not all(map(_is_float, _exactly(op, left, right))):
+            return self.wrong("this constant is too large for a float", expr)
+        if op == "/" and kind == "int":
+            return self.wrong("this constant is too large for an int", expr)
+        return None
+
+    def builtin(self, expr: Intrinsic, args: list[Numbers]) -> Numbers | None:
+        if args and arithmetic.outside(expr.name, args):
+            return self.wrong(f"{expr.name} of these constants is not a finite number", expr)
+        return arithmetic.builtin(expr.name, args, [arg.type for arg in expr.args], expr.type)
+
+    def wrong(self, message: str, expr: Expr) -> Numbers | None:
+        self.found.setdefault(expr.span, Undefined(message, expr.span))
+        return None
+
+
+def _constructed(expr: Construct, args: list[Numbers]) -> Numbers | None:
+    if not isinstance(expr.type, Scalar | Vector):
+        return None
+    flat = [arithmetic.converted(value, expr.type.kind) for arg in args for value in arg]
+    values = tuple([value for value in flat if value is not None])
+    if len(values) < len(flat):
+        return None
+    size = expr.type.size if isinstance(expr.type, Vector) else 1
+    return values * size if len(values) == 1 else values[:size]
+
+
+def _exactly(op: str, left: Numbers, right: Numbers) -> list[float]:
+    """A sum, difference or product of floats in float64."""
+    size = max(len(left), len(right))
+    pairs = zip(left * (size // len(left)), right * (size // len(right)), strict=True)
+    return [x + y if op == "+" else x - y if op == "-" else x * y if op == "*" else x / y for x, y in pairs]
+
+
+def _is_float(value: float) -> bool:
+    return isfinite(value) and abs(value) <= FLOAT_MAX

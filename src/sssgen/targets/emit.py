@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from .. import cache
 from ..data import folder
 from ..diagnostics import failure
-from ..ir.nodes import Function, Module, Span, Uniform
+from ..ir.nodes import Function, Local, Module, Param, Span, Uniform
 from ..ir.types import Sampler, Struct, spell
 from .descriptor import Target
 from .layout import Member, place
@@ -171,20 +171,20 @@ def _entry(target: Target, printer: Printer, kind: str, function: Function, inpu
     given = {**target.inputs, **(target.light_inputs if kind in ("translucency", "lighting") else {})}
     leading = ["surface"] if len(function.params) > 0 and isinstance(function.params[0].type, Struct) else []
     names = [*leading, *inputs]
+    uniforms = {uniform.span: uniform.name for uniform in printer.module.uniforms}
     params, args = [], []
     for index, param in enumerate(function.params):
         name = names[index] if index < len(names) else ""
-        text = given.get(name, name) if name else _passed(printer, param)
+        text = given.get(name, name) if name else _passed(printer, param, uniforms[param.span])
         params.append({"name": param.name, "type": printer.type(param.type), "input": name})
         args.append(text)
     call = f"{function.name}({', '.join(args)})"
     return {"name": function.name, "params": params, "result": printer.type(function.result), "call": call}
 
 
-def _passed(printer: Printer, param: Any) -> str:
-    from ..ir.nodes import Local
-
-    return printer.argument(Local(param.type, param.name, param.span), param)
+def _passed(printer: Printer, param: Param, uniform: str) -> str:
+    """A uniform passed on as an argument; the shell knows it by the uniform's name, whatever the parameter's is."""
+    return printer.argument(Local(param.type, uniform, param.span), param)
 
 
 def _hint(uniform: Uniform, *names: str) -> tuple[str, tuple[Any, ...]]:

@@ -15,6 +15,9 @@ from ..ir.types import Array, Matrix, Scalar, Struct, Vector
 from .layout import Member
 from .printer import POSTFIX, PRIMARY, UNARY, Line, Printer, documented
 
+LONGEST_UNROLLED = 8
+"""Loops of more rounds than this stay loops."""
+
 
 class HlslPrinter(Printer):
     """One printer for all dialects; the descriptor says how textures and uniforms are written."""
@@ -45,6 +48,26 @@ class HlslPrinter(Printer):
         engine_matrix = self.engine_matrices and isinstance(value.type, Matrix)
         is_uniform = engine_matrix and any(uniform.name == value.name for uniform in self.module.uniforms)
         return f"transpose({value.name})" if is_uniform else value.name
+
+    def statement(self, stmt: ir.Stmt, indent: int) -> list[Line]:
+        """A statement; a loop with how it is to be compiled, as FXC would try to unroll a march of 64 steps."""
+        lines = super().statement(stmt, indent)
+        if isinstance(stmt, ir.For | ir.While):
+            lines.insert(0, Line(f"{'    ' * indent}{'[unroll]' if self.is_short(stmt) else '[loop]'}", stmt.span))
+        return lines
+
+    def is_short(self, loop: ir.For | ir.While) -> bool:
+        """Whether a loop counts up to a small constant."""
+        if not isinstance(loop, ir.For) or not isinstance(loop.init, ir.Declare):
+            return False
+        bound = loop.condition.right if isinstance(loop.condition, ir.Binary) else None
+        if isinstance(bound, ir.Global):
+            name = bound.name
+            bound = next((constant.value for constant in self.module.constants if constant.name == name), None)
+        start = loop.init.value
+        if not isinstance(bound, ir.Literal) or not isinstance(start, ir.Literal):
+            return False
+        return abs(bound.value - start.value) <= LONGEST_UNROLLED
 
     def print_uniforms(self, members: list[Member]) -> list[Line]:
         """The constant buffer; where a shell has one of its own (Unity), its members alone."""

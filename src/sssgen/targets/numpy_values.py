@@ -170,7 +170,7 @@ def resize(size: int, matrix: Value) -> Value:
 
 
 def array(*elements: Value) -> Value:
-    """A fixed array; elements that are the same in all lanes are widened to the others. Of structs, a struct of arrays."""
+    """A fixed array; elements that are the same in all lanes are widened. Of structs it is a struct of arrays."""
     if isinstance(elements[0], Record):
         return Record(**{name: array(*[getattr(element, name) for element in elements]) for name in vars(elements[0])})
     return np.stack(np.broadcast_arrays(*[np.atleast_1d(element) for element in arrays(elements)]))

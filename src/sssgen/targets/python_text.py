@@ -9,12 +9,12 @@ from ..ir.types import Array, Matrix, Sampler, Scalar, Type, components, kind_of
 from .printer import WIDTH, Line
 
 _TEXELS = {
-    "default_white": "1.0",
-    "default_black": "0.0",
-    "default_gray": "0.5",
-    "default_bump": "(0.5, 0.5, 1.0, 1.0)",
+    "default_white": "[1.0, 1.0, 1.0, 1.0]",
+    "default_black": "[0.0, 0.0, 0.0, 1.0]",
+    "default_gray": "[0.5, 0.5, 0.5, 1.0]",
+    "default_bump": "[0.5, 0.5, 1.0, 1.0]",
 }
-_SHAPES = {"2D": "1, 1, 4", "3D": "1, 1, 1, 4", "Cube": "6, 1, 1, 4"}
+_SHAPES = {"2D": "[[{}]]", "3D": "[[[{}]]]", "Cube": '[[[{}]]] * 6, dim="Cube"'}
 _BREAK = re.compile(r"[(\[]|[)\]]|(?<=,) | (?=[-+*/&|<>]+ )")
 
 
@@ -31,13 +31,8 @@ def wrap(text: str, span: Span) -> list[Line]:
                 places.append((depth, -match.start()))
         if not places:
             break
-        place = -min(places)[1]
-        open_ += (
-            text.count("(", 0, place)
-            + text.count("[", 0, place)
-            - text.count(")", 0, place)
-            - text.count("]", 0, place)
-        )
+        open_, place = min(places)
+        place = -place
         lines.append(Line(text[:place], span))
         text = indent + text[place:].lstrip()
     return [*lines, Line(text, span)]
@@ -65,6 +60,5 @@ def texture_text(texture: Uniform) -> str:
     """A texture of one texel of the default that its hints name."""
     assert isinstance(texture.type, Sampler)
     hints = {name for name, _ in texture.hints}
-    texel = next((text for hint, text in _TEXELS.items() if hint in hints), "1.0")
-    dim = ', dim="Cube"' if texture.type.dim == "Cube" else ""
-    return f"Texture(np.full(({_SHAPES[texture.type.dim]}), {texel}){dim})"
+    texel = next((text for hint, text in _TEXELS.items() if hint in hints), _TEXELS["default_white"])
+    return f"Texture({_SHAPES[texture.type.dim].format(texel)})"
