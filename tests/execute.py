@@ -139,9 +139,11 @@ class Backend:
         """The results of the calls, all of which have the same number of lanes; 0 where a call discards."""
         lanes = max(np.shape(arg)[-1] for call in calls for arg in call.args if not isinstance(arg, str))
         width = -(-lanes // HEIGHT)
-        program = self.program(text, calls, textures or {}, width)
+        used = {arg for call in calls for arg in call.args if isinstance(arg, str)}
+        bound = {name: texture for name, texture in (textures or {}).items() if name in used}
+        program = self.program(text, calls, bound, width)
         data = np.concatenate(program.rows).reshape(-1, width, 4)
-        image = self.draw(program.text, data, textures or {}, (width, program.slots * HEIGHT))
+        image = self.draw(program.text, data, bound, (width, program.slots * HEIGHT))
         words = image.reshape(program.slots, HEIGHT * width, 4)
         return [
             _result(call.result, words[first : first + count], lanes)

@@ -225,8 +225,7 @@ def run(gpu: Backend, chosen: list[Overload]) -> list[np.ndarray[Any, Any]]:
         lines.append(f"{spell(overload.result)} case_{number}({params}) {{ return {value}; }}")
         calls.append(Call(f"case_{number}", overload.params, overload.result, overload.args))
     text = code(load_text("\n".join(lines), "cases"), gpu.target.name)
-    used = {arg for overload in chosen for arg in overload.args if isinstance(arg, str)}
-    return gpu.run(text, calls, {name: textures()[name] for name in sorted(used)})
+    return gpu.run(text, calls, textures())
 
 
 def oracle(overload: Overload) -> np.ndarray[Any, Any]:

@@ -177,7 +177,9 @@ def test_fixed_uniforms_become_literals_and_vanish() -> None:
         """
         uniform float depth = 1.0; uniform int mode = 0; uniform bool on = true; uniform vec3 tint = vec3(1.0);
         uniform mat2 turn; uniform float weights[2]; uniform float kept = 1.0;
-        float f(vec2 p, int i) { return turn[0].x * p.x * depth * tint.y * weights[i] * kept + (on ? float(mode) : 0.0); }
+        float f(vec2 p, int i) {
+            return turn[0].x * p.x * depth * tint.y * weights[i] * kept + (on ? float(mode) : 0.0);
+        }
         """,
         """
         uniform float kept = 1.0;
@@ -200,7 +202,8 @@ def test_a_fixed_parameter_decides_branches() -> None:
         uniform int mode = 0; uniform sampler2D map;
         float f(float x) {
             float y = x;
-            if (mode == 1) { float z = y * 2.0; y = z; } else if (mode == 2) { y = 0.0; } else { y = texture(map, vec2(y)).r; }
+            if (mode == 1) { float z = y * 2.0; y = z; }
+            else if (mode == 2) { y = 0.0; } else { y = texture(map, vec2(y)).r; }
             return y;
         }
         """,
@@ -286,7 +289,8 @@ def test_module_constants_keep_their_names_but_decide_conditions() -> None:
 
 def test_assignments_that_change_nothing_go() -> None:
     becomes(
-        "float f(float x) { vec3 y = vec3(x); y *= 1.0; y *= vec3(1.0); x += 0.0; x /= 1.0; y.x -= 0.0; x *= 0.0; return y.x * x; }",
+        "float f(float x) { vec3 y = vec3(x); y *= 1.0; y *= vec3(1.0); x += 0.0; x /= 1.0; y.x -= 0.0; x *= 0.0; "
+        "return y.x * x; }",
         "float f(float x) { vec3 y = vec3(x); y *= 1.0; x *= 0.0; return y.x * x; }",
     )
 

@@ -266,7 +266,10 @@ def test_what_cannot_be_known_before_gets_level_0() -> None:
         float g(float x, out float y) { y = x; return x; }
         vec4 f(vec2 uv, float x) {
             float y; vec4 c = vec4(0.0);
-            if (g(x, y) > 0.0) { float z; float w = g(x, z); c = texture(map, vec2(z)) + texture(other, vec2(y), 2.0) + dFdx(w); }
+            if (g(x, y) > 0.0) {
+                float z; float w = g(x, z);
+                c = texture(map, vec2(z)) + texture(other, vec2(y), 2.0) + dFdx(w);
+            }
             return c;
         }
         """,
@@ -340,7 +343,9 @@ def test_a_variable_varies_from_where_it_is_set() -> None:
         vec4 f(vec2 uv, float x) {
             float a = depth; vec4 c = vec4(0.0);
             if (a > 0.0) { c += texture(map, uv); }
-            for (int i = 0; i < 4; i++) { vec4 other_sample = texture(other, uv); if (a > 1.0) { c += other_sample; } a = c.x; }
+            for (int i = 0; i < 4; i++) {
+                vec4 other_sample = texture(other, uv); if (a > 1.0) { c += other_sample; } a = c.x;
+            }
             a = depth;
             if (a > 2.0) { c += texture(map, uv); }
             if (x > 0.0) { a = 3.0; }
@@ -353,15 +358,17 @@ def test_a_variable_varies_from_where_it_is_set() -> None:
 
 
 def test_functions_that_entries_do_not_reach_are_left_alone() -> None:
-    source = "vec4 f(vec2 uv) { return texture(map, uv); } vec4 g(vec2 uv) { if (uv.x > 0.0) { return texture(map, uv); } return vec4(0.0); }"
-    stays(source)
+    stays(
+        """
+        vec4 f(vec2 uv) { return texture(map, uv); }
+        vec4 g(vec2 uv) { if (uv.x > 0.0) { return texture(map, uv); } return vec4(0.0); }
+        """
+    )
 
 
 @given(st.integers(0, 1 << 32), st.booleans())
 @settings(max_examples=60)
-def test_tint_finds_all_flow_uniform(
-    compiler: Callable[[str], Compiler], seed: int, discards: bool
-) -> None:
+def test_tint_finds_all_flow_uniform(compiler: Callable[[str], Compiler], seed: int, discards: bool) -> None:
     module = module_for(seed, discards)
     try:
         files = transpile(module, "wgsl", "random").files

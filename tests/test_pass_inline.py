@@ -42,7 +42,8 @@ def becomes(before: str, after: str, insist: bool = False, functions: str = FUNC
 )
 def test_arguments(before: str, after: str) -> None:
     functions = FUNCTIONS.replace("next(x); }", "(x + k); }")
-    becomes(f"float f(float a, vec2 uv) {{ return {before}; }}", f"float f(float a, vec2 uv) {{ return {after}; }}", functions=functions)
+    head = "float f(float a, vec2 uv) { return "
+    becomes(f"{head}{before}; }}", f"{head}{after}; }}", functions=functions)
 
 
 def test_arguments_are_held_where_that_is_insisted_on() -> None:

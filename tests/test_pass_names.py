@@ -85,9 +85,12 @@ def test_overloads_are_told_apart_by_as_few_types_as_it_takes() -> None:
     becomes(
         """
         float box(vec3 p, float r) { return p.x - r; } float box(vec2 p, float r) { return p.x - r; }
-        float ball(float x, vec2 y) { return x; } float ball(float x, float y) { return y; } float ball(float x) { return x; }
+        float ball(float x, vec2 y) { return x; } float ball(float x, float y) { return y; }
+        float ball(float x) { return x; }
         float only(float x) { return x; }
-        float f(float x) { return box(vec3(x), x) + box(vec2(x), x) + ball(x, vec2(x)) + ball(x, x) + ball(x) + only(x); }
+        float f(float x) {
+            return box(vec3(x), x) + box(vec2(x), x) + ball(x, vec2(x)) + ball(x, x) + ball(x) + only(x);
+        }
         """,
         """
         float box_vec3(vec3 p, float r) { return p.x - r; } float box_vec2(vec2 p, float r) { return p.x - r; }
@@ -109,8 +112,10 @@ def test_overloads_are_told_apart_by_as_few_types_as_it_takes() -> None:
 
 def test_overloads_stay_together_where_they_may() -> None:
     becomes(
-        "float lerp(vec3 p) { return p.x; } float lerp(vec2 p) { return p.x; } float f(vec3 p) { return lerp(p) + lerp(p.xy); }",
-        "float lerp_(vec3 p) { return p.x; } float lerp_(vec2 p) { return p.x; } float f(vec3 p) { return lerp_(p) + lerp_(p.xy); }",
+        "float lerp(vec3 p) { return p.x; } float lerp(vec2 p) { return p.x; } "
+        "float f(vec3 p) { return lerp(p) + lerp(p.xy); }",
+        "float lerp_(vec3 p) { return p.x; } float lerp_(vec2 p) { return p.x; } "
+        "float f(vec3 p) { return lerp_(p) + lerp_(p.xy); }",
         {"lerp": "lerp_"},
         reserved=("lerp",),
     )

@@ -37,7 +37,9 @@ def test_textures_may_stay_global() -> None:
 
 
 def test_quantities_and_places_come_along() -> None:
-    source = "uniform float depth : unit(\"m\") = 1.0; uniform thickness d = thickness(1.0);\nfloat f(float x) { return x * depth * d; }"
+    source = (
+        "uniform float depth = 1.0; uniform thickness d = thickness(1.0); float f(float x) { return x * depth * d; }"
+    )
     module = module_of(source)
     _, first, second = uniforms_to_parameters(module).functions[0].params
     assert (first.quantity, second.quantity, second.span) == ("", "thickness", module.uniforms[1].span)
@@ -50,7 +52,9 @@ def test_variables_make_way_for_uniforms() -> None:
                 """
                 uniform float depth = 1.0;
                 float g(float x) { return x * depth; }
-                float f(float depth, float depth_2) { float y = g(depth); { float depth_3 = y; y += depth_3; } return y * depth_2; }
+                float f(float depth, float depth_2) {
+                    float y = g(depth); { float depth_3 = y; y += depth_3; } return y * depth_2;
+                }
                 """
             )
         ),

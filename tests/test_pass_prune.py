@@ -54,7 +54,8 @@ def test_a_chain_of_unused_variables_goes_with_what_only_it_used() -> None:
 
 def test_a_variable_that_only_feeds_itself_goes() -> None:
     becomes(
-        "float f(float x) { float n = 0.0; for (int i = 0; i < 4; i++) { n = n + x; if (n > 2.0) { break; } } return x; }",
+        "float f(float x) { float n = 0.0; for (int i = 0; i < 4; i++) { n = n + x; if (n > 2.0) { break; } } "
+        "return x; }",
         "float f(float x) { return x; }",
     )
 

@@ -12,8 +12,7 @@ What is public: `compile`, `load_material`, `load_technique`, `targets`, `Compil
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
+from .ir.typed import TYPE_CHECKING, Any
 from .version import VERSION as __version__
 
 if TYPE_CHECKING:

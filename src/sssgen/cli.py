@@ -13,9 +13,9 @@ import os
 import re
 import sys
 from collections.abc import Sequence
-from typing import Any, NoReturn
 
 from .diagnostics import SssgenError, did_you_mean, failure
+from .ir.typed import Any, NoReturn
 
 OK, CHECK_FAILED, WRONG_INPUT, INTERNAL_ERROR, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 70, 130, 141
 

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
 
 from . import library
 from .diagnostics import Diagnostic, SssgenError
 from .ir.nodes import Module
+from .ir.typed import Any, NamedTuple
 from .ir.types import Struct
 from .lang.loader import comments_before, source_line
 from .lang.polyfills import polyfill

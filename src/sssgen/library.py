@@ -5,10 +5,10 @@ from __future__ import annotations
 import functools
 from collections.abc import Iterator
 from pathlib import Path
-from typing import NamedTuple
 
 from .diagnostics import SssgenError, did_you_mean, failure
 from .ir.nodes import Function, Module, Uniform
+from .ir.typed import NamedTuple
 from .lang.loader import load_file
 
 TECHNIQUES = Path(__file__).parent / "techniques"

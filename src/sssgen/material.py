@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import NamedTuple
 
 from .data import folder
 from .diagnostics import did_you_mean, failure
 from .ir.nodes import Function, Module, Span
+from .ir.typed import NamedTuple
 from .lang.loader import read_text
 from .library import Technique
 

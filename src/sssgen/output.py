@@ -7,10 +7,10 @@ import os
 import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path, PurePosixPath, PureWindowsPath
-from typing import NamedTuple
 
 from .diagnostics import Diagnostic, SssgenError, failure
 from .ir.nodes import NOWHERE
+from .ir.typed import NamedTuple
 
 
 class Written(NamedTuple):

@@ -9,10 +9,10 @@ import functools
 import re
 from bisect import bisect_right
 from collections.abc import Iterator
-from typing import Any, NamedTuple
 
 from .diagnostics import Reporter
 from .ir.nodes import Span
+from .ir.typed import Any, NamedTuple
 
 MAX_CHARACTERS = 1 << 18
 """The longest file that is read. A material of a hundred stages stays below 20,000."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ..cli import OK, print_json
 from ..diagnostics import Diagnostic, SssgenError, did_you_mean, failure
+from ..ir.typed import TYPE_CHECKING
 from ..material import Material, load_material
 from ..output import write_files
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from argparse import Namespace
-from typing import Any
 
 from .. import library
 from ..cli import OK, print_json
 from ..diagnostics import did_you_mean, failure
+from ..ir.typed import Any
 
 
 def run(arguments: Namespace) -> int:

@@ -36,7 +36,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import NamedTuple
+
+from .typed import NamedTuple
 
 
 class Builtin(NamedTuple):

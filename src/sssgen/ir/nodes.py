@@ -8,8 +8,7 @@ for tuples looks at the fields and not at the class.
 
 from __future__ import annotations
 
-from typing import NamedTuple, TypeAlias
-
+from .typed import NamedTuple, TypeAlias
 from .types import Type
 
 

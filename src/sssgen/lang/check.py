@@ -210,7 +210,7 @@ class _FileChecker(ExpressionChecker):
             return made
         self.result, self.loops = (result, quantity), 0
         errors = len(self.reporter.diagnostics)
-        body = self.block(function.body, new_scope=False)
+        body = self.statements(function.body)
         if result != VOID and not returns(body) and len(self.reporter.diagnostics) == errors:
             message = f"{name.text} can end without returning {a_type(result)}"
             self.reporter.error(name.span, message, "add a return at its end")
@@ -236,20 +236,20 @@ class _FileChecker(ExpressionChecker):
 
     # Statements
 
-    def block(self, compound: s.Compound, new_scope: bool = True) -> ir.Block:
-        if new_scope:
-            self.scopes.push()
-        result: list[ir.Stmt] = []
-        for statement in compound.statements:
-            result.extend(self.statement(statement))
-        if new_scope:
-            self.scopes.pop()
-        return tuple(result)
+    def block(self, compound: s.Compound, dissolve: bool = False) -> ir.Block:
+        """Checks a block in a scope of its own; `dissolve`: its statements become those of the block around it."""
+        self.scopes.push()
+        result = self.statements(compound)
+        self.scopes.pop(dissolve)
+        return result
+
+    def statements(self, compound: s.Compound) -> ir.Block:
+        return tuple([stmt for statement in compound.statements for stmt in self.statement(statement)])
 
     def statement(self, statement: s.Statement) -> list[ir.Stmt]:
         """Checks one statement; a faulty one gives nothing and the next goes on."""
         if isinstance(statement, s.Compound):
-            return list(self.block(statement))
+            return list(self.block(statement, dissolve=True))
         try:
             method = getattr(self, f"_{type(statement).__name__.lower()}")
             result: list[ir.Stmt] = method(statement)

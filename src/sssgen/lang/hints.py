@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from ..diagnostics import did_you_mean
 from ..ir.nodes import Span
 from ..ir.rules import FLOAT_MAX
-from ..ir.types import Sampler, Type, components, kind_of
+from ..ir.typed import TYPE_CHECKING
+from ..ir.types import VEC3, VEC4, Sampler, Type, kind_of
 from . import quantities as q
 from . import syntax as s
 
@@ -50,8 +49,8 @@ def check_hints(
             raise checker.fail(span, f"{name} takes {_arguments(fewest, most, kind)}")
         if for_texture is not None and for_texture != isinstance(type_, Sampler):
             raise checker.fail(span, f"{name} is for {'textures' if for_texture else 'values'} only")
-        if name == "source_color" and (kind_of(type_) != "float" or components(type_) not in (3, 4)):
-            raise checker.fail(span, "source_color is for vec3 and vec4 only")
+        if name == "source_color" and not isinstance(type_, Sampler) and type_ not in (VEC3, VEC4):
+            raise checker.fail(span, "source_color is for vec3, vec4 and textures only")
         if name == "hint_range":
             _check_range(checker, span, hint.args, type_, default, uniform.value is not None)
         if name == "holds":

@@ -6,11 +6,11 @@ A syntax error does not hide the next: the faulty declaration is blanked out and
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Any
 
 from ..diagnostics import Reporter
 from ..ir.nodes import Span
 from ..ir.operators import PRECEDENCE
+from ..ir.typed import TYPE_CHECKING, Any
 from . import syntax as s
 from .comments import attach_docs
 

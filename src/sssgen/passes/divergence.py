@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from functools import cache
-from typing import Any, NamedTuple
 
 from ..ir.nodes import (
     Assign,
@@ -36,6 +35,7 @@ from ..ir.nodes import (
     Stmt,
     While,
 )
+from ..ir.typed import Any, NamedTuple
 from ..ir.walk import expressions, operands, root, statements
 
 
@@ -302,9 +302,7 @@ class Divergence:
         if summary.compares:
             self.compare(expr)
             params = self.functions[expr.function].params
-            site = Site(
-                self.flow, frozenset(param.name for param, arg in zip(params, args, strict=True) if arg)
-            )
+            site = Site(self.flow, frozenset(param.name for param, arg in zip(params, args, strict=True) if arg))
             self.sites[expr.function] = joined(self.sites.get(expr.function), site)
         for index in summary.outs:
             target = root(expr.args[index])

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import copysign
-from typing import Any
 
 from ..ir.nodes import (
     Assign,
@@ -44,6 +43,7 @@ from ..ir.nodes import (
     While,
 )
 from ..ir.rules import element_type
+from ..ir.typed import Any
 from ..ir.types import BOOL, Array, Matrix, Scalar, Struct, Type, Vector, components, kind_of, vector_of
 from ..ir.walk import operands, rewrite, subexpressions, with_operands
 from . import arithmetic
@@ -224,9 +224,7 @@ class _Folder:
 
     def never_runs(self, init: Declare | Assign, condition: Expr) -> bool:
         """Whether a loop's condition is false with what `init` sets."""
-        if init.value is None or (
-            isinstance(init, Assign) and (init.op or not isinstance(init.target, Local))
-        ):
+        if init.value is None or (isinstance(init, Assign) and (init.op or not isinstance(init.target, Local))):
             return False
         start = self.known(init.value)
         if constant_numbers(start) is None:
@@ -326,12 +324,7 @@ class _Folder:
         if isinstance(condition, Literal):
             return self.expression(expr.yes if condition.value else expr.no)
         yes, no = self.expression(expr.yes), self.expression(expr.no)
-        if (
-            expr.type == BOOL
-            and isinstance(yes, Literal)
-            and isinstance(no, Literal)
-            and yes.value != no.value
-        ):
+        if expr.type == BOOL and isinstance(yes, Literal) and isinstance(no, Literal) and yes.value != no.value:
             return condition if yes.value else Unary(BOOL, "!", condition, expr.span)
         if condition is expr.condition and yes is expr.yes and no is expr.no:
             return expr

@@ -22,9 +22,7 @@ def uniforms_to_parameters(module: Module, textures: bool = True) -> Module:
     remain global. The keys of functions change with their parameters.
     """
     uniforms = {
-        uniform.name: uniform
-        for uniform in module.uniforms
-        if textures or not isinstance(uniform.type, Sampler)
+        uniform.name: uniform for uniform in module.uniforms if textures or not isinstance(uniform.type, Sampler)
     }
     closer = _Closer(module, uniforms)
     functions = tuple([closer.function(key, function) for key, function in closer.functions.items()])
@@ -77,9 +75,7 @@ class _Closer:
             if type(node) is Global and node.name in self.uniforms:
                 return Local(node.type, node.name, node.span)
             if type(node) is Call and self.reads.get(node.function):
-                extra = [
-                    Local(self.uniforms[name].type, name, node.span) for name in self.read(node.function)
-                ]
+                extra = [Local(self.uniforms[name].type, name, node.span) for name in self.read(node.function)]
                 return Call(node.type, self.keys[node.function], (*node.args, *extra), node.span)
             return node
 

@@ -13,7 +13,6 @@ end (the checker has seen to it), so an unkept loop has no effect.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Any, NamedTuple, TypeVar
 
 from ..ir.nodes import (
     Assign,
@@ -42,10 +41,14 @@ from ..ir.nodes import (
     Unary,
     While,
 )
+from ..ir.typed import TYPE_CHECKING, Any, NamedTuple
 from ..ir.types import Array, Struct, Type
 from ..ir.walk import root
 
-_T = TypeVar("_T")
+if TYPE_CHECKING:
+    from typing import TypeVar
+
+    _T = TypeVar("_T")
 
 
 def prune(module: Module, roots: Iterable[str]) -> Module:
@@ -363,9 +366,7 @@ class _FunctionCleaner:
             elif isinstance(stmt, For):
                 body = self.rebuild(unit.then, stmt.body, needs)
                 header = self.rebuild(unit.otherwise, (), needs)
-                init, step = (
-                    part if any(part is kept for kept in header) else None for part in (stmt.init, stmt.step)
-                )
+                init, step = (part if any(part is kept for kept in header) else None for part in (stmt.init, stmt.step))
                 if body is not stmt.body or init is not stmt.init or step is not stmt.step:
                     new = For(init, stmt.condition, step, body, stmt.span)
             elif isinstance(stmt, While):

@@ -7,7 +7,6 @@ statements to another block puts this right again with `separate`.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Container, Mapping
-from typing import Any
 
 from ..ir.nodes import (
     Assign,
@@ -29,6 +28,7 @@ from ..ir.nodes import (
     Stmt,
     While,
 )
+from ..ir.typed import Any
 from ..ir.walk import expressions, inner_statements, operands, rewrite, statements, with_operands
 
 _NONE: Mapping[str, str] = {}
@@ -119,9 +119,7 @@ def rename_locals(
 class _Planner:
     """Gives every declaration of a function its name, in the order of the text."""
 
-    def __init__(
-        self, bad: Container[str], choose: Callable[[str, Container[str]], str], taken: set[str]
-    ) -> None:
+    def __init__(self, bad: Container[str], choose: Callable[[str, Container[str]], str], taken: set[str]) -> None:
         self.bad, self.choose, self.taken = bad, choose, taken
         self.plan: list[tuple[str, str]] = []
 
@@ -180,9 +178,7 @@ class Renamer:
         if locals:
             params = tuple([param._replace(name=self.declare(param.name)) for param in params])
         body = self.block(function.body)
-        return (
-            function if body is function.body and not locals else function._replace(params=params, body=body)
-        )
+        return function if body is function.body and not locals else function._replace(params=params, body=body)
 
     def declare(self, name: str) -> str:
         if not self.plan:

@@ -9,10 +9,10 @@ from __future__ import annotations
 import functools
 import sys
 from pathlib import Path
-from typing import Any, NamedTuple
 
 from ..data import folder
 from ..diagnostics import SssgenError, did_you_mean, failure
+from ..ir.typed import Any, NamedTuple
 
 
 class OutputFile(NamedTuple):

@@ -9,19 +9,15 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
 
-from .. import cache
-from ..data import folder
 from ..diagnostics import failure
 from ..ir.nodes import Function, Local, Module, Param, Span, Uniform
+from ..ir.typed import Any, NamedTuple
 from ..ir.types import Sampler, Struct, spell
 from .descriptor import Target
 from .layout import Member, place
 from .printer import Comments, Line, Printer, comment_text, no_comments
-
-if TYPE_CHECKING:
-    from jinja2 import Environment
+from .templates import render
 
 _MARK = re.compile(r"\x02(\d+)\x03")
 
@@ -106,10 +102,9 @@ def emit(target: Target, program: Program, form: str, templates: Path | None = N
     context = _context(target, program, printer, form, code)
     files: dict[str, str] = {}
     lines: dict[str, dict[int, Span]] = {}
-    environment = _environment(templates, target.folder)
     for output in target.files.get(form, ()):
         name = output.name.format(material=program.about.name)
-        files[name], lines[name] = _finish(_render(environment, output.template, context), marks)
+        files[name], lines[name] = _finish(render(output.template, context, templates, target.folder), marks)
     bindings = [printer.binding(index) for index in range(len(textures))] if declared else []
     return Emitted(files, lines, members, size, [binding for binding in bindings if binding])
 
@@ -233,48 +228,6 @@ def _textures(printer: Printer, program: Program) -> list[dict[str, Any]]:
             }
         )
     return found
-
-
-_environments: dict[tuple[Path | None, Path], Environment] = {}
-
-
-def _environment(templates: Path | None, beside: Path) -> Environment:
-    """The template environment: the user's folder before a plug-in's before ours, compiled templates kept on disk."""
-    key = (templates, beside)
-    if key not in _environments:
-        from jinja2 import FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
-
-        if templates is not None:
-            from jinja2.sandbox import SandboxedEnvironment as Chosen
-        else:
-            from jinja2 import Environment as Chosen  # type: ignore[assignment]  # the same without the sandbox
-        places = [templates] if templates is not None else []
-        kept = cache.folder()
-        _environments[key] = Chosen(
-            loader=FileSystemLoader([*places, beside / "templates", folder("templates")]),
-            undefined=StrictUndefined,
-            trim_blocks=True,
-            lstrip_blocks=True,
-            keep_trailing_newline=True,
-            bytecode_cache=FileSystemBytecodeCache(str(kept)) if kept else None,
-            auto_reload=templates is not None,
-        )
-    return _environments[key]
-
-
-def _render(environment: Environment, template: str, context: dict[str, Any]) -> str:
-    from jinja2 import TemplateError, TemplateNotFound, TemplateSyntaxError
-
-    try:
-        return environment.get_template(template).render(context)
-    except TemplateNotFound as error:
-        raise failure(f"there is no template '{error.name}'", file=template) from None
-    except TemplateSyntaxError as error:
-        raise failure(f"line {error.lineno}: {error.message}", file=error.name or template) from None
-    except TemplateError as error:
-        raise failure(f"the template cannot be rendered: {error.message}", "docs/templates.md lists what a template may use", file=template) from None  # fmt: skip
-    except (TypeError, ValueError, KeyError, ArithmeticError, RecursionError) as error:
-        raise failure(f"the template cannot be rendered: {error}", file=template) from None
 
 
 def _finish(text: str, marks: list[Span]) -> tuple[str, dict[int, Span]]:

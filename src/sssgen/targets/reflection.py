@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
 
 from ..ir.nodes import Uniform
+from ..ir.typed import TYPE_CHECKING, Any
 from ..ir.types import Sampler, spell
 from .descriptor import Target
 from .emit import Emitted, Program

@@ -11,7 +11,6 @@ from .layout import Member
 from .printer import PRIMARY, UNARY, Line, Printer, documented, wrap
 
 
-
 class WgslPrinter(Printer):
     """Declarations and parameters are WGSL's own; expressions differ in conversions and selects."""
 
