@@ -44,6 +44,13 @@ class Call(NamedTuple):
     args: tuple[Any, ...]
 
 
+class Uniforms(NamedTuple):
+    """What a material's uniforms are set to: the bytes of its block, or where there is none each one's numbers."""
+
+    block: bytes
+    values: Mapping[str, tuple[float, ...]]
+
+
 class Language(NamedTuple):
     """How the program around the functions is written."""
 
@@ -134,7 +141,11 @@ class Backend:
         self.language = {"glsl": _GLSL, "hlsl": _HLSL, "wgsl": _WGSL}[self.target.language]
 
     def run(
-        self, text: str, calls: Sequence[Call], textures: Mapping[str, Texture] | None = None
+        self,
+        text: str,
+        calls: Sequence[Call],
+        textures: Mapping[str, Texture] | None = None,
+        uniforms: Uniforms | None = None,
     ) -> list[np.ndarray[Any, Any]]:
         """The results of the calls, all of which have the same number of lanes; 0 where a call discards."""
         lanes = max(np.shape(arg)[-1] for call in calls for arg in call.args if not isinstance(arg, str))
@@ -143,7 +154,7 @@ class Backend:
         bound = {name: texture for name, texture in (textures or {}).items() if name in used}
         program = self.program(text, calls, bound, width)
         data = np.concatenate(program.rows).reshape(-1, width, 4)
-        image = self.draw(program.text, data, bound, (width, program.slots * HEIGHT))
+        image = self.draw(program.text, data, bound, (width, program.slots * HEIGHT), uniforms or Uniforms(b"", {}))
         words = image.reshape(program.slots, HEIGHT * width, 4)
         return [
             _result(call.result, words[first : first + count], lanes)
@@ -151,7 +162,12 @@ class Backend:
         ]
 
     def draw(
-        self, text: str, data: np.ndarray[Any, Any], textures: Mapping[str, Texture], size: tuple[int, int]
+        self,
+        text: str,
+        data: np.ndarray[Any, Any],
+        textures: Mapping[str, Texture],
+        size: tuple[int, int],
+        uniforms: Uniforms,
     ) -> np.ndarray[Any, Any]:
         """The image, (height, width, 4) of uint32, that the program draws."""
         raise NotImplementedError
@@ -246,7 +262,12 @@ class _Gl(Backend):
         self.context = compilers.get("gl")._context  # type: ignore[attr-defined]
 
     def draw(
-        self, text: str, data: np.ndarray[Any, Any], textures: Mapping[str, Texture], size: tuple[int, int]
+        self,
+        text: str,
+        data: np.ndarray[Any, Any],
+        textures: Mapping[str, Texture],
+        size: tuple[int, int],
+        uniforms: Uniforms,
     ) -> np.ndarray[Any, Any]:
         text = self.glsl(text)
         made: list[Any] = []
@@ -261,9 +282,16 @@ class _Gl(Backend):
                 bound = {"sssgen_data": source} | {name: self.upload(texture) for name, texture in textures.items()}
                 made += bound.values()
                 for unit, member in enumerate(name for name in program if not name.startswith("gl_")):
-                    owner = next(name for name in sorted(bound, key=len, reverse=True) if name in member)
-                    bound[owner].use(unit)
-                    program[member].value = unit
+                    owner = next((name for name in sorted(bound, key=len, reverse=True) if name in member), None)
+                    if owner is not None:
+                        bound[owner].use(unit)
+                        program[member].value = unit
+                    elif member in uniforms.values:
+                        program[member].value = _as_moderngl(program[member], uniforms.values[member])
+                    else:  # the block of HLSL
+                        program[member].binding = 0
+                        made.append(context.buffer(uniforms.block))
+                        made[-1].bind_to_uniform_block(0)
                 frame.use()
                 array.render(context.TRIANGLES, vertices=3)
                 return np.frombuffer(frame.read(components=4, dtype="u4"), np.uint32).reshape(size[1], size[0], 4)
@@ -302,7 +330,12 @@ class _Wgpu(Backend):
         self.device = compilers.get("naga")._device  # type: ignore[attr-defined]
 
     def draw(
-        self, text: str, data: np.ndarray[Any, Any], textures: Mapping[str, Texture], size: tuple[int, int]
+        self,
+        text: str,
+        data: np.ndarray[Any, Any],
+        textures: Mapping[str, Texture],
+        size: tuple[int, int],
+        uniforms: Uniforms,
     ) -> np.ndarray[Any, Any]:
         device = self.device
         shader = device.create_shader_module(code=text)
@@ -325,6 +358,12 @@ class _Wgpu(Backend):
         drawing = encoder.begin_render_pass(color_attachments=[attachment])
         drawing.set_pipeline(pipeline)
         drawing.set_bind_group(0, group)
+        if uniforms.block:
+            block = device.create_buffer_with_data(data=uniforms.block, usage=0x40)
+            entry = {"binding": 0, "resource": {"buffer": block, "offset": 0, "size": len(uniforms.block)}}
+            place = self.target.table["material_group"]
+            layout = pipeline.get_bind_group_layout(place)
+            drawing.set_bind_group(place, device.create_bind_group(layout=layout, entries=[entry]))
         drawing.draw(3)
         drawing.end()
         device.queue.submit([encoder.finish()])
@@ -351,6 +390,13 @@ class _Wgpu(Backend):
         for number in range(1, len(levels)):
             self.write(made, levels[number], sizes[number], number)
         return made
+
+
+def _as_moderngl(member: Any, numbers: tuple[float, ...]) -> Any:
+    """Numbers as moderngl takes them: a scalar, a tuple, or for an array of vectors a list of tuples."""
+    size = len(numbers) // member.array_length
+    parts = [numbers[start] if size == 1 else numbers[start : start + size] for start in range(0, len(numbers), size)]
+    return parts[0] if member.array_length == 1 else parts
 
 
 def spirv(text: str, entry: str, compiler: str, stage: str = "fragment") -> bytes:

@@ -9,6 +9,7 @@ import numpy as np
 from ir_interpreter import Discarded, Interpreter
 from sssgen.ir.nodes import Function, Module
 from sssgen.ir.types import Array, Matrix, Struct, Type, Vector, kind_of
+from sssgen.ir.verify import verify
 from sssgen.lang.check import check
 from sssgen.lang.parser import parse
 from sssgen.passes.names import rename
@@ -76,6 +77,8 @@ def assert_agrees(source: str, lanes: list[tuple[Any, ...]], name: str = "f", **
     """
     module = module_of(source)
     function = next(function for function in module.functions if function.name == name)
+    problems = [problem for problem in verify(predicate(module)) if "any_lane" not in problem]
+    assert problems == []
     text = python_of(module)
     try:
         printed = _printed(function, text, lanes, uniforms)

@@ -198,6 +198,15 @@ def test_quantities_in_arrays_and_structs() -> None:
         checked("float f() { thickness list[2] = float[2](1.0, 2.0); return list[0]; }")
 
 
+def test_scaling_in_place_keeps_a_quantity() -> None:
+    """As docs/language.md says: scaling is what masks do."""
+    checked("thickness f(thickness d, thinness t, float x) { d *= x; d /= 2.0; d *= t; return d; }")
+    checked("world_direction f(world_direction v) { v *= 2.0; return v; }")
+    for statement in ("d += 1.0;", "d++;", "d += t;", "v *= m;", "v *= vec3(1.0);", "v += P;"):
+        with pytest.raises(SssgenError):
+            checked(f"void f(thickness d, thinness t, world_direction v, world_position P, mat3 m) {{ {statement} }}")
+
+
 def test_quantities_of_builtins_are_builtins() -> None:
     """The rules name builtins that there are."""
     assert set(q._COMPARED) | set(q._KEEP_DIRECTION) | set(q._KEEP_BOUND) <= set(BUILTINS)

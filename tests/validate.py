@@ -58,7 +58,9 @@ def printed(source: str, target: str) -> str:
     if "{" in source:
         return text
     before, _, function = text.rpartition("\n\n")
-    lines = function.splitlines()[1:] if target == "numpy" else function.splitlines()[1:-1]
+    lines = function.splitlines()
+    head = next(number for number, line in enumerate(lines) if line.endswith(("{", ":")))
+    lines = lines[head + 1 :] if target == "numpy" else lines[head + 1 : -1]
     statements = dedent("\n".join(lines))
     if not before and statements.startswith("return ") and ";\n" not in statements:
         return " ".join(line.strip() for line in lines).removeprefix("return ").removesuffix(";")

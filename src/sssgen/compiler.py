@@ -10,7 +10,7 @@ from pathlib import Path
 
 from . import library
 from .diagnostics import Diagnostic, SssgenError
-from .ir.nodes import Module
+from .ir.nodes import Function, Local, Module, Return
 from .ir.typed import Any, NamedTuple
 from .ir.types import Struct
 from .lang.loader import comments_before, source_line
@@ -20,6 +20,7 @@ from .passes.chain import ChainStage, Entry, assemble
 from .passes.cost import Cost, cost_of
 from .passes.fold import fold
 from .passes.hoist import Note, hoist
+from .passes.inline import inline
 from .passes.legalise import Unsupported, legalise
 from .passes.link import LinkError, LinkStage, link
 from .passes.names import rename
@@ -149,7 +150,7 @@ def _build(material: Material, lighting: str, drop_output: bool) -> _Middle:
     except LinkError as error:
         raise SssgenError([Diagnostic("error", error.message, error.span, "", source_line(error.span))]) from None
     roots = [entry.function.key for entry in chain.entries.values()]
-    module = prune(_folded(chain.module, linked.fixed), roots)
+    module = prune(inline(_folded(chain.module, linked.fixed), _only_renames), roots)
     module, notes = hoist(module, roots)
     warnings = _warnings(notes)
     slots = _slot_functions(material, linked.module)
@@ -165,6 +166,12 @@ def _folded(module: Module, fixed: Mapping[str, tuple[float, ...]]) -> Module:
         hint = "WGSL refuses it, and the others compute inf or NaN"
         raise SssgenError([Diagnostic("error", message, span, hint, source_line(span)) for message, span in wrong])
     return module
+
+
+def _only_renames(function: Function) -> bool:
+    """Whether a function returns its parameter as it is: such a conversion is for the types' sake alone."""
+    body = function.body or ()
+    return len(body) == 1 and isinstance(body[0], Return) and isinstance(body[0].value, Local)
 
 
 def _about(material: Material) -> About:

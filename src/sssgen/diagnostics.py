@@ -109,7 +109,9 @@ class Reporter:
         self.seen.add((span, message))
         self.diagnostics.append(Diagnostic("error", message, span, hint, self.line(span)))
         if len(self.diagnostics) >= MAX_ERRORS:
-            self.diagnostics.append(Diagnostic("error", f"more than {MAX_ERRORS} errors; the rest is not looked at", span))
+            self.diagnostics.append(
+                Diagnostic("error", f"more than {MAX_ERRORS} errors; the rest is not looked at", span)
+            )
             self.check()
 
     def line(self, span: Span) -> str:

@@ -309,7 +309,8 @@ class _FileChecker(ExpressionChecker):
             message = f"'{op}=' is not defined for {a_type(type_)} and {a_type(right.expr.type)}"
             raise self.fail(span, message, mixed_hint(target.expr, right.expr, op))
         quantity = self.combined(op, target, right, span)
-        self.require(target._replace(quantity=quantity), type_, target.quantity, span, "the assignment")
+        if op not in ("*", "/") or not isinstance(right.expr.type, Scalar):  # scaling in place keeps it
+            self.require(target._replace(quantity=quantity), type_, target.quantity, span, "the assignment")
         return [ir.Assign(target.expr, op, right.expr, span)]
 
     def _expressionstatement(self, statement: s.ExpressionStatement) -> list[ir.Stmt]:
@@ -399,9 +400,7 @@ class _FileChecker(ExpressionChecker):
         return [ir.Break(jump.span) if jump.kind == "break" else ir.Continue(jump.span)]
 
 
-_LOOP_HINT = (
-    "write for (int i = 0; i < N; i++) with N that the body does not change, and step the counter nowhere else"
-)
+_LOOP_HINT = "write for (int i = 0; i < N; i++) with N that the body does not change, and step the counter nowhere else"
 
 
 def _signature(function: ir.Function) -> Signature:

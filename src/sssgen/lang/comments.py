@@ -15,9 +15,7 @@ Comment = tuple[int, int, str]
 _DOC = re.compile(r"///(?!/)|/\*\*(?![*/])")
 
 
-def attach_docs(
-    externals: Sequence[Any], comments: Sequence[Comment], lines: Sequence[str]
-) -> tuple[s.External, ...]:
+def attach_docs(externals: Sequence[Any], comments: Sequence[Comment], lines: Sequence[str]) -> tuple[s.External, ...]:
     """Gives each declaration the doc comment that ends on the line before it: a `/** */` block, or `///` lines."""
     by_end = {
         end: (first, text)

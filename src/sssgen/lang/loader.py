@@ -112,9 +112,7 @@ def _union(first: tuple, second: tuple) -> tuple:  # type: ignore[type-arg]  # a
     return first + tuple(declaration for declaration in second if declaration.span not in known)
 
 
-def _include(
-    name: str, place: Span, text: str, roots: Sequence[Path], within: tuple[str, ...]
-) -> tuple[Module, str]:
+def _include(name: str, place: Span, text: str, roots: Sequence[Path], within: tuple[str, ...]) -> tuple[Module, str]:
     """The module of an included file, and its hash."""
     line = text.splitlines()[place.line - 1]
     for root in roots:

@@ -17,8 +17,9 @@ from .comments import attach_docs
 if TYPE_CHECKING:
     from lark import Lark, Token
 
-MAX_DEPTH = 200
-"""How deeply expressions and statements may nest. Hand-written shaders stay below 30."""
+MAX_DEPTH = 100
+"""How deeply expressions and statements may nest, together. Hand-written shaders stay below 30; passes and printers
+recurse over what is nested, and a stack of Python's own 1000 frames must be enough for them."""
 
 _TOO_DEEP = (
     f"nested more than {MAX_DEPTH} levels deep",

@@ -125,7 +125,7 @@ def of_intrinsic(name: str, args: list[str]) -> str:
     if not given:
         return ""
     _check_one_space(given)
-    compared = [quantity for quantity in args[:_COMPARED.get(name, 0)] if quantity]
+    compared = [quantity for quantity in args[: _COMPARED.get(name, 0)] if quantity]
     for quantity in compared[1:]:
         if quantity != compared[0]:
             message = f"{words(compared[0])} and {words(quantity)} do not go together in {name}"

@@ -70,9 +70,7 @@ class Scopes:
                 return scope[name]
         return None
 
-    def declare(
-        self, name: str, type: Type, quantity: str, writable: bool, faulty: bool = False
-    ) -> Variable | None:
+    def declare(self, name: str, type: Type, quantity: str, writable: bool, faulty: bool = False) -> Variable | None:
         """Adds a variable to the innermost scope; None if this scope has the name already."""
         if name in self.stack[-1]:
             return None

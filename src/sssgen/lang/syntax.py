@@ -156,14 +156,7 @@ class Jump(NamedTuple):
 
 
 Statement: TypeAlias = (
-    Declaration
-    | Assignment
-    | ExpressionStatement
-    | Compound
-    | IfStatement
-    | ForStatement
-    | WhileStatement
-    | Jump
+    Declaration | Assignment | ExpressionStatement | Compound | IfStatement | ForStatement | WhileStatement | Jump
 )
 
 

@@ -27,6 +27,7 @@ from ..ir.types import (
     vector_of,
 )
 from ..ir.walk import expressions, operands, rewrite, root, statements, subexpressions, with_operands
+from . import blocks
 from .lift_calls import is_awkward, lift
 from .stores import is_dynamic_store, is_swizzle_store, parts_of, whole_store
 
@@ -58,12 +59,7 @@ class _Legaliser:
         self.polyfill = polyfill
         self.functions = {function.key: function for function in module.functions}
         self.helpers: dict[str, ir.Function] = {}
-        self.block_bools = set() if can("bool_uniforms") else {u.name for u in module.uniforms if u.type == BOOL}
-        self.block_arrays = {
-            uniform.name
-            for uniform in module.uniforms
-            if isinstance(uniform.type, Array) and not can("float_array_uniforms") and components(uniform.type.element) < 4
-        }  # fmt: skip
+        self.uniforms = {uniform.name for uniform in module.uniforms}
         self.names: set[str] = set()
         self.prelude: list[ir.Stmt] | None = None
 
@@ -247,6 +243,8 @@ class _Legaliser:
     def expr(self, expr: ir.Expr) -> ir.Expr:
         if isinstance(expr, ir.Select) and not self.can("ternary"):
             return self.select(expr)
+        if isinstance(expr, ir.Index) and isinstance(expr.value, ir.Global) and expr.value.name in self.uniforms:
+            return blocks.element(expr._replace(index=self.expr(expr.index)), self.can)
         old = operands(expr)
         new = tuple([self.expr(operand) for operand in old])
         same = all(one is other for one, other in zip(old, new, strict=True))
@@ -268,13 +266,12 @@ class _Legaliser:
             return self.construct(expr)
         if isinstance(expr, ir.Binary):
             return self.binary(expr)
-        if isinstance(expr, ir.Global) and expr.name in self.block_bools:
-            as_int = ir.Global(INT, expr.name, expr.span)
-            return ir.Binary(BOOL, "!=", as_int, ir.Literal(INT, 0, expr.span), expr.span)
-        if isinstance(expr, ir.Index) and isinstance(expr.value, ir.Global) and expr.value.name in self.block_arrays:
-            kind, size = kind_of(expr.type), components(expr.type)
-            row = ir.Index(Vector(kind, 4), expr.value, expr.index, expr.span)
-            return ir.Swizzle(vector_of(kind, size), row, "xyzw"[:size], expr.span)
+        if isinstance(expr, ir.Global) and expr.name in self.uniforms:
+            value = blocks.read(expr, self.can)
+            return value if value is expr or not isinstance(value, ir.Construct) else self.construct(value)
+        if isinstance(expr, ir.Swizzle) and isinstance(expr.value, ir.Swizzle):
+            letters = "".join([expr.value.components["xyzw".index(letter)] for letter in expr.components])
+            return expr._replace(value=expr.value.value, components=letters)
         return expr
 
     def intrinsic(self, call: ir.Intrinsic) -> ir.Expr:

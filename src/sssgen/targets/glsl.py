@@ -3,18 +3,12 @@
 from __future__ import annotations
 
 from ..ir import nodes as ir
-from ..ir.types import Array, Type
 from .layout import Member
 from .printer import Line, Printer, documented
 
 
 class GlslPrinter(Printer):
     """Uniforms stand in the default block; everything else is as in the IR."""
-
-    def type(self, type_: Type) -> str:
-        if isinstance(type_, Array):
-            return f"{self.type(type_.element)}[{type_.length}]"
-        return super().type(type_)
 
     def print_uniforms(self, members: list[Member]) -> list[Line]:
         """The uniform declarations, one a line."""

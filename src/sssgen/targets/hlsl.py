@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from ..ir import nodes as ir
 from ..ir.types import Array, Matrix, Scalar, Struct, Vector
+from ..passes.blocks import block_type
 from .layout import Member
 from .printer import POSTFIX, PRIMARY, UNARY, Line, Printer, documented
 
@@ -76,8 +77,10 @@ class HlslPrinter(Printer):
         pad = "    " if bindings is not None else ""
         for member in members:
             lines += [Line(f"{pad}float padding_{member.offset}_{index};") for index in range(member.padding)]
-            major = "row_major " if isinstance(member.uniform.type, Matrix) and not self.engine_matrices else ""
-            declared = self.variable(member.uniform.type, member.uniform.name)
+            type_ = block_type(member.uniform.type, self.target.can)
+            of_matrices = isinstance(type_.element if isinstance(type_, Array) else type_, Matrix)
+            major = "row_major " if of_matrices and not self.engine_matrices else ""
+            declared = self.variable(type_, member.uniform.name)
             lines.append(documented(f"{pad}{major}{declared};", member.uniform))
         if lines and bindings is not None:
             head = f"cbuffer {bindings['material_block']} : register({bindings['material_register']}) {{"

@@ -54,7 +54,8 @@ def _size(type_: Type) -> int:
     if isinstance(type_, Matrix):
         return 16 * (type_.size - 1) + 4 * type_.size
     if isinstance(type_, Array):
-        return 16 * (type_.length - 1) + 4 * components(type_.element)
+        stride = 16 * type_.element.size if isinstance(type_.element, Matrix) else 16
+        return stride * (type_.length - 1) + _size(type_.element)
     return 4 * components(type_)
 
 

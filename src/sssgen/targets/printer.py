@@ -65,6 +65,8 @@ class Printer:
         """The type as the target writes it."""
         if isinstance(type_, Struct):
             return type_.name
+        if isinstance(type_, Array):
+            return f"{self.type(type_.element)}[{type_.length}]"
         return self.target.types[spell(type_)]
 
     def variable(self, type_: Type, name: str) -> str:

@@ -6,7 +6,8 @@ Out parameters are pointers; what is never written after its declaration is a `l
 from __future__ import annotations
 
 from ..ir import nodes as ir
-from ..ir.types import BOOL, INT, VOID, Array, Sampler, Struct, Type, Vector, kind_of
+from ..ir.types import VOID, Array, Sampler, Struct, Type
+from ..passes.blocks import block_type
 from .layout import Member
 from .printer import PRIMARY, UNARY, Line, Printer, documented, wrap
 
@@ -88,7 +89,7 @@ class WgslPrinter(Printer):
             return []
         lines = [Line("struct Material {")]
         for member in members:
-            text = self.type(block_type(member.uniform.type))
+            text = self.type(block_type(member.uniform.type, self.target.can))
             lines.append(documented(f"    {member.uniform.name}: {text},", member.uniform))
         place = f"@group({self.target.table['material_group']}) @binding(0)"
         return [*lines, Line("}"), Line(f"{place} var<uniform> material: Material;")]
@@ -118,12 +119,3 @@ def _has_open_less(text: str) -> bool:
         if depth == 0 and text.startswith(" < ", index):
             return True
     return False
-
-
-def block_type(type_: Type) -> Type:
-    """The type that stands for `type_` in a uniform block: no bool, and array elements of 16 bytes."""
-    if type_ == BOOL:
-        return INT
-    if isinstance(type_, Array):
-        return Array(Vector(kind_of(type_.element) or "float", 4), type_.length)
-    return type_

@@ -1,0 +1,137 @@
+"""Runs one technique on arrays: the NumPy text that the compiler makes of it, in float64.
+
+    lobe = technique("lobe_gdc2011")
+    lobe(V=v, N=n, L=l, through=0.5, power=4.0)          # v, n, l: (count, 3) or (3,)
+    technique("march_light", body_distance="sphere")     # a slot: a library function, FILE:FUNCTION, or source text
+    technique("common/hash.sss:hash_unit")(x=7)          # any function of a library file
+
+Values go by the name of the technique's parameter or uniform. Scalars are () or (count,), vectors and matrices have
+their components last: (count, 3), (count, row, column). A texture is an array as `Texture` takes it, or a `Texture`.
+Uniforms that are left out have their defaults. The result has the same layout; with out parameters it is a tuple.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from inspect import signature
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from sssgen import library
+from sssgen.compiler import transpile
+from sssgen.ir.nodes import Function, Module
+from sssgen.ir.types import VOID, Matrix, Sampler, Type, Vector, components, kind_of
+from sssgen.lang.check import check
+from sssgen.lang.loader import load_file
+from sssgen.lang.parser import parse
+from sssgen.library import TECHNIQUES
+from sssgen.passes.link import LinkStage, link
+from sssgen.slots import find
+from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.numpy_values import precision
+
+DTYPES: dict[str, Any] = {"float": np.float64, "int": np.int32, "uint": np.uint32, "bool": np.bool_}
+
+
+class Technique(NamedTuple):
+    """A technique that can be called."""
+
+    function: Any
+    types: dict[str, Type]
+    """Parameter of the Python function → its type, in order."""
+    defaults: dict[str, Any]
+    results: tuple[Type, ...]
+
+    def __call__(self, **values: Any) -> Any:
+        unknown = values.keys() - self.types.keys()
+        missing = self.types.keys() - self.defaults.keys() - values.keys()
+        if unknown or missing:
+            raise TypeError(f"unknown {sorted(unknown)}, missing {sorted(missing)}; it takes {list(self.types)}")
+        given = {**self.defaults, **values}
+        counts = {
+            np.shape(value)[0]
+            for name, value in values.items()
+            if not isinstance(self.types[name], Sampler) and np.ndim(value) > _rank(self.types[name])
+        }
+        assert len(counts) < 2, f"lanes: {counts}"
+        with precision(np.float64):
+            found = self.function(*[_inwards(type_, given[name]) for name, type_ in self.types.items()])
+        parts = found if isinstance(found, tuple) else (found,)
+        results = [_outwards(type_, part, counts) for type_, part in zip(self.results, parts, strict=True)]
+        return tuple(results) if len(results) > 1 else results[0]
+
+
+def technique(name: str, **slots: str) -> Technique:
+    """A technique of the library, or FILE:FUNCTION, with its slots bound."""
+    return _technique(name, tuple(slots.items()))
+
+
+@cache
+def _technique(name: str, slots: tuple[tuple[str, str], ...]) -> Technique:
+    module, function = _function(name)
+    declared = {one.name: one for one in module.functions if one.body is None}
+    bound = {slot: _bound(text, declared[slot]) for slot, text in slots}
+    linked = link([LinkStage(function.name, "", module, function, bound, {}, frozenset())])
+    compiled = transpile(linked.module, "numpy", function.name)
+    namespace: dict[str, Any] = {}
+    exec(compiled.files[f"{function.name}_functions.py"], namespace)
+    made = namespace[compiled.reflection["renames"].get(function.name, function.name)]
+    own = {param.name: param.type for param in function.params if param.direction != "out"}
+    uniforms = {uniform.name: uniform for uniform in linked.module.uniforms}
+    rest = list(signature(made).parameters)[len(own) :]
+    results = [function.result] if function.result != VOID else []
+    results += [param.type for param in function.params if param.direction != "in"]
+    return Technique(
+        made,
+        own | {name: uniforms[name].type for name in rest},
+        {name: _default(uniforms[name].type, uniforms[name].default) for name in rest if uniforms[name].default},
+        tuple(results),
+    )
+
+
+def _function(name: str) -> tuple[Module, Function]:
+    file, colon, inner = name.partition(":")
+    if not colon:
+        loaded = library.load(name)
+        return loaded.module, loaded.function
+    module = load_file(TECHNIQUES / file, file, (TECHNIQUES,))
+    return module, next(one for one in module.functions if one.name == inner)
+
+
+def _bound(text: str, slot: Function) -> tuple[Module, Function]:
+    if "(" not in text:
+        return find(text, slot, TECHNIQUES)
+    module = check(parse(text, "slot.sss"), text)
+    return module, module.functions[-1]
+
+
+def _rank(type_: Type) -> int:
+    return 2 if isinstance(type_, Matrix) else 1 if isinstance(type_, Vector) else 0
+
+
+def _default(type_: Type, value: tuple[float, ...]) -> Any:
+    """A uniform's default, which lists the components (a matrix column by column), in the layout of the tests."""
+    if isinstance(type_, Matrix):
+        return np.reshape(value, (type_.size, type_.size)).T
+    return value if components(type_) > 1 else value[0]
+
+
+def _inwards(type_: Type, value: Any) -> Any:
+    """From the layout of the tests to that of the runtime, where components come first."""
+    if isinstance(type_, Sampler):
+        return value if isinstance(value, Texture) else Texture(value)
+    array = np.asarray(value, DTYPES[kind_of(type_)])
+    if isinstance(type_, Matrix):
+        return np.atleast_3d(array.T)
+    return np.moveaxis(np.atleast_2d(array), -1, 0) if isinstance(type_, Vector) else array
+
+
+def _outwards(type_: Type, value: Any, counts: set[int]) -> Any:
+    """And back; where no argument has lanes the result has none."""
+    rank = _rank(type_)
+    array = np.asarray(value)
+    array = np.moveaxis(array, -1, 0) if array.ndim > rank else array
+    if not counts:
+        return array[0] if array.ndim > rank else array
+    return np.broadcast_to(array, (*counts, *array.shape[-rank:])) if rank else np.broadcast_to(array, tuple(counts))
