@@ -183,7 +183,8 @@ class Backend:
             for index, (type_, arg) in enumerate(zip(call.params, call.args, strict=True)):
                 name = f"a{number}_{index}"
                 if isinstance(arg, str):
-                    args.append(self.target.textures.get("argument", "{name}").format(name=arg, sampler=f"{arg}_sampler"))
+                    pattern = self.target.textures.get("argument", "{name}")
+                    args.append(pattern.format(name=arg, sampler=f"{arg}_sampler"))
                     continue
                 before.append(self._declare(type_, name, self._read(type_, len(rows) * HEIGHT)))
                 args.append(name)
@@ -199,8 +200,8 @@ class Backend:
             body += [inside, *before, *keep, "}"]
             places.append((slots, columns))
             slots += columns
-        declared = "\n".join(self._texture(name, texture, index) for index, (name, texture) in enumerate(textures.items()))
-        main = self.language.main.format(textures=declared, body="\n".join(f"    {line}" for line in body))
+        declared = [self._texture(*item, index) for index, item in enumerate(textures.items())]
+        main = self.language.main.format(textures="\n".join(declared), body="\n".join(f"    {line}" for line in body))
         return Program(text + main, rows or [np.zeros((HEIGHT * width, 4), np.uint32)], places, slots)
 
     def _declare(self, type_: Type, name: str, value: str) -> str:
@@ -309,7 +310,7 @@ class _Gl(Backend):
     def upload(self, texture: Texture) -> Any:
         """The texture in OpenGL, whose driver makes the levels, with the same wrapping."""
         level = np.ascontiguousarray(texture.levels[0], np.float16).tobytes()
-        make = {"2D": self.context.texture, "3D": self.context.texture3d, "Cube": self.context.texture_cube}[texture.dim]
+        make = getattr(self.context, {"2D": "texture", "3D": "texture3d", "Cube": "texture_cube"}[texture.dim])
         made = make(texture.size(), 4, level, dtype="f2")
         if len(texture.levels) > 1:
             made.build_mipmaps()
@@ -339,11 +340,12 @@ class _Wgpu(Backend):
     ) -> np.ndarray[Any, Any]:
         device = self.device
         shader = device.create_shader_module(code=text)
-        target = device.create_texture(size=(*size, 1), format="rgba32uint", usage=0x11)  # render attachment, copy source
+        target = device.create_texture(size=(*size, 1), format="rgba32uint", usage=0x11)  # drawn to, copied from
         state = {"module": shader, "entry_point": "sssgen_main", "targets": [{"format": "rgba32uint"}]}
         vertex = {"module": shader, "entry_point": "sssgen_corner"}
         pipeline = device.create_render_pipeline(layout="auto", vertex=vertex, fragment=state, primitive={})
-        entries = [{"binding": 0, "resource": self.create(data[None], (data.shape[1], data.shape[0], 1), "2d").create_view()}]
+        source = self.create(data[None], (data.shape[1], data.shape[0], 1), "2d")
+        entries = [{"binding": 0, "resource": source.create_view()}]
         for index, texture in enumerate(textures.values()):
             wrap = {"repeat": "repeat", "clamp": "clamp-to-edge", "mirror": "mirror-repeat"}[texture.wrap]
             sampler = device.create_sampler(

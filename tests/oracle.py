@@ -12,9 +12,11 @@ Uniforms that are left out have their defaults. The result has the same layout; 
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from inspect import signature
-from typing import Any, NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -32,6 +34,33 @@ from sssgen.targets.numpy_textures import Texture
 from sssgen.targets.numpy_values import precision
 
 DTYPES: dict[str, Any] = {"float": np.float64, "int": np.int32, "uint": np.uint32, "bool": np.bool_}
+
+
+Array: TypeAlias = np.ndarray[Any, Any]
+close = np.testing.assert_allclose
+UP = np.array([0.0, 1.0, 0.0])
+
+
+def rng(seed: int = 7) -> np.random.Generator:
+    return np.random.default_rng(seed)
+
+
+def unit(v: Any) -> Array:
+    """Vectors, brought to length 1."""
+    found: Array = np.asarray(v, np.float64) / np.linalg.norm(v, axis=-1, keepdims=True)
+    return found
+
+
+def units(count: int, seed: int = 7) -> Array:
+    """Random directions."""
+    return unit(rng(seed).normal(size=(count, 3)))
+
+
+def lowbias32(x: int) -> int:
+    """The hash of common/hash.sss, in Python's integers."""
+    x = (x ^ x >> 16) * 0x7FEB352D & 0xFFFFFFFF
+    x = (x ^ x >> 15) * 0x846CA68B & 0xFFFFFFFF
+    return x ^ x >> 16
 
 
 class Technique(NamedTuple):
@@ -78,14 +107,17 @@ def _technique(name: str, slots: tuple[tuple[str, str], ...]) -> Technique:
     exec(compiled.files[f"{function.name}_functions.py"], namespace)
     made = namespace[compiled.reflection["renames"].get(function.name, function.name)]
     own = {param.name: param.type for param in function.params if param.direction != "out"}
-    uniforms = {uniform.name: uniform for uniform in linked.module.uniforms}
-    rest = list(signature(made).parameters)[len(own) :]
+    declared_uniforms = {uniform.name: uniform for uniform in linked.module.uniforms}
+    renamed = list(signature(made).parameters)[len(own) :]
+    # a name that some language reserves (HLSL's `center`) has got a suffix
+    rest = [name if name in declared_uniforms else re.sub(r"_\d*$", "", name) for name in renamed]
+    uniforms = {name: declared_uniforms[name] for name in rest}
     results = [function.result] if function.result != VOID else []
     results += [param.type for param in function.params if param.direction != "in"]
     return Technique(
         made,
-        own | {name: uniforms[name].type for name in rest},
-        {name: _default(uniforms[name].type, uniforms[name].default) for name in rest if uniforms[name].default},
+        own | {name: uniform.type for name, uniform in uniforms.items()},
+        {name: _default(uniform.type, uniform.default) for name, uniform in uniforms.items() if uniform.default},
         tuple(results),
     )
 
@@ -95,13 +127,13 @@ def _function(name: str) -> tuple[Module, Function]:
     if not colon:
         loaded = library.load(name)
         return loaded.module, loaded.function
-    module = load_file(TECHNIQUES / file, file, (TECHNIQUES,))
+    module = load_file(Path(TECHNIQUES) / file, file, (TECHNIQUES,))
     return module, next(one for one in module.functions if one.name == inner)
 
 
 def _bound(text: str, slot: Function) -> tuple[Module, Function]:
     if "(" not in text:
-        return find(text, slot, TECHNIQUES)
+        return find(text, slot, str(TECHNIQUES))
     module = check(parse(text, "slot.sss"), text)
     return module, module.functions[-1]
 

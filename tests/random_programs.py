@@ -91,7 +91,7 @@ class Programs:
         if kind in (1, 2):
             return self.random.choice([*self.ints, *self.counters, "n"])
         if kind == 3:
-            return f"int({self.number(0)})"
+            return f"int({self.random.choice(self.floats)})"
         variable = self.random.choice([*self.ints, *self.counters])
         return f"({self.whole(depth - 1)} {self.random.choice('+-*/%')} {variable})"
 

@@ -25,7 +25,9 @@ def checkout(folder: Path, programs: Path) -> Reader:
     for name in COPIED:
         source = ROOT / name
         if source.is_dir():
-            shutil.copytree(source, folder / name, ignore=shutil.ignore_patterns("__pycache__", ".*_cache", "snapshots"))
+            shutil.copytree(
+                source, folder / name, ignore=shutil.ignore_patterns("__pycache__", ".*_cache", "snapshots")
+            )
         else:
             shutil.copy(source, folder / name)
     environment = {"PYTHONPATH": str(folder / "src"), "SSSGEN_CACHE": str(folder / "cache")}
@@ -50,7 +52,9 @@ def test_add_a_target(tmp_path: Path, compiler: Callable[[str], Any]) -> None:
     compiler("glslang")
     environment = tmp_path / "environment"
     venv.create(environment, with_pip=True)
-    (environment / "bin" / "sssgen").symlink_to(programs(tmp_path / "programs", str(environment / "bin" / "python")) / "sssgen")
+    (environment / "bin" / "sssgen").symlink_to(
+        programs(tmp_path / "programs", str(environment / "bin" / "python")) / "sssgen"
+    )
     (packages,) = (environment / "lib").glob("python*/site-packages")
     (packages / "outer.pth").write_text(f"{sysconfig.get_path('purelib')}\n", encoding="utf-8")  # lark, jinja2
     reader = checkout(tmp_path / "checkout", environment / "bin")
@@ -60,7 +64,9 @@ def test_add_a_target(tmp_path: Path, compiler: Callable[[str], Any]) -> None:
     for step in steps:
         reader.follow(step)
     after = reader.run("sssgen list targets")[0]
-    assert {line.split()[0] for line in after.splitlines()} == {line.split()[0] for line in before.splitlines()} | {"vulkan"}
+    assert {line.split()[0] for line in after.splitlines()} == {line.split()[0] for line in before.splitlines()} | {
+        "vulkan"
+    }
     reflection = (reader.folder / "out" / "vulkan" / "paper_lantern.vulkan.reflection.json").read_text("utf-8")
     assert '"binding": {"group": 1, "texture": 1}' in reflection and '"offset": 0' in reflection
 

@@ -8,30 +8,52 @@ from __future__ import annotations
 
 import keyword
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
-from execute import HEIGHT, TARGETS, Backend, Call, Uniforms, backend
-from test_pitfalls import program as pitfalls
-from validate import code
 
 import sssgen
-from sssgen.compiler import transpile
+from against_numpy import (
+    DTYPES,
+    TEXTURES,
+    arguments,
+    differences,
+    drawn_beside_textures,
+    pixels,
+    shape,
+    textures,
+    transpiled,
+)
+from against_numpy import drawn as drawn_freely
+from execute import HEIGHT, TARGETS, Backend, Call, Uniforms, backend
 from sssgen.harness.compilers import CompilerMissing
 from sssgen.ir import signatures
 from sssgen.ir.intrinsics import BUILTINS, Builtin
-from sssgen.ir.nodes import Function, Module
-from sssgen.ir.types import BY_NAME, FLOAT, INT, VEC2, VEC4, Matrix, Sampler, Scalar, Type, Vector, components, kind_of, spell
+from sssgen.ir.types import (
+    BY_NAME,
+    FLOAT,
+    INT,
+    VEC2,
+    VEC4,
+    Matrix,
+    Sampler,
+    Scalar,
+    Type,
+    Vector,
+    components,
+    kind_of,
+    spell,
+)
 from sssgen.lang.loader import load_file, load_text
 from sssgen.targets import numpy_runtime as rt
-from sssgen.targets.numpy_textures import Texture
+from test_pitfalls import program as pitfalls
+from validate import code
 
 LANES = 12
-DTYPES = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.bool_}
 
 # Where random arguments come from: (low, high) for all, or one for each; else [-2, 2].
 RANGES: dict[str, Any] = {
@@ -102,41 +124,43 @@ def from_vectors(row: Builtin, params: tuple[Type, ...]) -> tuple[list[tuple[Any
     scalars = [Scalar(kind_of(type_)) for type_ in params]
     alike = [args for args, _ in given if all(map(fits, args, scalars))]
     if row.signatures[0].startswith("gen") and any(isinstance(type_, Vector) for type_ in params):
-        for lane in range(len(alike)):
-            lanes.append(tuple(
+        lanes += [
+            tuple(
                 tuple(alike[(lane + part) % len(alike)][index] for part in range(type_.size))
                 if isinstance(type_, Vector) else alike[lane][index]
                 for index, type_ in enumerate(params)
-            ))  # fmt: skip
+            )
+            for lane in range(len(alike))
+        ]  # fmt: skip
     return lanes, [result for _, result in own]
 
 
 def drawn(name: str, index: int, type_: Type, rng: np.random.Generator) -> Any:
     """A random argument, (components…)."""
-    kind, shape = kind_of(type_), (type_.size, type_.size) if isinstance(type_, Matrix) else (components(type_),)
+    kind, size = kind_of(type_), shape(type_) or (1,)
     if kind == "bool":
-        return rng.random(shape) < 0.5
+        return rng.random(size) < 0.5
     if name == "unpackHalf2x16":
         return rng.uniform(-2.0, 2.0, 2).astype(np.float16).view(np.uint32)
     if name.endswith("BitsToFloat"):
-        return rng.uniform(-2.0, 2.0, shape).astype(np.float32).view(DTYPES[kind])
+        return rng.uniform(-2.0, 2.0, size).astype(np.float32).view(DTYPES[kind])
     if kind in ("int", "uint"):
         low, high = (-9, 9) if kind == "int" else (0, 2**32)
         if name in ("texelFetch", "textureSize"):  # the same level for all lanes: not all drivers know more
-            return np.ones(shape, np.int32) if type_ == INT else rng.integers(0, 2, shape)
-        elif name == "clamp" and index > 0:
+            return np.ones(size, np.int32) if type_ == INT else rng.integers(0, 2, size)
+        if name == "clamp" and index > 0:
             low, high = (low, high // 4) if index == 1 else (high // 4, high)
-        return rng.integers(low, high, shape)
+        return rng.integers(low, high, size)
     if isinstance(type_, Matrix):
-        return 2.0 * np.eye(type_.size) + rng.uniform(-0.5, 0.5, shape)
+        return 2.0 * np.eye(type_.size) + rng.uniform(-0.5, 0.5, size)
     ranges = RANGES.get(name, (-2.0, 2.0))
     if isinstance(ranges[0], tuple):
         index -= name.startswith("texture")
         ranges = ranges[min(index, len(ranges) - 1)]
-    value = rng.uniform(*ranges, shape)
-    if name == "textureLod" and shape == (3,):
+    value = rng.uniform(*ranges, size)
+    if name == "textureLod" and size == (3,):
         value[1] = 3.0  # to the middle of a cube's face
-    if index in UNIT.get(name, ()) and shape != (1,):
+    if index in UNIT.get(name, ()) and size != (1,):
         value /= np.linalg.norm(value)
     return value.astype(np.float16) if name == "packHalf2x16" else value
 
@@ -154,23 +178,17 @@ def overloads() -> list[Overload]:
             args: list[Any] = []
             for index, type_ in enumerate(params):
                 if isinstance(type_, Sampler):
-                    args.append({"2D": "map", "3D": "volume", "Cube": "cube"}[type_.dim])
+                    args.append(TEXTURES[type_.dim])
                     continue
-                value = np.zeros((*_shape(type_), LANES), DTYPES[kind_of(type_)])
+                value = np.zeros((*shape(type_), LANES), DTYPES[kind_of(type_)])
                 for lane in range(LANES):
                     given = lanes[lane][index] if lane < len(lanes) else drawn(row.name, index, type_, rng)
                     with np.errstate(over="ignore"):
-                        value[..., lane] = np.asarray(given).astype(value.dtype).reshape(_shape(type_))
+                        value[..., lane] = np.asarray(given).astype(value.dtype).reshape(shape(type_))
                 args.append(value)
             assert plain
             found.append(Overload(row, params, result, tuple(args), tuple(vectors)))
     return found
-
-
-def _shape(type_: Type) -> tuple[int, ...]:
-    if isinstance(type_, Matrix):
-        return type_.size, type_.size
-    return (type_.size,) if isinstance(type_, Vector) else ()
 
 
 def over_the_image(overload: Overload) -> Overload:
@@ -178,12 +196,12 @@ def over_the_image(overload: Overload) -> Overload:
 
     Levels between, and the coarse and the fine derivatives of anything else, are an implementation's own.
     """
-    x, y = np.arange(LANES) % (LANES // HEIGHT) - 2.0, np.arange(LANES) // (LANES // HEIGHT) - 0.5
+    x, y = (places - middle for places, middle in zip(pixels(LANES), (2.0, 0.5), strict=True))
     row, first = overload.row, overload.params[0]
     if not isinstance(first, Sampler):
         slope = 0.5 * x - 0.25 * y
         args = [slope * np.arange(1, components(type_) + 1)[:, None] for type_ in overload.params]
-        return overload._replace(args=tuple(arg.reshape(*_shape(first), LANES).astype(np.float32) for arg in args))
+        return overload._replace(args=tuple(arg.reshape(*shape(first), LANES).astype(np.float32) for arg in args))
     sizes = np.array(textures()[str(overload.args[0])].size()).reshape(-1, 1)
     cube = first.dim == "Cube"
     steps = np.zeros((2, 3 if cube else len(sizes), LANES))
@@ -191,23 +209,10 @@ def over_the_image(overload: Overload) -> Overload:
     coord = steps[0] * x + steps[1] * y + 0.3
     if cube:
         coord, steps = np.array([coord[0], np.full(LANES, 2.0), coord[1]]), 4.0 * steps[:, [0, 2, 1]]
-    given = [coord.astype(np.float32), *steps.astype(np.float32)] if row.name == "textureGrad" else [coord.astype(np.float32)]
-    bias = [np.full(LANES, 0.5, np.float32)] if overload.params[-1] == FLOAT else []
-    return overload._replace(args=(overload.args[0], *given, *bias))
-
-
-@cache
-def textures() -> dict[str, Texture]:
-    rng = np.random.default_rng(11)
-
-    def noise(*shape: int) -> np.ndarray[Any, Any]:
-        return rng.integers(0, 256, (*shape, 4)).astype(np.float16) / np.float16(256.0)
-
-    return {
-        "map": Texture(noise(8, 16), mipmaps=True),
-        "volume": Texture(noise(4, 4, 8), mipmaps=True),
-        "cube": Texture(noise(6, 4, 4), dim="Cube", mipmaps=True),
-    }
+    given = [coord, *steps] if row.name == "textureGrad" else [coord]
+    if overload.params[-1] == FLOAT:
+        given.append(np.full(LANES, 0.5))
+    return overload._replace(args=(overload.args[0], *[arg.astype(np.float32) for arg in given]))
 
 
 # Running and comparing
@@ -278,74 +283,19 @@ def test_builtins(gpu: Backend) -> None:
     assert not wrong, "\n".join([f"{len(wrong)} of {len(known)}", *wrong])
 
 
-# Whole functions, against the text that the numpy target makes of them
-
-
-def arguments(function: Function, rng: np.random.Generator) -> tuple[Any, ...]:
-    """Random arguments; beside a texture, coordinates are linear over the image and the rest constant in a quad."""
-    textured = any(isinstance(param.type, Sampler) for param in function.params)
-    x, y = np.arange(LANES) % (LANES // HEIGHT), np.arange(LANES) // (LANES // HEIGHT)
-    args: list[Any] = []
-    for param in function.params:
-        type_, shape = param.type, (*_shape(param.type), LANES)
-        if isinstance(type_, Sampler):
-            args.append({"2D": "map", "3D": "volume", "Cube": "cube"}[type_.dim])
-        elif kind_of(type_) == "bool":
-            args.append(rng.random(shape) < 0.5)
-        elif kind_of(type_) in ("int", "uint"):
-            args.append(rng.integers(1, 10 if kind_of(type_) == "int" else 2**16, shape).astype(DTYPES[kind_of(type_)]))
-        elif param.name == "uv":
-            args.append(np.array([x / 8.0 + 0.3, y / 4.0 + 0.4], np.float32))
-        elif textured:
-            args.append(rng.uniform(-2.0, 2.0, shape).astype(np.float32)[..., x // 2])
-        else:
-            args.append(rng.uniform(-2.0, 2.0, shape).astype(np.float32))
-    return tuple(args)
-
-
-def with_numpy(text: str, name: str, args: tuple[Any, ...]) -> np.ndarray[Any, Any]:
-    """The function's result in float64; 0 in the lanes that it discards."""
-    names: dict[str, Any] = {}
-    exec(compile(text, "numpy", "exec"), names)
-    given = [textures()[a] if isinstance(a, str) else a.astype(np.float64) if a.dtype.kind == "f" else a for a in args]
-    with rt.precision("float64"), rt.grid(HEIGHT, LANES // HEIGHT):
-        result = names[name](*given)
-    value, gone = result if isinstance(result, tuple) else (result, False)
-    return np.where(gone, 0, value)
-
-
-def differences(
-    gpu: Backend, module: Module, functions: Sequence[tuple[str, Function]], tolerance: float = 2e-5
-) -> list[str]:
-    """What a back end gives of functions that is not what the numpy target gives."""
-    rng = np.random.default_rng(3)
-    args = [arguments(function, rng) for _, function in functions]
-    calls = [
-        Call(function.name, tuple(param.type for param in function.params), function.result, given)
-        for (_, function), given in zip(functions, args, strict=True)
-    ]
-    oracle_text, wrong = transpiled(module, "numpy"), []
-    for (title, function), call, got in zip(functions, calls, gpu.run(code(module, gpu.target.name), calls, textures()), strict=True):
-        wanted = np.broadcast_to(with_numpy(oracle_text, function.name, call.args), got.shape)
-        if wanted.dtype.kind != "f":
-            good = got == wanted
-        else:
-            limit = 2.0**-6 if any(isinstance(arg, str) for arg in call.args) else tolerance
-            good = np.isclose(got, wanted, limit, limit, equal_nan=True)
-        for lane in np.flatnonzero(~good.reshape(-1, LANES).all(axis=0))[:1]:
-            at = [arg if isinstance(arg, str) else arg[..., lane].tolist() for arg in call.args]
-            wrong.append(f"{title}\n{at}: {got[..., lane]} is not {wanted[..., lane]}")
-    return wrong
-
-
-@cache
-def transpiled(module: Module, target: str) -> str:
-    return next(text for name, text in transpile(module, target, "cases").files.items() if not name.endswith(".json"))
+# Whole functions
 
 
 def test_pitfalls(gpu: Backend) -> None:
+    """Each case's function, against the text that the numpy target makes of it."""
     module, functions = pitfalls()
-    wrong = differences(gpu, module, [(case.source, function) for case, function in functions])
+    calls = []
+    for case, function in functions:
+        params = tuple(param.type for param in function.params)
+        textured = any(isinstance(type_, Sampler) for type_ in params)
+        args = arguments(function, drawn_beside_textures if textured else drawn_freely, LANES)
+        calls.append((case.source, Call(function.name, params, function.result, args)))
+    wrong = differences(gpu, module, calls, textures())
     assert not wrong, "\n\n".join(wrong)
 
 
@@ -427,4 +377,4 @@ def test_uniforms_lie_where_the_reflection_says(gpu: Backend, tmp_path: Path) ->
 def in_layout(type_: Type, is_array: bool, numbers: tuple[float, ...]) -> np.ndarray[Any, Any]:
     """A uniform's numbers as the numpy target has them, in one lane."""
     dtype = np.float64 if kind_of(type_) == "float" else DTYPES[kind_of(type_)]
-    return np.array(numbers, dtype).reshape(*([-1] if is_array else []), *_shape(type_), 1)
+    return np.array(numbers, dtype).reshape(*([-1] if is_array else []), *shape(type_), 1)

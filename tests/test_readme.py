@@ -1,4 +1,4 @@
-"""What the documents show is so: files, emitted text, output, errors, sessions, links, and the examples they speak of."""
+"""What the documents show is so (files, emitted text, output, errors, sessions, links), and their examples run."""
 
 from __future__ import annotations
 
@@ -58,7 +58,14 @@ def test_the_readme_begins_with_two_commands() -> None:
 def test_the_table_of_targets() -> None:
     table = read(README).partition("\n## Targets\n")[2].partition("\n## ")[0]
     rows = dict(re.findall(r"^\| `([\w-]+)` \|.*\| ([^|]*) \|$", table, re.MULTILINE))
-    words = {"gl": "OpenGL driver", "glslang": "glslang", "dxc": "DXC", "naga": "naga", "tint": "Tint", "python": "Python"}
+    words = {
+        "gl": "OpenGL driver",
+        "glslang": "glslang",
+        "dxc": "DXC",
+        "naga": "naga",
+        "tint": "Tint",
+        "python": "Python",
+    }
     words |= {"unity": "C preprocessor"}
     assert list(rows) == [name for name in rows if name in descriptor.names()]
     for name in descriptor.names():
@@ -168,9 +175,10 @@ for (const stem of stems) {
   const ambient = [0, 0, 0];
   material.view({ ...camera(3, 1), time: 1, ambient, lights, model: identity, inverseModel: identity });
   const encoder = device.createCommandEncoder();
+  const depth = { depthClearValue: 1, depthLoadOp: 'clear', depthStoreOp: 'discard' };
   const pass = encoder.beginRenderPass({
     colorAttachments: [{ view: made('rgba8unorm-srgb'), loadOp: 'clear', storeOp: 'store' }],
-    depthStencilAttachment: { view: made('depth24plus'), depthClearValue: 1, depthLoadOp: 'clear', depthStoreOp: 'discard' },
+    depthStencilAttachment: { view: made('depth24plus'), ...depth },
   });
   material.draw(pass, sphere(device, 4, 8));
   pass.end();

@@ -11,7 +11,6 @@ import re
 from collections.abc import Callable
 
 import pytest
-from validate import TARGETS, module_of, validate_all
 
 from sssgen.compiler import transpile
 from sssgen.harness.compilers import Source
@@ -20,6 +19,7 @@ from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Module
 from sssgen.ir.signatures import overload, parse
 from sssgen.ir.types import spell
+from validate import TARGETS, module_of, validate_all
 
 SAME = """
 radians(x); radians(x3); degrees(x); degrees(x3); sin(x); sin(x3); cos(x); cos(x3); tan(x); tan(x3);
@@ -203,9 +203,9 @@ CASES = {
                 uvec2 bits = floatBitsToUint(abs(x));
                 uvec2 normal = (bits - 939520001u + ((bits >> 13u) & 1u)) >> 13u;
                 uvec2 tiny = uvec2(roundEven(abs(x) * 16777216.0));
-                uvec2 half_bits = uvec2(bits.x < 947912704u ? tiny.x : normal.x, bits.y < 947912704u ? tiny.y : normal.y);
-                half_bits |= (floatBitsToUint(x) >> 16u) & 32768u;
-                return half_bits.x | (half_bits.y << 16u);
+                uvec2 halves = uvec2(bits.x < 947912704u ? tiny.x : normal.x, bits.y < 947912704u ? tiny.y : normal.y);
+                halves |= (floatBitsToUint(x) >> 16u) & 32768u;
+                return halves.x | (halves.y << 16u);
             }
 
             return packHalf2x16_(x2);
@@ -218,9 +218,9 @@ CASES = {
                 uint2 bits = asuint(abs(x));
                 uint2 normal = (bits - 939520001u + ((bits >> 13u) & 1u)) >> 13u;
                 uint2 tiny = (uint2)round(abs(x) * 16777216.0);
-                uint2 half_bits = uint2(bits.x < 947912704u ? tiny.x : normal.x, bits.y < 947912704u ? tiny.y : normal.y);
-                half_bits |= (asuint(x) >> 16u) & 32768u;
-                return half_bits.x | (half_bits.y << 16u);
+                uint2 halves = uint2(bits.x < 947912704u ? tiny.x : normal.x, bits.y < 947912704u ? tiny.y : normal.y);
+                halves |= (asuint(x) >> 16u) & 32768u;
+                return halves.x | (halves.y << 16u);
             }
 
             return packHalf2x16_(x2);
@@ -241,12 +241,12 @@ CASES = {
     "unpackHalf2x16(u)": {
         "glsl": """
             vec2 unpackHalf2x16_(uint x) {
-                uvec2 half_bits = uvec2(x & 65535u, x >> 16u);
-                uvec2 bits = half_bits & 32767u;
+                uvec2 halves = uvec2(x & 65535u, x >> 16u);
+                uvec2 bits = halves & 32767u;
                 vec2 normal = uintBitsToFloat((bits << 13u) + 939524096u);
                 vec2 tiny = vec2(bits) / 16777216.0;
                 vec2 size = vec2(bits.x < 1024u ? tiny.x : normal.x, bits.y < 1024u ? tiny.y : normal.y);
-                return uintBitsToFloat(floatBitsToUint(size) | ((half_bits & 32768u) << 16u));
+                return uintBitsToFloat(floatBitsToUint(size) | ((halves & 32768u) << 16u));
             }
 
             return unpackHalf2x16_(u);
@@ -256,12 +256,12 @@ CASES = {
         "glsl-es": "unpackHalf2x16(u)",
         "dx9": """
             float2 unpackHalf2x16_(uint x) {
-                uint2 half_bits = uint2(x & 65535u, x >> 16u);
-                uint2 bits = half_bits & 32767u;
+                uint2 halves = uint2(x & 65535u, x >> 16u);
+                uint2 bits = halves & 32767u;
                 float2 normal = asfloat((bits << 13u) + 939524096u);
                 float2 tiny = (float2)bits / 16777216.0;
                 float2 size = float2(bits.x < 1024u ? tiny.x : normal.x, bits.y < 1024u ? tiny.y : normal.y);
-                return asfloat(asuint(size) | ((half_bits & 32768u) << 16u));
+                return asfloat(asuint(size) | ((halves & 32768u) << 16u));
             }
 
             return unpackHalf2x16_(u);

@@ -8,13 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from oracle import Technique, technique
+from oracle import UP, Array, close, lowbias32, rng, technique, unit, units
 from sssgen.targets.numpy_textures import Texture
 
-Array = np.ndarray[Any, Any]
-close = np.testing.assert_allclose
-
-UP = np.array([0.0, 1.0, 0.0])
 ORIGIN = np.zeros(3)
 HALF_SPACE = "ground_plane"
 VOID = "float nothing(world_position p) { return 1000.0; }"
@@ -23,16 +19,6 @@ TWO_SLABS = """
 float slab_between(float y, float low, float high) { return max(low - y, y - high); }
 float two_slabs(world_position p) { return min(slab_between(p.y, 0.0, 0.3), slab_between(p.y, 0.7, 1.2)); }
 """
-
-
-def rng() -> np.random.Generator:
-    return np.random.default_rng(7)
-
-
-def units(count: int) -> Array:
-    """Directions in all directions."""
-    v = rng().normal(size=(count, 3))
-    return v / np.linalg.norm(v, axis=1, keepdims=True)
 
 
 def slab(thickness: float) -> dict[str, Any]:
@@ -45,18 +31,11 @@ def torus_distance(p: Array) -> Array:
 
 
 def on_torus(count: int) -> tuple[Array, Array]:
-    """Points on that torus and their normals."""
+    """Points on that torus, and normals a little off (the exact ones all go through the tube's middle)."""
     a, b = rng().uniform(0.0, 2.0 * np.pi, (2, count))
     n = np.stack([np.cos(a) * np.cos(b), np.sin(b), np.sin(a) * np.cos(b)], axis=1)
-    return np.stack([np.cos(a), 0 * a, np.sin(a)], axis=1) + 0.25 * n, n
-
-
-def lowbias32(x: int) -> int:
-    x ^= x >> 16
-    x = x * 0x7FEB352D & 0xFFFFFFFF
-    x ^= x >> 15
-    x = x * 0x846CA68B & 0xFFFFFFFF
-    return x ^ x >> 16
+    ring = np.stack([np.cos(a), 0 * a, np.sin(a)], axis=1)
+    return ring + 0.25 * n, unit(n + 0.8 * units(count))
 
 
 # Taps along the normal
@@ -88,9 +67,10 @@ def test_seed_0_attenuated_reads_matter_where_there_is_none() -> None:
     d = 0.4 * np.arange(30) / 30
     p, n = on_torus(50)
     taps = torus_distance((p[None] - n[None] * d[:, None, None]).reshape(-1, 3)).reshape(30, -1)
-    close(technique("seed0_attenuated", body_distance="torus")(P=p, N=n), np.mean(d[:, None] + weights[:, None] * taps, 0))
-    # "the mean, not brought to 0..1, is 0.22844 th": the right form of the source's mean
-    right = (weights[:, None] * (d[:, None] + taps)).sum(axis=0) / weights.sum()
+    expected = np.mean(d[:, None] + weights[:, None] * taps, axis=0)
+    close(technique("seed0_attenuated", body_distance="torus")(P=p, N=n), expected)
+    # "the mean, not brought to 0..1, is 0.22844 th": the source's mean as it should be, over the 29 taps that count
+    right = (weights[:, None] * (d[:, None] + taps))[1:].sum(axis=0) / weights[1:].sum()
     close(right, 0.22844 * technique("thinness_attenuated", body_distance="torus")(P=p, N=n), rtol=2e-5)
 
 
@@ -158,9 +138,9 @@ def test_hemisphere_of_rays(thickness: float) -> None:
     count = 128
     slab_along = technique("thinness_hemisphere", body_distance="box")(P=ORIGIN, N=UP, rays=count, **slab(thickness))
     close(slab_along, 1.0 - (thickness / 0.4) ** 2, atol=0.02)
-    ball = technique("thinness_hemisphere", body_distance="sphere")(P=n * 0.5, N=n, radius=0.5, rays=count, reach=thickness)
+    through = technique("thinness_hemisphere", body_distance="sphere")
+    ball = through(P=n * 0.5, N=n, radius=0.5, rays=count, reach=thickness)
     close(ball, thickness**2, atol=0.02)
-    assert np.ptp(ball) < 0.03  # the same from everywhere
 
 
 def test_hemisphere_counts_rays_that_leave() -> None:
@@ -169,7 +149,8 @@ def test_hemisphere_counts_rays_that_leave() -> None:
     rays = 24
     i = np.arange(rays)
     z = (i + 0.5) / rays
-    spiral = np.stack([np.sqrt(1 - z * z) * np.cos(2.3999632 * i), np.sqrt(1 - z * z) * np.sin(2.3999632 * i), z], axis=1)
+    r = np.sqrt(1 - z * z)
+    spiral = np.stack([r * np.cos(2.3999632 * i), r * np.sin(2.3999632 * i), z], axis=1)
     cosine = np.abs(n @ spiral.T)
     expected = (cosine * (2.0 * 0.3 * cosine < 0.4)).sum(axis=1) / cosine.sum(axis=1)
     margin = np.abs(0.6 * cosine - 0.4).min(axis=1) > 0.002  # no ray that ends just at the surface
@@ -232,8 +213,7 @@ def test_mean_way_of_the_light_in_a_plate(degrees: float, scale: float) -> None:
 
 def test_mean_way_opposite_the_eye_is_the_chord() -> None:
     n = units(40)
-    v = n + 0.9 * units(40)[::-1]
-    v /= np.linalg.norm(v, axis=1, keepdims=True)
+    v = unit(n + 0.9 * units(40)[::-1])
     march = technique("march_distance_texture", distance_at="sphere:sphere_object")
     box = {"box_min": (-1.2,) * 3, "box_max": (1.2,) * 3}
     chord = ball_chord(n, -v, 1.0)
@@ -292,9 +272,10 @@ def test_seed_2_as_published() -> None:
     values = {"radius": 0.5, "stored_range": 1.2, "march_length": 0.5, **box}
     close(march(P_object=p, V_object=v, L_object=light, **values), expected, atol=1e-12)
 
-    down = {"P_object": -UP, "V_object": UP, "L_object": -UP, "box_min": (-4.0, -4.0, -4.0), "box_max": (4.0, 4.0, 4.0)}
-    small, large = (march(**down, radius=radius, center=(0.0, -radius - 1.0, 0.0)) for radius in (0.7, 1.5))
-    assert small > large > 0.0
+    depths = np.array([0.1, 0.4, 0.8])[:, None]
+    ball = {"radius": 1.0, "steps": 1, "box_min": (-1.5,) * 3, "box_max": (1.5,) * 3}
+    deep = march(P_object=UP * (1.0 - depths), V_object=UP, L_object=UP, **ball)
+    close(deep, [0.45, 0.3, 0.1])
 
 
 # Maps
@@ -313,7 +294,7 @@ def test_maps_are_read_at_the_texel() -> None:
     }
     for name, (picture, values, factor) in maps.items():
         close(technique(name)(uv=uv, **{picture: texels}, **values), factor * red)
-        close(technique(name)(uv=uv + [0.5 / 8, 0.0], **{picture: texels}, **values), factor * halfway)
+        close(technique(name)(uv=uv + np.array([0.5 / 8, 0.0]), **{picture: texels}, **values), factor * halfway)
 
 
 def test_constant_thickness() -> None:
@@ -401,11 +382,12 @@ def test_conversions_invert_each_other(there: str, back: str) -> None:
 
 def test_a_slab_comes_back_from_its_thinness() -> None:
     """Within 7 % of reach at 29 taps, as its notes say; the more taps, the nearer."""
-    given = np.linspace(0.0, 0.8, 81)
+    given = np.linspace(0.0, 0.8, 1001)
+    half = np.stack([0 * given, given / 2, 0 * given], axis=1)
     read = technique("thinness_uniform", body_distance="box")
     errors = []
     for taps in (29, 64):
-        th = [float(read(P=ORIGIN, N=UP, taps=taps, **slab(d))) for d in given]
+        th = read(P=ORIGIN, N=UP, taps=taps, center=-half, half_size=half + np.array([50.0, 0.0, 50.0]))
         errors.append(np.abs(convert("slab_from_thinness", th, reach=0.4) - given).max() / 0.4)
     assert errors[1] < errors[0] < 0.07
-    assert errors[0] > 0.05  # the notes' number is not too pessimistic either
+    assert errors[0] > 0.06  # the notes' number is not too pessimistic either

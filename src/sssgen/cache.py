@@ -5,69 +5,92 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
 from collections.abc import Callable
-from pathlib import Path
 
 from .ir.typed import Any
 
-_folder: Path | None = None
+try:  # the modules behind pickle and hashlib, without what these import
+    import _blake2
+    import _pickle
+except ImportError:
+    import hashlib as _blake2  # type: ignore[no-redef]
+    import pickle as _pickle  # type: ignore[no-redef]
+
+_folder = ""
 _known = False
 
 
-def folder() -> Path | None:
-    """The cache folder, made if need be; None where there is none to write to."""
+def folder() -> str:
+    """The cache folder, made if need be; '' where there is none to write to."""
     global _folder, _known
     if not _known:
         _folder, _known = _find(), True
     return _folder
 
 
-def _find() -> Path | None:
-    named = os.environ.get("SSSGEN_CACHE")
-    if named is not None:
-        path = Path(named) if named else None
-    elif sys.platform == "win32":
-        path = Path(os.environ.get("LOCALAPPDATA", Path.home())) / "sssgen" / "cache"
-    else:
-        path = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "sssgen"
-    if path is None:
-        return None
+def _find() -> str:
+    path = os.environ.get("SSSGEN_CACHE")
+    if path is None and sys.platform == "win32":
+        path = os.path.join(os.environ.get("LOCALAPPDATA") or os.path.expanduser("~"), "sssgen", "cache")
+    elif path is None:
+        path = os.path.join(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"), "sssgen")
+    if path == "" or path.startswith("~"):  # turned off, or there is no home
+        return ""
     try:
-        path.mkdir(mode=0o700, parents=True, exist_ok=True)
-    except (OSError, RuntimeError):
-        return None
-    return path if os.access(path, os.W_OK) else None
-
-
-def write(path: Path, data: bytes) -> None:
-    """Writes a cache entry whole or not at all; a full disk or a race with another process is no error."""
-    temporary = path.with_name(f"{path.name}.{os.getpid()}.tmp")
-    try:
-        temporary.write_bytes(data)
-        temporary.replace(path)
+        os.makedirs(path, mode=0o700, exist_ok=True)
     except OSError:
-        temporary.unlink(missing_ok=True)
+        return ""
+    return path if os.access(path, os.W_OK) else ""
+
+
+def read(name: str) -> bytes:
+    """A cache entry, or nothing."""
+    if folder():
+        with contextlib.suppress(OSError), open(os.path.join(folder(), name), "rb") as file:
+            return file.read()
+    return b""
+
+
+def write(name: str, data: bytes) -> None:
+    """Writes a cache entry whole or not at all; a full disk or a race with another process is no error."""
+    if not folder():
+        return
+    path = os.path.join(folder(), name)
+    temporary = f"{path}.{os.getpid()}.tmp"
+    try:
+        with open(temporary, "wb") as file:
+            file.write(data)
+        os.replace(temporary, path)
+    except OSError:
+        with contextlib.suppress(OSError):
+            os.unlink(temporary)
 
 
 def kept(name: str, stamp: object, make: Callable[[], Any]) -> Any:
-    """What `make` gives: plain data or code, from the entry `name` if that was made under the same stamp."""
-    import marshal
-
-    place = folder()
-    if place is None:
-        return make()
-    path = place / name
-    try:
-        known, value = marshal.loads(path.read_bytes())
-        if known == stamp:
-            return value
-    except (OSError, ValueError, EOFError, TypeError):  # none yet, or a damaged one
-        pass
-    value = make()
-    write(path, marshal.dumps((stamp, value)))
+    """What `make` gives, from the entry `name` if that was made under the same stamp. It is something to pickle."""
+    known, value = unpickled(read(name)) or (None, None)
+    if known != stamp:
+        value = make()
+        write(name, pickled((stamp, value)))
     return value
+
+
+def unpickled(data: bytes) -> Any:
+    """What a cache entry holds; None for a damaged one."""
+    if not data:
+        return None
+    try:
+        return _pickle.loads(data)
+    except Exception:  # it is made again, whatever is wrong with it
+        return None
+
+
+def pickled(value: object) -> bytes:
+    """A value as a cache entry."""
+    return _pickle.dumps(value, protocol=5)
 
 
 def stamp(place: str) -> list[tuple[str, int, int]]:
@@ -79,7 +102,7 @@ def stamp(place: str) -> list[tuple[str, int, int]]:
         return found
     for entry in entries:
         if entry.is_dir():
-            found += stamp(entry.path)
+            found += stamp(entry.path) if entry.name != "__pycache__" else ()
         else:
             status = entry.stat()
             found.append((entry.path, status.st_size, status.st_mtime_ns))
@@ -88,6 +111,4 @@ def stamp(place: str) -> list[tuple[str, int, int]]:
 
 def digest(text: str) -> str:
     """A short name for a text."""
-    from hashlib import blake2b
-
-    return blake2b(text.encode(), digest_size=16).hexdigest()
+    return _blake2.blake2b(text.encode("utf-8", "surrogatepass"), digest_size=16).hexdigest()

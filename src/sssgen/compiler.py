@@ -5,8 +5,8 @@ The part up to `legalise` is the same for every target of one kind and is done o
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
-from pathlib import Path
 
 from . import library
 from .diagnostics import Diagnostic, SssgenError
@@ -67,7 +67,10 @@ def targets() -> dict[str, Target]:
 
 
 def compile(  # noqa: A001 - the library's verb, used as sssgen.compile
-    material: Material | str | Path, target: str, form: str = "shader", templates: Path | None = None
+    material: Material | str | os.PathLike[str],
+    target: str,
+    form: str = "shader",
+    templates: str | os.PathLike[str] | None = None,
 ) -> Compiled:
     """Compiles a material for a target.
 
@@ -94,7 +97,7 @@ def compile(  # noqa: A001 - the library's verb, used as sssgen.compile
     if known is not None and _middle_of(material, chosen) is not None:
         return known
     middle = _middle_of(material, chosen)
-    made = _finish(middle, chosen, form, templates, _about(material))
+    made = _finish(middle, chosen, form, os.fspath(templates) if templates else None, _about(material))
     if templates is None:
         if len(_compiled) >= _KEPT:
             _compiled.clear()
@@ -201,7 +204,7 @@ def _finish(
     middle: _Middle,
     target: Target,
     form: str,
-    templates: Path | None,
+    templates: str | None,
     about: About,
 ) -> Compiled:
     """The target's own part: parameters, legalise, names, printing, templates, reflection."""

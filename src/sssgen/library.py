@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import functools
+import os
 from collections.abc import Iterator
-from pathlib import Path
 
+from .data import posix, stem
 from .diagnostics import SssgenError, did_you_mean, failure
 from .ir.nodes import Function, Module, Uniform
 from .ir.typed import NamedTuple
 from .lang.loader import load_file
 
-TECHNIQUES = Path(__file__).parent / "techniques"
+TECHNIQUES = os.path.join(os.path.dirname(__file__), "techniques")
 
 ROLES = (
     "geometry",
@@ -32,7 +33,7 @@ class Technique(NamedTuple):
 
     name: str
     role: str
-    path: Path
+    path: str
     module: Module
     function: Function
     doc: dict[str, str]
@@ -55,21 +56,25 @@ class Technique(NamedTuple):
 
 
 @functools.cache
-def index() -> dict[str, Path]:
+def index() -> dict[str, str]:
     """Every technique of the library by name."""
     found = {}
-    for path in sorted(TECHNIQUES.glob("*/*.sss")):
-        if path.parent.name != "common":
-            found[path.stem] = path
+    for folder in sorted(os.listdir(TECHNIQUES)):
+        if folder != "common":
+            for name in sorted(os.listdir(os.path.join(TECHNIQUES, folder))):
+                if name.endswith(".sss"):
+                    found[name.removesuffix(".sss")] = os.path.join(TECHNIQUES, folder, name)
     return found
 
 
-def shown_name(path: Path) -> str:
+def folder_of(path: str) -> str:
+    """The name of the folder that a technique lies in: its role, if it has not said another."""
+    return os.path.basename(os.path.dirname(path))
+
+
+def shown_name(path: str) -> str:
     """A file's name in messages and reflection: library files by their place in the library."""
-    try:
-        return path.relative_to(TECHNIQUES).as_posix()
-    except ValueError:
-        return path.as_posix()
+    return posix(path.removeprefix(TECHNIQUES + os.sep))
 
 
 def load(name: str) -> Technique:
@@ -78,7 +83,7 @@ def load(name: str) -> Technique:
     Raises SssgenError for an unknown name or a faulty file.
     """
     if name.endswith((".sss", ".glsl")):
-        return load_path(Path(name))
+        return load_path(name)
     path = index().get(name)
     if path is None:
         raise failure(f"unknown technique '{name}'", did_you_mean(name, index()) or "see: sssgen list techniques")
@@ -86,18 +91,18 @@ def load(name: str) -> Technique:
 
 
 @functools.cache
-def load_path(path: Path) -> Technique:
+def load_path(path: str) -> Technique:
     """The technique that a file holds."""
-    shown = shown_name(path)
+    shown, name = shown_name(path), stem(path)
     module = load_file(path, shown, (TECHNIQUES,))
-    function = next((f for f in reversed(module.functions) if f.name == path.stem and f.body is not None), None)
+    function = next((f for f in reversed(module.functions) if f.name == name and f.body is not None), None)
     if function is None:
-        raise failure(f"the file has no function '{path.stem}'", "a technique is named like its file", shown)
+        raise failure(f"the file has no function '{name}'", "a technique is named like its file", shown)
     doc = sections(function.doc)
-    role = doc.get("role", path.parent.name)
+    role = doc.get("role", folder_of(path))
     if role not in ROLES:
         raise failure(f"unknown role '{role}'", did_you_mean(role, ROLES) or f"roles: {', '.join(ROLES)}", shown)
-    return Technique(path.stem, role, path, module, function, doc)
+    return Technique(name, role, path, module, function, doc)
 
 
 def load_all() -> Iterator[Technique]:

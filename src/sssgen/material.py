@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import os
 import re
-from pathlib import Path
 
-from .data import folder
+from .data import place, posix
 from .diagnostics import did_you_mean, failure
 from .ir.nodes import Function, Module, Span
-from .ir.typed import NamedTuple
+from .ir.typed import TYPE_CHECKING, NamedTuple
 from .lang.loader import read_text
 from .library import Technique
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 
 class Binding(NamedTuple):
@@ -46,9 +49,17 @@ class Material(NamedTuple):
     """lit or unlit"""
     stages: tuple[Stage, ...]
     """In the order they run (the roles' order, then the file's)."""
-    path: Path
+    file: str
+    """The path of its file."""
     alpha_mode: str = "opaque"
     """opaque, mask or blend, as in glTF: what the engine does with the alpha that techniques write"""
+
+    @property
+    def path(self) -> Path:
+        """The path of its file, with all that a Path can do."""
+        from pathlib import Path
+
+        return Path(self.file)
 
 
 SHADINGS = ("lit", "unlit")
@@ -59,31 +70,31 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
 _DEVICES = {"con", "prn", "aux", "nul", *(f"{port}{n}" for port in ("com", "lpt") for n in range(1, 10))}
 
 
-def examples() -> dict[str, Path]:
+def examples() -> dict[str, str]:
     """The example materials that come with the project, by name."""
-    found = sorted(folder("examples").glob("*/*.toml"))
-    return {path.stem: path for path in found if path.stem == path.parent.name}
+    folder = place("examples")
+    paths = {name: os.path.join(folder, name, f"{name}.toml") for name in sorted(os.listdir(folder))}
+    return {name: path for name, path in paths.items() if os.path.isfile(path)}
 
 
-def load_material(path_or_name: str | Path) -> Material:
+def load_material(path_or_name: str | os.PathLike[str]) -> Material:
     """The material of a TOML file, or of an example by its name.
 
     Raises SssgenError with all that is wrong with it.
     """
-    text = str(path_or_name)
-    if not text.endswith(".toml") and "/" not in text and "\\" not in text and not Path(text).is_file():
+    text = os.fspath(path_or_name)
+    if not text.endswith(".toml") and "/" not in text and "\\" not in text and not os.path.isfile(text):
         known = examples()
         if text not in known:
-            beside = f"did you mean '{text}.toml'?" if Path(f"{text}.toml").is_file() else ""
+            beside = f"did you mean '{text}.toml'?" if os.path.isfile(f"{text}.toml") else ""
             others = f"give a path that ends in .toml, or one of: {', '.join(known)}"
             raise failure(f"unknown material '{text}'", beside or did_you_mean(text, known) or others)
         shown = f"examples/{text}/{text}.toml"
         return parse_material(read_text(known[text], shown), known[text], shown)
-    path = Path(text)
-    return parse_material(read_text(path, path.as_posix()), path)
+    return parse_material(read_text(text, posix(text)), text)
 
 
-def parse_material(text: str, path: Path, shown: str = "") -> Material:
+def parse_material(text: str, path: str | os.PathLike[str], shown: str = "") -> Material:
     """The material that a TOML text describes.
 
     Files that it names are looked for beside `path`; `shown` is its name in messages. Raises SssgenError with
@@ -91,7 +102,7 @@ def parse_material(text: str, path: Path, shown: str = "") -> Material:
     """
     from .material_reader import read_material
 
-    return read_material(text, path, shown or path.as_posix())
+    return read_material(text, os.fspath(path), shown or posix(path))
 
 
 def wrong_name(name: str) -> tuple[str, str] | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+import os
 
 from . import library, roles, slots
 from .diagnostics import Diagnostic, SssgenError, did_you_mean
@@ -29,7 +29,7 @@ class _Shared(NamedTuple):
     line: int
 
 
-def read_material(text: str, path: Path, shown: str) -> Material:
+def read_material(text: str, path: str, shown: str) -> Material:
     """The material that a TOML text describes; see `material.parse_material`."""
     reader = _Reader(parse(text, shown), path)
     material = reader.material()
@@ -42,7 +42,7 @@ def read_material(text: str, path: Path, shown: str) -> Material:
 class _Reader:
     """Reads one document; every error goes to the document, and reading goes on."""
 
-    def __init__(self, document: Document, path: Path) -> None:
+    def __init__(self, document: Document, path: str) -> None:
         self.document = document
         self.path = path
         self.foreign: list[Diagnostic] = []
@@ -203,8 +203,8 @@ class _Reader:
             return None
         try:
             if name.endswith((".sss", ".glsl")):
-                file = self.path.parent / name
-                if not file.is_file():
+                file = os.path.join(os.path.dirname(self.path), name)
+                if not os.path.isfile(file):
                     error(span, f"cannot find the file '{name}'", "it is looked for beside the material")
                     return None
                 technique = library.load_path(file)
@@ -351,7 +351,7 @@ class _Reader:
             self.document.error(span, "a slot is bound to the name of a function", f'write {slot.name} = "…"')
             return None
         try:
-            return Binding(*slots.find(raw, slot, self.path.parent))
+            return Binding(*slots.find(raw, slot, os.path.dirname(self.path)))
         except SssgenError as wrong:
             for found in wrong.diagnostics:
                 if found.span.line:  # an error inside the file
@@ -368,7 +368,7 @@ def _names(uniform: Uniform) -> list[str]:
 
 def _of_roles(allowed: tuple[str, ...]) -> list[str]:
     """The library's techniques of some roles, told from their folders."""
-    return [name for name, path in library.index().items() if path.parent.name in allowed]
+    return [name for name, path in library.index().items() if library.folder_of(path) in allowed]
 
 
 def _is_plain_list(content: object) -> bool:

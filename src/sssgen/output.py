@@ -6,8 +6,8 @@ import contextlib
 import os
 import re
 from collections.abc import Iterable, Mapping
-from pathlib import Path, PurePosixPath, PureWindowsPath
 
+from .data import posix
 from .diagnostics import Diagnostic, SssgenError, failure
 from .ir.nodes import NOWHERE
 from .ir.typed import NamedTuple
@@ -16,7 +16,7 @@ from .ir.typed import NamedTuple
 class Written(NamedTuple):
     """One file of an emit; `changed` is false where it already held the same text and was left as it was."""
 
-    path: Path
+    path: str
     changed: bool
 
 
@@ -36,6 +36,7 @@ def check_names(names: Iterable[str]) -> None:
         raise SssgenError(wrong)
 
 
+_DRIVE = re.compile("[A-Za-z]:")
 _UNFIT = re.compile(r'[\x00-\x1f<>:"|?*\\]')
 
 
@@ -43,7 +44,7 @@ def _fault(name: str) -> str:
     """What is wrong with an output's name, or ''."""
     if not name.strip():
         return "the name is empty"
-    if PurePosixPath(name).is_absolute() or PureWindowsPath(name).anchor:
+    if name.startswith(("/", "\\")) or _DRIVE.match(name):
         return "the name is absolute"
     if ".." in re.split(r"[/\\]", name):
         return "the name climbs out of the output folder"
@@ -54,62 +55,73 @@ def _fault(name: str) -> str:
     return ""
 
 
-def write_files(folder: Path, files: Mapping[str, str]) -> list[Written]:
+def write_files(folder: str | os.PathLike[str], files: Mapping[str, str]) -> list[Written]:
     """Writes texts (UTF-8, as they are) into a folder, making it if need be; names may have sub-folders.
 
     All texts stand in temporary files before the first old file is replaced, each in one step:
     whatever interrupts, every file is either the old or the new one, whole. Raises SssgenError where a name
     climbs out of the folder or the system refuses.
     """
+    folder = os.fspath(folder)
     check_names(files)
     _check_links(folder, files)
-    waiting: list[tuple[Path, Path]] = []
+    waiting: list[tuple[str, str]] = []
     written: list[Written] = []
     try:
         for name, text in files.items():
-            path, data = folder / name, text.encode("utf-8")
+            path, data = os.path.join(folder, name), text.encode("utf-8")
             if _holds(path, data):
                 written.append(Written(path, False))
                 continue
-            path.parent.mkdir(parents=True, exist_ok=True)
-            if path.is_dir():
-                raise failure("cannot write the file: a folder has its name", file=path.as_posix())
-            temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+            parent, base = os.path.split(path)
+            os.makedirs(parent or ".", exist_ok=True)
+            if os.path.isdir(path):
+                raise failure("cannot write the file: a folder has its name", file=posix(path))
+            temporary = os.path.join(parent, f".{base}.{os.getpid()}.tmp")
             waiting.append((temporary, path))
-            temporary.write_bytes(data)
+            _write_bytes(temporary, data)
             written.append(Written(path, True))
         while waiting:
-            waiting[0][0].replace(waiting[0][1])
+            _replace(*waiting[0])
             waiting.pop(0)
     except OSError as error:
-        place = str(error.filename or folder).replace(os.sep, "/")
-        place = next(
-            (path.as_posix() for temporary, path in waiting if str(temporary) == str(error.filename)), place
-        )
-        raise failure(f"cannot write: {error.strerror or error}", _advice(error), place) from None
+        place = str(error.filename or folder)
+        place = next((path for temporary, path in waiting if temporary == place), place)
+        raise failure(f"cannot write: {error.strerror or error}", _advice(error), posix(place)) from None
     finally:
         for temporary, _ in waiting:
             with contextlib.suppress(OSError):
-                temporary.unlink(missing_ok=True)
+                os.unlink(temporary)
     return written
 
 
-def _holds(path: Path, data: bytes) -> bool:
+def _write_bytes(path: str, data: bytes) -> None:
+    with open(path, "wb") as file:
+        file.write(data)
+
+
+def _replace(temporary: str, path: str) -> None:
+    os.replace(temporary, path)
+
+
+def _holds(path: str, data: bytes) -> bool:
     """Whether the file already holds this, so that no editor need import it again."""
     try:
-        return path.stat().st_size == len(data) and path.is_file() and path.read_bytes() == data
+        if os.stat(path).st_size != len(data) or not os.path.isfile(path):
+            return False
+        with open(path, "rb") as file:
+            return file.read() == data
     except OSError:
         return False
 
 
-def _check_links(folder: Path, names: Iterable[str]) -> None:
+def _check_links(folder: str, names: Iterable[str]) -> None:
     """Raises SssgenError where a sub-folder is a link to somewhere outside."""
-    parents = {(folder / name).parent for name in names} - {folder}
-    for parent in sorted(parents):
-        if not parent.resolve().is_relative_to(folder.resolve()):
-            raise failure(
-                "cannot write here: this folder is a link out of the output folder", file=parent.as_posix()
-            )
+    top = os.path.realpath(folder)
+    for parent in sorted({os.path.dirname(name) for name in names} - {""}):
+        path = os.path.join(folder, parent)
+        if os.path.commonpath([top, os.path.realpath(path)]) != top:
+            raise failure("cannot write here: this folder is a link out of the output folder", file=posix(path))
 
 
 def _advice(error: OSError) -> str:

@@ -12,7 +12,7 @@ from .ir.nodes import Param, Span
 from .ir.typed import NamedTuple
 from .ir.types import BOOL, FLOAT, VEC3, VOID, Type, spell
 from .lang.quantities import SCALARS, conversion, words
-from .library import Technique, index, load_path
+from .library import Technique, folder_of, index, load_path
 from .passes.chain import DEFAULTS, INPUTS
 
 SECTIONS = ("geometry", "coordinates", "thickness", "surface", "translucency", "lighting", "output")
@@ -83,7 +83,7 @@ def check_chain(links: Sequence[Link], shading: str, report: Report) -> None:
             message = f"'{technique.name}' may miss, and then there is no surface for the engine to light"
             report(span, message, 'write shading = "unlit", and add a [lighting] stage')
     if shading == "unlit" and links and not colored:
-        names = ", ".join(sorted(name for name, path in index().items() if path.parent.name == "lighting"))
+        names = ", ".join(sorted(name for name, path in index().items() if folder_of(path) == "lighting"))
         report(
             links[-1].span,
             "an unlit material needs a stage that gives its color",
@@ -168,5 +168,5 @@ def _check_value(
 
 def _givers(quantity: str) -> list[str]:
     """The library's thickness techniques that return a quantity."""
-    paths = [path for path in index().values() if path.parent.name == "thickness"]
-    return [path.stem for path in paths if load_path(path).function.quantity == quantity]
+    paths = {name: path for name, path in index().items() if folder_of(path) == "thickness"}
+    return [name for name, path in paths.items() if load_path(path).function.quantity == quantity]

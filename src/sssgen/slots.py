@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import contextlib
-from pathlib import Path
+import os
 
 from . import library
+from .data import stem
 from .diagnostics import SssgenError, did_you_mean, failure
 from .ir.nodes import Call, Function, Global, Module
 from .ir.types import spell
@@ -80,7 +81,7 @@ def fits(slot: Function, function: Function) -> bool:
     )
 
 
-def find(text: str, slot: Function, folder: Path) -> tuple[Module, Function]:
+def find(text: str, slot: Function, folder: str) -> tuple[Module, Function]:
     """The function that `NAME`, `NAME:FUNCTION`, `FILE` or `FILE:FUNCTION` names.
 
     A file is relative to `folder`, or to the technique library.
@@ -91,13 +92,12 @@ def find(text: str, slot: Function, folder: Path) -> tuple[Module, Function]:
     if not source:
         source, name = name, ""
     if source.endswith((".sss", ".glsl")):
-        path = next(
-            (root / source for root in (folder, library.TECHNIQUES) if (root / source).is_file()), None
-        )
+        paths = [os.path.join(root, source) for root in (folder, library.TECHNIQUES)]
+        path = next((path for path in paths if os.path.isfile(path)), None)
         if path is None:
             raise failure(f"cannot find the file '{source}'", "it is looked for beside the material")
         module = load_file(path, library.shown_name(path), (library.TECHNIQUES,))
-        name = name or path.stem
+        name = name or stem(path)
     else:
         if source not in library.index():
             hint = (
@@ -132,7 +132,7 @@ def candidates(slot: Function) -> list[str]:
     """The library's functions that fit a slot, as a material writes them."""
     found: list[str] = []
     for name, path in library.index().items():
-        if path.parent.name != "distance":
+        if library.folder_of(path) != "distance":
             continue
         with contextlib.suppress(SssgenError):  # a faulty file is reported where it is used
             module = library.load_path(path).module

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from argparse import Namespace
-from pathlib import Path
 
 from ..cli import OK, print_json
+from ..data import posix
 from ..diagnostics import Diagnostic, SssgenError, did_you_mean, failure
 from ..ir.typed import TYPE_CHECKING
 from ..material import Material, load_material
@@ -39,10 +40,10 @@ def run(arguments: Namespace) -> int:
     if wrong:
         raise SssgenError(dict.fromkeys(wrong))
     warnings = list(dict.fromkeys(warnings))
-    written = write_files(Path(arguments.output), files)
+    written = write_files(arguments.output, files)
     if arguments.json:
         rows = [
-            {"file": one.path.as_posix(), "material": material, "target": target, "changed": one.changed}
+            {"file": posix(one.path), "material": material, "target": target, "changed": one.changed}
             for one, (material, target) in zip(written, sources.values(), strict=True)
         ]
         print_json(
@@ -56,7 +57,7 @@ def run(arguments: Namespace) -> int:
         return OK
     print_warnings(warnings)
     for one in written:
-        print(f"{'wrote' if one.changed else 'kept '} {one.path.as_posix()}")
+        print(f"{'wrote' if one.changed else 'kept '} {posix(one.path)}")
     return OK
 
 
@@ -83,15 +84,14 @@ def print_warnings(warnings: list[Diagnostic]) -> None:
         print(f"{warning.render()}\n", file=sys.stderr)
 
 
-def _templates(folder: str | None, wrong: list[Diagnostic]) -> Path | None:
+def _templates(folder: str | None, wrong: list[Diagnostic]) -> str | None:
     if folder is None:
         return None
-    path = Path(folder)
-    if not path.is_dir():
+    if not os.path.isdir(folder):
         wrong += failure(
-            "no such folder of templates", "give the folder that holds TARGET/*.j2", path.as_posix()
+            "no such folder of templates", "give the folder that holds TARGET/*.j2", posix(folder)
         ).diagnostics
-    return path
+    return folder
 
 
 def _materials(arguments: list[str], wrong: list[Diagnostic]) -> list[Material]:
@@ -106,7 +106,7 @@ def _materials(arguments: list[str], wrong: list[Diagnostic]) -> list[Material]:
         if other is not material:
             message = f"two materials are called '{material.name}': their files would have the same names"
             wrong += failure(
-                message, f"the other one is {other.path.as_posix()}", material.path.as_posix()
+                message, f"the other one is {posix(other.file)}", posix(material.file)
             ).diagnostics
     return list(found.values())
 

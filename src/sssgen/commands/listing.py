@@ -6,6 +6,7 @@ from argparse import Namespace
 
 from .. import library
 from ..cli import OK, print_json
+from ..data import posix
 from ..diagnostics import did_you_mean, failure
 from ..ir.typed import Any
 
@@ -67,7 +68,7 @@ def _materials() -> list[dict[str, Any]]:
             "title": one.title,
             "summary": one.doc,
             "shading": one.shading,
-            "file": one.path.as_posix(),
+            "file": posix(one.file),
         }
         for one in loaded
     ]

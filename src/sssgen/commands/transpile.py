@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import re
 from argparse import Namespace
 from pathlib import Path
 
 from ..cli import OK, print_json
+from ..data import posix
 from ..diagnostics import Diagnostic, SssgenError
 from ..lang.loader import load_file
 from ..library import TECHNIQUES
@@ -47,9 +49,9 @@ def print_json_or_text(arguments: Namespace, files: dict[str, str], warnings: li
         outputs = {path.name: "\n".join(texts)}
         if reflections:
             outputs[f"{path.name}{REFLECTION}"] = reflections[0]
-        written = write_files(path.parent, outputs)
+        written = write_files(os.fspath(path.parent), outputs)
         if arguments.json:
-            rows = [{"file": one.path.as_posix(), "changed": one.changed} for one in written]
+            rows = [{"file": posix(one.path), "changed": one.changed} for one in written]
             print_json({"ok": True, "files": rows, "diagnostics": [one.as_json() for one in warnings]})
     elif arguments.json:
         print_json({"ok": True, "texts": files, "diagnostics": [one.as_json() for one in warnings]})

@@ -380,9 +380,9 @@ uint packHalf2x16(vec2 x) {
     uvec2 bits = floatBitsToUint(abs(x));
     uvec2 normal = (bits - 0x37fff001u + ((bits >> 13u) & 1u)) >> 13u;
     uvec2 tiny = uvec2(round(abs(x) * 16777216.0));
-    uvec2 half_bits = uvec2(bits.x < 0x38800000u ? tiny.x : normal.x, bits.y < 0x38800000u ? tiny.y : normal.y);
-    half_bits |= (floatBitsToUint(x) >> 16u) & 0x8000u;
-    return half_bits.x | (half_bits.y << 16u);
+    uvec2 halves = uvec2(bits.x < 0x38800000u ? tiny.x : normal.x, bits.y < 0x38800000u ? tiny.y : normal.y);
+    halves |= (floatBitsToUint(x) >> 16u) & 0x8000u;
+    return halves.x | (halves.y << 16u);
 }
 """,
         cost=3,
@@ -412,12 +412,12 @@ vec2 unpackSnorm2x16(uint x) {
         },
         polyfill="""
 vec2 unpackHalf2x16(uint x) {
-    uvec2 half_bits = uvec2(x & 0xffffu, x >> 16u);
-    uvec2 bits = half_bits & 0x7fffu;
+    uvec2 halves = uvec2(x & 0xffffu, x >> 16u);
+    uvec2 bits = halves & 0x7fffu;
     vec2 normal = uintBitsToFloat((bits << 13u) + 0x38000000u);
     vec2 tiny = vec2(bits) / 16777216.0;
     vec2 size = vec2(bits.x < 1024u ? tiny.x : normal.x, bits.y < 1024u ? tiny.y : normal.y);
-    return uintBitsToFloat(floatBitsToUint(size) | ((half_bits & 0x8000u) << 16u));
+    return uintBitsToFloat(floatBitsToUint(size) | ((halves & 0x8000u) << 16u));
 }
 """,
         cost=2,

@@ -8,7 +8,6 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Sequence
-from pathlib import Path
 
 from .. import cache
 from ..diagnostics import Diagnostic, SssgenError, failure
@@ -24,21 +23,21 @@ _lines: dict[str, list[str]] = {}
 _stamp = ""
 
 
-def load_file(path: Path, shown: str, roots: Sequence[Path] = ()) -> Module:
+def load_file(path: str | os.PathLike[str], shown: str, roots: Sequence[str | os.PathLike[str]] = ()) -> Module:
     """The checked module of a file and all it includes.
 
     `shown` is the file's name in messages; `roots` are the folders in which `#include "x"` is looked for,
     after the file's own. Raises SssgenError for a missing, unreadable, too large or faulty file.
     """
-    return load_text(read_text(path, shown), shown, (path.parent, *roots))
+    return load_text(read_text(path, shown), shown, (os.path.dirname(path), *roots))
 
 
-def load_text(text: str, shown: str, roots: Sequence[Path] = ()) -> Module:
+def load_text(text: str, shown: str, roots: Sequence[str | os.PathLike[str]] = ()) -> Module:
     """The checked module of a source text; see `load_file`."""
     return _load(text, shown, roots, ())[0]
 
 
-def _load(text: str, shown: str, roots: Sequence[Path], within: tuple[str, ...]) -> tuple[Module, str]:
+def _load(text: str, shown: str, roots: Sequence[str | os.PathLike[str]], within: tuple[str, ...]) -> tuple[Module, str]:
     """A text's module and the hash of all that it was made from."""
     _lines[shown] = text.split("\n")
     included, parts = Module(), [front_end_stamp(), shown, text]
@@ -48,14 +47,14 @@ def _load(text: str, shown: str, roots: Sequence[Path], within: tuple[str, ...])
         module, key = _include(match.group(1), place, text, roots, (*within, shown))
         included = merge(included, module)
         parts.append(key)
-    key = _hash(parts)
-    known = _memory.get(key) or _read_cached(key)
-    if known is None:
+    key = cache.digest("\0".join(parts))
+    known = _memory.get(key) or cache.unpickled(cache.read(f"{key}.ir"))
+    if not isinstance(known, Module):
         from .check import check
         from .parser import parse
 
         known = check(parse(text, shown), text, included)
-        _write_cached(key, known)
+        cache.write(f"{key}.ir", cache.pickled(known))
     _memory[key] = known
     return known, key
 
@@ -79,13 +78,14 @@ def source_line(span: Span) -> str:
     return lines[span.line - 1] if 0 < span.line <= len(lines) else ""
 
 
-def read_text(path: Path, shown: str) -> str:
+def read_text(path: str | os.PathLike[str], shown: str) -> str:
     """The text of a source file. Raises SssgenError where it is missing or is not text."""
     try:
-        size = path.stat().st_size
-        if size > MAX_BYTES:
-            raise failure(f"the file is too large: {size} bytes; at most {MAX_BYTES} are read", file=shown)
-        data = path.read_bytes()
+        with open(path, "rb") as file:
+            size = os.fstat(file.fileno()).st_size
+            if size > MAX_BYTES:
+                raise failure(f"the file is too large: {size} bytes; at most {MAX_BYTES} are read", file=shown)
+            data = file.read()
     except FileNotFoundError:
         raise failure("no such file", file=shown) from None
     except OSError as error:
@@ -112,58 +112,26 @@ def _union(first: tuple, second: tuple) -> tuple:  # type: ignore[type-arg]  # a
     return first + tuple(declaration for declaration in second if declaration.span not in known)
 
 
-def _include(name: str, place: Span, text: str, roots: Sequence[Path], within: tuple[str, ...]) -> tuple[Module, str]:
+def _include(
+    name: str, place: Span, text: str, roots: Sequence[str | os.PathLike[str]], within: tuple[str, ...]
+) -> tuple[Module, str]:
     """The module of an included file, and its hash."""
     line = text.splitlines()[place.line - 1]
     for root in roots:
-        path = root / name
-        if path.is_file():
+        path = os.path.join(root, name)
+        if os.path.isfile(path):
             if name in within:
                 message = f"'{name}' includes itself: {' → '.join((*within, name))}"
                 raise SssgenError([Diagnostic("error", message, place, "", line)])
-            return _load(read_text(path, name), name, (path.parent, *roots), within)
+            return _load(read_text(path, name), name, (os.path.dirname(path), *roots), within)
     hint = "it is looked for beside the file and in the technique library"
     raise SssgenError([Diagnostic("error", f"cannot find '{name}' to include", place, hint, line)])
-
-
-def _hash(parts: Sequence[str]) -> str:
-    from hashlib import blake2b
-
-    return blake2b("\0".join(parts).encode(), digest_size=16).hexdigest()
 
 
 def front_end_stamp() -> str:
     """Tells one state of the project's own sources from another, so that no stale result is used."""
     global _stamp
     if not _stamp:
-        here = Path(__file__).parent
-        parts = []
-        for folder in (here, here.parent / "ir"):
-            for entry in sorted(os.scandir(folder), key=lambda entry: entry.name):
-                if entry.name.endswith((".py", ".lark")):
-                    status = entry.stat()
-                    parts.append(f"{entry.name}:{status.st_size}:{status.st_mtime_ns}")
-        _stamp = ";".join(parts)
+        here = os.path.dirname(__file__)
+        _stamp = repr([cache.stamp(folder) for folder in (here, os.path.join(os.path.dirname(here), "ir"))])
     return _stamp
-
-
-def _read_cached(key: str) -> Module | None:
-    folder = cache.folder()
-    if folder is None:
-        return None
-    import pickle
-
-    try:
-        module = pickle.loads((folder / f"{key}.ir").read_bytes())
-    except Exception:  # a missing or damaged entry is made again, whatever is wrong with it
-        return None
-    return module if isinstance(module, Module) else None
-
-
-def _write_cached(key: str, module: Module) -> None:
-    folder = cache.folder()
-    if folder is None:
-        return
-    import pickle
-
-    cache.write(folder / f"{key}.ir", pickle.dumps(module, protocol=5))

@@ -5,6 +5,7 @@ A syntax error does not hide the next: the faulty declaration is blanked out and
 
 from __future__ import annotations
 
+import os
 import re
 
 from ..diagnostics import Reporter
@@ -81,11 +82,11 @@ def _parser(builder: _Builder) -> Any:
 
         from ..cache import folder
 
-        path = folder()
+        kept = folder()
         _cached = Lark(
             files(__package__).joinpath("grammar.lark").read_text("utf-8"),
             parser="lalr",
-            cache=str(path / "grammar.lark.cache") if path else False,
+            cache=os.path.join(kept, "grammar.lark.cache") if kept else False,
             transformer=_Relay(),
             lexer_callbacks={"COMMENT": lambda token: _Relay.target.comment(token)},
         )

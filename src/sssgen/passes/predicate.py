@@ -50,7 +50,7 @@ from ..ir.types import BOOL, VOID, Type
 from ..ir.walk import expressions, root, statements
 from .lift_calls import DISCARDED, Functions, lift_calls, out_arguments
 from .masks import Mask, negated, renumber, settle, tidy, zero
-from .scopes import declared, fresh
+from .scopes import declared, fresh, separate
 from .uniformity import Uniformity
 
 
@@ -108,7 +108,7 @@ class _Converter:
         if self.result and not (self.out and isinstance(self.out[-1], Return)):
             self.out.append(Return(Local(function.result, self.result, function.span), function.span))
         body = renumber(tidy(tuple(self.out), self.made, self.functions), self.made, self.names)
-        return function._replace(body=settle(body, function, self.functions))
+        return separate(function._replace(body=settle(body, function, self.functions)))
 
     # Names
 

@@ -6,11 +6,13 @@ A plug-in brings a target through the entry-point group `sssgen.targets`: an ent
 
 from __future__ import annotations
 
+import contextlib
 import functools
+import os
 import sys
-from pathlib import Path
 
-from ..data import folder
+from .. import cache
+from ..data import place, stem
 from ..diagnostics import SssgenError, did_you_mean, failure
 from ..ir.typed import Any, NamedTuple
 
@@ -60,7 +62,7 @@ class Target(NamedTuple):
     textures: dict[str, str]
     """How a texture is declared, passed and named: declaration, parameter, argument, sampler."""
     table: dict[str, Any]
-    folder: Path
+    folder: str
     """Where the descriptor lies; a plug-in keeps its `templates` there."""
 
     def can(self, capability: str) -> bool:
@@ -71,7 +73,7 @@ class Target(NamedTuple):
 @functools.cache
 def names() -> tuple[str, ...]:
     """The names of all targets, the project's own first."""
-    own = tuple(sorted(path.stem for path in folder("targets").glob("*.toml")))
+    own = tuple(sorted(stem(name) for name in os.listdir(place("targets")) if name.endswith(".toml")))
     return own + tuple(sorted(name for name in _plugins() if name not in own))
 
 
@@ -79,26 +81,34 @@ def names() -> tuple[str, ...]:
 def _plugins() -> dict[str, Any]:
     """The plug-ins' entry points. `importlib.metadata` takes longer to import than a shader to emit, so it is asked
     only where some installed package mentions our group."""
-    places = (entry for root in sys.path for entry in Path(root or ".").glob("*.*-info/entry_points.txt"))
-    if not any(_mentions_targets(entry) for entry in places):
+    if not any(_mentions_targets(root or ".") for root in sys.path):
         return {}
     from importlib.metadata import entry_points
 
     return {entry.name: entry for entry in entry_points(group="sssgen.targets")}
 
 
-def _mentions_targets(entry_points: Path) -> bool:
+def _mentions_targets(root: str) -> bool:
+    """Whether a package installed in this folder has an entry point of our group."""
     try:
-        return b"[sssgen.targets]" in entry_points.read_bytes()
+        infos = [entry.path for entry in os.scandir(root) if entry.name.endswith("-info")]
     except OSError:
         return False
+    for info in infos:
+        with contextlib.suppress(OSError), open(f"{info}/entry_points.txt", "rb") as file:
+            if b"[sssgen.targets]" in file.read():
+                return True
+    return False
 
 
 @functools.cache
 def load(name: str) -> Target:
     """A target by name. Raises SssgenError for an unknown one."""
-    path = folder("targets") / f"{name}.toml"
-    if path.is_file():
+    path = os.path.join(place("targets"), f"{name}.toml")
+    table = _tables().get(name)
+    if table is not None:
+        return _target(table, path)
+    if os.path.isfile(path):
         return read(path)
     if name in _plugins():
         return _from_plugin(name)
@@ -111,7 +121,7 @@ def _from_plugin(name: str) -> Target:
     try:
         made = entry.load()
         made = made() if callable(made) else made
-        target = made if isinstance(made, Target) else read(Path(made))
+        target = made if isinstance(made, Target) else read(made)
     except SssgenError:
         raise
     except Exception as error:  # the plug-in's code: anything may be wrong in it
@@ -123,18 +133,42 @@ def _from_plugin(name: str) -> Target:
     return target
 
 
-def read(path: Path) -> Target:
+@functools.cache
+def _tables() -> dict[str, dict[str, Any]]:
+    """The contents of the project's own descriptors that have no fault."""
+    tables: dict[str, dict[str, Any]] = cache.kept("targets", cache.stamp(place("targets")), _read_tables)
+    return tables
+
+
+def _read_tables() -> dict[str, dict[str, Any]]:
+    tables = {}
+    for name in os.listdir(place("targets")):
+        with contextlib.suppress(SssgenError):
+            tables[stem(name)] = _table(os.path.join(place("targets"), name))
+    return tables
+
+
+def read(path: str | os.PathLike[str]) -> Target:
     """Reads a descriptor file. Raises SssgenError where it is faulty."""
+    path = os.fspath(path)
+    return _target(_table(path), path)
+
+
+def _table(path: str) -> dict[str, Any]:
     import tomllib
 
     try:
-        table = tomllib.loads(path.read_text("utf-8"))
+        with open(path, encoding="utf-8") as file:
+            return tomllib.loads(file.read())
     except (OSError, ValueError) as error:
-        raise failure(f"cannot read the target descriptor: {error}", file=path.name) from None
+        raise failure(f"cannot read the target descriptor: {error}", file=os.path.basename(path)) from None
+
+
+def _target(table: dict[str, Any], path: str) -> Target:
     names = table.get("names", {})
     try:
         return Target(
-            name=table.get("name", path.stem),
+            name=table.get("name", stem(path)),
             title=table["title"],
             language=table["language"],
             dialect=table.get("dialect", table["language"]),
@@ -153,10 +187,10 @@ def read(path: Path) -> Target:
             parameters=tuple(table.get("parameters", ("functions",))),
             textures=table.get("textures", {}),
             table=table,
-            folder=path.parent,
+            folder=os.path.dirname(path),
         )
     except (KeyError, TypeError, AttributeError) as error:
-        raise failure(f"the target descriptor is incomplete: {error}", file=path.name) from None
+        raise failure(f"the target descriptor is incomplete: {error}", file=os.path.basename(path)) from None
 
 
 class Words:
@@ -172,7 +206,7 @@ class Words:
 @functools.cache
 def reserved_everywhere() -> tuple[frozenset[str], frozenset[str], tuple[str, ...]]:
     """What the project's own targets reserve: words, words in any case, prefixes. Names keep clear of all of it."""
-    own = [load(name) for name in names() if (folder("targets") / f"{name}.toml").is_file()]
+    own = [load(name) for name in names() if os.path.isfile(os.path.join(place("targets"), f"{name}.toml"))]
     shaders = [target for target in own if target.language != "python"]
     exact = frozenset().union(*(target.reserved for target in shaders))
     folded = frozenset().union(*(target.folded for target in shaders))

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 from ..diagnostics import failure
 from ..ir.nodes import Function, Local, Module, Param, Span, Uniform
@@ -80,7 +79,7 @@ def printer_for(target: Target, module: Module) -> Printer:
     return printer
 
 
-def emit(target: Target, program: Program, form: str, templates: Path | None = None) -> Emitted:
+def emit(target: Target, program: Program, form: str, templates: str | None = None) -> Emitted:
     """Prints and renders every file of a form. Raises SssgenError for a faulty template."""
     module = program.module
     printer = printer_for(target, module)

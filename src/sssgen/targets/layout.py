@@ -25,17 +25,16 @@ class Member(NamedTuple):
 def place(uniforms: Sequence[Uniform], rule: str) -> tuple[list[Member], int]:
     """The members of a block in order, and its size in bytes. Textures are left out."""
     members: list[Member] = []
-    end = packed = 0
+    end = 0
     for uniform in uniforms:
         if isinstance(uniform.type, Sampler):
             continue
         size = _size(uniform.type)
-        offset = _hlsl_offset(end, uniform.type, size) if rule == "hlsl" else _align(end, _alignment(uniform.type))
-        natural = _hlsl_offset(packed, uniform.type, size)
-        padding = (offset - natural) // 4 if rule == "std140" else 0
+        packed = _hlsl_offset(end, uniform.type, size)
+        offset = packed if rule == "hlsl" else _align(end, _alignment(uniform.type))
+        padding = (offset - packed) // 4 if rule == "std140" else 0
         members.append(Member(uniform, offset, size, padding))
         end = offset + (size if rule == "hlsl" else _std140_size(uniform.type, size))
-        packed = offset + size
     return members, _align(end, 16)
 
 

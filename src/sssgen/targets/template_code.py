@@ -20,7 +20,8 @@ _FILTERS = {"indent", "join", "length", "list", "lower", "map", "replace", "titl
 
 def translate(environment: Environment, sources: dict[str, str]) -> str:
     """The text of a Python module that defines TEMPLATES: a template's name → its function, for those it can."""
-    parts, names = [], []
+    parts: list[str] = []
+    names: list[str] = []
     for name, source in sources.items():
         try:
             text = _Translator(f"template_{len(names)}").template(environment.parse(source))
@@ -147,7 +148,7 @@ class _Translator:
         names = [name if isinstance(name, tuple) else (name, name) for name in node.names]
         self.line(f"take(v{self.scope}, TEMPLATES[{self.expr(node.template)}]({given})[1], {names!r})")
 
-    def target(self, node: nodes.Expr) -> str:
+    def target(self, node: nodes.Node) -> str:
         """What is assigned to."""
         if isinstance(node, nodes.Name):
             return f"v{self.scope}[{node.name!r}]"

@@ -6,12 +6,12 @@ its sandbox, and whatever the translation has not understood.
 
 from __future__ import annotations
 
+import marshal
 import os
 import sys
-from pathlib import Path
 
 from .. import cache
-from ..data import folder
+from ..data import place
 from ..diagnostics import failure
 from ..ir.typed import TYPE_CHECKING, Any
 from .template_runtime import Template, namespace
@@ -19,11 +19,11 @@ from .template_runtime import Template, namespace
 if TYPE_CHECKING:
     from jinja2 import Environment
 
-_environments: dict[tuple[Path | None, Path], Environment] = {}
-_translated: dict[Path, dict[str, Template]] = {}
+_environments: dict[tuple[str | None, str], Environment] = {}
+_translated: dict[str, dict[str, Template]] = {}
 
 
-def render(template: str, context: dict[str, Any], templates: Path | None, beside: Path) -> str:
+def render(template: str, context: dict[str, Any], templates: str | None, beside: str) -> str:
     """A template's text. Raises SssgenError for a faulty template.
 
     `templates` is the user's folder, `beside` that of the target's descriptor.
@@ -38,7 +38,7 @@ def render(template: str, context: dict[str, Any], templates: Path | None, besid
     return by_jinja(template, context, templates, beside)
 
 
-def by_jinja(template: str, context: dict[str, Any], templates: Path | None, beside: Path) -> str:
+def by_jinja(template: str, context: dict[str, Any], templates: str | None, beside: str) -> str:
     """The same by Jinja itself."""
     from jinja2 import TemplateError, TemplateNotFound, TemplateSyntaxError
 
@@ -54,34 +54,34 @@ def by_jinja(template: str, context: dict[str, Any], templates: Path | None, bes
         raise failure(f"the template cannot be rendered: {error}", file=template) from None
 
 
-def translated(beside: Path) -> dict[str, Template]:
+def translated(beside: str) -> dict[str, Template]:
     """The functions of the templates beside a descriptor and of ours."""
     found = _translated.get(beside)
     if found is None:
-        places = [str(beside / "templates"), str(folder("templates"))]
-        stamp = [sys.version, *(cache.stamp(place) for place in (*places, str(Path(__file__).parent)))]
-        code = cache.kept(f"templates-{cache.digest(str(beside))}", stamp, lambda: _translate(places))
+        places = [os.path.join(beside, "templates"), place("templates")]
+        stamp = [sys.version, *map(cache.stamp, (*places, os.path.dirname(__file__)))]
+        code = cache.kept(f"templates-{cache.digest(beside)}", stamp, lambda: _translate(places))
         found, space = namespace()
-        exec(code, space)
+        exec(marshal.loads(code), space)
         _translated[beside] = found
     return found
 
 
-def _translate(places: list[str]) -> Any:
+def _translate(places: list[str]) -> bytes:
     """The code that defines the functions of all templates of these folders."""
+    from pathlib import Path
+
     from .template_code import translate
 
     sources: dict[str, str] = {}
-    for place in reversed(places):
-        for root, _, names in os.walk(place):
-            for name in sorted(names):
-                if name.endswith(".j2"):
-                    path = Path(root, name)
-                    sources[path.relative_to(place).as_posix()] = path.read_text("utf-8")
-    return compile(translate(_environment(None, Path(places[0]).parent), sources), "<templates>", "exec")
+    for folder in map(Path, reversed(places)):
+        for path in sorted(folder.glob("**/*.j2")):
+            sources[path.relative_to(folder).as_posix()] = path.read_text("utf-8")
+    text = translate(_environment(None, os.path.dirname(places[0])), sources)
+    return marshal.dumps(compile(text, "<templates>", "exec"))
 
 
-def _environment(templates: Path | None, beside: Path) -> Environment:
+def _environment(templates: str | None, beside: str) -> Environment:
     """Jinja's environment; its compiled templates are kept on disk."""
     key = (templates, beside)
     if key not in _environments:
@@ -94,7 +94,7 @@ def _environment(templates: Path | None, beside: Path) -> Environment:
         places = [templates] if templates is not None else []
         kept = cache.folder()
         _environments[key] = Chosen(
-            loader=FileSystemLoader([*places, beside / "templates", folder("templates")]),
+            loader=FileSystemLoader([*places, os.path.join(beside, "templates"), place("templates")]),
             undefined=StrictUndefined,
             trim_blocks=True,
             lstrip_blocks=True,

@@ -1,0 +1,127 @@
+"""Runs functions on a back end and in NumPy on the same random arguments, and says where the two differ."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from execute import HEIGHT, Backend, Call
+from sssgen.compiler import transpile
+from sssgen.ir.nodes import Function, Module, Param
+from sssgen.ir.types import Matrix, Sampler, Type, Vector, kind_of
+from sssgen.targets import numpy_runtime as rt
+from sssgen.targets.numpy_textures import Texture
+from validate import code
+
+Array: TypeAlias = np.ndarray[Any, Any]
+Draw: TypeAlias = Callable[[Param, np.random.Generator, int], Array]
+"""Makes the argument for a parameter, over this many lanes."""
+
+DTYPES = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.bool_}
+TEXTURES = {"2D": "map", "3D": "volume", "Cube": "cube"}
+
+
+def shape(type_: Type) -> tuple[int, ...]:
+    """The axes of a value before that of the lanes."""
+    if isinstance(type_, Matrix):
+        return type_.size, type_.size
+    return (type_.size,) if isinstance(type_, Vector) else ()
+
+
+def pixels(lanes: int) -> tuple[Array, Array]:
+    """Where each lane stands in the image."""
+    return np.arange(lanes) % (lanes // HEIGHT), np.arange(lanes) // (lanes // HEIGHT)
+
+
+@cache
+def textures(mipmaps: bool = True) -> dict[str, Texture]:
+    """A texture of each kind, of numbers that float16 holds."""
+    rng = np.random.default_rng(11)
+
+    def noise(*size: int) -> Array:
+        return rng.integers(0, 256, (*size, 4)).astype(np.float16) / np.float16(256.0)
+
+    return {
+        "map": Texture(noise(8, 16), mipmaps=mipmaps),
+        "volume": Texture(noise(4, 4, 8), mipmaps=mipmaps),
+        "cube": Texture(noise(6, 4, 4), dim="Cube", mipmaps=mipmaps),
+    }
+
+
+def drawn(param: Param, rng: np.random.Generator, lanes: int) -> Array:
+    """Any argument; coordinates called `uv` are linear over the image, two texels of `map` a pixel."""
+    kind, size = kind_of(param.type), (*shape(param.type), lanes)
+    if kind == "bool":
+        return rng.random(size) < 0.5
+    if kind in ("int", "uint"):
+        return rng.integers(1, 10 if kind == "int" else 2**16, size).astype(DTYPES[kind])
+    if param.name == "uv":
+        x, y = pixels(lanes)
+        return np.array([x / 8.0 + 0.3, y / 4.0 + 0.4], np.float32)
+    return rng.uniform(-2.0, 2.0, size).astype(np.float32)
+
+
+def drawn_beside_textures(param: Param, rng: np.random.Generator, lanes: int) -> Array:
+    """As `drawn`, but the same in a quad, so that a coordinate's derivatives are those of `uv`."""
+    value = drawn(param, rng, lanes)
+    return value if param.name == "uv" else value[..., pixels(lanes)[0] // 2]
+
+
+def arguments(function: Function, draw: Draw, lanes: int) -> tuple[Any, ...]:
+    """An argument for each parameter, the same at each call."""
+    rng = np.random.default_rng(3)
+    return tuple(
+        TEXTURES[param.type.dim] if isinstance(param.type, Sampler) else draw(param, rng, lanes)
+        for param in function.params
+    )
+
+
+@cache
+def transpiled(module: Module, target: str) -> str:
+    """The functions form of a module."""
+    return next(text for name, text in transpile(module, target, "cases").files.items() if not name.endswith(".json"))
+
+
+def with_numpy(
+    text: str, call: Call, bound: Mapping[str, Texture], lanes: int, floating: str = "float64"
+) -> Array:
+    """A call's result by the numpy target's text; 0 in the lanes that it discards."""
+    names: dict[str, Any] = {}
+    exec(compile(text, "numpy", "exec"), names)
+    args = [
+        bound[arg] if isinstance(arg, str) else arg.astype(floating) if arg.dtype.kind == "f" else arg
+        for arg in call.args
+    ]
+    with rt.precision(floating), rt.grid(HEIGHT, lanes // HEIGHT):
+        result = names[call.function](*args)
+    value, gone = result if isinstance(result, tuple) else (result, False)
+    return np.where(gone, 0, value)
+
+
+def differences(
+    gpu: Backend,
+    module: Module,
+    calls: Sequence[tuple[str, Call]],
+    bound: Mapping[str, Texture],
+    floating: str = "float64",
+    tolerance: float = 2e-5,
+) -> list[str]:
+    """What a back end gives for the calls that is not what the numpy target gives; each with a title."""
+    lanes = next(arg.shape[-1] for _, call in calls for arg in call.args if not isinstance(arg, str))
+    oracle, wrong = transpiled(module, "numpy"), []
+    results = gpu.run(code(module, gpu.target.name), [call for _, call in calls], bound)
+    for (title, call), got in zip(calls, results, strict=True):
+        wanted = np.broadcast_to(with_numpy(oracle, call, bound, lanes, floating), got.shape)
+        if wanted.dtype.kind != "f":
+            good = got == wanted
+        else:
+            limit = 2.0**-6 if any(isinstance(arg, str) for arg in call.args) else tolerance
+            good = np.isclose(got, wanted, limit, limit, equal_nan=True)
+        bad = np.flatnonzero(~good.reshape(-1, lanes).all(axis=0))
+        for lane in bad[:1]:
+            at = [arg if isinstance(arg, str) else arg[..., lane].tolist() for arg in call.args]
+            wrong.append(f"{title}\n{len(bad)} of {lanes}: {at}: {got[..., lane]} is not {wanted[..., lane]}")
+    return wrong

@@ -1,0 +1,131 @@
+"""Every technique of the library, run on real back ends on random inputs, against what the numpy target makes of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from against_numpy import DTYPES, arguments, differences, drawn, pixels, shape, textures
+from execute import Call, backend
+from sssgen import library, slots
+from sssgen.harness.compilers import CompilerMissing
+from sssgen.ir.nodes import Call as CallNode
+from sssgen.ir.nodes import Declare, Evaluate, Function, Local, Module, Param, Return, Stmt, Uniform
+from sssgen.ir.types import VOID, kind_of
+from sssgen.passes.fold import fold
+from sssgen.passes.hoist import hoist
+from sssgen.passes.link import LinkStage, link
+from sssgen.passes.parameters import uniforms_to_parameters
+from sssgen.passes.prune import prune
+
+LANES = 48
+
+
+def bound(technique: library.Technique) -> dict[str, tuple[Module, Function]]:
+    """Each slot of a technique, and of what is bound to its slots, with the first function of the library that fits."""
+    found: dict[str, tuple[Module, Function]] = {}
+    waiting = list(slots.needs(technique.module, technique.function)[1])
+    while waiting:
+        slot = waiting.pop()
+        if slot.name not in found:
+            found[slot.name] = slots.find(slots.candidates(slot)[0], slot, library.TECHNIQUES)
+            waiting += slots.needs(*found[slot.name])[1]
+    return found
+
+
+def probes(function: Function) -> list[Function]:
+    """Functions without out parameters, one for each thing that a technique gives."""
+    span = function.span
+    outs = [param for param in function.params if param.direction != "in"]
+    made = []
+    for shown in [None, *outs]:
+        if shown is None and function.result == VOID:
+            continue
+        start: list[Stmt] = []
+        args: list[Any] = []
+        for param in function.params:
+            name = param.name if param.direction == "in" else f"{param.name}_given"
+            if param.direction != "in":
+                value = Local(param.type, param.name, span) if param.direction == "inout" else None
+                start.append(Declare(name, param.type, value, span))
+            args.append(Local(param.type, name, span))
+        call = CallNode(function.result, function.key, tuple(args), span)
+        if shown is None:
+            result = f"{function.name}_value"
+            body = (*start, Declare(result, function.result, call, span), Return(Local(function.result, result, span), span))
+        else:
+            value = Local(shown.type, f"{shown.name}_given", span)
+            ignored: Stmt = Evaluate(call, span)
+            if function.result != VOID:
+                ignored = Declare(f"{function.name}_value", function.result, call, span)
+            body = (*start, ignored, Return(value, span))
+        params = tuple(param._replace(direction="in") for param in function.params if param.direction != "out")
+        name = f"{function.name}_shows_{shown.name if shown is not None else 'result'}"
+        made.append(function._replace(name=name, params=params, result=shown.type if shown else function.result, body=body))
+    return made
+
+
+@cache
+def program() -> tuple[Module, tuple[tuple[str, Function], ...]]:
+    """All techniques in one module, and their probes with the parameters that uniforms bring."""
+    techniques = list(library.load_all())
+    stages = [
+        LinkStage(one.name, one.role, one.module, one.function, bound(one), {}, frozenset()) for one in techniques
+    ]
+    linked = link(stages)
+    made = [probe for function in linked.functions for probe in probes(function)]
+    module = linked.module._replace(functions=(*linked.module.functions, *made))
+    roots = [probe.key for probe in made]
+    module, _ = hoist(prune(fold(module), roots), roots)
+    closed = {function.name: function for function in uniforms_to_parameters(module).functions}
+    return module, tuple((probe.name, closed[probe.name]) for probe in made)
+
+
+def draw(param: Param, rng: np.random.Generator, lanes: int) -> np.ndarray[Any, Any]:
+    """An argument in the range of its quantity, the same in a quad but for what is linear over the image."""
+    uniform = next((one for one in program()[0].uniforms if one.name == param.name), None)
+    if uniform is not None:
+        return drawn_uniform(uniform, rng, lanes)
+    x, y = pixels(lanes)
+    if kind_of(param.type) != "float":
+        return drawn(param, rng, lanes)
+    size = (*shape(param.type), lanes)
+    value = rng.uniform(-1.0, 1.0, size)[..., x // 2]
+    if param.quantity.endswith("_direction") or param.name in ("V", "L", "N"):
+        value /= np.sqrt((value * value).sum(axis=0))
+    elif param.quantity.endswith("_position"):
+        value += 0.01 * np.stack([x, y, x - y][: len(value)])
+    else:
+        value = 0.5 + 0.45 * value
+    return value.astype(np.float32)
+
+
+def drawn_uniform(uniform: Uniform, rng: np.random.Generator, lanes: int) -> np.ndarray[Any, Any]:
+    """Something near the default."""
+    size = shape(uniform.type)
+    value = np.array(uniform.default).reshape(*size, 1)
+    if kind_of(uniform.type) != "float":
+        return np.repeat(value, lanes, axis=-1).astype(DTYPES[kind_of(uniform.type)])
+    value = value * rng.uniform(0.8, 1.2, lanes)[pixels(lanes)[0] // 2]
+    limits = dict(uniform.hints).get("hint_range", (-np.inf, np.inf))
+    return np.clip(value, *limits[:2]).astype(np.float32)
+
+
+@pytest.mark.parametrize("name", ["gl", "wgpu", "hlsl-dxc"])
+def test_techniques(name: str, compiler: Callable[[str], Any]) -> None:
+    try:
+        gpu = backend(name)
+    except CompilerMissing:
+        compiler("naga" if name == "wgpu" else "gl")
+        raise
+    module, found = program()
+    calls = []
+    for title, function in found:
+        params = tuple(param.type for param in function.params)
+        calls.append((title, Call(function.name, params, function.result, arguments(function, draw, LANES))))
+    wrong = differences(gpu, module, calls, textures(mipmaps=False), "float32", 1e-3)
+    assert not wrong, "\n\n".join([f"{len(wrong)} of {len(calls)}", *wrong])
