@@ -475,22 +475,22 @@ def test_a_file_that_is_no_text(run: Run, compiler: FakeCompiler) -> None:
 
 
 def test_the_starter_emits_for_every_target(run: Run) -> None:
-    from sssgen.compiler import targets
+    from sssgen.compiler import all_targets
 
     assert run("new", "wood").status == 0
     ran = run("emit", "wood.toml", "--target", "all", "-o", "out", "--json")
     said = json.loads(ran.out)
     assert (ran.status, said["diagnostics"]) == (0, [])
-    assert {row["target"] for row in said["files"]} == set(targets())
+    assert {row["target"] for row in said["files"]} == set(all_targets())
     names = set(folder_content())
-    assert {f"wood.{target}.reflection.json" for target in targets()} <= names
+    assert {f"wood.{target}.reflection.json" for target in all_targets()} <= names
 
 
 def test_transpile_for_every_target(run: Run) -> None:
-    from sssgen.compiler import targets
+    from sssgen.compiler import all_targets
 
     Path("twice.glsl").write_text(GLSL, encoding="utf-8")
-    for target in targets():
+    for target in all_targets():
         ran = run("transpile", "twice.glsl", "-t", target)
         assert (ran.status, ran.err) == (0, "")
         assert "twice" in ran.out

@@ -64,7 +64,7 @@ SHAPES: dict[str, tuple[dict[str, Any], Callable[[], Array], float]] = {
 
 @pytest.mark.parametrize("name", SHAPES)
 def test_shapes(name: str) -> None:
-    """The closed form, and what marching relies on: it changes by no more than the way gone, nearly everywhere by it."""
+    """The closed form, and what marching relies on: it changes by no more than the way gone, and mostly by it."""
     values, expected, tolerance = SHAPES[name]
     distance = technique(name)
     close(distance(p=P, **values), expected(), atol=tolerance)
@@ -114,8 +114,12 @@ def test_distance_texture() -> None:
 
 def test_a_flat_box_is_padded() -> None:
     flat = {"box_min": (-1.0, 0.2, -1.0), "box_max": (1.0, 0.2, 1.0), "distance_range": 1.0}
-    result = technique("distance_texture")(p=[[0.0, 0.2, 0.0], [0.3, 0.9, 0.1]], distance_map=np.full((4, 4, 4, 1), 0.75), **flat)
-    close(result, 0.5)
+    # 1/1000 of the diagonal thick: a step of that size up leads from one side of the texture to the other
+    picture = np.linspace(0.0, 1.0, 64)[None, :, None, None] * np.ones((4, 64, 4, 1))
+    thickness = 0.001 * np.sqrt(8.0)
+    p = np.array([[0.0, 0.2 + part * thickness, 0.0] for part in (-0.25, 0.0, 0.25, 300.0)])
+    result = technique("distance_texture")(p=p, distance_map=Texture(picture, wrap="clamp"), **flat)
+    close(result, [-0.5, 0.0, 0.5, 1.0], atol=0.02)
 
 
 def test_distance_texture_in_world_space() -> None:
@@ -207,12 +211,13 @@ def test_marches_meet_what_the_closed_form_meets(march: str, shape: str) -> None
     t = solve(origin, ray)
     hit, p, n, v = technique(march, scene_distance=shape)(ray_origin=origin, ray_direction=ray)
     # within the tolerance of a hit the closed form and the march may differ
-    passing = np.array([np.abs(np.linalg.norm(o + np.linspace(0, 6, 800)[:, None] * r, axis=1) - 1.0).min() for o, r in zip(origin, ray, strict=True)])
-    grazing = (passing < 5e-3) & np.isnan(t) if shape == "sphere" else np.zeros(500, bool)
-    assert 100 < np.isfinite(t).sum() < 400
-    agree = hit == np.isfinite(t)
-    assert agree[~grazing].mean() > 0.99
-    both = hit & np.isfinite(t)
+    meets = np.isfinite(t)
+    assert 100 < meets.sum() < 400
+    if shape == "sphere":
+        passing = np.linalg.norm(np.cross(origin, ray), axis=1)
+        assert (hit == meets)[np.abs(passing - 1.0) > 2e-3].all()
+    assert (hit == meets).mean() > 0.99
+    both = hit & meets
     exact = origin[both] + t[both, None] * ray[both]
     slant = np.abs((ray[both] * (exact if shape == "sphere" else box_normal(exact))).sum(axis=1))
     steep = slant > 0.2
@@ -228,7 +233,7 @@ def test_raymarch_goes_no_farther_than_it_should() -> None:
     values = {"ray_origin": [0.0, 5.0, 0.0], "ray_direction": -UP}
     march = technique("raymarch", scene_distance="ground_plane")
     assert march(max_distance=6.0, **values)[0]
-    assert not march(max_distance=4.0, **values)[0] or march(max_distance=4.0, **values)[1][1] < 2e-3
+    assert not march(max_distance=4.0, **values)[0]
     upwards = technique("seed0_raymarch", scene_distance="ground_plane")(ray_origin=[0.0, 5.0, 0.0], ray_direction=UP)
     away = march(ray_origin=[0.0, 5.0, 0.0], ray_direction=UP, max_distance=50.0)
     assert not upwards[0] and not away[0]

@@ -7,16 +7,17 @@
 >>> [texture["name"] for texture in made.reflection["textures"]]
 ['base_color_texture']
 
-What is public: `compile`, `load_material`, `load_technique`, `targets`, `Compiled`, `Material`, `SssgenError`.
+What is public: `compile`, `load_material`, `load_technique`, `all_targets`, `Compiled`, `Material`, `SssgenError`.
 """
 
 from __future__ import annotations
 
-from .ir.typed import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any
+
 from .version import VERSION as __version__
 
 if TYPE_CHECKING:
-    from .compiler import Compiled, compile, targets
+    from .compiler import Compiled, all_targets, compile
     from .diagnostics import SssgenError
     from .library import load as load_technique
     from .material import Material, load_material
@@ -26,16 +27,16 @@ __all__ = [
     "Material",
     "SssgenError",
     "__version__",
+    "all_targets",
     "compile",
     "load_material",
     "load_technique",
-    "targets",
 ]
 
 _PLACES = {
     "Compiled": ("compiler", "Compiled"),
     "compile": ("compiler", "compile"),
-    "targets": ("compiler", "targets"),
+    "all_targets": ("compiler", "all_targets"),
     "SssgenError": ("diagnostics", "SssgenError"),
     "load_technique": ("library", "load"),
     "Material": ("material", "Material"),

@@ -9,8 +9,7 @@ import contextlib
 import os
 import sys
 from collections.abc import Callable
-
-from .ir.typed import Any
+from typing import Any
 
 try:  # the modules behind pickle and hashlib, without what these import
     import _blake2

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 from . import library
 from .diagnostics import Diagnostic, SssgenError
 from .ir.nodes import Function, Local, Module, Return
-from .ir.typed import Any, NamedTuple
 from .ir.types import Struct
 from .lang.loader import comments_before, source_line
 from .lang.polyfills import polyfill
@@ -54,6 +54,8 @@ class _Middle(NamedTuple):
     owners: dict[str, tuple[str, str]]
     costs: dict[str, Cost]
     warnings: list[Diagnostic]
+    encoded: bool = False
+    """Whether an output technique has encoded the colour."""
 
 
 _middles: dict[tuple[int, str, bool], tuple[Material, _Middle]] = {}
@@ -61,7 +63,7 @@ _compiled: dict[tuple[object, ...], Compiled] = {}
 _KEPT = 512
 
 
-def targets() -> dict[str, Target]:
+def all_targets() -> dict[str, Target]:
     """Every target by name, plug-ins too."""
     return {name: descriptor.load(name) for name in descriptor.names()}
 
@@ -158,7 +160,8 @@ def _build(material: Material, lighting: str, drop_output: bool) -> _Middle:
     warnings = _warnings(notes)
     slots = _slot_functions(material, linked.module)
     costs = {kind: cost_of(module, entry.function.key, slots) for kind, entry in chain.entries.items()}
-    return _Middle(module, dict(chain.entries), chain.surface, linked.owners, costs, warnings)
+    encoded = not lit and any(stage.role == "output" for stage in stages)
+    return _Middle(module, dict(chain.entries), chain.surface, linked.owners, costs, warnings, encoded)
 
 
 def _folded(module: Module, fixed: Mapping[str, tuple[float, ...]]) -> Module:
@@ -233,7 +236,7 @@ def _finish(
         entries[kind] = (found, entry.inputs)
     source_names = {uniform.name: old for uniform, old in zip(module.uniforms, before, strict=True)}
     surface = next((s.type for s in module.structs if isinstance(s.type, Struct) and s.type.name == "Surface"), None)
-    program = Program(module, entries, surface, source_names, about, comments_before)
+    program = Program(module, entries, surface, source_names, about, middle.encoded, comments_before)
     emitted = emit(target, program, form, templates)
     messages = [warning.message for warning in middle.warnings]
     data = reflect(target, program, emitted, form, middle.owners, renames, middle.costs, messages)

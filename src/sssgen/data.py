@@ -7,8 +7,7 @@ importing `pathlib` takes a tenth of a cold emit.
 from __future__ import annotations
 
 import os
-
-from .ir.typed import TYPE_CHECKING
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from pathlib import Path

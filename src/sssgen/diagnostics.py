@@ -6,9 +6,9 @@ A run collects every error it can find and raises them together as one `SssgenEr
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any, NamedTuple
 
 from .ir.nodes import NOWHERE, Span
-from .ir.typed import Any, NamedTuple
 
 MAX_ERRORS = 100
 """How many errors of one file are collected; nobody reads more."""

@@ -5,11 +5,11 @@ from __future__ import annotations
 import functools
 import os
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from .data import posix, stem
 from .diagnostics import SssgenError, did_you_mean, failure
 from .ir.nodes import Function, Module, Uniform
-from .ir.typed import NamedTuple
 from .lang.loader import load_file
 
 TECHNIQUES = os.path.join(os.path.dirname(__file__), "techniques")

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 import re
+from typing import TYPE_CHECKING, NamedTuple
 
 from .data import place, posix
 from .diagnostics import did_you_mean, failure
 from .ir.nodes import Function, Module, Span
-from .ir.typed import TYPE_CHECKING, NamedTuple
 from .lang.loader import read_text
 from .library import Technique
 

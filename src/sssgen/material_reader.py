@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import os
+from typing import Any, NamedTuple
 
 from . import library, roles, slots
 from .diagnostics import Diagnostic, SssgenError, did_you_mean
 from .ir.nodes import Function, Span, Uniform
-from .ir.typed import Any, NamedTuple
 from .ir.types import Sampler
 from .library import Technique
 from .material import ALPHA_MODES, SHADINGS, Binding, Material, Stage, wrong_name

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 import re
+from typing import Any
 
 from .ir.nodes import Uniform
-from .ir.typed import Any
 from .ir.types import Array, Matrix, Sampler, Type, components, kind_of, spell
 
 _LARGEST = 3.4028234663852886e38

@@ -6,11 +6,11 @@ import contextlib
 import os
 import re
 from collections.abc import Iterable, Mapping
+from typing import NamedTuple
 
 from .data import posix
 from .diagnostics import Diagnostic, SssgenError, failure
 from .ir.nodes import NOWHERE
-from .ir.typed import NamedTuple
 
 
 class Written(NamedTuple):

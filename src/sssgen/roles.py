@@ -6,10 +6,10 @@ A parameter is matched to a value of the chain by its name, a scalar quantity by
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 from .diagnostics import did_you_mean
 from .ir.nodes import Param, Span
-from .ir.typed import NamedTuple
 from .ir.types import BOOL, FLOAT, VEC3, VOID, Type, spell
 from .lang.quantities import SCALARS, conversion, words
 from .library import Technique, folder_of, index, load_path

@@ -6,13 +6,14 @@ tomllib reads the values and finds wrong syntax; a small scanner over the same t
 from __future__ import annotations
 
 import functools
+import os
 import re
-from bisect import bisect_right
 from collections.abc import Iterator
+from typing import Any, NamedTuple
 
+from . import cache
 from .diagnostics import Reporter
 from .ir.nodes import Span
-from .ir.typed import Any, NamedTuple
 
 MAX_CHARACTERS = 1 << 18
 """The longest file that is read. A material of a hundred stages stays below 20,000."""
@@ -57,7 +58,15 @@ class Document:
 
 
 def parse(text: str, file: str) -> Document:
-    """Reads a TOML text. Raises SssgenError with every syntax error found."""
+    """Reads a TOML text, and keeps what it found. Raises SssgenError with every syntax error found."""
+    status = os.stat(__file__)
+    stamp = (status.st_size, status.st_mtime_ns, text)
+    data, places = cache.kept(f"toml-{cache.digest(file)}", stamp, lambda: _parse(text, file))
+    return Document(data, places, Reporter(file, text))
+
+
+def _parse(text: str, file: str) -> tuple[dict[str, Any], dict[Path, Place]]:
+    """The values of a TOML text and their places."""
     import tomllib
 
     reporter = Reporter(file, text)
@@ -84,8 +93,7 @@ def parse(text: str, file: str) -> Document:
         lines[line - 1] = f'["line {line}"]' if lines[line - 1].lstrip().startswith("[") else ""
         remaining = "\n".join(lines)
     reporter.check()
-    places = _Scanner(tokens, place_of).scan()
-    return Document(data, places, reporter)
+    return data, _Scanner(tokens, place_of).scan()
 
 
 _POSITION = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)$")
@@ -177,6 +185,8 @@ class _Positions:
         self.starts = [0, *(match.end() for match in re.finditer("\n", text))]
 
     def __call__(self, start: int, end: int) -> Span:
+        from bisect import bisect_right
+
         line, end_line = bisect_right(self.starts, start), bisect_right(self.starts, end)
         return Span(
             self.file, line, start - self.starts[line - 1] + 1, end_line, end - self.starts[end_line - 1] + 1

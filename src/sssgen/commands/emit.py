@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import os
 import sys
-from argparse import Namespace
+from typing import TYPE_CHECKING
 
 from ..cli import OK, print_json
 from ..data import posix
 from ..diagnostics import Diagnostic, SssgenError, did_you_mean, failure
-from ..ir.typed import TYPE_CHECKING
 from ..material import Material, load_material
 from ..output import write_files
 
 if TYPE_CHECKING:
+    from argparse import Namespace
+
     from ..compiler import Compiled
 
 
@@ -63,9 +64,9 @@ def run(arguments: Namespace) -> int:
 
 def chosen_targets(text: str, wrong: list[Diagnostic]) -> list[str]:
     """The targets that `T,T` or `all` names, each once; unknown ones are added to `wrong`."""
-    from ..compiler import targets
+    from ..compiler import all_targets
 
-    known = list(targets())
+    known = list(all_targets())
     names = [name.strip() for name in text.split(",") if name.strip()]
     if "all" in names:
         return known

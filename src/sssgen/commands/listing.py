@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from argparse import Namespace
+from typing import Any
 
 from .. import library
 from ..cli import OK, print_json
 from ..data import posix
 from ..diagnostics import did_you_mean, failure
-from ..ir.typed import Any
 
 
 def run(arguments: Namespace) -> int:
@@ -53,9 +53,9 @@ def _techniques() -> list[dict[str, Any]]:
 
 
 def _targets() -> list[dict[str, Any]]:
-    from ..compiler import targets
+    from ..compiler import all_targets
 
-    return [{"name": name, "summary": target.title} for name, target in targets().items()]
+    return [{"name": name, "summary": target.title} for name, target in all_targets().items()]
 
 
 def _materials() -> list[dict[str, Any]]:

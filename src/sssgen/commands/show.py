@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from argparse import Namespace
+from typing import Any
 
 from .. import library, slots
 from ..cli import OK, print_json
 from ..ir.nodes import Uniform
-from ..ir.typed import Any
 from ..ir.types import Sampler, kind_of, spell
 from ..library import Technique
 

@@ -36,8 +36,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
-
-from .typed import NamedTuple
+from typing import NamedTuple
 
 
 class Builtin(NamedTuple):

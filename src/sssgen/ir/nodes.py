@@ -8,7 +8,8 @@ for tuples looks at the fields and not at the class.
 
 from __future__ import annotations
 
-from .typed import NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
+
 from .types import Type
 
 

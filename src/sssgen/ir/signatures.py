@@ -6,9 +6,9 @@ There are no implicit conversions: an overload matches when every type is the sa
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from .intrinsics import BUILTINS
-from .typed import NamedTuple
 from .types import BY_NAME, Matrix, Type, vector_of
 
 _KINDS = {"F": "float", "I": "int", "U": "uint", "B": "bool"}

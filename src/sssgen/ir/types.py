@@ -5,7 +5,7 @@ Types are immutable values and compare by content. Matrices are square and colum
 
 from __future__ import annotations
 
-from .typed import NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 
 class Scalar(NamedTuple):

@@ -6,6 +6,7 @@ Rewriting keeps a node's identity when nothing below it changed, so that an idle
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from typing import TypeAlias, cast
 
 from .nodes import (
     Assign,
@@ -33,7 +34,6 @@ from .nodes import (
     Unary,
     While,
 )
-from .typed import TypeAlias, cast
 
 RewriteExpr: TypeAlias = Callable[[Expr], Expr]
 RewriteStmt: TypeAlias = Callable[[Stmt], "Block | None"]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from textwrap import dedent
+from typing import Any
 
-from ..ir.typed import Any
 from . import syntax as s
 
 Comment = tuple[int, int, str]

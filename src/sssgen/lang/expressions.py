@@ -6,12 +6,13 @@ time.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from ..diagnostics import Reporter, did_you_mean
 from ..ir import nodes as ir
 from ..ir.intrinsics import BUILTINS
 from ..ir.rules import FLOAT_MAX, element_type, operator_type, prefix_type, swizzle_type
 from ..ir.signatures import candidates, resolve
-from ..ir.typed import NamedTuple
 from ..ir.types import (
     BOOL,
     BY_NAME,

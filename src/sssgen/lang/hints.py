@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from ..diagnostics import did_you_mean
 from ..ir.nodes import Span
 from ..ir.rules import FLOAT_MAX
-from ..ir.typed import TYPE_CHECKING
 from ..ir.types import VEC3, VEC4, Sampler, Type, kind_of
 from . import quantities as q
 from . import syntax as s

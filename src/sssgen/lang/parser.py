@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import os
 import re
+from typing import TYPE_CHECKING, Any
 
 from ..diagnostics import Reporter
 from ..ir.nodes import Span
 from ..ir.operators import PRECEDENCE
-from ..ir.typed import TYPE_CHECKING, Any
 from . import syntax as s
 from .comments import attach_docs
 

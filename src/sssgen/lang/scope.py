@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from ..ir.nodes import Span
-from ..ir.typed import NamedTuple
 from ..ir.types import Type
 
 

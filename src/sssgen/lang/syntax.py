@@ -5,8 +5,9 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple, TypeAlias
+
 from ..ir.nodes import Span
-from ..ir.typed import NamedTuple, TypeAlias
 
 
 class Name(NamedTuple):

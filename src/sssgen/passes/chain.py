@@ -13,6 +13,7 @@ from the shell (an input) or is the standard default. Second of all passes: it n
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from ..ir.nodes import (
     NOWHERE,
@@ -35,7 +36,6 @@ from ..ir.nodes import (
     Stmt,
     StructDecl,
 )
-from ..ir.typed import NamedTuple
 from ..ir.types import BOOL, FLOAT, VEC2, VEC3, VEC4, Field, Struct, Type
 from .link import LinkError
 

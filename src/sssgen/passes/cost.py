@@ -7,10 +7,10 @@ is a uniform without a default), a branch its dearer arm, so the numbers are an 
 from __future__ import annotations
 
 from collections.abc import Collection
+from typing import NamedTuple
 
 from ..ir import nodes as ir
 from ..ir.intrinsics import BUILTINS
-from ..ir.typed import NamedTuple
 from ..ir.types import Matrix, components
 from ..ir.walk import expressions, subexpressions
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from functools import cache
+from typing import Any, NamedTuple
 
 from ..ir.nodes import (
     Assign,
@@ -35,7 +36,6 @@ from ..ir.nodes import (
     Stmt,
     While,
 )
-from ..ir.typed import Any, NamedTuple
 from ..ir.walk import expressions, operands, root, statements
 
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import copysign
+from typing import Any
 
 from ..ir.nodes import (
     Assign,
@@ -43,7 +44,6 @@ from ..ir.nodes import (
     While,
 )
 from ..ir.rules import element_type
-from ..ir.typed import Any
 from ..ir.types import BOOL, Array, Matrix, Scalar, Struct, Type, Vector, components, kind_of, vector_of
 from ..ir.walk import operands, rewrite, subexpressions, with_operands
 from . import arithmetic

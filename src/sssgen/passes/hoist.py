@@ -13,6 +13,7 @@ Place: after `prune`, so that nothing is moved that goes away; before what is do
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import NamedTuple
 
 from ..ir.nodes import (
     Assign,
@@ -36,7 +37,6 @@ from ..ir.nodes import (
     Stmt,
     While,
 )
-from ..ir.typed import NamedTuple
 from ..ir.types import FLOAT, Scalar, Type
 from ..ir.walk import all_expressions, operands, root, statements, subexpressions, with_operands
 from .divergence import Divergence, Site, Summary, joined, summaries

@@ -11,6 +11,7 @@ is used at most once, or where the argument costs nothing (a literal, a name, or
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 from ..ir.nodes import (
     Assign,
@@ -36,7 +37,6 @@ from ..ir.nodes import (
     Swizzle,
     While,
 )
-from ..ir.typed import NamedTuple
 from ..ir.walk import expressions, operands, rewrite, subexpressions, with_operands
 from .divergence import Summary, implicit, summaries
 from .scopes import declared, fresh, substitute

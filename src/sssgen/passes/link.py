@@ -7,9 +7,9 @@ appears once; one that they use differently (another distance function behind it
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
 
 from ..ir.nodes import Call, Constant, Expr, Function, Global, Module, Span, StructDecl, Uniform
-from ..ir.typed import NamedTuple
 from ..ir.types import Struct
 from ..ir.walk import all_expressions, rewrite, rewrite_function, subexpressions
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Set
+from typing import NamedTuple
 
 from ..ir.nodes import (
     Assign,
@@ -25,7 +26,6 @@ from ..ir.nodes import (
     Unary,
     While,
 )
-from ..ir.typed import NamedTuple
 from ..ir.types import BOOL, Array, Matrix, Scalar, Struct, Type, Vector
 from ..ir.walk import expressions, rewrite, rewrite_block, root, statements, subexpressions
 from .lift_calls import Functions, out_arguments

@@ -13,6 +13,7 @@ end (the checker has seen to it), so an unkept loop has no effect.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..ir.nodes import (
     Assign,
@@ -41,7 +42,6 @@ from ..ir.nodes import (
     Unary,
     While,
 )
-from ..ir.typed import TYPE_CHECKING, Any, NamedTuple
 from ..ir.types import Array, Struct, Type
 from ..ir.walk import root
 

@@ -7,6 +7,7 @@ statements to another block puts this right again with `separate`.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Container, Mapping
+from typing import Any
 
 from ..ir.nodes import (
     Assign,
@@ -28,7 +29,6 @@ from ..ir.nodes import (
     Stmt,
     While,
 )
-from ..ir.typed import Any
 from ..ir.walk import expressions, inner_statements, operands, rewrite, statements, with_operands
 
 _NONE: Mapping[str, str] = {}

@@ -8,10 +8,10 @@ which leaves exactly these constant expressions as they are written.
 from __future__ import annotations
 
 from math import isfinite
+from typing import NamedTuple
 
 from ..ir.nodes import Binary, Construct, Expr, Global, Intrinsic, Literal, Local, Module, Span, Swizzle, Unary
 from ..ir.rules import FLOAT_MAX
-from ..ir.typed import NamedTuple
 from ..ir.types import Scalar, Vector, kind_of
 from ..ir.walk import expressions, operands, statements
 from . import arithmetic

@@ -7,6 +7,7 @@ What comes from outside (parameters, uniforms, textures) may differ from lane to
 from __future__ import annotations
 
 from collections.abc import Set
+from typing import NamedTuple
 
 from ..ir.nodes import (
     Assign,
@@ -29,7 +30,6 @@ from ..ir.nodes import (
     Unary,
     While,
 )
-from ..ir.typed import NamedTuple
 from ..ir.types import INT, UINT, Scalar
 from ..ir.walk import expressions, root, statements, subexpressions
 from .lift_calls import Functions, out_arguments

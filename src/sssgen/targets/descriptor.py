@@ -10,11 +10,11 @@ import contextlib
 import functools
 import os
 import sys
+from typing import Any, NamedTuple
 
 from .. import cache
 from ..data import place, stem
 from ..diagnostics import SssgenError, did_you_mean, failure
-from ..ir.typed import Any, NamedTuple
 
 
 class OutputFile(NamedTuple):

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 from ..diagnostics import failure
 from ..ir.nodes import Function, Local, Module, Param, Span, Uniform
-from ..ir.typed import Any, NamedTuple
 from ..ir.types import Sampler, Struct, spell
 from .descriptor import Target
 from .layout import Member, place
@@ -45,6 +45,8 @@ class Program(NamedTuple):
     source_names: Mapping[str, str]
     """A uniform's name in `module` → its technique's own name for it."""
     about: About
+    encoded: bool
+    """Whether the colour that comes out is already encoded for a display."""
     comments: Comments = no_comments
 
 

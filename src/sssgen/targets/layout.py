@@ -7,9 +7,9 @@ same offsets for these types, and HLSL's packing does once explicit padding stan
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from ..ir.nodes import Uniform
-from ..ir.typed import NamedTuple
 from ..ir.types import Array, Matrix, Sampler, Type, components
 
 

@@ -9,12 +9,12 @@ from __future__ import annotations
 import math
 import struct
 from collections.abc import Callable
+from typing import NamedTuple
 
 from ..ir import nodes as ir
 from ..ir import signatures
 from ..ir.intrinsics import BUILTINS
 from ..ir.operators import PRECEDENCE
-from ..ir.typed import NamedTuple
 from ..ir.types import FLOAT, INT, UINT, Array, Sampler, Struct, Type, spell
 from ..ir.walk import expressions, root, statements, subexpressions
 from .descriptor import Target

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 from ..ir.nodes import Uniform
-from ..ir.typed import TYPE_CHECKING, Any
 from ..ir.types import Sampler, spell
 from .descriptor import Target
 from .emit import Emitted, Program
@@ -52,6 +52,10 @@ def reflect(
     return {
         "format": VERSION,
         "material": program.about.name,
+        "shading": program.about.shading,
+        "alpha_mode": program.about.alpha_mode,
+        "raymarched": program.about.raymarched,
+        "color": "encoded" if program.encoded else "linear",
         "target": target.name,
         "form": form,
         "files": [

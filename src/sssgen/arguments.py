@@ -1,0 +1,102 @@
+"""The command line's grammar. It stands apart as building it with argparse takes as long as emitting a shader."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from typing import NoReturn
+
+from .diagnostics import did_you_mean, failure
+
+
+class _Parser(argparse.ArgumentParser):
+    """argparse, whose errors are ours."""
+
+    def error(self, message: str) -> NoReturn:
+        hint = f"see: {self.prog} --help"
+        if found := re.match(r"argument ([^:]+): invalid choice: '?(.*?)'? \(choose from (.*)\)", message):
+            which, word, known = found.groups()
+            choices = re.findall(r"[\w-]+", known)
+            message = f"unknown {'command' if which == 'COMMAND' else which.lower()} '{word}'"
+            hint = did_you_mean(word, choices) or f"choose from: {', '.join(choices)}"
+        raise failure(message, hint)
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command line's grammar."""
+    top = _Parser(
+        prog="sssgen",
+        description="Generates shaders for translucent and parallax materials from one description.",
+        epilog="Exit status: 0 done, 1 a check failed, 2 wrong input.\nOf one command: sssgen COMMAND --help",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    top.add_argument("--version", action=_Version, nargs=0, help="show the version")
+    commands = top.add_subparsers(metavar="COMMAND", dest="COMMAND", required=True)
+
+    def command(name: str, module: str, text: str, epilog: str = "") -> argparse.ArgumentParser:
+        made: argparse.ArgumentParser = commands.add_parser(
+            name,
+            help=text,
+            description=text[0].upper() + text[1:] + ".",
+            epilog=epilog,
+            allow_abbrev=False,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        made.set_defaults(module=module)
+        made.add_argument("--json", action="store_true", help="print the result, or the errors, as JSON")
+        return made
+
+    listing = command("list", "listing", "list what there is to choose from")
+    listing.add_argument(
+        "KIND", choices=("techniques", "targets", "materials"), help="techniques, targets or materials"
+    )
+    listing.add_argument("--role", metavar="R", help="only the techniques of this role")
+
+    show = command("show", "show", "show a technique: what it does, what it takes, where it comes from")
+    show.add_argument("TECHNIQUE", help="a name of `sssgen list techniques`, or a .sss file")
+
+    emit = command(
+        "emit",
+        "emit",
+        "write the shaders of materials",
+        "examples:\n  sssgen emit ice --target all -o out\n  sssgen emit wax.toml -t wgsl,unity-urp -o out",
+    )
+    emit.add_argument("MATERIAL", nargs="+", help="a .toml file, or an example of `sssgen list materials`")
+    emit.add_argument(
+        "--target", "-t", metavar="T,T|all", required=True, help="targets of `sssgen list targets`, or all"
+    )
+    emit.add_argument(
+        "-o", "--output", metavar="DIR", required=True, help="the folder to write to; made if need be"
+    )
+    emit.add_argument(
+        "--form",
+        choices=("shader", "functions"),
+        default="shader",
+        help="whole shaders (default), or functions to paste into one's own",
+    )
+    emit.add_argument("--templates", metavar="DIR", help="a folder of templates that stand before ours")
+
+    transpile = command("transpile", "transpile", "translate functions in plain GLSL to a target's language")
+    transpile.add_argument("FILE", help="a GLSL file of the subset (functions and uniforms; no main)")
+    transpile.add_argument(
+        "--target", "-t", metavar="T", required=True, help="a target of `sssgen list targets`"
+    )
+    transpile.add_argument(
+        "-o", "--output", metavar="FILE", help="the file to write, and its reflection beside it"
+    )
+
+    new = command("new", "new", "write a commented material to start from")
+    new.add_argument("MATERIAL", help="its name, or a .toml file; an old one is never overwritten")
+    return top
+
+
+class _Version(argparse.Action):
+    """`--version`, without importing anything for those who do not ask."""
+
+    def __call__(self, *_: object) -> NoReturn:
+        from .version import VERSION
+
+        print(f"sssgen {VERSION}")
+        raise SystemExit(0)
