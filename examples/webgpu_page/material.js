@@ -16,11 +16,11 @@ export async function load(folder, name) {
 }
 
 export class Material {
-  /** `format` is that of the view it draws into: an -srgb one, unless the material has an output technique. */
+  /** `format` is that of the view it draws into: an -srgb one, where `reflection.color` is linear. */
   constructor(device, { wgsl, reflection }, format) {
     this.device = device;
     this.reflection = reflection;
-    this.screen = wgsl.includes('vertex_index'); // raymarched: one triangle over the screen, no mesh
+    this.screen = reflection.raymarched; // one triangle over the screen, no mesh
     this.buffers = Object.fromEntries(Object.entries(BYTES).map(([name, size]) => [name, this.#uniforms(size)]));
     this.buffers.material = this.#uniforms(Math.max(16, reflection.uniform_block_size ?? 0));
     this.textures = {};
