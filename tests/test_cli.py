@@ -51,7 +51,7 @@ class FakeCompiler(types.ModuleType):
         self.failing: dict[str, Exception] = {}
         self.warnings: list[Diagnostic] = []
 
-    def targets(self) -> dict[str, Target]:
+    def all_targets(self) -> dict[str, Target]:
         return {"glsl-330": Target("GLSL 3.30"), "wgsl": Target("WGSL")}
 
     def compile(self, material: Material, target: str, form: str, templates: Path | None) -> Compiled:

@@ -23,6 +23,8 @@ from sssgen.passes.parameters import uniforms_to_parameters
 from sssgen.passes.prune import prune
 
 LANES = 48
+LOOSE = {"raymarch_shows_N": 0.05}
+"""What float32 alone blurs: a normal from differences of distances a thousandth apart."""
 
 
 def bound(technique: library.Technique) -> dict[str, tuple[Module, Function]]:
@@ -111,8 +113,10 @@ def drawn_uniform(uniform: Uniform, rng: np.random.Generator, lanes: int) -> np.
     if kind_of(uniform.type) != "float":
         return np.repeat(value, lanes, axis=-1).astype(DTYPES[kind_of(uniform.type)])
     value = value * rng.uniform(0.8, 1.2, lanes)[pixels(lanes)[0] // 2]
-    limits = dict(uniform.hints).get("hint_range", (-np.inf, np.inf))
-    return np.clip(value, *limits[:2]).astype(np.float32)
+    low, high, *_ = dict(uniform.hints).get("hint_range", (0.0, 0.0))
+    if low < high:
+        value = np.clip(value + 0.1 * (high - low), low, high)
+    return value.astype(np.float32)
 
 
 @pytest.mark.parametrize("name", ["gl", "wgpu", "hlsl-dxc"])
@@ -127,5 +131,5 @@ def test_techniques(name: str, compiler: Callable[[str], Any]) -> None:
     for title, function in found:
         params = tuple(param.type for param in function.params)
         calls.append((title, Call(function.name, params, function.result, arguments(function, draw, LANES))))
-    wrong = differences(gpu, module, calls, textures(mipmaps=False), "float32", 1e-3)
+    wrong = differences(gpu, module, calls, textures(mipmaps=False), "float32", 1e-4, LOOSE)
     assert not wrong, "\n\n".join([f"{len(wrong)} of {len(calls)}", *wrong])

@@ -19,7 +19,8 @@ def to_box(p: Array, half: Array) -> Array:
     """Outside: the way to the nearest point of the box; inside: the nearest of the six faces."""
     nearest = np.clip(p, -half, half)
     faces = np.minimum(half - p, half + p).min(axis=-1)
-    return np.where((nearest == p).all(axis=-1), -faces, np.linalg.norm(p - nearest, axis=-1))
+    found: Array = np.where((nearest == p).all(axis=-1), -faces, np.linalg.norm(p - nearest, axis=-1))
+    return found
 
 
 def to_cubes(p: Array) -> Array:

@@ -128,7 +128,8 @@ def test_xt95_as_published() -> None:
     expected = np.clip(1.0 - total / 6.0, 0.0, 1.0)
     close(technique("xt95_thickness", body_distance="torus")(P=p, N=n), expected, atol=1e-9)
     assert expected.min() < expected.max()
-    close(technique("xt95_thickness", body_distance=HALF_SPACE)(P=ORIGIN, N=UP), 1.0)
+    for body, limit in ((HALF_SPACE, 1.0), (VOID, 0.0)):
+        close(technique("xt95_thickness", body_distance=body)(P=ORIGIN, N=UP), limit)
 
 
 @pytest.mark.parametrize("thickness", [0.05, 0.2, 0.35])
@@ -163,7 +164,8 @@ def test_hemisphere_counts_rays_that_leave() -> None:
 
 
 def ball_chord(n: Array, l: Array, radius: float) -> Array:  # noqa: E741 - the light's usual letter
-    return 2.0 * radius * np.maximum(-(n * l).sum(axis=1), 0.0)
+    chord: Array = 2.0 * radius * np.maximum(-(n * l).sum(axis=1), 0.0)
+    return chord
 
 
 def test_march_of_a_ball_converges_to_the_chord() -> None:

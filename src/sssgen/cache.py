@@ -1,4 +1,4 @@
-"""The folder for what is cheap to make again: grammar tables, descriptors, parsed techniques, translated templates.
+"""The folder for what is cheap to make again: grammar tables, descriptors, parsed techniques, compiled templates.
 
 `SSSGEN_CACHE` names another folder, or turns caching on disk off when it is empty. Losing the folder costs time only.
 """
@@ -6,17 +6,12 @@
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import os
+import pickle
 import sys
 from collections.abc import Callable
 from typing import Any
-
-try:  # the modules behind pickle and hashlib, without what these import
-    import _blake2
-    import _pickle
-except ImportError:
-    import hashlib as _blake2  # type: ignore[no-redef]
-    import pickle as _pickle  # type: ignore[no-redef]
 
 _folder = ""
 _known = False
@@ -82,14 +77,14 @@ def unpickled(data: bytes) -> Any:
     if not data:
         return None
     try:
-        return _pickle.loads(data)
+        return pickle.loads(data)
     except Exception:  # it is made again, whatever is wrong with it
         return None
 
 
 def pickled(value: object) -> bytes:
     """A value as a cache entry."""
-    return _pickle.dumps(value, protocol=5)
+    return pickle.dumps(value, protocol=5)
 
 
 def stamp(place: str) -> list[tuple[str, int, int]]:
@@ -110,4 +105,4 @@ def stamp(place: str) -> list[tuple[str, int, int]]:
 
 def digest(text: str) -> str:
     """A short name for a text."""
-    return _blake2.blake2b(text.encode("utf-8", "surrogatepass"), digest_size=16).hexdigest()
+    return hashlib.blake2b(text.encode("utf-8", "surrogatepass"), digest_size=16).hexdigest()

@@ -59,7 +59,7 @@ class _Middle(NamedTuple):
 
 
 _middles: dict[tuple[int, str, bool], tuple[Material, _Middle]] = {}
-_compiled: dict[tuple[object, ...], Compiled] = {}
+_compiled: dict[tuple[object, ...], tuple[Material, Compiled]] = {}
 _KEPT = 512
 
 
@@ -94,16 +94,16 @@ def compile(  # noqa: A001 - the library's verb, used as sssgen.compile
 
         raise failure(f"unknown form '{form}'", did_you_mean(form, FORMS) or "forms: shader, functions")
     chosen = descriptor.load(target)
-    key = (id(material), target, form, templates)
+    key = (id(material), target, form)
     known = _compiled.get(key) if templates is None else None
-    if known is not None and _middle_of(material, chosen) is not None:
-        return known
+    if known is not None and known[0] is material:
+        return known[1]
     middle = _middle_of(material, chosen)
     made = _finish(middle, chosen, form, os.fspath(templates) if templates else None, _about(material))
     if templates is None:
         if len(_compiled) >= _KEPT:
             _compiled.clear()
-        _compiled[key] = made
+        _compiled[key] = material, made
     return made
 
 

@@ -11,6 +11,7 @@ from .data import posix, stem
 from .diagnostics import SssgenError, did_you_mean, failure
 from .ir.nodes import Function, Module, Uniform
 from .lang.loader import load_file
+from .watch import Kept, remembered
 
 TECHNIQUES = os.path.join(os.path.dirname(__file__), "techniques")
 
@@ -90,9 +91,15 @@ def load(name: str) -> Technique:
     return load_path(path)
 
 
-@functools.cache
+_techniques: dict[str, Kept] = {}
+
+
 def load_path(path: str) -> Technique:
-    """The technique that a file holds."""
+    """The technique that a file holds; the file is read again only if it, or what it includes, has changed."""
+    return remembered(_techniques, os.path.abspath(path), lambda: _read_technique(path))
+
+
+def _read_technique(path: str) -> Technique:
     shown, name = shown_name(path), stem(path)
     module = load_file(path, shown, (TECHNIQUES,))
     function = next((f for f in reversed(module.functions) if f.name == name and f.body is not None), None)

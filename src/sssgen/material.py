@@ -11,6 +11,7 @@ from .diagnostics import did_you_mean, failure
 from .ir.nodes import Function, Module, Span
 from .lang.loader import read_text
 from .library import Technique
+from .watch import Kept, remembered
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -77,10 +78,14 @@ def examples() -> dict[str, str]:
     return {name: path for name, path in paths.items() if os.path.isfile(path)}
 
 
+_materials: dict[str, Kept] = {}
+
+
 def load_material(path_or_name: str | os.PathLike[str]) -> Material:
     """The material of a TOML file, or of an example by its name.
 
-    Raises SssgenError with all that is wrong with it.
+    It is the same object as before where no file that it is made of has changed. Raises SssgenError with all that
+    is wrong with it.
     """
     text = os.fspath(path_or_name)
     if not text.endswith(".toml") and "/" not in text and "\\" not in text and not os.path.isfile(text):
@@ -90,8 +95,13 @@ def load_material(path_or_name: str | os.PathLike[str]) -> Material:
             others = f"give a path that ends in .toml, or one of: {', '.join(known)}"
             raise failure(f"unknown material '{text}'", beside or did_you_mean(text, known) or others)
         shown = f"examples/{text}/{text}.toml"
-        return parse_material(read_text(known[text], shown), known[text], shown)
-    return parse_material(read_text(text, posix(text)), text)
+        return _remembered(known[text], shown)
+    return _remembered(text, posix(text))
+
+
+def _remembered(path: str, shown: str) -> Material:
+    key = f"{os.path.abspath(path)}\0{shown}"
+    return remembered(_materials, key, lambda: parse_material(read_text(path, shown), path, shown))
 
 
 def parse_material(text: str, path: str | os.PathLike[str], shown: str = "") -> Material:

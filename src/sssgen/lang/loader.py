@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from .. import cache
 from ..diagnostics import Diagnostic, SssgenError, failure
 from ..ir.nodes import Module, Span
+from ..watch import note
 
 MAX_BYTES = 4 << 20
 """The largest source file that is read. Shader libraries of thousands of functions stay below 1 MB."""
@@ -80,6 +81,7 @@ def source_line(span: Span) -> str:
 
 def read_text(path: str | os.PathLike[str], shown: str) -> str:
     """The text of a source file. Raises SssgenError where it is missing or is not text."""
+    note(path)
     try:
         with open(path, "rb") as file:
             size = os.fstat(file.fileno()).st_size
