@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from snapshot import check_snapshot
-from sssgen import cli, output
+from sssgen import cli, emitted, output
 from sssgen.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.ir.nodes import Module, Span
 from sssgen.material import Material, load_material
@@ -71,6 +71,8 @@ class FakeCompiler(types.ModuleType):
 def compiler(monkeypatch: pytest.MonkeyPatch) -> FakeCompiler:
     fake = FakeCompiler()
     monkeypatch.setitem(sys.modules, "sssgen.compiler", fake)
+    monkeypatch.setattr(emitted, "recall", lambda *_: None)
+    monkeypatch.setattr(emitted, "remember", lambda *_: None)
     return fake
 
 

@@ -235,6 +235,8 @@ def test_raymarch_goes_no_farther_than_it_should() -> None:
     march = technique("raymarch", scene_distance="ground_plane")
     assert march(max_distance=6.0, **values)[0]
     assert not march(max_distance=4.0, **values)[0]
+    on_it = march(ray_origin=[0.0, 0.0, 0.0], ray_direction=-UP)
+    assert on_it[0] and not on_it[1].any()
     upwards = technique("seed0_raymarch", scene_distance="ground_plane")(ray_origin=[0.0, 5.0, 0.0], ray_direction=UP)
     away = march(ray_origin=[0.0, 5.0, 0.0], ray_direction=UP, max_distance=50.0)
     assert not upwards[0] and not away[0]

@@ -322,3 +322,6 @@ def test_jelly_surface() -> None:
     close(albedo[:3], [[0.9] * 3, [1.0] * 3, [0.9] * 3])
     close(albedo[3:], [[1.0, 0.5, 0.0]] * 2)
     close(thinness, [0.0, 0.0, 0.0, 0.4, 0.4])
+    floor = rng().uniform(-9.0, -2.0, (100, 3)) * [1.0, 0.0, 1.0]
+    odd = (np.floor(2.0 * floor[:, 0]) + np.floor(2.0 * floor[:, 2])) % 2.0
+    close(technique("jelly_surface")(P=floor, th=0.4)[0], np.stack([1.0 - 0.1 * odd] * 3, axis=1))

@@ -250,6 +250,16 @@ def test_march_through_a_texture_of_a_box_off_the_origin() -> None:
     close(result, 1.8, atol=0.02)
 
 
+def test_the_march_ends_at_the_side_of_the_box() -> None:
+    low, high = np.array([0.5, 1.0, -2.0]), np.array([2.9, 3.2, 0.4])
+    p, direction = low + rng().uniform(size=(50, 3)) * (high - low), units(50)
+    exits = np.maximum((low - p) / direction, (high - p) / direction).min(axis=1)
+    end = technique("thickness/march_distance_texture.sss:box_exit")
+    close(end(p=p, direction=direction, box_min=low, box_max=high), exits)
+    close(end(p=p, direction=UP, box_min=low, box_max=high), high[1] - p[:, 1])
+    close(end(p=high + 0.1, direction=UP, box_min=low, box_max=high), 0.0)
+
+
 def test_march_in_a_flat_box_is_finite() -> None:
     plate = "float plate(object_position p) { return abs(p.y) - 0.0001; }"
     march = technique("march_distance_texture", distance_at=plate)

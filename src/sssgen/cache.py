@@ -1,4 +1,5 @@
-"""The folder for what is cheap to make again: grammar tables, descriptors, parsed techniques, compiled templates.
+"""The folder for what is cheap to make again: grammar tables, parsed techniques, compiled templates, emitted
+shaders.
 
 `SSSGEN_CACHE` names another folder, or turns caching on disk off when it is empty. Losing the folder costs time only.
 """
@@ -65,10 +66,11 @@ def write(name: str, data: bytes) -> None:
 
 def kept(name: str, stamp: object, make: Callable[[], Any]) -> Any:
     """What `make` gives, from the entry `name` if that was made under the same stamp. It is something to pickle."""
-    known, value = unpickled(read(name)) or (None, None)
-    if known != stamp:
-        value = make()
-        write(name, pickled((stamp, value)))
+    entry = unpickled(read(name))
+    if isinstance(entry, tuple) and entry[0] == stamp:
+        return entry[1]
+    value = make()
+    write(name, pickled((stamp, value)))
     return value
 
 
@@ -103,6 +105,7 @@ def stamp(place: str) -> list[tuple[str, int, int]]:
     return found
 
 
-def digest(text: str) -> str:
-    """A short name for a text."""
-    return hashlib.blake2b(text.encode("utf-8", "surrogatepass"), digest_size=16).hexdigest()
+def digest(data: str | bytes) -> str:
+    """A short name for a content."""
+    raw = data.encode("utf-8", "surrogatepass") if isinstance(data, str) else data
+    return hashlib.blake2b(raw, digest_size=16).hexdigest()

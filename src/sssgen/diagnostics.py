@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
-from .ir.nodes import NOWHERE, Span
+from .ir.spans import NOWHERE, Span
 
 MAX_ERRORS = 100
 """How many errors of one file are collected; nobody reads more."""

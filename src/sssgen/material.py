@@ -11,7 +11,7 @@ from .diagnostics import did_you_mean, failure
 from .ir.nodes import Function, Module, Span
 from .lang.loader import read_text
 from .library import Technique
-from .watch import Kept, remembered
+from .watch import Kept, note, remembered
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -89,6 +89,7 @@ def load_material(path_or_name: str | os.PathLike[str]) -> Material:
     """
     text = os.fspath(path_or_name)
     if not text.endswith(".toml") and "/" not in text and "\\" not in text and not os.path.isfile(text):
+        note(text)
         known = examples()
         if text not in known:
             beside = f"did you mean '{text}.toml'?" if os.path.isfile(f"{text}.toml") else ""

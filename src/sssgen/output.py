@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from .data import posix
 from .diagnostics import Diagnostic, SssgenError, failure
-from .ir.nodes import NOWHERE
+from .ir.spans import NOWHERE
 
 
 class Written(NamedTuple):

@@ -12,6 +12,7 @@ from .ir.nodes import Call, Function, Global, Module
 from .ir.types import spell
 from .ir.walk import all_expressions, subexpressions
 from .lang.loader import load_file
+from .watch import note
 
 Needs = tuple[frozenset[str], tuple[Function, ...]]
 
@@ -94,6 +95,7 @@ def find(text: str, slot: Function, folder: str) -> tuple[Module, Function]:
     if source.endswith((".sss", ".glsl")):
         paths = [os.path.join(root, source) for root in (folder, library.TECHNIQUES)]
         path = next((path for path in paths if os.path.isfile(path)), None)
+        note(paths[0])
         if path is None:
             raise failure(f"cannot find the file '{source}'", "it is looked for beside the material")
         module = load_file(path, library.shown_name(path), (library.TECHNIQUES,))

@@ -35,6 +35,16 @@ def note(path: str | os.PathLike[str]) -> None:
             files.add(full)
 
 
+def watched(make: Callable[[], _T]) -> tuple[_T, list[str]]:
+    """What `make` gives, and the files that it read or looked for."""
+    files: set[str] = set()
+    _watching.append(files)
+    try:
+        return make(), sorted(files)
+    finally:
+        _watching.pop()
+
+
 def remembered(memory: dict[str, Kept], key: str, make: Callable[[], _T]) -> _T:
     """What `make` gives, or what it gave before for this key, if no file that it read has changed since."""
     kept = memory.get(key)
@@ -42,13 +52,8 @@ def remembered(memory: dict[str, Kept], key: str, make: Callable[[], _T]) -> _T:
         for path in kept.files:
             note(path)
         return kept.value  # type: ignore[return-value]  # a memory holds what its own `make` gave
-    files: set[str] = set()
-    _watching.append(files)
-    try:
-        value = make()
-    finally:
-        _watching.pop()
-    names = tuple(sorted(files))
+    value, files = watched(make)
+    names = tuple(files)
     if len(memory) >= KEPT:
         memory.clear()
     memory[key] = Kept(names, _state(names), value)

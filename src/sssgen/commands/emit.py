@@ -6,20 +6,53 @@ import os
 import sys
 from typing import TYPE_CHECKING
 
+from .. import emitted, watch
 from ..cli import OK, print_json
 from ..data import posix
 from ..diagnostics import Diagnostic, SssgenError, did_you_mean, failure
-from ..material import Material, load_material
+from ..emitted import Made
 from ..output import write_files
 
 if TYPE_CHECKING:
     from argparse import Namespace
 
     from ..compiler import Compiled
+    from ..material import Material
 
 
 def run(arguments: Namespace) -> int:
     """Compiles everything, then writes everything: where one text fails, none is written."""
+    made = _recalled_or_made(arguments)
+    written = write_files(arguments.output, made.files)
+    if arguments.json:
+        rows = [
+            {"file": posix(one.path), "material": material, "target": target, "changed": one.changed}
+            for one, (material, target) in zip(written, made.sources.values(), strict=True)
+        ]
+        diagnostics = [one.as_json() for one in made.warnings]
+        print_json({"ok": True, "form": arguments.form, "files": rows, "diagnostics": diagnostics})
+        return OK
+    print_warnings(made.warnings)
+    for one in written:
+        print(f"{'wrote' if one.changed else 'kept '} {posix(one.path)}")
+    return OK
+
+
+def _recalled_or_made(arguments: Namespace) -> Made:
+    """What the same command made before, where nothing has changed since; with templates of one's own, always anew."""
+    if arguments.templates is not None:
+        return _made(arguments)
+    command = (arguments.MATERIAL, arguments.target, arguments.form)
+    known = emitted.recall(*command)
+    if known is not None:
+        return known
+    made, files = watch.watched(lambda: _made(arguments))
+    emitted.remember(*command, made, files)
+    return made
+
+
+def _made(arguments: Namespace) -> Made:
+    """Compiles every material for every target. Raises SssgenError with all that is wrong."""
     from ..compiler import compile
 
     wrong: list[Diagnostic] = []
@@ -40,26 +73,7 @@ def run(arguments: Namespace) -> int:
                 warnings += compiled.warnings
     if wrong:
         raise SssgenError(dict.fromkeys(wrong))
-    warnings = list(dict.fromkeys(warnings))
-    written = write_files(arguments.output, files)
-    if arguments.json:
-        rows = [
-            {"file": posix(one.path), "material": material, "target": target, "changed": one.changed}
-            for one, (material, target) in zip(written, sources.values(), strict=True)
-        ]
-        print_json(
-            {
-                "ok": True,
-                "form": arguments.form,
-                "files": rows,
-                "diagnostics": [one.as_json() for one in warnings],
-            }
-        )
-        return OK
-    print_warnings(warnings)
-    for one in written:
-        print(f"{'wrote' if one.changed else 'kept '} {posix(one.path)}")
-    return OK
+    return Made(files, sources, list(dict.fromkeys(warnings)))
 
 
 def chosen_targets(text: str, wrong: list[Diagnostic]) -> list[str]:
@@ -96,6 +110,8 @@ def _templates(folder: str | None, wrong: list[Diagnostic]) -> str | None:
 
 
 def _materials(arguments: list[str], wrong: list[Diagnostic]) -> list[Material]:
+    from ..material import load_material
+
     found: dict[str, Material] = {}
     for argument in arguments:
         try:
@@ -106,9 +122,7 @@ def _materials(arguments: list[str], wrong: list[Diagnostic]) -> list[Material]:
         other = found.setdefault(material.name, material)
         if other is not material:
             message = f"two materials are called '{material.name}': their files would have the same names"
-            wrong += failure(
-                message, f"the other one is {posix(other.file)}", posix(material.file)
-            ).diagnostics
+            wrong += failure(message, f"the other one is {posix(other.file)}", posix(material.file)).diagnostics
     return list(found.values())
 
 

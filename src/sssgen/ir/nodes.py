@@ -10,21 +10,9 @@ from __future__ import annotations
 
 from typing import NamedTuple, TypeAlias
 
+from .spans import NOWHERE as NOWHERE
+from .spans import Span as Span
 from .types import Type
-
-
-class Span(NamedTuple):
-    """Where a node stands in its source: 1-based lines and columns, the end exclusive."""
-
-    file: str
-    line: int
-    column: int
-    end_line: int
-    end_column: int
-
-
-NOWHERE = Span("", 0, 0, 0, 0)
-
 
 # Expressions
 

@@ -126,6 +126,7 @@ def _include(
                 message = f"'{name}' includes itself: {' → '.join((*within, name))}"
                 raise SssgenError([Diagnostic("error", message, place, "", line)])
             return _load(read_text(path, name), name, (os.path.dirname(path), *roots), within)
+        note(path)
     hint = "it is looked for beside the file and in the technique library"
     raise SssgenError([Diagnostic("error", f"cannot find '{name}' to include", place, hint, line)])
 

@@ -28,6 +28,7 @@ from ..ir.types import (
 )
 from ..ir.walk import expressions, operands, rewrite, root, statements, subexpressions, with_operands
 from . import blocks
+from .integers import counts_up, with_result
 from .lift_calls import is_awkward, lift
 from .stores import is_dynamic_store, is_swizzle_store, parts_of, whole_store
 
@@ -60,6 +61,8 @@ class _Legaliser:
         self.functions = {function.key: function for function in module.functions}
         self.helpers: dict[str, ir.Function] = {}
         self.uniforms = {uniform.name for uniform in module.uniforms}
+        self.counters: list[str] = []
+        """The counters of the loops around that are never negative."""
         self.names: set[str] = set()
         self.prelude: list[ir.Stmt] | None = None
 
@@ -209,7 +212,10 @@ class _Legaliser:
     def loop(self, loop: ir.For | ir.While) -> ir.Stmt:
         """A loop; where its condition needs statements, the body begins with them and leaves by itself."""
         condition, before = self.apart(loop.condition) if loop.condition is not None else (None, [])
+        counter = counts_up(loop) if isinstance(loop, ir.For) else ""
+        self.counters.append(counter)
         body = self.inner(loop.body)
+        self.counters.pop()
         if before and condition is not None:
             stop = ir.Unary(BOOL, "!", condition, condition.span)
             body = (*before, ir.If(stop, (ir.Break(loop.span),), (), loop.span), *body)
@@ -369,6 +375,8 @@ class _Legaliser:
             return ir.Binary(BOOL, "!=", left, right, span)
         if op in ("==", "!=") and binary.type == BOOL and not isinstance(left.type, Scalar):
             return self.equality(binary) if not self.can("whole_equality") else binary
+        if op in ("/", "%", "<<", ">>") and kind_of(left.type) != "float" and not self.can("integer_division"):
+            return self.integer(binary)
         if op in ("<<", ">>", "&", "|", "^") and not self.can("mixed_bits"):
             size = max(components(left.type), components(right.type))
             right = _amount(right, size) if op in ("<<", ">>") else _widened(right, size)
@@ -380,6 +388,11 @@ class _Legaliser:
             if isinstance(binary.type, Matrix) and op in "+-/" and (left.type != right.type or op == "/"):
                 return self.by_columns(binary)
         return binary
+
+    def integer(self, binary: ir.Binary) -> ir.Expr:
+        """An integer division, remainder or shift; `equal` in it is to be said in the language's way."""
+        result = with_result(binary, self.keep_cheap, self.counters)
+        return rewrite(result, lambda part: self.intrinsic(part) if isinstance(part, ir.Intrinsic) else part)
 
     def by_columns(self, binary: ir.Binary) -> ir.Expr:
         """Componentwise matrix arithmetic, column by column."""

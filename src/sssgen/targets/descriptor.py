@@ -88,6 +88,11 @@ def _plugins() -> dict[str, Any]:
     return {entry.name: entry for entry in entry_points(group="sssgen.targets")}
 
 
+def has_plugins() -> bool:
+    """Whether other packages bring targets."""
+    return bool(_plugins())
+
+
 def _mentions_targets(root: str) -> bool:
     """Whether a package installed in this folder has an entry point of our group."""
     try:

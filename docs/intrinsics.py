@@ -1,0 +1,69 @@
+"""Writes docs/intrinsics.md from the intrinsic table: python docs/intrinsics.py"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from sssgen.ir.intrinsics import BUILTINS, Builtin
+
+LANGUAGES = ("glsl", "hlsl", "wgsl", "hlsl-dx9", "hlsl-macros")
+PAGE = Path(__file__).with_name("intrinsics.md")
+
+
+def page() -> str:
+    """The page's text."""
+    lines = [
+        "# The builtins",
+        "",
+        "Made from the intrinsic table (`src/sssgen/ir/intrinsics.py`) by `python docs/intrinsics.py`.",
+        "",
+        "`genF` stands for float, vec2, vec3 and vec4 alike, `vecF` for the vectors; likewise I, U, B. A language that has",
+        "the builtin under its own name shows it; *polyfill* means that a definition in our own language takes its place,",
+        "written out where it is short; `op <` means the operator. `hlsl-dx9` is Unity's built-in pipeline, `hlsl-macros`",
+        "its URP and Shader Graph; both are shown where they differ from `hlsl`. NumPy has a function of each name.",
+        "",
+        "Domain: where the result is defined, with x, y, z for the arguments in their order. Limit: the float32 error",
+        "allowed against float64, in units in the last place, where it is more than 4.",
+        "",
+        "| Builtin | GLSL | HLSL | WGSL | Domain | Limit |",
+        "|---|---|---|---|---|---|",
+    ]
+    for row in BUILTINS.values():
+        cells = [_signatures(row), *(_text(row, language) for language in LANGUAGES[:3])]
+        dialects = [f"{name}: {_text(row, name)}" for name in LANGUAGES[3:] if name in row.texts]
+        if dialects:
+            cells[2] += "<br>" + "<br>".join(dialects)
+        limit = f"{row.ulp:g} ulp" if row.ulp > 4 else ""
+        if row.absolute:
+            limit = f"{limit or '4 ulp'} or {row.absolute:.2g}"
+        cells += [_escaped(row.domain), f"{limit}: {_escaped(row.clause)}" if row.clause else limit]
+        lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines) + "\n"
+
+
+def _signatures(row: Builtin) -> str:
+    declared = [signature.replace("(", f" {row.name}(", 1) for signature in row.signatures]
+    return "<br>".join(f"`{one}`" for one in declared) + f"<br>{_escaped(row.doc)}"
+
+
+def _text(row: Builtin, language: str) -> str:
+    """How a language writes the builtin, with what differs for some of its signatures."""
+    found = {"": row.texts.get(language, row.name)}
+    found |= {key.partition("/")[2]: text for key, text in row.texts.items() if key.startswith(f"{language}/")}
+    shown = []
+    for params, text in found.items():
+        if text.startswith("op:"):
+            word = f"`op {_escaped(text[3:])}`"
+        else:
+            word = f"`{_escaped(text)}`" if text else ("*polyfill*" if row.polyfill else "*refused*")
+        shown.append(f"({params}) {word}" if params else word)
+    return "<br>".join(shown)
+
+
+def _escaped(text: str) -> str:
+    return text.replace("|", "\\|")
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page(), encoding="utf-8")
+    print(f"wrote {PAGE.name}: {len(BUILTINS)} builtins")

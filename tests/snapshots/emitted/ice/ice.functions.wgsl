@@ -1,0 +1,231 @@
+// Ice: Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes
+// that melt into it.
+// Made by sssgen for WGSL (WebGPU). Change the material and emit it again rather than this file.
+
+struct Cell {
+    to_edge: f32,
+    from_edge: vec2f,
+    level: f32,
+}
+
+struct Surface {
+    albedo: vec3f,
+    alpha: f32,
+    normal: vec3f,
+    metallic: f32,
+    roughness: f32,
+    emission: vec3f,
+    transmittance: f32,
+}
+
+const JITTER: f32 = 0.6;
+const OPAQUE_DISTANCE: f32 = 1.0e-6;
+const OPAQUE_DEPTH: f32 = 80.0;
+
+// Scrambles the bits of `x`; 0 stays 0.
+fn hash_bits(x_in: u32) -> u32 {
+    var x = x_in;
+    x = (x ^ (x >> 16u)) * 2146121005u;
+    x = (x ^ (x >> 15u)) * 2221713035u;
+    return x ^ (x >> 16u);
+}
+
+// A number in [0, 1) from 24 bits of the hash of `x`.
+fn hash_unit(x: u32) -> f32 {
+    return f32(hash_bits(x) >> 8u) / 16777216.0;
+}
+
+// The cell at `p`: `to_edge` is the distance to the second site less that to the nearest, `from_edge` its gradient.
+fn cell_at(p: vec2f, variation: f32) -> Cell {
+    var nearest = vec2f(4.0);
+    var second = vec2f(4.0);
+    var owner = 0u;
+    for (var j = -1; j <= 1; j++) {
+        for (var i = -1; i <= 1; i++) {
+            let corner = floor(p) + vec2f(f32(i), f32(j));
+            let seed = hash_bits(u32(i32(corner.x)) + hash_bits(u32(i32(corner.y)) + 1u));
+            let shift = vec2f(hash_unit(seed + 1u), hash_unit(seed + 2u)) - 0.5;
+            let to_site = corner + 0.5 + JITTER * shift - p;
+            if (dot(to_site, to_site) < dot(nearest, nearest)) {
+                second = nearest;
+                nearest = to_site;
+                owner = seed;
+            } else if (dot(to_site, to_site) < dot(second, second)) {
+                second = to_site;
+            }
+        }
+    }
+    let level = 1.0 - variation * hash_unit(owner + 3u);
+    return Cell(length(second) - length(nearest), normalize(nearest) - normalize(second), level);
+}
+
+// Thickness in Voronoi cells: facets with thin edges between them, as in cracked ice.
+fn voronoi_thickness(uv: vec2f, variation: f32, cell_count: f32, thickness_factor: f32, bevel: f32) -> f32 {
+    let cell = cell_at(uv * cell_count, variation);
+    return thickness_factor * cell.level * smoothstep(0.0, bevel, cell.to_edge);
+}
+
+// `d` in mean free paths, 0 or more.
+fn optical_depth(d: f32, mean_free_path: f32) -> f32 {
+    return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+}
+
+// Thickness to transmittance: what absorption leaves of the light.
+fn beer_lambert(d: f32, attenuation_distance: f32) -> f32 {
+    return exp(-min(optical_depth(d, attenuation_distance), OPAQUE_DEPTH));
+}
+
+// Colour and opacity from a texture and a tint.
+fn base_color(uv: vec2f, albedo: ptr<function, vec3f>, alpha: ptr<function, f32>, tint: vec4f,
+    base_color_texture: texture_2d<f32>, base_color_texture_sampler: sampler) {
+    let texel = tint * textureSample(base_color_texture, base_color_texture_sampler, uv);
+    *albedo = texel.xyz;
+    *alpha = texel.w;
+}
+
+// The same metalness and roughness everywhere.
+fn pbr_constants(metallic: ptr<function, f32>, roughness: ptr<function, f32>, metalness: f32,
+    surface_roughness: f32) {
+    *metallic = metalness;
+    *roughness = surface_roughness;
+}
+
+// Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add.
+fn blend_normals(base: vec3f, detail: vec3f) -> vec3f {
+    return normalize(vec3f(base.xy + detail.xy, base.z * detail.z));
+}
+
+// The normal of a height field; `slope` is the height gained per unit of length along T and B.
+fn normal_of_slope(slope: vec2f) -> vec3f {
+    return normalize(vec3f(-slope, 1.0));
+}
+
+// The normal of the Voronoi cells, so that reflected light agrees with light that comes through.
+fn voronoi_normal(uv: vec2f, normal: ptr<function, vec3f>, variation: f32, cell_count: f32, bevel: f32,
+    relief: f32, uv_per_unit: vec2f) {
+    let cell = cell_at(uv * cell_count, variation);
+    let x = clamp(cell.to_edge / bevel, 0.0, 1.0);
+    // the derivative of the smoothstep
+    let steepness = cell.level * 6.0 * x * (1.0 - x) / bevel;
+    let slope = relief * uv_per_unit * cell_count * steepness * cell.from_edge;
+    *normal = blend_normals(*normal, normal_of_slope(slope));
+}
+
+// Light comes through the bare ice only.
+fn ice_mask(uv: vec2f, through: ptr<function, f32>, cover: f32, cover_texture: texture_2d<f32>,
+    cover_texture_sampler: sampler) {
+    let covered = cover * textureSample(cover_texture, cover_texture_sampler, uv).r;
+    *through = *through * smoothstep(0.0, 0.1, 1.0 - covered);
+}
+
+// One moving layer: the offset stays within 1, so that it loses no precision in a long session.
+fn layer(uv: vec2f, speed: vec2f, time: f32, packed_texture: texture_2d<f32>,
+    packed_texture_sampler: sampler) -> vec4f {
+    return textureSample(packed_texture, packed_texture_sampler, uv + fract(speed * time));
+}
+
+// Moving light below the surface, from the channels of one texture that scroll each its own way.
+fn packed_scroll(uv: vec2f, time: f32, emission: ptr<function, vec3f>, packed_texture: texture_2d<f32>,
+    packed_texture_sampler: sampler, red_speed: vec2f, green_speed: vec2f, blue_speed: vec2f,
+    vein_color: vec3f, spark_color: vec3f) {
+    let veins = layer(uv, red_speed, time, packed_texture, packed_texture_sampler).x
+        * layer(uv, green_speed, time, packed_texture, packed_texture_sampler).y;
+    let sparks = layer(uv, blue_speed, time, packed_texture, packed_texture_sampler).z;
+    *emission += vein_color * veins + spark_color * sparks;
+}
+
+// What is left at `uv`: 1 = whole, 0 = gone.
+fn left_at(uv: vec2f, edge: f32, erosion: f32, erosion_texture: texture_2d<f32>,
+    erosion_texture_sampler: sampler) -> f32 {
+    // the threshold starts below black and ends at white, so that 0 is whole and 1 is gone
+    let threshold = mix(-edge, 1.0, erosion);
+    return clamp((textureSample(erosion_texture, erosion_texture_sampler, uv).r - threshold) / edge, 0.0,
+        1.0);
+}
+
+// Eats the surface away, dark parts of a mask first, with a bevel at the edge that takes the light.
+fn alpha_erosion(uv: vec2f, alpha: ptr<function, f32>, normal: ptr<function, vec3f>, uv_per_unit: vec2f,
+    texel_size: f32, edge: f32, erosion: f32, erosion_texture: texture_2d<f32>,
+    erosion_texture_sampler: sampler, edge_height: f32) {
+    let e = vec2f(texel_size, 0.0);
+    let at = uv;
+    let across = left_at(at + e, edge, erosion, erosion_texture, erosion_texture_sampler)
+        - left_at(at - e, edge, erosion, erosion_texture, erosion_texture_sampler);
+    let up = left_at(at + e.yx, edge, erosion, erosion_texture, erosion_texture_sampler)
+        - left_at(at - e.yx, edge, erosion, erosion_texture, erosion_texture_sampler);
+    let slope = edge_height * uv_per_unit * vec2f(across, up) / (2.0 * texel_size);
+    *normal = blend_normals(*normal, normal_of_slope(slope));
+    *alpha *= left_at(at, edge, erosion, erosion_texture, erosion_texture_sampler);
+}
+
+// The light that comes through where `lobe` (0..1) points at the eye.
+fn glow(lobe: f32, through: f32, subsurface_color: vec3f, attenuation: f32, scale: f32,
+    ambient: f32) -> vec3f {
+    return subsurface_color * (attenuation * (lobe * scale + ambient) * through);
+}
+
+// The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
+fn lobe_normalized(V: vec3f, N: vec3f, L: vec3f, through: f32, distortion: f32, subsurface_color: vec3f,
+    attenuation: f32, scale: f32, ambient: f32, power: f32) -> vec3f {
+    let bent = normalize(L + N * distortion);
+    return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through, subsurface_color, attenuation, scale,
+        ambient);
+}
+
+// The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
+fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughness: f32,
+    light_color: vec3f) -> vec3f {
+    let H = normalize(V + L);
+    let NoL = max(dot(N, L), 0.0);
+    let NoV = max(dot(N, V), 0.0001);
+    let NoH = clamp(dot(N, H), 0.0, 1.0);
+    let a = max(roughness, 0.045) * max(roughness, 0.045);
+    let spread = NoH * NoH * (a * a - 1.0) + 1.0;
+    // D times pi
+    let facets = a * a / (spread * spread);
+    // masking and shadowing, over 4 dot(N, L) dot(N, V)
+    let visible = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a);
+    let F0 = mix(vec3f(0.04), albedo, metallic);
+    let F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
+    let diffuse = albedo * (1.0 - metallic) * (1.0 - F);
+    return (diffuse + facets * visible * F) * NoL * light_color;
+}
+
+// Everything about the surface that does not depend on a light.
+fn evaluate_surface(uv: vec2f, time: f32, variation: f32, cell_count: f32, thickness_factor: f32, bevel: f32,
+    attenuation_distance: f32, tint: vec4f, base_color_texture: texture_2d<f32>,
+    base_color_texture_sampler: sampler, metalness: f32, surface_roughness: f32, relief: f32,
+    uv_per_unit: vec2f, cover: f32, cover_texture: texture_2d<f32>, cover_texture_sampler: sampler,
+    packed_texture: texture_2d<f32>, packed_texture_sampler: sampler, red_speed: vec2f, green_speed: vec2f,
+    blue_speed: vec2f, vein_color: vec3f, spark_color: vec3f, texel_size: f32, edge: f32, erosion: f32,
+    erosion_texture: texture_2d<f32>, erosion_texture_sampler: sampler, edge_height: f32) -> Surface {
+    let thickness = voronoi_thickness(uv, variation, cell_count, thickness_factor, bevel);
+    var transmittance = beer_lambert(thickness, attenuation_distance);
+    var albedo: vec3f;
+    var alpha: f32;
+    base_color(uv, &albedo, &alpha, tint, base_color_texture, base_color_texture_sampler);
+    var metallic: f32;
+    var roughness: f32;
+    pbr_constants(&metallic, &roughness, metalness, surface_roughness);
+    var normal = vec3f(0.0, 0.0, 1.0);
+    voronoi_normal(uv, &normal, variation, cell_count, bevel, relief, uv_per_unit);
+    ice_mask(uv, &transmittance, cover, cover_texture, cover_texture_sampler);
+    var emission = vec3f(0.0);
+    packed_scroll(uv, time, &emission, packed_texture, packed_texture_sampler, red_speed, green_speed,
+        blue_speed, vein_color, spark_color);
+    alpha_erosion(uv, &alpha, &normal, uv_per_unit, texel_size, edge, erosion, erosion_texture,
+        erosion_texture_sampler, edge_height);
+    return Surface(albedo, alpha, normal, metallic, roughness, emission, transmittance);
+}
+
+// What one light adds from behind, as a factor on its colour.
+fn evaluate_translucency(surface: Surface, V: vec3f, N: vec3f, L: vec3f, distortion: f32,
+    subsurface_color: vec3f, attenuation: f32, scale: f32, ambient: f32, power: f32) -> vec3f {
+    return lobe_normalized(V, N, L, surface.transmittance, distortion, subsurface_color, attenuation, scale,
+        ambient, power);
+}
+
+// What one light adds from the front.
+fn evaluate_lighting(surface: Surface, N: vec3f, V: vec3f, L: vec3f, light_color: vec3f) -> vec3f {
+    return standard(N, V, L, surface.albedo, surface.metallic, surface.roughness, light_color);
+}

@@ -1,0 +1,273 @@
+#version 300 es
+// Ice: Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes
+// that melt into it.
+// Made by sssgen for GLSL ES 3.00 (WebGL 2, OpenGL ES 3.0). Change the material and emit it again rather than this file.
+
+precision highp float;
+precision highp int;
+
+struct Cell {
+    float to_edge;
+    vec2 from_edge;
+    float level;
+};
+
+struct Surface {
+    vec3 albedo;
+    float alpha;
+    vec3 normal;
+    float metallic;
+    float roughness;
+    vec3 emission;
+    float transmittance;
+};
+
+const float JITTER = 0.6;
+const float OPAQUE_DISTANCE = 1.0e-6;
+const float OPAQUE_DEPTH = 80.0;
+
+uniform float variation;  // How much the levels of the cells differ: 0 = all the same
+uniform float cell_count;  // Cells along one unit of texture coordinate
+uniform float thickness_factor;  // Thickness of the thickest cell
+uniform float bevel;  // Width of the slope beside an edge, in cells
+uniform float attenuation_distance;  // The length after which 1/e (37 %) of the light is left; 0 = opaque
+uniform vec4 tint;  // Multiplies the texture
+uniform float metalness;  // 0 = not a metal, 1 = metal
+uniform float surface_roughness;  // 0 = a mirror, 1 = chalk
+uniform float relief;  // How far the thickest cells rise above their edges
+uniform vec2 uv_per_unit;  // How far the texture coordinates move for one world unit along T and along B
+uniform float cover;  // Multiplies the texture
+uniform vec2 red_speed;  // How fast the red layer moves
+uniform vec2 green_speed;  // How fast the green layer moves
+uniform vec2 blue_speed;  // How fast the blue layer moves
+uniform vec3 vein_color;  // Colour of the light in the red and green layers, where both are bright
+uniform vec3 spark_color;  // Colour of the light in the blue layer
+uniform float texel_size;
+uniform float edge;  // Width of the soft edge, in the texture's values
+uniform float erosion;  // How much is gone: 0 = nothing, 1 = everything
+uniform float edge_height;  // How far the surface falls at the edge
+uniform float distortion;  // How much the normal bends the light on its way through: 0 ignores the shape
+uniform vec3 subsurface_color;  // Colour of the light that has passed through
+uniform float attenuation;  // Strength of it all
+uniform float scale;  // Strength of the glow towards the light
+uniform float ambient;  // Glow that is there from every side
+uniform float power;  // How tight the glow is around the light: the larger, the smaller the spot
+
+uniform sampler2D base_color_texture;  // Colour of the surface (an sRGB texture), with its opacity in alpha
+uniform sampler2D cover_texture;  // What covers the ice (snow, rock): black = bare ice, white = covered
+uniform sampler2D packed_texture;  // Three pictures in one: red, green and blue each hold a layer
+uniform sampler2D erosion_texture;  // Dark parts go first
+
+// Scrambles the bits of `x`; 0 stays 0.
+uint hash_bits(uint x) {
+    x = (x ^ (x >> 16u)) * 2146121005u;
+    x = (x ^ (x >> 15u)) * 2221713035u;
+    return x ^ (x >> 16u);
+}
+
+// A number in [0, 1) from 24 bits of the hash of `x`.
+float hash_unit(uint x) {
+    return float(hash_bits(x) >> 8u) / 16777216.0;
+}
+
+// The cell at `p`: `to_edge` is the distance to the second site less that to the nearest, `from_edge` its gradient.
+Cell cell_at(vec2 p) {
+    vec2 nearest = vec2(4.0);
+    vec2 second = vec2(4.0);
+    uint owner = 0u;
+    for (int j = -1; j <= 1; j++) {
+        for (int i = -1; i <= 1; i++) {
+            vec2 corner = floor(p) + vec2(float(i), float(j));
+            uint seed = hash_bits(uint(int(corner.x)) + hash_bits(uint(int(corner.y)) + 1u));
+            vec2 shift = vec2(hash_unit(seed + 1u), hash_unit(seed + 2u)) - 0.5;
+            vec2 to_site = corner + 0.5 + JITTER * shift - p;
+            if (dot(to_site, to_site) < dot(nearest, nearest)) {
+                second = nearest;
+                nearest = to_site;
+                owner = seed;
+            } else if (dot(to_site, to_site) < dot(second, second)) {
+                second = to_site;
+            }
+        }
+    }
+    float level = 1.0 - variation * hash_unit(owner + 3u);
+    return Cell(length(second) - length(nearest), normalize(nearest) - normalize(second), level);
+}
+
+// Thickness in Voronoi cells: facets with thin edges between them, as in cracked ice.
+float voronoi_thickness(vec2 uv) {
+    Cell cell = cell_at(uv * cell_count);
+    return thickness_factor * cell.level * smoothstep(0.0, bevel, cell.to_edge);
+}
+
+// `d` in mean free paths, 0 or more.
+float optical_depth(float d, float mean_free_path) {
+    return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+}
+
+// Thickness to transmittance: what absorption leaves of the light.
+float beer_lambert(float d) {
+    return exp(-min(optical_depth(d, attenuation_distance), OPAQUE_DEPTH));
+}
+
+// Colour and opacity from a texture and a tint.
+void base_color(vec2 uv, out vec3 albedo, out float alpha) {
+    vec4 texel = tint * texture(base_color_texture, uv);
+    albedo = texel.xyz;
+    alpha = texel.w;
+}
+
+// The same metalness and roughness everywhere.
+void pbr_constants(out float metallic, out float roughness) {
+    metallic = metalness;
+    roughness = surface_roughness;
+}
+
+// Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add.
+vec3 blend_normals(vec3 base, vec3 detail) {
+    return normalize(vec3(base.xy + detail.xy, base.z * detail.z));
+}
+
+// The normal of a height field; `slope` is the height gained per unit of length along T and B.
+vec3 normal_of_slope(vec2 slope) {
+    return normalize(vec3(-slope, 1.0));
+}
+
+// The normal of the Voronoi cells, so that reflected light agrees with light that comes through.
+void voronoi_normal(vec2 uv, inout vec3 normal) {
+    Cell cell = cell_at(uv * cell_count);
+    float x = clamp(cell.to_edge / bevel, 0.0, 1.0);
+    // the derivative of the smoothstep
+    float steepness = cell.level * 6.0 * x * (1.0 - x) / bevel;
+    vec2 slope = relief * uv_per_unit * cell_count * steepness * cell.from_edge;
+    normal = blend_normals(normal, normal_of_slope(slope));
+}
+
+// Light comes through the bare ice only.
+void ice_mask(vec2 uv, inout float through) {
+    float covered = cover * texture(cover_texture, uv).r;
+    through = through * smoothstep(0.0, 0.1, 1.0 - covered);
+}
+
+// One moving layer: the offset stays within 1, so that it loses no precision in a long session.
+vec4 layer(vec2 uv, vec2 speed, float time) {
+    return texture(packed_texture, uv + fract(speed * time));
+}
+
+// Moving light below the surface, from the channels of one texture that scroll each its own way.
+void packed_scroll(vec2 uv, float time, inout vec3 emission) {
+    float veins = layer(uv, red_speed, time).x * layer(uv, green_speed, time).y;
+    float sparks = layer(uv, blue_speed, time).z;
+    emission += vein_color * veins + spark_color * sparks;
+}
+
+// What is left at `uv`: 1 = whole, 0 = gone.
+float left_at(vec2 uv) {
+    // the threshold starts below black and ends at white, so that 0 is whole and 1 is gone
+    float threshold = mix(-edge, 1.0, erosion);
+    return clamp((texture(erosion_texture, uv).r - threshold) / edge, 0.0, 1.0);
+}
+
+// Eats the surface away, dark parts of a mask first, with a bevel at the edge that takes the light.
+void alpha_erosion(vec2 uv, inout float alpha, inout vec3 normal) {
+    vec2 e = vec2(texel_size, 0.0);
+    vec2 at = uv;
+    float across = left_at(at + e) - left_at(at - e);
+    float up = left_at(at + e.yx) - left_at(at - e.yx);
+    vec2 slope = edge_height * uv_per_unit * vec2(across, up) / (2.0 * texel_size);
+    normal = blend_normals(normal, normal_of_slope(slope));
+    alpha *= left_at(at);
+}
+
+// The light that comes through where `lobe` (0..1) points at the eye.
+vec3 glow(float lobe, float through) {
+    return subsurface_color * (attenuation * (lobe * scale + ambient) * through);
+}
+
+// The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
+vec3 lobe_normalized(vec3 V, vec3 N, vec3 L, float through) {
+    vec3 bent = normalize(L + N * distortion);
+    return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through);
+}
+
+// The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
+vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughness, vec3 light_color) {
+    vec3 H = normalize(V + L);
+    float NoL = max(dot(N, L), 0.0);
+    float NoV = max(dot(N, V), 0.0001);
+    float NoH = clamp(dot(N, H), 0.0, 1.0);
+    float a = max(roughness, 0.045) * max(roughness, 0.045);
+    float spread = NoH * NoH * (a * a - 1.0) + 1.0;
+    // D times pi
+    float facets = a * a / (spread * spread);
+    // masking and shadowing, over 4 dot(N, L) dot(N, V)
+    float visible = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a);
+    vec3 F0 = mix(vec3(0.04), albedo, metallic);
+    vec3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
+    vec3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);
+    return (diffuse + facets * visible * F) * NoL * light_color;
+}
+
+// Everything about the surface that does not depend on a light.
+Surface evaluate_surface(vec2 uv, float time) {
+    float thickness = voronoi_thickness(uv);
+    float transmittance = beer_lambert(thickness);
+    vec3 albedo;
+    float alpha;
+    base_color(uv, albedo, alpha);
+    float metallic;
+    float roughness;
+    pbr_constants(metallic, roughness);
+    vec3 normal = vec3(0.0, 0.0, 1.0);
+    voronoi_normal(uv, normal);
+    ice_mask(uv, transmittance);
+    vec3 emission = vec3(0.0);
+    packed_scroll(uv, time, emission);
+    alpha_erosion(uv, alpha, normal);
+    return Surface(albedo, alpha, normal, metallic, roughness, emission, transmittance);
+}
+
+// What one light adds from behind, as a factor on its colour.
+vec3 evaluate_translucency(Surface surface, vec3 V, vec3 N, vec3 L) {
+    return lobe_normalized(V, N, L, surface.transmittance);
+}
+
+// What one light adds from the front.
+vec3 evaluate_lighting(Surface surface, vec3 N, vec3 V, vec3 L, vec3 light_color) {
+    return standard(N, V, L, surface.albedo, surface.metallic, surface.roughness, light_color);
+}
+
+uniform vec3 camera_position;
+uniform float time;  // s
+const int MAX_LIGHTS = 4;
+uniform int light_count;
+uniform vec4 light_positions[MAX_LIGHTS];  // w = 1: where the light is; w = 0: the direction towards it
+uniform vec3 light_colors[MAX_LIGHTS];
+uniform vec3 ambient_color;
+
+in vec3 v_position;
+in vec3 v_normal;
+in vec4 v_tangent;
+in vec2 v_uv;
+out vec4 fragment_color;
+
+void main() {
+    vec3 V = normalize(camera_position - v_position);
+    vec3 N = normalize(v_normal);
+    vec3 T = v_tangent.xyz * inversesqrt(max(dot(v_tangent.xyz, v_tangent.xyz), 1e-12));
+    vec3 B = cross(N, T) * v_tangent.w;
+    Surface surface = evaluate_surface(v_uv, time);
+    N = normalize(T * surface.normal.x + B * surface.normal.y + N * surface.normal.z);
+
+    vec3 color = ambient_color * surface.albedo + surface.emission;
+    for (int i = 0; i < min(light_count, MAX_LIGHTS); i++) {
+        vec3 to_light = light_positions[i].xyz - v_position * light_positions[i].w;
+        float distance_squared = max(dot(to_light, to_light), 1e-4);
+        vec3 L = to_light * inversesqrt(distance_squared);
+        vec3 light_color = light_colors[i] * mix(1.0, 1.0 / distance_squared, light_positions[i].w);
+        color += evaluate_lighting(surface, N, V, L, light_color);
+        color += evaluate_translucency(surface, V, N, L) * light_color;
+    }
+    if (surface.alpha < 0.5) discard;
+    fragment_color = vec4(color, surface.alpha);
+}

@@ -1,0 +1,314 @@
+// Ice: Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes
+// that melt into it.
+// Made by sssgen for HLSL, shader model 5 and 6 (Direct3D 11 and 12, Vulkan through DXC). Change the material and emit it again rather than this file.
+// Entry points: vertex_main and fragment_main. Matrices are column-major (HLSL's default) and multiply columns: mul(M, v).
+
+struct Cell {
+    float to_edge;
+    float2 from_edge;
+    float level;
+};
+
+struct Surface {
+    float3 albedo;
+    float alpha;
+    float3 normal;
+    float metallic;
+    float roughness;
+    float3 emission;
+    float transmittance;
+};
+
+static const float JITTER = 0.6;
+static const float OPAQUE_DISTANCE = 1.0e-6;
+static const float OPAQUE_DEPTH = 80.0;
+
+cbuffer Material : register(b3) {
+    float variation;  // How much the levels of the cells differ: 0 = all the same
+    float cell_count;  // Cells along one unit of texture coordinate
+    float thickness_factor;  // Thickness of the thickest cell
+    float bevel;  // Width of the slope beside an edge, in cells
+    float attenuation_distance;  // The length after which 1/e (37 %) of the light is left; 0 = opaque
+    float4 tint;  // Multiplies the texture
+    float metalness;  // 0 = not a metal, 1 = metal
+    float surface_roughness;  // 0 = a mirror, 1 = chalk
+    float relief;  // How far the thickest cells rise above their edges
+    float2 uv_per_unit;  // How far the texture coordinates move for one world unit along T and along B
+    float cover;  // Multiplies the texture
+    float2 red_speed;  // How fast the red layer moves
+    float2 green_speed;  // How fast the green layer moves
+    float2 blue_speed;  // How fast the blue layer moves
+    float3 vein_color;  // Colour of the light in the red and green layers, where both are bright
+    float3 spark_color;  // Colour of the light in the blue layer
+    float texel_size;  // The length, in texture coordinates, over which slopes are measured: about one texel
+    float edge;  // Width of the soft edge, in the texture's values
+    float erosion;  // How much is gone: 0 = nothing, 1 = everything
+    float edge_height;  // How far the surface falls at the edge
+    float distortion;  // How much the normal bends the light on its way through: 0 ignores the shape
+    float3 subsurface_color;  // Colour of the light that has passed through
+    float attenuation;  // Strength of it all
+    float scale;  // Strength of the glow towards the light
+    float ambient;  // Glow that is there from every side
+    float power;  // How tight the glow is around the light: the larger, the smaller the spot
+};
+
+Texture2D base_color_texture : register(t0);
+SamplerState base_color_texture_sampler : register(s0);
+Texture2D cover_texture : register(t1);
+SamplerState cover_texture_sampler : register(s1);
+Texture2D packed_texture : register(t2);
+SamplerState packed_texture_sampler : register(s2);
+Texture2D erosion_texture : register(t3);
+SamplerState erosion_texture_sampler : register(s3);
+
+// Scrambles the bits of `x`; 0 stays 0.
+uint hash_bits(uint x) {
+    x = (x ^ (x >> 16u)) * 2146121005u;
+    x = (x ^ (x >> 15u)) * 2221713035u;
+    return x ^ (x >> 16u);
+}
+
+// A number in [0, 1) from 24 bits of the hash of `x`.
+float hash_unit(uint x) {
+    return float(hash_bits(x) >> 8u) / 16777216.0;
+}
+
+// The cell at `p`: `to_edge` is the distance to the second site less that to the nearest, `from_edge` its gradient.
+Cell cell_at(float2 p) {
+    float2 nearest = (float2)4.0;
+    float2 second = (float2)4.0;
+    uint owner = 0u;
+    [unroll]
+    for (int j = -1; j <= 1; j++) {
+        [unroll]
+        for (int i = -1; i <= 1; i++) {
+            float2 corner = floor(p) + float2(float(i), float(j));
+            uint seed = hash_bits(uint(int(corner.x)) + hash_bits(uint(int(corner.y)) + 1u));
+            float2 shift = float2(hash_unit(seed + 1u), hash_unit(seed + 2u)) - 0.5;
+            float2 to_site = corner + 0.5 + JITTER * shift - p;
+            if (dot(to_site, to_site) < dot(nearest, nearest)) {
+                second = nearest;
+                nearest = to_site;
+                owner = seed;
+            } else if (dot(to_site, to_site) < dot(second, second)) {
+                second = to_site;
+            }
+        }
+    }
+    float level = 1.0 - variation * hash_unit(owner + 3u);
+    Cell cell = { length(second) - length(nearest), normalize(nearest) - normalize(second), level };
+    return cell;
+}
+
+// Thickness in Voronoi cells: facets with thin edges between them, as in cracked ice.
+float voronoi_thickness(float2 uv) {
+    Cell cell = cell_at(uv * cell_count);
+    return thickness_factor * cell.level * smoothstep(0.0, bevel, cell.to_edge);
+}
+
+// `d` in mean free paths, 0 or more.
+float optical_depth(float d, float mean_free_path) {
+    return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+}
+
+// Thickness to transmittance: what absorption leaves of the light.
+float beer_lambert(float d) {
+    return exp(-min(optical_depth(d, attenuation_distance), OPAQUE_DEPTH));
+}
+
+// Colour and opacity from a texture and a tint.
+void base_color(float2 uv, out float3 albedo, out float alpha) {
+    float4 texel = tint * base_color_texture.Sample(base_color_texture_sampler, uv);
+    albedo = texel.xyz;
+    alpha = texel.w;
+}
+
+// The same metalness and roughness everywhere.
+void pbr_constants(out float metallic, out float roughness) {
+    metallic = metalness;
+    roughness = surface_roughness;
+}
+
+// Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add.
+float3 blend_normals(float3 base, float3 detail) {
+    return normalize(float3(base.xy + detail.xy, base.z * detail.z));
+}
+
+// The normal of a height field; `slope` is the height gained per unit of length along T and B.
+float3 normal_of_slope(float2 slope) {
+    return normalize(float3(-slope, 1.0));
+}
+
+// The normal of the Voronoi cells, so that reflected light agrees with light that comes through.
+void voronoi_normal(float2 uv, inout float3 normal) {
+    Cell cell = cell_at(uv * cell_count);
+    float x = clamp(cell.to_edge / bevel, 0.0, 1.0);
+    // the derivative of the smoothstep
+    float steepness = cell.level * 6.0 * x * (1.0 - x) / bevel;
+    float2 slope = relief * uv_per_unit * cell_count * steepness * cell.from_edge;
+    normal = blend_normals(normal, normal_of_slope(slope));
+}
+
+// Light comes through the bare ice only.
+void ice_mask(float2 uv, inout float through) {
+    float covered = cover * cover_texture.Sample(cover_texture_sampler, uv).r;
+    through = through * smoothstep(0.0, 0.1, 1.0 - covered);
+}
+
+// One moving layer: the offset stays within 1, so that it loses no precision in a long session.
+float4 layer(float2 uv, float2 speed, float time) {
+    return packed_texture.Sample(packed_texture_sampler, uv + frac(speed * time));
+}
+
+// Moving light below the surface, from the channels of one texture that scroll each its own way.
+void packed_scroll(float2 uv, float time, inout float3 emission) {
+    float veins = layer(uv, red_speed, time).x * layer(uv, green_speed, time).y;
+    float sparks = layer(uv, blue_speed, time).z;
+    emission += vein_color * veins + spark_color * sparks;
+}
+
+// What is left at `uv`: 1 = whole, 0 = gone.
+float left_at(float2 uv) {
+    // the threshold starts below black and ends at white, so that 0 is whole and 1 is gone
+    float threshold = lerp(-edge, 1.0, erosion);
+    return clamp((erosion_texture.Sample(erosion_texture_sampler, uv).r - threshold) / edge, 0.0, 1.0);
+}
+
+// Eats the surface away, dark parts of a mask first, with a bevel at the edge that takes the light.
+void alpha_erosion(float2 uv, inout float alpha, inout float3 normal) {
+    float2 e = float2(texel_size, 0.0);
+    float2 at = uv;
+    float across = left_at(at + e) - left_at(at - e);
+    float up = left_at(at + e.yx) - left_at(at - e.yx);
+    float2 slope = edge_height * uv_per_unit * float2(across, up) / (2.0 * texel_size);
+    normal = blend_normals(normal, normal_of_slope(slope));
+    alpha *= left_at(at);
+}
+
+// The light that comes through where `lobe` (0..1) points at the eye.
+float3 glow(float lobe, float through) {
+    return subsurface_color * (attenuation * (lobe * scale + ambient) * through);
+}
+
+// The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
+float3 lobe_normalized(float3 V, float3 N, float3 L, float through) {
+    float3 bent = normalize(L + N * distortion);
+    return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through);
+}
+
+// The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
+float3 standard(float3 N, float3 V, float3 L, float3 albedo, float metallic, float roughness,
+    float3 light_color) {
+    float3 H = normalize(V + L);
+    float NoL = max(dot(N, L), 0.0);
+    float NoV = max(dot(N, V), 0.0001);
+    float NoH = clamp(dot(N, H), 0.0, 1.0);
+    float a = max(roughness, 0.045) * max(roughness, 0.045);
+    float spread = NoH * NoH * (a * a - 1.0) + 1.0;
+    // D times pi
+    float facets = a * a / (spread * spread);
+    // masking and shadowing, over 4 dot(N, L) dot(N, V)
+    float visible = 0.5 / lerp(2.0 * NoL * NoV, NoL + NoV, a);
+    float3 F0 = lerp((float3)0.04, albedo, metallic);
+    float3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
+    float3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);
+    return (diffuse + facets * visible * F) * NoL * light_color;
+}
+
+// Everything about the surface that does not depend on a light.
+Surface evaluate_surface(float2 uv, float time) {
+    float thickness = voronoi_thickness(uv);
+    float transmittance = beer_lambert(thickness);
+    float3 albedo;
+    float alpha;
+    base_color(uv, albedo, alpha);
+    float metallic;
+    float roughness;
+    pbr_constants(metallic, roughness);
+    float3 normal = float3(0.0, 0.0, 1.0);
+    voronoi_normal(uv, normal);
+    ice_mask(uv, transmittance);
+    float3 emission = (float3)0.0;
+    packed_scroll(uv, time, emission);
+    alpha_erosion(uv, alpha, normal);
+    Surface surface = { albedo, alpha, normal, metallic, roughness, emission, transmittance };
+    return surface;
+}
+
+// What one light adds from behind, as a factor on its colour.
+float3 evaluate_translucency(Surface surface, float3 V, float3 N, float3 L) {
+    return lobe_normalized(V, N, L, surface.transmittance);
+}
+
+// What one light adds from the front.
+float3 evaluate_lighting(Surface surface, float3 N, float3 V, float3 L, float3 light_color) {
+    return standard(N, V, L, surface.albedo, surface.metallic, surface.roughness, light_color);
+}
+
+cbuffer Camera : register(b0) {
+    float4x4 view_projection;
+    float4x4 inverse_view_projection;
+    float3 camera_position;
+    float time;  // s
+};
+
+static const int MAX_LIGHTS = 4;
+
+cbuffer Lights : register(b1) {
+    float3 ambient_color;
+    int light_count;
+    float4 light_positions[MAX_LIGHTS];  // w = 1: where the light is; w = 0: the direction towards it
+    float4 light_colors[MAX_LIGHTS];
+};
+
+cbuffer Object : register(b2) {
+    float4x4 model;
+    float4x4 inverse_model;
+};
+
+struct VertexInput {
+    float3 position : POSITION;
+    float3 normal : NORMAL;
+    float4 tangent : TANGENT;  // w: handedness, +1 or -1
+    float2 uv : TEXCOORD0;
+};
+
+struct Varyings {
+    float4 clip_position : SV_Position;
+    float3 position : POSITION;
+    float3 normal : NORMAL;
+    float4 tangent : TANGENT;
+    float2 uv : TEXCOORD0;
+};
+
+Varyings vertex_main(VertexInput input) {
+    float4 world_position = mul(model, float4(input.position, 1.0));
+    Varyings output;
+    output.clip_position = mul(view_projection, world_position);
+    output.position = world_position.xyz;
+    output.normal = mul(float4(input.normal, 0.0), inverse_model).xyz;
+    output.tangent = float4(mul(model, float4(input.tangent.xyz, 0.0)).xyz, input.tangent.w * sign(determinant((float3x3)model)));
+    output.uv = input.uv;
+    return output;
+}
+
+float4 fragment_main(Varyings input) : SV_Target {
+    float3 V = normalize(camera_position - input.position);
+    float3 N = normalize(input.normal);
+    float3 T = input.tangent.xyz * rsqrt(max(dot(input.tangent.xyz, input.tangent.xyz), 1e-12));
+    float3 B = cross(N, T) * input.tangent.w;
+    Surface surface = evaluate_surface(input.uv, time);
+    N = normalize(T * surface.normal.x + B * surface.normal.y + N * surface.normal.z);
+
+    float3 color = ambient_color * surface.albedo + surface.emission;
+    for (int i = 0; i < min(light_count, MAX_LIGHTS); i++) {
+        float3 to_light = light_positions[i].xyz - input.position * light_positions[i].w;
+        float distance_squared = max(dot(to_light, to_light), 1e-4);
+        float3 L = to_light * rsqrt(distance_squared);
+        float3 light_color = light_colors[i].rgb * lerp(1.0, 1.0 / distance_squared, light_positions[i].w);
+        color += evaluate_lighting(surface, N, V, L, light_color);
+        color += evaluate_translucency(surface, V, N, L) * light_color;
+    }
+    clip(surface.alpha - 0.5);
+    return float4(color, surface.alpha);
+}

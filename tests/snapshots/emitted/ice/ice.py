@@ -1,0 +1,202 @@
+# Ice: Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes
+# that melt into it.
+# Made by sssgen for NumPy (vectorised; the oracle). Change the material and emit it again rather than this file.
+
+from sssgen.targets.numpy_runtime import *  # noqa: F403
+
+# Cell: Record(to_edge, from_edge, level)
+
+# Surface: Record(albedo, alpha, normal, metallic, roughness, emission, transmittance)
+
+JITTER = 0.6
+OPAQUE_DISTANCE = 1e-06
+OPAQUE_DEPTH = 80.0
+
+variation = 0.6  # How much the levels of the cells differ: 0 = all the same.
+cell_count = 10.0  # Cells along one unit of texture coordinate.
+thickness_factor = 0.3  # Thickness of the thickest cell.
+bevel = 0.35  # Width of the slope beside an edge, in cells.
+attenuation_distance = 0.25  # The length after which 1/e (37 %) of the light is left; 0 = opaque.
+tint = vec(0.75, 0.9, 1.0, 1.0)  # Multiplies the texture.
+metalness = 0.0  # 0 = not a metal, 1 = metal.
+surface_roughness = 0.12  # 0 = a mirror, 1 = chalk.
+relief = 0.01  # How far the thickest cells rise above their edges.
+uv_per_unit = vec(1.0, 1.0)  # How far the texture coordinates move for one world unit along T and along B.
+cover = 1.0  # Multiplies the texture.
+red_speed = vec(0.02, 0.0)  # How fast the red layer moves.
+green_speed = vec(-0.01, 0.015)  # How fast the green layer moves.
+blue_speed = vec(0.0, -0.025)  # How fast the blue layer moves.
+vein_color = vec(0.3, 0.8, 1.0)  # Colour of the light in the red and green layers, where both are bright.
+spark_color = vec(0.6, 0.9, 1.0)  # Colour of the light in the blue layer.
+texel_size = 0.002  # The length, in texture coordinates, over which slopes are measured: about one texel.
+edge = 0.15  # Width of the soft edge, in the texture's values.
+erosion = 0.2  # How much is gone: 0 = nothing, 1 = everything.
+edge_height = 0.02  # How far the surface falls at the edge.
+distortion = 0.2  # How much the normal bends the light on its way through: 0 ignores the shape.
+subsurface_color = vec(0.55, 0.85, 1.0)  # Colour of the light that has passed through.
+attenuation = 0.8  # Strength of it all.
+scale = 2.0  # Strength of the glow towards the light.
+ambient = 0.12  # Glow that is there from every side.
+power = 6.0  # How tight the glow is around the light: the larger, the smaller the spot.
+
+base_color_texture = Texture([[[1.0, 1.0, 1.0, 1.0]]])
+cover_texture = Texture([[[0.0, 0.0, 0.0, 1.0]]])
+packed_texture = Texture([[[0.0, 0.0, 0.0, 1.0]]])
+erosion_texture = Texture([[[1.0, 1.0, 1.0, 1.0]]])
+
+def hash_bits(x):
+    """Scrambles the bits of `x`; 0 stays 0."""
+    x = (x ^ (x >> 16)) * 2146121005
+    x = (x ^ (x >> 15)) * 2221713035
+    return x ^ (x >> 16)
+
+def hash_unit(x):
+    """A number in [0, 1) from 24 bits of the hash of `x`."""
+    return to_float(hash_bits(x) >> 8) / 16777216.0
+
+def cell_at(p):
+    """The cell at `p`: `to_edge` is the distance to the second site less that to the nearest, `from_edge` its gradient."""
+    nearest = splat(2, 4.0)
+    second = splat(2, 4.0)
+    owner = to_uint(0)
+    for j in range(-1, 2):
+        for i in range(-1, 2):
+            corner = floor(p) + vec(to_float(i), to_float(j))
+            seed = hash_bits(to_uint(to_int(corner[0])) + hash_bits(to_uint(to_int(corner[1])) + 1))
+            shift = vec(hash_unit(seed + 1), hash_unit(seed + 2)) - 0.5
+            to_site = corner + 0.5 + JITTER * shift - p
+            mask = dot(to_site, to_site) < dot(nearest, nearest)
+            second = select(mask, nearest, second)
+            nearest = select(mask, to_site, nearest)
+            owner = select(mask, seed, owner)
+            second = select(not_(mask) & (dot(to_site, to_site) < dot(second, second)), to_site, second)
+    level = 1.0 - variation * hash_unit(owner + 3)
+    return Record(to_edge=length(second) - length(nearest), from_edge=normalize(nearest) - normalize(second),
+        level=level)
+
+def voronoi_thickness(uv):
+    """Thickness in Voronoi cells: facets with thin edges between them, as in cracked ice."""
+    cell = cell_at(uv * cell_count)
+    return thickness_factor * cell.level * smoothstep(0.0, bevel, cell.to_edge)
+
+def optical_depth(d, mean_free_path):
+    """`d` in mean free paths, 0 or more."""
+    return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0)
+
+def beer_lambert(d):
+    """Thickness to transmittance: what absorption leaves of the light."""
+    return exp(-min(optical_depth(d, attenuation_distance), OPAQUE_DEPTH))
+
+def base_color(uv):
+    """Colour and opacity from a texture and a tint."""
+    texel = tint * texture(base_color_texture, uv)
+    albedo = swizzle(texel, "xyz")
+    alpha = texel[3]
+    return albedo, alpha
+
+def pbr_constants():
+    """The same metalness and roughness everywhere."""
+    metallic = metalness
+    roughness = surface_roughness
+    return metallic, roughness
+
+def blend_normals(base, detail):
+    """Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add."""
+    return normalize(vec(swizzle(base, "xy") + swizzle(detail, "xy"), base[2] * detail[2]))
+
+def normal_of_slope(slope):
+    """The normal of a height field; `slope` is the height gained per unit of length along T and B."""
+    return normalize(vec(-slope, 1.0))
+
+def voronoi_normal(uv, normal):
+    """The normal of the Voronoi cells, so that reflected light agrees with light that comes through."""
+    cell = cell_at(uv * cell_count)
+    x = clamp(divide(cell.to_edge, bevel), 0.0, 1.0)
+    # the derivative of the smoothstep
+    steepness = cell.level * 6.0 * x * (1.0 - x) / bevel
+    slope = relief * uv_per_unit * cell_count * steepness * cell.from_edge
+    normal = blend_normals(normal, normal_of_slope(slope))
+    return normal
+
+def ice_mask(uv, through):
+    """Light comes through the bare ice only."""
+    covered = cover * texture(cover_texture, uv)[0]
+    through = through * smoothstep(0.0, 0.1, 1.0 - covered)
+    return through
+
+def layer(uv, speed, time):
+    """One moving layer: the offset stays within 1, so that it loses no precision in a long session."""
+    return texture(packed_texture, uv + fract(speed * time))
+
+def packed_scroll(uv, time, emission):
+    """Moving light below the surface, from the channels of one texture that scroll each its own way."""
+    veins = layer(uv, red_speed, time)[0] * layer(uv, green_speed, time)[1]
+    sparks = layer(uv, blue_speed, time)[2]
+    emission = emission + (vein_color * veins + spark_color * sparks)
+    return emission
+
+def left_at(uv):
+    """What is left at `uv`: 1 = whole, 0 = gone."""
+    # the threshold starts below black and ends at white, so that 0 is whole and 1 is gone
+    threshold = mix(-edge, 1.0, erosion)
+    return clamp((texture(erosion_texture, uv)[0] - threshold) / edge, 0.0, 1.0)
+
+def alpha_erosion(uv, alpha, normal):
+    """Eats the surface away, dark parts of a mask first, with a bevel at the edge that takes the light."""
+    e = vec(texel_size, 0.0)
+    at = uv
+    across = left_at(at + e) - left_at(at - e)
+    up = left_at(at + swizzle(e, "yx")) - left_at(at - swizzle(e, "yx"))
+    slope = edge_height * uv_per_unit * vec(across, up) / (2.0 * texel_size)
+    normal = blend_normals(normal, normal_of_slope(slope))
+    alpha = alpha * left_at(at)
+    return alpha, normal
+
+def glow(lobe, through):
+    """The light that comes through where `lobe` (0..1) points at the eye."""
+    return subsurface_color * (attenuation * (lobe * scale + ambient) * through)
+
+def lobe_normalized(V, N, L, through):
+    """The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected."""
+    bent = normalize(L + N * distortion)
+    return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through)
+
+def standard(N, V, L, albedo, metallic, roughness, light_color):
+    """The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light."""
+    H = normalize(V + L)
+    NoL = max(dot(N, L), 0.0)
+    NoV = max(dot(N, V), 0.0001)
+    NoH = clamp(dot(N, H), 0.0, 1.0)
+    a = max(roughness, 0.045) * max(roughness, 0.045)
+    spread = NoH * NoH * (a * a - 1.0) + 1.0
+    # D times pi
+    facets = a * a / (spread * spread)
+    # masking and shadowing, over 4 dot(N, L) dot(N, V)
+    visible = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a)
+    F0 = mix(splat(3, 0.04), albedo, metallic)
+    F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0)
+    diffuse = albedo * (1.0 - metallic) * (1.0 - F)
+    return (diffuse + facets * visible * F) * NoL * light_color
+
+def evaluate_surface(uv, time):
+    """Everything about the surface that does not depend on a light."""
+    thickness = voronoi_thickness(uv)
+    transmittance = beer_lambert(thickness)
+    albedo, alpha = base_color(uv)
+    metallic, roughness = pbr_constants()
+    normal = vec(0.0, 0.0, 1.0)
+    normal = voronoi_normal(uv, normal)
+    transmittance = ice_mask(uv, transmittance)
+    emission = splat(3, 0.0)
+    emission = packed_scroll(uv, time, emission)
+    alpha, normal = alpha_erosion(uv, alpha, normal)
+    return Record(albedo=albedo, alpha=alpha, normal=normal, metallic=metallic, roughness=roughness,
+        emission=emission, transmittance=transmittance)
+
+def evaluate_translucency(surface, V, N, L):
+    """What one light adds from behind, as a factor on its colour."""
+    return lobe_normalized(V, N, L, surface.transmittance)
+
+def evaluate_lighting(surface, N, V, L, light_color):
+    """What one light adds from the front."""
+    return standard(N, V, L, surface.albedo, surface.metallic, surface.roughness, light_color)

@@ -1,0 +1,212 @@
+// Ice: Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes
+// that melt into it.
+// Made by sssgen for Unity, Universal Render Pipeline. Change the material and emit it again rather than this file.
+// #include it after URP's Core.hlsl.
+#ifndef ICE_UNITY_URP_INCLUDED
+#define ICE_UNITY_URP_INCLUDED
+
+struct Cell {
+    float to_edge;
+    float2 from_edge;
+    float level;
+};
+
+struct Surface {
+    float3 albedo;
+    float alpha;
+    float3 normal;
+    float metallic;
+    float roughness;
+    float3 emission;
+    float transmittance;
+};
+
+static const float JITTER = 0.6;
+static const float OPAQUE_DISTANCE = 1.0e-6;
+static const float OPAQUE_DEPTH = 80.0;
+
+// Scrambles the bits of `x`; 0 stays 0.
+uint hash_bits(uint x) {
+    x = (x ^ (x >> 16u)) * 2146121005u;
+    x = (x ^ (x >> 15u)) * 2221713035u;
+    return x ^ (x >> 16u);
+}
+
+// A number in [0, 1) from 24 bits of the hash of `x`.
+float hash_unit(uint x) {
+    return float(hash_bits(x) >> 8u) / 16777216.0;
+}
+
+// The cell at `p`: `to_edge` is the distance to the second site less that to the nearest, `from_edge` its gradient.
+Cell cell_at(float2 p, float variation) {
+    float2 nearest = (float2)4.0;
+    float2 second = (float2)4.0;
+    uint owner = 0u;
+    [unroll]
+    for (int j = -1; j <= 1; j++) {
+        [unroll]
+        for (int i = -1; i <= 1; i++) {
+            float2 corner = floor(p) + float2(float(i), float(j));
+            uint seed = hash_bits(uint(int(corner.x)) + hash_bits(uint(int(corner.y)) + 1u));
+            float2 shift = float2(hash_unit(seed + 1u), hash_unit(seed + 2u)) - 0.5;
+            float2 to_site = corner + 0.5 + JITTER * shift - p;
+            if (dot(to_site, to_site) < dot(nearest, nearest)) {
+                second = nearest;
+                nearest = to_site;
+                owner = seed;
+            } else if (dot(to_site, to_site) < dot(second, second)) {
+                second = to_site;
+            }
+        }
+    }
+    float level = 1.0 - variation * hash_unit(owner + 3u);
+    Cell cell = { length(second) - length(nearest), normalize(nearest) - normalize(second), level };
+    return cell;
+}
+
+// Thickness in Voronoi cells: facets with thin edges between them, as in cracked ice.
+float voronoi_thickness(float2 uv, float variation, float cell_count, float thickness_factor, float bevel) {
+    Cell cell = cell_at(uv * cell_count, variation);
+    return thickness_factor * cell.level * smoothstep(0.0, bevel, cell.to_edge);
+}
+
+// `d` in mean free paths, 0 or more.
+float optical_depth(float d, float mean_free_path) {
+    return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+}
+
+// Thickness to transmittance: what absorption leaves of the light.
+float beer_lambert(float d, float attenuation_distance) {
+    return exp(-min(optical_depth(d, attenuation_distance), OPAQUE_DEPTH));
+}
+
+// Colour and opacity from a texture and a tint.
+void base_color(float2 uv, out float3 albedo, out float alpha, float4 tint,
+    TEXTURE2D_PARAM(base_color_texture, samplerbase_color_texture)) {
+    float4 texel = tint * SAMPLE_TEXTURE2D(base_color_texture, samplerbase_color_texture, uv);
+    albedo = texel.xyz;
+    alpha = texel.w;
+}
+
+// The same metalness and roughness everywhere.
+void pbr_constants(out float metallic, out float roughness, float metalness, float surface_roughness) {
+    metallic = metalness;
+    roughness = surface_roughness;
+}
+
+// Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add.
+float3 blend_normals(float3 base, float3 detail) {
+    return normalize(float3(base.xy + detail.xy, base.z * detail.z));
+}
+
+// The normal of a height field; `slope` is the height gained per unit of length along T and B.
+float3 normal_of_slope(float2 slope) {
+    return normalize(float3(-slope, 1.0));
+}
+
+// The normal of the Voronoi cells, so that reflected light agrees with light that comes through.
+void voronoi_normal(float2 uv, inout float3 normal, float variation, float cell_count, float bevel,
+    float relief, float2 uv_per_unit) {
+    Cell cell = cell_at(uv * cell_count, variation);
+    float x = clamp(cell.to_edge / bevel, 0.0, 1.0);
+    // the derivative of the smoothstep
+    float steepness = cell.level * 6.0 * x * (1.0 - x) / bevel;
+    float2 slope = relief * uv_per_unit * cell_count * steepness * cell.from_edge;
+    normal = blend_normals(normal, normal_of_slope(slope));
+}
+
+// Light comes through the bare ice only.
+void ice_mask(float2 uv, inout float through, float cover,
+    TEXTURE2D_PARAM(cover_texture, samplercover_texture)) {
+    float covered = cover * SAMPLE_TEXTURE2D(cover_texture, samplercover_texture, uv).r;
+    through = through * smoothstep(0.0, 0.1, 1.0 - covered);
+}
+
+// One moving layer: the offset stays within 1, so that it loses no precision in a long session.
+float4 layer(float2 uv, float2 speed, float time, TEXTURE2D_PARAM(packed_texture, samplerpacked_texture)) {
+    return SAMPLE_TEXTURE2D(packed_texture, samplerpacked_texture, uv + frac(speed * time));
+}
+
+// Moving light below the surface, from the channels of one texture that scroll each its own way.
+void packed_scroll(float2 uv, float time, inout float3 emission,
+    TEXTURE2D_PARAM(packed_texture, samplerpacked_texture), float2 red_speed, float2 green_speed,
+    float2 blue_speed, float3 vein_color, float3 spark_color) {
+    float veins = layer(uv, red_speed, time, packed_texture, samplerpacked_texture).x
+        * layer(uv, green_speed, time, packed_texture, samplerpacked_texture).y;
+    float sparks = layer(uv, blue_speed, time, packed_texture, samplerpacked_texture).z;
+    emission += vein_color * veins + spark_color * sparks;
+}
+
+// What is left at `uv`: 1 = whole, 0 = gone.
+float left_at(float2 uv, float edge, float erosion,
+    TEXTURE2D_PARAM(erosion_texture, samplererosion_texture)) {
+    // the threshold starts below black and ends at white, so that 0 is whole and 1 is gone
+    float threshold = lerp(-edge, 1.0, erosion);
+    return clamp((SAMPLE_TEXTURE2D(erosion_texture, samplererosion_texture, uv).r - threshold) / edge, 0.0,
+        1.0);
+}
+
+// Eats the surface away, dark parts of a mask first, with a bevel at the edge that takes the light.
+void alpha_erosion(float2 uv, inout float alpha, inout float3 normal, float2 uv_per_unit, float texel_size,
+    float edge, float erosion, TEXTURE2D_PARAM(erosion_texture, samplererosion_texture), float edge_height) {
+    float2 e = float2(texel_size, 0.0);
+    float2 at = uv;
+    float across = left_at(at + e, edge, erosion, erosion_texture, samplererosion_texture)
+        - left_at(at - e, edge, erosion, erosion_texture, samplererosion_texture);
+    float up = left_at(at + e.yx, edge, erosion, erosion_texture, samplererosion_texture)
+        - left_at(at - e.yx, edge, erosion, erosion_texture, samplererosion_texture);
+    float2 slope = edge_height * uv_per_unit * float2(across, up) / (2.0 * texel_size);
+    normal = blend_normals(normal, normal_of_slope(slope));
+    alpha *= left_at(at, edge, erosion, erosion_texture, samplererosion_texture);
+}
+
+// The light that comes through where `lobe` (0..1) points at the eye.
+float3 glow(float lobe, float through, float3 subsurface_color, float attenuation, float scale,
+    float ambient) {
+    return subsurface_color * (attenuation * (lobe * scale + ambient) * through);
+}
+
+// The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
+float3 lobe_normalized(float3 V, float3 N, float3 L, float through, float distortion,
+    float3 subsurface_color, float attenuation, float scale, float ambient, float power) {
+    float3 bent = normalize(L + N * distortion);
+    return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through, subsurface_color, attenuation, scale,
+        ambient);
+}
+
+// Everything about the surface that does not depend on a light.
+Surface evaluate_surface(float2 uv, float time, float variation, float cell_count, float thickness_factor,
+    float bevel, float attenuation_distance, float4 tint,
+    TEXTURE2D_PARAM(base_color_texture, samplerbase_color_texture), float metalness, float surface_roughness,
+    float relief, float2 uv_per_unit, float cover, TEXTURE2D_PARAM(cover_texture, samplercover_texture),
+    TEXTURE2D_PARAM(packed_texture, samplerpacked_texture), float2 red_speed, float2 green_speed,
+    float2 blue_speed, float3 vein_color, float3 spark_color, float texel_size, float edge, float erosion,
+    TEXTURE2D_PARAM(erosion_texture, samplererosion_texture), float edge_height) {
+    float thickness = voronoi_thickness(uv, variation, cell_count, thickness_factor, bevel);
+    float transmittance = beer_lambert(thickness, attenuation_distance);
+    float3 albedo;
+    float alpha;
+    base_color(uv, albedo, alpha, tint, base_color_texture, samplerbase_color_texture);
+    float metallic;
+    float roughness;
+    pbr_constants(metallic, roughness, metalness, surface_roughness);
+    float3 normal = float3(0.0, 0.0, 1.0);
+    voronoi_normal(uv, normal, variation, cell_count, bevel, relief, uv_per_unit);
+    ice_mask(uv, transmittance, cover, cover_texture, samplercover_texture);
+    float3 emission = (float3)0.0;
+    packed_scroll(uv, time, emission, packed_texture, samplerpacked_texture, red_speed, green_speed,
+        blue_speed, vein_color, spark_color);
+    alpha_erosion(uv, alpha, normal, uv_per_unit, texel_size, edge, erosion, erosion_texture,
+        samplererosion_texture, edge_height);
+    Surface surface = { albedo, alpha, normal, metallic, roughness, emission, transmittance };
+    return surface;
+}
+
+// What one light adds from behind, as a factor on its colour.
+float3 evaluate_translucency(Surface surface, float3 V, float3 N, float3 L, float distortion,
+    float3 subsurface_color, float attenuation, float scale, float ambient, float power) {
+    return lobe_normalized(V, N, L, surface.transmittance, distortion, subsurface_color, attenuation, scale,
+        ambient, power);
+}
+
+#endif

@@ -1,0 +1,461 @@
+// Ice: Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes
+// that melt into it.
+// Made by sssgen for Unity, Universal Render Pipeline. Change the material and emit it again rather than this file.
+Shader "sssgen/Ice (URP)" {
+    Properties {
+        [NoScaleOffset] _BaseColorTexture ("Base color texture", 2D) = "white" {}
+        [NoScaleOffset] _CoverTexture ("Cover texture", 2D) = "black" {}
+        [NoScaleOffset] _PackedTexture ("Packed texture", 2D) = "black" {}
+        [NoScaleOffset] _ErosionTexture ("Erosion texture", 2D) = "white" {}
+        _Variation ("Variation", Range(0, 1)) = 0.6
+        _CellCount ("Cell count", Range(1, 200)) = 10
+        _ThicknessFactor ("Thickness factor", Range(0, 10)) = 0.3
+        _Bevel ("Bevel", Range(0.05, 1)) = 0.35
+        _AttenuationDistance ("Attenuation distance", Range(0, 10)) = 0.25
+        [HDR] _Tint ("Tint", Color) = (0.75, 0.9, 1, 1)
+        _Metalness ("Metalness", Range(0, 1)) = 0
+        _SurfaceRoughness ("Surface roughness", Range(0, 1)) = 0.12
+        _Relief ("Relief", Range(0, 1)) = 0.01
+        _UvPerUnit ("Uv per unit", Vector) = (1, 1, 0, 0)
+        _Cover ("Cover", Range(0, 1)) = 1
+        _RedSpeed ("Red speed", Vector) = (0.02, 0, 0, 0)
+        _GreenSpeed ("Green speed", Vector) = (-0.01, 0.015, 0, 0)
+        _BlueSpeed ("Blue speed", Vector) = (0, -0.025, 0, 0)
+        [HDR] _VeinColor ("Vein color", Color) = (0.3, 0.8, 1, 1)
+        [HDR] _SparkColor ("Spark color", Color) = (0.6, 0.9, 1, 1)
+        _TexelSize ("Texel size", Range(0.0001, 0.1)) = 0.002
+        _Edge ("Edge", Range(0.01, 1)) = 0.15
+        _Erosion ("Erosion", Range(0, 1)) = 0.2
+        _EdgeHeight ("Edge height", Range(0, 1)) = 0.02
+        _Distortion ("Distortion", Range(0, 1)) = 0.2
+        [HDR] _SubsurfaceColor ("Subsurface color", Color) = (0.55, 0.85, 1, 1)
+        _Attenuation ("Attenuation", Range(0, 1)) = 0.8
+        _Scale ("Scale", Range(0, 20)) = 2
+        _Ambient ("Ambient", Range(0, 1)) = 0.12
+        _Power ("Power", Range(1, 32)) = 6
+    }
+    SubShader {
+        Tags {
+            "RenderPipeline" = "UniversalPipeline"
+            "RenderType" = "TransparentCutout"
+            "Queue" = "AlphaTest"
+        }
+
+        // Every pass sees the same material block, which the SRP batcher asks for.
+        HLSLINCLUDE
+        #include "Packages/com.unity.render-pipelines.universal/ShaderLibrary/Lighting.hlsl"
+
+        CBUFFER_START(UnityPerMaterial)
+            float _Variation;  // How much the levels of the cells differ: 0 = all the same
+            float _CellCount;  // Cells along one unit of texture coordinate
+            float _ThicknessFactor;  // Thickness of the thickest cell
+            float _Bevel;  // Width of the slope beside an edge, in cells
+            float _AttenuationDistance;  // The length after which 1/e (37 %) of the light is left; 0 = opaque
+            float4 _Tint;  // Multiplies the texture
+            float _Metalness;  // 0 = not a metal, 1 = metal
+            float _SurfaceRoughness;  // 0 = a mirror, 1 = chalk
+            float _Relief;  // How far the thickest cells rise above their edges
+            float2 _UvPerUnit;  // How far the texture coordinates move for one world unit along T and along B
+            float _Cover;  // Multiplies the texture
+            float2 _RedSpeed;  // How fast the red layer moves
+            float2 _GreenSpeed;  // How fast the green layer moves
+            float2 _BlueSpeed;  // How fast the blue layer moves
+            float3 _VeinColor;  // Colour of the light in the red and green layers, where both are bright
+            float3 _SparkColor;  // Colour of the light in the blue layer
+            float _TexelSize;  // The length, in texture coordinates, over which slopes are measured: about one texel
+            float _Edge;  // Width of the soft edge, in the texture's values
+            float _Erosion;  // How much is gone: 0 = nothing, 1 = everything
+            float _EdgeHeight;  // How far the surface falls at the edge
+            float _Distortion;  // How much the normal bends the light on its way through: 0 ignores the shape
+            float3 _SubsurfaceColor;  // Colour of the light that has passed through
+            float _Attenuation;  // Strength of it all
+            float _Scale;  // Strength of the glow towards the light
+            float _Ambient;  // Glow that is there from every side
+            float _Power;  // How tight the glow is around the light: the larger, the smaller the spot
+        CBUFFER_END
+
+        TEXTURE2D(_BaseColorTexture); SAMPLER(sampler_BaseColorTexture);
+        TEXTURE2D(_CoverTexture); SAMPLER(sampler_CoverTexture);
+        TEXTURE2D(_PackedTexture); SAMPLER(sampler_PackedTexture);
+        TEXTURE2D(_ErosionTexture); SAMPLER(sampler_ErosionTexture);
+
+        struct Cell {
+            float to_edge;
+            float2 from_edge;
+            float level;
+        };
+
+        struct Surface {
+            float3 albedo;
+            float alpha;
+            float3 normal;
+            float metallic;
+            float roughness;
+            float3 emission;
+            float transmittance;
+        };
+
+        static const float JITTER = 0.6;
+        static const float OPAQUE_DISTANCE = 1.0e-6;
+        static const float OPAQUE_DEPTH = 80.0;
+
+        // Scrambles the bits of `x`; 0 stays 0.
+        uint hash_bits(uint x) {
+            x = (x ^ (x >> 16u)) * 2146121005u;
+            x = (x ^ (x >> 15u)) * 2221713035u;
+            return x ^ (x >> 16u);
+        }
+
+        // A number in [0, 1) from 24 bits of the hash of `x`.
+        float hash_unit(uint x) {
+            return float(hash_bits(x) >> 8u) / 16777216.0;
+        }
+
+        // The cell at `p`: `to_edge` is the distance to the second site less that to the nearest, `from_edge` its gradient.
+        Cell cell_at(float2 p) {
+            float2 nearest = (float2)4.0;
+            float2 second = (float2)4.0;
+            uint owner = 0u;
+            [unroll]
+            for (int j = -1; j <= 1; j++) {
+                [unroll]
+                for (int i = -1; i <= 1; i++) {
+                    float2 corner = floor(p) + float2(float(i), float(j));
+                    uint seed = hash_bits(uint(int(corner.x)) + hash_bits(uint(int(corner.y)) + 1u));
+                    float2 shift = float2(hash_unit(seed + 1u), hash_unit(seed + 2u)) - 0.5;
+                    float2 to_site = corner + 0.5 + JITTER * shift - p;
+                    if (dot(to_site, to_site) < dot(nearest, nearest)) {
+                        second = nearest;
+                        nearest = to_site;
+                        owner = seed;
+                    } else if (dot(to_site, to_site) < dot(second, second)) {
+                        second = to_site;
+                    }
+                }
+            }
+            float level = 1.0 - _Variation * hash_unit(owner + 3u);
+            Cell cell = { length(second) - length(nearest), normalize(nearest) - normalize(second), level };
+            return cell;
+        }
+
+        // Thickness in Voronoi cells: facets with thin edges between them, as in cracked ice.
+        float voronoi_thickness(float2 uv) {
+            Cell cell = cell_at(uv * _CellCount);
+            return _ThicknessFactor * cell.level * smoothstep(0.0, _Bevel, cell.to_edge);
+        }
+
+        // `d` in mean free paths, 0 or more.
+        float optical_depth(float d, float mean_free_path) {
+            return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+        }
+
+        // Thickness to transmittance: what absorption leaves of the light.
+        float beer_lambert(float d) {
+            return exp(-min(optical_depth(d, _AttenuationDistance), OPAQUE_DEPTH));
+        }
+
+        // Colour and opacity from a texture and a tint.
+        void base_color(float2 uv, out float3 albedo, out float alpha) {
+            float4 texel = _Tint * SAMPLE_TEXTURE2D(_BaseColorTexture, sampler_BaseColorTexture, uv);
+            albedo = texel.xyz;
+            alpha = texel.w;
+        }
+
+        // The same metalness and roughness everywhere.
+        void pbr_constants(out float metallic, out float roughness) {
+            metallic = _Metalness;
+            roughness = _SurfaceRoughness;
+        }
+
+        // Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add.
+        float3 blend_normals(float3 base, float3 detail) {
+            return normalize(float3(base.xy + detail.xy, base.z * detail.z));
+        }
+
+        // The normal of a height field; `slope` is the height gained per unit of length along T and B.
+        float3 normal_of_slope(float2 slope) {
+            return normalize(float3(-slope, 1.0));
+        }
+
+        // The normal of the Voronoi cells, so that reflected light agrees with light that comes through.
+        void voronoi_normal(float2 uv, inout float3 normal) {
+            Cell cell = cell_at(uv * _CellCount);
+            float x = clamp(cell.to_edge / _Bevel, 0.0, 1.0);
+            // the derivative of the smoothstep
+            float steepness = cell.level * 6.0 * x * (1.0 - x) / _Bevel;
+            float2 slope = _Relief * _UvPerUnit * _CellCount * steepness * cell.from_edge;
+            normal = blend_normals(normal, normal_of_slope(slope));
+        }
+
+        // Light comes through the bare ice only.
+        void ice_mask(float2 uv, inout float through) {
+            float covered = _Cover * SAMPLE_TEXTURE2D(_CoverTexture, sampler_CoverTexture, uv).r;
+            through = through * smoothstep(0.0, 0.1, 1.0 - covered);
+        }
+
+        // One moving layer: the offset stays within 1, so that it loses no precision in a long session.
+        float4 layer(float2 uv, float2 speed, float time) {
+            return SAMPLE_TEXTURE2D(_PackedTexture, sampler_PackedTexture, uv + frac(speed * time));
+        }
+
+        // Moving light below the surface, from the channels of one texture that scroll each its own way.
+        void packed_scroll(float2 uv, float time, inout float3 emission) {
+            float veins = layer(uv, _RedSpeed, time).x * layer(uv, _GreenSpeed, time).y;
+            float sparks = layer(uv, _BlueSpeed, time).z;
+            emission += _VeinColor * veins + _SparkColor * sparks;
+        }
+
+        // What is left at `uv`: 1 = whole, 0 = gone.
+        float left_at(float2 uv) {
+            // the threshold starts below black and ends at white, so that 0 is whole and 1 is gone
+            float threshold = lerp(-_Edge, 1.0, _Erosion);
+            return clamp((SAMPLE_TEXTURE2D(_ErosionTexture, sampler_ErosionTexture, uv).r - threshold) / _Edge, 0.0,
+                1.0);
+        }
+
+        // Eats the surface away, dark parts of a mask first, with a bevel at the edge that takes the light.
+        void alpha_erosion(float2 uv, inout float alpha, inout float3 normal) {
+            float2 e = float2(_TexelSize, 0.0);
+            float2 at = uv;
+            float across = left_at(at + e) - left_at(at - e);
+            float up = left_at(at + e.yx) - left_at(at - e.yx);
+            float2 slope = _EdgeHeight * _UvPerUnit * float2(across, up) / (2.0 * _TexelSize);
+            normal = blend_normals(normal, normal_of_slope(slope));
+            alpha *= left_at(at);
+        }
+
+        // The light that comes through where `lobe` (0..1) points at the eye.
+        float3 glow(float lobe, float through) {
+            return _SubsurfaceColor * (_Attenuation * (lobe * _Scale + _Ambient) * through);
+        }
+
+        // The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
+        float3 lobe_normalized(float3 V, float3 N, float3 L, float through) {
+            float3 bent = normalize(L + N * _Distortion);
+            return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), _Power), through);
+        }
+
+        // Everything about the surface that does not depend on a light.
+        Surface evaluate_surface(float2 uv, float time) {
+            float thickness = voronoi_thickness(uv);
+            float transmittance = beer_lambert(thickness);
+            float3 albedo;
+            float alpha;
+            base_color(uv, albedo, alpha);
+            float metallic;
+            float roughness;
+            pbr_constants(metallic, roughness);
+            float3 normal = float3(0.0, 0.0, 1.0);
+            voronoi_normal(uv, normal);
+            ice_mask(uv, transmittance);
+            float3 emission = (float3)0.0;
+            packed_scroll(uv, time, emission);
+            alpha_erosion(uv, alpha, normal);
+            Surface surface = { albedo, alpha, normal, metallic, roughness, emission, transmittance };
+            return surface;
+        }
+
+        // What one light adds from behind, as a factor on its colour.
+        float3 evaluate_translucency(Surface surface, float3 V, float3 N, float3 L) {
+            return lobe_normalized(V, N, L, surface.transmittance);
+        }
+
+        struct Attributes {
+            float4 positionOS : POSITION;
+            float3 normalOS : NORMAL;
+            float4 tangentOS : TANGENT;
+            float2 uv : TEXCOORD0;
+            UNITY_VERTEX_INPUT_INSTANCE_ID
+        };
+
+        struct Varyings {
+            float4 positionCS : SV_POSITION;
+            float3 positionWS : TEXCOORD0;
+            float3 normalWS : TEXCOORD1;
+            float4 tangentWS : TEXCOORD2;  // w: handedness, +1 or -1
+            float2 uv : TEXCOORD3;
+            float fogFactor : TEXCOORD4;
+            UNITY_VERTEX_INPUT_INSTANCE_ID
+            UNITY_VERTEX_OUTPUT_STEREO
+        };
+
+        Varyings vert(Attributes input) {
+            Varyings output = (Varyings)0;
+            UNITY_SETUP_INSTANCE_ID(input);
+            UNITY_TRANSFER_INSTANCE_ID(input, output);
+            UNITY_INITIALIZE_VERTEX_OUTPUT_STEREO(output);
+            output.positionWS = TransformObjectToWorld(input.positionOS.xyz);
+            output.positionCS = TransformWorldToHClip(output.positionWS);
+            output.normalWS = TransformObjectToWorldNormal(input.normalOS);
+            output.tangentWS = float4(TransformObjectToWorldDir(input.tangentOS.xyz), input.tangentOS.w * GetOddNegativeScale());
+            output.uv = input.uv;
+            output.fogFactor = ComputeFogFactor(output.positionCS.z);
+            return output;
+        }
+
+        void clip_surface(Varyings input) {
+            float3 V = GetWorldSpaceNormalizeViewDir(input.positionWS);
+            float3 N = normalize(input.normalWS);
+            float3 T = input.tangentWS.xyz * rsqrt(max(dot(input.tangentWS.xyz, input.tangentWS.xyz), 1e-12));
+            float3 B = cross(N, T) * input.tangentWS.w;
+            clip(evaluate_surface(input.uv, _Time.y).alpha - 0.5);
+        }
+        ENDHLSL
+
+        Pass {
+            // Forward in the deferred renderer too: a G-buffer has no room for translucency.
+            Name "ForwardLit"
+            Tags { "LightMode" = "UniversalForwardOnly" }
+
+            HLSLPROGRAM
+            #pragma target 3.5
+            #pragma vertex vert
+            #pragma fragment frag
+            #pragma multi_compile _ _MAIN_LIGHT_SHADOWS _MAIN_LIGHT_SHADOWS_CASCADE _MAIN_LIGHT_SHADOWS_SCREEN
+            #pragma multi_compile _ _ADDITIONAL_LIGHTS
+            #pragma multi_compile_fragment _ _ADDITIONAL_LIGHT_SHADOWS
+            #pragma multi_compile_fragment _ _SHADOWS_SOFT
+            #pragma multi_compile_fragment _ _SCREEN_SPACE_OCCLUSION
+            #pragma multi_compile _ _CLUSTERED_RENDERING _FORWARD_PLUS
+            #pragma multi_compile_fog
+            #pragma multi_compile_instancing
+
+            float4 frag(Varyings input) : SV_Target {
+                UNITY_SETUP_INSTANCE_ID(input);
+                UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
+                float3 V = GetWorldSpaceNormalizeViewDir(input.positionWS);
+                float3 N = normalize(input.normalWS);
+                float3 T = input.tangentWS.xyz * rsqrt(max(dot(input.tangentWS.xyz, input.tangentWS.xyz), 1e-12));
+                float3 B = cross(N, T) * input.tangentWS.w;
+                Surface surface = evaluate_surface(input.uv, _Time.y);
+                N = normalize(T * surface.normal.x + B * surface.normal.y + N * surface.normal.z);
+
+                InputData inputData = (InputData)0;
+                inputData.positionWS = input.positionWS;
+                inputData.normalWS = N;
+                inputData.viewDirectionWS = V;
+                inputData.normalizedScreenSpaceUV = GetNormalizedScreenSpaceUV(input.positionCS);
+            #if defined(_MAIN_LIGHT_SHADOWS_SCREEN)
+                inputData.shadowCoord = float4(inputData.normalizedScreenSpaceUV, 0.0, 1.0);
+            #else
+                inputData.shadowCoord = TransformWorldToShadowCoord(input.positionWS);
+            #endif
+                inputData.shadowMask = 1.0;
+                inputData.bakedGI = SampleSH(N);
+
+                SurfaceData surfaceData = (SurfaceData)0;
+                surfaceData.albedo = surface.albedo;
+                surfaceData.metallic = surface.metallic;
+                surfaceData.smoothness = 1.0 - surface.roughness;
+                surfaceData.occlusion = 1.0;
+                surfaceData.alpha = surface.alpha;
+                surfaceData.emission = surface.emission;
+                float4 color = UniversalFragmentPBR(inputData, surfaceData);
+
+                // Without shadow: light that comes through entered on the far side, in the object's own shadow.
+                Light light = GetMainLight();
+                float3 light_color = light.color * light.distanceAttenuation;
+                color.rgb += evaluate_translucency(surface, V, N, light.direction) * light_color;
+            #if defined(_ADDITIONAL_LIGHTS)
+                uint light_count = GetAdditionalLightsCount();
+                LIGHT_LOOP_BEGIN(light_count)
+                    light = GetAdditionalLight(lightIndex, input.positionWS);
+                    light_color = light.color * light.distanceAttenuation;
+                    color.rgb += evaluate_translucency(surface, V, N, light.direction) * light_color;
+                LIGHT_LOOP_END
+            #endif
+                clip(surface.alpha - 0.5);
+                color.rgb = MixFog(color.rgb, input.fogFactor);
+                return color;
+            }
+            ENDHLSL
+        }
+
+        Pass {
+            Name "ShadowCaster"
+            Tags { "LightMode" = "ShadowCaster" }
+            ColorMask 0
+
+            HLSLPROGRAM
+            #pragma target 3.5
+            #pragma vertex vert_shadow
+            #pragma fragment frag
+            #pragma multi_compile_instancing
+            #pragma multi_compile_vertex _ _CASTING_PUNCTUAL_LIGHT_SHADOW
+
+            float3 _LightDirection;
+            float3 _LightPosition;
+
+            Varyings vert_shadow(Attributes input) {
+                Varyings output = vert(input);
+            #if defined(_CASTING_PUNCTUAL_LIGHT_SHADOW)
+                float3 L = normalize(_LightPosition - output.positionWS);
+            #else
+                float3 L = _LightDirection;
+            #endif
+                output.positionCS = TransformWorldToHClip(ApplyShadowBias(output.positionWS, output.normalWS, L));
+                // What lies before the light's near plane still casts its shadow.
+            #if UNITY_REVERSED_Z
+                output.positionCS.z = min(output.positionCS.z, UNITY_NEAR_CLIP_VALUE);
+            #else
+                output.positionCS.z = max(output.positionCS.z, UNITY_NEAR_CLIP_VALUE);
+            #endif
+                return output;
+            }
+
+            float4 frag(Varyings input) : SV_Target {
+                UNITY_SETUP_INSTANCE_ID(input);
+                clip_surface(input);
+                return 0.0;
+            }
+            ENDHLSL
+        }
+
+        Pass {
+            Name "DepthOnly"
+            Tags { "LightMode" = "DepthOnly" }
+            ColorMask 0
+
+            HLSLPROGRAM
+            #pragma target 3.5
+            #pragma vertex vert
+            #pragma fragment frag
+            #pragma multi_compile_instancing
+
+            float4 frag(Varyings input) : SV_Target {
+                UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
+                UNITY_SETUP_INSTANCE_ID(input);
+                clip_surface(input);
+                return 0.0;
+            }
+            ENDHLSL
+        }
+
+        Pass {
+            // The geometric normal, for screen-space occlusion.
+            Name "DepthNormals"
+            Tags { "LightMode" = "DepthNormalsOnly" }
+
+            HLSLPROGRAM
+            #pragma target 3.5
+            #pragma vertex vert
+            #pragma fragment frag
+            #pragma multi_compile_instancing
+            #pragma multi_compile_fragment _ _GBUFFER_NORMALS_OCT
+
+            float4 frag(Varyings input) : SV_Target {
+                UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
+                UNITY_SETUP_INSTANCE_ID(input);
+                clip_surface(input);
+                float3 N = normalize(input.normalWS);
+            #if defined(_GBUFFER_NORMALS_OCT)
+                return float4(PackFloat2To888(saturate(0.5 * PackNormalOctQuadEncode(N) + 0.5)), 0.0);
+            #else
+                return float4(N, 0.0);
+            #endif
+            }
+            ENDHLSL
+        }
+    }
+    FallBack "Hidden/Universal Render Pipeline/FallbackError"
+}

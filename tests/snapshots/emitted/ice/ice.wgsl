@@ -1,0 +1,322 @@
+// Ice: Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes
+// that melt into it.
+// Made by sssgen for WGSL (WebGPU). Change the material and emit it again rather than this file.
+// Entry points: vertex_main and fragment_main. Group 0: camera and lights; group 1: the material; group 2: the object.
+
+struct Cell {
+    to_edge: f32,
+    from_edge: vec2f,
+    level: f32,
+}
+
+struct Surface {
+    albedo: vec3f,
+    alpha: f32,
+    normal: vec3f,
+    metallic: f32,
+    roughness: f32,
+    emission: vec3f,
+    transmittance: f32,
+}
+
+const JITTER: f32 = 0.6;
+const OPAQUE_DISTANCE: f32 = 1.0e-6;
+const OPAQUE_DEPTH: f32 = 80.0;
+
+struct Material {
+    variation: f32,  // How much the levels of the cells differ: 0 = all the same
+    cell_count: f32,  // Cells along one unit of texture coordinate
+    thickness_factor: f32,  // Thickness of the thickest cell
+    bevel: f32,  // Width of the slope beside an edge, in cells
+    attenuation_distance: f32,  // The length after which 1/e (37 %) of the light is left; 0 = opaque
+    tint: vec4f,  // Multiplies the texture
+    metalness: f32,  // 0 = not a metal, 1 = metal
+    surface_roughness: f32,  // 0 = a mirror, 1 = chalk
+    relief: f32,  // How far the thickest cells rise above their edges
+    uv_per_unit: vec2f,  // How far the texture coordinates move for one world unit along T and along B
+    cover: f32,  // Multiplies the texture
+    red_speed: vec2f,  // How fast the red layer moves
+    green_speed: vec2f,  // How fast the green layer moves
+    blue_speed: vec2f,  // How fast the blue layer moves
+    vein_color: vec3f,  // Colour of the light in the red and green layers, where both are bright
+    spark_color: vec3f,  // Colour of the light in the blue layer
+    texel_size: f32,  // The length, in texture coordinates, over which slopes are measured: about one texel
+    edge: f32,  // Width of the soft edge, in the texture's values
+    erosion: f32,  // How much is gone: 0 = nothing, 1 = everything
+    edge_height: f32,  // How far the surface falls at the edge
+    distortion: f32,  // How much the normal bends the light on its way through: 0 ignores the shape
+    subsurface_color: vec3f,  // Colour of the light that has passed through
+    attenuation: f32,  // Strength of it all
+    scale: f32,  // Strength of the glow towards the light
+    ambient: f32,  // Glow that is there from every side
+    power: f32,  // How tight the glow is around the light: the larger, the smaller the spot
+}
+@group(1) @binding(0) var<uniform> material: Material;
+
+@group(1) @binding(1) var base_color_texture: texture_2d<f32>;
+@group(1) @binding(2) var base_color_texture_sampler: sampler;
+@group(1) @binding(3) var cover_texture: texture_2d<f32>;
+@group(1) @binding(4) var cover_texture_sampler: sampler;
+@group(1) @binding(5) var packed_texture: texture_2d<f32>;
+@group(1) @binding(6) var packed_texture_sampler: sampler;
+@group(1) @binding(7) var erosion_texture: texture_2d<f32>;
+@group(1) @binding(8) var erosion_texture_sampler: sampler;
+
+// Scrambles the bits of `x`; 0 stays 0.
+fn hash_bits(x_in: u32) -> u32 {
+    var x = x_in;
+    x = (x ^ (x >> 16u)) * 2146121005u;
+    x = (x ^ (x >> 15u)) * 2221713035u;
+    return x ^ (x >> 16u);
+}
+
+// A number in [0, 1) from 24 bits of the hash of `x`.
+fn hash_unit(x: u32) -> f32 {
+    return f32(hash_bits(x) >> 8u) / 16777216.0;
+}
+
+// The cell at `p`: `to_edge` is the distance to the second site less that to the nearest, `from_edge` its gradient.
+fn cell_at(p: vec2f) -> Cell {
+    var nearest = vec2f(4.0);
+    var second = vec2f(4.0);
+    var owner = 0u;
+    for (var j = -1; j <= 1; j++) {
+        for (var i = -1; i <= 1; i++) {
+            let corner = floor(p) + vec2f(f32(i), f32(j));
+            let seed = hash_bits(u32(i32(corner.x)) + hash_bits(u32(i32(corner.y)) + 1u));
+            let shift = vec2f(hash_unit(seed + 1u), hash_unit(seed + 2u)) - 0.5;
+            let to_site = corner + 0.5 + JITTER * shift - p;
+            if (dot(to_site, to_site) < dot(nearest, nearest)) {
+                second = nearest;
+                nearest = to_site;
+                owner = seed;
+            } else if (dot(to_site, to_site) < dot(second, second)) {
+                second = to_site;
+            }
+        }
+    }
+    let level = 1.0 - material.variation * hash_unit(owner + 3u);
+    return Cell(length(second) - length(nearest), normalize(nearest) - normalize(second), level);
+}
+
+// Thickness in Voronoi cells: facets with thin edges between them, as in cracked ice.
+fn voronoi_thickness(uv: vec2f) -> f32 {
+    let cell = cell_at(uv * material.cell_count);
+    return material.thickness_factor * cell.level * smoothstep(0.0, material.bevel, cell.to_edge);
+}
+
+// `d` in mean free paths, 0 or more.
+fn optical_depth(d: f32, mean_free_path: f32) -> f32 {
+    return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+}
+
+// Thickness to transmittance: what absorption leaves of the light.
+fn beer_lambert(d: f32) -> f32 {
+    return exp(-min(optical_depth(d, material.attenuation_distance), OPAQUE_DEPTH));
+}
+
+// Colour and opacity from a texture and a tint.
+fn base_color(uv: vec2f, albedo: ptr<function, vec3f>, alpha: ptr<function, f32>) {
+    let texel = material.tint * textureSample(base_color_texture, base_color_texture_sampler, uv);
+    *albedo = texel.xyz;
+    *alpha = texel.w;
+}
+
+// The same metalness and roughness everywhere.
+fn pbr_constants(metallic: ptr<function, f32>, roughness: ptr<function, f32>) {
+    *metallic = material.metalness;
+    *roughness = material.surface_roughness;
+}
+
+// Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add.
+fn blend_normals(base: vec3f, detail: vec3f) -> vec3f {
+    return normalize(vec3f(base.xy + detail.xy, base.z * detail.z));
+}
+
+// The normal of a height field; `slope` is the height gained per unit of length along T and B.
+fn normal_of_slope(slope: vec2f) -> vec3f {
+    return normalize(vec3f(-slope, 1.0));
+}
+
+// The normal of the Voronoi cells, so that reflected light agrees with light that comes through.
+fn voronoi_normal(uv: vec2f, normal: ptr<function, vec3f>) {
+    let cell = cell_at(uv * material.cell_count);
+    let x = clamp(cell.to_edge / material.bevel, 0.0, 1.0);
+    // the derivative of the smoothstep
+    let steepness = cell.level * 6.0 * x * (1.0 - x) / material.bevel;
+    let slope = material.relief * material.uv_per_unit * material.cell_count * steepness * cell.from_edge;
+    *normal = blend_normals(*normal, normal_of_slope(slope));
+}
+
+// Light comes through the bare ice only.
+fn ice_mask(uv: vec2f, through: ptr<function, f32>) {
+    let covered = material.cover * textureSample(cover_texture, cover_texture_sampler, uv).r;
+    *through = *through * smoothstep(0.0, 0.1, 1.0 - covered);
+}
+
+// One moving layer: the offset stays within 1, so that it loses no precision in a long session.
+fn layer(uv: vec2f, speed: vec2f, time: f32) -> vec4f {
+    return textureSample(packed_texture, packed_texture_sampler, uv + fract(speed * time));
+}
+
+// Moving light below the surface, from the channels of one texture that scroll each its own way.
+fn packed_scroll(uv: vec2f, time: f32, emission: ptr<function, vec3f>) {
+    let veins = layer(uv, material.red_speed, time).x * layer(uv, material.green_speed, time).y;
+    let sparks = layer(uv, material.blue_speed, time).z;
+    *emission += material.vein_color * veins + material.spark_color * sparks;
+}
+
+// What is left at `uv`: 1 = whole, 0 = gone.
+fn left_at(uv: vec2f) -> f32 {
+    // the threshold starts below black and ends at white, so that 0 is whole and 1 is gone
+    let threshold = mix(-material.edge, 1.0, material.erosion);
+    return clamp((textureSample(erosion_texture, erosion_texture_sampler, uv).r - threshold) / material.edge,
+        0.0, 1.0);
+}
+
+// Eats the surface away, dark parts of a mask first, with a bevel at the edge that takes the light.
+fn alpha_erosion(uv: vec2f, alpha: ptr<function, f32>, normal: ptr<function, vec3f>) {
+    let e = vec2f(material.texel_size, 0.0);
+    let at = uv;
+    let across = left_at(at + e) - left_at(at - e);
+    let up = left_at(at + e.yx) - left_at(at - e.yx);
+    let slope = material.edge_height * material.uv_per_unit * vec2f(across, up) / (2.0 * material.texel_size);
+    *normal = blend_normals(*normal, normal_of_slope(slope));
+    *alpha *= left_at(at);
+}
+
+// The light that comes through where `lobe` (0..1) points at the eye.
+fn glow(lobe: f32, through: f32) -> vec3f {
+    return material.subsurface_color
+        * (material.attenuation * (lobe * material.scale + material.ambient) * through);
+}
+
+// The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
+fn lobe_normalized(V: vec3f, N: vec3f, L: vec3f, through: f32) -> vec3f {
+    let bent = normalize(L + N * material.distortion);
+    return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), material.power), through);
+}
+
+// The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
+fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughness: f32,
+    light_color: vec3f) -> vec3f {
+    let H = normalize(V + L);
+    let NoL = max(dot(N, L), 0.0);
+    let NoV = max(dot(N, V), 0.0001);
+    let NoH = clamp(dot(N, H), 0.0, 1.0);
+    let a = max(roughness, 0.045) * max(roughness, 0.045);
+    let spread = NoH * NoH * (a * a - 1.0) + 1.0;
+    // D times pi
+    let facets = a * a / (spread * spread);
+    // masking and shadowing, over 4 dot(N, L) dot(N, V)
+    let visible = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a);
+    let F0 = mix(vec3f(0.04), albedo, metallic);
+    let F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
+    let diffuse = albedo * (1.0 - metallic) * (1.0 - F);
+    return (diffuse + facets * visible * F) * NoL * light_color;
+}
+
+// Everything about the surface that does not depend on a light.
+fn evaluate_surface(uv: vec2f, time: f32) -> Surface {
+    let thickness = voronoi_thickness(uv);
+    var transmittance = beer_lambert(thickness);
+    var albedo: vec3f;
+    var alpha: f32;
+    base_color(uv, &albedo, &alpha);
+    var metallic: f32;
+    var roughness: f32;
+    pbr_constants(&metallic, &roughness);
+    var normal = vec3f(0.0, 0.0, 1.0);
+    voronoi_normal(uv, &normal);
+    ice_mask(uv, &transmittance);
+    var emission = vec3f(0.0);
+    packed_scroll(uv, time, &emission);
+    alpha_erosion(uv, &alpha, &normal);
+    return Surface(albedo, alpha, normal, metallic, roughness, emission, transmittance);
+}
+
+// What one light adds from behind, as a factor on its colour.
+fn evaluate_translucency(surface: Surface, V: vec3f, N: vec3f, L: vec3f) -> vec3f {
+    return lobe_normalized(V, N, L, surface.transmittance);
+}
+
+// What one light adds from the front.
+fn evaluate_lighting(surface: Surface, N: vec3f, V: vec3f, L: vec3f, light_color: vec3f) -> vec3f {
+    return standard(N, V, L, surface.albedo, surface.metallic, surface.roughness, light_color);
+}
+
+struct Camera {
+    view_projection: mat4x4f,
+    inverse_view_projection: mat4x4f,
+    position: vec3f,
+    time: f32,  // s
+}
+@group(0) @binding(0) var<uniform> camera: Camera;
+
+const MAX_LIGHTS = 4;
+
+struct Lights {
+    ambient: vec3f,
+    count: i32,
+    positions: array<vec4f, MAX_LIGHTS>,  // w = 1: where the light is; w = 0: the direction towards it
+    colors: array<vec4f, MAX_LIGHTS>,
+}
+@group(0) @binding(1) var<uniform> lights: Lights;
+
+struct Object {
+    model: mat4x4f,
+    inverse_model: mat4x4f,
+}
+@group(2) @binding(0) var<uniform> object: Object;
+
+struct VertexInput {
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) tangent: vec4f,  // w: handedness, +1 or -1
+    @location(3) uv: vec2f,
+}
+
+struct Varyings {
+    @builtin(position) clip_position: vec4f,
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) tangent: vec4f,
+    @location(3) uv: vec2f,
+}
+
+@vertex
+fn vertex_main(input: VertexInput) -> Varyings {
+    let world_position = object.model * vec4f(input.position, 1.0);
+    var output: Varyings;
+    output.clip_position = camera.view_projection * world_position;
+    output.position = world_position.xyz;
+    output.normal = (vec4f(input.normal, 0.0) * object.inverse_model).xyz;
+    let mirrored = sign(determinant(mat3x3f(object.model[0].xyz, object.model[1].xyz, object.model[2].xyz)));
+    output.tangent = vec4f((object.model * vec4f(input.tangent.xyz, 0.0)).xyz, input.tangent.w * mirrored);
+    output.uv = input.uv;
+    return output;
+}
+
+@fragment
+fn fragment_main(input: Varyings) -> @location(0) vec4f {
+    let V = normalize(camera.position - input.position);
+    var N = normalize(input.normal);
+    let T = input.tangent.xyz * inverseSqrt(max(dot(input.tangent.xyz, input.tangent.xyz), 1e-12));
+    let B = cross(N, T) * input.tangent.w;
+    let surface = evaluate_surface(input.uv, camera.time);
+    N = normalize(T * surface.normal.x + B * surface.normal.y + N * surface.normal.z);
+
+    var color = lights.ambient * surface.albedo + surface.emission;
+    for (var i = 0; i < min(lights.count, MAX_LIGHTS); i++) {
+        let to_light = lights.positions[i].xyz - input.position * lights.positions[i].w;
+        let distance_squared = max(dot(to_light, to_light), 1e-4);
+        let L = to_light * inverseSqrt(distance_squared);
+        let light_color = lights.colors[i].rgb * mix(1.0, 1.0 / distance_squared, lights.positions[i].w);
+        color += evaluate_lighting(surface, N, V, L, light_color);
+        color += evaluate_translucency(surface, V, N, L) * light_color;
+    }
+    if (surface.alpha < 0.5) {
+        discard;
+    }
+    return vec4f(color, surface.alpha);
+}

@@ -1,0 +1,179 @@
+# Ice: Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes
+# that melt into it.
+# Made by sssgen for NumPy (vectorised; the oracle). Change the material and emit it again rather than this file.
+
+from sssgen.targets.numpy_runtime import *  # noqa: F403
+
+# Cell: Record(to_edge, from_edge, level)
+
+# Surface: Record(albedo, alpha, normal, metallic, roughness, emission, transmittance)
+
+JITTER = 0.6
+OPAQUE_DISTANCE = 1e-06
+OPAQUE_DEPTH = 80.0
+
+def hash_bits(x):
+    """Scrambles the bits of `x`; 0 stays 0."""
+    x = (x ^ (x >> 16)) * 2146121005
+    x = (x ^ (x >> 15)) * 2221713035
+    return x ^ (x >> 16)
+
+def hash_unit(x):
+    """A number in [0, 1) from 24 bits of the hash of `x`."""
+    return to_float(hash_bits(x) >> 8) / 16777216.0
+
+def cell_at(p, variation):
+    """The cell at `p`: `to_edge` is the distance to the second site less that to the nearest, `from_edge` its gradient."""
+    nearest = splat(2, 4.0)
+    second = splat(2, 4.0)
+    owner = to_uint(0)
+    for j in range(-1, 2):
+        for i in range(-1, 2):
+            corner = floor(p) + vec(to_float(i), to_float(j))
+            seed = hash_bits(to_uint(to_int(corner[0])) + hash_bits(to_uint(to_int(corner[1])) + 1))
+            shift = vec(hash_unit(seed + 1), hash_unit(seed + 2)) - 0.5
+            to_site = corner + 0.5 + JITTER * shift - p
+            mask = dot(to_site, to_site) < dot(nearest, nearest)
+            second = select(mask, nearest, second)
+            nearest = select(mask, to_site, nearest)
+            owner = select(mask, seed, owner)
+            second = select(not_(mask) & (dot(to_site, to_site) < dot(second, second)), to_site, second)
+    level = 1.0 - variation * hash_unit(owner + 3)
+    return Record(to_edge=length(second) - length(nearest), from_edge=normalize(nearest) - normalize(second),
+        level=level)
+
+def voronoi_thickness(uv, variation, cell_count, thickness_factor, bevel):
+    """Thickness in Voronoi cells: facets with thin edges between them, as in cracked ice."""
+    cell = cell_at(uv * cell_count, variation)
+    return thickness_factor * cell.level * smoothstep(0.0, bevel, cell.to_edge)
+
+def optical_depth(d, mean_free_path):
+    """`d` in mean free paths, 0 or more."""
+    return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0)
+
+def beer_lambert(d, attenuation_distance):
+    """Thickness to transmittance: what absorption leaves of the light."""
+    return exp(-min(optical_depth(d, attenuation_distance), OPAQUE_DEPTH))
+
+def base_color(uv, tint, base_color_texture):
+    """Colour and opacity from a texture and a tint."""
+    texel = tint * texture(base_color_texture, uv)
+    albedo = swizzle(texel, "xyz")
+    alpha = texel[3]
+    return albedo, alpha
+
+def pbr_constants(metalness, surface_roughness):
+    """The same metalness and roughness everywhere."""
+    metallic = metalness
+    roughness = surface_roughness
+    return metallic, roughness
+
+def blend_normals(base, detail):
+    """Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add."""
+    return normalize(vec(swizzle(base, "xy") + swizzle(detail, "xy"), base[2] * detail[2]))
+
+def normal_of_slope(slope):
+    """The normal of a height field; `slope` is the height gained per unit of length along T and B."""
+    return normalize(vec(-slope, 1.0))
+
+def voronoi_normal(uv, normal, variation, cell_count, bevel, relief, uv_per_unit):
+    """The normal of the Voronoi cells, so that reflected light agrees with light that comes through."""
+    cell = cell_at(uv * cell_count, variation)
+    x = clamp(cell.to_edge / bevel, 0.0, 1.0)
+    # the derivative of the smoothstep
+    steepness = cell.level * 6.0 * x * (1.0 - x) / bevel
+    slope = relief * uv_per_unit * cell_count * steepness * cell.from_edge
+    normal = blend_normals(normal, normal_of_slope(slope))
+    return normal
+
+def ice_mask(uv, through, cover, cover_texture):
+    """Light comes through the bare ice only."""
+    covered = cover * texture(cover_texture, uv)[0]
+    through = through * smoothstep(0.0, 0.1, 1.0 - covered)
+    return through
+
+def layer(uv, speed, time, packed_texture):
+    """One moving layer: the offset stays within 1, so that it loses no precision in a long session."""
+    return texture(packed_texture, uv + fract(speed * time))
+
+def packed_scroll(uv, time, emission, packed_texture, red_speed, green_speed, blue_speed, vein_color,
+    spark_color):
+    """Moving light below the surface, from the channels of one texture that scroll each its own way."""
+    veins = layer(uv, red_speed, time, packed_texture)[0] * layer(uv, green_speed, time, packed_texture)[1]
+    sparks = layer(uv, blue_speed, time, packed_texture)[2]
+    emission = emission + (vein_color * veins + spark_color * sparks)
+    return emission
+
+def left_at(uv, edge, erosion, erosion_texture):
+    """What is left at `uv`: 1 = whole, 0 = gone."""
+    # the threshold starts below black and ends at white, so that 0 is whole and 1 is gone
+    threshold = mix(-edge, 1.0, erosion)
+    return clamp((texture(erosion_texture, uv)[0] - threshold) / edge, 0.0, 1.0)
+
+def alpha_erosion(uv, alpha, normal, uv_per_unit, texel_size, edge, erosion, erosion_texture, edge_height):
+    """Eats the surface away, dark parts of a mask first, with a bevel at the edge that takes the light."""
+    e = vec(texel_size, 0.0)
+    at = uv
+    across = left_at(at + e, edge, erosion, erosion_texture) - left_at(at - e, edge, erosion, erosion_texture)
+    up = left_at(at + swizzle(e, "yx"), edge, erosion, erosion_texture) - left_at(at - swizzle(e, "yx"), edge,
+        erosion, erosion_texture)
+    slope = edge_height * uv_per_unit * vec(across, up) / (2.0 * texel_size)
+    normal = blend_normals(normal, normal_of_slope(slope))
+    alpha = alpha * left_at(at, edge, erosion, erosion_texture)
+    return alpha, normal
+
+def glow(lobe, through, subsurface_color, attenuation, scale, ambient):
+    """The light that comes through where `lobe` (0..1) points at the eye."""
+    return subsurface_color * (attenuation * (lobe * scale + ambient) * through)
+
+def lobe_normalized(V, N, L, through, distortion, subsurface_color, attenuation, scale, ambient, power):
+    """The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected."""
+    bent = normalize(L + N * distortion)
+    return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through, subsurface_color, attenuation, scale,
+        ambient)
+
+def standard(N, V, L, albedo, metallic, roughness, light_color):
+    """The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light."""
+    H = normalize(V + L)
+    NoL = max(dot(N, L), 0.0)
+    NoV = max(dot(N, V), 0.0001)
+    NoH = clamp(dot(N, H), 0.0, 1.0)
+    a = max(roughness, 0.045) * max(roughness, 0.045)
+    spread = NoH * NoH * (a * a - 1.0) + 1.0
+    # D times pi
+    facets = a * a / (spread * spread)
+    # masking and shadowing, over 4 dot(N, L) dot(N, V)
+    visible = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a)
+    F0 = mix(splat(3, 0.04), albedo, metallic)
+    F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0)
+    diffuse = albedo * (1.0 - metallic) * (1.0 - F)
+    return (diffuse + facets * visible * F) * NoL * light_color
+
+def evaluate_surface(uv, time, variation, cell_count, thickness_factor, bevel, attenuation_distance, tint,
+    base_color_texture, metalness, surface_roughness, relief, uv_per_unit, cover, cover_texture,
+    packed_texture, red_speed, green_speed, blue_speed, vein_color, spark_color, texel_size, edge, erosion,
+    erosion_texture, edge_height):
+    """Everything about the surface that does not depend on a light."""
+    thickness = voronoi_thickness(uv, variation, cell_count, thickness_factor, bevel)
+    transmittance = beer_lambert(thickness, attenuation_distance)
+    albedo, alpha = base_color(uv, tint, base_color_texture)
+    metallic, roughness = pbr_constants(metalness, surface_roughness)
+    normal = vec(0.0, 0.0, 1.0)
+    normal = voronoi_normal(uv, normal, variation, cell_count, bevel, relief, uv_per_unit)
+    transmittance = ice_mask(uv, transmittance, cover, cover_texture)
+    emission = splat(3, 0.0)
+    emission = packed_scroll(uv, time, emission, packed_texture, red_speed, green_speed, blue_speed,
+        vein_color, spark_color)
+    alpha, normal = alpha_erosion(uv, alpha, normal, uv_per_unit, texel_size, edge, erosion, erosion_texture,
+        edge_height)
+    return Record(albedo=albedo, alpha=alpha, normal=normal, metallic=metallic, roughness=roughness,
+        emission=emission, transmittance=transmittance)
+
+def evaluate_translucency(surface, V, N, L, distortion, subsurface_color, attenuation, scale, ambient, power):
+    """What one light adds from behind, as a factor on its colour."""
+    return lobe_normalized(V, N, L, surface.transmittance, distortion, subsurface_color, attenuation, scale,
+        ambient, power)
+
+def evaluate_lighting(surface, N, V, L, light_color):
+    """What one light adds from the front."""
+    return standard(N, V, L, surface.albedo, surface.metallic, surface.roughness, light_color)

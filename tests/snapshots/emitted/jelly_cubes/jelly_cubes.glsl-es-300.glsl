@@ -1,0 +1,173 @@
+// Jelly cubes: Two jelly cubes on a floor, drawn from distance functions; their thin parts glow with
+// the sky.
+// Made by sssgen for GLSL ES 3.00 (WebGL 2, OpenGL ES 3.0). Change the material and emit it again rather than this file.
+// Paste it below the #version and precision of your own shader.
+
+const int MAX_STEPS = 200;
+const float CUBE_HEIGHT = 0.48;
+const float CUBE_SPACING = 1.45;
+const float COS_45 = 0.70710677;
+const float HALF_SIZE = 0.5;
+const float HIT_TOLERANCE = 0.001;
+
+// The direction in which the camera at `eye` sees the image point `uv` ((0, 0) to (1, 1), v up).
+vec3 camera_ray(vec3 eye, vec2 uv, vec3 look_at, float aspect, float focal_length) {
+    vec3 front = normalize(look_at - eye);
+    vec3 right = normalize(cross(front, vec3(0.0, 1.0, 0.0)));
+    vec3 up = cross(right, front);
+    vec2 image = uv * 2.0 - 1.0;
+    return normalize(right * (image.x * aspect) + up * image.y + front * focal_length);
+}
+
+// A camera that circles the scene, one radian a second.
+void camera_orbit(vec2 uv, float time, out vec3 ray_origin, out vec3 ray_direction, float orbit_radius,
+    float orbit_height, vec3 look_at, float aspect, float focal_length) {
+    ray_origin = vec3(orbit_radius * cos(time), orbit_height, orbit_radius * sin(time));
+    ray_direction = camera_ray(ray_origin, uv, look_at, aspect, focal_length);
+}
+
+// A cube about the origin, turned by 45 degrees about the y axis.
+float turned_cube(vec3 p) {
+    vec3 turned = vec3((p.x - p.z) * COS_45, p.y, (p.x + p.z) * COS_45);
+    vec3 q = abs(turned) - HALF_SIZE;
+    return length(max(q, 0.0)) + min(max(q.x, max(q.y, q.z)), 0.0);
+}
+
+// The two jelly cubes of seed 0, without the floor: the body that light shines through.
+float jelly_cubes(vec3 p) {
+    vec3 left = p - vec3(0.0, CUBE_HEIGHT, 0.0);
+    vec3 right = p - vec3(CUBE_SPACING, CUBE_HEIGHT, 0.0);
+    return min(turned_cube(left), turned_cube(right));
+}
+
+// The signed distance to the ground, y = 0.
+float ground_plane(vec3 p) {
+    return p.y;
+}
+
+// The scene of seed 0: two jelly cubes on the ground.
+float jelly_scene(vec3 p) {
+    return min(jelly_cubes(p), ground_plane(p));
+}
+
+// The gradient of the scene at `p`, from the four corners of a tetrahedron about it.
+vec3 scene_normal(vec3 p) {
+    vec2 e = HIT_TOLERANCE * vec2(1.0, -1.0);
+    vec3 a = e.xyy;
+    vec3 b = e.yyx;
+    vec3 c = e.yxy;
+    vec3 d = e.xxx;
+    vec3 gradient = a * jelly_scene(p + a) + b * jelly_scene(p + b);
+    gradient += c * jelly_scene(p + c) + d * jelly_scene(p + d);
+    return normalize(gradient);
+}
+
+// Sphere tracing: draws a scene given as a distance function; where a ray meets nothing it returns false.
+bool raymarch(vec3 ray_origin, vec3 ray_direction, out vec3 P, out vec3 N, out vec3 V, float max_distance) {
+    float t = 0.0;
+    bool hit = false;
+    for (int i = 0; i < MAX_STEPS && t < max_distance; i++) {
+        float gap = jelly_scene(ray_origin + ray_direction * t);
+        if (gap < HIT_TOLERANCE) {
+            hit = true;
+            break;
+        }
+        t += gap;
+    }
+    P = ray_origin + ray_direction * t;
+    N = scene_normal(P);
+    V = -ray_direction;
+    return hit;
+}
+
+// Thinness from a distance field: how soon a line along -N comes out on the other side.
+float thinness_uniform(vec3 P, vec3 N, float reach) {
+    float total = 0.0;
+    float most = 0.0;
+    for (int i = 1; i <= 29; i++) {
+        float d = reach * float(i) / 30.0;
+        total += clamp(d + jelly_cubes(P - N * d), 0.0, 2.0 * d);
+        most += 2.0 * d;
+    }
+    return total / most;
+}
+
+// The colours of seed 0's scene: jelly cubes on a faint checker floor, through which no light comes.
+void jelly_surface(vec3 P, out vec3 albedo, inout float th, vec3 jelly_color) {
+    albedo = jelly_color;
+    if (ground_plane(P) < jelly_cubes(P)) {
+        vec3 tile = mod(floor(P * 2.0), 2.0);
+        albedo = vec3(1.0 - 0.1 * abs(tile.x - tile.z));
+        th = 0.0;
+    }
+}
+
+// The light that comes from `direction`.
+vec3 sky(vec3 direction, vec3 sky_color) {
+    return mix(sky_color, vec3(1.0), clamp(direction.y * 5.0, 0.0, 1.0));
+}
+
+// Thin parts show the sky behind them: light that needs no lamp.
+vec3 sky_glow(vec3 V, float th, float glow_strength, vec3 sky_color) {
+    vec3 mirrored = vec3(-V.x, V.y, -V.z);
+    return glow_strength * th * sky(mirrored, sky_color);
+}
+
+// The sky behind a raymarched scene: the colour where a ray meets nothing.
+vec3 sky_background(vec3 ray_direction, vec3 sky_color) {
+    return sky(ray_direction, sky_color);
+}
+
+// How much of the key light reaches `p`: the narrower the gap that it passes, the less.
+float soft_shadow(vec3 p, vec3 L) {
+    float t = 0.001;
+    float free = 1.0;
+    for (int i = 0; i < 25 && free > 0.0; i++) {
+        float gap = jelly_scene(p + L * t);
+        free = min(free, 20.0 * gap / t);
+        t += clamp(gap, 0.001, 2.0);
+    }
+    return clamp(free, 0.0, 1.0);
+}
+
+// A small studio: key light with soft shadow, sky dome, bounce, light from behind, and what comes through.
+vec3 studio(vec3 P, vec3 N, vec3 albedo, vec3 translucency, vec3 key_direction) {
+    vec3 key = normalize(key_direction);
+    vec3 behind = vec3(-key.x, 0.0, -key.z);
+    float shadow = soft_shadow(P + N * 0.001, key);
+    vec3 light = vec3(0.2) * shadow;
+    light += vec3(0.82, 0.8, 0.82) * (max(dot(N, key), 0.0) * shadow);
+    light += vec3(0.26, 0.32, 0.334) * (0.2 + 0.8 * clamp(N.y, 0.0, 1.0));
+    light += vec3(0.3, 0.21, 0.23) * (0.2 + 0.8 * clamp(-N.y, 0.0, 1.0));
+    light += vec3(0.2, 0.21, 0.23) * max(dot(N, behind), 0.0);
+    return albedo * (light + translucency);
+}
+
+// Encodes linear colour for a display of a plain gamma.
+vec3 gamma(vec3 color) {
+    return pow(max(color, 0.0), vec3(0.45454544));
+}
+
+// The colour of one fragment.
+vec4 evaluate_color(vec2 uv, float time, float orbit_radius, float orbit_height, vec3 look_at, float aspect,
+    float focal_length, float max_distance, float reach, vec3 jelly_color, float glow_strength,
+    vec3 sky_color, vec3 key_direction) {
+    vec3 ray_origin;
+    vec3 ray_direction;
+    camera_orbit(uv, time, ray_origin, ray_direction, orbit_radius, orbit_height, look_at, aspect,
+        focal_length);
+    vec3 P;
+    vec3 N;
+    vec3 V;
+    bool hit = raymarch(ray_origin, ray_direction, P, N, V, max_distance);
+    vec3 color = sky_background(ray_direction, sky_color);
+    if (hit) {
+        float thinness = thinness_uniform(P, N, reach);
+        vec3 albedo;
+        jelly_surface(P, albedo, thinness, jelly_color);
+        vec3 translucency = sky_glow(V, thinness, glow_strength, sky_color);
+        color = studio(P, N, albedo, translucency, key_direction);
+    }
+    color = gamma(color);
+    return vec4(color, 1.0);
+}

@@ -1,0 +1,215 @@
+// Jelly cubes: Two jelly cubes on a floor, drawn from distance functions; their thin parts glow with
+// the sky.
+// Made by sssgen for HLSL, shader model 5 and 6 (Direct3D 11 and 12, Vulkan through DXC). Change the material and emit it again rather than this file.
+// Entry points: vertex_main and fragment_main. Matrices are column-major (HLSL's default) and multiply columns: mul(M, v).
+
+static const int MAX_STEPS = 200;
+static const float CUBE_HEIGHT = 0.48;
+static const float CUBE_SPACING = 1.45;
+static const float COS_45 = 0.70710677;
+static const float HALF_SIZE = 0.5;
+static const float HIT_TOLERANCE = 0.001;
+
+cbuffer Material : register(b3) {
+    float orbit_radius;  // Radius of the orbit about the vertical axis
+    float orbit_height;  // Height of the orbit
+    float3 look_at;  // What the camera looks at
+    float aspect;  // Width of the image over its height
+    float focal_length;  // Focal length, where the image is 2 high: the larger, the narrower the view
+    float max_distance;  // A ray that is longer than this meets nothing
+    float reach;  // How deep the taps reach below the surface
+    float3 jelly_color;  // Colour of the cubes
+    float glow_strength;  // Strength of the glow: 0.9 x 0.38667, since thinness was 0..0.38667 in the source
+    float3 sky_color;  // Colour of the sky at the horizon; it turns white towards the zenith
+    float3 key_direction;  // Towards the key light; any length
+};
+
+float3 mod_(float3 x, float y) {
+    return x - y * floor(x / y);
+}
+
+// The direction in which the camera at `eye` sees the image point `uv` ((0, 0) to (1, 1), v up).
+float3 camera_ray(float3 eye, float2 uv) {
+    float3 front = normalize(look_at - eye);
+    float3 right = normalize(cross(front, float3(0.0, 1.0, 0.0)));
+    float3 up = cross(right, front);
+    float2 image = uv * 2.0 - 1.0;
+    return normalize(right * (image.x * aspect) + up * image.y + front * focal_length);
+}
+
+// A camera that circles the scene, one radian a second.
+void camera_orbit(float2 uv, float time, out float3 ray_origin, out float3 ray_direction) {
+    ray_origin = float3(orbit_radius * cos(time), orbit_height, orbit_radius * sin(time));
+    ray_direction = camera_ray(ray_origin, uv);
+}
+
+// A cube about the origin, turned by 45 degrees about the y axis.
+float turned_cube(float3 p) {
+    float3 turned = float3((p.x - p.z) * COS_45, p.y, (p.x + p.z) * COS_45);
+    float3 q = abs(turned) - HALF_SIZE;
+    return length(max(q, 0.0)) + min(max(q.x, max(q.y, q.z)), 0.0);
+}
+
+// The two jelly cubes of seed 0, without the floor: the body that light shines through.
+float jelly_cubes(float3 p) {
+    float3 left = p - float3(0.0, CUBE_HEIGHT, 0.0);
+    float3 right = p - float3(CUBE_SPACING, CUBE_HEIGHT, 0.0);
+    return min(turned_cube(left), turned_cube(right));
+}
+
+// The signed distance to the ground, y = 0.
+float ground_plane(float3 p) {
+    return p.y;
+}
+
+// The scene of seed 0: two jelly cubes on the ground.
+float jelly_scene(float3 p) {
+    return min(jelly_cubes(p), ground_plane(p));
+}
+
+// The gradient of the scene at `p`, from the four corners of a tetrahedron about it.
+float3 scene_normal(float3 p) {
+    float2 e = HIT_TOLERANCE * float2(1.0, -1.0);
+    float3 a = e.xyy;
+    float3 b = e.yyx;
+    float3 c = e.yxy;
+    float3 d = e.xxx;
+    float3 gradient = a * jelly_scene(p + a) + b * jelly_scene(p + b);
+    gradient += c * jelly_scene(p + c) + d * jelly_scene(p + d);
+    return normalize(gradient);
+}
+
+// Sphere tracing: draws a scene given as a distance function; where a ray meets nothing it returns false.
+bool raymarch(float3 ray_origin, float3 ray_direction, out float3 P, out float3 N, out float3 V) {
+    float t = 0.0;
+    bool hit = false;
+    [loop]
+    for (int i = 0; i < MAX_STEPS && t < max_distance; i++) {
+        float gap = jelly_scene(ray_origin + ray_direction * t);
+        if (gap < HIT_TOLERANCE) {
+            hit = true;
+            break;
+        }
+        t += gap;
+    }
+    P = ray_origin + ray_direction * t;
+    N = scene_normal(P);
+    V = -ray_direction;
+    return hit;
+}
+
+// Thinness from a distance field: how soon a line along -N comes out on the other side.
+float thinness_uniform(float3 P, float3 N) {
+    float total = 0.0;
+    float most = 0.0;
+    [loop]
+    for (int i = 1; i <= 29; i++) {
+        float d = reach * float(i) / 30.0;
+        total += clamp(d + jelly_cubes(P - N * d), 0.0, 2.0 * d);
+        most += 2.0 * d;
+    }
+    return total / most;
+}
+
+// The colours of seed 0's scene: jelly cubes on a faint checker floor, through which no light comes.
+void jelly_surface(float3 P, out float3 albedo, inout float th) {
+    albedo = jelly_color;
+    if (ground_plane(P) < jelly_cubes(P)) {
+        float3 tile = mod_(floor(P * 2.0), 2.0);
+        albedo = (float3)(1.0 - 0.1 * abs(tile.x - tile.z));
+        th = 0.0;
+    }
+}
+
+// The light that comes from `direction`.
+float3 sky(float3 direction) {
+    return lerp(sky_color, (float3)1.0, clamp(direction.y * 5.0, 0.0, 1.0));
+}
+
+// Thin parts show the sky behind them: light that needs no lamp.
+float3 sky_glow(float3 V, float th) {
+    float3 mirrored = float3(-V.x, V.y, -V.z);
+    return glow_strength * th * sky(mirrored);
+}
+
+// The sky behind a raymarched scene: the colour where a ray meets nothing.
+float3 sky_background(float3 ray_direction) {
+    return sky(ray_direction);
+}
+
+// How much of the key light reaches `p`: the narrower the gap that it passes, the less.
+float soft_shadow(float3 p, float3 L) {
+    float t = 0.001;
+    float free = 1.0;
+    [loop]
+    for (int i = 0; i < 25 && free > 0.0; i++) {
+        float gap = jelly_scene(p + L * t);
+        free = min(free, 20.0 * gap / t);
+        t += clamp(gap, 0.001, 2.0);
+    }
+    return clamp(free, 0.0, 1.0);
+}
+
+// A small studio: key light with soft shadow, sky dome, bounce, light from behind, and what comes through.
+float3 studio(float3 P, float3 N, float3 albedo, float3 translucency) {
+    float3 key = normalize(key_direction);
+    float3 behind = float3(-key.x, 0.0, -key.z);
+    float shadow = soft_shadow(P + N * 0.001, key);
+    float3 light = (float3)0.2 * shadow;
+    light += float3(0.82, 0.8, 0.82) * (max(dot(N, key), 0.0) * shadow);
+    light += float3(0.26, 0.32, 0.334) * (0.2 + 0.8 * clamp(N.y, 0.0, 1.0));
+    light += float3(0.3, 0.21, 0.23) * (0.2 + 0.8 * clamp(-N.y, 0.0, 1.0));
+    light += float3(0.2, 0.21, 0.23) * max(dot(N, behind), 0.0);
+    return albedo * (light + translucency);
+}
+
+// Encodes linear colour for a display of a plain gamma.
+float3 gamma(float3 color) {
+    return pow(max(color, 0.0), (float3)0.45454544);
+}
+
+// The colour of one fragment.
+float4 evaluate_color(float2 uv, float time) {
+    float3 ray_origin;
+    float3 ray_direction;
+    camera_orbit(uv, time, ray_origin, ray_direction);
+    float3 P;
+    float3 N;
+    float3 V;
+    bool hit = raymarch(ray_origin, ray_direction, P, N, V);
+    float3 color = sky_background(ray_direction);
+    if (hit) {
+        float thinness = thinness_uniform(P, N);
+        float3 albedo;
+        jelly_surface(P, albedo, thinness);
+        float3 translucency = sky_glow(V, thinness);
+        color = studio(P, N, albedo, translucency);
+    }
+    color = gamma(color);
+    return float4(color, 1.0);
+}
+
+cbuffer Camera : register(b0) {
+    float4x4 view_projection;
+    float4x4 inverse_view_projection;
+    float3 camera_position;
+    float time;  // s
+};
+
+struct Varyings {
+    float4 clip_position : SV_Position;
+    float2 uv : TEXCOORD0;
+};
+
+// One triangle covers the screen: draw 3 vertices, no vertex buffer.
+Varyings vertex_main(uint index : SV_VertexID) {
+    float2 corner = float2(index == 1 ? 3.0 : -1.0, index == 2 ? 3.0 : -1.0);
+    Varyings output;
+    output.clip_position = float4(corner, 0.0, 1.0);
+    output.uv = 0.5 * corner + 0.5;
+    return output;
+}
+
+float4 fragment_main(Varyings input) : SV_Target {
+    return evaluate_color(input.uv, time);
+}

@@ -1,0 +1,218 @@
+// Jelly cubes: Two jelly cubes on a floor, drawn from distance functions; their thin parts glow with
+// the sky.
+// Made by sssgen for Unity Shader Graph, Custom Function. Change the material and emit it again rather than this file.
+// A Custom Function node of Type "File": Name JellyCubes, Source this file, and these ports in this order.
+//   uv: UV
+//   time: Time
+// The rest are properties of the graph. The _half entry has the same ports and computes in float.
+#ifndef JELLY_CUBES_UNITY_SHADERGRAPH_INCLUDED
+#define JELLY_CUBES_UNITY_SHADERGRAPH_INCLUDED
+
+static const int MAX_STEPS = 200;
+static const float CUBE_HEIGHT = 0.48;
+static const float CUBE_SPACING = 1.45;
+static const float COS_45 = 0.70710677;
+static const float HALF_SIZE = 0.5;
+static const float HIT_TOLERANCE = 0.001;
+
+float3 mod_(float3 x, float y) {
+    return x - y * floor(x / y);
+}
+
+// The direction in which the camera at `eye` sees the image point `uv` ((0, 0) to (1, 1), v up).
+float3 camera_ray(float3 eye, float2 uv, float3 look_at, float aspect, float focal_length) {
+    float3 front = normalize(look_at - eye);
+    float3 right = normalize(cross(front, float3(0.0, 1.0, 0.0)));
+    float3 up = cross(right, front);
+    float2 image = uv * 2.0 - 1.0;
+    return normalize(right * (image.x * aspect) + up * image.y + front * focal_length);
+}
+
+// A camera that circles the scene, one radian a second.
+void camera_orbit(float2 uv, float time, out float3 ray_origin, out float3 ray_direction, float orbit_radius,
+    float orbit_height, float3 look_at, float aspect, float focal_length) {
+    ray_origin = float3(orbit_radius * cos(time), orbit_height, orbit_radius * sin(time));
+    ray_direction = camera_ray(ray_origin, uv, look_at, aspect, focal_length);
+}
+
+// A cube about the origin, turned by 45 degrees about the y axis.
+float turned_cube(float3 p) {
+    float3 turned = float3((p.x - p.z) * COS_45, p.y, (p.x + p.z) * COS_45);
+    float3 q = abs(turned) - HALF_SIZE;
+    return length(max(q, 0.0)) + min(max(q.x, max(q.y, q.z)), 0.0);
+}
+
+// The two jelly cubes of seed 0, without the floor: the body that light shines through.
+float jelly_cubes(float3 p) {
+    float3 left = p - float3(0.0, CUBE_HEIGHT, 0.0);
+    float3 right = p - float3(CUBE_SPACING, CUBE_HEIGHT, 0.0);
+    return min(turned_cube(left), turned_cube(right));
+}
+
+// The signed distance to the ground, y = 0.
+float ground_plane(float3 p) {
+    return p.y;
+}
+
+// The scene of seed 0: two jelly cubes on the ground.
+float jelly_scene(float3 p) {
+    return min(jelly_cubes(p), ground_plane(p));
+}
+
+// The gradient of the scene at `p`, from the four corners of a tetrahedron about it.
+float3 scene_normal(float3 p) {
+    float2 e = HIT_TOLERANCE * float2(1.0, -1.0);
+    float3 a = e.xyy;
+    float3 b = e.yyx;
+    float3 c = e.yxy;
+    float3 d = e.xxx;
+    float3 gradient = a * jelly_scene(p + a) + b * jelly_scene(p + b);
+    gradient += c * jelly_scene(p + c) + d * jelly_scene(p + d);
+    return normalize(gradient);
+}
+
+// Sphere tracing: draws a scene given as a distance function; where a ray meets nothing it returns false.
+bool raymarch(float3 ray_origin, float3 ray_direction, out float3 P, out float3 N, out float3 V,
+    float max_distance) {
+    float t = 0.0;
+    bool hit = false;
+    [loop]
+    for (int i = 0; i < MAX_STEPS && t < max_distance; i++) {
+        float gap = jelly_scene(ray_origin + ray_direction * t);
+        if (gap < HIT_TOLERANCE) {
+            hit = true;
+            break;
+        }
+        t += gap;
+    }
+    P = ray_origin + ray_direction * t;
+    N = scene_normal(P);
+    V = -ray_direction;
+    return hit;
+}
+
+// Thinness from a distance field: how soon a line along -N comes out on the other side.
+float thinness_uniform(float3 P, float3 N, float reach) {
+    float total = 0.0;
+    float most = 0.0;
+    [loop]
+    for (int i = 1; i <= 29; i++) {
+        float d = reach * float(i) / 30.0;
+        total += clamp(d + jelly_cubes(P - N * d), 0.0, 2.0 * d);
+        most += 2.0 * d;
+    }
+    return total / most;
+}
+
+// The colours of seed 0's scene: jelly cubes on a faint checker floor, through which no light comes.
+void jelly_surface(float3 P, out float3 albedo, inout float th, float3 jelly_color) {
+    albedo = jelly_color;
+    if (ground_plane(P) < jelly_cubes(P)) {
+        float3 tile = mod_(floor(P * 2.0), 2.0);
+        albedo = (float3)(1.0 - 0.1 * abs(tile.x - tile.z));
+        th = 0.0;
+    }
+}
+
+// The light that comes from `direction`.
+float3 sky(float3 direction, float3 sky_color) {
+    return lerp(sky_color, (float3)1.0, clamp(direction.y * 5.0, 0.0, 1.0));
+}
+
+// Thin parts show the sky behind them: light that needs no lamp.
+float3 sky_glow(float3 V, float th, float glow_strength, float3 sky_color) {
+    float3 mirrored = float3(-V.x, V.y, -V.z);
+    return glow_strength * th * sky(mirrored, sky_color);
+}
+
+// The sky behind a raymarched scene: the colour where a ray meets nothing.
+float3 sky_background(float3 ray_direction, float3 sky_color) {
+    return sky(ray_direction, sky_color);
+}
+
+// How much of the key light reaches `p`: the narrower the gap that it passes, the less.
+float soft_shadow(float3 p, float3 L) {
+    float t = 0.001;
+    float free = 1.0;
+    [loop]
+    for (int i = 0; i < 25 && free > 0.0; i++) {
+        float gap = jelly_scene(p + L * t);
+        free = min(free, 20.0 * gap / t);
+        t += clamp(gap, 0.001, 2.0);
+    }
+    return clamp(free, 0.0, 1.0);
+}
+
+// A small studio: key light with soft shadow, sky dome, bounce, light from behind, and what comes through.
+float3 studio(float3 P, float3 N, float3 albedo, float3 translucency, float3 key_direction) {
+    float3 key = normalize(key_direction);
+    float3 behind = float3(-key.x, 0.0, -key.z);
+    float shadow = soft_shadow(P + N * 0.001, key);
+    float3 light = (float3)0.2 * shadow;
+    light += float3(0.82, 0.8, 0.82) * (max(dot(N, key), 0.0) * shadow);
+    light += float3(0.26, 0.32, 0.334) * (0.2 + 0.8 * clamp(N.y, 0.0, 1.0));
+    light += float3(0.3, 0.21, 0.23) * (0.2 + 0.8 * clamp(-N.y, 0.0, 1.0));
+    light += float3(0.2, 0.21, 0.23) * max(dot(N, behind), 0.0);
+    return albedo * (light + translucency);
+}
+
+// The colour of one fragment.
+float4 evaluate_color(float2 uv, float time, float orbit_radius, float orbit_height, float3 look_at,
+    float aspect, float focal_length, float max_distance, float reach, float3 jelly_color,
+    float glow_strength, float3 sky_color, float3 key_direction) {
+    float3 ray_origin;
+    float3 ray_direction;
+    camera_orbit(uv, time, ray_origin, ray_direction, orbit_radius, orbit_height, look_at, aspect,
+        focal_length);
+    float3 P;
+    float3 N;
+    float3 V;
+    bool hit = raymarch(ray_origin, ray_direction, P, N, V, max_distance);
+    float3 color = sky_background(ray_direction, sky_color);
+    if (hit) {
+        float thinness = thinness_uniform(P, N, reach);
+        float3 albedo;
+        jelly_surface(P, albedo, thinness, jelly_color);
+        float3 translucency = sky_glow(V, thinness, glow_strength, sky_color);
+        color = studio(P, N, albedo, translucency, key_direction);
+    }
+    return float4(color, 1.0);
+}
+
+void JellyCubes_float(
+    float2 uv,
+    float time,
+    float orbit_radius,
+    float orbit_height,
+    float3 look_at,
+    float aspect,
+    float focal_length,
+    float max_distance,
+    float reach,
+    float3 jelly_color,
+    float glow_strength,
+    float3 sky_color,
+    float3 key_direction,
+    out float4 Color) {
+    Color = evaluate_color(uv, time, orbit_radius, orbit_height, look_at, aspect, focal_length, max_distance, reach, jelly_color, glow_strength, sky_color, key_direction);
+}
+
+void JellyCubes_half(
+    half2 uv,
+    half time,
+    half orbit_radius,
+    half orbit_height,
+    half3 look_at,
+    half aspect,
+    half focal_length,
+    half max_distance,
+    half reach,
+    half3 jelly_color,
+    half glow_strength,
+    half3 sky_color,
+    half3 key_direction,
+    out half4 Color) {
+    JellyCubes_float(uv, time, orbit_radius, orbit_height, look_at, aspect, focal_length, max_distance, reach, jelly_color, glow_strength, sky_color, key_direction, Color);
+}
+
+#endif

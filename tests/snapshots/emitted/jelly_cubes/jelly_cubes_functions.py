@@ -1,0 +1,152 @@
+# Jelly cubes: Two jelly cubes on a floor, drawn from distance functions; their thin parts glow with
+# the sky.
+# Made by sssgen for NumPy (vectorised; the oracle). Change the material and emit it again rather than this file.
+
+from sssgen.targets.numpy_runtime import *  # noqa: F403
+
+MAX_STEPS = 200
+CUBE_HEIGHT = 0.48
+CUBE_SPACING = 1.45
+COS_45 = 0.70710678
+HALF_SIZE = 0.5
+HIT_TOLERANCE = 0.001
+
+def camera_ray(eye, uv, look_at, aspect, focal_length):
+    """The direction in which the camera at `eye` sees the image point `uv` ((0, 0) to (1, 1), v up)."""
+    front = normalize(look_at - eye)
+    right = normalize(cross(front, vec(0.0, 1.0, 0.0)))
+    up = cross(right, front)
+    image = uv * 2.0 - 1.0
+    return normalize(right * (image[0] * aspect) + up * image[1] + front * focal_length)
+
+def camera_orbit(uv, time, orbit_radius, orbit_height, look_at, aspect, focal_length):
+    """A camera that circles the scene, one radian a second."""
+    ray_origin = vec(orbit_radius * cos(time), orbit_height, orbit_radius * sin(time))
+    ray_direction = camera_ray(ray_origin, uv, look_at, aspect, focal_length)
+    return ray_origin, ray_direction
+
+def turned_cube(p):
+    """A cube about the origin, turned by 45 degrees about the y axis."""
+    turned = vec((p[0] - p[2]) * COS_45, p[1], (p[0] + p[2]) * COS_45)
+    q = abs(turned) - HALF_SIZE
+    return length(max(q, 0.0)) + min(max(q[0], max(q[1], q[2])), 0.0)
+
+def jelly_cubes(p):
+    """The two jelly cubes of seed 0, without the floor: the body that light shines through."""
+    left = p - vec(0.0, CUBE_HEIGHT, 0.0)
+    right = p - vec(CUBE_SPACING, CUBE_HEIGHT, 0.0)
+    return min(turned_cube(left), turned_cube(right))
+
+def ground_plane(p):
+    """The signed distance to the ground, y = 0."""
+    return p[1]
+
+def jelly_scene(p):
+    """The scene of seed 0: two jelly cubes on the ground."""
+    return min(jelly_cubes(p), ground_plane(p))
+
+def scene_normal(p):
+    """The gradient of the scene at `p`, from the four corners of a tetrahedron about it."""
+    e = HIT_TOLERANCE * vec(1.0, -1.0)
+    a = swizzle(e, "xyy")
+    b = swizzle(e, "yyx")
+    c = swizzle(e, "yxy")
+    d = swizzle(e, "xxx")
+    gradient = a * jelly_scene(p + a) + b * jelly_scene(p + b)
+    gradient = gradient + (c * jelly_scene(p + c) + d * jelly_scene(p + d))
+    return normalize(gradient)
+
+def raymarch(ray_origin, ray_direction, max_distance):
+    """Sphere tracing: draws a scene given as a distance function; where a ray meets nothing it returns false."""
+    t = 0.0
+    hit = False
+    i = 0
+    running = (i < MAX_STEPS) & (t < max_distance)
+    while any(running):
+        gap = jelly_scene(ray_origin + ray_direction * t)
+        mask = running & (gap < HIT_TOLERANCE)
+        hit = select(mask, True, hit)
+        running = running & not_(mask)
+        t = select(running, t + gap, t)
+        i = i + 1
+        running = running & ((i < MAX_STEPS) & (t < max_distance))
+    P = ray_origin + ray_direction * t
+    N = scene_normal(P)
+    V = -ray_direction
+    return hit, P, N, V
+
+def thinness_uniform(P, N, reach):
+    """Thinness from a distance field: how soon a line along -N comes out on the other side."""
+    total = 0.0
+    most = 0.0
+    for i in range(1, 30):
+        d = reach * to_float(i) / 30.0
+        total = total + clamp(d + jelly_cubes(P - N * d), 0.0, 2.0 * d)
+        most = most + 2.0 * d
+    return divide(total, most)
+
+def jelly_surface(P, th, jelly_color):
+    """The colours of seed 0's scene: jelly cubes on a faint checker floor, through which no light comes."""
+    albedo = jelly_color
+    mask = ground_plane(P) < jelly_cubes(P)
+    tile = mod(floor(P * 2.0), 2.0)
+    albedo = select(mask, splat(3, 1.0 - 0.1 * abs(tile[0] - tile[2])), albedo)
+    th = select(mask, 0.0, th)
+    return albedo, th
+
+def sky(direction, sky_color):
+    """The light that comes from `direction`."""
+    return mix(sky_color, splat(3, 1.0), clamp(direction[1] * 5.0, 0.0, 1.0))
+
+def sky_glow(V, th, glow_strength, sky_color):
+    """Thin parts show the sky behind them: light that needs no lamp."""
+    mirrored = vec(-V[0], V[1], -V[2])
+    return glow_strength * th * sky(mirrored, sky_color)
+
+def sky_background(ray_direction, sky_color):
+    """The sky behind a raymarched scene: the colour where a ray meets nothing."""
+    return sky(ray_direction, sky_color)
+
+def soft_shadow(p, L):
+    """How much of the key light reaches `p`: the narrower the gap that it passes, the less."""
+    t = 0.001
+    free = 1.0
+    i = 0
+    running = (i < 25) & (free > 0.0)
+    while any(running):
+        gap = jelly_scene(p + L * t)
+        free = select(running, min(free, 20.0 * gap / t), free)
+        t = select(running, t + clamp(gap, 0.001, 2.0), t)
+        i = i + 1
+        running = running & ((i < 25) & (free > 0.0))
+    return clamp(free, 0.0, 1.0)
+
+def studio(P, N, albedo, translucency, key_direction):
+    """A small studio: key light with soft shadow, sky dome, bounce, light from behind, and what comes through."""
+    key = normalize(key_direction)
+    behind = vec(-key[0], 0.0, -key[2])
+    shadow = soft_shadow(P + N * 0.001, key)
+    light = splat(3, 0.20000000298023224) * shadow
+    light = light + vec(0.82, 0.8, 0.82) * (max(dot(N, key), 0.0) * shadow)
+    light = light + vec(0.26, 0.32, 0.334) * (0.2 + 0.8 * clamp(N[1], 0.0, 1.0))
+    light = light + vec(0.3, 0.21, 0.23) * (0.2 + 0.8 * clamp(-N[1], 0.0, 1.0))
+    light = light + vec(0.2, 0.21, 0.23) * max(dot(N, behind), 0.0)
+    return albedo * (light + translucency)
+
+def gamma(color):
+    """Encodes linear colour for a display of a plain gamma."""
+    return pow(max(color, 0.0), splat(3, 0.45454543828964233))
+
+def evaluate_color(uv, time, orbit_radius, orbit_height, look_at, aspect, focal_length, max_distance, reach,
+    jelly_color, glow_strength, sky_color, key_direction):
+    """The colour of one fragment."""
+    ray_origin, ray_direction = camera_orbit(uv, time, orbit_radius, orbit_height, look_at, aspect,
+        focal_length)
+    hit, P, N, V = raymarch(ray_origin, ray_direction, max_distance)
+    color = sky_background(ray_direction, sky_color)
+    thinness = thinness_uniform(P, N, reach)
+    albedo, thinness = jelly_surface(P, thinness, jelly_color)
+    translucency = sky_glow(V, thinness, glow_strength, sky_color)
+    color = select(hit, studio(P, N, albedo, translucency, key_direction), color)
+    color = gamma(color)
+    return vec(color, 1.0)

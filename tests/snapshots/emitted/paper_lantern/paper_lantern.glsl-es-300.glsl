@@ -1,0 +1,104 @@
+// Paper lantern: Paper on a frame with a lamp inside: warm light comes through, the wooden ribs stay
+// dark.
+// Made by sssgen for GLSL ES 3.00 (WebGL 2, OpenGL ES 3.0). Change the material and emit it again rather than this file.
+// Paste it below the #version and precision of your own shader.
+
+struct Surface {
+    vec3 albedo;
+    vec3 normal;
+    float metallic;
+    float roughness;
+    float transmittance;
+};
+
+// Thickness from a baked map, bright where the body is thick.
+float thickness_map(vec2 uv, sampler2D thickness_texture) {
+    return texture(thickness_texture, uv).r;
+}
+
+// Thickness to thinness, in a straight line.
+float thinness_from_thickness(float d) {
+    return clamp(1.0 - d, 0.0, 1.0);
+}
+
+// Colour and opacity from a texture and a tint.
+void base_color(vec2 uv, out vec3 albedo, out float alpha, vec4 tint, sampler2D base_color_texture) {
+    vec4 texel = tint * texture(base_color_texture, uv);
+    albedo = texel.xyz;
+    alpha = texel.w;
+}
+
+// Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add.
+vec3 blend_normals(vec3 base, vec3 detail) {
+    return normalize(vec3(base.xy + detail.xy, base.z * detail.z));
+}
+
+// Detail in the normal, from a texture.
+void normal_map(vec2 uv, inout vec3 normal, sampler2D normal_texture, float normal_scale) {
+    vec3 texel = texture(normal_texture, uv).rgb * 2.0 - 1.0;
+    normal = blend_normals(normal, vec3(texel.xy * normal_scale, texel.z));
+}
+
+// The same metalness and roughness everywhere.
+void pbr_constants(out float metallic, out float roughness, float metalness, float surface_roughness) {
+    metallic = metalness;
+    roughness = surface_roughness;
+}
+
+// The light that comes through where `lobe` (0..1) points at the eye.
+vec3 glow(float lobe, float through, vec3 subsurface_color, float scale) {
+    return subsurface_color * (lobe * scale * through);
+}
+
+// The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
+vec3 lobe_normalized(vec3 V, vec3 N, vec3 L, float through, float distortion, vec3 subsurface_color,
+    float scale, float power) {
+    vec3 bent = normalize(L + N * distortion);
+    return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through, subsurface_color, scale);
+}
+
+// The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
+vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughness, vec3 light_color) {
+    vec3 H = normalize(V + L);
+    float NoL = max(dot(N, L), 0.0);
+    float NoV = max(dot(N, V), 0.0001);
+    float NoH = clamp(dot(N, H), 0.0, 1.0);
+    float a = max(roughness, 0.045) * max(roughness, 0.045);
+    float spread = NoH * NoH * (a * a - 1.0) + 1.0;
+    // D times pi
+    float facets = a * a / (spread * spread);
+    // masking and shadowing, over 4 dot(N, L) dot(N, V)
+    float visible = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a);
+    vec3 F0 = mix(vec3(0.04), albedo, metallic);
+    vec3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
+    vec3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);
+    return (diffuse + facets * visible * F) * NoL * light_color;
+}
+
+// Everything about the surface that does not depend on a light.
+Surface evaluate_surface(vec2 uv, sampler2D thickness_texture, vec4 tint, sampler2D base_color_texture,
+    sampler2D normal_texture, float normal_scale, float metalness, float surface_roughness) {
+    float thickness = thickness_map(uv, thickness_texture);
+    float thinness = thinness_from_thickness(thickness);
+    float transmittance = thinness;
+    vec3 albedo;
+    float alpha;
+    base_color(uv, albedo, alpha, tint, base_color_texture);
+    vec3 normal = vec3(0.0, 0.0, 1.0);
+    normal_map(uv, normal, normal_texture, normal_scale);
+    float metallic;
+    float roughness;
+    pbr_constants(metallic, roughness, metalness, surface_roughness);
+    return Surface(albedo, normal, metallic, roughness, transmittance);
+}
+
+// What one light adds from behind, as a factor on its colour.
+vec3 evaluate_translucency(Surface surface, vec3 V, vec3 N, vec3 L, float distortion, vec3 subsurface_color,
+    float scale, float power) {
+    return lobe_normalized(V, N, L, surface.transmittance, distortion, subsurface_color, scale, power);
+}
+
+// What one light adds from the front.
+vec3 evaluate_lighting(Surface surface, vec3 N, vec3 V, vec3 L, vec3 light_color) {
+    return standard(N, V, L, surface.albedo, surface.metallic, surface.roughness, light_color);
+}

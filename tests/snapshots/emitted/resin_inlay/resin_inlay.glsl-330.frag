@@ -1,0 +1,128 @@
+#version 330 core
+// Resin inlay: A picture under two centimetres of clear resin: it moves with the eye as if it lay
+// below.
+// Made by sssgen for GLSL 3.30 (OpenGL 3.3 core). Change the material and emit it again rather than this file.
+
+struct Surface {
+    vec3 albedo;
+    float metallic;
+    float roughness;
+};
+
+const float FLAT_FRAME = 0.01;
+
+uniform float ior;  // Refractive index of the body
+uniform float depth;  // How far the image lies below the surface
+uniform vec2 uv_per_unit;  // How far the texture coordinates move for one world unit along T and along B
+uniform vec4 tint;  // Multiplies the texture
+uniform float metalness;  // 0 = not a metal, 1 = metal
+uniform float surface_roughness;  // 0 = a mirror, 1 = chalk
+
+uniform sampler2D base_color_texture;  // Colour of the surface (an sRGB texture), with its opacity in alpha
+
+// The components of `v` along unit T, unit B and N. A frame that spans no space gives (0, 0, dot(v, N)).
+vec3 tangent_from_world(vec3 v, vec3 T, vec3 B, vec3 N) {
+    float volume = dot(T, cross(B, N));
+    if (abs(volume) < FLAT_FRAME) {
+        return vec3(0.0, 0.0, dot(v, N));
+    }
+    vec3 along = vec3(dot(v, cross(B, N)) * length(T), dot(v, cross(N, T)) * length(B), dot(v, cross(T, B)));
+    return along / volume;
+}
+
+// The texture coordinates where `ray`, going in, meets the inner layer.
+vec2 slide(vec2 uv, vec3 ray, vec3 T, vec3 B, vec3 N) {
+    vec3 r = tangent_from_world(ray, T, B, N);
+    float cosine = -r.z;
+    // 1 / cosine, but smoothly down to 0 where a grazing ray would slide without end
+    float x = clamp(cosine / 0.2, 0.0, 1.0);
+    float reciprocal = x * x * (4.0 - 3.0 * x) / max(cosine, 0.2);
+    return uv + depth * reciprocal * uv_per_unit * r.xy;
+}
+
+// Subsurface parallax with refraction: the texture as if it were cast into resin, glass or ice.
+vec2 parallax_refracted(vec2 uv, vec3 V, vec3 T, vec3 B, vec3 N) {
+    vec3 facing = faceforward(N, -V, N);
+    // past the critical angle refract() gives 0, which slides nothing
+    vec3 ray = refract(-V, facing, 1.0 / ior);
+    return slide(uv, ray, T, B, facing);
+}
+
+// Colour and opacity from a texture and a tint.
+void base_color(vec2 uv, out vec3 albedo, out float alpha) {
+    vec4 texel = tint * texture(base_color_texture, uv);
+    albedo = texel.xyz;
+    alpha = texel.w;
+}
+
+// The same metalness and roughness everywhere.
+void pbr_constants(out float metallic, out float roughness) {
+    metallic = metalness;
+    roughness = surface_roughness;
+}
+
+// The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
+vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughness, vec3 light_color) {
+    vec3 H = normalize(V + L);
+    float NoL = max(dot(N, L), 0.0);
+    float NoV = max(dot(N, V), 0.0001);
+    float NoH = clamp(dot(N, H), 0.0, 1.0);
+    float a = max(roughness, 0.045) * max(roughness, 0.045);
+    float spread = NoH * NoH * (a * a - 1.0) + 1.0;
+    // D times pi
+    float facets = a * a / (spread * spread);
+    // masking and shadowing, over 4 dot(N, L) dot(N, V)
+    float visible = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a);
+    vec3 F0 = mix(vec3(0.04), albedo, metallic);
+    vec3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
+    vec3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);
+    return (diffuse + facets * visible * F) * NoL * light_color;
+}
+
+// Everything about the surface that does not depend on a light.
+Surface evaluate_surface(vec2 uv, vec3 V, vec3 T, vec3 B, vec3 N) {
+    uv = parallax_refracted(uv, V, T, B, N);
+    vec3 albedo;
+    float alpha;
+    base_color(uv, albedo, alpha);
+    float metallic;
+    float roughness;
+    pbr_constants(metallic, roughness);
+    return Surface(albedo, metallic, roughness);
+}
+
+// What one light adds from the front.
+vec3 evaluate_lighting(Surface surface, vec3 N, vec3 V, vec3 L, vec3 light_color) {
+    return standard(N, V, L, surface.albedo, surface.metallic, surface.roughness, light_color);
+}
+
+uniform vec3 camera_position;
+const int MAX_LIGHTS = 4;
+uniform int light_count;
+uniform vec4 light_positions[MAX_LIGHTS];  // w = 1: where the light is; w = 0: the direction towards it
+uniform vec3 light_colors[MAX_LIGHTS];
+uniform vec3 ambient_color;
+
+in vec3 v_position;
+in vec3 v_normal;
+in vec4 v_tangent;
+in vec2 v_uv;
+out vec4 fragment_color;
+
+void main() {
+    vec3 V = normalize(camera_position - v_position);
+    vec3 N = normalize(v_normal);
+    vec3 T = v_tangent.xyz * inversesqrt(max(dot(v_tangent.xyz, v_tangent.xyz), 1e-12));
+    vec3 B = cross(N, T) * v_tangent.w;
+    Surface surface = evaluate_surface(v_uv, V, T, B, N);
+
+    vec3 color = ambient_color * surface.albedo;
+    for (int i = 0; i < min(light_count, MAX_LIGHTS); i++) {
+        vec3 to_light = light_positions[i].xyz - v_position * light_positions[i].w;
+        float distance_squared = max(dot(to_light, to_light), 1e-4);
+        vec3 L = to_light * inversesqrt(distance_squared);
+        vec3 light_color = light_colors[i] * mix(1.0, 1.0 / distance_squared, light_positions[i].w);
+        color += evaluate_lighting(surface, N, V, L, light_color);
+    }
+    fragment_color = vec4(color, 1.0);
+}

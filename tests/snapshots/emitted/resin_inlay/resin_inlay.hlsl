@@ -1,0 +1,168 @@
+// Resin inlay: A picture under two centimetres of clear resin: it moves with the eye as if it lay
+// below.
+// Made by sssgen for HLSL, shader model 5 and 6 (Direct3D 11 and 12, Vulkan through DXC). Change the material and emit it again rather than this file.
+// Entry points: vertex_main and fragment_main. Matrices are column-major (HLSL's default) and multiply columns: mul(M, v).
+
+struct Surface {
+    float3 albedo;
+    float metallic;
+    float roughness;
+};
+
+static const float FLAT_FRAME = 0.01;
+
+cbuffer Material : register(b3) {
+    float ior;  // Refractive index of the body
+    float depth;  // How far the image lies below the surface
+    float2 uv_per_unit;  // How far the texture coordinates move for one world unit along T and along B
+    float4 tint;  // Multiplies the texture
+    float metalness;  // 0 = not a metal, 1 = metal
+    float surface_roughness;  // 0 = a mirror, 1 = chalk
+};
+
+Texture2D base_color_texture : register(t0);
+SamplerState base_color_texture_sampler : register(s0);
+
+// The components of `v` along unit T, unit B and N. A frame that spans no space gives (0, 0, dot(v, N)).
+float3 tangent_from_world(float3 v, float3 T, float3 B, float3 N) {
+    float volume = dot(T, cross(B, N));
+    if (abs(volume) < FLAT_FRAME) {
+        return float3(0.0, 0.0, dot(v, N));
+    }
+    float3 along = float3(dot(v, cross(B, N)) * length(T), dot(v, cross(N, T)) * length(B),
+        dot(v, cross(T, B)));
+    return along / volume;
+}
+
+// The texture coordinates where `ray`, going in, meets the inner layer.
+float2 slide(float2 uv, float3 ray, float3 T, float3 B, float3 N) {
+    float3 r = tangent_from_world(ray, T, B, N);
+    float cosine = -r.z;
+    // 1 / cosine, but smoothly down to 0 where a grazing ray would slide without end
+    float x = clamp(cosine / 0.2, 0.0, 1.0);
+    float reciprocal = x * x * (4.0 - 3.0 * x) / max(cosine, 0.2);
+    return uv + depth * reciprocal * uv_per_unit * r.xy;
+}
+
+// Subsurface parallax with refraction: the texture as if it were cast into resin, glass or ice.
+float2 parallax_refracted(float2 uv, float3 V, float3 T, float3 B, float3 N) {
+    float3 facing = faceforward(N, -V, N);
+    // past the critical angle refract() gives 0, which slides nothing
+    float3 ray = refract(-V, facing, 1.0 / ior);
+    return slide(uv, ray, T, B, facing);
+}
+
+// Colour and opacity from a texture and a tint.
+void base_color(float2 uv, out float3 albedo, out float alpha) {
+    float4 texel = tint * base_color_texture.Sample(base_color_texture_sampler, uv);
+    albedo = texel.xyz;
+    alpha = texel.w;
+}
+
+// The same metalness and roughness everywhere.
+void pbr_constants(out float metallic, out float roughness) {
+    metallic = metalness;
+    roughness = surface_roughness;
+}
+
+// The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
+float3 standard(float3 N, float3 V, float3 L, float3 albedo, float metallic, float roughness,
+    float3 light_color) {
+    float3 H = normalize(V + L);
+    float NoL = max(dot(N, L), 0.0);
+    float NoV = max(dot(N, V), 0.0001);
+    float NoH = clamp(dot(N, H), 0.0, 1.0);
+    float a = max(roughness, 0.045) * max(roughness, 0.045);
+    float spread = NoH * NoH * (a * a - 1.0) + 1.0;
+    // D times pi
+    float facets = a * a / (spread * spread);
+    // masking and shadowing, over 4 dot(N, L) dot(N, V)
+    float visible = 0.5 / lerp(2.0 * NoL * NoV, NoL + NoV, a);
+    float3 F0 = lerp((float3)0.04, albedo, metallic);
+    float3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
+    float3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);
+    return (diffuse + facets * visible * F) * NoL * light_color;
+}
+
+// Everything about the surface that does not depend on a light.
+Surface evaluate_surface(float2 uv, float3 V, float3 T, float3 B, float3 N) {
+    uv = parallax_refracted(uv, V, T, B, N);
+    float3 albedo;
+    float alpha;
+    base_color(uv, albedo, alpha);
+    float metallic;
+    float roughness;
+    pbr_constants(metallic, roughness);
+    Surface surface = { albedo, metallic, roughness };
+    return surface;
+}
+
+// What one light adds from the front.
+float3 evaluate_lighting(Surface surface, float3 N, float3 V, float3 L, float3 light_color) {
+    return standard(N, V, L, surface.albedo, surface.metallic, surface.roughness, light_color);
+}
+
+cbuffer Camera : register(b0) {
+    float4x4 view_projection;
+    float4x4 inverse_view_projection;
+    float3 camera_position;
+    float time;  // s
+};
+
+static const int MAX_LIGHTS = 4;
+
+cbuffer Lights : register(b1) {
+    float3 ambient_color;
+    int light_count;
+    float4 light_positions[MAX_LIGHTS];  // w = 1: where the light is; w = 0: the direction towards it
+    float4 light_colors[MAX_LIGHTS];
+};
+
+cbuffer Object : register(b2) {
+    float4x4 model;
+    float4x4 inverse_model;
+};
+
+struct VertexInput {
+    float3 position : POSITION;
+    float3 normal : NORMAL;
+    float4 tangent : TANGENT;  // w: handedness, +1 or -1
+    float2 uv : TEXCOORD0;
+};
+
+struct Varyings {
+    float4 clip_position : SV_Position;
+    float3 position : POSITION;
+    float3 normal : NORMAL;
+    float4 tangent : TANGENT;
+    float2 uv : TEXCOORD0;
+};
+
+Varyings vertex_main(VertexInput input) {
+    float4 world_position = mul(model, float4(input.position, 1.0));
+    Varyings output;
+    output.clip_position = mul(view_projection, world_position);
+    output.position = world_position.xyz;
+    output.normal = mul(float4(input.normal, 0.0), inverse_model).xyz;
+    output.tangent = float4(mul(model, float4(input.tangent.xyz, 0.0)).xyz, input.tangent.w * sign(determinant((float3x3)model)));
+    output.uv = input.uv;
+    return output;
+}
+
+float4 fragment_main(Varyings input) : SV_Target {
+    float3 V = normalize(camera_position - input.position);
+    float3 N = normalize(input.normal);
+    float3 T = input.tangent.xyz * rsqrt(max(dot(input.tangent.xyz, input.tangent.xyz), 1e-12));
+    float3 B = cross(N, T) * input.tangent.w;
+    Surface surface = evaluate_surface(input.uv, V, T, B, N);
+
+    float3 color = ambient_color * surface.albedo;
+    for (int i = 0; i < min(light_count, MAX_LIGHTS); i++) {
+        float3 to_light = light_positions[i].xyz - input.position * light_positions[i].w;
+        float distance_squared = max(dot(to_light, to_light), 1e-4);
+        float3 L = to_light * rsqrt(distance_squared);
+        float3 light_color = light_colors[i].rgb * lerp(1.0, 1.0 / distance_squared, light_positions[i].w);
+        color += evaluate_lighting(surface, N, V, L, light_color);
+    }
+    return float4(color, 1.0);
+}

@@ -1,0 +1,138 @@
+// Resin inlay: A picture under two centimetres of clear resin: it moves with the eye as if it lay
+// below.
+// Made by sssgen for Unity Shader Graph, Custom Function. Change the material and emit it again rather than this file.
+// A Custom Function node of Type "File": Name ResinInlay, Source this file, and these ports in this order.
+//   uv: UV
+//   N: Normal Vector, World
+//   T: Tangent Vector, World
+//   B: Bitangent Vector, World
+//   V: View Direction, World
+// The rest are properties of the graph. The _half entry has the same ports and computes in float.
+#ifndef RESIN_INLAY_UNITY_SHADERGRAPH_INCLUDED
+#define RESIN_INLAY_UNITY_SHADERGRAPH_INCLUDED
+
+struct Surface {
+    float3 albedo;
+    float metallic;
+    float roughness;
+};
+
+static const float FLAT_FRAME = 0.01;
+
+// The components of `v` along unit T, unit B and N. A frame that spans no space gives (0, 0, dot(v, N)).
+float3 tangent_from_world(float3 v, float3 T, float3 B, float3 N) {
+    float volume = dot(T, cross(B, N));
+    if (abs(volume) < FLAT_FRAME) {
+        return float3(0.0, 0.0, dot(v, N));
+    }
+    float3 along = float3(dot(v, cross(B, N)) * length(T), dot(v, cross(N, T)) * length(B),
+        dot(v, cross(T, B)));
+    return along / volume;
+}
+
+// The texture coordinates where `ray`, going in, meets the inner layer.
+float2 slide(float2 uv, float3 ray, float3 T, float3 B, float3 N, float depth, float2 uv_per_unit) {
+    float3 r = tangent_from_world(ray, T, B, N);
+    float cosine = -r.z;
+    // 1 / cosine, but smoothly down to 0 where a grazing ray would slide without end
+    float x = clamp(cosine / 0.2, 0.0, 1.0);
+    float reciprocal = x * x * (4.0 - 3.0 * x) / max(cosine, 0.2);
+    return uv + depth * reciprocal * uv_per_unit * r.xy;
+}
+
+// Subsurface parallax with refraction: the texture as if it were cast into resin, glass or ice.
+float2 parallax_refracted(float2 uv, float3 V, float3 T, float3 B, float3 N, float ior, float depth,
+    float2 uv_per_unit) {
+    float3 facing = faceforward(N, -V, N);
+    // past the critical angle refract() gives 0, which slides nothing
+    float3 ray = refract(-V, facing, 1.0 / ior);
+    return slide(uv, ray, T, B, facing, depth, uv_per_unit);
+}
+
+// Colour and opacity from a texture and a tint.
+void base_color(float2 uv, out float3 albedo, out float alpha, float4 tint,
+    UnityTexture2D base_color_texture, UnitySamplerState base_color_texture_sampler) {
+    float4 texel = tint * SAMPLE_TEXTURE2D(base_color_texture, base_color_texture_sampler, uv);
+    albedo = texel.xyz;
+    alpha = texel.w;
+}
+
+// The same metalness and roughness everywhere.
+void pbr_constants(out float metallic, out float roughness, float metalness, float surface_roughness) {
+    metallic = metalness;
+    roughness = surface_roughness;
+}
+
+// Everything about the surface that does not depend on a light.
+Surface evaluate_surface(float2 uv, float3 V, float3 T, float3 B, float3 N, float ior, float depth,
+    float2 uv_per_unit, float4 tint, UnityTexture2D base_color_texture,
+    UnitySamplerState base_color_texture_sampler, float metalness, float surface_roughness) {
+    uv = parallax_refracted(uv, V, T, B, N, ior, depth, uv_per_unit);
+    float3 albedo;
+    float alpha;
+    base_color(uv, albedo, alpha, tint, base_color_texture, base_color_texture_sampler);
+    float metallic;
+    float roughness;
+    pbr_constants(metallic, roughness, metalness, surface_roughness);
+    Surface surface = { albedo, metallic, roughness };
+    return surface;
+}
+
+void ResinInlay_float(
+    float2 uv,
+    float3 N,
+    float3 T,
+    float3 B,
+    float3 V,
+    float ior,
+    float depth,
+    float2 uv_per_unit,
+    float4 tint,
+    float metalness,
+    float surface_roughness,
+    UnityTexture2D base_color_texture,
+    UnitySamplerState base_color_texture_sampler,
+    out float3 BaseColor,
+    out float3 NormalTS,
+    out float Metallic,
+    out float Smoothness,
+    out float Occlusion,
+    out float3 Emission,
+    out float Alpha) {
+    V = normalize(V);
+    N = normalize(N);
+    Surface surface = evaluate_surface(uv, V, T, B, N, ior, depth, uv_per_unit, tint, base_color_texture, base_color_texture_sampler, metalness, surface_roughness);
+    BaseColor = surface.albedo;
+    NormalTS = float3(0.0, 0.0, 1.0);
+    Metallic = surface.metallic;
+    Smoothness = 1.0 - surface.roughness;
+    Occlusion = 1.0;
+    Emission = 0.0;
+    Alpha = 1.0;
+}
+
+void ResinInlay_half(
+    half2 uv,
+    half3 N,
+    half3 T,
+    half3 B,
+    half3 V,
+    half ior,
+    half depth,
+    half2 uv_per_unit,
+    half4 tint,
+    half metalness,
+    half surface_roughness,
+    UnityTexture2D base_color_texture,
+    UnitySamplerState base_color_texture_sampler,
+    out half3 BaseColor,
+    out half3 NormalTS,
+    out half Metallic,
+    out half Smoothness,
+    out half Occlusion,
+    out half3 Emission,
+    out half Alpha) {
+    ResinInlay_float(uv, N, T, B, V, ior, depth, uv_per_unit, tint, metalness, surface_roughness, base_color_texture, base_color_texture_sampler, BaseColor, NormalTS, Metallic, Smoothness, Occlusion, Emission, Alpha);
+}
+
+#endif

@@ -1,0 +1,267 @@
+// Resin inlay: A picture under two centimetres of clear resin: it moves with the eye as if it lay
+// below.
+// Made by sssgen for Unity, Universal Render Pipeline. Change the material and emit it again rather than this file.
+Shader "sssgen/Resin inlay (URP)" {
+    Properties {
+        [NoScaleOffset] _BaseColorTexture ("Base color texture", 2D) = "white" {}
+        _Ior ("Ior", Range(1, 3)) = 1.5
+        _Depth ("Depth", Range(0, 1)) = 0.02
+        _UvPerUnit ("Uv per unit", Vector) = (1, 1, 0, 0)
+        [HDR] _Tint ("Tint", Color) = (1, 1, 1, 1)
+        _Metalness ("Metalness", Range(0, 1)) = 0
+        _SurfaceRoughness ("Surface roughness", Range(0, 1)) = 0.08
+    }
+    SubShader {
+        Tags {
+            "RenderPipeline" = "UniversalPipeline"
+            "RenderType" = "Opaque"
+            "Queue" = "Geometry"
+        }
+
+        // Every pass sees the same material block, which the SRP batcher asks for.
+        HLSLINCLUDE
+        #include "Packages/com.unity.render-pipelines.universal/ShaderLibrary/Lighting.hlsl"
+
+        CBUFFER_START(UnityPerMaterial)
+            float _Ior;  // Refractive index of the body
+            float _Depth;  // How far the image lies below the surface
+            float2 _UvPerUnit;  // How far the texture coordinates move for one world unit along T and along B
+            float4 _Tint;  // Multiplies the texture
+            float _Metalness;  // 0 = not a metal, 1 = metal
+            float _SurfaceRoughness;  // 0 = a mirror, 1 = chalk
+        CBUFFER_END
+
+        TEXTURE2D(_BaseColorTexture); SAMPLER(sampler_BaseColorTexture);
+
+        struct Surface {
+            float3 albedo;
+            float metallic;
+            float roughness;
+        };
+
+        static const float FLAT_FRAME = 0.01;
+
+        // The components of `v` along unit T, unit B and N. A frame that spans no space gives (0, 0, dot(v, N)).
+        float3 tangent_from_world(float3 v, float3 T, float3 B, float3 N) {
+            float volume = dot(T, cross(B, N));
+            if (abs(volume) < FLAT_FRAME) {
+                return float3(0.0, 0.0, dot(v, N));
+            }
+            float3 along = float3(dot(v, cross(B, N)) * length(T), dot(v, cross(N, T)) * length(B),
+                dot(v, cross(T, B)));
+            return along / volume;
+        }
+
+        // The texture coordinates where `ray`, going in, meets the inner layer.
+        float2 slide(float2 uv, float3 ray, float3 T, float3 B, float3 N) {
+            float3 r = tangent_from_world(ray, T, B, N);
+            float cosine = -r.z;
+            // 1 / cosine, but smoothly down to 0 where a grazing ray would slide without end
+            float x = clamp(cosine / 0.2, 0.0, 1.0);
+            float reciprocal = x * x * (4.0 - 3.0 * x) / max(cosine, 0.2);
+            return uv + _Depth * reciprocal * _UvPerUnit * r.xy;
+        }
+
+        // Subsurface parallax with refraction: the texture as if it were cast into resin, glass or ice.
+        float2 parallax_refracted(float2 uv, float3 V, float3 T, float3 B, float3 N) {
+            float3 facing = faceforward(N, -V, N);
+            // past the critical angle refract() gives 0, which slides nothing
+            float3 ray = refract(-V, facing, 1.0 / _Ior);
+            return slide(uv, ray, T, B, facing);
+        }
+
+        // Colour and opacity from a texture and a tint.
+        void base_color(float2 uv, out float3 albedo, out float alpha) {
+            float4 texel = _Tint * SAMPLE_TEXTURE2D(_BaseColorTexture, sampler_BaseColorTexture, uv);
+            albedo = texel.xyz;
+            alpha = texel.w;
+        }
+
+        // The same metalness and roughness everywhere.
+        void pbr_constants(out float metallic, out float roughness) {
+            metallic = _Metalness;
+            roughness = _SurfaceRoughness;
+        }
+
+        // Everything about the surface that does not depend on a light.
+        Surface evaluate_surface(float2 uv, float3 V, float3 T, float3 B, float3 N) {
+            uv = parallax_refracted(uv, V, T, B, N);
+            float3 albedo;
+            float alpha;
+            base_color(uv, albedo, alpha);
+            float metallic;
+            float roughness;
+            pbr_constants(metallic, roughness);
+            Surface surface = { albedo, metallic, roughness };
+            return surface;
+        }
+
+        struct Attributes {
+            float4 positionOS : POSITION;
+            float3 normalOS : NORMAL;
+            float4 tangentOS : TANGENT;
+            float2 uv : TEXCOORD0;
+            UNITY_VERTEX_INPUT_INSTANCE_ID
+        };
+
+        struct Varyings {
+            float4 positionCS : SV_POSITION;
+            float3 positionWS : TEXCOORD0;
+            float3 normalWS : TEXCOORD1;
+            float4 tangentWS : TEXCOORD2;  // w: handedness, +1 or -1
+            float2 uv : TEXCOORD3;
+            float fogFactor : TEXCOORD4;
+            UNITY_VERTEX_INPUT_INSTANCE_ID
+            UNITY_VERTEX_OUTPUT_STEREO
+        };
+
+        Varyings vert(Attributes input) {
+            Varyings output = (Varyings)0;
+            UNITY_SETUP_INSTANCE_ID(input);
+            UNITY_TRANSFER_INSTANCE_ID(input, output);
+            UNITY_INITIALIZE_VERTEX_OUTPUT_STEREO(output);
+            output.positionWS = TransformObjectToWorld(input.positionOS.xyz);
+            output.positionCS = TransformWorldToHClip(output.positionWS);
+            output.normalWS = TransformObjectToWorldNormal(input.normalOS);
+            output.tangentWS = float4(TransformObjectToWorldDir(input.tangentOS.xyz), input.tangentOS.w * GetOddNegativeScale());
+            output.uv = input.uv;
+            output.fogFactor = ComputeFogFactor(output.positionCS.z);
+            return output;
+        }
+        ENDHLSL
+
+        Pass {
+            // Forward in the deferred renderer too: a G-buffer has no room for translucency.
+            Name "ForwardLit"
+            Tags { "LightMode" = "UniversalForwardOnly" }
+
+            HLSLPROGRAM
+            #pragma target 3.5
+            #pragma vertex vert
+            #pragma fragment frag
+            #pragma multi_compile _ _MAIN_LIGHT_SHADOWS _MAIN_LIGHT_SHADOWS_CASCADE _MAIN_LIGHT_SHADOWS_SCREEN
+            #pragma multi_compile _ _ADDITIONAL_LIGHTS
+            #pragma multi_compile_fragment _ _ADDITIONAL_LIGHT_SHADOWS
+            #pragma multi_compile_fragment _ _SHADOWS_SOFT
+            #pragma multi_compile_fragment _ _SCREEN_SPACE_OCCLUSION
+            #pragma multi_compile _ _CLUSTERED_RENDERING _FORWARD_PLUS
+            #pragma multi_compile_fog
+            #pragma multi_compile_instancing
+
+            float4 frag(Varyings input) : SV_Target {
+                UNITY_SETUP_INSTANCE_ID(input);
+                UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
+                float3 V = GetWorldSpaceNormalizeViewDir(input.positionWS);
+                float3 N = normalize(input.normalWS);
+                float3 T = input.tangentWS.xyz * rsqrt(max(dot(input.tangentWS.xyz, input.tangentWS.xyz), 1e-12));
+                float3 B = cross(N, T) * input.tangentWS.w;
+                Surface surface = evaluate_surface(input.uv, V, T, B, N);
+
+                InputData inputData = (InputData)0;
+                inputData.positionWS = input.positionWS;
+                inputData.normalWS = N;
+                inputData.viewDirectionWS = V;
+                inputData.normalizedScreenSpaceUV = GetNormalizedScreenSpaceUV(input.positionCS);
+            #if defined(_MAIN_LIGHT_SHADOWS_SCREEN)
+                inputData.shadowCoord = float4(inputData.normalizedScreenSpaceUV, 0.0, 1.0);
+            #else
+                inputData.shadowCoord = TransformWorldToShadowCoord(input.positionWS);
+            #endif
+                inputData.shadowMask = 1.0;
+                inputData.bakedGI = SampleSH(N);
+
+                SurfaceData surfaceData = (SurfaceData)0;
+                surfaceData.albedo = surface.albedo;
+                surfaceData.metallic = surface.metallic;
+                surfaceData.smoothness = 1.0 - surface.roughness;
+                surfaceData.occlusion = 1.0;
+                surfaceData.alpha = 1.0;
+                float4 color = UniversalFragmentPBR(inputData, surfaceData);
+                color.rgb = MixFog(color.rgb, input.fogFactor);
+                return color;
+            }
+            ENDHLSL
+        }
+
+        Pass {
+            Name "ShadowCaster"
+            Tags { "LightMode" = "ShadowCaster" }
+            ColorMask 0
+
+            HLSLPROGRAM
+            #pragma target 3.5
+            #pragma vertex vert_shadow
+            #pragma fragment frag
+            #pragma multi_compile_instancing
+            #pragma multi_compile_vertex _ _CASTING_PUNCTUAL_LIGHT_SHADOW
+
+            float3 _LightDirection;
+            float3 _LightPosition;
+
+            Varyings vert_shadow(Attributes input) {
+                Varyings output = vert(input);
+            #if defined(_CASTING_PUNCTUAL_LIGHT_SHADOW)
+                float3 L = normalize(_LightPosition - output.positionWS);
+            #else
+                float3 L = _LightDirection;
+            #endif
+                output.positionCS = TransformWorldToHClip(ApplyShadowBias(output.positionWS, output.normalWS, L));
+                // What lies before the light's near plane still casts its shadow.
+            #if UNITY_REVERSED_Z
+                output.positionCS.z = min(output.positionCS.z, UNITY_NEAR_CLIP_VALUE);
+            #else
+                output.positionCS.z = max(output.positionCS.z, UNITY_NEAR_CLIP_VALUE);
+            #endif
+                return output;
+            }
+
+            float4 frag(Varyings input) : SV_Target {
+                return 0.0;
+            }
+            ENDHLSL
+        }
+
+        Pass {
+            Name "DepthOnly"
+            Tags { "LightMode" = "DepthOnly" }
+            ColorMask 0
+
+            HLSLPROGRAM
+            #pragma target 3.5
+            #pragma vertex vert
+            #pragma fragment frag
+            #pragma multi_compile_instancing
+
+            float4 frag(Varyings input) : SV_Target {
+                UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
+                return 0.0;
+            }
+            ENDHLSL
+        }
+
+        Pass {
+            // The geometric normal, for screen-space occlusion.
+            Name "DepthNormals"
+            Tags { "LightMode" = "DepthNormalsOnly" }
+
+            HLSLPROGRAM
+            #pragma target 3.5
+            #pragma vertex vert
+            #pragma fragment frag
+            #pragma multi_compile_instancing
+            #pragma multi_compile_fragment _ _GBUFFER_NORMALS_OCT
+
+            float4 frag(Varyings input) : SV_Target {
+                UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
+                float3 N = normalize(input.normalWS);
+            #if defined(_GBUFFER_NORMALS_OCT)
+                return float4(PackFloat2To888(saturate(0.5 * PackNormalOctQuadEncode(N) + 0.5)), 0.0);
+            #else
+                return float4(N, 0.0);
+            #endif
+            }
+            ENDHLSL
+        }
+    }
+    FallBack "Hidden/Universal Render Pipeline/FallbackError"
+}

@@ -1,0 +1,73 @@
+# Resin inlay: A picture under two centimetres of clear resin: it moves with the eye as if it lay
+# below.
+# Made by sssgen for NumPy (vectorised; the oracle). Change the material and emit it again rather than this file.
+
+from sssgen.targets.numpy_runtime import *  # noqa: F403
+
+# Surface: Record(albedo, metallic, roughness)
+
+FLAT_FRAME = 0.01
+
+def tangent_from_world(v, T, B, N):
+    """The components of `v` along unit T, unit B and N. A frame that spans no space gives (0, 0, dot(v, N))."""
+    volume = dot(T, cross(B, N))
+    along = vec(dot(v, cross(B, N)) * length(T), dot(v, cross(N, T)) * length(B), dot(v, cross(T, B)))
+    return select(abs(volume) < FLAT_FRAME, vec(0.0, 0.0, dot(v, N)), along / volume)
+
+def slide(uv, ray, T, B, N, depth, uv_per_unit):
+    """The texture coordinates where `ray`, going in, meets the inner layer."""
+    r = tangent_from_world(ray, T, B, N)
+    cosine = -r[2]
+    # 1 / cosine, but smoothly down to 0 where a grazing ray would slide without end
+    x = clamp(cosine / 0.2, 0.0, 1.0)
+    reciprocal = x * x * (4.0 - 3.0 * x) / max(cosine, 0.2)
+    return uv + depth * reciprocal * uv_per_unit * swizzle(r, "xy")
+
+def parallax_refracted(uv, V, T, B, N, ior, depth, uv_per_unit):
+    """Subsurface parallax with refraction: the texture as if it were cast into resin, glass or ice."""
+    facing = faceforward(N, -V, N)
+    # past the critical angle refract() gives 0, which slides nothing
+    ray = refract(-V, facing, 1.0 / ior)
+    return slide(uv, ray, T, B, facing, depth, uv_per_unit)
+
+def base_color(uv, tint, base_color_texture):
+    """Colour and opacity from a texture and a tint."""
+    texel = tint * texture(base_color_texture, uv)
+    albedo = swizzle(texel, "xyz")
+    alpha = texel[3]
+    return albedo, alpha
+
+def pbr_constants(metalness, surface_roughness):
+    """The same metalness and roughness everywhere."""
+    metallic = metalness
+    roughness = surface_roughness
+    return metallic, roughness
+
+def standard(N, V, L, albedo, metallic, roughness, light_color):
+    """The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light."""
+    H = normalize(V + L)
+    NoL = max(dot(N, L), 0.0)
+    NoV = max(dot(N, V), 0.0001)
+    NoH = clamp(dot(N, H), 0.0, 1.0)
+    a = max(roughness, 0.045) * max(roughness, 0.045)
+    spread = NoH * NoH * (a * a - 1.0) + 1.0
+    # D times pi
+    facets = a * a / (spread * spread)
+    # masking and shadowing, over 4 dot(N, L) dot(N, V)
+    visible = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a)
+    F0 = mix(splat(3, 0.04), albedo, metallic)
+    F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0)
+    diffuse = albedo * (1.0 - metallic) * (1.0 - F)
+    return (diffuse + facets * visible * F) * NoL * light_color
+
+def evaluate_surface(uv, V, T, B, N, ior, depth, uv_per_unit, tint, base_color_texture, metalness,
+    surface_roughness):
+    """Everything about the surface that does not depend on a light."""
+    uv = parallax_refracted(uv, V, T, B, N, ior, depth, uv_per_unit)
+    albedo, alpha = base_color(uv, tint, base_color_texture)
+    metallic, roughness = pbr_constants(metalness, surface_roughness)
+    return Record(albedo=albedo, metallic=metallic, roughness=roughness)
+
+def evaluate_lighting(surface, N, V, L, light_color):
+    """What one light adds from the front."""
+    return standard(N, V, L, surface.albedo, surface.metallic, surface.roughness, light_color)

@@ -1,0 +1,74 @@
+"""Every example × every target × both forms through every compiler, and the same bytes from every process."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import sssgen
+from sssgen.harness.compilers import Source
+from sssgen.harness.sources import sources
+from sssgen.material import examples
+
+FORMS = ("shader", "functions")
+CASES = [(name, form) for name in examples() for form in FORMS]
+
+
+def emitted(name: str, form: str) -> dict[str, str]:
+    """The files of an example for all of the project's own targets."""
+    files: dict[str, str] = {}
+    for target in sssgen.all_targets():
+        files |= sssgen.compile(name, target, form).files
+    return files
+
+
+@pytest.mark.parametrize(("name", "form"), CASES)
+def test_every_target_compiles(name: str, form: str, assert_compiles: object) -> None:
+    found: list[Source] = sources(emitted(name, form))
+    assert {source.language for source in found} == set(sssgen.all_targets())
+    for source in found:
+        assert_compiles(source)  # type: ignore[operator]  # the fixture is a function
+
+
+@pytest.mark.parametrize("name", examples())
+def test_functions_stay_short_and_keep_their_names(name: str) -> None:
+    text = sssgen.compile(name, "glsl-330").files[f"{name}.glsl-330.frag"]
+    lines, start = text.splitlines(), 0
+    longest = 0
+    for number, line in enumerate(lines):
+        if line and not line[0].isspace() and line.endswith("{"):
+            start = number
+        elif line == "}":
+            longest = max(longest, number - start + 1)
+    assert 5 < longest <= 60
+    for stage in sssgen.load_material(name).stages:
+        body = stage.technique.function.body or ()
+        assert f" {stage.technique.name}(" in text or len(body) == 1, stage.technique.name
+
+
+SCRIPT = """
+import hashlib, sssgen
+from sssgen.material import examples
+digest = hashlib.sha256()
+for name in examples():
+    for target in sssgen.all_targets():
+        for form in ("shader", "functions"):
+            for file, text in sssgen.compile(name, target, form).files.items():
+                digest.update(f"{file}\\0{text}\\0".encode())
+print(digest.hexdigest())
+"""
+
+
+def test_same_bytes_in_every_process(tmp_path: Path) -> None:
+    said = []
+    for seed in ("1", "2"):
+        environment = os.environ | {"PYTHONHASHSEED": seed, "SSSGEN_CACHE": str(tmp_path / seed)}
+        ran = subprocess.run([sys.executable, "-c", SCRIPT], env=environment, capture_output=True, text=True, check=True)
+        said.append(ran.stdout)
+    assert len(said[0]) == 2 * hashlib.sha256().digest_size + 1
+    assert said[0] == said[1]
