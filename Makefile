@@ -1,5 +1,5 @@
 # make demo   emit every example for every target into out/ and compile all of it
-# make test   the tests        make lint   ruff and mypy
+# make test   the tests, but the slow ones (make test-long)      make lint   ruff and mypy
 # make bench  the benchmarks   make setup  what the others need, done once: .venv, system packages, compilers
 
 PYTHON := $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
@@ -12,7 +12,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 export PYTHONUTF8 := 1
 .DELETE_ON_ERROR:
-.PHONY: setup demo test lint bench clean
+.PHONY: setup demo test test-long lint bench clean
 
 setup: .venv/done build/node/done
 
@@ -24,6 +24,9 @@ demo: setup
 
 test: setup
 	$(BIN)/python -m pytest -q
+
+test-long: setup
+	$(BIN)/python -m pytest -q -m slow
 
 lint: setup
 	$(BIN)/ruff check .

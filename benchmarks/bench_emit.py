@@ -74,7 +74,9 @@ def cold() -> None:
 
 def warm() -> None:
     targets = list(sssgen.all_targets())
-    materials = [parse_material(variant(index), ROOT / "examples/paper_lantern/paper_lantern.toml") for index in range(VARIANTS)]
+    materials = [
+        parse_material(variant(index), ROOT / "examples/paper_lantern/paper_lantern.toml") for index in range(VARIANTS)
+    ]
     sssgen.compile(materials[0], "wgsl")
     for target in targets:
         sssgen.compile(materials[1], target)

@@ -86,9 +86,7 @@ def transpiled(module: Module, target: str) -> str:
     return next(text for name, text in transpile(module, target, "cases").files.items() if not name.endswith(".json"))
 
 
-def with_numpy(
-    text: str, call: Call, bound: Mapping[str, Texture], lanes: int, floating: str = "float64"
-) -> Array:
+def with_numpy(text: str, call: Call, bound: Mapping[str, Texture], lanes: int, floating: str = "float64") -> Array:
     """A call's result by the numpy target's text; 0 in the lanes that it discards."""
     names: dict[str, Any] = {}
     exec(compile(text, "numpy", "exec"), names)

@@ -294,9 +294,7 @@ def test_emit(run: Run, compiler: FakeCompiler) -> None:
 def test_emit_all_as_json(run: Run, compiler: FakeCompiler) -> None:
     compiler.warnings = [Diagnostic("warning", "beware", Span("wax.toml", 1, 1, 1, 2))]
     Path("tpl").mkdir()
-    ran = run(
-        "emit", "wax.toml", "-t", "all", "-o", "out", "--form", "functions", "--templates", "tpl", "--json"
-    )
+    ran = run("emit", "wax.toml", "-t", "all", "-o", "out", "--form", "functions", "--templates", "tpl", "--json")
     said = json.loads(ran.out)
     assert (ran.status, ran.err, said["ok"], said["form"]) == (0, "", True, "functions")
     assert [(row["file"], row["target"]) for row in said["files"]][::2] == [
@@ -412,9 +410,7 @@ def test_names_that_climb_out_of_the_folder(name: str, run: Run, compiler: FakeC
     assert sorted(Path().iterdir()) == [Path("wax.toml")]
 
 
-def test_folders_that_cannot_be_written(
-    run: Run, compiler: FakeCompiler, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_folders_that_cannot_be_written(run: Run, compiler: FakeCompiler, monkeypatch: pytest.MonkeyPatch) -> None:
     Path("out/wax.wgsl.txt").mkdir(parents=True)
     texts = [
         run("emit", "wax.toml", "-t", "wgsl", "-o", "wax.toml").err,

@@ -68,7 +68,9 @@ def test_same_bytes_in_every_process(tmp_path: Path) -> None:
     said = []
     for seed in ("1", "2"):
         environment = os.environ | {"PYTHONHASHSEED": seed, "SSSGEN_CACHE": str(tmp_path / seed)}
-        ran = subprocess.run([sys.executable, "-c", SCRIPT], env=environment, capture_output=True, text=True, check=True)
+        ran = subprocess.run(
+            [sys.executable, "-c", SCRIPT], env=environment, capture_output=True, text=True, check=True
+        )
         said.append(ran.stdout)
     assert len(said[0]) == 2 * hashlib.sha256().digest_size + 1
     assert said[0] == said[1]

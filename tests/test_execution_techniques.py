@@ -58,7 +58,11 @@ def probes(function: Function) -> list[Function]:
         call = CallNode(function.result, function.key, tuple(args), span)
         if shown is None:
             result = f"{function.name}_value"
-            body = (*start, Declare(result, function.result, call, span), Return(Local(function.result, result, span), span))
+            body = (
+                *start,
+                Declare(result, function.result, call, span),
+                Return(Local(function.result, result, span), span),
+            )
         else:
             value = Local(shown.type, f"{shown.name}_given", span)
             ignored: Stmt = Evaluate(call, span)
@@ -67,7 +71,9 @@ def probes(function: Function) -> list[Function]:
             body = (*start, ignored, Return(value, span))
         params = tuple(param._replace(direction="in") for param in function.params if param.direction != "out")
         name = f"{function.name}_shows_{shown.name if shown is not None else 'result'}"
-        made.append(function._replace(name=name, params=params, result=shown.type if shown else function.result, body=body))
+        made.append(
+            function._replace(name=name, params=params, result=shown.type if shown else function.result, body=body)
+        )
     return made
 
 

@@ -88,7 +88,7 @@ def test_row_is_sane(row: Builtin) -> None:
     assert row.doc.endswith(".")
     assert row.kind in ("alu", "transcendental", "fetch", "derivative")
     assert len(row.vectors) >= (0 if row.kind in ("fetch", "derivative") else 3)
-    assert row.ulp <= 4.0 and not row.absolute or row.clause
+    assert (row.ulp <= 4.0 and not row.absolute) or row.clause
     assert callable(function(row.name))
     params = {",".join(parse(signature)[1:]) for signature in row.signatures}
     assert len(params) == len(row.signatures)
@@ -120,7 +120,9 @@ def test_vector(row: Builtin, arguments: tuple[object, ...], expected: object, f
             value = np.asarray(argument, dtype)
             if floating == "float32":
                 np.testing.assert_array_equal(value.astype("float64"), np.asarray(argument, "float64"))
-            elif floating == "float16" and not np.array_equal(value, np.asarray(argument), equal_nan=value.dtype.kind == "f"):
+            elif floating == "float16" and not np.array_equal(
+                value, np.asarray(argument), equal_nan=value.dtype.kind == "f"
+            ):
                 pytest.skip("an argument beyond float16")
             values.append(value[..., None])
         wanted = np.asarray(expected, dtype_of(result_type, "float64"))

@@ -112,9 +112,7 @@ def test_a_slot_takes_a_function_of_a_file_beside_the_material() -> None:
     Path("shapes").mkdir()
     Path("shapes/egg.sss").write_text(EGG, encoding="utf-8")
     for bound in ("shapes/egg.sss", "shapes/egg.sss:egg", "distance/sphere.sss", "box"):
-        stage = read(
-            HEAD + f'[thickness]\ntechnique = "thinness_uniform"\nbind.body_distance = "{bound}"\n'
-        ).stages[0]
+        stage = read(HEAD + f'[thickness]\ntechnique = "thinness_uniform"\nbind.body_distance = "{bound}"\n').stages[0]
         assert stage.bindings["body_distance"].function.name == Path(bound.partition(":")[0]).stem
 
 
@@ -129,13 +127,10 @@ def test_another_function_of_a_technique_file_can_be_bound() -> None:
 
 def test_slots_of_bound_functions_are_bound_too() -> None:
     Path("hollow.sss").write_text(
-        "float outside(world_position p);\n"
-        "float hollow(world_position p)\n{\n    return abs(outside(p)) - 0.1;\n}\n",
+        "float outside(world_position p);\nfloat hollow(world_position p)\n{\n    return abs(outside(p)) - 0.1;\n}\n",
         encoding="utf-8",
     )
-    start = (
-        HEAD + '[thickness]\ntechnique = "thinness_uniform"\n[thickness.bind]\nbody_distance = "hollow.sss"\n'
-    )
+    start = HEAD + '[thickness]\ntechnique = "thinness_uniform"\n[thickness.bind]\nbody_distance = "hollow.sss"\n'
     assert set(read(start + 'outside = "sphere"\n').stages[0].bindings) == {"body_distance", "outside"}
     assert "slot 'outside'" in str(errors_of(start))
     assert "calls 'outside' again" in str(errors_of(start + 'outside = "hollow.sss"\n'))
@@ -151,9 +146,7 @@ def test_a_technique_may_be_a_file_beside_the_material() -> None:
 
 
 def test_two_stages_of_one_technique_have_their_own_parameters_but_share_those_of_includes() -> None:
-    two = (
-        HEAD + '[[thickness]]\ntechnique = "constant_thickness"\n[[thickness]]\ntechnique = "beer_lambert"\n'
-    )
+    two = HEAD + '[[thickness]]\ntechnique = "constant_thickness"\n[[thickness]]\ntechnique = "beer_lambert"\n'
     for name in ("lobe_exp2", "lobe_gdc2011"):
         two += f'[[translucency]]\ntechnique = "{name}"\npower = {{}}\n'
     assert len(read(two.format(4, 4)).stages) == 4
@@ -209,8 +202,7 @@ BAD = {
     + "[[surface]]\ntint = [1.0, 1.0, 1.0, 1.0]\n[[surface]]\n[[surface]]\ntechnique = 3\n",
     "unknown_technique": LOBE + '[surface]\ntechnique = "base_colour"\n',
     "unlike_any_technique": LOBE + '[coordinates]\ntechnique = "zzz"\n',
-    "technique_in_another_role": LOBE
-    + '[surface]\ntechnique = "beer_lambert"\n[lighting]\ntechnique = "sphere"\n',
+    "technique_in_another_role": LOBE + '[surface]\ntechnique = "beer_lambert"\n[lighting]\ntechnique = "sphere"\n',
     "technique_file_missing": LOBE + '[surface]\ntechnique = "my/paint.sss"\n',
     "technique_file_faulty": LOBE + '[surface]\ntechnique = "faulty.sss"\nwrong = 1\n',
     "unknown_parameter": LOBE + "distorsion = 0.2\n",
@@ -324,25 +316,17 @@ def test_a_huge_file_is_refused() -> None:
 
 
 def test_errors_stop_where_nobody_would_read_on() -> None:
-    error = errors_of(
-        HEAD + "".join(f'[[surface]]\ntechnique = "base_color"\nzzz{n} = 1\n' for n in range(3000))
-    )
+    error = errors_of(HEAD + "".join(f'[[surface]]\ntechnique = "base_color"\nzzz{n} = 1\n' for n in range(3000)))
     assert len(error.diagnostics) == MAX_ERRORS + 1  # which says that there are more
 
 
 @given(st.data())
 def test_whatever_is_wrong_is_an_error_for_people(data: st.DataObject) -> None:
-    text = (HEAD + BOUND + CHAIN.split("[translucency]")[1] + 'tint = ["#ff8000", { value = 1 }]\n').replace(
-        "\n", "\n"
-    )
+    text = (HEAD + BOUND + CHAIN.split("[translucency]")[1] + 'tint = ["#ff8000", { value = 1 }]\n').replace("\n", "\n")
     for _ in range(data.draw(st.integers(1, 3))):
         at = data.draw(st.integers(0, len(text)))
         gone = data.draw(st.integers(0, 6))
-        text = (
-            text[:at]
-            + data.draw(st.sampled_from([*"[]{}=\"'.,#\n\\ a1", '"""', "[[", "'''"]))
-            + text[at + gone :]
-        )
+        text = text[:at] + data.draw(st.sampled_from([*"[]{}=\"'.,#\n\\ a1", '"""', "[[", "'''"])) + text[at + gone :]
     try:
         read(text)
     except SssgenError as error:
@@ -404,9 +388,7 @@ def test_places_of_a_hard_sample() -> None:
     check_places(SAMPLE)
 
 
-SCALARS = st.sampled_from(
-    ["1", "-2.5e3", "true", '"a # b"', "'[x]'", '"\\""', "1979-05-27", '"""x\ny"""', "0xff"]
-)
+SCALARS = st.sampled_from(["1", "-2.5e3", "true", '"a # b"', "'[x]'", '"\\""', "1979-05-27", '"""x\ny"""', "0xff"])
 VALUES = st.recursive(
     SCALARS,
     lambda inner: st.one_of(

@@ -247,7 +247,7 @@ def test_bad_textures() -> None:
         (ROW, "cubic", "repeat", ""),
         (ROW, "linear", "border", ""),
     ):
-        with pytest.raises(ValueError, match="Texture|texture|cube"):
+        with pytest.raises(ValueError, match=r"Texture|texture|cube"):
             Texture(data, filter, wrap, dim)
 
 

@@ -61,9 +61,7 @@ def test_the_wheel_carries_what_it_needs_and_nothing_else(wheel: Path) -> None:
     for name in ("templates", "targets", "examples"):
         prefix = f"sssgen/_data/{name}/"
         carried = {Path(one.removeprefix(prefix)) for one in names if one.startswith(prefix)}
-        assert carried == {
-            path.relative_to(ROOT / name) for path in (ROOT / name).rglob("*") if path.is_file()
-        }
+        assert carried == {path.relative_to(ROOT / name) for path in (ROOT / name).rglob("*") if path.is_file()}
     for path in (ROOT / "src" / "sssgen").rglob("*"):
         inside = path.relative_to(ROOT / "src")
         if path.is_file() and not any(part.startswith((".", "__pycache__")) for part in inside.parts):
@@ -101,9 +99,7 @@ def test_the_installed_program(installed: Path, tmp_path: Path) -> None:
     packages = run(installed / "python", "-m", "pip", "list", "--format", "freeze", cwd=tmp_path).lower()
     assert "numpy" not in packages
     listed = run(installed / "sssgen", "list", "targets", cwd=tmp_path)
-    assert {line.split()[0] for line in listed.splitlines()} == {
-        path.stem for path in folder("targets").glob("*.toml")
-    }
+    assert {line.split()[0] for line in listed.splitlines()} == {path.stem for path in folder("targets").glob("*.toml")}
 
 
 def test_the_version_is_in_the_changelog_or_unreleased() -> None:

@@ -16,7 +16,9 @@ from sssgen.material import examples
 
 FOLDER = Path(__file__).parent / "snapshots" / "emitted"
 DOCS = Path(__file__).parent.parent / "docs"
-CASES = [(name, target, form) for name in examples() for target in sssgen.all_targets() for form in ("shader", "functions")]
+CASES = [
+    (name, target, form) for name in examples() for target in sssgen.all_targets() for form in ("shader", "functions")
+]
 
 
 @pytest.mark.parametrize(("name", "target", "form"), CASES)
@@ -31,7 +33,9 @@ def test_emitted_files(name: str, target: str, form: str) -> None:
 
 
 def test_no_snapshot_is_left_over() -> None:
-    expected = {FOLDER / name / file for name, target, form in CASES for file in sssgen.compile(name, target, form).files}
+    expected = {
+        FOLDER / name / file for name, target, form in CASES for file in sssgen.compile(name, target, form).files
+    }
     assert {path for path in FOLDER.rglob("*") if path.is_file()} == expected
 
 

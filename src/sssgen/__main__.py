@@ -1,6 +1,6 @@
 """`python -m sssgen` is `sssgen`."""
 
-from .cli import program
+from .cli import main
 
 if __name__ == "__main__":
-    program()
+    raise SystemExit(main())

@@ -66,9 +66,7 @@ def parser() -> argparse.ArgumentParser:
     emit.add_argument(
         "--target", "-t", metavar="T,T|all", required=True, help="targets of `sssgen list targets`, or all"
     )
-    emit.add_argument(
-        "-o", "--output", metavar="DIR", required=True, help="the folder to write to; made if need be"
-    )
+    emit.add_argument("-o", "--output", metavar="DIR", required=True, help="the folder to write to; made if need be")
     emit.add_argument(
         "--form",
         choices=("shader", "functions"),
@@ -79,12 +77,8 @@ def parser() -> argparse.ArgumentParser:
 
     transpile = command("transpile", "transpile", "translate functions in plain GLSL to a target's language")
     transpile.add_argument("FILE", help="a GLSL file of the subset (functions and uniforms; no main)")
-    transpile.add_argument(
-        "--target", "-t", metavar="T", required=True, help="a target of `sssgen list targets`"
-    )
-    transpile.add_argument(
-        "-o", "--output", metavar="FILE", help="the file to write, and its reflection beside it"
-    )
+    transpile.add_argument("--target", "-t", metavar="T", required=True, help="a target of `sssgen list targets`")
+    transpile.add_argument("-o", "--output", metavar="FILE", help="the file to write, and its reflection beside it")
 
     new = command("new", "new", "write a commented material to start from")
     new.add_argument("MATERIAL", help="its name, or a .toml file; an old one is never overwritten")

@@ -7,17 +7,16 @@ Exit status: 0 done · 1 a check failed · 2 wrong input · 70 an error of sssge
 from __future__ import annotations
 
 import contextlib
-import gc
 import importlib
 import os
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NoReturn, cast
+from typing import TYPE_CHECKING, Any
 
 from .diagnostics import SssgenError, failure
 
 if TYPE_CHECKING:
-    from argparse import ArgumentParser, Namespace
+    from argparse import ArgumentParser
 
 OK, CHECK_FAILED, WRONG_INPUT, INTERNAL_ERROR, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 70, 130, 141
 
@@ -48,21 +47,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _guarded(_report_internal, error, as_json)
 
 
-def program() -> NoReturn:
-    """`main` as a program of its own.
-
-    It ends without taking the interpreter apart and looks for cyclic garbage seldom: both cost more than they bring
-    to a process that lives for a tenth of a second.
-    """
-    gc.set_threshold(100_000, 50, 50)
-    status = main()
-    with contextlib.suppress(OSError, ValueError):
-        sys.stderr.flush()
-    os._exit(status)
-
-
 def _run(given: list[str]) -> int:
-    arguments = plain_emit(given) or parser().parse_args(given)
+    arguments = parser().parse_args(given)
     module = importlib.import_module(f"{__package__}.commands.{arguments.module}")
     status = module.run(arguments)
     assert isinstance(status, int)
@@ -74,33 +60,6 @@ def parser() -> ArgumentParser:
     from .arguments import parser as made
 
     return made()
-
-
-_EMIT = {"-t": "target", "--target": "target", "-o": "output", "--output": "output", "--form": "form"}
-
-
-def plain_emit(given: Sequence[str]) -> Namespace | None:
-    """The arguments of a plain `sssgen emit`, as `parser` gives them; None for whatever asks for more.
-
-    It is there for speed alone: with argparse, a cold emit would take a quarter longer.
-    """
-    materials: list[str] = []
-    said = {"form": "shader"}
-    words = iter(given[1:])
-    for word in words:
-        if word in _EMIT:
-            said[_EMIT[word]] = next(words, "-")
-        else:
-            materials.append(word)
-    together = any(given[at : at + len(materials)] == materials for at in range(1, len(given)))
-    plain = not any(word.startswith("-") for word in (*materials, *said.values()))
-    whole = bool(materials) and said.keys() >= {"target", "output"} and said["form"] in ("shader", "functions")
-    if list(given[:1]) != ["emit"] or not (together and plain and whole):
-        return None
-    from types import SimpleNamespace
-
-    rest = {"COMMAND": "emit", "module": "emit", "json": False, "templates": None}
-    return cast("Namespace", SimpleNamespace(**said, **rest, MATERIAL=materials))
 
 
 def _guarded(report: Any, error: Exception, as_json: bool) -> int:

@@ -1,35 +1,24 @@
-"""From a material to shader text: the passes in their order, then the target's printer and templates.
+"""From a material to shader text: its program (`programs`), the values of its parameters, the target's templates.
 
-The part up to `legalise` is the same for every target of one kind and is done once a material.
+A program is kept by what it depends on. The values of free parameters are not among that: they only stand in the
+declarations, in an engine's properties and in the reflection, so that a variant of a material costs no pass.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from . import library
-from .diagnostics import Diagnostic, SssgenError
-from .ir.nodes import Function, Local, Module, Return
-from .ir.types import Struct
-from .lang.loader import comments_before, source_line
-from .lang.polyfills import polyfill
-from .material import Material
-from .passes.chain import ChainStage, Entry, assemble
-from .passes.cost import Cost, cost_of
-from .passes.fold import fold
-from .passes.hoist import Note, hoist
-from .passes.inline import inline
-from .passes.legalise import Unsupported, legalise
-from .passes.link import LinkError, LinkStage, link
-from .passes.names import rename
-from .passes.parameters import uniforms_to_parameters
-from .passes.predicate import predicate
-from .passes.prune import prune
-from .passes.undefined import undefined_constants
+from . import cache, library
+from .data import place
+from .diagnostics import Diagnostic
+from .emitted import installation
+from .ir.nodes import Module, Uniform
+from .ir.types import kind_of
+from .lang.loader import key_of
+from .material import Material, Stage
 from .targets import descriptor
-from .targets.descriptor import Target, Words
+from .targets.descriptor import Target
 from .targets.emit import About, Program, emit
 from .targets.reflection import as_text, reflect
 
@@ -40,27 +29,21 @@ class Compiled(NamedTuple):
     """The files of one material for one target."""
 
     files: dict[str, str]
-    """File name → text; `NAME.TARGET.reflection.json` among them."""
-    reflection: dict[str, Any]
+    """File name → text; `NAME.TARGET.reflection.json` among them, at the end."""
     warnings: list[Diagnostic]
 
+    @property
+    def reflection(self) -> dict[str, Any]:
+        """The reflection, read from its file: yours to change."""
+        import json
 
-class _Middle(NamedTuple):
-    """A material's program before anything of a target has touched it."""
-
-    module: Module
-    entries: dict[str, Entry]
-    surface: Struct | None
-    owners: dict[str, tuple[str, str]]
-    costs: dict[str, Cost]
-    warnings: list[Diagnostic]
-    encoded: bool = False
-    """Whether an output technique has encoded the colour."""
+        found: dict[str, Any] = json.loads(list(self.files.values())[-1])
+        return found
 
 
-_middles: dict[tuple[int, str, bool], tuple[Material, _Middle]] = {}
-_compiled: dict[tuple[object, ...], tuple[Material, Compiled]] = {}
-_KEPT = 512
+_compiled: dict[tuple[int, str, str], tuple[Material, Compiled]] = {}
+_programs: dict[tuple[str, str, str], Program] = {}
+_KEPT = 128
 
 
 def all_targets() -> dict[str, Target]:
@@ -68,7 +51,7 @@ def all_targets() -> dict[str, Target]:
     return {name: descriptor.load(name) for name in descriptor.names()}
 
 
-def compile(  # noqa: A001 - the library's verb, used as sssgen.compile
+def compile(
     material: Material | str | os.PathLike[str],
     target: str,
     form: str = "shader",
@@ -98,8 +81,8 @@ def compile(  # noqa: A001 - the library's verb, used as sssgen.compile
     known = _compiled.get(key) if templates is None else None
     if known is not None and known[0] is material:
         return known[1]
-    middle = _middle_of(material, chosen)
-    made = _finish(middle, chosen, form, os.fspath(templates) if templates else None, _about(material))
+    program = _program_of(material, chosen, form)._replace(about=_about(material))
+    made = _finish(program, chosen, form, os.fspath(templates) if templates else None)
     if templates is None:
         if len(_compiled) >= _KEPT:
             _compiled.clear()
@@ -109,75 +92,71 @@ def compile(  # noqa: A001 - the library's verb, used as sssgen.compile
 
 def transpile(module: Module, target: str, name: str) -> Compiled:
     """The functions form of a module of plain functions (no chain): what `sssgen transpile` writes."""
+    from .programs import make_library
+
     chosen = descriptor.load(target)
-    roots = [function.key for function in module.functions if function.body is not None]
-    module, notes = hoist(prune(_folded(module, {}), roots), roots)
-    middle = _Middle(module, {}, None, {}, {}, _warnings(notes))
-    return _finish(middle, chosen, "functions", None, About(name, name))
+    return _finish(make_library(module, chosen)._replace(about=About(name, name)), chosen, "functions", None)
 
 
-def _middle_of(material: Material, target: Target) -> _Middle:
-    """Links, assembles, folds, prunes and hoists; kept for the other targets of the same kind."""
-    drop_output = bool(target.table.get("engine_encodes"))
-    key = (id(material), target.lighting, drop_output)
-    kept = _middles.get(key)
-    if kept is not None and kept[0] is material:
-        return kept[1]
-    made = _build(material, target.lighting, drop_output)
-    if len(_middles) >= _KEPT:
-        _middles.clear()
-        _compiled.clear()
-    _middles[key] = (material, made)
-    return made
+def _program_of(material: Material, target: Target, form: str) -> Program:
+    """The program of a material, with the material's values as the uniforms' defaults."""
+    fixed = {name for stage in material.stages for name in stage.fixed}
+    bare = material._replace(stages=tuple([_bare(stage, fixed) for stage in material.stages]))
+    structure = _structure(bare, target)
+    program = _programs.get((structure, target.name, form)) if structure else None
+    if program is None:
+        program = _stored_program(bare, structure, target, form)
+        if len(_programs) >= _KEPT:
+            _programs.clear()
+        _programs[structure, target.name, form] = program
+    uniforms = tuple([_with_value(uniform, program, material) for uniform in program.module.uniforms])
+    return program._replace(module=program.module._replace(uniforms=uniforms))
 
 
-def _build(material: Material, lighting: str, drop_output: bool) -> _Middle:
-    stages = [_link_stage(stage) for stage in material.stages]
-    spans = [stage.span for stage in material.stages]
-    lit = material.shading == "lit"
-    if lit and lighting and all(stage.role != "lighting" for stage in stages):
-        technique = library.load(lighting)
-        stages.append(LinkStage(technique.name, "lighting", technique.module, technique.function, {}, {}, frozenset()))
-        spans.append(technique.function.span)
-    if lit and not lighting:
-        kept = [index for index, stage in enumerate(stages) if stage.role != "lighting"]
-        stages, spans = [stages[index] for index in kept], [spans[index] for index in kept]
-    if drop_output:
-        kept = [index for index, stage in enumerate(stages) if stage.role != "output"]
-        stages, spans = [stages[index] for index in kept], [spans[index] for index in kept]
-    try:
-        linked = link(stages)
-        chained = [
-            ChainStage(stage.role, stage.technique, function, span)
-            for stage, function, span in zip(stages, linked.functions, spans, strict=True)
-        ]
-        chain = assemble(linked.module, chained, lit, material.alpha_mode == "opaque")
-    except LinkError as error:
-        raise SssgenError([Diagnostic("error", error.message, error.span, "", source_line(error.span))]) from None
-    roots = [entry.function.key for entry in chain.entries.values()]
-    module = prune(inline(_folded(chain.module, linked.fixed), _only_renames), roots)
-    module, notes = hoist(module, roots)
-    warnings = _warnings(notes)
-    slots = _slot_functions(material, linked.module)
-    costs = {kind: cost_of(module, entry.function.key, slots) for kind, entry in chain.entries.items()}
-    encoded = not lit and any(stage.role == "output" for stage in stages)
-    return _Middle(module, dict(chain.entries), chain.surface, linked.owners, costs, warnings, encoded)
+def _stored_program(bare: Material, structure: str, target: Target, form: str) -> Program:
+    """A program from the cache folder, or made: of each material's file, that of the newest structure is kept."""
+
+    def made() -> Program:
+        from .programs import make
+
+        return make(bare, structure, target, form)
+
+    if not structure or target.folder != place("targets"):  # what a plug-in's program depends on is not known here
+        return made()
+    name = "\0".join([os.path.abspath(bare.file), target.name, form])
+    program: Program = cache.kept(f"program-{cache.digest(name)}", [installation(), structure], made)
+    return program
 
 
-def _folded(module: Module, fixed: Mapping[str, tuple[float, ...]]) -> Module:
-    """The folded module. Raises SssgenError for constants that are no numbers."""
-    module = fold(module, fixed)
-    wrong = undefined_constants(module)
-    if wrong:
-        hint = "WGSL refuses it, and the others compute inf or NaN"
-        raise SssgenError([Diagnostic("error", message, span, hint, source_line(span)) for message, span in wrong])
-    return module
+def _bare(stage: Stage, fixed: set[str]) -> Stage:
+    """A stage without the values that no pass looks at."""
+    modules = [stage.technique.module, *(binding.module for binding in stage.bindings.values())]
+    uniforms = [uniform for module in modules for uniform in module.uniforms]
+    seen = fixed | {uniform.name for uniform in uniforms if kind_of(uniform.type) in ("int", "uint")}
+    return stage._replace(values={name: value for name, value in stage.values.items() if name in seen})
 
 
-def _only_renames(function: Function) -> bool:
-    """Whether a function returns its parameter as it is: such a conversion is for the types' sake alone."""
-    body = function.body or ()
-    return len(body) == 1 and isinstance(body[0], Return) and isinstance(body[0].value, Local)
+def _structure(bare: Material, target: Target) -> str:
+    """What the program of a material depends on; '' where that cannot be told."""
+    modules = [library.load(target.lighting).module] if target.lighting else []
+    parts: list[object] = [bare.shading, bare.alpha_mode]
+    for stage in bare.stages:
+        technique, bound = stage.technique, stage.bindings
+        modules += [technique.module, *(binding.module for binding in bound.values())]
+        functions = [(slot, binding.function.key) for slot, binding in bound.items()]
+        values = sorted(stage.values.items())
+        parts.append((technique.name, technique.role, functions, values, sorted(stage.fixed), stage.span))
+    keys = [key_of(module) for module in modules]
+    return repr((parts, keys)) if all(keys) else ""
+
+
+def _with_value(uniform: Uniform, program: Program, material: Material) -> Uniform:
+    """A uniform with the value that the material gives it."""
+    for index, name in reversed(program.settings.get(program.source_names[uniform.name], ())):
+        value = material.stages[index].values.get(name)
+        if value is not None:
+            return uniform._replace(default=value)
+    return uniform
 
 
 def _about(material: Material) -> About:
@@ -185,69 +164,10 @@ def _about(material: Material) -> About:
     return About(material.name, material.title, material.doc, material.shading, material.alpha_mode, raymarched)
 
 
-def _warnings(notes: list[Note]) -> list[Diagnostic]:
-    return [Diagnostic("warning", note.message, note.span, "", source_line(note.span)) for note in notes]
-
-
-def _link_stage(stage: Any) -> LinkStage:
-    technique = stage.technique
-    bindings = {name: (binding.module, binding.function) for name, binding in stage.bindings.items()}
-    return LinkStage(
-        technique.name, technique.role, technique.module, technique.function, bindings, stage.values, stage.fixed
-    )
-
-
-def _slot_functions(material: Material, module: Module) -> frozenset[str]:
-    """The linked functions that stand behind slots: the static cost counts their evaluations."""
-    bound = {binding.function.span for stage in material.stages for binding in stage.bindings.values()}
-    return frozenset(function.key for function in module.functions if function.span in bound)
-
-
-def _finish(
-    middle: _Middle,
-    target: Target,
-    form: str,
-    templates: str | None,
-    about: About,
-) -> Compiled:
-    """The target's own part: parameters, legalise, names, printing, templates, reflection."""
-    module = middle.module
-    if form in target.parameters:
-        module = uniforms_to_parameters(module)
-    try:
-        module = legalise(module, target.dialect, target.can, polyfill)
-    except Unsupported as error:
-        message = f"{error.message} ({target.name})"
-        raise SssgenError([Diagnostic("error", message, error.span, "", source_line(error.span))]) from None
-    if not target.can("lane_control_flow"):
-        module = predicate(module)
-    before = [uniform.name for uniform in module.uniforms]
-    exact, folded, prefixes = descriptor.reserved_everywhere()
-    module, renames = rename(
-        module,
-        Words(exact | target.reserved, prefixes + target.prefixes),
-        _uniform_style(target),
-        not target.can("overloads"),
-        folded | target.folded,
-    )
-    entries = {}
-    for kind, entry in middle.entries.items():
-        found = next(function for function in module.functions if function.name == entry.function.name)
-        entries[kind] = (found, entry.inputs)
-    source_names = {uniform.name: old for uniform, old in zip(module.uniforms, before, strict=True)}
-    surface = next((s.type for s in module.structs if isinstance(s.type, Struct) and s.type.name == "Surface"), None)
-    program = Program(module, entries, surface, source_names, about, middle.encoded, comments_before)
+def _finish(program: Program, target: Target, form: str, templates: str | None) -> Compiled:
+    """The files of a program."""
     emitted = emit(target, program, form, templates)
-    messages = [warning.message for warning in middle.warnings]
-    data = reflect(target, program, emitted, form, middle.owners, renames, middle.costs, messages)
     files = dict(emitted.files)
     suffix = "reflection" if form == "shader" else f"{form}.reflection"
-    files[f"{about.name}.{target.name}.{suffix}.json"] = as_text(data)
-    return Compiled(files, data, middle.warnings)
-
-
-def _uniform_style(target: Target) -> Any:
-    if target.uniform_style == "unity":
-        return lambda name: "_" + "".join(word[:1].upper() + word[1:] for word in name.split("_"))
-    return lambda name: name
-
+    files[f"{program.about.name}.{target.name}.{suffix}.json"] = as_text(reflect(target, program, emitted, form))
+    return Compiled(files, program.warnings)

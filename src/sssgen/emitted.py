@@ -5,6 +5,7 @@ An entry holds for as long as every file that went into it has the same content,
 
 from __future__ import annotations
 
+import functools
 import os
 import sys
 from collections.abc import Iterable, Sequence
@@ -27,7 +28,7 @@ class Made(NamedTuple):
 def recall(materials: Sequence[str], target: str, form: str) -> Made | None:
     """What the command made, if nothing has changed since."""
     found = cache.unpickled(cache.read(_name(materials, target, form)))
-    if not isinstance(found, tuple) or found[0] != _installation():
+    if not isinstance(found, tuple) or found[0] != installation():
         return None
     _, state, made = found
     return Made(*made) if _state(state) == state else None
@@ -39,7 +40,7 @@ def remember(materials: Sequence[str], target: str, form: str, made: Made, files
 
     if descriptor.has_plugins():
         return
-    cache.write(_name(materials, target, form), cache.pickled((_installation(), _state(files), tuple(made))))
+    cache.write(_name(materials, target, form), cache.pickled((installation(), _state(files), tuple(made))))
 
 
 def _state(files: Iterable[str]) -> dict[str, str]:
@@ -58,8 +59,9 @@ def _name(materials: Sequence[str], target: str, form: str) -> str:
     return "emitted-" + cache.digest("\0".join([os.getcwd(), target, form, *materials]))
 
 
-def _installation() -> list[object]:
-    """Tells one state of sssgen from another."""
+@functools.cache
+def installation() -> list[object]:
+    """Tells one state of sssgen, and of the Python that it runs in, from another."""
     packages = [path for path in sys.path if path.endswith("-packages") and os.path.isdir(path)]
     folders = (os.path.dirname(__file__), place("targets"), place("templates"))
     changed = [(path, os.stat(path).st_mtime_ns) for path in packages]  # where a plug-in may have come

@@ -68,17 +68,13 @@ class _Reader:
                 error(place(key).key, f"unknown section '{key}'", _section_hint(key, sections))
             else:
                 hint = (
-                    f"sections: {', '.join(sections)}"
-                    if key not in _MATERIAL_KEYS
-                    else "it belongs below [material]"
+                    f"sections: {', '.join(sections)}" if key not in _MATERIAL_KEYS else "it belongs below [material]"
                 )
                 error(place(key).key, f"'{key}' stands outside any section", hint)
         name, title, doc, shading, alpha_mode = self.head(data.get("material"))
         stages = [stage for section in roles.SECTIONS for stage in self.section(section, data.get(section))]
         if not any(section in data for section in roles.SECTIONS):
-            hint = (
-                f"add a section with a technique: {', '.join(f'[{section}]' for section in roles.SECTIONS)}"
-            )
+            hint = f"add a section with a technique: {', '.join(f'[{section}]' for section in roles.SECTIONS)}"
             error(place("material").value, "the material has no stages", hint)
         elif self.complete and not self.foreign:
             links = [roles.Link(stage.technique, stage.span) for stage in stages]
@@ -122,13 +118,9 @@ class _Reader:
         if not isinstance(raw, str):
             self.document.error(span, f"'{key}' takes a text", f'write {key} = "…"')
             return ""
-        controls = [
-            character for character in raw if ord(character) < 32 and not (key == "doc" and character == "\n")
-        ]
+        controls = [character for character in raw if ord(character) < 32 and not (key == "doc" and character == "\n")]
         if controls and key != "name":
-            self.document.error(
-                span, f"'{key}' holds the control character {controls[0]!r}", "write it in one line"
-            )
+            self.document.error(span, f"'{key}' holds the control character {controls[0]!r}", "write it in one line")
         return raw.strip() if key != "name" else raw
 
     # Stages
@@ -142,9 +134,7 @@ class _Reader:
         for number, table in tables:
             path: tuple[str | int, ...] = (section,) if number is None else (section, number)
             if not isinstance(table, dict):
-                self.document.error(
-                    self.document.place(*path).value, f"'{section}' is a section", f"write [{section}]"
-                )
+                self.document.error(self.document.place(*path).value, f"'{section}' is a section", f"write [{section}]")
                 stage = None
             else:
                 stage = self.stage(section, path, table)
@@ -165,9 +155,7 @@ class _Reader:
         uniforms = {uniform.span: uniform for uniform in technique.uniforms if uniform.name in names}
         for binding in bindings.values():
             names, _ = slots.needs(binding.module, binding.function)
-            uniforms |= {
-                uniform.span: uniform for uniform in binding.module.uniforms if uniform.name in names
-            }
+            uniforms |= {uniform.span: uniform for uniform in binding.module.uniforms if uniform.name in names}
         stage = Stage(technique, {}, frozenset(), {}, bindings, span)
         said: dict[Span, str] = {}
         for key, raw in table.items():
@@ -228,19 +216,13 @@ class _Reader:
             self.complete = False
         return technique
 
-    def unknown_parameter(
-        self, technique: Technique, uniforms: list[Uniform], path: tuple[str | int, ...]
-    ) -> None:
+    def unknown_parameter(self, technique: Technique, uniforms: list[Uniform], path: tuple[str | int, ...]) -> None:
         key = str(path[-1])
         hint = did_you_mean(key, [name for uniform in uniforms for name in _names(uniform)])
         if any(slot.name == key for slot in technique.slots):
             hint = f"'{key}' is a slot: write bind = {{ {key} = … }}"
         if not hint:
-            hint = (
-                f"parameters: {', '.join(uniform.name for uniform in uniforms)}"
-                if uniforms
-                else "it has none"
-            )
+            hint = f"parameters: {', '.join(uniform.name for uniform in uniforms)}" if uniforms else "it has none"
         message = f"unknown parameter '{key}' of '{technique.name}'"
         if any(uniform.name == key for uniform in technique.uniforms):
             message = f"'{technique.name}' does not read '{key}'"
@@ -292,15 +274,11 @@ class _Reader:
         earlier = self.shared.setdefault(uniform.span, _Shared(value, stage.technique.name, span.line))
         if earlier.value != value:
             message = f"'{uniform.name}' has another value in '{earlier.technique}', line {earlier.line}"
-            self.document.error(
-                span, message, f"both stages share it (it is in {uniform.span.file}): give it once"
-            )
+            self.document.error(span, message, f"both stages share it (it is in {uniform.span.file}): give it once")
 
     # Slots
 
-    def bind(
-        self, technique: Technique, path: tuple[str | int, ...], stage: dict[str, Any]
-    ) -> dict[str, Binding]:
+    def bind(self, technique: Technique, path: tuple[str | int, ...], stage: dict[str, Any]) -> dict[str, Binding]:
         """What the slots of a technique, and those of what is bound to them, are bound to."""
         error, place = self.document.error, self.document.place
         table = stage.get("bind", {})
@@ -331,9 +309,7 @@ class _Reader:
             fitting = slots.candidates(slot)
             hint = f'write bind = {{ {slot.name} = "{fitting[0] if fitting else "FILE:FUNCTION"}" }}; '
             hint += (
-                f"functions that fit: {', '.join(fitting)}"
-                if fitting
-                else f"the function is {slots.signature(slot)}"
+                f"functions that fit: {', '.join(fitting)}" if fitting else f"the function is {slots.signature(slot)}"
             )
             where = place(*path, "bind").key if table else place(*path, "technique").value
             error(where, f"slot '{slot.name}' of '{technique.name}' is not bound", hint)

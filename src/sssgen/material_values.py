@@ -97,9 +97,7 @@ def _colour(uniform: Uniform, text: str) -> tuple[float, ...]:
             hint = f"'{uniform.name}' is not declared a colour (source_color): give its components"
         raise WrongValue(f"'{uniform.name}' takes {wanted(uniform)}, but this is a text", hint)
     if not _HEX.fullmatch(text):
-        raise WrongValue(
-            f"'{text}' is not a colour", 'write "#rgb", "#rrggbb" or "#rrggbbaa", or a list of linear RGB'
-        )
+        raise WrongValue(f"'{text}' is not a colour", 'write "#rgb", "#rrggbb" or "#rrggbbaa", or a list of linear RGB')
     digits = text[1:]
     if len(digits) == 3:
         digits = "".join(digit * 2 for digit in digits)

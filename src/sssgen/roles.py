@@ -73,9 +73,7 @@ def check_chain(links: Sequence[Link], shading: str, report: Report) -> None:
         for quantity in sorted(written):
             if quantity in unread:
                 earlier = f"but that of '{given[quantity]}' has not been used"
-                report(
-                    span, f"'{technique.name}' gives {words(quantity)}, {earlier}", "remove one of the two"
-                )
+                report(span, f"'{technique.name}' gives {words(quantity)}, {earlier}", "remove one of the two")
             given[quantity] = technique.name
             unread.add(quantity)
         colored = colored or technique.role == "lighting"
@@ -114,9 +112,7 @@ def wrong_result(technique: Technique) -> str:
         if function.quantity in SCALARS:
             taken = [param.quantity for param in function.params if param.quantity in SCALARS]
             if role == "conversion" and (len(taken) != 1 or taken[0] == function.quantity):
-                return (
-                    f"'{technique.name}' is a conversion, but does not take one quantity and return another"
-                )
+                return f"'{technique.name}' is a conversion, but does not take one quantity and return another"
             return ""
     else:
         return ""
@@ -124,9 +120,7 @@ def wrong_result(technique: Technique) -> str:
     return f"'{technique.name}' is a {role} technique, which returns {text}, but it returns {returned}"
 
 
-def _check_given(
-    technique: Technique, quantity: str, given: dict[str, str], span: Span, report: Report
-) -> None:
+def _check_given(technique: Technique, quantity: str, given: dict[str, str], span: Span, report: Report) -> None:
     if quantity in given:
         return
     for source in reversed(list(given)):
@@ -142,9 +136,7 @@ def _check_given(
     )
 
 
-def _check_value(
-    technique: Technique, param: Param, values: dict[str, _Value], span: Span, report: Report
-) -> None:
+def _check_value(technique: Technique, param: Param, values: dict[str, _Value], span: Span, report: Report) -> None:
     value = values.get(param.name)
     if value is None:
         if param.direction == "out":

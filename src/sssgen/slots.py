@@ -102,9 +102,7 @@ def find(text: str, slot: Function, folder: str) -> tuple[Module, Function]:
         name = name or stem(path)
     else:
         if source not in library.index():
-            hint = (
-                did_you_mean(source, library.index()) or f"functions that fit: {', '.join(candidates(slot))}"
-            )
+            hint = did_you_mean(source, library.index()) or f"functions that fit: {', '.join(candidates(slot))}"
             raise failure(f"unknown function '{source}'", hint)
         module = library.load(source).module
         name = name or source
@@ -122,12 +120,8 @@ def find(text: str, slot: Function, folder: str) -> tuple[Module, Function]:
         hint = f'write "{source}:{others[0]}"'
     else:
         fitting = candidates(slot)
-        hint = (
-            f"functions that fit: {', '.join(fitting)}" if fitting else "write a function of that signature"
-        )
-    raise failure(
-        f"'{text}' does not fit the slot: {signature(named[0])} is bound to {signature(slot)}", hint
-    )
+        hint = f"functions that fit: {', '.join(fitting)}" if fitting else "write a function of that signature"
+    raise failure(f"'{text}' does not fit the slot: {signature(named[0])} is bound to {signature(slot)}", hint)
 
 
 def candidates(slot: Function) -> list[str]:
@@ -138,13 +132,7 @@ def candidates(slot: Function) -> list[str]:
             continue
         with contextlib.suppress(SssgenError):  # a faulty file is reported where it is used
             module = library.load_path(path).module
-            own = [
-                one
-                for one in module.functions
-                if one.span.file == library.shown_name(path) and fits(slot, one)
-            ]
-            offered = [
-                one.name for one in own if one.name == name or any(param.quantity for param in one.params)
-            ]
+            own = [one for one in module.functions if one.span.file == library.shown_name(path) and fits(slot, one)]
+            offered = [one.name for one in own if one.name == name or any(param.quantity for param in one.params)]
             found += [name if one == name else f"{name}:{one}" for one in offered]
     return found

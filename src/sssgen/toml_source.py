@@ -121,9 +121,7 @@ def _report(message: str, text: str, reporter: Reporter) -> int:
     """Notes one of tomllib's errors; returns its line, or 0 for one at the end of the text."""
     found = _POSITION.search(message)
     what = message[: found.start()] if found else message
-    ours, hint = next(
-        (row[1:] for row in _WORDING if what.startswith(row[0])), (what[:1].lower() + what[1:], "")
-    )
+    ours, hint = next((row[1:] for row in _WORDING if what.startswith(row[0])), (what[:1].lower() + what[1:], ""))
     lines = text.split("\n")
     if found and found[1]:
         line, column = int(found[1]), int(found[2])
@@ -188,9 +186,7 @@ class _Positions:
         from bisect import bisect_right
 
         line, end_line = bisect_right(self.starts, start), bisect_right(self.starts, end)
-        return Span(
-            self.file, line, start - self.starts[line - 1] + 1, end_line, end - self.starts[end_line - 1] + 1
-        )
+        return Span(self.file, line, start - self.starts[line - 1] + 1, end_line, end - self.starts[end_line - 1] + 1)
 
 
 class _Scanner:

@@ -37,9 +37,7 @@ def run(arguments: Namespace) -> int:
 
 
 def _techniques() -> list[dict[str, Any]]:
-    found = sorted(
-        library.load_all(), key=lambda one: (library.ROLES.index(one.role), one.baseline, one.name)
-    )
+    found = sorted(library.load_all(), key=lambda one: (library.ROLES.index(one.role), one.baseline, one.name))
     return [
         {
             "name": one.name,

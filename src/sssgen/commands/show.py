@@ -79,9 +79,7 @@ def _text(facts: dict[str, Any]) -> str:
     import textwrap
 
     def wrapped(text: str, indent: str) -> list[str]:
-        return textwrap.wrap(
-            text, WIDTH, initial_indent=indent, subsequent_indent=indent, break_on_hyphens=False
-        )
+        return textwrap.wrap(text, WIDTH, initial_indent=indent, subsequent_indent=indent, break_on_hyphens=False)
 
     lines = [
         f"{facts['name']} ({facts['role']})",
@@ -99,9 +97,7 @@ def _text(facts: dict[str, Any]) -> str:
         lines += ["", "slots, to be bound by the material:"]
         for slot in facts["slots"]:
             lines += [f"  {slot['signature']}", *wrapped(slot["doc"], "      ")]
-            lines += wrapped(
-                f"functions that fit: {', '.join(slot['functions']) or 'none in the library'}", "      "
-            )
+            lines += wrapped(f"functions that fit: {', '.join(slot['functions']) or 'none in the library'}", "      ")
     lines.append("")
     for key, text in facts["doc"].items():
         lines += [f"{key}:", *wrapped(text, "  ")]

@@ -30,9 +30,7 @@ def main(folder: str) -> int:
         print(f"nothing to compile in {folder}")
         return 1
     results = {source: compilers.check(source) for source in found}
-    names = [
-        name for name in compilers.LANGUAGES if any(name in compilers.readers(s.language) for s in found)
-    ]
+    names = [name for name in compilers.LANGUAGES if any(name in compilers.readers(s.language) for s in found)]
     _print_table(results, names)
     failures = sum(_print_failures(source, told) for source, told in results.items())
     lacking = [(name, how) for name, how in compilers.missing() if name in names]

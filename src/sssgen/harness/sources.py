@@ -43,9 +43,7 @@ def _outputs(name: str) -> list[tuple[descriptor.Target, str, descriptor.OutputF
     return [(target, material, output) for length, target, material, output in matches if length == longest]
 
 
-def _companion(
-    files: Mapping[str, str], name: str, target: descriptor.Target, material: str, stage: str
-) -> str:
+def _companion(files: Mapping[str, str], name: str, target: descriptor.Target, material: str, stage: str) -> str:
     if target.language != "glsl":
         return ""
     folder = name[: len(name) - len(name.rpartition("/")[2])]

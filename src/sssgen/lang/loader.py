@@ -20,6 +20,7 @@ MAX_BYTES = 4 << 20
 _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"([^"\n]*)"', re.MULTILINE)
 
 _memory: dict[str, Module] = {}
+_keys: dict[int, str] = {}
 _lines: dict[str, list[str]] = {}
 _stamp = ""
 
@@ -38,7 +39,9 @@ def load_text(text: str, shown: str, roots: Sequence[str | os.PathLike[str]] = (
     return _load(text, shown, roots, ())[0]
 
 
-def _load(text: str, shown: str, roots: Sequence[str | os.PathLike[str]], within: tuple[str, ...]) -> tuple[Module, str]:
+def _load(
+    text: str, shown: str, roots: Sequence[str | os.PathLike[str]], within: tuple[str, ...]
+) -> tuple[Module, str]:
     """A text's module and the hash of all that it was made from."""
     _lines[shown] = text.split("\n")
     included, parts = Module(), [front_end_stamp(), shown, text]
@@ -57,7 +60,13 @@ def _load(text: str, shown: str, roots: Sequence[str | os.PathLike[str]], within
         known = check(parse(text, shown), text, included)
         cache.write(f"{key}.ir", cache.pickled(known))
     _memory[key] = known
+    _keys[id(known)] = key
     return known, key
+
+
+def key_of(module: Module) -> str:
+    """The hash of all that a module was made from; '' for one that was not loaded here."""
+    return _keys.get(id(module), "")
 
 
 def comments_before(file: str, line: int) -> list[str]:

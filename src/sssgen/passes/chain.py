@@ -249,16 +249,20 @@ class _Body:
         span = stage.span
         if name in self.values:
             return Local(param.type, name, span)
-        if self.surface is not None and name in self.surface.values and name not in ("N", *PER_LIGHT):
-            if name not in self.surface.inputs or name in self.surface.changed():
-                self.crossing[name] = None
-                return Member(param.type, Local(_SURFACE, "surface", span), name, span)
+        if self.surface is not None and self.surface.hands_over(name):
+            self.crossing[name] = None
+            return Member(param.type, Local(_SURFACE, "surface", span), name, span)
         if name in INPUTS:
             self.supply(name, INPUTS[name])
             return Local(param.type, name, span)
         if name in DEFAULTS:
             return constant(*DEFAULTS[name], span)
         raise LinkError(_missing(name, param, stage), span)
+
+    def hands_over(self, name: str) -> bool:
+        """Whether the lights get this value from the surface: it was made or changed there."""
+        made = name in self.values and name not in ("N", *PER_LIGHT)
+        return made and (name not in self.inputs or name in self.changed())
 
     def changed(self) -> set[str]:
         """The inputs that a stage has written over."""
@@ -313,13 +317,11 @@ class _Body:
 
     def finish(self, name: str, type_: Type, struct: Struct | None) -> Entry:
         """Returns one value; where its declaration is the last statement, the value itself."""
-        last = self.statements[-1]
         value: Expr = Local(type_, name, self.span)
         statements = self.statements
-        if isinstance(last, Declare) and last.name == name and last.value is not None:
-            value, statements = last.value, statements[:-1]
-        elif isinstance(last, Assign) and last.op == "" and isinstance(last.target, Local) and last.target.name == name:
-            value, statements = last.value, statements[:-1]
+        given = _given(statements[-1], name)
+        if given is not None:
+            value, statements = given, statements[:-1]
         if struct is not None:
             statements = _retyped(statements, struct)
             value = _retype(value, struct)
@@ -343,6 +345,15 @@ class _Body:
         result = Construct(VEC4, (Local(VEC3, "color", span), alpha), span)
         body = (*statements, Return(result, span))
         return Entry(self.function(VEC4, body, "The colour of one fragment.", None), tuple(self.inputs))
+
+
+def _given(last: Stmt, name: str) -> Expr | None:
+    """What a statement gives the variable `name`, if that is all it does."""
+    if isinstance(last, Declare) and last.name == name:
+        return last.value
+    if isinstance(last, Assign) and last.op == "" and isinstance(last.target, Local) and last.target.name == name:
+        return last.value
+    return None
 
 
 _SURFACE = Struct("Surface", ())
@@ -373,5 +384,3 @@ def constant(type_: Type, values: tuple[float, ...], span: Span) -> Expr:
 def _missing(name: str, param: Param, stage: ChainStage) -> str:
     what = f"a {name}" if param.quantity in QUANTITIES else f"'{name}'"
     return f"{stage.technique} reads {what}, which no stage before it gives"
-
-

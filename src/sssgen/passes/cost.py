@@ -84,7 +84,11 @@ class _Counter:
             return UNKNOWN_TRIPS
         start, bound = loop.init.value, condition.right
         first = float(start.value) if isinstance(start, ir.Literal) else 0.0
-        step = float(loop.step.value.value) if isinstance(loop.step, ir.Assign) and isinstance(loop.step.value, ir.Literal) else 1.0  # fmt: skip
+        step = (
+            float(loop.step.value.value)
+            if isinstance(loop.step, ir.Assign) and isinstance(loop.step.value, ir.Literal)
+            else 1.0
+        )
         if isinstance(bound, ir.Literal):
             last = float(bound.value)
         elif isinstance(bound, ir.Global) and len(self.defaults.get(bound.name, ())) == 1:

@@ -21,7 +21,9 @@ def counts_up(loop: ir.For) -> str:
     init, step = loop.init, loop.step
     if not isinstance(init, ir.Declare) or not isinstance(init.value, ir.Literal) or init.value.value < 0:
         return ""
-    grows = isinstance(step, ir.Assign) and step.op == "+" and isinstance(step.value, ir.Literal) and step.value.value > 0
+    grows = (
+        isinstance(step, ir.Assign) and step.op == "+" and isinstance(step.value, ir.Literal) and step.value.value > 0
+    )
     return init.name if grows else ""
 
 

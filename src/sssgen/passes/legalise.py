@@ -73,7 +73,9 @@ class _Legaliser:
 
     def function(self, function: ir.Function) -> ir.Function:
         if isinstance(function.result, Array) and not self.can("array_constructors"):
-            raise Unsupported("a function cannot return an array for this target: give it an out parameter", function.span)
+            raise Unsupported(
+                "a function cannot return an array for this target: give it an out parameter", function.span
+            )
         short_circuit = self.can("short_circuit")
         if not self.can("out_parameters") or is_awkward(function, self.functions, short_circuit):
             function = lift(function, self.functions)
@@ -166,7 +168,11 @@ class _Legaliser:
 
     def assign(self, assign: ir.Assign) -> ir.Stmt | None:
         op, span = assign.op, assign.span
-        if isinstance(assign.value, ir.Select) and isinstance(assign.target, ir.Local) and not (op or self.can("ternary")):
+        if (
+            isinstance(assign.value, ir.Select)
+            and isinstance(assign.target, ir.Local)
+            and not (op or self.can("ternary"))
+        ):
             value = self.select(assign.value, assign.target)
             return None if value is assign.target else assign._replace(value=value)
         place, value = self.place(assign.target), self.expr(assign.value)
@@ -307,7 +313,12 @@ class _Legaliser:
         module = self.polyfill(call.name, types)
         function = module.functions[-1]
         body = function.body or ()
-        if len(module.functions) == 1 and len(body) == 1 and isinstance(body[0], ir.Return) and body[0].value is not None:
+        if (
+            len(module.functions) == 1
+            and len(body) == 1
+            and isinstance(body[0], ir.Return)
+            and body[0].value is not None
+        ):
             value = body[0].value
             uses: dict[str, int] = {}
             for part in subexpressions(value):
@@ -375,7 +386,8 @@ class _Legaliser:
             return ir.Binary(BOOL, "!=", left, right, span)
         if op in ("==", "!=") and binary.type == BOOL and not isinstance(left.type, Scalar):
             return self.equality(binary) if not self.can("whole_equality") else binary
-        if op in ("/", "%", "<<", ">>") and kind_of(left.type) != "float" and not self.can("integer_division"):
+        whole = op in ("/", "%", "<<", ">>") and kind_of(left.type) != "float"
+        if whole and not self.can("integer_division") and self.prelude is not None:
             return self.integer(binary)
         if op in ("<<", ">>", "&", "|", "^") and not self.can("mixed_bits"):
             size = max(components(left.type), components(right.type))
@@ -500,4 +512,3 @@ def is_cheap(expr: ir.Expr) -> bool:
 def _respan(expr: ir.Expr, span: ir.Span) -> ir.Expr:
     """What a polyfill computes stems from its call."""
     return rewrite(expr, lambda part: part._replace(span=span) if part.span.file.startswith("intrinsics/") else part)
-

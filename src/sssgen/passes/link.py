@@ -41,6 +41,8 @@ class Linked(NamedTuple):
     """The uniforms to fold, by their name in `module`, with their values."""
     owners: dict[str, tuple[str, str]]
     """Each uniform's technique and its name there."""
+    settings: dict[str, list[tuple[int, str]]]
+    """Each uniform's stages, in their order, and its name there: the last one to give it a value decides."""
 
 
 class LinkError(Exception):
@@ -61,7 +63,7 @@ def link(stages: Sequence[LinkStage]) -> Linked:
         tuple(linker.uniforms.values()),
         tuple(linker.functions.values()),
     )
-    return Linked(module, functions, linker.fixed, linker.owners)
+    return Linked(module, functions, linker.fixed, linker.owners, linker.settings)
 
 
 class _Linker:
@@ -72,6 +74,7 @@ class _Linker:
         self.functions: dict[str, Function] = {}
         self.fixed: dict[str, tuple[float, ...]] = {}
         self.owners: dict[str, tuple[str, str]] = {}
+        self.settings: dict[str, list[tuple[int, str]]] = {}
         self.instances: dict[object, Function] = {}
         self.global_names: dict[object, str] = {}
 
@@ -141,6 +144,9 @@ class _Linker:
             self.global_names[identity] = name
             self.uniforms[name] = uniform._replace(name=name)
             self.owners[name] = (stage.technique, uniform.name)
+            self.settings[name] = []
+        if (index, uniform.name) not in self.settings[name]:
+            self.settings[name].append((index, uniform.name))
         value = stage.values.get(uniform.name)
         if value is not None:
             self.uniforms[name] = self.uniforms[name]._replace(default=value)

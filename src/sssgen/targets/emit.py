@@ -10,12 +10,12 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from ..diagnostics import failure
+from ..diagnostics import Diagnostic, failure
 from ..ir.nodes import Function, Local, Module, Param, Span, Uniform
 from ..ir.types import Sampler, Struct, spell
 from .descriptor import Target
 from .layout import Member, place
-from .printer import Comments, Line, Printer, comment_text, no_comments
+from .printer import Comments, Line, Printer, comment_text
 from .templates import render
 
 _MARK = re.compile(r"\x02(\d+)\x03")
@@ -47,7 +47,15 @@ class Program(NamedTuple):
     about: About
     encoded: bool
     """Whether the colour that comes out is already encoded for a display."""
-    comments: Comments = no_comments
+    parts: Mapping[str, list[list[Line]]]
+    """What is printed of the structs (`types`), constants and functions; the functions in `module` have no bodies."""
+    owners: Mapping[str, tuple[str, str]]
+    """A uniform's source name → its technique and its name there."""
+    renames: Mapping[str, str]
+    costs: Mapping[str, dict[str, int]]
+    warnings: list[Diagnostic]
+    settings: Mapping[str, list[tuple[int, str]]]
+    """A uniform's source name → the material's stages that may give it a value, and its name there."""
 
 
 class Emitted(NamedTuple):
@@ -81,11 +89,21 @@ def printer_for(target: Target, module: Module) -> Printer:
     return printer
 
 
+def print_parts(target: Target, module: Module, comments: Comments) -> dict[str, list[list[Line]]]:
+    """Prints all of a legal module but its uniforms."""
+    printer = printer_for(target, module)
+    printer.comments = comments
+    return {
+        "types": [printer.print_struct(struct) for struct in module.structs],
+        "constants": [[line for constant in module.constants for line in printer.print_constant(constant)]],
+        "functions": [printer.print_function(function) for function in module.functions],
+    }
+
+
 def emit(target: Target, program: Program, form: str, templates: str | None = None) -> Emitted:
-    """Prints and renders every file of a form. Raises SssgenError for a faulty template."""
+    """Prints the uniforms and renders every file of a form. Raises SssgenError for a faulty template."""
     module = program.module
     printer = printer_for(target, module)
-    printer.comments = program.comments
     members, size = place(module.uniforms, target.layout)
     textures = [uniform for uniform in module.uniforms if isinstance(uniform.type, Sampler)]
     marks: list[Span] = []
@@ -93,12 +111,12 @@ def emit(target: Target, program: Program, form: str, templates: str | None = No
     uniform_lines: list[Line] = printer.print_uniforms(members) if declared else []
     texture_lines: list[Line] = printer.print_textures(textures) if declared else []
     code = {
-        "types": _text([printer.print_struct(struct) for struct in module.structs], marks),
-        "constants": _text([[line for c in module.constants for line in printer.print_constant(c)]], marks),
+        "types": _text(program.parts["types"], marks),
+        "constants": _text(program.parts["constants"], marks),
         "uniforms": _text([uniform_lines], marks),
         "textures": _text([texture_lines], marks),
         "declarations": _text([uniform_lines, texture_lines], marks),
-        "functions": _text([printer.print_function(function) for function in module.functions], marks),
+        "functions": _text(program.parts["functions"], marks),
     }
     context = _context(target, program, printer, form, code)
     files: dict[str, str] = {}
@@ -129,8 +147,7 @@ def _text(parts: Sequence[Sequence[Line]], marks: list[Span]) -> str:
 def _context(target: Target, program: Program, printer: Printer, form: str, code: dict[str, str]) -> dict[str, Any]:
     """What a template sees; documented in docs/templates.md."""
     entries = {
-        kind: _entry(target, printer, kind, function, inputs)
-        for kind, (function, inputs) in program.entries.items()
+        kind: _entry(target, printer, kind, function, inputs) for kind, (function, inputs) in program.entries.items()
     }
     inputs = {name for _, given in program.entries.values() for name in given}
     surface = program.surface
@@ -141,14 +158,16 @@ def _context(target: Target, program: Program, printer: Printer, form: str, code
         "header": _header(target, program),
         "code": code,
         "uniforms": [
-            _uniform(printer, uniform, program) for uniform in program.module.uniforms if not isinstance(uniform.type, Sampler)
+            _uniform(printer, uniform, program)
+            for uniform in program.module.uniforms
+            if not isinstance(uniform.type, Sampler)
         ],
         "textures": _textures(printer, program),
         "entries": entries,
         "inputs": inputs,
         "surface_fields": [{"name": f.name, "type": printer.type(f.type)} for f in surface.fields] if surface else [],
         "library": [function.name for function in program.module.functions],
-    }  # fmt: skip
+    }
 
 
 def _header(target: Target, program: Program) -> list[str]:
@@ -236,17 +255,19 @@ def _finish(text: str, marks: list[Span]) -> tuple[str, dict[int, Span]]:
     lines: list[str] = []
     spans: dict[int, Span] = {}
     for line in text.split("\n"):
-        found = _MARK.search(line)
-        if found is not None:
-            line = _MARK.sub("", line)
+        mark = ""
+        if "\x02" in line:
+            line, _, rest = line.partition("\x02")
+            mark, _, rest = rest.partition("\x03")
+            line += _MARK.sub("", rest)
         line = line.rstrip()
         if not line and (not lines or not lines[-1] or lines[-1].endswith("{")):
             continue
         if lines and not lines[-1] and line.lstrip().startswith("}"):
             lines.pop()
         lines.append(line)
-        if found is not None:
-            spans[len(lines)] = marks[int(found.group(1))]
+        if mark:
+            spans[len(lines)] = marks[int(mark)]
     while lines and not lines[-1]:
         lines.pop()
     return "\n".join(lines) + "\n", spans

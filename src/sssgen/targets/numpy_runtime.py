@@ -90,7 +90,7 @@ def saturate(x: Value) -> Value:
 
 
 @silent
-def unpackNormal(texel: Value) -> Value:  # noqa: N802 - the builtin's own name
+def unpackNormal(texel: Value) -> Value:
     return texel[:3] * 2.0 - 1.0
 
 

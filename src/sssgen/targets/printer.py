@@ -205,7 +205,9 @@ class Printer:
         for stmt in block:
             place = (stmt.span.file, stmt.span.line)
             if place != told:
-                lines += [Line(f"{'    ' * indent}// {comment_text(text)}", stmt.span) for text in self.comments(*place)]
+                lines += [
+                    Line(f"{'    ' * indent}// {comment_text(text)}", stmt.span) for text in self.comments(*place)
+                ]
                 told = place
             lines.extend(self.statement(stmt, indent))
         return lines
@@ -272,7 +274,12 @@ class Printer:
         """A parameter of a function."""
         if isinstance(param.type, Sampler):
             pattern = self.target.textures.get("parameter", "{type} {name}")
-            return pattern.format(name=param.name, sampler=self.sampler(param.name), type=self.type(param.type), dim=param.type.dim.upper())  # fmt: skip
+            return pattern.format(
+                name=param.name,
+                sampler=self.sampler(param.name),
+                type=self.type(param.type),
+                dim=param.type.dim.upper(),
+            )
         text = self.variable(param.type, param.name)
         return text if param.direction == "in" else f"{param.direction} {text}"
 

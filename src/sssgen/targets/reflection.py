@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..ir.nodes import Uniform
 from ..ir.types import Sampler, spell
 from .descriptor import Target
 from .emit import Emitted, Program
-
-if TYPE_CHECKING:
-    from ..passes.cost import Cost
 
 VERSION = 1
 """The format's version; it grows when a reader of an older file would be wrong."""
@@ -22,10 +18,6 @@ def reflect(
     program: Program,
     emitted: Emitted,
     form: str,
-    owners: Mapping[str, tuple[str, str]],
-    renames: Mapping[str, str],
-    costs: Mapping[str, Cost],
-    warnings: list[str],
 ) -> dict[str, Any]:
     """Everything that an engine or a tool needs to bind the shader, as JSON."""
     offsets = {member.uniform.name: member for member in emitted.members}
@@ -34,7 +26,7 @@ def reflect(
     textures: list[dict[str, Any]] = []
     for uniform in program.module.uniforms:
         source = program.source_names.get(uniform.name, uniform.name)
-        technique, own_name = owners.get(source, ("", source))
+        technique, own_name = program.owners.get(source, ("", source))
         entry: dict[str, Any] = {"name": uniform.name, "type": spell(uniform.type)}
         entry |= {"source_name": source, "technique": technique, "technique_name": own_name}
         entry |= _described(uniform)
@@ -70,17 +62,17 @@ def reflect(
                 "function": function.name,
                 "inputs": list(inputs),
                 "result": spell(function.result),
-                "cost": costs[kind]._asdict(),
+                "cost": program.costs[kind],
             }
             for kind, (function, inputs) in program.entries.items()
         },
-        "renames": dict(renames),
+        "renames": dict(program.renames),
         "conventions": target.table.get("conventions", {}),
         "source_map": {
             name: {str(line): f"{span.file}:{span.line}:{span.column}" for line, span in lines.items()}
             for name, lines in emitted.lines.items()
         },
-        "warnings": warnings,
+        "warnings": [warning.message for warning in program.warnings],
     }
 
 

@@ -32,7 +32,11 @@ def render(template: str, context: dict[str, Any], templates: str | None, beside
     except TemplateSyntaxError as error:
         raise failure(f"line {error.lineno}: {error.message}", file=error.name or template) from None
     except TemplateError as error:
-        raise failure(f"the template cannot be rendered: {error.message}", "docs/templates.md lists what a template may use", file=template) from None  # fmt: skip
+        raise failure(
+            f"the template cannot be rendered: {error.message}",
+            "docs/templates.md lists what a template may use",
+            file=template,
+        ) from None
     except (TypeError, ValueError, KeyError, ArithmeticError, RecursionError) as error:
         raise failure(f"the template cannot be rendered: {error}", file=template) from None
 

@@ -13,9 +13,7 @@ from dataclasses import dataclass
 
 _COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*|^[ \t]*#(?:\\\n|[^\n])*", re.DOTALL | re.MULTILINE)
 _C_FUNCTION = re.compile(r"([A-Za-z_]\w*)\s+([A-Za-z_]\w*)\s*\(([^()]*)\)\s*(?::\s*\w+\s*)?\{\}")
-_WGSL_FUNCTION = re.compile(
-    r"((?:@\w+(?:\([^()]*\))?\s*)*)\bfn\s+(\w+)\s*\(([^{}]*?)\)\s*(?:->\s*([^{}]+?))?\s*\{\}"
-)
+_WGSL_FUNCTION = re.compile(r"((?:@\w+(?:\([^()]*\))?\s*)*)\bfn\s+(\w+)\s*\(([^{}]*?)\)\s*(?:->\s*([^{}]+?))?\s*\{\}")
 _OPAQUE = re.compile(r"[iu]?sampler|(?:RW)?Texture|Sampler|texture_")
 Opaque = tuple[str, str]
 """For a type that has no local variables: a global declaration and an argument; `{0}` is the name in both."""
@@ -37,12 +35,8 @@ def functions(text: str, wgsl: bool = False) -> list[Function]:
     top = _top_level(text)
     if wgsl:
         found = [m for m in _WGSL_FUNCTION.finditer(top) if "@" not in m[1]]
-        return [
-            Function(m[2], tuple(_wgsl_parameter(p) for p in _split(m[3])), m[4] or "void") for m in found
-        ]
-    return [
-        Function(m[2], tuple(_c_parameter(p) for p in _split(m[3])), m[1]) for m in _C_FUNCTION.finditer(top)
-    ]
+        return [Function(m[2], tuple(_wgsl_parameter(p) for p in _split(m[3])), m[4] or "void") for m in found]
+    return [Function(m[2], tuple(_c_parameter(p) for p in _split(m[3])), m[1]) for m in _C_FUNCTION.finditer(top)]
 
 
 def glsl_entry(text: str) -> str:

@@ -87,9 +87,7 @@ def _unfed(vertex: str, fragment: str) -> list[Message]:
     """Fragment inputs that the vertex stage does not write: undefined, and no error in desktop OpenGL."""
     fed = {name for *_, name in _interface(vertex, "out")}
     names = [name for *_, name in _interface(fragment, "in") if name not in fed]
-    return [
-        Message("error", 0, 0, f"the vertex stage does not write the fragment's {name}") for name in names
-    ]
+    return [Message("error", 0, 0, f"the vertex stage does not write the fragment's {name}") for name in names]
 
 
 def _matching_vertex(fragment: str, language: str) -> str:

@@ -26,9 +26,7 @@ class Glslang(Compiler):
     def version(self) -> str:
         import subprocess
 
-        text = subprocess.run(
-            [self._program, "--version"], capture_output=True, text=True, check=False
-        ).stdout
+        text = subprocess.run([self._program, "--version"], capture_output=True, text=True, check=False).stdout
         match = re.search(r"Glslang Version: \S*?(\d+(?:\.\d+)+)", text)
         return f"glslang {match[1]}" if match else text.splitlines()[0]
 

@@ -12,9 +12,7 @@ from dataclasses import dataclass, field
 
 from sssgen.harness.compilers.base import Message
 
-_BLOCK = re.compile(
-    r"^[ \t]*(CG|HLSL)(PROGRAM|INCLUDE)\b[ \t]*\n(.*?)^[ \t]*END(CG|HLSL)\b", re.DOTALL | re.MULTILINE
-)
+_BLOCK = re.compile(r"^[ \t]*(CG|HLSL)(PROGRAM|INCLUDE)\b[ \t]*\n(.*?)^[ \t]*END(CG|HLSL)\b", re.DOTALL | re.MULTILINE)
 _STRAY = re.compile(r"^[ \t]*(?:CG|HLSL)(?:PROGRAM|INCLUDE)\b|^[ \t]*END(?:CG|HLSL)\b", re.MULTILINE)
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _NUMBERS = rf"\((?:\s*{_NUMBER}\s*,){{2,3}}\s*{_NUMBER}\s*\)"  # three or four

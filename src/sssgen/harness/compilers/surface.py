@@ -152,9 +152,7 @@ def _output_type(code: str, asked: _Pragma) -> str:
     if own is None and not re.search(rf"\bLighting{asked.model}\s*\(", code):
         raise SurfaceError(f"no lighting function Lighting{asked.model}")
     if own not in (None, surface[1]):
-        raise SurfaceError(
-            f"lighting model {asked.model} wants {own}, the surface function gives {surface[1]}"
-        )
+        raise SurfaceError(f"lighting model {asked.model} wants {own}, the surface function gives {surface[1]}")
     return surface[1]
 
 

@@ -88,9 +88,7 @@ class Tint(Compiler):
         try:
             self._answer()
         except EOFError:
-            raise CompilerMissing(
-                f"npm webgpu does not load: {self._process.stderr.read().strip()}"
-            ) from None
+            raise CompilerMissing(f"npm webgpu does not load: {self._process.stderr.read().strip()}") from None
 
     def _answer(self) -> Any:
         for line in self._process.stdout:

@@ -86,9 +86,7 @@ class Unity(Compiler):
     name = "unity"
     languages = LANGUAGES["unity"]
 
-    def __init__(
-        self, root: Path, real: bool, preprocess: Callable[[str, list[str], list[Path]], str]
-    ) -> None:
+    def __init__(self, root: Path, real: bool, preprocess: Callable[[str, list[str], list[Path]], str]) -> None:
         self.root = root
         self.real = real
         self._preprocess = preprocess
@@ -96,9 +94,7 @@ class Unity(Compiler):
         self._dxc = dxc.find()
 
     def version(self) -> str:
-        headers = (
-            "Unity's own headers (SSSGEN_UNITY_INCLUDES)" if self.real else "the project's stand-in headers"
-        )
+        headers = "Unity's own headers (SSSGEN_UNITY_INCLUDES)" if self.real else "the project's stand-in headers"
         return f"{headers}, {self._glslang.version()}, {self._dxc.version()}"
 
     def check(self, source: Source) -> list[Message]:

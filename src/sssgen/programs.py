@@ -1,0 +1,200 @@
+"""From a material to a program: the passes in their order, and the printed text of all but the uniforms.
+
+The part up to `legalise` is the same for every target of one kind and is done once a material.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from . import library
+from .diagnostics import Diagnostic, SssgenError
+from .ir.nodes import Function, Local, Module, Return, Span
+from .ir.types import Struct
+from .lang.loader import comments_before, source_line
+from .lang.polyfills import polyfill
+from .material import Material
+from .passes.chain import ChainStage, Entry, assemble
+from .passes.cost import Cost, cost_of
+from .passes.fold import fold
+from .passes.hoist import Note, hoist
+from .passes.inline import inline
+from .passes.legalise import Unsupported, legalise
+from .passes.link import LinkError, LinkStage, link
+from .passes.names import rename
+from .passes.parameters import uniforms_to_parameters
+from .passes.predicate import predicate
+from .passes.prune import prune
+from .passes.undefined import undefined_constants
+from .targets import descriptor
+from .targets.descriptor import Target, Words
+from .targets.emit import About, Program, print_parts
+
+
+class _Middle(NamedTuple):
+    """A material's program before anything of a target has touched it."""
+
+    module: Module
+    entries: dict[str, Entry]
+    surface: Struct | None
+    owners: dict[str, tuple[str, str]]
+    costs: dict[str, Cost]
+    warnings: list[Diagnostic]
+    encoded: bool = False
+    """Whether an output technique has encoded the colour."""
+    settings: Mapping[str, list[tuple[int, str]]] = {}
+    """A uniform → the stages that may give it a value, and its name there."""
+
+
+_middles: dict[tuple[str, str, bool], _Middle] = {}
+_KEPT = 8
+"""Materials come one after another, each for all targets."""
+
+
+def make(material: Material, structure: str, target: Target, form: str) -> Program:
+    """The program of a material for a target. Raises SssgenError.
+
+    `structure` says what it depends on, and is '' where that cannot be told.
+    """
+    return _finish(_middle_of(material, structure, target), target, form)
+
+
+def make_library(module: Module, target: Target) -> Program:
+    """The program of a module of plain functions. Raises SssgenError."""
+    roots = [function.key for function in module.functions if function.body is not None]
+    module, notes = hoist(prune(_folded(module, {}), roots), roots)
+    return _finish(_Middle(module, {}, None, {}, {}, _warnings(notes)), target, "functions")
+
+
+def _middle_of(material: Material, structure: str, target: Target) -> _Middle:
+    """Links, assembles, folds, prunes and hoists; kept for the other targets of the same kind."""
+    key = (structure, target.lighting, bool(target.table.get("engine_encodes")))
+    middle = _middles.get(key) if structure else None
+    if middle is None:
+        if len(_middles) >= _KEPT:
+            _middles.clear()
+        middle = _middles[key] = _build(material, target)
+    return middle
+
+
+class _Stage(NamedTuple):
+    link: LinkStage
+    span: Span
+    """The place that names it."""
+    number: int
+    """Its place in the material; one that the target adds has the next."""
+
+
+def _stages(material: Material, target: Target) -> list[_Stage]:
+    """The stages of a material that a target needs."""
+    stages = [_Stage(_link_stage(stage), stage.span, number) for number, stage in enumerate(material.stages)]
+    lit = material.shading == "lit"
+    if lit and target.lighting and all(stage.link.role != "lighting" for stage in stages):
+        technique = library.load(target.lighting)
+        added = LinkStage(technique.name, "lighting", technique.module, technique.function, {}, {}, frozenset())
+        stages.append(_Stage(added, technique.function.span, len(stages)))
+    engine = {"lighting"} if lit and not target.lighting else set()
+    engine |= {"output"} if target.table.get("engine_encodes") else set()
+    return [stage for stage in stages if stage.link.role not in engine]
+
+
+def _build(material: Material, target: Target) -> _Middle:
+    stages = _stages(material, target)
+    lit = material.shading == "lit"
+    try:
+        linked = link([stage.link for stage in stages])
+        chained = [
+            ChainStage(stage.link.role, stage.link.technique, function, stage.span)
+            for stage, function in zip(stages, linked.functions, strict=True)
+        ]
+        chain = assemble(linked.module, chained, lit, material.alpha_mode == "opaque")
+    except LinkError as error:
+        raise SssgenError([Diagnostic("error", error.message, error.span, "", source_line(error.span))]) from None
+    roots = [entry.function.key for entry in chain.entries.values()]
+    module = prune(inline(_folded(chain.module, linked.fixed), _only_renames), roots)
+    module, notes = hoist(module, roots)
+    slots = _slot_functions(material, linked.module)
+    costs = {kind: cost_of(module, entry.function.key, slots) for kind, entry in chain.entries.items()}
+    encoded = not lit and any(stage.link.role == "output" for stage in stages)
+    settings = {
+        name: [(stages[index].number, own) for index, own in found if stages[index].number < len(material.stages)]
+        for name, found in linked.settings.items()
+    }
+    entries = dict(chain.entries)
+    return _Middle(module, entries, chain.surface, linked.owners, costs, _warnings(notes), encoded, settings)
+
+
+def _folded(module: Module, fixed: Mapping[str, tuple[float, ...]]) -> Module:
+    """The folded module. Raises SssgenError for constants that are no numbers."""
+    module = fold(module, fixed)
+    wrong = undefined_constants(module)
+    if wrong:
+        hint = "WGSL refuses it, and the others compute inf or NaN"
+        raise SssgenError([Diagnostic("error", message, span, hint, source_line(span)) for message, span in wrong])
+    return module
+
+
+def _only_renames(function: Function) -> bool:
+    """Whether a function returns its parameter as it is: such a conversion is for the types' sake alone."""
+    body = function.body or ()
+    return len(body) == 1 and isinstance(body[0], Return) and isinstance(body[0].value, Local)
+
+
+def _warnings(notes: list[Note]) -> list[Diagnostic]:
+    return [Diagnostic("warning", note.message, note.span, "", source_line(note.span)) for note in notes]
+
+
+def _link_stage(stage: Any) -> LinkStage:
+    technique = stage.technique
+    bindings = {name: (binding.module, binding.function) for name, binding in stage.bindings.items()}
+    return LinkStage(
+        technique.name, technique.role, technique.module, technique.function, bindings, stage.values, stage.fixed
+    )
+
+
+def _slot_functions(material: Material, module: Module) -> frozenset[str]:
+    """The linked functions that stand behind slots: the static cost counts their evaluations."""
+    bound = {binding.function.span for stage in material.stages for binding in stage.bindings.values()}
+    return frozenset(function.key for function in module.functions if function.span in bound)
+
+
+def _finish(middle: _Middle, target: Target, form: str) -> Program:
+    """The target's own part: parameters, legalise, names, printing."""
+    module = middle.module
+    if form in target.parameters:
+        module = uniforms_to_parameters(module)
+    try:
+        module = legalise(module, target.dialect, target.can, polyfill)
+    except Unsupported as error:
+        message = f"{error.message} ({target.name})"
+        raise SssgenError([Diagnostic("error", message, error.span, "", source_line(error.span))]) from None
+    if not target.can("lane_control_flow"):
+        module = predicate(module)
+    before = [uniform.name for uniform in module.uniforms]
+    exact, folded, prefixes = descriptor.reserved_everywhere()
+    module, renames = rename(
+        module,
+        Words(exact | target.reserved, prefixes + target.prefixes),
+        _uniform_style(target),
+        not target.can("overloads"),
+        folded | target.folded,
+    )
+    parts = print_parts(target, module, comments_before)
+    module = module._replace(functions=tuple([function._replace(body=()) for function in module.functions]))
+    entries = {}
+    for kind, entry in middle.entries.items():
+        found = next(function for function in module.functions if function.name == entry.function.name)
+        entries[kind] = (found, entry.inputs)
+    source_names = {uniform.name: old for uniform, old in zip(module.uniforms, before, strict=True)}
+    surface = next((s.type for s in module.structs if isinstance(s.type, Struct) and s.type.name == "Surface"), None)
+    return Program(
+        module, entries, surface, source_names, About("", ""), middle.encoded, parts, middle.owners, renames,
+        {kind: cost._asdict() for kind, cost in middle.costs.items()}, middle.warnings, middle.settings,
+    )  # fmt: skip
+
+
+def _uniform_style(target: Target) -> Any:
+    if target.uniform_style == "unity":
+        return lambda name: "_" + "".join(word[:1].upper() + word[1:] for word in name.split("_"))
+    return lambda name: name
