@@ -58,7 +58,7 @@ def drawn(param: Param, rng: np.random.Generator, lanes: int) -> Array:
     if kind == "bool":
         return rng.random(size) < 0.5
     if kind in ("int", "uint"):
-        return rng.integers(1, 10 if kind == "int" else 2**16, size).astype(DTYPES[kind])
+        return rng.integers(-9 if kind == "int" else 0, 10 if kind == "int" else 2**16, size).astype(DTYPES[kind])
     if param.name == "uv":
         x, y = pixels(lanes)
         return np.array([x / 8.0 + 0.3, y / 4.0 + 0.4], np.float32)

@@ -29,6 +29,7 @@ class Shader:
         self.context = context
         self.program = context.program(vertex_shader=vertex, fragment_shader=fragment)
         self.textures: dict[str, Any] = {}
+        self.encoded = reflection["color"] == "encoded"
         for uniform in reflection["uniforms"]:
             self.put(uniform["name"], uniform["default"])
         for texture in reflection["textures"]:
@@ -109,7 +110,11 @@ def view(shader: Shader, eye: Any, target: Any, aspect: float, lights: Any, ambi
 
 def load(context: moderngl.Context, stem: str) -> Shader:
     """The shader of `out/NAME`: out/NAME.glsl-330.vert, .frag and .reflection.json."""
-    texts = [Path(f"{stem}.glsl-330.{end}").read_text("utf-8") for end in ("vert", "frag", "reflection.json")]
+    paths = [Path(f"{stem}.glsl-330.{end}") for end in ("vert", "frag", "reflection.json")]
+    if not all(path.is_file() for path in paths):
+        name = Path(stem).name
+        sys.exit(f"there is no {paths[0]}: sssgen emit {name} --target glsl-330 -o {Path(stem).parent}")
+    texts = [path.read_text("utf-8") for path in paths]
     shader = Shader(context, texts[0], texts[1], json.loads(texts[2]))
     if "thickness_texture" in shader.textures:  # here a program would load a picture: thin, with thick ribs
         rows = np.where(np.arange(512) * 12 % 512 < 36, 255, 64).astype(np.uint8)
@@ -123,7 +128,8 @@ def frame(shader: Shader, turn: float, size: tuple[int, int]) -> None:
     lights = [(lamp, (2.4, 2.2, 1.9)), ((1.0, 2.0, 2.0, 0.0), (0.15, 0.15, 0.2))]
     view(shader, (0.0, 0.6, 3.4), (0.0, 0.0, 0.0), size[0] / size[1], lights, (0.05, 0.05, 0.06))
     shader.context.enable(moderngl.DEPTH_TEST)
-    shader.context.enable_direct(FRAMEBUFFER_SRGB)  # the shader's colours are linear
+    if not shader.encoded:  # the shader's colours are linear
+        shader.context.enable_direct(FRAMEBUFFER_SRGB)
     shader.context.clear(0.004, 0.004, 0.008)
     shader.draw(*sphere())
 

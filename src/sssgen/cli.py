@@ -24,6 +24,8 @@ OK, CHECK_FAILED, WRONG_INPUT, INTERNAL_ERROR, INTERRUPTED, BROKEN_PIPE = 0, 1, 
 def main(argv: Sequence[str] | None = None) -> int:
     """Runs a command line; returns the exit status. Never raises."""
     given = list(sys.argv[1:] if argv is None else argv)
+    if sys.stdout is None:  # closed by the shell: what is said goes nowhere
+        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - for as long as the process
     as_json = "--json" in given
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):  # a terminal that cannot show a character shows '?'
@@ -39,6 +41,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         return INTERRUPTED
+    except OSError as error:
+        return _guarded(_report, failure(f"cannot write the output: {error.strerror or error}"), as_json)
     except Exception as error:
         if os.environ.get("SSSGEN_DEBUG"):
             import traceback

@@ -15,7 +15,7 @@ from .ir.types import Struct
 from .lang.loader import comments_before, source_line
 from .lang.polyfills import polyfill
 from .material import Material
-from .passes.chain import ChainStage, Entry, assemble
+from .passes.chain import TAKEN, ChainStage, Entry, assemble
 from .passes.cost import Cost, cost_of
 from .passes.fold import fold
 from .passes.hoist import Note, hoist
@@ -103,7 +103,7 @@ def _build(material: Material, target: Target) -> _Middle:
     stages = _stages(material, target)
     lit = material.shading == "lit"
     try:
-        linked = link([stage.link for stage in stages])
+        linked = link([stage.link for stage in stages], TAKEN)
         chained = [
             ChainStage(stage.link.role, stage.link.technique, function, stage.span)
             for stage, function in zip(stages, linked.functions, strict=True)

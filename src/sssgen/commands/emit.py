@@ -82,15 +82,13 @@ def chosen_targets(text: str, wrong: list[Diagnostic]) -> list[str]:
 
     known = list(all_targets())
     names = [name.strip() for name in text.split(",") if name.strip()]
-    if "all" in names:
-        return known
     if not names:
         wrong += failure("no target is named", f"targets: {', '.join(known)}, or all").diagnostics
     for name in names:
-        if name not in known:
+        if name not in (*known, "all"):
             hint = did_you_mean(name, [*known, "all"]) or f"targets: {', '.join(known)}, or all"
             wrong += failure(f"unknown target '{name}'", hint).diagnostics
-    return [name for name in dict.fromkeys(names) if name in known]
+    return known if "all" in names else [name for name in dict.fromkeys(names) if name in known]
 
 
 def print_warnings(warnings: list[Diagnostic]) -> None:

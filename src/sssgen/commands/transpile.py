@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ..cli import OK, print_json
 from ..data import posix
-from ..diagnostics import Diagnostic, SssgenError
+from ..diagnostics import Diagnostic, SssgenError, failure
 from ..lang.loader import load_file
 from ..library import TECHNIQUES
 from ..output import write_files
@@ -28,6 +28,10 @@ def run(arguments: Namespace) -> int:
         message = "transpile takes one target"
         wrong.append(Diagnostic("error", message, hint=f"write --target {names[0]}"))
     path = Path(arguments.FILE)
+    if arguments.output is not None and os.path.realpath(arguments.output) == os.path.realpath(path):
+        wrong += failure(
+            "the output is the input: it would be lost", "write -o with another name", path.as_posix()
+        ).diagnostics
     try:
         module = load_file(path, path.as_posix(), (TECHNIQUES,))
     except SssgenError as error:

@@ -26,7 +26,7 @@ from ..ir.types import (
     kind_of,
     spell,
 )
-from ..ir.walk import subexpressions
+from ..ir.walk import callees, subexpressions
 from . import quantities as q
 from . import syntax as s
 from .bounded import cycles, ends, skips
@@ -57,6 +57,10 @@ def check(file: s.File, text: str, included: ir.Module = ir.Module()) -> ir.Modu
     module = checker.file(file)
     reporter.check()
     return module
+
+
+MAX_CALLS = 64
+"""How deep calls may go: compilers inline them all, one in the other."""
 
 
 class _FileChecker(ExpressionChecker):
@@ -108,7 +112,18 @@ class _FileChecker(ExpressionChecker):
             names = " → ".join(key.split("(")[0] for key in cycle)
             message = f"recursion is not possible in a shader: {names}"
             self.reporter.error(functions[cycle[0]].span, message, "rewrite it as a loop")
+        self.limit_calls(functions)
         return ir.Module(tuple(structs), tuple(constants), tuple(uniforms), tuple(functions.values()))
+
+    def limit_calls(self, functions: dict[str, ir.Function]) -> None:
+        """Reports the first function whose calls go too deep; a function stands after those it calls."""
+        depth: dict[str, int] = {}
+        for key, function in functions.items():
+            depth[key] = 1 + max([depth.get(callee, 0) for callee in callees(function)], default=0)
+            if depth[key] > MAX_CALLS:
+                message = f"{function.name} calls functions more than {MAX_CALLS} deep"
+                self.reporter.error(function.span, message, "join some of them")
+                return
 
     # Declarations
 

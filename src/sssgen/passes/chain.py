@@ -68,6 +68,14 @@ SURFACE_FIELDS = ("albedo", "alpha", "normal", "metallic", "roughness", "occlusi
 _RESULT_OF_ROLE = {"coordinates": "uv", "geometry": "hit", "lighting": "color", "output": "color"}
 
 
+TAKEN = frozenset(
+    {"Surface", "surface", "light", *INPUTS}
+    | {f"evaluate_{kind}" for kind in ("surface", "translucency", "lighting", "color", "output")}
+    | {"BaseColor", "NormalTS", "Metallic", "Smoothness", "Occlusion", "Emission", "Alpha", "Color"}
+)
+"""What the assembled functions, their inputs and the shells' variables are called: no uniform is called so."""
+
+
 class ChainStage(NamedTuple):
     """A stage with its linked function."""
 

@@ -76,8 +76,7 @@ class _Legaliser:
             raise Unsupported(
                 "a function cannot return an array for this target: give it an out parameter", function.span
             )
-        short_circuit = self.can("short_circuit")
-        if not self.can("out_parameters") or is_awkward(function, self.functions, short_circuit):
+        if not self.can("out_parameters") or is_awkward(function, self.functions):
             function = lift(function, self.functions)
         body = function.body or ()
         self.names = {param.name for param in function.params}
@@ -341,13 +340,6 @@ class _Legaliser:
 
     def construct(self, construct: ir.Construct) -> ir.Expr:
         type_, args, span = construct.type, construct.args, construct.span
-        if isinstance(type_, Vector) and len(args) == 1 and isinstance(args[0].type, Vector):
-            if args[0].type.size > type_.size:  # vec3(v4) keeps the first three
-                value = ir.Swizzle(Vector(args[0].type.kind, type_.size), args[0], "xyz"[: type_.size], span)
-                return value if value.type == type_ else ir.Construct(type_, (value,), span)
-        if isinstance(type_, Scalar) and len(args) == 1 and isinstance(args[0].type, Vector):
-            first = ir.Swizzle(Scalar(args[0].type.kind), args[0], "x", span)
-            return first if first.type == type_ else ir.Construct(type_, (first,), span)
         if isinstance(type_, Matrix) and len(args) == 1 and not self.can("matrix_conversions"):
             return self.matrix_from(type_, args[0], span)
         if isinstance(type_, Struct) and not self.can("struct_constructors"):

@@ -38,7 +38,7 @@ from ..ir.nodes import (
     While,
 )
 from ..ir.types import BOOL, VOID, Type
-from ..ir.walk import all_expressions, callees, operands, root, statements, subexpressions, with_operands
+from ..ir.walk import callees, expressions, operands, root, statements, subexpressions, with_operands
 from .scopes import declared, fresh
 
 Functions = Mapping[str, Function]
@@ -62,23 +62,19 @@ def lift(function: Function, functions: Functions) -> Function:
     return _Lifter(function, functions).run()
 
 
-def is_awkward(function: Function, functions: Functions, short_circuit: bool) -> bool:
-    """Whether languages would differ in what the function's expressions do.
+def is_awkward(function: Function, functions: Functions) -> bool:
+    """Whether a writing call stands inside a larger expression.
 
-    Not all evaluate from left to right; and without `short_circuit` the right side of `&&` and both arms of a choice
-    are always evaluated.
+    There languages differ in the order of evaluation, and in whether the right side of `&&` and both arms of a choice
+    are always evaluated; and what other passes compute before the statement would be computed too early.
     """
     lifter = _Lifter(function, functions)
     if not lifter.writes_in(function.body or ()):
         return False
-    for expr in all_expressions(function.body or ()):
-        parts = operands(expr)
-        chooses = isinstance(expr, Select) or (isinstance(expr, Binary) and expr.op in ("&&", "||"))
-        if chooses and not short_circuit and any(lifter.writes(part) for part in parts[1:]):
-            return True
-        reads = [{part.name for part in subexpressions(one) if isinstance(part, Local)} for one in parts]
-        for index, names in enumerate(map(lifter.written, parts)):
-            if not chooses and any(names & read for read in reads[:index] + reads[index + 1 :]):
+    for stmt in statements(function.body or ()):
+        for expr in expressions(stmt):
+            parts = operands(expr) if isinstance(expr, Call) else (expr,)
+            if any(lifter.writes(part) for part in parts):
                 return True
     return False
 

@@ -6,7 +6,7 @@ appears once; one that they use differently (another distance function behind it
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import NamedTuple
 
 from ..ir.nodes import Call, Constant, Expr, Function, Global, Module, Span, StructDecl, Uniform
@@ -53,9 +53,12 @@ class LinkError(Exception):
         self.message, self.span = message, span
 
 
-def link(stages: Sequence[LinkStage]) -> Linked:
-    """Links the stages. Raises LinkError for an unbound slot or two structs of one name."""
-    linker = _Linker()
+def link(stages: Sequence[LinkStage], taken: Collection[str] = ()) -> Linked:
+    """Links the stages; no uniform, constant or function gets a name that is `taken`.
+
+    Raises LinkError for an unbound slot or two structs of one name.
+    """
+    linker = _Linker(taken)
     functions = tuple(linker.stage(index, stage) for index, stage in enumerate(stages))
     module = Module(
         tuple(linker.structs.values()),
@@ -67,7 +70,8 @@ def link(stages: Sequence[LinkStage]) -> Linked:
 
 
 class _Linker:
-    def __init__(self) -> None:
+    def __init__(self, taken: Collection[str]) -> None:
+        self.taken = taken
         self.structs: dict[str, StructDecl] = {}
         self.constants: dict[str, Constant] = {}
         self.uniforms: dict[str, Uniform] = {}
@@ -102,7 +106,7 @@ class _Linker:
         for struct in module.structs:
             self.struct(struct)
         name, count = function.name, 2
-        while function._replace(name=name).key in self.functions:
+        while name in self.taken or function._replace(name=name).key in self.functions:
             name, count = f"{function.name}_{count}", count + 1
         linked = rewrite_function(function._replace(name=name), _renaming(calls, names))
         self.instances[identity] = self.functions[linked.key] = linked
@@ -155,7 +159,7 @@ class _Linker:
         return name
 
     def free_name(self, name: str, technique: str) -> str:
-        taken = self.uniforms.keys() | self.constants.keys()
+        taken = self.uniforms.keys() | self.constants.keys() | set(self.taken)
         candidates = [name, f"{technique}_{name}"]
         count = 2
         while candidates[0] in taken:

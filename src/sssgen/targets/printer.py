@@ -15,6 +15,7 @@ from ..ir import nodes as ir
 from ..ir import signatures
 from ..ir.intrinsics import BUILTINS
 from ..ir.operators import PRECEDENCE
+from ..ir.rules import FLOAT_MAX
 from ..ir.types import FLOAT, INT, UINT, Array, Sampler, Struct, Type, spell
 from ..ir.walk import expressions, root, statements, subexpressions
 from .descriptor import Target
@@ -329,6 +330,10 @@ def documented(text: str, uniform: ir.Uniform) -> Line:
 
 def float_text(value: float) -> str:
     """The shortest decimal that reads back to the same float32, always with a point."""
+    if abs(value) > FLOAT_MAX:  # the largest float: any shorter decimal is beyond it, which WGSL refuses
+        value = math.copysign(FLOAT_MAX, value)
+    if abs(value) == FLOAT_MAX:
+        return "-3.4028234e38" if value < 0.0 else "3.4028234e38"
     if value == 0.0:
         return "-0.0" if math.copysign(1.0, value) < 0.0 else "0.0"
     (nearest,) = struct.unpack("f", struct.pack("f", value))

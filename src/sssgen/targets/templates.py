@@ -9,8 +9,9 @@ import os
 from typing import TYPE_CHECKING, Any
 
 from .. import cache
-from ..data import place
-from ..diagnostics import failure
+from ..data import place, posix
+from ..diagnostics import Diagnostic, SssgenError, failure
+from ..ir.spans import Span
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -31,14 +32,22 @@ def render(template: str, context: dict[str, Any], templates: str | None, beside
         raise failure(f"there is no template '{error.name}'", file=template) from None
     except TemplateSyntaxError as error:
         raise failure(f"line {error.lineno}: {error.message}", file=error.name or template) from None
-    except TemplateError as error:
-        raise failure(
-            f"the template cannot be rendered: {error.message}",
-            "docs/templates.md lists what a template may use",
-            file=template,
-        ) from None
-    except (TypeError, ValueError, KeyError, ArithmeticError, RecursionError) as error:
-        raise failure(f"the template cannot be rendered: {error}", file=template) from None
+    except (TemplateError, TypeError, ValueError, KeyError, ArithmeticError, RecursionError, MemoryError) as error:
+        file, line = _place(error) or (template, 0)
+        message = f"the template cannot be rendered: {error or type(error).__name__}"
+        hint = "docs/templates.md lists what a template may use"
+        raise SssgenError([Diagnostic("error", message, Span(posix(file), line, 1, line, 2), hint)]) from None
+
+
+def _place(error: BaseException) -> tuple[str, int] | None:
+    """The template and the line that an error came up in: the innermost frame of a template in its traceback."""
+    found, frames = None, error.__traceback__
+    while frames is not None:
+        name = frames.tb_frame.f_code.co_filename
+        if name.endswith(".j2"):
+            found = name, frames.tb_lineno
+        frames = frames.tb_next
+    return found
 
 
 def _environment(templates: str | None, beside: str) -> Environment:

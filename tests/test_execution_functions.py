@@ -1,21 +1,24 @@
-"""Every technique of the library, run on real back ends on random inputs, against what the numpy target makes of it."""
+"""Every technique of the library, and random programs, run on real back ends against the numpy target's text."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
+from random import Random
 from typing import Any
 
 import numpy as np
 import pytest
 
-from against_numpy import DTYPES, arguments, differences, drawn, pixels, shape, textures
-from execute import Call, backend
+from against_numpy import DTYPES, Draw, arguments, differences, drawn, pixels, shape, textures
+from execute import Backend, Call, backend
+from random_programs import HELPERS, Programs
 from sssgen import library, slots
 from sssgen.harness.compilers import CompilerMissing
 from sssgen.ir.nodes import Call as CallNode
 from sssgen.ir.nodes import Declare, Evaluate, Function, Local, Module, Param, Return, Stmt, Uniform
 from sssgen.ir.types import VOID, kind_of
+from sssgen.lang.loader import load_text
 from sssgen.passes.fold import fold
 from sssgen.passes.hoist import hoist
 from sssgen.passes.link import LinkStage, link
@@ -93,7 +96,7 @@ def program() -> tuple[Module, tuple[tuple[str, Function], ...]]:
     return module, tuple((probe.name, closed[probe.name]) for probe in made)
 
 
-def draw(param: Param, rng: np.random.Generator, lanes: int) -> np.ndarray[Any, Any]:
+def drawn_for_technique(param: Param, rng: np.random.Generator, lanes: int) -> np.ndarray[Any, Any]:
     """An argument in the range of its quantity, the same in a quad but for what is linear over the image."""
     uniform = next((one for one in program()[0].uniforms if one.name == param.name), None)
     if uniform is not None:
@@ -125,17 +128,68 @@ def drawn_uniform(uniform: Uniform, rng: np.random.Generator, lanes: int) -> np.
     return value.astype(np.float32)
 
 
-@pytest.mark.parametrize("name", ["gl", "wgpu", "hlsl-dxc"])
-def test_techniques(name: str, compiler: Callable[[str], Any]) -> None:
+@pytest.fixture(params=["gl", "wgpu", "hlsl-dxc"])
+def gpu(request: pytest.FixtureRequest, compiler: Callable[[str], Any]) -> Backend:
+    """A back end for each language; where one is missing, a skip, or in CI a failure."""
     try:
-        gpu = backend(name)
+        return backend(request.param)
     except CompilerMissing:
-        compiler("naga" if name == "wgpu" else "gl")
+        compiler("naga" if request.param == "wgpu" else "gl")
         raise
+
+
+def called(title: str, function: Function, draw: Draw, lanes: int) -> tuple[str, Call]:
+    params = tuple(param.type for param in function.params)
+    return title, Call(function.name, params, function.result, arguments(function, draw, lanes))
+
+
+def test_techniques(gpu: Backend) -> None:
     module, found = program()
-    calls = []
-    for title, function in found:
-        params = tuple(param.type for param in function.params)
-        calls.append((title, Call(function.name, params, function.result, arguments(function, draw, LANES))))
+    calls = [called(title, function, drawn_for_technique, LANES) for title, function in found]
     wrong = differences(gpu, module, calls, textures(mipmaps=False), "float32", 1e-4, LOOSE)
+    assert not wrong, "\n\n".join([f"{len(wrong)} of {len(calls)}", *wrong])
+
+
+# Random programs
+
+
+class ProgramsInBounds(Programs):
+    """Random programs that stay inside their array."""
+
+    def number(self, depth: int = 2) -> str:
+        return self.inside(super().number(depth))
+
+    def place(self) -> str:
+        return self.inside(super().place())
+
+    def inside(self, text: str) -> str:
+        return f"list[abs({text[5:-1]}) % 3]" if text.startswith("list[") else text
+
+
+@cache
+def random_module() -> tuple[Module, tuple[Function, ...]]:
+    """A module of random functions, and their probes."""
+    functions = []
+    for seed in range(24):
+        source = ProgramsInBounds(Random(seed), size=3).program()
+        functions.append(source[source.index("float f(") :].replace("float f(", f"float random_{seed}(", 1))
+    module = load_text("\n".join([HELPERS, *functions]), "random")
+    made = [
+        probe for function in module.functions if function.name.startswith("random_") for probe in probes(function)
+    ]
+    return module._replace(functions=(*module.functions, *made)), tuple(made)
+
+
+def drawn_exactly(param: Param, rng: np.random.Generator, lanes: int) -> np.ndarray[Any, Any]:
+    """Numbers with which float32 computes exactly, so that no condition differs."""
+    if kind_of(param.type) == "int":
+        return rng.integers(0, 4, lanes).astype(np.int32)
+    return (rng.integers(-8, 9, lanes) / 2).astype(np.float32)
+
+
+def test_random_programs(gpu: Backend) -> None:
+    """Control flow that differs from lane to lane, out parameters, choices, loops."""
+    module, made = random_module()
+    calls = [called(function.name, function, drawn_exactly, LANES) for function in made]
+    wrong = differences(gpu, module, calls, {}, "float32", 1e-4)
     assert not wrong, "\n\n".join([f"{len(wrong)} of {len(calls)}", *wrong])
