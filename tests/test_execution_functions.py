@@ -174,9 +174,7 @@ def random_module() -> tuple[Module, tuple[Function, ...]]:
         source = ProgramsInBounds(Random(seed), size=3).program()
         functions.append(source[source.index("float f(") :].replace("float f(", f"float random_{seed}(", 1))
     module = load_text("\n".join([HELPERS, *functions]), "random")
-    made = [
-        probe for function in module.functions if function.name.startswith("random_") for probe in probes(function)
-    ]
+    made = [probe for function in module.functions if function.name.startswith("random_") for probe in probes(function)]
     return module._replace(functions=(*module.functions, *made)), tuple(made)
 
 

@@ -90,13 +90,13 @@ def load_material(path_or_name: str | os.PathLike[str]) -> Material:
     text = os.fspath(path_or_name)
     if not text.endswith(".toml") and "/" not in text and "\\" not in text and not os.path.isfile(text):
         note(text)
-        known = examples()
-        if text not in known:
+        path = os.path.join(place("examples"), text, f"{text}.toml")
+        if not os.path.isfile(path):
+            known = examples()
             beside = f"did you mean '{text}.toml'?" if os.path.isfile(f"{text}.toml") else ""
             others = f"give a path that ends in .toml, or one of: {', '.join(known)}"
             raise failure(f"unknown material '{text}'", beside or did_you_mean(text, known) or others)
-        shown = f"examples/{text}/{text}.toml"
-        return _remembered(known[text], shown)
+        return _remembered(path, f"examples/{text}/{text}.toml")
     return _remembered(text, posix(text))
 
 

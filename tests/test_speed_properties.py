@@ -1,0 +1,260 @@
+"""What makes emitting fast, told by what is loaded, made and kept rather than by clocks."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from sssgen import cache, cli, compiler, emitted, programs
+from sssgen.ir.types import Sampler, kind_of
+from sssgen.material import Material, Stage, examples, load_material, parse_material
+from sssgen.targets import emit
+
+TARGETS = list(compiler.all_targets())
+LANTERN = Path(examples()["paper_lantern"]).read_text(encoding="utf-8")
+EDITED = ("distortion = 0.15", "distortion = 0.25")
+
+ALONE = """
+/**
+The colour alone.
+role: surface
+*/
+void plain(out vec3 albedo) {
+    albedo = vec3(0.25);
+}
+"""
+MATERIAL = '[material]\nname = "plain"\n[surface]\ntechnique = "plain.sss"\n'
+
+
+@pytest.fixture(autouse=True)
+def fresh(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
+    """No program and no result to begin with, in memory or on disk."""
+    monkeypatch.setattr(cache, "folder", lambda: str(tmp_path))
+    for memory in (compiler._programs, compiler._compiled, programs._middles):
+        memory.clear()
+    yield
+    compiler._programs.clear()
+
+
+# What is loaded
+
+
+def loaded(code: str, kept: Path, *names: str) -> set[str]:
+    """Which of these modules a new process has loaded after this code."""
+    script = f"import sys\n{code}\nprint('loaded', *[name for name in {names!r} if name in sys.modules])"
+    environment = {**os.environ, "SSSGEN_CACHE": str(kept)}
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True, env=environment)
+    return set(done.stdout.splitlines()[-1].split()[1:])
+
+
+def test_the_command_line_loads_nothing_heavy(tmp_path: Path) -> None:
+    heavy = ("numpy", "lark", "jinja2", "json", "tomllib", "argparse", "pathlib", "sssgen.compiler")
+    assert loaded("import sssgen.cli, sssgen.commands.emit", tmp_path, *heavy) == set()
+
+
+def test_what_an_emit_with_warm_caches_loads(tmp_path: Path) -> None:
+    source, kept = tmp_path / "lantern.toml", tmp_path / "cache"
+    heavy = ("numpy", "lark", "jinja2", "tomllib", "pathlib", "sssgen.programs", "sssgen.lang.check", "sssgen.material")
+    emit_all = f"from sssgen.cli import main; main(['emit', {str(source)!r}, '-t', 'all', '-o', {str(tmp_path)!r}])"
+    source.write_text(LANTERN, encoding="utf-8")
+    assert {"lark", "jinja2", "sssgen.programs"} <= loaded(emit_all, kept, *heavy)
+    assert loaded(emit_all, kept, *heavy) == set()
+    source.write_text(LANTERN.replace(*EDITED), encoding="utf-8")
+    assert not {"numpy", "lark", "sssgen.programs", "sssgen.lang.check"} & loaded(emit_all, kept, *heavy)
+
+
+# What is kept in the process
+
+
+def test_the_same_input_gives_the_same_result() -> None:
+    material, path = load_material("ice"), examples()["ice"]
+    assert compiler.compile(material, "wgsl") is compiler.compile(material, "wgsl")
+    assert compiler.compile(path, "wgsl") is compiler.compile(path, "wgsl")
+    assert compiler.compile(material, "wgsl") is not compiler.compile(material, "wgsl", "functions")
+
+
+def test_a_changed_file_is_compiled_again(tmp_path: Path) -> None:
+    material, technique = tmp_path / "plain.toml", tmp_path / "plain.sss"
+    material.write_text(MATERIAL, encoding="utf-8")
+    technique.write_text(ALONE, encoding="utf-8")
+    first = compiler.compile(material, "wgsl")
+    technique.write_text(ALONE.replace("0.25", "0.125"), encoding="utf-8")
+    second = compiler.compile(material, "wgsl")
+    material.write_text(MATERIAL.replace('"plain"', '"other"'), encoding="utf-8")
+    third = compiler.compile(material, "wgsl")
+    assert "vec3f(0.25)" in first.files["plain.wgsl"]
+    assert "vec3f(0.125)" in second.files["plain.wgsl"]
+    assert "other.wgsl" in third.files
+
+
+def test_what_is_kept_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compiler, "_KEPT", 4)
+    for number in range(12):
+        compiler.compile(edited(load_material("resin_inlay"), number), "wgsl")
+    assert len(compiler._compiled) <= 4
+    assert len(compiler._programs) <= 4
+
+
+# Variants
+
+
+def edited(material: Material, number: int) -> Material:
+    """The material with other values of all its free parameters, in their ranges."""
+    return material._replace(stages=tuple([_edited(stage, number) for stage in material.stages]))
+
+
+def _edited(stage: Stage, number: int) -> Stage:
+    values = dict(stage.values)
+    for uniform in stage.technique.uniforms:
+        if uniform.name in stage.fixed or isinstance(uniform.type, Sampler):
+            continue
+        old = values.get(uniform.name, uniform.default)
+        if kind_of(uniform.type) == "float":
+            values[uniform.name] = tuple(value * (1.0 - 0.001 * (number + 1)) for value in old)
+        elif kind_of(uniform.type) == "int":
+            values[uniform.name] = tuple(float(int(value) + number % 2) for value in old)
+    return stage._replace(values=values)
+
+
+@pytest.mark.parametrize("name", examples())
+def test_a_variant_is_what_it_is_when_its_values_go_through_the_passes(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    original, variant = load_material(name), edited(load_material(name), 0)
+    kept = {}
+    for target in TARGETS:
+        for form in compiler.FORMS:
+            compiler.compile(original, target, form)
+            kept[target, form] = compiler.compile(variant, target, form).files
+    compiler._programs.clear()
+    compiler._compiled.clear()
+    monkeypatch.setattr(cache, "folder", lambda: "")
+    monkeypatch.setattr(compiler, "_bare", lambda stage, fixed: stage)
+    for (target, form), files in kept.items():
+        assert compiler.compile(variant, target, form).files == files, (target, form)
+
+
+def test_variants_cost_no_pass_and_one_rendering_each(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls = {"passes": 0, "renderings": 0}
+
+    def count(module: object, name: str, what: str) -> None:
+        original = getattr(module, name)
+
+        def counted(*arguments: object) -> object:
+            calls[what] += 1
+            return original(*arguments)
+
+        monkeypatch.setattr(module, name, counted)
+
+    for name in ("link", "fold", "prune", "hoist", "legalise", "rename", "print_parts"):
+        count(programs, name, "passes")
+    count(emit, "render", "renderings")
+    material = load_material("paper_lantern")
+    compiler.compile(material, "unity-urp")
+    first, calls["passes"], calls["renderings"] = dict(calls), 0, 0
+    found = []
+    for count_of_variants in (50, 200):
+        for number in range(count_of_variants):
+            compiler.compile(edited(material, number), "unity-urp")
+        found.append(dict(calls))
+        calls["passes"], calls["renderings"] = 0, 0
+    assert first == {"passes": 7, "renderings": 1}
+    assert found == [{"passes": 0, "renderings": 50}, {"passes": 0, "renderings": 200}]
+
+
+def test_what_changes_the_program_makes_another_one() -> None:
+    material = parse_material(LANTERN, "lantern.toml")
+    fixed = parse_material(LANTERN.replace(EDITED[0], "distortion = { value = 0.15, fixed = true }"), "lantern.toml")
+    texts = [compiler.compile(one, "glsl-330").files["paper_lantern.glsl-330.frag"] for one in (material, fixed)]
+    assert ["uniform float distortion;" in text for text in texts] == [True, False]
+
+
+# What the command line keeps on disk
+
+
+def test_a_command_is_recalled_until_something_changes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    source, technique = Path("plain.toml"), Path("plain.sss")
+    source.write_text(MATERIAL, encoding="utf-8")
+    technique.write_text('#include "common/uv_scale.sss"\n' + ALONE, encoding="utf-8")
+    command = (["plain.toml"], "wgsl", "shader")
+    assert emitted.recall(*command) is None
+    assert cli.main(["emit", "plain.toml", "-t", "wgsl", "-o", "out"]) == 0
+    made = emitted.recall(*command)
+    assert made is not None
+    assert made.files == {path.name: path.read_text(encoding="utf-8") for path in Path("out").iterdir()}
+    assert emitted.recall(["plain.toml"], "wgsl", "functions") is None
+    assert emitted.recall(["plain.toml"], "all", "shader") is None
+    for path in (source, technique):
+        text = path.read_text(encoding="utf-8")
+        path.write_text(text + "\n", encoding="utf-8")
+        assert emitted.recall(*command) is None
+        path.write_text(text, encoding="utf-8")
+        assert emitted.recall(*command) is not None
+    Path("common").mkdir()  # a file that stands before the library's
+    Path("common/uv_scale.sss").write_text("", encoding="utf-8")
+    assert emitted.recall(*command) is None
+
+
+def test_a_damaged_entry_is_made_again(tmp_path: Path) -> None:
+    material = load_material("resin_inlay")
+    first = compiler.compile(material, "wgsl").files
+    entries = [path for path in tmp_path.iterdir() if path.is_file()]
+    assert any(path.name.startswith("program-") for path in entries)
+    for path in entries:
+        path.write_bytes(path.read_bytes()[:100])
+    compiler._programs.clear()
+    compiler._compiled.clear()
+    assert compiler.compile(material, "wgsl").files == first
+
+
+# The command line's short cut
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        ["emit", "a.toml", "-t", "all", "-o", "out"],
+        ["emit", "a.toml", "b", "--target", "wgsl,hlsl", "--output", "out", "--form", "functions"],
+        ["emit", "-o", "out", "-t", "wgsl", "a.toml"],
+        ["emit", "-t", "wgsl", "-t", "hlsl", "-o", "out", "a.toml", "b.toml"],
+    ],
+)
+def test_a_plain_emit_is_read_as_argparse_reads_it(given: list[str]) -> None:
+    found = cli.plain_emit(given)
+    assert found is not None
+    assert {**vars(found), "version": None} == vars(cli.parser().parse_args(given))
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        [],
+        ["emit"],
+        ["show", "a"],
+        ["emit", "a.toml", "-o", "out"],
+        ["emit", "a.toml", "-t"],
+        ["emit", "a.toml", "-t", "wgsl", "b.toml", "-o", "out"],
+        ["emit", "a.toml", "-twgsl", "-o", "out"],
+        ["emit", "a.toml", "--target=wgsl", "-o", "out"],
+        ["emit", "a.toml", "-t", "wgsl", "-o", "out", "--json"],
+        ["emit", "a.toml", "-t", "wgsl", "-o", "out", "--form", "neither"],
+        ["emit", "a.toml", "-t", "wgsl", "-o", "out", "--templates", "mine"],
+        ["emit", "--help"],
+    ],
+)
+def test_whatever_asks_for_more_is_left_to_argparse(given: list[str]) -> None:
+    assert cli.plain_emit(given) is None
+
+
+def test_the_reflection_is_the_files_and_the_callers_to_change() -> None:
+    made = compiler.compile("ice", "wgsl")
+    assert made.reflection == json.loads(made.files["ice.wgsl.reflection.json"])
+    made.reflection["uniforms"].clear()
+    assert made.reflection["uniforms"]
