@@ -1,9 +1,9 @@
-"""How fast emitting is, as ratios measured in one run: `make bench`, or python benchmarks/bench_emit.py.
+"""How fast emitting is, as ratios measured in one run: `make bench`, or python benchmarks/bench_emit.py [MATERIAL…].
 
-Cold: a whole process of `sssgen emit` of one material to all targets, beside one `glslangValidator` process on the
-GLSL it emitted, in turn, medians. `warm caches` means that the cache folder holds the grammar's tables, the parsed
-techniques and the compiled templates; the material is another one each time, so no result is found there.
-Warm: in one process, loaded materials whose parameters differ each time.
+Everything is measured beside one `glslangValidator` process on the fragment shader that was emitted, in turn, medians
+of the rounds. Cold is a whole process of `sssgen emit` of one material to all targets: with nothing changed since the
+last one; with the value of a parameter changed each time; with a parameter folded to a new constant each time, so that
+every pass runs again; with an empty cache folder. Warm is one process, the materials loaded, changed in the same ways.
 """
 
 from __future__ import annotations
@@ -21,87 +21,148 @@ from pathlib import Path
 import sssgen
 from sssgen.lang.check import check
 from sssgen.lang.parser import parse
-from sssgen.material import parse_material
+from sssgen.material import Material, examples, parse_material
 
 ROOT = Path(__file__).parent.parent
-TEXT = (ROOT / "examples/paper_lantern/paper_lantern.toml").read_text("utf-8")
-COLD_ROUNDS = 9
+MATERIALS = ("paper_lantern", "ice")
+ROUNDS = 9
 VARIANTS = 1000
 
-
-def variant(index: int) -> str:
-    """The material with one parameter changed."""
-    assert "distortion = 0.15" in TEXT
-    return TEXT.replace("distortion = 0.15", f"distortion = {0.1 + index / 100000:.5f}")
+Case = Callable[[int], object]
 
 
-def milliseconds(run: Callable[[], object]) -> float:
-    start = time.perf_counter()
-    run()
-    return (time.perf_counter() - start) * 1000
+def text_of(name: str, value: str) -> str:
+    """The example with another value of its parameter `distortion`."""
+    lines = Path(examples()[name]).read_text("utf-8").splitlines(keepends=True)
+    assert any(line.startswith("distortion = ") for line in lines)
+    return "".join(f"distortion = {value}\n" if line.startswith("distortion = ") else line for line in lines)
 
 
-def process(command: list[str], cache: str) -> float:
-    environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
-    environment |= {"SSSGEN_CACHE": cache}
-    return milliseconds(lambda: subprocess.run(command, env=environment, check=True, stdout=subprocess.DEVNULL))
+def variant(name: str, index: int) -> str:
+    """The material with the parameter changed."""
+    return text_of(name, f"{0.1 + index / 100000:.5f}")
 
 
-def cold() -> None:
-    with tempfile.TemporaryDirectory() as folder:
-        source, out, cache = Path(folder, "lantern.toml"), str(Path(folder, "out")), str(Path(folder, "cache"))
-        emit = [sys.executable, "-m", "sssgen", "emit", str(source), "--target", "all", "-o", out]
-        validate = ["glslangValidator", str(Path(out, "paper_lantern.glsl-330.frag"))]
-        source.write_text(variant(0), "utf-8")
-        process(emit, cache)  # bytecode and caches
-        rounds: dict[str, list[float]] = {"glslang": [], "warm": [], "same": [], "empty": [], "python": []}
-        for index in range(1, COLD_ROUNDS + 1):
-            rounds["glslang"].append(process(validate, cache))
-            source.write_text(variant(index), "utf-8")
-            rounds["warm"].append(process(emit, cache))
-            rounds["same"].append(process(emit, cache))
-            rounds["empty"].append(process(emit, str(Path(folder, f"cache{index}"))))
-            rounds["python"].append(process([sys.executable, "-c", "pass"], cache))
-        median = {name: statistics.median(times) for name, times in rounds.items()}
-        for name, what in (
-            ("warm", "cold process, warm caches, a changed material"),
-            ("same", "cold process, warm caches, the same material"),
-            ("empty", "cold process, an empty cache folder"),
-            ("python", "(an empty Python process)"),
-        ):
-            print(f"{what:50} {median[name] / median['glslang']:5.2f} x glslangValidator ({median[name]:.0f} ms)")
+def rebuilt(name: str, index: int) -> str:
+    """The material with the parameter folded to another constant."""
+    return text_of(name, f"{{ value = {0.1 + index / 100000:.5f}, fixed = true }}")
 
 
-def warm() -> None:
+def process(command: list[str], cache: Path) -> None:
+    environment = {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
+    environment["SSSGEN_CACHE"] = str(cache)
+    subprocess.run(command, env=environment, check=True, stdout=subprocess.DEVNULL)
+
+
+def cold(name: str, folder: Path) -> dict[str, Case]:
+    """The cases in processes of their own."""
+    out, cache = folder / "out", folder / "cache"
+
+    def emit(case: str, text: str, kept: Path = cache) -> None:
+        source = folder / f"{case}.toml"
+        source.write_text(text, "utf-8")
+        process([sys.executable, "-m", "sssgen", "emit", str(source), "--target", "all", "-o", str(out)], kept)
+
+    for case in ("same", "changed", "rebuilt"):  # bytecode and caches
+        emit(case, variant(name, 0))
+    shader = folder / "shader.frag"
+    shader.write_bytes((out / f"{name}.glsl-330.frag").read_bytes())
+    return {
+        "one glslangValidator process": lambda _: process(["glslangValidator", str(shader)], cache),
+        "(an empty Python process)": lambda _: process([sys.executable, "-c", "pass"], cache),
+        "cold, nothing changed": lambda _: emit("same", variant(name, 0)),
+        "cold, a parameter changed": lambda index: emit("changed", variant(name, index + 1)),
+        "cold, a constant changed": lambda index: emit("rebuilt", rebuilt(name, index + 1)),
+        "cold, an empty cache folder": lambda index: emit("same", variant(name, 0), folder / f"cache {index}"),
+    }
+
+
+def warm(name: str) -> dict[str, Case]:
+    """The cases in this process."""
     targets = list(sssgen.all_targets())
-    materials = [
-        parse_material(variant(index), ROOT / "examples/paper_lantern/paper_lantern.toml") for index in range(VARIANTS)
-    ]
-    sssgen.compile(materials[0], "wgsl")
+    path = examples()[name]
+
+    def materials(text: Callable[[str, int], str], first: int) -> list[Material]:
+        return [parse_material(text(name, first + index), path) for index in range(ROUNDS + 1)]
+
+    one, every, other = materials(variant, 1000), materials(variant, 2000), materials(rebuilt, 1000)
+    known = sssgen.load_material(path)
     for target in targets:
-        sssgen.compile(materials[1], target)
-    one = statistics.median(milliseconds(lambda m=m: sssgen.compile(m, "wgsl")) for m in materials[2:60])
-    each = [milliseconds(lambda m=m: [sssgen.compile(m, target) for target in targets]) for m in materials[60:120]]
-    print(f"{'warm, a changed material, one target':50} {one:5.2f} ms")
-    print(f"{f'warm, a changed material, all {len(targets)} targets':50} {statistics.median(each):5.2f} ms")
-    hit = milliseconds(lambda: [sssgen.compile("ice", "wgsl") for _ in range(1000)]) / 1000
-    print(f"{'the same input again, by name':50} {hit:5.3f} ms")
+        sssgen.compile(known, target)
+    return {
+        "warm, a parameter changed, one target": lambda index: sssgen.compile(one[index], "wgsl"),
+        f"warm, a parameter changed, all {len(targets)}": lambda index: [
+            sssgen.compile(every[index], t) for t in targets
+        ],
+        f"warm, a constant changed, all {len(targets)}": lambda index: [
+            sssgen.compile(other[index], t) for t in targets
+        ],
+        "unchanged, by its path": lambda _: sssgen.compile(path, "wgsl"),
+        "unchanged, a loaded material": lambda _: sssgen.compile(known, "wgsl"),
+    }
+
+
+def measure(name: str) -> None:
+    """Prints the table of one material."""
+    with tempfile.TemporaryDirectory() as folder:
+        cases = cold(name, Path(folder)) | warm(name)
+        times: dict[str, list[float]] = {case: [] for case in cases}
+        for index in range(ROUNDS + 1):
+            for case, run in cases.items():
+                start = time.perf_counter()
+                run(index)
+                times[case].append(time.perf_counter() - start)
+    medians = {case: statistics.median(found[1:]) for case, found in times.items()}
+    unit = medians["one glslangValidator process"]
+    print(f"\n| {name:38} |  ratio |        ms |\n|{'-' * 40}|-------:|----------:|")
+    for case, seconds in medians.items():
+        print(f"| {case:38} | {seconds / unit:6.3f} | {seconds * 1000:9.3f} |")
+
+
+def measure_variants(name: str) -> None:
+    """Prints how many variants a second there are, and whether the last take as long as the first."""
+    materials = [parse_material(variant(name, 5000 + index), examples()[name]) for index in range(VARIANTS)]
     parts = []
     for start in range(0, VARIANTS, VARIANTS // 4):
-        part = materials[start : start + VARIANTS // 4]
-        parts.append(milliseconds(lambda part=part: [sssgen.compile(m, "hlsl") for m in part]))
-    print(f"{f'{VARIANTS} variants, one target':50} {1000 * VARIANTS / sum(parts):5.0f} a second; quarters: "
-          + ", ".join(f"{part / parts[0]:.2f}" for part in parts))  # fmt: skip
+        began = time.perf_counter()
+        for material in materials[start : start + VARIANTS // 4]:
+            sssgen.compile(material, "hlsl")
+        parts.append(time.perf_counter() - began)
+    shares = ", ".join(f"{part / parts[0]:.2f}" for part in parts)
+    print(
+        f"\n{VARIANTS} variants of {name}, one target: {VARIANTS / sum(parts):.0f} a second; the quarters take {shares}"
+    )
+
+
+def measure_parsing() -> None:
+    """Prints how fast the front end reads."""
     files = [path.read_text("utf-8") for path in sorted((ROOT / "src/sssgen/techniques").glob("common/*.sss"))]
     text = "\n".join(part for part in files if "#include" not in part and "uniform" not in part) * 40
-    spent = milliseconds(lambda: parse(text, "all.sss"))
-    print(f"{'parsing':50} {len(text) / spent:5.0f} kB/s")
-    one_file = files[0]
-    spent = milliseconds(lambda: [check(parse(one_file, "one.sss"), one_file) for _ in range(20)])
-    print(f"{'parsing and checking':50} {20 * len(one_file) / spent:5.0f} kB/s")
+    start = time.perf_counter()
+    parse(text, "all.sss")
+    parsed = time.perf_counter() - start
+    start = time.perf_counter()
+    for _ in range(20):
+        check(parse(files[0], "one.sss"), files[0])
+    checked = time.perf_counter() - start
+    rates = len(text) / parsed / 1000, 20 * len(files[0]) / checked / 1000
+    print(f"the front end: {rates[0]:.0f} kB/s; with the checker {rates[1]:.0f} kB/s")
+
+
+def machine() -> str:
+    """The machine in one line."""
+    name = platform.machine()
+    if Path("/proc/cpuinfo").is_file():
+        lines = Path("/proc/cpuinfo").read_text("utf-8").splitlines()
+        name = next((line.partition(": ")[2] for line in lines if line.startswith("model name")), name)
+    said = subprocess.run(["glslangValidator", "--version"], capture_output=True, text=True, check=True).stdout
+    python = f"Python {platform.python_version()}"
+    return f"{name}, {os.cpu_count()} cores, {platform.system()}, {python}, {said.splitlines()[0]}"
 
 
 if __name__ == "__main__":
-    print(f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}")
-    cold()
-    warm()
+    print(machine())
+    for chosen in sys.argv[1:] or MATERIALS:
+        measure(chosen)
+        measure_variants(chosen)
+    measure_parsing()

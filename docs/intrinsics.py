@@ -6,7 +6,8 @@ from pathlib import Path
 
 from sssgen.ir.intrinsics import BUILTINS, Builtin
 
-LANGUAGES = ("glsl", "hlsl", "wgsl", "hlsl-dx9", "hlsl-macros")
+LANGUAGES = ("glsl", "hlsl", "wgsl")
+DIALECTS = ("glsl-330", "hlsl-dx9", "hlsl-macros")
 PAGE = Path(__file__).with_name("intrinsics.md")
 
 
@@ -19,8 +20,9 @@ def page() -> str:
         "",
         "`genF` stands for float, vec2, vec3 and vec4 alike, `vecF` for the vectors; likewise I, U, B. A language that",
         "has the builtin under its own name shows it; *polyfill* means that a definition in our own language takes its",
-        "place, written out where it is short; `op <` means the operator. `hlsl-dx9` is Unity's built-in pipeline,",
-        "`hlsl-macros` its URP and Shader Graph; they are shown where they differ. NumPy has a function of each name.",
+        "place, written out where it is short; `op <` means the operator. Dialects are shown where they differ: `glsl-330`",
+        "lacks some of what GLSL ES 3.00 has, `hlsl-dx9` is Unity's built-in pipeline, `hlsl-macros` its URP and Shader",
+        "Graph. NumPy has a function of each name.",
         "",
         "Domain: where the result is defined, with x, y, z for the arguments in their order. Limit: the float32 error",
         "allowed against float64, in units in the last place, where it is more than 4.",
@@ -29,10 +31,10 @@ def page() -> str:
         "|---|---|---|---|---|---|",
     ]
     for row in BUILTINS.values():
-        cells = [_signatures(row), *(_text(row, language) for language in LANGUAGES[:3])]
-        dialects = [f"{name}: {_text(row, name)}" for name in LANGUAGES[3:] if name in row.texts]
-        if dialects:
-            cells[2] += "<br>" + "<br>".join(dialects)
+        cells = [_signatures(row)]
+        for language in LANGUAGES:
+            dialects = [name for name in DIALECTS if name.startswith(f"{language}-") and _has(row, name)]
+            cells.append("<br>".join([_text(row, language), *(f"{name}: {_text(row, name)}" for name in dialects)]))
         limit = f"{row.ulp:g} ulp" if row.ulp > 4 else ""
         if row.absolute:
             limit = f"{limit or '4 ulp'} or {row.absolute:.2g}"
@@ -46,9 +48,14 @@ def _signatures(row: Builtin) -> str:
     return "<br>".join(f"`{one}`" for one in declared) + f"<br>{_escaped(row.doc)}"
 
 
+def _has(row: Builtin, dialect: str) -> bool:
+    """Whether a dialect has a text of its own."""
+    return any(key.partition("/")[0] == dialect for key in row.texts)
+
+
 def _text(row: Builtin, language: str) -> str:
     """How a language writes the builtin, with what differs for some of its signatures."""
-    found = {"": row.texts.get(language, row.name)}
+    found = {"": row.texts[language]} if language in row.texts else {"": row.name} if language in LANGUAGES else {}
     found |= {key.partition("/")[2]: text for key, text in row.texts.items() if key.startswith(f"{language}/")}
     shown = []
     for params, text in found.items():

@@ -1,6 +1,6 @@
 """Runs emitted functions on real back ends: text and arrays in, arrays out.
 
-    gpu = backend("gl")                                     # or "gl-es", "wgpu", "hlsl-glslang", "hlsl-dxc"
+    gpu = backend("gl")                                     # or another of TARGETS
     sums, = gpu.run(text, [Call("add", (FLOAT, VEC3), VEC3, (x, y))])
 
 `text` is the functions form of the back end's target. Arguments are data, read from a texture, so no compiler computes
@@ -28,7 +28,14 @@ from sssgen.targets.numpy_textures import Texture
 HEIGHT = 2
 """The lanes stand in two rows, so that there are whole quads of 2×2 pixels, which derivatives need."""
 
-TARGETS = {"gl": "glsl-330", "gl-es": "glsl-es-300", "wgpu": "wgsl", "hlsl-glslang": "hlsl", "hlsl-dxc": "hlsl"}
+TARGETS = {
+    "gl": "glsl-330",
+    "gl-es": "glsl-es-300",
+    "wgpu": "wgsl",
+    "hlsl-glslang": "hlsl",
+    "hlsl-dxc": "hlsl",
+    "hlsl-dx9": "unity-builtin",
+}
 """Back end → the target whose text it runs."""
 
 _DTYPES = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.uint32}
@@ -118,7 +125,13 @@ _WGSL = Language(
 }}
 """,
 )
-_TEXTURE = {"glsl": "uniform highp {type} {name};", "hlsl": "{type} {name};\nSamplerState {name}_sampler;"}
+_TEXTURE = {
+    "glsl": "uniform highp {type} {name};",
+    "hlsl": "{type} {name};\nSamplerState {name}_sampler;",
+    "hlsl-dx9": "{type} {name};",
+}
+_UNITY = "float3 UnpackNormal(float4 texel) { return texel.xyz * 2.0 - 1.0; }\n"
+"""What Unity's own headers bring, where it leaves normal maps as they are."""
 
 
 class Program(NamedTuple):
@@ -202,7 +215,8 @@ class Backend:
             slots += columns
         declared = [self._texture(*item, index) for index, item in enumerate(textures.items())]
         main = self.language.main.format(textures="\n".join(declared), body="\n".join(f"    {line}" for line in body))
-        return Program(text + main, rows or [np.zeros((HEIGHT * width, 4), np.uint32)], places, slots)
+        unity = _UNITY if self.target.dialect == "hlsl-dx9" else ""
+        return Program(unity + text + main, rows or [np.zeros((HEIGHT * width, 4), np.uint32)], places, slots)
 
     def _declare(self, type_: Type, name: str, value: str) -> str:
         return self.language.declare.format(type=self.target.types[spell(type_)], name=name, value=value)
@@ -232,7 +246,7 @@ class Backend:
             place = "@group(0) @binding({0}) var {1}: {2};"
             sampler = place.format(2 * index + 2, f"{name}_sampler", "sampler")
             return place.format(2 * index + 1, name, type_) + "\n" + sampler
-        return _TEXTURE[self.target.language].format(type=type_, name=name)
+        return _TEXTURE[self.target.dialect.removesuffix("-330")].format(type=type_, name=name)
 
 
 def _rows(type_: Type, value: np.ndarray[Any, Any], width: int) -> list[np.ndarray[Any, Any]]:
@@ -401,9 +415,9 @@ def _as_moderngl(member: Any, numbers: tuple[float, ...]) -> Any:
     return parts[0] if member.array_length == 1 else parts
 
 
-def spirv(text: str, entry: str, compiler: str, stage: str = "fragment") -> bytes:
-    """HLSL as SPIR-V, by `glslang` or `dxc`."""
-    compilers.get(compiler)  # raises CompilerMissing
+def spirv(text: str, entry: str, compiler: str) -> bytes:
+    """HLSL as SPIR-V, by `glslang` or `dxc`, or by glslang with the samplers of `dx9`."""
+    compilers.get("dxc" if compiler == "dxc" else "glslang")  # raises CompilerMissing
     if compiler == "dxc":
         from compushady.shaders import hlsl
 
@@ -411,6 +425,7 @@ def spirv(text: str, entry: str, compiler: str, stage: str = "fragment") -> byte
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "out.spv"
         options = ["--stdin", "-D", "-V", "-S", "frag", "-e", entry, "--auto-map-bindings", "--auto-map-locations"]
+        options += ["--hlsl-dx9-compatible"] if compiler == "dx9" else []
         command = [os.environ.get("SSSGEN_GLSLANG", "glslangValidator"), *options, "-o", str(path)]
         done = subprocess.run(command, input=text, capture_output=True, text=True, check=False)
         if done.returncode:

@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import pytest
 
+import sssgen
 from sssgen.compiler import transpile
 from sssgen.harness.compilers import Source
 from sssgen.ir.nodes import Function, Module
@@ -118,3 +119,25 @@ def test_every_case_compiles(target: str, assert_compiles: Callable[[Source], No
     files = transpile(program()[0], name, "pitfalls").files
     (file,) = [file for file in files if not file.endswith(".json")]
     assert_compiles(Source(files[file], name, "library", name=file))
+
+
+def test_renames_are_reported() -> None:
+    module = module_of("float f(float lerp, float x1) { float point = lerp; return point * x1; }")
+    for target in ("glsl-330", "wgsl", "numpy"):
+        assert transpile(module, target, "case").reflection["renames"] == {"f.lerp": "lerp_", "f.point": "point_"}
+
+
+@pytest.mark.parametrize("target", sssgen.all_targets())
+def test_conventions_are_said(target: str) -> None:
+    """Which way is up, what is column and what row, who encodes: nothing in the text shows it."""
+    conventions = sssgen.compile("ice", target).reflection["conventions"]
+    assert {"matrices", "framebuffer_y", "uv_origin", "color_space"} <= set(conventions)
+    in_a_shell = target not in ("numpy", "unity-shadergraph")
+    assert {"clip_y", "clip_z"} <= set(conventions) or not in_a_shell
+
+
+def test_precision_is_said_where_there_is_no_default() -> None:
+    made = sssgen.compile("wax_suzanne", "glsl-es-300").files["wax_suzanne.glsl-es-300.frag"]
+    code = [line for line in made.splitlines() if line and not line.startswith("//")]
+    assert code[0] == "#version 300 es"
+    assert {"precision highp float;", "precision highp int;", "precision highp sampler3D;"} <= set(code[1:5])

@@ -214,45 +214,6 @@ def test_a_damaged_entry_is_made_again(tmp_path: Path) -> None:
     assert compiler.compile(material, "wgsl").files == first
 
 
-# The command line's short cut
-
-
-@pytest.mark.parametrize(
-    "given",
-    [
-        ["emit", "a.toml", "-t", "all", "-o", "out"],
-        ["emit", "a.toml", "b", "--target", "wgsl,hlsl", "--output", "out", "--form", "functions"],
-        ["emit", "-o", "out", "-t", "wgsl", "a.toml"],
-        ["emit", "-t", "wgsl", "-t", "hlsl", "-o", "out", "a.toml", "b.toml"],
-    ],
-)
-def test_a_plain_emit_is_read_as_argparse_reads_it(given: list[str]) -> None:
-    found = cli.plain_emit(given)
-    assert found is not None
-    assert {**vars(found), "version": None} == vars(cli.parser().parse_args(given))
-
-
-@pytest.mark.parametrize(
-    "given",
-    [
-        [],
-        ["emit"],
-        ["show", "a"],
-        ["emit", "a.toml", "-o", "out"],
-        ["emit", "a.toml", "-t"],
-        ["emit", "a.toml", "-t", "wgsl", "b.toml", "-o", "out"],
-        ["emit", "a.toml", "-twgsl", "-o", "out"],
-        ["emit", "a.toml", "--target=wgsl", "-o", "out"],
-        ["emit", "a.toml", "-t", "wgsl", "-o", "out", "--json"],
-        ["emit", "a.toml", "-t", "wgsl", "-o", "out", "--form", "neither"],
-        ["emit", "a.toml", "-t", "wgsl", "-o", "out", "--templates", "mine"],
-        ["emit", "--help"],
-    ],
-)
-def test_whatever_asks_for_more_is_left_to_argparse(given: list[str]) -> None:
-    assert cli.plain_emit(given) is None
-
-
 def test_the_reflection_is_the_files_and_the_callers_to_change() -> None:
     made = compiler.compile("ice", "wgsl")
     assert made.reflection == json.loads(made.files["ice.wgsl.reflection.json"])
