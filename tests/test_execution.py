@@ -20,6 +20,7 @@ import sssgen
 from against_numpy import (
     DTYPES,
     TEXTURES,
+    Array,
     arguments,
     differences,
     drawn_beside_textures,
@@ -101,7 +102,7 @@ def gpu(request: pytest.FixtureRequest, compiler: Callable[[str], Any]) -> Backe
 # Arguments
 
 
-def lane_of(value: object, type_: Type) -> np.ndarray[Any, Any]:
+def lane_of(value: object, type_: Type) -> Array:
     return np.asarray(value, DTYPES[kind_of(type_)])
 
 
@@ -157,7 +158,8 @@ def drawn(name: str, index: int, type_: Type, rng: np.random.Generator) -> Any:
     if isinstance(ranges[0], tuple):
         index -= name.startswith("texture")
         ranges = ranges[min(index, len(ranges) - 1)]
-    value = rng.uniform(*ranges, size)
+    first, last = ranges
+    value = rng.uniform(first, last, size)
     if name == "textureLod" and size == (3,):
         value[1] = 3.0  # to the middle of a cube's face
     if index in UNIT.get(name, ()) and size != (1,):
@@ -180,7 +182,7 @@ def overloads() -> list[Overload]:
                 if isinstance(type_, Sampler):
                     args.append(TEXTURES[type_.dim])
                     continue
-                value = np.zeros((*shape(type_), LANES), DTYPES[kind_of(type_)])
+                value: Array = np.zeros((*shape(type_), LANES), DTYPES[kind_of(type_)])
                 for lane in range(LANES):
                     given = lanes[lane][index] if lane < len(lanes) else drawn(row.name, index, type_, rng)
                     with np.errstate(over="ignore"):
@@ -223,7 +225,7 @@ def unsupported(overload: Overload, dialect: str) -> bool:
     return text == "" and not overload.row.polyfill
 
 
-def run(gpu: Backend, chosen: list[Overload]) -> list[np.ndarray[Any, Any]]:
+def run(gpu: Backend, chosen: list[Overload]) -> list[Array]:
     """The results of all overloads, from one program of functions `case_N`."""
     lines, calls = [], []
     for number, overload in enumerate(chosen):
@@ -236,9 +238,9 @@ def run(gpu: Backend, chosen: list[Overload]) -> list[np.ndarray[Any, Any]]:
     return gpu.run(text, calls, textures())
 
 
-def oracle(overload: Overload) -> np.ndarray[Any, Any]:
+def oracle(overload: Overload) -> Array:
     """What the NumPy runtime gives in float64."""
-    args = [
+    args: list[Any] = [
         textures()[arg] if isinstance(arg, str) else arg.astype(np.float64) if arg.dtype.kind == "f" else arg
         for arg in overload.args
     ]
@@ -249,7 +251,7 @@ def oracle(overload: Overload) -> np.ndarray[Any, Any]:
         return np.asarray(getattr(rt, name + "_" * keyword.iskeyword(name))(*args))
 
 
-def difference(row: Builtin, got: np.ndarray[Any, Any], wanted: np.ndarray[Any, Any]) -> str:
+def difference(row: Builtin, got: Array, wanted: Array) -> str:
     """How a result of one lane is wrong, or ''."""
     if wanted.dtype.kind != "f":
         return "" if np.array_equal(got, wanted) else f"{got} is not {wanted}"
@@ -261,10 +263,10 @@ def difference(row: Builtin, got: np.ndarray[Any, Any], wanted: np.ndarray[Any, 
     return "" if error <= limit else f"{got} is off {wanted} by {error:.3g}, of {limit:.3g} allowed"
 
 
-def compare(overload: Overload, got: np.ndarray[Any, Any]) -> list[str]:
+def compare(overload: Overload, got: Array) -> list[str]:
     """What is wrong with a result."""
     dtype = np.float64 if kind_of(overload.result) == "float" else DTYPES[kind_of(overload.result)]
-    wanted = np.broadcast_to(oracle(overload), got.shape).astype(dtype)
+    wanted: Array = np.broadcast_to(oracle(overload), got.shape).astype(dtype)
     wrong = []
     for lane in range(LANES):
         told = difference(overload.row, got[..., lane], wanted[..., lane])
@@ -375,7 +377,7 @@ def test_uniforms_lie_where_the_reflection_says(gpu: Backend, tmp_path: Path) ->
     np.testing.assert_allclose(got[:3], np.broadcast_to(wanted, (3, 30)), rtol=1e-6)
 
 
-def in_layout(type_: Type, is_array: bool, numbers: tuple[float, ...]) -> np.ndarray[Any, Any]:
+def in_layout(type_: Type, is_array: bool, numbers: tuple[float, ...]) -> Array:
     """A uniform's numbers as the numpy target has them, in one lane."""
     dtype = np.float64 if kind_of(type_) == "float" else DTYPES[kind_of(type_)]
     return np.array(numbers, dtype).reshape(*([-1] if is_array else []), *shape(type_), 1)

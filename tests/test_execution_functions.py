@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from against_numpy import DTYPES, Draw, arguments, differences, drawn, pixels, shape, textures
+from against_numpy import DTYPES, Array, Draw, arguments, differences, drawn, pixels, shape, textures
 from execute import Backend, Call, backend
 from random_programs import HELPERS, Programs
 from sssgen import library, slots
@@ -96,7 +96,7 @@ def program() -> tuple[Module, tuple[tuple[str, Function], ...]]:
     return module, tuple((probe.name, closed[probe.name]) for probe in made)
 
 
-def drawn_for_technique(param: Param, rng: np.random.Generator, lanes: int) -> np.ndarray[Any, Any]:
+def drawn_for_technique(param: Param, rng: np.random.Generator, lanes: int) -> Array:
     """An argument in the range of its quantity, the same in a quad but for what is linear over the image."""
     uniform = next((one for one in program()[0].uniforms if one.name == param.name), None)
     if uniform is not None:
@@ -115,17 +115,17 @@ def drawn_for_technique(param: Param, rng: np.random.Generator, lanes: int) -> n
     return value.astype(np.float32)
 
 
-def drawn_uniform(uniform: Uniform, rng: np.random.Generator, lanes: int) -> np.ndarray[Any, Any]:
+def drawn_uniform(uniform: Uniform, rng: np.random.Generator, lanes: int) -> Array:
     """Something near the default."""
     size = shape(uniform.type)
     value = np.array(uniform.default).reshape(*size, 1)
     if kind_of(uniform.type) != "float":
         return np.repeat(value, lanes, axis=-1).astype(DTYPES[kind_of(uniform.type)])
     value = value * rng.uniform(0.8, 1.2, lanes)[pixels(lanes)[0] // 2]
-    low, high, *_ = dict(uniform.hints).get("hint_range", (0.0, 0.0))
+    low, high = map(float, dict(uniform.hints).get("hint_range", (0.0, 0.0))[:2])
     if low < high:
         value = np.clip(value + 0.1 * (high - low), low, high)
-    return value.astype(np.float32)
+    return np.asarray(value, np.float32)
 
 
 @pytest.fixture(params=["gl", "wgpu", "hlsl-dxc"])
@@ -178,7 +178,7 @@ def random_module() -> tuple[Module, tuple[Function, ...]]:
     return module._replace(functions=(*module.functions, *made)), tuple(made)
 
 
-def drawn_exactly(param: Param, rng: np.random.Generator, lanes: int) -> np.ndarray[Any, Any]:
+def drawn_exactly(param: Param, rng: np.random.Generator, lanes: int) -> Array:
     """Numbers with which float32 computes exactly, so that no condition differs."""
     if kind_of(param.type) == "int":
         return rng.integers(0, 4, lanes).astype(np.int32)

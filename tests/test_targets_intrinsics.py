@@ -34,6 +34,10 @@ length(x3); distance(x3, y3); dot(x3, y3); cross(x3, y3); normalize(x3); reflect
 refract(x3, y3, z); transpose(m3); determinant(m3); any(p3); all(p3); fwidth(x); fwidth(x3)
 """
 
+RELATIONS = {
+    "lessThan": "<", "lessThanEqual": "<=", "greaterThan": ">", "greaterThanEqual": ">=", "equal": "==", "notEqual": "!=",
+}  # fmt: skip
+
 CASES = {
     "atan(x, y)": {"glsl": "atan(x, y)", "hlsl": "atan2(x, y)", "wgsl": "atan2(x, y)"},
     "atan(x3, y3)": {"glsl": "atan(x3, y3)", "hlsl": "atan2(x3, y3)", "wgsl": "atan2(x3, y3)"},
@@ -331,26 +335,6 @@ CASES = {
             return inverse_(m3);
         """,
     },
-    "lessThan(x3, y3)": {"glsl": "lessThan(x3, y3)", "hlsl": "x3 < y3", "wgsl": "x3 < y3"},
-    "lessThan(i3, j3)": {"glsl": "lessThan(i3, j3)", "hlsl": "i3 < j3", "wgsl": "i3 < j3"},
-    "lessThan(u3, w3)": {"glsl": "lessThan(u3, w3)", "hlsl": "u3 < w3", "wgsl": "u3 < w3"},
-    "lessThanEqual(x3, y3)": {"glsl": "lessThanEqual(x3, y3)", "hlsl": "x3 <= y3", "wgsl": "x3 <= y3"},
-    "lessThanEqual(i3, j3)": {"glsl": "lessThanEqual(i3, j3)", "hlsl": "i3 <= j3", "wgsl": "i3 <= j3"},
-    "lessThanEqual(u3, w3)": {"glsl": "lessThanEqual(u3, w3)", "hlsl": "u3 <= w3", "wgsl": "u3 <= w3"},
-    "greaterThan(x3, y3)": {"glsl": "greaterThan(x3, y3)", "hlsl": "x3 > y3", "wgsl": "x3 > y3"},
-    "greaterThan(i3, j3)": {"glsl": "greaterThan(i3, j3)", "hlsl": "i3 > j3", "wgsl": "i3 > j3"},
-    "greaterThan(u3, w3)": {"glsl": "greaterThan(u3, w3)", "hlsl": "u3 > w3", "wgsl": "u3 > w3"},
-    "greaterThanEqual(x3, y3)": {"glsl": "greaterThanEqual(x3, y3)", "hlsl": "x3 >= y3", "wgsl": "x3 >= y3"},
-    "greaterThanEqual(i3, j3)": {"glsl": "greaterThanEqual(i3, j3)", "hlsl": "i3 >= j3", "wgsl": "i3 >= j3"},
-    "greaterThanEqual(u3, w3)": {"glsl": "greaterThanEqual(u3, w3)", "hlsl": "u3 >= w3", "wgsl": "u3 >= w3"},
-    "equal(x3, y3)": {"glsl": "equal(x3, y3)", "hlsl": "x3 == y3", "wgsl": "x3 == y3"},
-    "equal(i3, j3)": {"glsl": "equal(i3, j3)", "hlsl": "i3 == j3", "wgsl": "i3 == j3"},
-    "equal(u3, w3)": {"glsl": "equal(u3, w3)", "hlsl": "u3 == w3", "wgsl": "u3 == w3"},
-    "equal(p3, q3)": {"glsl": "equal(p3, q3)", "hlsl": "p3 == q3", "wgsl": "p3 == q3"},
-    "notEqual(x3, y3)": {"glsl": "notEqual(x3, y3)", "hlsl": "x3 != y3", "wgsl": "x3 != y3"},
-    "notEqual(i3, j3)": {"glsl": "notEqual(i3, j3)", "hlsl": "i3 != j3", "wgsl": "i3 != j3"},
-    "notEqual(u3, w3)": {"glsl": "notEqual(u3, w3)", "hlsl": "u3 != w3", "wgsl": "u3 != w3"},
-    "notEqual(p3, q3)": {"glsl": "notEqual(p3, q3)", "hlsl": "p3 != q3", "wgsl": "p3 != q3"},
     "not(p3)": {"glsl": "not(p3)", "hlsl": "!p3", "wgsl": "!p3"},
     "unpackNormal(x4)": {
         "glsl": "x4.xyz * 2.0 - 1.0",
@@ -358,27 +342,6 @@ CASES = {
         "wgsl": "x4.xyz * 2.0 - 1.0",
         "dx9": "UnpackNormal(x4)",
         "urp": "UnpackNormal(x4)",
-    },
-    "textureSize(map, i)": {
-        "glsl": "textureSize(map, i)",
-        "hlsl": "error: this target has no textureSize (hlsl)",
-        "wgsl": "vec2i(textureDimensions(map, i))",
-        "dx9": "error: this target has no textureSize (unity-builtin)",
-        "urp": "error: this target has no textureSize (unity-urp)",
-    },
-    "textureSize(volume, i)": {
-        "glsl": "textureSize(volume, i)",
-        "hlsl": "error: this target has no textureSize (hlsl)",
-        "wgsl": "vec3i(textureDimensions(volume, i))",
-        "dx9": "error: this target has no textureSize (unity-builtin)",
-        "urp": "error: this target has no textureSize (unity-urp)",
-    },
-    "textureSize(cube, i)": {
-        "glsl": "textureSize(cube, i)",
-        "hlsl": "error: this target has no textureSize (hlsl)",
-        "wgsl": "vec2i(textureDimensions(cube, i))",
-        "dx9": "error: this target has no textureSize (unity-builtin)",
-        "urp": "error: this target has no textureSize (unity-urp)",
     },
     "texture(map, x2)": {
         "glsl": "texture(map, x2)",
@@ -484,6 +447,16 @@ CASES = {
     "dFdy(x3)": {"glsl": "dFdy(x3)", "hlsl": "ddy(x3)", "wgsl": "dpdy(x3)"},
 }
 
+for name, op in RELATIONS.items():
+    for x, y in ("x3", "y3"), ("i3", "j3"), ("u3", "w3"), *([("p3", "q3")] if op in ("==", "!=") else []):
+        written = f"{x} {op} {y}"
+        CASES[f"{name}({x}, {y})"] = {"glsl": f"{name}({x}, {y})", "hlsl": written, "wgsl": written}
+for name, size in ("map", "vec2i"), ("volume", "vec3i"), ("cube", "vec2i"):
+    refused = {
+        target: f"error: this target has no textureSize ({TARGETS[target]})" for target in ("hlsl", "dx9", "urp")
+    }
+    read = f"{size}(textureDimensions({name}, i))"
+    CASES[f"textureSize({name}, i)"] = {"glsl": f"textureSize({name}, i)", "wgsl": read, **refused}
 
 ALL = {**{text.strip(): {"glsl": text.strip()} for text in SAME.split(";")}, **CASES}
 
