@@ -18,24 +18,23 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Module
 from sssgen.ir.signatures import overload, parse
-from sssgen.ir.types import spell
 from validate import TARGETS, module_of, validate_all
 
 SAME = """
-radians(x); radians(x3); degrees(x); degrees(x3); sin(x); sin(x3); cos(x); cos(x3); tan(x); tan(x3);
-asin(x); asin(x3); acos(x); acos(x3); atan(x); atan(x3); sinh(x); sinh(x3); cosh(x); cosh(x3);
-tanh(x); tanh(x3); pow(x, y); pow(x3, y3); exp(x); exp(x3); log(x); log(x3); exp2(x); exp2(x3);
-log2(x); log2(x3); sqrt(x); sqrt(x3); abs(x); abs(x3); abs(i); abs(i3); sign(i); sign(i3);
-floor(x); floor(x3); ceil(x); ceil(x3); trunc(x); trunc(x3); min(x, y); min(x3, y3); min(i, j);
-min(i3, j3); min(u, w); min(u3, w3); max(x, y); max(x3, y3); max(i, j); max(i3, j3); max(u, w);
-max(u3, w3); clamp(x, y, z); clamp(x3, y3, z3); clamp(i, j, k); clamp(i3, j3, k3); clamp(u, w, v);
-clamp(u3, w3, v3); step(x, y); step(x3, y3); smoothstep(x, y, z); smoothstep(x3, y3, z3); length(x);
-length(x3); distance(x3, y3); dot(x3, y3); cross(x3, y3); normalize(x3); reflect(x3, y3);
-refract(x3, y3, z); transpose(m3); determinant(m3); any(p3); all(p3); fwidth(x); fwidth(x3)
+radians(x); radians(x3); degrees(x); degrees(x3); sin(x); sin(x3); cos(x); cos(x3); tan(x); tan(x3); asin(x);
+asin(x3); acos(x); acos(x3); atan(x); atan(x3); sinh(x); sinh(x3); cosh(x); cosh(x3); tanh(x); tanh(x3); pow(x, y);
+pow(x3, y3); exp(x); exp(x3); log(x); log(x3); exp2(x); exp2(x3); log2(x); log2(x3); sqrt(x); sqrt(x3); abs(x);
+abs(x3); abs(i); abs(i3); sign(i); sign(i3); floor(x); floor(x3); ceil(x); ceil(x3); trunc(x); trunc(x3); min(x, y);
+min(x3, y3); min(i, j); min(i3, j3); min(u, w); min(u3, w3); max(x, y); max(x3, y3); max(i, j); max(i3, j3);
+max(u, w); max(u3, w3); clamp(x, y, z); clamp(x3, y3, z3); clamp(i, j, k); clamp(i3, j3, k3); clamp(u, w, v);
+clamp(u3, w3, v3); step(x, y); step(x3, y3); smoothstep(x, y, z); smoothstep(x3, y3, z3); length(x); length(x3);
+distance(x3, y3); dot(x3, y3); cross(x3, y3); normalize(x3); reflect(x3, y3); refract(x3, y3, z); transpose(m3);
+determinant(m3); any(p3); all(p3); fwidth(x); fwidth(x3)
 """
 
 RELATIONS = {
-    "lessThan": "<", "lessThanEqual": "<=", "greaterThan": ">", "greaterThanEqual": ">=", "equal": "==", "notEqual": "!=",
+    "lessThan": "<", "lessThanEqual": "<=", "greaterThan": ">", "greaterThanEqual": ">=",
+    "equal": "==", "notEqual": "!=",
 }  # fmt: skip
 
 CASES = {
@@ -481,8 +480,7 @@ def test_every_signature_has_a_case() -> None:
         assert found is not None
         shown.add((stmt.value.name, found.params))
     table = {(row.name, ",".join(parse(text)[1:])) for row in BUILTINS.values() for text in row.signatures}
-    same_but_for_size = {("outerProduct", "vec2,vec2"), ("outerProduct", "vec4,vec4")}
-    assert table - same_but_for_size <= shown
+    assert table - shown == {("outerProduct", "vec2,vec2"), ("outerProduct", "vec4,vec4")}  # as for vec3
 
 
 @pytest.mark.parametrize("target", [*TARGETS, "unity-shadergraph"])
@@ -498,5 +496,4 @@ def test_every_case_compiles(target: str, assert_compiles: Callable[[Source], No
     name = TARGETS.get(target, target)
     files = transpile(Module(functions=tuple(functions)), name, "cases").files
     (file,) = [file for file in files if not file.endswith(".json")]
-    assert len({spell(function.result) for function in functions}) > 5
     assert_compiles(Source(files[file], name, "library", name=file))
