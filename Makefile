@@ -23,10 +23,10 @@ demo: setup
 	$(BIN)/python -m sssgen.harness.report out
 
 test: setup
-	$(BIN)/python -m pytest -q
+	$(BIN)/python -m pytest
 
 test-long: setup
-	$(BIN)/python -m pytest -q -m slow
+	$(BIN)/python -m pytest -m slow
 
 lint: setup
 	$(BIN)/ruff check .
