@@ -71,9 +71,9 @@ _RESULT_OF_ROLE = {"coordinates": "uv", "geometry": "hit", "lighting": "color", 
 TAKEN = frozenset(
     {"Surface", "surface", "light", *INPUTS}
     | {f"evaluate_{kind}" for kind in ("surface", "translucency", "lighting", "color", "output")}
-    | {"BaseColor", "NormalTS", "Metallic", "Smoothness", "Occlusion", "Emission", "Alpha", "Color"}
 )
-"""What the assembled functions, their inputs and the shells' variables are called: no uniform is called so."""
+"""What the assembled functions, their inputs and their surface are called: no uniform is called so. What else a shell
+declares, its descriptor reserves."""
 
 
 class ChainStage(NamedTuple):
