@@ -9,13 +9,16 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from execute import HEIGHT, Backend, Call
 from sssgen.compiler import transpile
+from sssgen.harness.backends import Backend, Call, Text
 from sssgen.ir.nodes import Function, Module, Param
 from sssgen.ir.types import Matrix, Sampler, Type, Vector, kind_of
 from sssgen.targets import numpy_runtime as rt
 from sssgen.targets.numpy_textures import Texture
 from validate import code
+
+HEIGHT = 2
+"""How many rows the few lanes of a test stand in."""
 
 Array: TypeAlias = np.ndarray[Any, Any]
 Draw: TypeAlias = Callable[[Param, np.random.Generator, int], Array]
@@ -115,7 +118,7 @@ def differences(
     """
     lanes = next(arg.shape[-1] for _, call in calls for arg in call.args if not isinstance(arg, str))
     oracle, wrong = transpiled(module, "numpy"), []
-    results = gpu.run(code(module, gpu.target.name), [call for _, call in calls], bound)
+    results = gpu.run(Text(code(module, gpu.target.name)), [call for _, call in calls], bound)
     for (title, call), got in zip(calls, results, strict=True):
         wanted = np.broadcast_to(with_numpy(oracle, call, bound, lanes, floating), got.shape)
         if wanted.dtype.kind != "f":

@@ -1,4 +1,4 @@
-"""Compilers take what is right and refuse what is wrong, at its line; how files become sources and report."""
+"""Compilers take what is right and refuse what is wrong, at its line; how files become sources."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from sssgen.harness import compilers, report
+from sssgen.harness import compilers
 from sssgen.harness.compilers import Compiler, Source, calls, errors, shaderlab, surface
 from sssgen.harness.sources import sources
 
@@ -201,7 +201,7 @@ def test_surface_lighting_and_output_must_agree() -> None:
         surface.entries(code, "surf Standard")
 
 
-# --- Files and reports
+# --- Files
 
 
 def test_sources_know_languages_stages_and_companions() -> None:
@@ -218,24 +218,3 @@ def test_sources_know_languages_stages_and_companions() -> None:
     assert sum(name == "ice.unity-urp.shader" for name, _, _ in found) == 1
     assert ("ice.unity-urp.hlsl", "unity-urp", "library") in found
     assert not any("json" in name for name, _, _ in found)
-
-
-def test_report_counts_and_fails(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "a_functions.py").write_text("x = 1\n", encoding="utf-8")
-    assert report.main(str(tmp_path)) == 0
-    assert "1 compilations, 0 failed" in capsys.readouterr().out
-    (tmp_path / "b_functions.py").write_text("x = \n", encoding="utf-8")
-    assert report.main(str(tmp_path)) == 1
-    assert "b_functions.py (library): 1:" in capsys.readouterr().out
-
-
-def test_report_fails_on_a_missing_compiler_in_ci(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (tmp_path / "a.wgsl").write_text(WGSL, encoding="utf-8")
-    monkeypatch.setattr(compilers, "_find", lambda name: f"get {name} somewhere")
-    monkeypatch.setenv("CI", "true")
-    assert report.main(str(tmp_path)) == 1
-    assert "MISSING: get tint somewhere" in capsys.readouterr().out
-    monkeypatch.delenv("CI")
-    assert report.main(str(tmp_path)) == 0

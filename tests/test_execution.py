@@ -19,6 +19,7 @@ import pytest
 import sssgen
 from against_numpy import (
     DTYPES,
+    HEIGHT,
     TEXTURES,
     Array,
     arguments,
@@ -30,8 +31,8 @@ from against_numpy import (
     transpiled,
 )
 from against_numpy import drawn as drawn_freely
-from execute import HEIGHT, TARGETS, Backend, Call, Uniforms, backend
-from sssgen.harness.compilers import CompilerMissing
+from sssgen.harness.backends import Backend, Block, Call, DrawingBackend, Place, Text
+from sssgen.harness.backends.calls import drawing, results
 from sssgen.ir import signatures
 from sssgen.ir.intrinsics import BUILTINS, Builtin
 from sssgen.ir.types import (
@@ -84,19 +85,13 @@ class Overload(NamedTuple):
         return f"{self.row.name}({', '.join(map(spell, self.params))})"
 
 
-@cache
-def machine(name: str) -> Backend:
-    return backend(name)
+TARGETS = ["gl", "gl-es", "webgpu", "hlsl-glslang", "hlsl", "unity"]
 
 
 @pytest.fixture(params=TARGETS)
-def gpu(request: pytest.FixtureRequest, compiler: Callable[[str], Any]) -> Backend:
-    """Each back end; where one is missing, a skip, or in CI a failure."""
-    try:
-        return machine(request.param)
-    except CompilerMissing:
-        compiler({"wgpu": "naga"}.get(request.param, "gl"))
-        raise
+def gpu(request: pytest.FixtureRequest, backend: Callable[[str], Backend]) -> Backend:
+    """Each back end that draws."""
+    return backend(request.param)
 
 
 # Arguments
@@ -235,7 +230,7 @@ def run(gpu: Backend, chosen: list[Overload]) -> list[Array]:
         lines.append(f"{spell(overload.result)} case_{number}({params}) {{ return {value}; }}")
         calls.append(Call(f"case_{number}", overload.params, overload.result, overload.args))
     text = code(load_text("\n".join(lines), "cases"), gpu.target.name)
-    return gpu.run(text, calls, textures())
+    return gpu.run(Text(text), calls, textures())
 
 
 def oracle(overload: Overload) -> Array:
@@ -336,8 +331,8 @@ vec3 layout_probe(uv_position uv) {
 MATERIAL = '[material]\nname = "layout"\nshading = "unlit"\n[lighting]\ntechnique = "layout_probe.sss"\n'
 
 
-def uniforms_of(reflection: dict[str, Any]) -> Uniforms:
-    """Other numbers in each component, at the places that the reflection names."""
+def uniforms_of(reflection: dict[str, Any]) -> tuple[bytes, dict[str, tuple[float, ...]]]:
+    """Other numbers in each component, in a block at the places that the reflection names, and by name."""
     block = np.zeros((reflection["uniform_block_size"] or 0) // 4, np.uint32)
     values: dict[str, tuple[float, ...]] = {}
     for number, uniform in enumerate(sorted(reflection["uniforms"], key=lambda uniform: str(uniform["name"]))):
@@ -353,10 +348,10 @@ def uniforms_of(reflection: dict[str, Any]) -> Uniforms:
             for place, row in enumerate(rows.reshape(-1, size)):
                 start = uniform["offset"] // 4 + 4 * place
                 block[start : start + size] = row.view(np.uint32)
-    return Uniforms(block.tobytes(), values)
+    return block.tobytes(), values
 
 
-@pytest.mark.parametrize("gpu", [name for name in TARGETS if name != "hlsl-dx9"], indirect=True)  # has no block
+@pytest.mark.parametrize("gpu", [name for name in TARGETS if name != "unity"], indirect=True)  # has no block
 def test_uniforms_lie_where_the_reflection_says(gpu: Backend, tmp_path: Path) -> None:
     (tmp_path / "layout_probe.sss").write_text(PROBE, encoding="utf-8")
     (tmp_path / "layout.toml").write_text(MATERIAL, encoding="utf-8")
@@ -365,13 +360,17 @@ def test_uniforms_lie_where_the_reflection_says(gpu: Backend, tmp_path: Path) ->
     text = re.sub(r"(?m)^(#version|precision|in|out) .*\n", "", text.partition("void main()")[0])
     uv = np.array(np.meshgrid(np.arange(15), np.arange(2))).reshape(2, -1) + 0.5
     call = Call(made.reflection["entries"]["color"]["function"], (VEC2,), VEC4, (uv,))
-    uniforms = uniforms_of(made.reflection)
-    (got,) = gpu.run(text, [call], uniforms=uniforms)
+    block, values = uniforms_of(made.reflection)
+    assert isinstance(gpu, DrawingBackend)
+    bare, layout = drawing(gpu.target, Text(text), [call], {})
+    blocks = {"Material": Block(block, Place(gpu.target.table.get("material_group", 0), 0))} if block else {}
+    filled = bare._replace(blocks=blocks, values={name: np.array(value) for name, value in values.items()})
+    (got,) = results([call], layout, gpu.draw(filled))
 
     names: dict[str, Any] = {}
     exec(transpiled(load_file(tmp_path / "layout_probe.sss", "probe"), "numpy"), names)
     wanted = names["layout_probe"](uv, **{
-        name: in_layout(BY_NAME[type_.partition("[")[0]], "[" in type_, uniforms.values[name])
+        name: in_layout(BY_NAME[type_.partition("[")[0]], "[" in type_, values[name])
         for name, type_ in ((uniform["name"], uniform["type"]) for uniform in made.reflection["uniforms"])
     })  # fmt: skip
     np.testing.assert_allclose(got[:3], np.broadcast_to(wanted, (3, 30)), rtol=1e-6)

@@ -11,10 +11,9 @@ import numpy as np
 import pytest
 
 from against_numpy import DTYPES, Array, Draw, arguments, differences, drawn, pixels, shape, textures
-from execute import Backend, Call, backend
 from random_programs import HELPERS, Programs
 from sssgen import library, slots
-from sssgen.harness.compilers import CompilerMissing
+from sssgen.harness.backends import Backend, Call
 from sssgen.ir.nodes import Call as CallNode
 from sssgen.ir.nodes import Declare, Evaluate, Function, Local, Module, Param, Return, Stmt, Uniform
 from sssgen.ir.types import VOID, kind_of
@@ -128,14 +127,10 @@ def drawn_uniform(uniform: Uniform, rng: np.random.Generator, lanes: int) -> Arr
     return np.asarray(value, np.float32)
 
 
-@pytest.fixture(params=["gl", "wgpu", "hlsl-dxc"])
-def gpu(request: pytest.FixtureRequest, compiler: Callable[[str], Any]) -> Backend:
-    """A back end for each language; where one is missing, a skip, or in CI a failure."""
-    try:
-        return backend(request.param)
-    except CompilerMissing:
-        compiler("naga" if request.param == "wgpu" else "gl")
-        raise
+@pytest.fixture(params=["gl", "webgpu", "hlsl"])
+def gpu(request: pytest.FixtureRequest, backend: Callable[[str], Backend]) -> Backend:
+    """A back end for each language."""
+    return backend(request.param)
 
 
 def called(title: str, function: Function, draw: Draw, lanes: int) -> tuple[str, Call]:
