@@ -20,7 +20,7 @@ demo: setup
 	rm -rf out
 	$(BIN)/sssgen emit $(wildcard examples/*/*.toml) --target all --form shader -o out
 	$(BIN)/sssgen emit $(wildcard examples/*/*.toml) --target all --form functions -o out
-	$(BIN)/python -m sssgen.harness.report out
+	$(BIN)/sssgen check out
 
 test: setup
 	$(BIN)/python -m pytest

@@ -75,10 +75,48 @@ def parser() -> argparse.ArgumentParser:
     )
     emit.add_argument("--templates", metavar="DIR", help="a folder of templates that stand before ours")
 
+    check = command(
+        "check",
+        "check",
+        "compile shaders with the compilers of this machine",
+        "examples:\n  sssgen check ice\n  sssgen check wax.toml --target wgsl,hlsl\n  sssgen check out mine.frag",
+    )
+    check.add_argument("FILE", nargs="+", help="a shader, a folder of them, a material's .toml file, or an example")
+    check.add_argument(
+        "--target",
+        "-t",
+        metavar="T,T|all",
+        action="append",
+        help="only these targets; of a shader whose name does not tell its language, the language",
+    )
+    check.add_argument("--compiler", metavar="NAME", action="append", help="only this compiler; may be repeated")
+    check.add_argument("--unity-includes", metavar="DIR", help="the folder of Unity's own headers")
+
     transpile = command("transpile", "transpile", "translate functions in plain GLSL to a target's language")
     transpile.add_argument("FILE", help="a GLSL file of the subset (functions and uniforms; no main)")
     transpile.add_argument("--target", "-t", metavar="T", required=True, help="a target of `sssgen list targets`")
     transpile.add_argument("-o", "--output", metavar="FILE", help="the file to write, and its reflection beside it")
+
+    evaluate = command(
+        "eval",
+        "eval",
+        "evaluate a technique on arrays of inputs, on one back end or on all of them against the oracle",
+        "examples:\n"
+        "  sssgen eval lobe_gdc2011 --inputs lobe.json --backend all\n"
+        "  sssgen eval march_light --inputs rays.json --bind body_distance=shapes.sss:star\n"
+        "The inputs are numbers by name, one or a list of them: "
+        '{"N": [[0, 0, 1], [0, 1, 0]], "power": 4.0, "map": "wood.png"}',
+    )
+    evaluate.add_argument("TECHNIQUE", help="a name of `sssgen list techniques`, a .sss file, or FILE:FUNCTION")
+    evaluate.add_argument("--inputs", "-i", metavar="FILE", help="the inputs, in JSON")
+    evaluate.add_argument(
+        "--backend", "-b", metavar="NAME", default="numpy",
+        help="numpy (default), gl, gl-es, webgpu, browser, hlsl, hlsl-glslang, unity, unity-urp, a list of such, or all",
+    )  # fmt: skip
+    evaluate.add_argument(
+        "--bind", action="append", default=[], metavar="SLOT=FUNCTION", help="a function for a slot, or FILE:FUNCTION"
+    )
+    evaluate.add_argument("--precision", choices=("f64", "f32", "f16"), help="what numpy computes in (default: f64)")
 
     new = command("new", "new", "write a commented material to start from")
     new.add_argument("MATERIAL", help="its name, or a .toml file; an old one is never overwritten")

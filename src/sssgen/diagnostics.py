@@ -86,6 +86,9 @@ class SssgenError(Exception):
         self.diagnostics = list(diagnostics)
         super().__init__("\n".join(diagnostic.render() for diagnostic in self.diagnostics))
 
+    def __reduce__(self) -> tuple[type[SssgenError], tuple[list[Diagnostic]]]:
+        return type(self), (self.diagnostics,)  # it may come from another process
+
 
 def failure(message: str, hint: str = "", file: str = "") -> SssgenError:
     """An error that has no place in a source text (a missing file, a bad argument)."""

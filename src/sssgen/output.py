@@ -55,10 +55,10 @@ def _fault(name: str) -> str:
     return ""
 
 
-def write_files(folder: str | os.PathLike[str], files: Mapping[str, str]) -> list[Written]:
-    """Writes texts (UTF-8, as they are) into a folder, making it if need be; names may have sub-folders.
+def write_files(folder: str | os.PathLike[str], files: Mapping[str, str | bytes]) -> list[Written]:
+    """Writes texts (UTF-8, as they are) and bytes into a folder, making it if need be; names may have sub-folders.
 
-    All texts stand in temporary files before the first old file is replaced, each in one step:
+    All of them stand in temporary files before the first old file is replaced, each in one step:
     whatever interrupts, every file is either the old or the new one, whole. Raises SssgenError where a name
     climbs out of the folder or the system refuses.
     """
@@ -68,8 +68,9 @@ def write_files(folder: str | os.PathLike[str], files: Mapping[str, str]) -> lis
     waiting: list[tuple[str, str]] = []
     written: list[Written] = []
     try:
-        for name, text in files.items():
-            path, data = os.path.join(folder, name), text.encode("utf-8")
+        for name, content in files.items():
+            path = os.path.join(folder, name)
+            data = content if isinstance(content, bytes) else content.encode("utf-8")
             if _holds(path, data):
                 written.append(Written(path, False))
                 continue

@@ -20,7 +20,7 @@ def sources(files: Mapping[str, str]) -> list[Source]:
     """
     found = []
     for name, text in files.items():
-        for target, material, output in _outputs(name):
+        for target, material, output in outputs(name):
             stages = output.stages
             if name.endswith(".shader"):  # holds all its stages, and says itself where they begin
                 stages = dict(list(stages.items())[:1])
@@ -30,7 +30,7 @@ def sources(files: Mapping[str, str]) -> list[Source]:
     return found
 
 
-def _outputs(name: str) -> list[tuple[descriptor.Target, str, descriptor.OutputFile]]:
+def outputs(name: str) -> list[tuple[descriptor.Target, str, descriptor.OutputFile]]:
     """(target, material, its file entry) of a file name; the longest pattern wins."""
     matches = []
     base = name.rpartition("/")[2]

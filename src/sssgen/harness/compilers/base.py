@@ -44,12 +44,16 @@ class Source:
 
 @dataclass(frozen=True)
 class Message:
-    """One thing a compiler said. Line and column count from 1; 0 where the compiler does not tell."""
+    """One thing a compiler said. Line and column count from 1; 0 where the compiler does not tell.
+
+    `file` is the name that the compiler gives to what the place is in; '' where it is in the text itself.
+    """
 
     severity: Severity
     line: int
     column: int
     text: str
+    file: str = ""
 
     def __str__(self) -> str:
         place = f"{self.line}:{self.column}: " if self.column else f"{self.line}: " if self.line else ""

@@ -10,6 +10,7 @@ from sssgen.harness.compilers.calls import hlsl_entry
 from sssgen.harness.compilers.glslang import LIBRARY_ENTRY
 
 _PROFILES = {"vertex": "vs_6_0", "fragment": "ps_6_0", "library": "ps_6_0"}
+_OWN = ("", "hlsl.hlsl")  # what the text is called where no #line names it
 _SEVERITY: dict[str, Severity] = {
     "error": "error",
     "fatal error": "error",
@@ -41,7 +42,7 @@ class Dxc(Compiler):
         try:
             self._compile(text, entry, _PROFILES[stage])
         except ValueError as error:
-            return _messages(str(error))
+            return messages(str(error))
         return []
 
 
@@ -57,10 +58,11 @@ def find() -> Dxc:
     return Dxc(hlsl.compile, f"DXC in compushady {version('compushady')}")
 
 
-def _messages(log: str) -> list[Message]:
-    pattern = r"^(?:(?:[A-Za-z]:)?[^:\n]*:(\d+):(\d+): )?(fatal error|error|warning|note): (.*)"
+def messages(log: str) -> list[Message]:
+    """What DXC's log says."""
+    pattern = r"^(?:((?:[A-Za-z]:)?[^:\n]*):(\d+):(\d+): )?(fatal error|error|warning|note): (.*)"
     found = [
-        Message(_SEVERITY[kind], int(line or 0), int(column or 0), text)
-        for line, column, kind, text in re.findall(pattern, log, re.MULTILINE)
+        Message(_SEVERITY[kind], int(line or 0), int(column or 0), text, "" if file in _OWN else file)
+        for file, line, column, kind, text in re.findall(pattern, log, re.MULTILINE)
     ]
     return found or [Message("error", 0, 0, log.strip())]

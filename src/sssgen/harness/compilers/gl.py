@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import Any
 
 from sssgen.harness.compilers.base import LANGUAGES, Compiler, CompilerMissing, Message, Severity, Source
@@ -30,7 +31,7 @@ class DriverGL(Compiler):
     languages = LANGUAGES["gl"]
 
     def __init__(self, context: Any) -> None:
-        self._context = context
+        self.context = context
         code = context.version_code
         self._version = f"OpenGL {code // 100}.{code // 10 % 10} on {context.info['GL_RENDERER']}"
 
@@ -45,12 +46,23 @@ class DriverGL(Compiler):
             vertex, fragment = text, source.companion or _empty_fragment(source.language)
         else:
             vertex, fragment = source.companion or _matching_vertex(text, source.language), text
-        try:
-            with self._context:  # other libraries (wgpu) make contexts of their own current
-                self._context.program(vertex_shader=vertex, fragment_shader=fragment).release()
-        except Exception as error:
-            return _messages(str(error))
+        log = self._link(vertex, fragment)
+        if log and source.companion:
+            alone = self.check(replace(source, companion=""))
+            # what the compiler finds in the other stage is that one's: its lines are not ours
+            return alone or ([] if "Compiler failed" in log else messages(log))
+        if log:
+            return _in_text(messages(log), source.text)
         return _unfed(vertex, fragment) if source.companion else []
+
+    def _link(self, vertex: str, fragment: str) -> str:
+        """What the driver says of two stages that do not compile or link; '' where they do."""
+        try:
+            with self.context:  # other libraries (wgpu) make contexts of their own current
+                self.context.program(vertex_shader=vertex, fragment_shader=fragment).release()
+        except Exception as error:
+            return str(error) or type(error).__name__
+        return ""
 
 
 def find() -> Compiler:
@@ -99,8 +111,22 @@ def _matching_vertex(fragment: str, language: str) -> str:
     return "\n".join([*lines, "    gl_Position = vec4(0.0);", "}", ""])
 
 
-def _messages(log: str) -> list[Message]:
-    """Mesa says `0:4(18): error: …`, NVIDIA `0(4) : error C1008: …`, the linker `error: …`."""
+def _in_text(found: list[Message], text: str) -> list[Message]:
+    """Messages with columns of the text: Mesa's preprocessor puts one space for several, and counts after that."""
+    lines = text.split("\n")
+    return [
+        replace(m, column=_column(lines[m.line - 1], m.column)) if m.column and 0 < m.line <= len(lines) else m
+        for m in found
+    ]
+
+
+def _column(line: str, told: int) -> int:
+    starts = [piece.start() for piece in re.finditer(r"\s+|\S", line)]
+    return starts[told - 1] + 1 if 0 < told <= len(starts) else 0
+
+
+def messages(log: str) -> list[Message]:
+    """What a log says. Mesa has `0:4(18): error: …`, NVIDIA `0(4) : error C1008: …`, the linker `error: …`."""
     found = []
     for line in log.splitlines():
         if match := re.match(r"\d+:(\d+)\((\d+)\): (error|warning): (.*)", line):

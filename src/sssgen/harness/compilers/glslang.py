@@ -10,6 +10,7 @@ from sssgen.harness.compilers.calls import glsl_entry, hlsl_entry
 from sssgen.harness.compilers.gl import with_version
 
 _STAGES = {"vertex": "vert", "fragment": "frag", "library": "frag"}
+_OWN = (None, "0", "stdin")  # what the text is called where no #line names it
 _SEVERITY: dict[str, Severity] = {"ERROR": "error", "WARNING": "warning"}
 LIBRARY_ENTRY = "sssgen_check_main"
 
@@ -55,10 +56,10 @@ class Glslang(Compiler):
 
         command = [self._program, "--stdin", *options]
         done = subprocess.run(command, input=text, capture_output=True, encoding="utf-8", check=False)
-        messages = _messages(done.stdout + done.stderr)
-        if done.returncode and not any(m.severity == "error" for m in messages):
-            messages.append(Message("error", 0, 0, done.stdout.strip() or f"exit status {done.returncode}"))
-        return messages
+        found = messages(done.stdout + done.stderr)
+        if done.returncode and not any(m.severity == "error" for m in found):
+            found.append(Message("error", 0, 0, done.stdout.strip() or f"exit status {done.returncode}"))
+        return found
 
 
 def find() -> Glslang:
@@ -72,10 +73,12 @@ def find() -> Glslang:
     return Glslang(program)
 
 
-def _messages(log: str) -> list[Message]:
+def messages(log: str) -> list[Message]:
+    """What glslang's log says."""
     found = []
     for line in log.splitlines():
-        match = re.match(r"(ERROR|WARNING): (?:(?:[A-Za-z]:)?[^:]*:(\d+): )?(.*)", line)
-        if match and not re.search(r"compilation terminated|\d+ compilation errors", match[3]):
-            found.append(Message(_SEVERITY[match[1]], int(match[2] or 0), 0, match[3].strip()))
+        match = re.match(r"(ERROR|WARNING): (?:((?:[A-Za-z]:)?[^:]*):(\d+): )?(.*)", line)
+        if match and not re.search(r"compilation terminated|\d+ compilation errors", match[4]):
+            file = "" if match[2] in _OWN else match[2]
+            found.append(Message(_SEVERITY[match[1]], int(match[3] or 0), 0, match[4].strip(), file))
     return found

@@ -16,7 +16,7 @@ class Naga(Compiler):
     languages = LANGUAGES["naga"]
 
     def __init__(self, device: Any, adapter: str) -> None:
-        self._device = device
+        self.gpu = device
         self._adapter = adapter
 
     def version(self) -> str:
@@ -25,11 +25,14 @@ class Naga(Compiler):
         return f"naga in wgpu {wgpu.__version__} on {self._adapter}"
 
     def check(self, source: Source) -> list[Message]:
+        return self.complaints(wgsl_entry(source.text) if source.stage == "library" else source.text)
+
+    def complaints(self, text: str) -> list[Message]:
+        """What naga says of a whole module."""
         import wgpu
 
-        text = wgsl_entry(source.text) if source.stage == "library" else source.text
         try:
-            self._device.create_shader_module(code=text)
+            self.gpu.create_shader_module(code=text)
         except wgpu.GPUError as error:
             return [_message(str(error))]
         return []

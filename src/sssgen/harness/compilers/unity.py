@@ -12,12 +12,17 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from sssgen.harness.compilers import dxc, glslang, shaderlab, surface
 from sssgen.harness.compilers.base import LANGUAGES, Compiler, CompilerMissing, Message, Source, Stage
 from sssgen.harness.compilers.calls import Opaque, hlsl_entry
+
+_TEXT = "sssgen-text"
+"""What the text is called in `#line`. A name of the user's could hold a quote, or be a header's."""
+
+HEADERS = "CGIncludes/ and Packages/com.unity.render-pipelines.*/"
 
 _URP = "Packages/com.unity.render-pipelines.universal/ShaderLibrary/"
 _CORE = "Packages/com.unity.render-pipelines.core/ShaderLibrary/"
@@ -94,13 +99,26 @@ class Unity(Compiler):
         self._dxc = dxc.find()
 
     def version(self) -> str:
-        headers = "Unity's own headers (SSSGEN_UNITY_INCLUDES)" if self.real else "the project's stand-in headers"
-        return f"{headers}, {self._glslang.version()}, {self._dxc.version()}"
+        return f"{self.headers()}, {self._glslang.version()}, {self._dxc.version()}"
+
+    def headers(self) -> str:
+        """Whose headers these are."""
+        return f"Unity's own headers in {self.root}" if self.real else "the project's stand-in headers"
+
+    def preprocessed(self, text: str, language: str) -> str:
+        """Functions of `language` behind the engine's headers, with line numbers of their own.
+
+        Raises ValueError with the preprocessor's words.
+        """
+        builtin = language == "unity-builtin"
+        macros = (*_BUILTIN_MACROS, *_SURFACE_PASSES[0], "SHADER_STAGE_FRAGMENT=1") if builtin else _URP_MACROS
+        head = "".join(f'#include "{header}"\n' for header in _LIBRARY_HEADERS[language])
+        return self._preprocess(f"{head}#line 1\n{text}", list(macros), self._roots(builtin))
 
     def check(self, source: Source) -> list[Message]:
         if not re.search(r'^\s*Shader\s*"', source.text, re.MULTILINE):
             return self._run(_library_jobs(source, self._has_preview()))
-        shader = shaderlab.parse(source.text, source.name)
+        shader = shaderlab.parse(source.text, _TEXT)
         if shader.messages:
             return shader.messages
         try:
@@ -122,9 +140,9 @@ class Unity(Compiler):
             head = "".join(f'#include "{header}"\n' for header in job.headers)
             prelude = surface.PRELUDE if job.entry.startswith("sssgen_") and job.builtin else ""
             try:
-                text = self._preprocess(head + prelude + job.code, list(job.macros), self._folders(job))
+                text = self._preprocess(head + prelude + job.code, list(job.macros), self._roots(job.builtin))
             except ValueError as error:
-                return [Message("error", *_place(str(error)), f"{job.what}: {error}")]
+                return [_located(_preprocessing_error(str(error)), job.what)]
             if (text, job.entry) in done:
                 continue
             done.add((text, job.entry))
@@ -133,19 +151,26 @@ class Unity(Compiler):
             else:
                 messages = self._dxc.check_hlsl(text, job.stage, job.entry)
             for m in messages:
-                told = Message(m.severity, m.line, m.column, f"{job.what}: {m.text}")
-                found.setdefault((m.line, m.column, m.text), told)
+                found.setdefault((m.line, m.column, m.text), _located(m, job.what))
         return list(found.values())
 
-    def _folders(self, job: _Job) -> list[Path]:
-        return [self.root / "CGIncludes", self.root] if job.builtin else [self.root]
+    def _roots(self, builtin: bool) -> list[Path]:
+        return [self.root / "CGIncludes", self.root] if builtin else [self.root]
+
+
+def _located(message: Message, what: str) -> Message:
+    """A message with the job it is of; its place only where that is in the text, else in words."""
+    if message.file in ("", _TEXT):
+        return replace(message, text=f"{what}: {message.text}", file="")
+    place = f"{message.file}:{message.line}"
+    return Message(message.severity, 0, 0, f"{what}: {place}: {message.text}", message.file)
 
 
 def _library_jobs(source: Source, preview: bool) -> Iterator[_Job]:
     """Functions to paste, called once each; a Shader Graph include also as the node's preview compiles it."""
     language = source.language
     builtin = language == "unity-builtin"
-    code = f'#line 1 "{source.name}"\n' + hlsl_entry(source.text, opaque=_GRAPH_TEXTURES)
+    code = f'#line 1 "{_TEXT}"\n' + hlsl_entry(source.text, opaque=_GRAPH_TEXTURES)
     macros: tuple[str, ...] = (*_BUILTIN_MACROS, *_SURFACE_PASSES[0]) if builtin else _URP_MACROS
     if language == "unity-shadergraph":
         macros += ("SHADERGRAPH_TARGET=1", "_MAIN_LIGHT_SHADOWS=1", "_ADDITIONAL_LIGHTS=1")
@@ -161,7 +186,7 @@ def _program_jobs(program: shaderlab.Program, language: str) -> Iterator[_Job]:
     stages: tuple[Stage, ...] = ("vertex", "fragment")
     asked = program.pragma("surface")
     if asked is not None:
-        code = program.code + surface.entries(program.code, asked)
+        code = f'{program.code}#line 1 "surface entries"\n{surface.entries(program.code, asked)}'
         for macros in _SURFACE_PASSES:
             what = macros[0].removeprefix("UNITY_PASS_").partition("=")[0]
             every = (*_BUILTIN_MACROS, *macros)
@@ -207,12 +232,17 @@ def find() -> Unity:
     from sssgen.data import folder
 
     named = os.environ.get("SSSGEN_UNITY_INCLUDES")
-    root = Path(named).expanduser() if named else folder("tests") / "unity_standin"
-    if not (root / "CGIncludes" / "UnityCG.cginc").is_file() or not (root / _URP / "Core.hlsl").is_file():
+    standin = folder("tests") / "unity_standin"
+    root = Path(named).expanduser() if named else standin
+    if not holds_headers(root):
         where = "" if named else "without a checkout of the project, "
-        what = "CGIncludes/ and Packages/com.unity.render-pipelines.*/"
-        raise CompilerMissing(f"{where}SSSGEN_UNITY_INCLUDES must name a folder with {what}")
-    return Unity(root.resolve(), bool(named), _preprocessor())
+        raise CompilerMissing(f"{where}SSSGEN_UNITY_INCLUDES must name a folder with {HEADERS}")
+    return Unity(root.resolve(), root.resolve() != standin.resolve(), _preprocessor())
+
+
+def holds_headers(root: Path) -> bool:
+    """Whether a folder has Unity's headers, of the built-in pipeline and of URP."""
+    return (root / "CGIncludes" / "UnityCG.cginc").is_file() and (root / _URP / "Core.hlsl").is_file()
 
 
 def _preprocessor() -> Callable[[str, list[str], list[Path]], str]:
@@ -234,12 +264,15 @@ def _preprocessor() -> Callable[[str, list[str], list[Path]], str]:
         done = subprocess.run(whole, input=text, capture_output=True, encoding="utf-8", check=False)
         if done.returncode:
             raise ValueError(done.stderr.strip())
-        kept = re.sub(r"^\s*#pragma.*$", "", done.stdout, flags=re.MULTILINE)
+        kept = re.sub(r"^[ \t]*#pragma.*$", "", done.stdout, flags=re.MULTILINE)
         return re.sub(r'^# (\d+) "((?:[^"\\]|\\.)*)".*$', r'#line \1 "\2"', kept, flags=re.MULTILINE)
 
     return preprocess
 
 
-def _place(log: str) -> tuple[int, int]:
-    match = re.match(r"[^\n]*?:(\d+):(\d+): ", log)
-    return (int(match[1]), int(match[2])) if match else (0, 0)
+def _preprocessing_error(log: str) -> Message:
+    """The first error of the C preprocessor, which says `file:line:column: fatal error: …`."""
+    match = re.search(r"^(.*?):(\d+):(\d+): (?:fatal )?error: (.*)", log, re.MULTILINE)
+    if match is None:
+        return Message("error", 0, 0, log)
+    return Message("error", int(match[2]), int(match[3]), match[4], match[1])

@@ -1,0 +1,108 @@
+"""`sssgen eval`: a technique on arrays of inputs, on one back end or on all of them against the oracle."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from collections.abc import Mapping
+from typing import Any
+
+from ..cli import CHECK_FAILED, OK, print_json
+from ..diagnostics import did_you_mean, failure
+
+SHOWN = 12
+"""How many lanes a person is shown."""
+
+
+def run(arguments: Namespace) -> int:
+    """Prints the outputs, and with several back ends how far each is from the oracle."""
+    try:
+        from ..harness import backends, inputs
+    except ImportError as error:
+        raise failure(f"sssgen eval needs NumPy: {error}", "pip install 'sssgen[numpy]'") from None
+    from ..harness.probes import subject
+
+    names = _backends(arguments.backend, arguments.precision, list(backends.NAMES))
+    chosen = subject(arguments.TECHNIQUE, inputs.bindings(arguments.bind))
+    given = inputs.read(arguments.inputs) if arguments.inputs else {}
+    from ..harness.evaluate import fitted
+
+    fit = fitted(chosen, given)
+    if len(names) == 1:
+        return _one(chosen, fit, names[0], arguments.json)
+    return _several(chosen, fit, names, arguments.json)
+
+
+def _backends(given: str, precision: str | None, known: list[str]) -> list[str]:
+    """The back ends that are meant; the oracle comes first."""
+    names = known if given == "all" else [name.strip() for name in given.split(",")]
+    if unknown := [name for name in names if name not in known]:
+        hint = did_you_mean(unknown[0], known) or f"choose from: {', '.join(known)}, all"
+        raise failure(f"unknown back end '{unknown[0]}'", hint)
+    if given == "all" and precision is None:
+        return names
+    wanted = {None: "", "f64": "numpy", "f32": "numpy-f32", "f16": "numpy-f16"}[precision]
+    if wanted and "numpy" in names:
+        names = [wanted if name == "numpy" else name for name in names if name not in ("numpy-f32", "numpy-f16")]
+    elif wanted and (precision != "f32" or "numpy-f16" in names):
+        raise failure(f"{names[0]} computes in its own precision, not in {precision}", "--backend numpy")
+    return names
+
+
+def _one(subject: Any, fit: Any, name: str, as_json: bool) -> int:
+    from ..harness.backends import CompilerMissing, get
+    from ..harness.evaluate import run as evaluated
+
+    try:
+        backend = get(name)
+    except CompilerMissing as reason:
+        raise failure(f"the back end {name} is missing", str(reason)) from None
+    outputs = evaluated(subject, fit, backend)
+    if as_json:
+        plain = {key: _plain(value) for key, value in outputs.items()}
+        print_json({"ok": True, "backend": name, "device": backend.device(), "lanes": fit.lanes, "outputs": plain})
+        return OK
+    print(f"{subject.name} on {name} ({backend.device()}), {fit.lanes} lane{'s' * (fit.lanes != 1)}")
+    _print_outputs(outputs)
+    return OK
+
+
+def _several(subject: Any, fit: Any, names: list[str], as_json: bool) -> int:
+    from ..harness.deviation import GOAL, compared
+
+    oracle, rows = compared(subject, fit, names)
+    good = all(row.ok for row in rows)
+    if as_json:
+        found = [row.as_json() for row in rows]
+        plain = {key: _plain(value) for key, value in oracle.items()}
+        print_json({"ok": good, "lanes": fit.lanes, "goal": GOAL, "backends": found, "outputs": plain})
+        return OK if good else CHECK_FAILED
+    print(f"{subject.name}, {fit.lanes} lane{'s' * (fit.lanes != 1)}, against the oracle in float64")
+    _print_outputs(oracle)
+    width = max(len(row.name) for row in rows)
+    print(f"\n{'':{width}}  largest deviation (goal: {GOAL:g})")
+    for row in rows:
+        print(f"{row.name:{width}}  {row.told}")
+    return OK if good else CHECK_FAILED
+
+
+def _plain(value: Any) -> Any:
+    """Numbers for JSON, which has no NaN."""
+    import numpy as np
+
+    finite = np.isfinite(value) if value.dtype.kind == "f" else np.array(True)
+    return np.array(np.where(finite, value.astype(object), None)).tolist()
+
+
+def _print_outputs(outputs: Mapping[str, Any]) -> None:
+    import numpy as np
+
+    for name, value in outputs.items():
+        lanes = value if value.ndim else value[None]
+        print(f"{name}:")
+        for lane, one in enumerate(lanes[:SHOWN]):
+            shown = np.array2string(np.asarray(one), precision=7, separator=", ", suppress_small=False)
+            print(f"  {lane:4}  {shown}")
+        if len(lanes) > SHOWN:
+            print(f"  … {len(lanes) - SHOWN} more, of all: from {lanes.min():.7g} to {lanes.max():.7g}")
+        if value.dtype.kind == "f" and (bad := int((~np.isfinite(lanes.reshape(len(lanes), -1))).any(axis=1).sum())):
+            print(f"  {bad} of {len(lanes)} lanes are NaN or infinite")

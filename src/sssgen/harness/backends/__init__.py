@@ -1,0 +1,88 @@
+"""The machines that run emitted shaders, behind one interface: compile, run, arrays back.
+
+    gpu = backends.get("gl")
+    sums, = gpu.run(Text(text), [Call("add", (FLOAT, VEC3), VEC3, (x, y))])
+
+Each is started once a process and keeps what it has compiled.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+from ..compilers import CompilerMissing
+from .base import Array, Backend, Block, Bound, Call, Drawing, Place, Stage, Text
+from .drawing import DrawingBackend
+
+__all__ = [
+    "NAMES", "Array", "Backend", "Block", "Bound", "Call", "CompilerMissing", "Drawing", "DrawingBackend", "Place",
+    "Stage", "Text", "available", "get", "missing",
+]  # fmt: skip
+
+NAMES = {
+    "numpy": "the oracle: NumPy in float64",
+    "numpy-f32": "the same in float32",
+    "numpy-f16": "the same in float16",
+    "gl": "GLSL 3.30 in OpenGL",
+    "gl-es": "GLSL ES 3.00 in OpenGL",
+    "webgpu": "WGSL through naga, in wgpu",
+    "browser": "WGSL through Tint, in a headless Chromium",
+    "hlsl": "HLSL through DXC and SPIR-V, in OpenGL",
+    "hlsl-glslang": "HLSL through glslang and SPIR-V, in OpenGL",
+    "unity": "Unity's built-in pipeline: preprocessed, through glslang and SPIR-V, in OpenGL",
+    "unity-urp": "Unity's URP: preprocessed, through DXC and SPIR-V, in OpenGL",
+}
+"""Every back end, and what it is."""
+
+
+def get(name: str) -> Backend:
+    """The back end of that name. Raises CompilerMissing, which says how to get it, where this machine lacks it."""
+    found = _find(name)
+    if isinstance(found, str):
+        raise CompilerMissing(found)
+    return found
+
+
+def available() -> list[Backend]:
+    """Every back end that this machine has, started."""
+    return [found for found in map(_find, NAMES) if isinstance(found, Backend)]
+
+
+def missing() -> list[tuple[str, str]]:
+    """(name, how to get it) of every back end that this machine lacks."""
+    return [(name, found) for name in NAMES if isinstance(found := _find(name), str)]
+
+
+@cache
+def _find(name: str) -> Backend | str:
+    try:
+        return _start(name)
+    except CompilerMissing as reason:
+        return str(reason)
+
+
+def _start(name: str) -> Backend:
+    """Imports come late: each back end needs packages of its own."""
+    if name.startswith("numpy"):
+        from .reference import Reference
+
+        return Reference(name, {"numpy-f32": "float32", "numpy-f16": "float16"}.get(name, "float64"))
+    if name in ("gl", "gl-es"):
+        from .opengl import OpenGL
+
+        return OpenGL(name, "glsl-330" if name == "gl" else "glsl-es-300")
+    if name == "webgpu":
+        from .webgpu import WebGPU
+
+        return WebGPU(name)
+    if name == "browser":
+        from .browser import Browser
+
+        return Browser(name)
+    if name.startswith("unity"):
+        from .unity import UnityHLSL
+
+        return UnityHLSL(name, *(("unity-urp", "dxc") if name == "unity-urp" else ("unity-builtin", "dx9")))
+    from .hlsl import HLSL
+
+    return HLSL(name, "hlsl", "glslang" if name == "hlsl-glslang" else "dxc")

@@ -1,0 +1,127 @@
+"""WebGPU in a headless Chromium or Chrome, whose compiler is Tint: on SwiftShader, or on the machine's GPU.
+
+$SSSGEN_CHROMIUM names the browser's program; else an installed one is found. $SSSGEN_BROWSER_ADAPTER names the adapter:
+`swiftshader`, which every browser has and which computes on the CPU, or `default` for the machine's own.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..compilers import CompilerMissing, Message
+from .base import Array, Drawing, gave_up, refused
+from .browser_page import START, LostError, Page, find
+from .calls import FRAGMENT
+from .drawing import DrawingBackend
+from .webgpu_plan import ATTRIBUTE_PLAN, STRIDE, Plan, layout_entries, plan
+
+SECONDS = 60.0
+"""How long a small draw may take; a large one gets more, see `_extra`."""
+
+
+_WHOLE_QUADS = "diagnostic(off, derivative_uniformity);"
+"""For the program around functions, whose branches are taken by whole quads, which Tint cannot know."""
+
+
+class Browser(DrawingBackend):
+    """Has a page carry out plans; a browser that is lost is started again for the next draw.
+
+    `seconds`: how long a small draw may take.
+    """
+
+    top_first = True
+
+    def __init__(self, name: str, seconds: float = SECONDS) -> None:
+        super().__init__(name, "wgsl")
+        self.seconds = seconds
+        self.page, self.told = _open()
+
+    def device(self) -> str:
+        return f"Tint in Chromium {self.told['version']} on {self.told['adapter']}"
+
+    def draw(self, drawing: Drawing) -> Array:
+        todo = plan(drawing)
+        if drawing.fragment.entry == FRAGMENT:
+            todo = todo._replace(code=_WHOLE_QUADS + todo.code)  # on the first line: the others keep their numbers
+        head, data = _packed(todo)
+        seconds = self.seconds + _extra(todo, len(data))
+        try:
+            if not self.page.alive():
+                self.page.close()
+                self.page, self.told = _open()
+            self.page.send(head, data, seconds)
+            answer, picture = self.page.receive(seconds)
+        except LostError as reason:
+            raise gave_up(self.name, f"the browser {reason}") from None
+        except CompilerMissing as reason:
+            raise gave_up(self.name, f"the browser is gone, and does not start again: {reason}") from None
+        if "messages" in answer:
+            told = [Message("error", line, column, _first(text)) for line, column, text in answer["messages"]]
+            raise refused(self.name, drawing.fragment.text, told)
+        if "lost" in answer:
+            self.page.close()
+            raise gave_up(self.name, f"the browser lost its device: {answer['lost']}")
+        if "error" in answer:
+            raise gave_up(self.name, _first(answer["error"]))
+        dtype: Any = np.float32 if drawing.floats else np.uint32
+        rows = np.frombuffer(picture, dtype).reshape(todo.height, answer["stride"] // 4)
+        return rows[:, : todo.width * 4].reshape(todo.height, todo.width, 4)
+
+
+def _open() -> tuple[Page, dict[str, Any]]:
+    """A page with a device, and what it says of itself. Raises CompilerMissing where there is none."""
+    program = find()
+    if not program:
+        raise CompilerMissing("chromium (Debian: chromium · elsewhere: Chrome; or set SSSGEN_CHROMIUM)")
+    adapter = os.environ.get("SSSGEN_BROWSER_ADAPTER", "swiftshader")
+    try:
+        page = Page(program, adapter, Path(__file__).with_name("browser.js").read_text(encoding="utf-8"))
+        told, _ = page.receive(START)
+    except LostError as reason:
+        raise CompilerMissing(f"chromium that starts: {program} {reason}") from None
+    if "error" in told:
+        page.close()
+        raise CompilerMissing(f"chromium with WebGPU: {program}: {told['error']} (SSSGEN_BROWSER_ADAPTER={adapter})")
+    return page, told
+
+
+def _packed(todo: Plan) -> tuple[str, bytes]:
+    """The plan as JSON, in which `{at, size}` stands for each piece of the bytes."""
+    pieces: list[bytes] = []
+    end = 0
+
+    def piece(data: bytes) -> dict[str, int]:
+        nonlocal end
+        pieces.append(data)
+        end += len(data)
+        return {"at": end - len(data), "size": len(data)}
+
+    textures = [one._asdict() | {"levels": [level._asdict() for level in one.levels]} for one in todo.textures]
+    lists = {"textures": textures, "blocks": [block._asdict() for block in todo.blocks], "groups": _groups(todo)}
+    vertices = {"attributes": ATTRIBUTE_PLAN, "vertexStride": STRIDE}
+    return json.dumps(todo._asdict() | lists | vertices, default=piece), b"".join(pieces)
+
+
+def _groups(todo: Plan) -> list[list[dict[str, Any]]]:
+    """The entries of each group's layout in JavaScript's spelling."""
+    groups = layout_entries(todo)
+    for entry in (entry for entries in groups.values() for entry in entries):
+        if "texture" in entry:
+            reads = entry["texture"]
+            entry["texture"] = {"sampleType": reads["sample_type"], "viewDimension": reads["view_dimension"]}
+    return [groups.get(i, []) for i in range(max(groups, default=-1) + 1)]
+
+
+def _first(text: str) -> str:
+    """The first line: after it come candidates, and where in the browser it was found."""
+    return text.split("\n")[0]
+
+
+def _extra(todo: Plan, size: int) -> float:
+    """Seconds that a draw may take for its size: 30 a million pixels, and .1 a million bytes."""
+    return 30e-6 * todo.width * todo.height + 0.1e-6 * size

@@ -1,0 +1,32 @@
+"""A back end that computes by drawing: what OpenGL, WebGPU and HLSL share."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+
+from ...targets import descriptor
+from ...targets.numpy_textures import Texture
+from . import calls as programs
+from .base import Array, Backend, Call, Drawing, Text
+
+
+class DrawingBackend(Backend):
+    """Draws programs. `top_first` says where the first row of a picture is: at the top, or at the bottom."""
+
+    top_first = False
+
+    def __init__(self, name: str, target: str) -> None:
+        self.name = name
+        self.target = descriptor.load(target)
+
+    @abstractmethod
+    def draw(self, drawing: Drawing) -> Array:
+        """The picture, (height, width, 4) of uint32 or float32, its rows as the driver counts them.
+
+        Raises SssgenError where the driver refuses the program or gives up.
+        """
+
+    def run(self, text: Text, calls: Sequence[Call], textures: Mapping[str, Texture] | None = None) -> list[Array]:
+        drawing, layout = programs.drawing(self.target, text, calls, textures or {})
+        return programs.results(calls, layout, self.draw(drawing))

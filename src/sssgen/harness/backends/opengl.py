@@ -1,0 +1,173 @@
+"""OpenGL through moderngl, off screen: a GPU's driver, or Mesa's llvmpipe where there is none."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ...targets.numpy_textures import Texture
+from .. import compilers
+from ..compilers.gl import DriverGL, messages
+from .base import ATTRIBUTES, Array, Block, Drawing, Text, gave_up, refused
+from .drawing import DrawingBackend
+
+_HEADS = {
+    "glsl-330": "#version 330 core\n#line 1\n",
+    "glsl-es-300": "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler3D;\n"
+    "#line 1\n",
+}
+_SCREEN = "void main() { gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0); }"
+_KEPT = 64
+"""Compiled programs of a process; the oldest goes first."""
+
+
+class OpenGL(DrawingBackend):
+    """Compiles GLSL in the driver and draws with it."""
+
+    def __init__(self, name: str, target: str) -> None:
+        super().__init__(name, target)
+        driver = compilers.get("gl")
+        assert isinstance(driver, DriverGL)
+        self.driver = driver
+        self.context: Any = driver.context
+        self.programs: OrderedDict[tuple[str, str], Any] = OrderedDict()
+
+    def device(self) -> str:
+        return self.driver.version()
+
+    def draw(self, drawing: Drawing) -> Array:
+        vertex, fragment = self.stages(drawing)
+        with self.context:  # other libraries make contexts of their own current
+            program = self.program(vertex, fragment, drawing.fragment.text)
+            try:
+                return self.fill(program, drawing)
+            except MemoryError:
+                raise gave_up(self.name, f"no memory for a picture of {drawing.size[0]}×{drawing.size[1]}") from None
+            except Exception as error:
+                raise gave_up(self.name, f"the driver gave up: {error}") from error
+
+    def stages(self, drawing: Drawing) -> tuple[str, str]:
+        """The GLSL of the two stages."""
+        head = _HEADS[self.target.name]
+        fragment = drawing.fragment.text.text
+        fragment = fragment if fragment.startswith("#version") else head + fragment
+        vertex = drawing.vertex.text.text if drawing.vertex else head + _SCREEN
+        return vertex, fragment
+
+    def program(self, vertex: str, fragment: str, origin: Text) -> Any:
+        """The linked program, from this process's own if it is known. `origin` says where a complaint belongs."""
+        key = (vertex, fragment)
+        if key in self.programs:
+            self.programs.move_to_end(key)
+            return self.programs[key]
+        try:
+            made = self.context.program(vertex_shader=vertex, fragment_shader=fragment)
+        except Exception as error:
+            raise refused(self.name, origin, messages(str(error))) from None
+        self.programs[key] = made
+        if len(self.programs) > _KEPT:
+            self.programs.popitem(last=False)[1].release()
+        return made
+
+    def fill(self, program: Any, drawing: Drawing) -> Array:
+        """Binds by name and draws; nothing stays but the program."""
+        context, (width, height) = self.context, drawing.size
+        made: list[Any] = []
+
+        def keep(one: Any) -> Any:
+            made.append(one)
+            return one
+
+        try:
+            kind = "f4" if drawing.floats else "u4"
+            frame = keep(context.framebuffer([keep(context.texture(drawing.size, 4, dtype=kind))]))
+            textures = {name: keep(self.upload(bound.data)) for name, bound in drawing.textures.items()}
+            for unit, member in enumerate(name for name in program if is_loose(program[name])):
+                name = _owner(member, textures)
+                if name:
+                    textures[name].use(unit)
+                    program[member].value = unit
+                elif member in drawing.values:
+                    _write(program[member], drawing.values[member])
+            self.bind_blocks(program, drawing.blocks, keep)
+            array = keep(self.vertex_array(program, drawing, keep))
+            frame.use()
+            context.viewport = (0, 0, width, height)
+            context.disable(context.DEPTH_TEST | context.BLEND | context.CULL_FACE)
+            frame.clear()
+            array.render(context.TRIANGLES, vertices=-1 if drawing.triangles is not None else 3)
+            dtype: Any = np.float32 if drawing.floats else np.uint32
+            data = frame.read(components=4, dtype=kind)
+            return np.frombuffer(data, dtype).reshape(height, width, 4)
+        finally:
+            for one in made:
+                one.release()
+
+    def bind_blocks(self, program: Any, blocks: Mapping[str, Block], keep: Any) -> None:
+        """Binds the uniform blocks that the program has; a compiler may have put something around their names."""
+        members = [name for name in program if hasattr(program[name], "binding")]
+        for number, member in enumerate(members):
+            name = _owner(member, blocks)
+            if name:
+                buffer = keep(self.context.buffer(blocks[name].data))
+                program[member].binding = number
+                buffer.bind_to_uniform_block(number)
+
+    def vertex_array(self, program: Any, drawing: Drawing, keep: Any) -> Any:
+        """The vertices, of which the program takes the attributes that it has."""
+        if drawing.vertices is None or drawing.triangles is None:
+            return self.context.vertex_array(program, [])
+        buffer = keep(self.context.buffer(np.ascontiguousarray(drawing.vertices, np.float32)))
+        index = keep(self.context.buffer(np.ascontiguousarray(drawing.triangles, np.uint32)))
+        attributes = {name: self.attribute(program, name) for name in ATTRIBUTES}
+        layout = " ".join(f"{size}f" if attributes[name] else f"{4 * size}x" for name, (_, size) in ATTRIBUTES.items())
+        names = [name for name in attributes.values() if name]
+        return self.context.vertex_array(program, [(buffer, layout, *names)], index)
+
+    def attribute(self, program: Any, name: str) -> str:
+        """What the program calls an attribute; '' where it has none."""
+        return name if name in program else ""
+
+    def upload(self, data: Texture | Array) -> Any:
+        """A texture with the same filter and wrapping; further levels are the driver's."""
+        context = self.context
+        if isinstance(data, np.ndarray):
+            made = context.texture((data.shape[1], data.shape[0]), 4, np.ascontiguousarray(data), dtype="u4")
+            made.filter = (context.NEAREST, context.NEAREST)
+            return made
+        level = np.ascontiguousarray(data.levels[0], np.float16).tobytes()
+        make = getattr(context, {"2D": "texture", "3D": "texture3d", "Cube": "texture_cube"}[data.dim])
+        size = data.size()
+        made = make(size, 4, level, dtype="f2")
+        if len(data.levels) > 1:
+            made.build_mipmaps()
+        between, within = {
+            "linear": (context.LINEAR_MIPMAP_LINEAR, context.LINEAR),
+            "nearest": (context.NEAREST_MIPMAP_LINEAR, context.NEAREST),
+        }[data.filter]
+        made.filter = (between if len(data.levels) > 1 else within, within)
+        if data.dim != "Cube":
+            made.repeat_x = made.repeat_y = data.wrap == "repeat"
+        if data.dim == "3D":
+            made.repeat_z = data.wrap == "repeat"
+        return made
+
+
+def is_loose(member: Any) -> bool:
+    """Whether a program's member is a uniform outside of blocks."""
+    import moderngl
+
+    return isinstance(member, moderngl.Uniform)
+
+
+def _owner(member: str, names: Mapping[str, Any]) -> str:
+    """Which of ours a program's name means: HLSL comes with a prefix, a texture with its sampler's name behind it."""
+    return next((name for name in sorted(names, key=len, reverse=True) if name in member), "")
+
+
+def _write(member: Any, numbers: Array) -> None:
+    kind = {"f": np.float32, "I": np.uint32}.get(member.fmt[-1], np.int32)
+    member.write(np.ascontiguousarray(numbers, kind).tobytes())

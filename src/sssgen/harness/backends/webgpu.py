@@ -1,0 +1,132 @@
+"""WebGPU through wgpu, whose compiler is naga: a GPU's Vulkan or Metal, or Mesa's lavapipe where there is none."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from typing import Any
+
+import numpy as np
+
+from .. import compilers
+from ..compilers.naga import Naga
+from .base import Array, Drawing, gave_up, refused
+from .drawing import DrawingBackend
+from .webgpu_plan import ATTRIBUTE_PLAN, STRIDE, Plan, TexturePlan, layout_entries, plan
+
+_KEPT = 64
+_TO_TEXTURE, _FROM_TEXTURE, _BOUND, _TARGET = 0x2, 0x1, 0x4, 0x10
+_INDEX, _VERTEX, _UNIFORM = 0x10, 0x20, 0x40
+
+
+class WebGPU(DrawingBackend):
+    """Compiles WGSL and draws with it."""
+
+    top_first = True
+
+    def __init__(self, name: str) -> None:
+        super().__init__(name, "wgsl")
+        naga = compilers.get("naga")
+        assert isinstance(naga, Naga)
+        self.naga = naga
+        self.gpu: Any = naga.gpu
+        self.pipelines: OrderedDict[tuple[object, ...], Any] = OrderedDict()
+
+    def device(self) -> str:
+        return self.naga.version()
+
+    def draw(self, drawing: Drawing) -> Array:
+        import wgpu
+
+        todo = plan(drawing)
+        try:
+            return self.carry_out(todo)
+        except wgpu.GPUError as error:
+            told = self.naga.complaints(todo.code)
+            if told:
+                raise refused(self.name, drawing.fragment.text, told) from None
+            raise gave_up(self.name, f"{type(error).__name__}: {error}") from error
+
+    def carry_out(self, todo: Plan) -> Array:
+        """Draws and reads the picture."""
+        gpu, size = self.gpu, (todo.width, todo.height, 1)
+        pipeline, layouts = self.pipeline(todo)
+        target = gpu.create_texture(size=size, format=todo.format, usage=_TARGET | _FROM_TEXTURE)
+        encoder = gpu.create_command_encoder()
+        attachment = {"view": target.create_view(), "load_op": "clear", "store_op": "store"}
+        drawing = encoder.begin_render_pass(color_attachments=[attachment])
+        drawing.set_pipeline(pipeline)
+        for group, entries in self.resources(todo).items():
+            drawing.set_bind_group(group, gpu.create_bind_group(layout=layouts[group], entries=entries))
+        if todo.triangles:
+            vertices = gpu.create_buffer_with_data(data=todo.vertices, usage=_VERTEX)
+            triangles = gpu.create_buffer_with_data(data=todo.triangles, usage=_INDEX)
+            drawing.set_vertex_buffer(0, vertices)
+            drawing.set_index_buffer(triangles, "uint32")
+            drawing.draw_indexed(len(todo.triangles) // 4)
+        else:
+            drawing.draw(3)
+        drawing.end()
+        gpu.queue.submit([encoder.finish()])
+        layout = {"offset": 0, "bytes_per_row": todo.width * 16, "rows_per_image": todo.height}
+        read = gpu.queue.read_texture({"texture": target}, layout, size)
+        dtype: Any = np.float32 if todo.format == "rgba32float" else np.uint32
+        return np.frombuffer(read, dtype).reshape(todo.height, todo.width, 4)
+
+    def pipeline(self, todo: Plan) -> tuple[Any, list[Any]]:
+        """The pipeline and the layouts of its groups, from this process's own if they are known."""
+        groups = layout_entries(todo)
+        key = (todo.code, todo.vertex, todo.fragment, todo.format, bool(todo.triangles), repr(groups))
+        if key in self.pipelines:
+            self.pipelines.move_to_end(key)
+            found: tuple[Any, list[Any]] = self.pipelines[key]
+            return found
+        gpu = self.gpu
+        module = gpu.create_shader_module(code=todo.code)
+        layouts = [gpu.create_bind_group_layout(entries=groups.get(i, [])) for i in range(max(groups, default=-1) + 1)]
+        buffers = [{"array_stride": STRIDE, "step_mode": "vertex", "attributes": _SNAKE}] if todo.triangles else []
+        made = gpu.create_render_pipeline(
+            layout=gpu.create_pipeline_layout(bind_group_layouts=layouts),
+            vertex={"module": module, "entry_point": todo.vertex, "buffers": buffers},
+            fragment={"module": module, "entry_point": todo.fragment, "targets": [{"format": todo.format}]},
+            primitive={"topology": "triangle-list", "cull_mode": "none"},
+        )
+        self.pipelines[key] = made, layouts
+        if len(self.pipelines) > _KEPT:
+            self.pipelines.popitem(last=False)
+        return made, layouts
+
+    def resources(self, todo: Plan) -> dict[int, list[dict[str, Any]]]:
+        """Group → what is bound in it."""
+        groups: dict[int, list[dict[str, Any]]] = {}
+        for block in todo.blocks:
+            buffer = self.gpu.create_buffer_with_data(data=block.data, usage=_UNIFORM)
+            resource = {"buffer": buffer, "offset": 0, "size": len(block.data)}
+            groups.setdefault(block.group, []).append({"binding": block.binding, "resource": resource})
+        for texture in todo.textures:
+            view = self.upload(texture).create_view(dimension=texture.view)
+            found = groups.setdefault(texture.group, [])
+            found.append({"binding": texture.binding, "resource": view})
+            if texture.sampler >= 0:
+                wraps = {f"address_mode_{axis}": texture.wrap for axis in "uvw"}
+                filters = dict.fromkeys(("mag_filter", "min_filter"), texture.filter) | {"mipmap_filter": "linear"}
+                found.append({"binding": texture.sampler, "resource": self.gpu.create_sampler(**filters, **wraps)})
+        return groups
+
+    def upload(self, texture: TexturePlan) -> Any:
+        """The texture with all its levels."""
+        first = texture.levels[0].size
+        made = self.gpu.create_texture(
+            size=first, format=texture.format, usage=_BOUND | _TO_TEXTURE, dimension=texture.dimension,
+            mip_level_count=len(texture.levels),
+        )  # fmt: skip
+        for number, level in enumerate(texture.levels):
+            layout = {"bytes_per_row": level.size[0] * texture.bytes_per_texel, "rows_per_image": level.size[1]}
+            self.gpu.queue.write_texture({"texture": made, "mip_level": number}, level.data, layout, level.size)
+        return made
+
+
+_SNAKE = [
+    {"format": one["format"], "offset": one["offset"], "shader_location": one["shaderLocation"]}
+    for one in ATTRIBUTE_PLAN
+]
+"""The attributes in wgpu's spelling."""

@@ -1,0 +1,123 @@
+"""A drawing as WebGPU wants it: plain data, which `wgpu` in this process and a page in a browser carry out alike."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...targets.numpy_textures import Texture
+from .base import ATTRIBUTES, Bound, Drawing
+
+_WRAP = {"repeat": "repeat", "clamp": "clamp-to-edge", "mirror": "mirror-repeat"}
+
+
+class Level(NamedTuple):
+    """One level of a texture: its size and its texels, row after row."""
+
+    size: tuple[int, int, int]
+    data: bytes
+
+
+class TexturePlan(NamedTuple):
+    """A texture and where it is bound; `sampler` is -1 where it is read texel by texel."""
+
+    group: int
+    binding: int
+    sampler: int
+    format: str
+    bytes_per_texel: int
+    dimension: str
+    """Of the texture: 2d or 3d."""
+    view: str
+    """Of the view: 2d, 3d or cube."""
+    filter: str
+    wrap: str
+    levels: list[Level]
+
+
+class BlockPlan(NamedTuple):
+    """A uniform block and where it is bound."""
+
+    group: int
+    binding: int
+    data: bytes
+
+
+class Plan(NamedTuple):
+    """One draw into a picture of 16 bytes a pixel."""
+
+    code: str
+    vertex: str
+    fragment: str
+    format: str
+    width: int
+    height: int
+    textures: list[TexturePlan]
+    blocks: list[BlockPlan]
+    vertices: bytes
+    triangles: bytes
+    """Indices as uint32; empty: three vertices without buffers."""
+
+
+STRIDE = 48
+"""Bytes of a vertex."""
+
+ATTRIBUTE_PLAN = [
+    {"format": f"float32x{size}", "offset": 4 * first, "shaderLocation": location}
+    for location, (first, size) in enumerate(ATTRIBUTES.values())
+]
+"""All four attributes; a program that reads fewer does not mind."""
+
+
+def plan(drawing: Drawing) -> Plan:
+    """What to do for a drawing."""
+    assert drawing.vertex is not None
+    triangles = drawing.triangles
+    return Plan(
+        drawing.fragment.text.text,
+        drawing.vertex.entry,
+        drawing.fragment.entry,
+        "rgba32float" if drawing.floats else "rgba32uint",
+        *drawing.size,
+        [_texture(bound) for bound in drawing.textures.values()],
+        [BlockPlan(block.place.group, block.place.binding, block.data) for block in drawing.blocks.values()],
+        b"" if drawing.vertices is None else np.ascontiguousarray(drawing.vertices, np.float32).tobytes(),
+        b"" if triangles is None else np.ascontiguousarray(triangles, np.uint32).tobytes(),
+    )
+
+
+def _texture(bound: Bound) -> TexturePlan:
+    data, place = bound.data, bound.place
+    if not isinstance(data, Texture):
+        size = data.shape[1], data.shape[0], 1
+        level = Level(size, np.ascontiguousarray(data, np.uint32).tobytes())
+        return TexturePlan(place.group, place.binding, -1, "rgba32uint", 16, "2d", "2d", "nearest", "repeat", [level])
+    levels = []
+    for texels in data.levels:
+        size = texels.shape[-2], texels.shape[-3], texels.shape[0] if data.dim != "2D" else 1
+        levels.append(Level(size, np.ascontiguousarray(texels, np.float16).tobytes()))
+    dimension = "3d" if data.dim == "3D" else "2d"
+    view = data.dim.lower()
+    wrap = _WRAP[data.wrap]
+    return TexturePlan(
+        place.group, place.binding, place.sampler, "rgba16float", 8, dimension, view, data.filter, wrap, levels
+    )
+
+
+def layout_entries(plan: Plan) -> dict[int, list[dict[str, Any]]]:
+    """Group → the entries of its bind group layout. A group is explicit: `auto` drops what a program does not read."""
+    groups: dict[int, list[dict[str, Any]]] = {}
+    both, fragment = 3, 2
+    for block in plan.blocks:
+        entry = {"binding": block.binding, "visibility": both, "buffer": {"type": "uniform"}}
+        groups.setdefault(block.group, []).append(entry)
+    for texture in plan.textures:
+        kind = "uint" if texture.format == "rgba32uint" else "float"
+        reads = {"sample_type": kind, "view_dimension": texture.view}
+        found = groups.setdefault(texture.group, [])
+        found.append({"binding": texture.binding, "visibility": fragment, "texture": reads})
+        if texture.sampler >= 0:
+            sampler = {"type": "filtering"}
+            found.append({"binding": texture.sampler, "visibility": fragment, "sampler": sampler})
+    return groups

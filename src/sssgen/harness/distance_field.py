@@ -1,0 +1,176 @@
+"""Geometry from a distance function of the library, or of a file in our language: sphere tracing on the CPU.
+
+The numpy target makes Python of the function, with the parameters folded in; it runs in float64.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from sssgen import library, slots
+from sssgen.compiler import transpile
+from sssgen.diagnostics import SssgenError, did_you_mean, failure
+from sssgen.ir.nodes import Function, Module, Uniform
+from sssgen.ir.types import Sampler
+from sssgen.lang.check import check
+from sssgen.lang.parser import parse
+from sssgen.material_values import WrongValue, read_value
+from sssgen.passes.fold import fold
+from sssgen.passes.link import LinkStage, link
+
+from .placed import Array, Bools, Geometry, Hits, planar, spherical, spread, tangent_of, unit
+
+PROJECTIONS = {"spherical": spherical, "planar": planar}
+
+_STEPS = 1000
+_SHORTEST = 1e-4
+"""The shortest step, in parts of `reach`: what is thinner may be missed."""
+
+
+@dataclass(frozen=True)
+class Distance(Geometry):
+    """Where a distance function is 0, within a ball about the origin; beyond it there is nothing.
+
+    The function is `NAME`, `NAME:FUNCTION`, `FILE` or `FILE:FUNCTION`, as in a material's `bind`: it takes one
+    position, in this geometry's object space, and must not grow faster than the distance does. uv are longitude and
+    latitude about the origin (`spherical`), or x and y (`planar`).
+    """
+
+    technique: str = "sphere"
+    folder: str = ""
+    """Where files are looked for, before the library."""
+    parameters: Mapping[str, object] = field(default_factory=dict)
+    """The function's uniforms → values as a material writes them; the rest have their defaults."""
+    reach: float = 4.0
+    """The ball's radius, in units of object space."""
+    projection: str = "spherical"
+
+    def cast(self, origin: Array, directions: Array) -> Hits:
+        t, hit = self._march(origin, directions)
+        position = origin + t[hit, None] * directions[hit]
+        normal = self._gradient(position)
+        uv, grows_u, grows_v = PROJECTIONS[self.projection](position)
+        return spread(hit, position, normal, tangent_of(normal, grows_u, grows_v), uv)
+
+    def distance(self, points: Array) -> Array:
+        """Raises SssgenError for a function that is missing, faulty, or none of a position's distance."""
+        found: Array = np.broadcast_to(np.asarray(self.function(points.T), np.float64), len(points))
+        return found
+
+    @cached_property
+    def function(self) -> Callable[[Array], Any]:
+        """The function on points (3, n). Raises SssgenError."""
+        from sssgen.targets.numpy_values import precision
+
+        module, function = find_function(self.technique, self.folder)
+        values = _values(self.technique, uniforms_of(module, function), self.parameters)
+        linked = link([LinkStage(function.name, "", module, function, {}, values, frozenset(values))])
+        made = transpile(fold(linked.module, linked.fixed), "numpy", function.name)
+        namespace: dict[str, Any] = {}
+        exec(made.files[f"{function.name}_functions.py"], namespace)
+        code = namespace[made.reflection["renames"].get(function.name, function.name)]
+
+        def run(points: Array) -> Any:
+            with precision(np.float64):
+                return code(points)
+
+        return run
+
+    def _march(self, origin: Array, directions: Array) -> tuple[Array, Bools]:
+        """The way to the nearest change of sign, (n,), and whether there is one, (n,)."""
+        nearest = -directions @ origin
+        closest = origin + nearest[:, None] * directions
+        half = self.reach**2 - np.einsum("nc,nc->n", closest, closest)
+        last = nearest + np.sqrt(np.maximum(half, 0.0))
+        before = np.maximum(nearest - np.sqrt(np.maximum(half, 0.0)), 0.0)
+        hit = np.zeros(len(directions), np.bool_)
+        going = np.flatnonzero((half > 0.0) & (last > 0.0))
+        t = before.copy()
+        inside = np.zeros(len(directions), np.bool_)
+        inside[going] = self._at(origin, directions, t, going) < 0.0
+        for _ in range(_STEPS):
+            if not len(going):
+                break
+            value = self._at(origin, directions, t, going)
+            crossed = (value < 0.0) != inside[going]
+            hit[going[crossed]] = True
+            on = ~crossed & (t[going] < last[going]) & np.isfinite(value)
+            going, value = going[on], value[on]
+            before[going] = t[going]
+            t[going] = np.minimum(t[going] + np.maximum(np.abs(value), _SHORTEST * self.reach), last[going])
+        return self._bisected(origin, directions, before, t, inside, np.flatnonzero(hit)), hit
+
+    def _bisected(self, origin: Array, directions: Array, low: Array, high: Array, inside: Bools, rays: Any) -> Array:
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            crossed = (self._at(origin, directions, middle, rays) < 0.0) != inside[rays]
+            high[rays[crossed]] = middle[rays[crossed]]
+            low[rays[~crossed]] = middle[rays[~crossed]]
+        return high
+
+    def _at(self, origin: Array, directions: Array, t: Array, rays: Any) -> Array:
+        return self.distance(origin + t[rays, None] * directions[rays])
+
+    def _gradient(self, points: Array) -> Array:
+        """Unit normals by central differences; +z where there is no gradient."""
+        step = 1e-5 * self.reach
+        slopes = [self.distance(points + step * way) - self.distance(points - step * way) for way in np.eye(3)]
+        normal = unit(np.nan_to_num(np.stack(slopes, axis=1)))
+        return np.where((normal == 0.0).all(axis=1, keepdims=True), [0.0, 0.0, 1.0], normal)
+
+
+def find_function(technique: str, folder: str) -> tuple[Module, Function]:
+    """The distance function that a scene names, and its module. Raises SssgenError."""
+    file = technique if technique.endswith((".sss", ".glsl")) else technique.rpartition(":")[0]
+    if file.endswith((".sss", ".glsl")):
+        roots = (folder, library.TECHNIQUES)
+        if not any(os.path.isfile(os.path.join(root, file)) for root in roots):
+            raise failure(f"cannot find the file '{file}'", "it is looked for beside the scene, and in the library")
+    try:
+        module, function = slots.find(technique, _slot("world_position"), folder)
+    except SssgenError as error:
+        try:
+            module, function = slots.find(technique, _slot("object_position"), folder)
+        except SssgenError:
+            raise error from None
+    unbound = slots.needs(module, function)[1]
+    if unbound:
+        message = f"'{technique}' has the slot '{unbound[0].name}', which a scene cannot bind"
+        raise failure(message, "write a function in a file that calls the one wanted")
+    textures = [name for name, uniform in uniforms_of(module, function).items() if isinstance(uniform.type, Sampler)]
+    if textures:
+        raise failure(f"'{technique}' reads the texture '{textures[0]}', which a scene's geometry cannot have")
+    return module, function
+
+
+def uniforms_of(module: Module, function: Function) -> dict[str, Uniform]:
+    """The parameters that a function reads, by name."""
+    names, _ = slots.needs(module, function)
+    return {uniform.name: uniform for uniform in module.uniforms if uniform.name in names}
+
+
+def _slot(quantity: str) -> Function:
+    text = f"float distance_of({quantity} p);"
+    return check(parse(text, "slot.sss"), text).functions[-1]
+
+
+def _values(
+    technique: str, uniforms: Mapping[str, Uniform], given: Mapping[str, object]
+) -> dict[str, tuple[float, ...]]:
+    """Each parameter's value: the one given, or its default."""
+    values = {name: uniform.default for name, uniform in uniforms.items()}
+    for name, raw in given.items():
+        if name not in uniforms:
+            hint = did_you_mean(name, uniforms) or f"parameters: {', '.join(uniforms) or 'none'}"
+            raise failure(f"unknown parameter '{name}' of '{technique}'", hint)
+        try:
+            values[name] = read_value(uniforms[name], raw)
+        except WrongValue as wrong:
+            raise failure(wrong.message, wrong.hint) from None
+    return values

@@ -1,0 +1,184 @@
+"""Pictures from files and into files, as arrays with row 0 at the top, as the files have them."""
+
+from __future__ import annotations
+
+import io
+import os
+import tempfile
+import warnings
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from sssgen.data import posix
+from sssgen.diagnostics import did_you_mean, failure
+from sssgen.output import write_files
+
+from .extras import need
+
+Array: TypeAlias = npt.NDArray[np.float64]
+
+SUFFIXES = (".png", ".exr", ".npy")
+
+_WHOLE = {np.dtype(np.uint8): 255.0, np.dtype(np.uint16): 65535.0}
+"""What stands for 1 in the integers that a file may hold."""
+
+
+def read(path: str | os.PathLike[str]) -> Array:
+    """The picture in a file, (height, width, channels), row 0 at the top; channels are 1 to 4.
+
+    .png: 8 bits, and 16 where it is gray; values 0..1 as they are stored, no colour conversion. .exr: as stored,
+    which is linear light; R, G, B, A, or Y alone. .npy: an array of 2 to 4 axes, (height, width),
+    (height, width, channels) or, for 3-D textures, (depth, height, width, channels); floats as they are, uint8
+    and uint16 as in a PNG. Raises SssgenError for a file that is missing, faulty, or none of these.
+    """
+    shown = posix(path)
+    suffix = check_suffix(path)
+    if not os.path.isfile(path):
+        hint = "this is a folder: name a file in it" if os.path.isdir(path) else ""
+        raise failure("cannot find the picture", hint, shown)
+    picture = {".png": _read_png, ".exr": _read_exr, ".npy": _read_npy}[suffix](os.fspath(path), shown)
+    if 0 in picture.shape:
+        raise failure("the picture is empty", "", shown)
+    return picture
+
+
+def check_suffix(path: str | os.PathLike[str]) -> str:
+    """A picture file's suffix. Raises SssgenError where it is none of SUFFIXES."""
+    suffix = os.path.splitext(os.fspath(path))[1].lower()
+    if suffix not in SUFFIXES:
+        hint = did_you_mean(suffix, SUFFIXES) or f"pictures end in {', '.join(SUFFIXES)}"
+        raise failure(f"'{suffix}' is no picture file's ending", hint, posix(path))
+    return suffix
+
+
+def encode_srgb(linear: npt.ArrayLike) -> Array:
+    """Linear light, cut to 0..1, as encoded sRGB 0..1 (IEC 61966-2-1)."""
+    light = np.clip(np.asarray(linear, np.float64), 0.0, 1.0)
+    encoded: Array = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+    return encoded
+
+
+def write_png(path: str | os.PathLike[str], color: npt.ArrayLike) -> None:
+    """Writes an encoded picture, (height, width) or (height, width, 1 to 4), with 8 bits a channel, whole or not at all.
+
+    Values are 0..1; they are cut to that and rounded, and NaN becomes 0. Raises SssgenError for another ending than
+    .png and where the system refuses.
+    """
+    array = _picture(path, color, ".png")
+    pillow = need("PIL.Image", "pillow")
+    bytes_ = np.rint(np.clip(np.nan_to_num(array, nan=0.0), 0.0, 1.0) * 255.0).astype(np.uint8)
+    buffer = io.BytesIO()
+    pillow.fromarray(bytes_[..., 0] if bytes_.shape[-1] == 1 else bytes_).save(buffer, "PNG")
+    _write(path, buffer.getvalue())
+
+
+def write_exr(path: str | os.PathLike[str], linear: npt.ArrayLike) -> None:
+    """Writes linear light, (height, width) or (height, width, 1 to 4), as 32-bit floats, whole or not at all.
+
+    One channel is written as Y, two as Y and A. Raises SssgenError for another ending than .exr and where the system
+    refuses.
+    """
+    array = _picture(path, linear, ".exr")
+    exr = need("OpenEXR")
+    names = {1: "Y", 2: "YA", 3: "RGB", 4: "RGBA"}[array.shape[-1]]
+    channels = {name: np.ascontiguousarray(array[..., at], np.float32) for at, name in enumerate(names)}
+    header = {"compression": exr.ZIP_COMPRESSION, "type": exr.scanlineimage}
+    with tempfile.TemporaryDirectory() as folder:  # the package writes files only
+        temporary = os.path.join(folder, "picture.exr")
+        exr.File(header, channels).write(temporary)
+        with open(temporary, "rb") as file:
+            data = file.read()
+    _write(path, data)
+
+
+def _picture(path: str | os.PathLike[str], values: npt.ArrayLike, suffix: str) -> Array:
+    """What is to be written, as (height, width, channels)."""
+    if check_suffix(path) != suffix:
+        raise failure(f"the file's name must end in {suffix}", "", posix(path))
+    array = np.asarray(values, np.float64)
+    array = array[..., None] if array.ndim == 2 else array
+    if array.ndim != 3 or 0 in array.shape or array.shape[-1] > 4:
+        raise failure(f"an array of shape {array.shape} is no picture", "(height, width, 1 to 4)", posix(path))
+    return array
+
+
+def _write(path: str | os.PathLike[str], data: bytes) -> None:
+    folder, name = os.path.split(os.fspath(path))
+    write_files(folder, {name: data})
+
+
+def _read_png(path: str, shown: str) -> Array:
+    pillow = need("PIL.Image", "pillow")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", pillow.DecompressionBombWarning)
+            with pillow.open(path, formats=["PNG"]) as image:
+                image.load()
+    except (pillow.DecompressionBombError, pillow.DecompressionBombWarning, MemoryError):
+        raise failure("the picture is too large to be read", "make it smaller", shown) from None
+    except pillow.UnidentifiedImageError:
+        raise failure("this is not a PNG picture", "write it as PNG anew; a new name alone does not", shown) from None
+    except (OSError, SyntaxError, ValueError) as error:
+        raise failure(f"the picture is faulty: {error}", "write it anew", shown) from None
+    if image.mode in ("RGB", "RGBA", "LA") and _depth(path) == 16:  # the package would halve the bits in silence
+        hint = "save it with 8 bits a channel, in gray, or as .exr"
+        raise failure("a colour PNG of 16 bits a channel cannot be read", hint, shown)
+    see_through = "A" in image.mode or "transparency" in image.info
+    if image.mode in ("P", "PA", "RGB"):
+        image = image.convert("RGBA" if see_through else "RGB")
+    elif image.mode in ("1", "L"):
+        image = image.convert("LA" if see_through else "L")
+    return _as_unit(np.asarray(image), shown)
+
+
+def _depth(path: str) -> int:
+    """The bits a channel of a PNG: byte 24, in its IHDR chunk."""
+    with open(path, "rb") as file:
+        return file.read(25)[24]
+
+
+def _read_exr(path: str, shown: str) -> Array:
+    exr = need("OpenEXR")
+    try:
+        with exr.File(path, separate_channels=True) as file:
+            channels = {name: np.asarray(channel.pixels) for name, channel in file.channels().items()}
+    except (RuntimeError, ValueError, TypeError, MemoryError):  # its texts name the file, and say no more
+        raise failure("this is not an OpenEXR picture, or a faulty one", "write it anew", shown) from None
+    for names in ("RGBA", "RGB", "YA", "Y"):
+        if set(names) <= channels.keys():
+            parts = [channels[name] for name in names]
+            break
+    else:
+        if len(channels) != 1:
+            hint = "write R, G, B (and A), or one channel"
+            raise failure(f"cannot tell what the channels {', '.join(sorted(channels))} are", hint, shown)
+        parts = list(channels.values())
+    if len({part.shape for part in parts}) > 1 or parts[0].ndim != 2:
+        raise failure("the channels have different sizes", "write them without subsampling", shown)
+    return np.stack(parts, axis=-1).astype(np.float64)
+
+
+def _read_npy(path: str, shown: str) -> Array:
+    try:
+        array = np.load(path, allow_pickle=False)
+    except (OSError, ValueError, EOFError, MemoryError) as error:
+        raise failure(f"this is not a NumPy array: {error}", "write it with numpy.save", shown) from None
+    if not isinstance(array, np.ndarray):  # an .npz under another name
+        raise failure("this holds several arrays", "write one, with numpy.save", shown)
+    array = array[..., None] if array.ndim == 2 else array
+    if array.ndim not in (3, 4) or array.shape[-1] > 4:
+        hint = "(height, width), (height, width, 1 to 4) or (depth, height, width, 1 to 4)"
+        raise failure(f"an array of shape {array.shape} is no texture", hint, shown)
+    return _as_unit(array, shown)
+
+
+def _as_unit(array: npt.NDArray[Any], shown: str) -> Array:
+    """Stored numbers as float64, unsigned integers scaled to 0..1, with an axis of channels."""
+    array = array[..., None] if array.ndim == 2 else array
+    if array.dtype == np.bool_ or np.issubdtype(array.dtype, np.floating):
+        return array.astype(np.float64)
+    if array.dtype not in _WHOLE:
+        raise failure(f"numbers of type {array.dtype} are no texture's", "use float32, uint8 or uint16", shown)
+    return array / _WHOLE[array.dtype]

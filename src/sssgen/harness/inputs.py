@@ -1,0 +1,74 @@
+"""Inputs from files: numbers in JSON, textures as pictures or arrays."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..diagnostics import Diagnostic, SssgenError, failure
+from ..ir.spans import Span
+from ..targets.numpy_textures import Texture
+from . import images
+
+
+def bindings(given: Sequence[str]) -> dict[str, str]:
+    """`SLOT=FUNCTION` texts as slot → function. Raises SssgenError."""
+    found: dict[str, str] = {}
+    for text in given:
+        slot, equals, function = text.partition("=")
+        if not (equals and slot and function):
+            raise failure(f"'{text}' binds nothing", "--bind SLOT=FUNCTION or SLOT=FILE:FUNCTION")
+        if slot in found:
+            raise failure(f"'{slot}' is bound twice")
+        found[slot] = function
+    return found
+
+
+def read(path: str) -> dict[str, Any]:
+    """The inputs of a JSON file: name → number, list or, for a texture, a `Texture` from a file beside it.
+
+    A texture is `"wood.png"`, or `{"file": "wood.png", "wrap": "clamp", "filter": "nearest"}`. Raises SssgenError with
+    the place of what is wrong.
+    """
+    file = Path(path)
+    try:
+        text = file.read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        raise failure("the inputs are no UTF-8 text", "numbers by name, in JSON", path) from None
+    except OSError as error:
+        raise failure(f"cannot read the inputs: {error.strerror}", file=path) from None
+    try:
+        data = json.loads(text)
+    except json.JSONDecodeError as error:
+        span = Span(path, error.lineno, error.colno, error.lineno, error.colno + 1)
+        line = text.splitlines()[error.lineno - 1] if error.lineno <= len(text.splitlines()) else ""
+        raise SssgenError([Diagnostic("error", f"this is no JSON: {error.msg}", span, "", line)]) from None
+    except RecursionError:
+        raise failure("the lists are nested too deeply", file=path) from None
+    if not isinstance(data, dict):
+        raise failure("the inputs are no object", 'for instance {"N": [[0, 0, 1]], "power": 4.0}', path)
+    return {
+        name: _texture(name, value, file) if isinstance(value, str | dict) else value for name, value in data.items()
+    }
+
+
+def _texture(name: str, given: str | dict[str, Any], beside: Path) -> Texture:
+    known = {"file", "wrap", "filter"}
+    options = {"file": given} if isinstance(given, str) else given
+    if "file" not in options or options.keys() - known or not all(isinstance(one, str) for one in options.values()):
+        raise failure(f"texture '{name}'", 'a file name, or {"file": …, "wrap": …, "filter": …}', str(beside))
+    return texture(str(beside.parent / options["file"]), options.get("wrap", "repeat"), options.get("filter", "linear"))
+
+
+def texture(path: str, wrap: str = "repeat", filter: str = "linear") -> Texture:
+    """A texture from a .png, .exr or .npy file; the lowest row of a picture is at v = 0. Raises SssgenError."""
+    data = images.read(path)
+    picture = not path.endswith(".npy")
+    try:
+        return Texture(np.flipud(data) if picture else data[..., None] if data.ndim == 2 else data, filter, wrap)
+    except ValueError as error:
+        raise failure(f"this is no texture: {error}", "(height, width, channels), in 3-D (depth, …)", path) from None

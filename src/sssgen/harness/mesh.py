@@ -1,0 +1,189 @@
+"""Triangle meshes: rays by Embree, distances by libigl, smooth normals and tangents."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from sssgen.data import posix
+from sssgen.diagnostics import did_you_mean, failure
+
+from .extras import need
+from .placed import Array, Geometry, Hits, any_tangent, spherical, spread, tangent_of, unit
+
+Indices: TypeAlias = npt.NDArray[np.int64]
+
+SUFFIXES = (".obj", ".ply", ".stl", ".glb")
+
+
+class Triangles(NamedTuple):
+    """A mesh as it is needed here; vertices at the same place are one."""
+
+    places: Array
+    """(v, 3)"""
+    corners: Indices
+    """(f, 3) indices of places, counter-clockwise seen from outside"""
+    flat: Array
+    """(f, 3): the faces' unit normals"""
+    normals: Array
+    """(v, 3), unit"""
+    uv: Array | None
+    """(f, 3, 2), or None where the file has none"""
+    tangents: Array | None
+    """(f, 3, 3): of each corner, the direction in which u grows; of any length, 0 where there is none"""
+    handedness: Array
+    """(f,): -1 where uv is mirrored, else 1"""
+    rays: Any
+    """trimesh's intersector"""
+
+
+@dataclass(frozen=True)
+class Mesh(Geometry):
+    """The triangles of a .obj, .ply, .stl or .glb file; open ones, too. A file's parts become one mesh.
+
+    Normals are smooth: the faces' at a vertex, weighted by area, interpolated; a file's own are not read. uv, v up,
+    are the file's; without, longitude and latitude about the box's centre (see `spherical`). Tangents are Lengyel's
+    (Foundations of Game Engine Development 2, 7.5), where uv is mirrored with w = -1.
+    """
+
+    path: str = ""
+
+    def cast(self, origin: Array, directions: Array) -> Hits:
+        mesh = self.triangles
+        low, high = self.bounds()
+        # Embree counts in 32 bits: near the mesh there are more of them to spare
+        way = np.linalg.norm(0.5 * (low + high) - origin) - 0.5 * np.linalg.norm(high - low)
+        starts = origin + max(0.0, float(way)) * directions
+        face = mesh.rays.intersects_first(starts, directions).astype(np.int64)
+        rays = np.flatnonzero(face >= 0)
+        face = face[rays]
+        slope = np.einsum("nc,nc->n", directions[rays], mesh.flat[face])
+        keep = slope != 0.0
+        rays, face, slope = rays[keep], face[keep], slope[keep]
+        first = mesh.places[mesh.corners[face, 0]]
+        t = np.einsum("nc,nc->n", first - origin, mesh.flat[face]) / slope
+        position = origin + t[:, None] * directions[rays]
+        weights = _barycentric(position, mesh.places[mesh.corners[face]])
+        hit = np.zeros(len(directions), np.bool_)
+        hit[rays] = True
+        normal = _mixed(weights, mesh.normals[mesh.corners[face]])
+        normal = np.where((np.abs(normal) > 0.0).any(axis=1, keepdims=True), unit(normal), mesh.flat[face])
+        if mesh.uv is None or mesh.tangents is None:
+            uv, grows_u, grows_v = spherical(position - 0.5 * (low + high))
+            return spread(hit, position, normal, tangent_of(normal, grows_u, grows_v), uv)
+        along = unit(_mixed(weights, mesh.tangents[face]))
+        along -= np.einsum("nc,nc->n", along, normal)[:, None] * normal
+        lost = np.linalg.norm(along, axis=1, keepdims=True) < 1e-6
+        tangent = np.where(lost, any_tangent(normal), unit(along))
+        return spread(hit, position, normal, np.c_[tangent, mesh.handedness[face]], _mixed(weights, mesh.uv[face]))
+
+    def distance(self, points: Array) -> Array:
+        """Its sign is that of the winding number, which open meshes have too. Raises SssgenError without libigl."""
+        igl = need("igl", "libigl")
+        kind = igl.SIGNED_DISTANCE_TYPE_FAST_WINDING_NUMBER
+        mesh = self.triangles
+        distance: Array = igl.signed_distance(np.ascontiguousarray(points), mesh.places, mesh.corners, kind)[0]
+        return distance
+
+    def bounds(self) -> tuple[Array, Array]:
+        """The smallest and the largest corner, in object space."""
+        return self.triangles.places.min(axis=0), self.triangles.places.max(axis=0)
+
+    @cached_property
+    def triangles(self) -> Triangles:
+        """The mesh, read from its file. Raises SssgenError for a file that is missing or holds none."""
+        return _prepare(_load(self.path), posix(self.path))
+
+
+def check_suffix(path: str) -> None:
+    """Raises SssgenError where a file's name does not end as a mesh's does."""
+    suffix = os.path.splitext(path)[1].lower()
+    if suffix not in SUFFIXES:
+        hint = did_you_mean(suffix, SUFFIXES) or f"meshes end in {', '.join(SUFFIXES)}"
+        raise failure(f"'{suffix}' is no mesh file's ending", hint, posix(path))
+
+
+def _load(path: str) -> Any:
+    check_suffix(path)
+    if not os.path.isfile(path):
+        raise failure("cannot find the mesh", "", posix(path))
+    trimesh = need("trimesh")
+    try:
+        return trimesh.load_mesh(path, process=False, skip_materials=True)
+    except Exception as error:  # its readers raise whatever a faulty file leads them to
+        raise failure(f"the mesh cannot be read: {error}", "write it anew", posix(path)) from None
+
+
+def _prepare(loaded: Any, shown: str) -> Triangles:
+    vertices = np.asarray(getattr(loaded, "vertices", ()), np.float64).reshape(-1, 3)
+    faces = np.asarray(getattr(loaded, "faces", ()), np.int64).reshape(-1, 3)
+    if not len(faces):
+        raise failure("the file holds no triangles", "", shown)
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        raise failure("a triangle names a vertex that there is not", "write it anew", shown)
+    if not np.isfinite(vertices).all():
+        raise failure("a vertex is no number", "write it anew", shown)
+    uv = getattr(loaded.visual, "uv", None)
+    uv = None if uv is None else np.asarray(uv, np.float64)
+    if uv is not None and (uv.shape != (len(vertices), 2) or not np.isfinite(uv).all()):
+        uv = None
+    places, place_of = np.unique(vertices, axis=0, return_inverse=True)
+    corners = place_of.reshape(-1)[faces]
+    first, second, third = np.moveaxis(places[corners], 1, 0)
+    across = np.cross(second - first, third - first)
+    area = np.linalg.norm(across, axis=1)
+    if not area.any():
+        raise failure("all triangles are without area", "", shown)
+    full = area > 0.0
+    faces, corners, across = faces[full], corners[full], across[full]
+    normals = np.zeros_like(places)
+    np.add.at(normals, corners, across[:, None, :])
+    try:
+        tracer = need("trimesh.ray.ray_pyembree", "embreex")
+        rays = tracer.RayMeshIntersector(need("trimesh").Trimesh(places, corners, process=False))
+    except ValueError as error:
+        raise failure(f"the mesh cannot be used: {error}", "", shown) from None
+    mesh = Triangles(places, corners, unit(across), unit(normals), None, None, np.ones(len(faces)), rays)
+    return mesh if uv is None else _with_tangents(mesh, uv[faces])
+
+
+def _with_tangents(mesh: Triangles, uv: Array) -> Triangles:
+    """The mesh with its uv, (f, 3, 2), and the tangents that follow from them."""
+    corners = mesh.places[mesh.corners]
+    edges, turns = corners[:, 1:] - corners[:, :1], uv[:, 1:] - uv[:, :1]
+    area = turns[:, 0, 0] * turns[:, 1, 1] - turns[:, 0, 1] * turns[:, 1, 0]
+    along = edges[:, 0] * turns[:, 1, 1, None] - edges[:, 1] * turns[:, 0, 1, None]
+    size = np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1)
+    along = unit(along * np.sign(area)[:, None]) * size[:, None]
+    handedness = np.where(area < 0.0, -1.0, 1.0)
+    # corners share a tangent where place, uv and handedness agree: else mirrored halves would cancel at their seam
+    mirrored = np.repeat(handedness, 3)
+    keys = np.c_[mesh.corners.reshape(-1), uv.reshape(-1, 2), mirrored]
+    groups, group_of = np.unique(keys, axis=0, return_inverse=True)
+    sums = np.zeros((len(groups), 3))
+    np.add.at(sums, group_of.reshape(-1), np.repeat(along, 3, axis=0))
+    tangents = unit(sums)[group_of.reshape(-1)].reshape(-1, 3, 3)
+    return mesh._replace(uv=uv, tangents=tangents, handedness=handedness)
+
+
+def _barycentric(points: Array, triangles: Array) -> Array:
+    """The weights (n, 3) of the corners of triangles (n, 3, 3) at points in their planes, cut to the triangles."""
+    first, second, third = np.moveaxis(triangles, 1, 0)
+    across = np.cross(second - first, third - first)
+    square = np.einsum("nc,nc->n", across, across)
+    b = np.einsum("nc,nc->n", np.cross(points - first, third - first), across) / square
+    c = np.einsum("nc,nc->n", np.cross(second - first, points - first), across) / square
+    weights = np.maximum(np.stack([1.0 - b - c, b, c], axis=1), 0.0)
+    whole: Array = weights / weights.sum(axis=1, keepdims=True)
+    return whole
+
+
+def _mixed(weights: Array, values: Array) -> Array:
+    """The values (n, 3, k) of corners, mixed by their weights (n, 3)."""
+    mixed: Array = np.einsum("nv,nvk->nk", weights, values)
+    return mixed

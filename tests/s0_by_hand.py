@@ -1,0 +1,192 @@
+"""Seed 0's scene written by hand: jelly cubes on a floor, in float64, to check what the compiler makes of jelly_cubes.
+
+It is written from the formulas (`sssgen show TECHNIQUE`, docs/errata.md; 42yeah, Raymarching Cheap Subsurface
+Scattering) and uses nothing of the project. Rays stand first and components last: (n, 3).
+
+    picture = image(160, 120)
+    picture.color[0]                 # the lowest row of pixels, encoded for the display
+    picture.silhouette               # where a rounding error decides what is seen
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+
+Array: TypeAlias = np.ndarray[Any, Any]
+
+# Cubes: turned by 45 degrees about y, so their sides face (1, 0, -1) and (1, 0, 1). Rows are their axes.
+TURN = np.array([[1.0, 0.0, -1.0], [0.0, np.sqrt(2.0), 0.0], [1.0, 0.0, 1.0]]) / np.sqrt(2.0)
+CENTERS = np.array([[0.0, 0.48, 0.0], [1.45, 0.48, 0.0]])
+HALF_SIZE = 0.5
+JELLY = np.array([1.0, 0.5, 0.0])
+SKY = np.array([0.67, 0.86, 0.98])
+
+TOLERANCE = 1.0e-3
+"""Of a hit; normals are measured over the same length."""
+STEPS, FARTHEST = 200, 50.0
+TETRAHEDRON = np.array([[1.0, -1.0, -1.0], [-1.0, -1.0, 1.0], [-1.0, 1.0, -1.0], [1.0, 1.0, 1.0]])
+KEY = np.ones(3) / np.sqrt(3.0)
+SHADOW_STEPS, SHARPNESS = 25, 20.0
+DEPTHS = 0.4 * np.arange(1, 30) / 30.0
+GLOW = 0.6
+
+LEVEL = 1.0 / 255.0
+RAY_ROUNDING = 2.0**-20
+"""What float32 may move a ray by on the image: eight units in the last place of 1."""
+WAY_ROUNDING = 2.0**-18
+"""What float32 may lose of a distance: a unit in the last place of a way of 32 to 64, the longest."""
+
+
+class Scene(NamedTuple):
+    """A picture, its lowest row first."""
+
+    color: Array
+    """(height, width, 3), encoded."""
+    silhouette: Array
+    """(height, width), bool: the pixel is ill-posed for float32.
+
+    An exact picture too would change here by more than 1/255 if the ray and the hit's tolerance changed by what float32
+    rounds: another object, another tile of the floor, a step more or less (the ray then ends 1e-3 away) at an edge or
+    in a shadow that begins at the ray's end. Rays and tolerance are moved to the four corners of a tetrahedron, so that
+    every boundary nearer than its inner sphere separates one of them.
+    """
+
+
+class Hits(NamedTuple):
+    """Where rays end."""
+
+    points: Array
+    """(n, 3)."""
+    steps: Array
+    """(n,), how many the ray has made; -1 where it meets nothing."""
+
+
+def each_cube(p: Array) -> Array:
+    """The distances to the two cubes, (..., 2): to the nearest point from outside, to the nearest face from inside."""
+    local = (p[..., None, :] - CENTERS) @ TURN.T
+    nearest = np.clip(local, -HALF_SIZE, HALF_SIZE)
+    to_face: Array = HALF_SIZE - np.abs(local).max(axis=-1)
+    return np.where(to_face > 0.0, -to_face, np.linalg.norm(local - nearest, axis=-1))
+
+
+def scene(p: Array) -> Array:
+    """The distance to the cubes or to the floor, y = 0."""
+    found: Array = np.minimum(each_cube(p).min(axis=-1), p[..., 1])
+    return found
+
+
+def rays(
+    width: int, height: int, eye: Array, look_at: Array, aspect: float, shift: tuple[float, float] = (0.0, 0.0)
+) -> Array:
+    """Unit directions through the pixels' centers, (height * width, 3): an image 2 high, 2 before the eye.
+
+    `shift` moves all of them on that image.
+    """
+    v, u = 2.0 * (np.mgrid[0:height, 0:width] + 0.5) / np.array([height, width])[:, None, None] - 1.0
+    plane = np.stack([aspect * u + shift[0], v + shift[1], np.full(u.shape, 2.0)], axis=-1)
+    front = look_at - eye
+    right = np.cross(front, [0.0, 1.0, 0.0])
+    axes = np.stack([right, np.cross(right, front), front])
+    return unit(plane.reshape(-1, 3) @ unit(axes))
+
+
+def unit(v: Array) -> Array:
+    found: Array = v / np.linalg.norm(v, axis=-1, keepdims=True)
+    return found
+
+
+def trace(eye: Array, directions: Array, tolerance: float) -> Hits:
+    """Sphere tracing: steps as long as the distance, until that is below the tolerance or the way is too long."""
+    way, steps = np.zeros(len(directions)), np.full(len(directions), -1)
+    going = np.arange(len(directions))
+    for step in range(STEPS):
+        going = going[way[going] < FARTHEST]
+        gap = scene(eye + way[going, None] * directions[going])
+        near = gap < tolerance
+        steps[going[near]] = step
+        going = going[~near]
+        way[going] += gap[~near]
+    return Hits(eye + way[:, None] * directions, steps)
+
+
+def normals(p: Array) -> Array:
+    """The gradient, from four points about each point."""
+    around = TOLERANCE * TETRAHEDRON
+    return unit(scene(p[:, None] + around) @ TETRAHEDRON)
+
+
+def shadow(p: Array) -> Array:
+    """What reaches `p` of the key light: the least of 20 gap / way, along the way to the light.
+
+    Once that is 0 it stays so, thus there is no need to stop there.
+    """
+    way, least = np.full(len(p), 1.0e-3), np.ones(len(p))
+    for _ in range(SHADOW_STEPS):
+        gap = scene(p + way[:, None] * KEY)
+        least = np.minimum(least, SHARPNESS * gap / way)
+        way = way + np.clip(gap, 1.0e-3, 2.0)
+    return np.maximum(least, 0.0)
+
+
+def thinness(p: Array, n: Array) -> Array:
+    """The mean over depths of (depth + distance to the cubes there), weighted to be 1 where nothing is."""
+    distance = each_cube(p[:, None] - DEPTHS[:, None] * n[:, None]).min(axis=-1)
+    found: Array = np.clip(DEPTHS + distance, 0.0, 2.0 * DEPTHS).sum(axis=1) / (2.0 * DEPTHS.sum())
+    return found
+
+
+def sky(height: Array) -> Array:
+    """The sky in a direction whose y is `height`: white from 0.2 up."""
+    white = np.clip(5.0 * height, 0.0, 1.0)[:, None]
+    found: Array = (1.0 - white) * SKY + white
+    return found
+
+
+def kinds(p: Array) -> Array:
+    """What is at a point: 0 and 1 the cubes, 2 and 3 the dark and the bright tiles of the floor."""
+    cubes = each_cube(p)
+    bright = (np.floor(2.0 * p[:, 0]) - np.floor(2.0 * p[:, 2])) % 2.0 == 0.0
+    return np.where(p[:, 1] < cubes.min(axis=-1), np.where(bright, 3, 2), cubes.argmin(axis=-1))
+
+
+def radiance(p: Array, directions: Array) -> Array:
+    """The light from the places that rays have hit, (n, 3), linear."""
+    n, kind = normals(p), kinds(p)
+    free, facing, up = shadow(p + TOLERANCE * n), np.maximum(n @ KEY, 0.0), n[:, 1]
+    behind = np.maximum(n @ (KEY * [-1.0, 0.0, -1.0]), 0.0)
+    dome, bounce = 0.2 + 0.8 * np.maximum(up, 0.0), 0.2 - 0.8 * np.minimum(up, 0.0)
+    light = np.stack([free, facing * free, dome, bounce, behind])
+    colors = [[0.2, 0.2, 0.2], [0.82, 0.8, 0.82], [0.26, 0.32, 0.334], [0.3, 0.21, 0.23], [0.2, 0.21, 0.23]]
+    glow = np.where(kind < 2, GLOW * thinness(p, n), 0.0)[:, None] * sky(-directions[:, 1])
+    albedo = np.array([JELLY, JELLY, np.full(3, 0.9), np.ones(3)])[kind]
+    found: Array = albedo * (light.T @ np.array(colors) + glow)
+    return found
+
+
+def draw(eye: Array, directions: Array, tolerance: float) -> Array:
+    """What rays see, (n, 3), encoded."""
+    hits = trace(eye, directions, tolerance)
+    color, met = sky(directions[:, 1]), hits.steps >= 0
+    color[met] = radiance(hits.points[met], directions[met])
+    encoded: Array = color ** (1.0 / 2.2)
+    return encoded
+
+
+def image(
+    width: int,
+    height: int,
+    time: float = 0.0,
+    aspect: float = 1.0,
+    look_at: tuple[float, float, float] = (0.65, 0.5, 0.0),
+) -> Scene:
+    """The scene at a time, in seconds. `aspect` is the material's uniform, 1 unless a program sets it."""
+    eye, target = np.array([3.0 * np.cos(time), 2.5, 3.0 * np.sin(time)]), np.array(look_at)
+    color = draw(eye, rays(width, height, eye, target, aspect), TOLERANCE)
+    moved = np.zeros(len(color))
+    for u, v, later in TETRAHEDRON:
+        directions = rays(width, height, eye, target, aspect, shift=(u * RAY_ROUNDING, v * RAY_ROUNDING))
+        other = draw(eye, directions, TOLERANCE + later * WAY_ROUNDING)
+        moved = np.maximum(moved, np.abs(other - color).max(axis=1))
+    return Scene(color.reshape(height, width, 3), (moved > LEVEL).reshape(height, width))

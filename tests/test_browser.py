@@ -1,0 +1,210 @@
+"""The back end `browser`: real draws in Chromium, and what is said where one cannot be made."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sssgen.diagnostics import SssgenError
+from sssgen.harness.backends import Backend, Block, Bound, Call, CompilerMissing, Drawing, Place, Stage, Text
+from sssgen.harness.backends.browser import Browser
+from sssgen.ir.types import BY_NAME, FLOAT, INT, VEC2, VEC3, VEC4
+from sssgen.lang.loader import load_text
+from sssgen.targets.numpy_textures import Texture
+from validate import code
+
+PICTURE = """
+@vertex fn corner(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    return vec4f(vec2f(f32(index % 2u), f32(index / 2u)) * 4.0 - 1.0, 0.0, 1.0);
+}
+@fragment fn pixel(@builtin(position) place: vec4f) -> @location(0) vec4f {
+    var x = place.x;
+    return vec4f(x, place.y, 0.0, 1.0);
+}
+"""
+ENDLESS = PICTURE.replace("return vec4f(x,", "loop { x = sin(x); if (x > 2.0) { break; } } return vec4f(x,")
+MESH = """
+struct Across { @builtin(position) place: vec4f, @location(0) uv: vec2f, @location(1) @interpolate(flat) sign: f32 }
+@group(1) @binding(2) var<uniform> gain: vec4f;
+@vertex fn corner(@location(0) p: vec3f, @location(2) tangent: vec4f, @location(3) uv: vec2f) -> Across {
+    return Across(vec4f(p, 1.0), uv, tangent.w);
+}
+@fragment fn pixel(in: Across) -> @location(0) vec4f { return vec4f(in.uv, in.sign, 1.0) * gain; }
+"""
+
+
+@pytest.fixture
+def browser(backend: Callable[[str], Backend]) -> Browser:
+    found = backend("browser")
+    assert isinstance(found, Browser)
+    return found
+
+
+def drawing(text: str, size: tuple[int, int] = (65, 3), **more: Any) -> Drawing:
+    """A draw of floats; 65 pixels are a row whose bytes must be padded."""
+    return Drawing(size, Stage(Text(text), "pixel"), Stage(Text(text), "corner"), floats=True, **more)
+
+
+def assert_draws(browser: Browser) -> None:
+    picture = browser.draw(drawing(PICTURE))
+    y, x = np.mgrid[0:3, 0:65] + 0.5
+    assert np.array_equal(picture, np.stack([x, y, 0.0 * x, 0.0 * x + 1.0], axis=-1))
+
+
+def refusal(browser: Browser, todo: Drawing) -> str:
+    with pytest.raises(SssgenError) as error:
+        browser.draw(todo)
+    return str(error.value)
+
+
+def test_functions(browser: Browser) -> None:
+    functions = "vec3 add(float a, vec3 b) { return a + b; } int twice(int a) { return 2 * a; }"
+    text = code(load_text(functions, "t"), "wgsl")
+    x, y, n = np.arange(5.0), np.arange(15.0).reshape(3, 5), np.arange(-2, 3)
+    calls = [Call("add", (FLOAT, VEC3), VEC3, (x, y)), Call("twice", (INT,), INT, (n,))]
+    sums, doubles = browser.run(Text(text), calls)
+    assert np.array_equal(sums, x + y)
+    assert np.array_equal(doubles, 2 * n)
+
+
+@pytest.mark.parametrize("wrap", ["repeat", "clamp", "mirror"])
+def test_textures_wrap_and_have_levels(browser: Browser, wrap: str) -> None:
+    texture = Texture(np.arange(4 * 8 * 3).reshape(4, 8, 3) / 64.0, wrap=wrap, mipmaps=True)
+    text = code(load_text("vec4 look(sampler2D t, vec2 uv, float l) { return textureLod(t, uv, l); }", "t"), "wgsl")
+    uv = np.array([[-0.9375, 0.1875, 0.25, 1.0625, 2.3125], [0.125, -0.375, 1.125, 2.625, 0.5]])
+    level = np.array([0.0, 0.0, 1.0, 0.0, 2.0])
+    call = Call("look", (BY_NAME["sampler2D"], VEC2, FLOAT), VEC4, ("image", uv, level))
+    (seen,) = browser.run(Text(text), [call], {"image": texture})
+    assert seen == pytest.approx(texture.sample(uv, level), abs=1e-3)
+
+
+def test_implicit_levels_in_a_function(browser: Browser) -> None:
+    """Several calls, each in a branch of its own: Tint alone would call that non-uniform."""
+    texture = Texture(np.arange(4 * 4 * 3).reshape(4, 4, 3) / 64.0, mipmaps=True)
+    text = code(load_text("vec4 look(sampler2D t, vec2 uv) { return texture(t, uv); }", "t"), "wgsl")
+    uv = np.full((2, 6), 0.375)
+    call = Call("look", (BY_NAME["sampler2D"], VEC2), VEC4, ("image", uv))
+    for seen in browser.run(Text(text), [call, call], {"image": texture}):
+        assert seen == pytest.approx(texture.sample(uv, 0.0), abs=1e-3)
+
+
+def test_vertices_and_blocks(browser: Browser) -> None:
+    vertices = np.zeros((3, 12), np.float32)
+    vertices[:, :2] = [[-1, 1], [3, 1], [-1, -3]]  # the whole picture, its first row at the top
+    vertices[:, 9] = -1.0
+    vertices[:, 10:] = [[0, 0], [2, 0], [0, 2]]
+    gain = {"gain": Block(np.array([1, 2, 3, 4], np.float32).tobytes(), Place(1, 2))}
+    triangles = np.array([[0, 1, 2]], np.uint32)
+    picture = browser.draw(drawing(MESH, vertices=vertices, triangles=triangles, blocks=gain))
+    y, x = (np.mgrid[0:3, 0:65] + 0.5) / [[[3]], [[65]]]
+    assert picture == pytest.approx(np.stack([x, 2 * y, 0 * x - 3, 0 * x + 4], axis=-1), abs=1e-5)
+
+
+def test_words_keep_their_bits(browser: Browser) -> None:
+    text = PICTURE.replace("-> @location(0) vec4f", "-> @location(0) vec4u").replace(
+        "return vec4f(x, place.y, 0.0, 1.0)", "return textureLoad(words, vec2i(place.xy), 0)"
+    )
+    words = np.random.default_rng(1).integers(0, 2**32, (5, 7, 4), np.uint32)
+    todo = drawing(f"@group(0) @binding(3) var words: texture_2d<u32>;{text}", (7, 5))
+    bound = {"words": Bound(words, Place(0, 3))}
+    assert np.array_equal(browser.draw(todo._replace(floats=False, textures=bound)), words)
+
+
+def test_large_picture(browser: Browser) -> None:
+    picture = browser.draw(drawing(PICTURE, (1920, 1440)))
+    assert picture.shape == (1440, 1920, 4)
+    assert picture[-1, -1].tolist() == [1919.5, 1439.5, 0.0, 1.0]
+
+
+def test_a_refused_text_has_its_line_and_its_origin(browser: Browser) -> None:
+    broken = PICTURE.replace("place.y, 0.0,", "place.y, missing,")
+    line = 1 + next(i for i, text in enumerate(broken.splitlines()) if "missing" in text)
+    todo = drawing(broken)
+    placed = Stage(Text(broken, {line: "my/bark.sss:12:5"}), "pixel")
+    said = refusal(browser, todo._replace(fragment=placed))
+    assert "unresolved value 'missing'" in said
+    assert "my/bark.sss:12:5" in said
+    assert f"line {line} of what was emitted: return vec4f(x, place.y, missing, 1.0);" in said
+    assert_draws(browser)
+
+
+def test_what_the_device_cannot(browser: Browser) -> None:
+    assert "exceeded maximum texture size" in refusal(browser, drawing(PICTURE, (100_000, 1)))
+    assert "doesn't exist" in refusal(browser, drawing(PICTURE.replace("fn pixel", "fn other")))
+    assert_draws(browser)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="ends processes by their group")
+def test_a_browser_that_is_lost_is_started_again(browser: Browser, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert_draws(browser)
+    first = browser.page.process
+    threading.Timer(0.3, os.killpg, (first.pid, signal.SIGKILL)).start()
+    assert "crashed, or was ended by somebody else" in refusal(browser, drawing(ENDLESS))
+    assert_draws(browser)
+    os.killpg(browser.page.process.pid, signal.SIGKILL)  # between two draws
+    browser.page.process.wait()
+    assert_draws(browser)
+    with monkeypatch.context() as patch:
+        patch.setattr(browser, "seconds", 0.5)
+        said = refusal(browser, drawing(ENDLESS))
+    assert "the browser did not answer within 0.5" in said
+    assert_draws(browser)
+
+
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="finds the GPU process in /proc")
+def test_a_lost_device(browser: Browser) -> None:
+
+    def session(folder: Path) -> int:
+        return int((folder / "stat").read_text().rsplit(")", 1)[1].split()[3])
+
+    assert_draws(browser)
+    for folder in Path("/proc").glob("[0-9]*"):
+        try:
+            ours = session(folder) == browser.page.process.pid and b"=gpu-process" in (folder / "cmdline").read_bytes()
+        except OSError:  # it ended meanwhile
+            continue
+        if ours:
+            os.kill(int(folder.name), signal.SIGKILL)
+    assert "lost its device" in refusal(browser, drawing(ENDLESS))
+    assert_draws(browser)
+
+
+def test_nothing_is_left_behind_by_a_killed_python(browser: Browser, tmp_path: Path) -> None:
+    """The folder goes when the browser has ended."""
+    script = "from sssgen.harness import backends; print(backends.get('browser').device(), flush=True); input()"
+    python = subprocess.Popen(
+        [sys.executable, "-c", script], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+        env=os.environ | {"TMPDIR": str(tmp_path)},
+    )  # fmt: skip
+    with python:
+        assert python.stdout is not None
+        assert python.stdout.readline().startswith("Tint in Chromium")
+        assert list(tmp_path.glob("sssgen-browser-*"))
+        python.kill()
+    until = time.monotonic() + 10.0
+    while list(tmp_path.glob("sssgen-browser-*")) and time.monotonic() < until:
+        time.sleep(0.05)
+    assert not list(tmp_path.glob("sssgen-browser-*"))
+
+
+def test_a_missing_browser() -> None:
+    script = "from sssgen.harness import backends; backends.get('browser')"
+    environment = os.environ | {"SSSGEN_CHROMIUM": "/nowhere/chromium", "PYTHONIOENCODING": "utf-8"}
+    done = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, encoding="utf-8")
+    assert "CompilerMissing: chromium (Debian: chromium · elsewhere: Chrome; or set SSSGEN_CHROMIUM)" in done.stderr
+
+
+def test_a_program_that_is_no_browser(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SSSGEN_CHROMIUM", sys.executable)
+    with pytest.raises(CompilerMissing, match=r"ended as it started \(exit status 2\)"):
+        Browser("browser")

@@ -1,0 +1,192 @@
+"""Picture files: what is written is read again, and what is no picture is said to be none. And the camera."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sssgen.diagnostics import SssgenError
+from sssgen.harness.camera import Camera
+from sssgen.harness.images import encode_srgb, read, write_exr, write_png
+
+pytest.importorskip("PIL", reason="Pillow is missing: pip install 'sssgen[render]'")
+pytest.importorskip("OpenEXR", reason="OpenEXR is missing: pip install 'sssgen[render]'")
+
+RAMP = np.linspace(0.0, 1.0, 5 * 7 * 4).reshape(5, 7, 4)
+
+
+@pytest.fixture(autouse=True)
+def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def png(width: int, height: int, depth: int, color: int, rows: bytes, *chunks: tuple[bytes, bytes]) -> bytes:
+    """A PNG written by hand; `rows` with the filter byte before each."""
+
+    def chunk(kind: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    head = struct.pack(">IIBBBBB", width, height, depth, color, 0, 0, 0)
+    parts = [(b"IHDR", head), *chunks, (b"IDAT", zlib.compress(rows)), (b"IEND", b"")]
+    return b"\x89PNG\r\n\x1a\n" + b"".join(chunk(*part) for part in parts)
+
+
+@pytest.mark.parametrize("channels", [1, 2, 3, 4])
+def test_what_is_written_is_read(channels: int) -> None:
+    picture = RAMP[..., :channels]
+    write_png("out/ramp.png", picture)
+    assert np.array_equal(read("out/ramp.png"), np.rint(picture * 255) / 255)
+    write_exr("out/ramp.exr", 100.0 * picture - 3.0)
+    assert np.array_equal(read("out/ramp.exr"), (100.0 * picture - 3.0).astype(np.float32))
+    assert [path.name for path in sorted(Path("out").iterdir())] == ["ramp.exr", "ramp.png"]
+
+
+def test_row_0_is_the_top_one() -> None:
+    Path("two.png").write_bytes(png(1, 2, 8, 0, bytes([0, 255, 0, 51])))
+    assert read("two.png").tolist() == [[[1.0]], [[0.2]]]
+
+
+def test_the_kinds_of_png() -> None:
+    Path("gray16.png").write_bytes(png(2, 1, 16, 0, struct.pack(">BHH", 0, 257, 65535)))
+    assert read("gray16.png").tolist() == [[[257 / 65535], [1.0]]]
+    Path("bits.png").write_bytes(png(2, 1, 1, 0, bytes([0, 0b01000000])))
+    assert read("bits.png").tolist() == [[[0.0], [1.0]]]
+    colors = (b"PLTE", bytes([255, 0, 0, 0, 0, 255]))
+    Path("indexed.png").write_bytes(png(2, 1, 8, 3, bytes([0, 1, 0]), colors))
+    assert read("indexed.png").tolist() == [[[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]]
+    Path("glass.png").write_bytes(png(2, 1, 8, 3, bytes([0, 1, 0]), colors, (b"tRNS", bytes([0]))))
+    assert read("glass.png").tolist() == [[[0.0, 0.0, 1.0, 1.0], [1.0, 0.0, 0.0, 0.0]]]
+
+
+def test_written_values_are_cut_and_rounded() -> None:
+    write_png("odd.png", np.array([[-1.0, 2.0, np.nan, 0.4999 / 255, 0.5001 / 255, np.inf]]))
+    assert (read("odd.png")[0, :, 0] * 255).tolist() == [0, 255, 0, 0, 1, 255]
+
+
+@pytest.mark.parametrize(
+    ("array", "expected"),
+    [
+        (np.array([[0.5, 7.0]], np.float32), [[[0.5], [7.0]]]),
+        (np.array([[[255, 51]]], np.uint8), [[[1.0, 0.2]]]),
+        (np.array([[[[65535]]]], np.uint16), [[[[1.0]]]]),
+        (np.array([[True]]), [[[1.0]]]),
+    ],
+)
+def test_numpy_files(array: Any, expected: Any) -> None:
+    np.save("map.npy", array)
+    assert read("map.npy").tolist() == expected
+
+
+def test_srgb_at_points_of_the_standard() -> None:
+    assert encode_srgb([0.0, 0.0031308, 0.21404114, 1.0]) == pytest.approx([0.0, 0.040449936, 0.5, 1.0], abs=1e-7)
+    assert encode_srgb([-1.0, 9.0]) == pytest.approx([0.0, 1.0], abs=1e-12)
+
+
+def wrong(path: str) -> str:
+    with pytest.raises(SssgenError) as caught:
+        read(path)
+    return str(caught.value)
+
+
+def test_what_is_no_picture() -> None:
+    for name in ("none.png", "none.exr", "none.npy"):
+        assert "cannot find the picture" in wrong(name)
+        assert name in wrong(name)
+    Path("folder.png").mkdir()
+    assert "this is a folder" in wrong("folder.png")
+    assert "no picture file's ending" in wrong("map.jpg")
+    assert "did you mean '.png'" in wrong("map.pngg")
+    for name in ("text.png", "text.exr", "text.npy"):
+        Path(name).write_text("hello " * 100, encoding="utf-8")
+        assert f"--> {name}" in wrong(name)
+        Path(name).write_bytes(b"")
+        assert f"--> {name}" in wrong(name)
+
+
+@pytest.mark.parametrize("suffix", ["png", "exr", "npy"])
+def test_files_that_end_early(suffix: str) -> None:
+    noise = np.random.default_rng(1).random((40, 40, 3))
+    write = {"png": write_png, "exr": write_exr, "npy": np.save}[suffix]
+    write(f"whole.{suffix}", noise)  # type: ignore[operator]
+    data = Path(f"whole.{suffix}").read_bytes()
+    for part in (9, len(data) // 2, len(data) - 20):
+        Path(f"part.{suffix}").write_bytes(data[:part])
+        if (suffix, part) != ("png", len(data) - 20):  # what misses its last marks only may be read
+            assert "part" in wrong(f"part.{suffix}")
+
+
+def test_pictures_that_are_refused() -> None:
+    Path("deep.png").write_bytes(png(1, 1, 16, 2, struct.pack(">BHHH", 0, 1, 2, 3)))
+    assert "16 bits a channel" in wrong("deep.png")
+    Path("huge.png").write_bytes(png(30000, 30000, 8, 0, b""))
+    assert "too large" in wrong("huge.png")
+    np.save("objects.npy", np.array([[None]]), allow_pickle=True)
+    assert "not a NumPy array" in wrong("objects.npy")
+    np.save("whole.npy", np.array([[1, 2]]))
+    assert "int64" in wrong("whole.npy")
+    for shape in [(3,), (2, 2, 5), (1, 1, 1, 1, 1)]:
+        np.save("shape.npy", np.zeros(shape))
+        assert "is no texture" in wrong("shape.npy")
+    np.save("empty.npy", np.zeros((0, 3)))
+    assert "empty" in wrong("empty.npy")
+
+
+def test_where_nothing_can_be_written() -> None:
+    Path("file").write_text("mine", encoding="utf-8")
+    for write, name in ((write_png, "a.png"), (write_exr, "a.exr")):
+        with pytest.raises(SssgenError, match="a file stands where a folder is wanted"):
+            write(f"file/{name}", RAMP)
+        with pytest.raises(SssgenError, match="must end in"):
+            write("a.npy", RAMP)
+        with pytest.raises(SssgenError, match="is no picture"):
+            write(name, np.zeros((2, 2, 5)))
+    assert Path("file").read_text(encoding="utf-8") == "mine"
+
+
+# The camera
+
+CAMERAS = [
+    Camera((0.0, 0.6, 3.4), (0.0, 0.0, 0.0), 40.0),
+    Camera((-2.0, 5.0, 1.0), (3.0, 1.0, -7.0), 75.0, 0.01, 50.0),
+    Camera((1.0, 4.0, 2.0), (1.0, -3.0, 2.0), 30.0),
+    Camera((1.0, -4.0, 2.0), (1.0, 3.0, 2.0), 30.0),
+]
+
+
+@pytest.mark.parametrize("camera", CAMERAS)
+@pytest.mark.parametrize("zero_to_one", [False, True])
+def test_rays_go_through_the_pixels_that_the_matrix_gives(camera: Camera, zero_to_one: bool) -> None:
+    width, height = 13, 8
+    origin, directions = camera.rays(width, height)
+    points = origin + directions * np.linspace(0.5, 40.0, width * height)[:, None]
+    clip = np.c_[points, np.ones(len(points))] @ camera.view_projection(width / height, zero_to_one).T
+    pixel = (clip[:, :2] / clip[:, 3:] * 0.5 + 0.5) * [width, height]
+    rows, columns = np.divmod(np.arange(width * height), width)
+    assert np.abs(pixel - np.stack([columns + 0.5, rows + 0.5], axis=1)).max() < 1e-9
+    assert np.linalg.norm(directions, axis=1) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("camera", CAMERAS)
+def test_near_and_far_are_the_ends_of_the_depth_range(camera: Camera) -> None:
+    _, _, forward = camera.axes()
+    for zero_to_one, ends in ((False, (-1.0, 1.0)), (True, (0.0, 1.0))):
+        for distance, depth in zip((camera.near, camera.far), ends, strict=True):
+            clip = camera.view_projection(1.5, zero_to_one) @ [*(camera.position + distance * forward), 1.0]
+            assert clip[3] == pytest.approx(distance)
+            assert clip[2] / clip[3] == pytest.approx(depth, abs=1e-9)
+
+
+def test_the_picture_is_upright_and_not_mirrored() -> None:
+    right, up, forward = CAMERAS[0].axes()
+    assert right.tolist() == [1.0, 0.0, 0.0]
+    assert up[1] > 0.9
+    assert forward[2] < -0.9
+    down, above = CAMERAS[2].axes(), CAMERAS[3].axes()
+    assert down[0].tolist() == above[0].tolist() == [1.0, 0.0, 0.0]
+    assert down[1].tolist() == [0.0, 0.0, -1.0]
+    assert above[1].tolist() == [0.0, 0.0, 1.0]

@@ -1,0 +1,101 @@
+"""Seed 0's scene: what the compiler makes of jelly_cubes, against the same scene written by hand in float64."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+
+import sssgen
+from s0_by_hand import LEVEL, Array, Scene, image
+from sssgen.targets.numpy_values import precision
+
+WIDTH, HEIGHT = 80, 60
+CONSTANTS = 1.0e-5
+"""The compiler rounds constants that it computes to float32 (1 / 2.2 among them): some 1e-6 of a colour."""
+
+
+class View(NamedTuple):
+    """What the pictures differ in."""
+
+    time: float
+    aspect: float = 1.0
+    look_at: tuple[float, float, float] = (0.65, 0.5, 0.0)
+
+
+VIEWS = {
+    "one cube before the other": View(0.0),
+    "side by side": View(1.2, aspect=4.0 / 3.0),
+    "with the horizon": View(3.0, aspect=4.0 / 3.0, look_at=(0.65, 1.7, 0.0)),
+    "from behind": View(5.1),
+}
+views = pytest.mark.parametrize("view", VIEWS.values(), ids=VIEWS)
+
+
+@cache
+def by_hand(view: View) -> Scene:
+    return image(WIDTH, HEIGHT, *view)
+
+
+def uniforms(reflection: dict[str, Any], view: View) -> dict[str, Any]:
+    """Each uniform's numbers: its default, or what the view says."""
+    values = {one["name"]: one["default"] for one in reflection["uniforms"]}
+    return values | {"aspect": [view.aspect], "look_at": list(view.look_at)}
+
+
+def in_numpy(view: View) -> Array:
+    """The emitted function on all pixels, in float64."""
+    made = sssgen.compile("jelly_cubes", "numpy", "functions")
+    functions: dict[str, Any] = {}
+    exec(made.files["jelly_cubes_functions.py"], functions)
+    v, u = (np.mgrid[0:HEIGHT, 0:WIDTH] + 0.5) / np.array([HEIGHT, WIDTH])[:, None, None]
+    values = [np.reshape(value, (-1, 1)) for value in uniforms(made.reflection, view).values()]
+    values = [value if len(value) > 1 else value[0, 0] for value in values]
+    with precision(np.float64):
+        color = functions["evaluate_color"](np.stack([u.ravel(), v.ravel()]), view.time, *values)
+    assert color.dtype == np.float64
+    return np.moveaxis(color[:3].reshape(3, HEIGHT, WIDTH), 0, 2)
+
+
+def in_opengl(view: View, context: Any) -> Array:
+    """The emitted shader, in float32; OpenGL reads the lowest row first."""
+    made = sssgen.compile("jelly_cubes", "glsl-330")
+    vertex, fragment = (made.files[f"jelly_cubes.glsl-330.{stage}"] for stage in ("vert", "frag"))
+    with context:
+        program = context.program(vertex_shader=vertex, fragment_shader=fragment)
+        for name, value in {**uniforms(made.reflection, view), "time": [view.time]}.items():
+            if name in program:  # a driver drops what it finds unused
+                program[name].write(np.array(value, np.float32).tobytes())
+        frame = context.framebuffer([context.texture((WIDTH, HEIGHT), 4, dtype="f4")])
+        frame.use()
+        context.vertex_array(program, []).render(vertices=3)
+        return np.frombuffer(frame.read(components=3, dtype="f4"), np.float32).reshape(HEIGHT, WIDTH, 3)
+
+
+def difference(picture: Array, exact: Scene) -> float:
+    """The largest, off the silhouettes; NaN where the picture has one."""
+    return float(np.abs(picture - exact.color)[~exact.silhouette].max())
+
+
+@views
+def test_silhouettes_are_few(view: View) -> None:
+    """So that what they leave out hides nothing: 0.0007 of the pixels are measured at 160 × 120."""
+    assert by_hand(view).silhouette.mean() < 0.002
+
+
+@views
+def test_numpy(view: View) -> None:
+    assert difference(in_numpy(view), by_hand(view)) <= CONSTANTS
+
+
+@views
+def test_opengl(view: View, compiler: Callable[[str], Any]) -> None:
+    assert difference(in_opengl(view, compiler("gl").context), by_hand(view)) <= LEVEL
+
+
+def test_a_silhouette_is_where_roundings_decide() -> None:
+    """In float32 the ray of this pixel ends a step earlier, in a shadow, and the color differs by 28/255."""
+    assert by_hand(VIEWS["from behind"]).silhouette[16, 55]
