@@ -151,13 +151,14 @@ def test_hemisphere_counts_rays_that_leave() -> None:
     i = np.arange(rays)
     z = (i + 0.5) / rays
     r = np.sqrt(1 - z * z)
-    spiral = np.stack([r * np.cos(2.3999632 * i), r * np.sin(2.3999632 * i), z], axis=1)
+    turn = np.pi * (3.0 - np.sqrt(5.0)) * i
+    spiral = np.stack([r * np.cos(turn), r * np.sin(turn), z], axis=1)
     cosine = np.abs(n @ spiral.T)
     expected = (cosine * (2.0 * 0.3 * cosine < 0.4)).sum(axis=1) / cosine.sum(axis=1)
     margin = np.abs(0.6 * cosine - 0.4).min(axis=1) > 0.002  # no ray that ends just at the surface
     result = technique("thinness_hemisphere", body_distance="sphere")(P=n * 0.3, N=n, radius=0.3)
     assert margin.sum() > 8
-    close(result[margin], expected[margin], atol=1e-12)
+    close(result[margin], expected[margin], atol=1e-8)  # the angle's cosine has nine digits
 
 
 # Marches

@@ -103,12 +103,17 @@ def parser() -> argparse.ArgumentParser:
         "evaluate a technique on arrays of inputs, on one back end or on all of them against the oracle",
         "examples:\n"
         "  sssgen eval lobe_gdc2011 --inputs lobe.json --backend all\n"
+        "  sssgen eval standard --samples 10000 --backend all\n"
         "  sssgen eval march_light --inputs rays.json --bind body_distance=shapes.sss:star\n"
         "The inputs are numbers by name, one or a list of them: "
         '{"N": [[0, 0, 1], [0, 1, 0]], "power": 4.0, "map": "wood.png"}',
     )
     evaluate.add_argument("TECHNIQUE", help="a name of `sssgen list techniques`, a .sss file, or FILE:FUNCTION")
     evaluate.add_argument("--inputs", "-i", metavar="FILE", help="the inputs, in JSON")
+    evaluate.add_argument(
+        "--samples", type=int, metavar="N", help="N random inputs, each in its range; what --inputs has stands before them"
+    )
+    evaluate.add_argument("--seed", type=int, default=0, metavar="N", help="which random inputs (default: 0)")
     evaluate.add_argument(
         "--backend", "-b", metavar="NAME", default="numpy",
         help="numpy (default), gl, gl-es, webgpu, browser, hlsl, hlsl-glslang, unity, unity-urp, a list of such, or all",
@@ -117,6 +122,23 @@ def parser() -> argparse.ArgumentParser:
         "--bind", action="append", default=[], metavar="SLOT=FUNCTION", help="a function for a slot, or FILE:FUNCTION"
     )
     evaluate.add_argument("--precision", choices=("f64", "f32", "f16"), help="what numpy computes in (default: f64)")
+
+    render = command(
+        "render",
+        "render",
+        "render a scene, or compare two pictures",
+        "examples:\n"
+        "  sssgen render scenes/lantern.toml -o lantern.png\n"
+        "  sssgen render --compare lantern.png golden.png -o difference.png",
+    )
+    render.add_argument("SCENE", nargs="?", help="a scene's .toml file")
+    render.add_argument("-o", "--output", metavar="FILE", help="a .png or .exr; default: SCENE's name and .png")
+    render.add_argument(
+        "--backend", "-b", metavar="NAME", default="gl", help="gl (default), webgpu, browser, hlsl, numpy, …"
+    )
+    render.add_argument("--size", metavar="WxH", help="in pixels, instead of the scene's own")
+    render.add_argument("--time", type=float, metavar="T", help="in seconds, instead of the scene's own")
+    render.add_argument("--compare", nargs=2, metavar=("A", "B"), help="FLIP, relMSE, p99 and max of A against B")
 
     new = command("new", "new", "write a commented material to start from")
     new.add_argument("MATERIAL", help="its name, or a .toml file; an old one is never overwritten")

@@ -11,6 +11,7 @@ from ..diagnostics import did_you_mean, failure
 
 SHOWN = 12
 """How many lanes a person is shown."""
+MOST_SAMPLES = 1_000_000
 
 
 def run(arguments: Namespace) -> int:
@@ -24,12 +25,26 @@ def run(arguments: Namespace) -> int:
     names = _backends(arguments.backend, arguments.precision, list(backends.NAMES))
     chosen = subject(arguments.TECHNIQUE, inputs.bindings(arguments.bind))
     given = inputs.read(arguments.inputs) if arguments.inputs else {}
+    sampled = arguments.samples is not None
+    if sampled:
+        given = _sampled(chosen, arguments.samples, arguments.seed) | given
     from ..harness.evaluate import fitted
 
     fit = fitted(chosen, given)
     if len(names) == 1:
         return _one(chosen, fit, names[0], arguments.json)
-    return _several(chosen, fit, names, arguments.json)
+    return _several(chosen, fit, names, arguments.json, listed=not sampled)
+
+
+def _sampled(chosen: Any, count: int, seed: int) -> dict[str, Any]:
+    """Random inputs; those of the file stand before them."""
+    if not 1 <= count <= MOST_SAMPLES:
+        raise failure(f"--samples {count} is not a number of samples", f"from 1 to {MOST_SAMPLES}")
+    if seed < 0:
+        raise failure(f"--seed {seed} is below 0")
+    from ..harness.samples import samples
+
+    return samples(chosen, count, seed)
 
 
 def _backends(given: str, precision: str | None, known: list[str]) -> list[str]:
@@ -66,18 +81,19 @@ def _one(subject: Any, fit: Any, name: str, as_json: bool) -> int:
     return OK
 
 
-def _several(subject: Any, fit: Any, names: list[str], as_json: bool) -> int:
+def _several(subject: Any, fit: Any, names: list[str], as_json: bool, listed: bool) -> int:
     from ..harness.deviation import GOAL, compared
 
     oracle, rows = compared(subject, fit, names)
     good = all(row.ok for row in rows)
     if as_json:
         found = [row.as_json() for row in rows]
-        plain = {key: _plain(value) for key, value in oracle.items()}
+        plain = {key: _plain(value) for key, value in oracle.items()} if listed else {}
         print_json({"ok": good, "lanes": fit.lanes, "goal": GOAL, "backends": found, "outputs": plain})
         return OK if good else CHECK_FAILED
     print(f"{subject.name}, {fit.lanes} lane{'s' * (fit.lanes != 1)}, against the oracle in float64")
-    _print_outputs(oracle)
+    if listed:
+        _print_outputs(oracle)
     width = max(len(row.name) for row in rows)
     print(f"\n{'':{width}}  largest deviation (goal: {GOAL:g})")
     for row in rows:

@@ -167,13 +167,19 @@ def _value(name: str, type_: Type, given: Any) -> Array:
 _DEFAULTS = {"white": (1.0, 1.0, 1.0), "black": (0.0, 0.0, 0.0), "gray": (0.5, 0.5, 0.5), "bump": (0.5, 0.5, 1.0)}
 
 
+def default_texture(type_: str, color: str) -> Texture:
+    """One texel of `white`, `black`, `gray` or `bump`; `type_` as the language spells it: `sampler2D`, …"""
+    dim = type_.removeprefix("sampler")
+    data = np.ones((*{"2D": (1, 1), "3D": (1, 1, 1), "Cube": (6, 1, 1)}[dim], 4))
+    data[..., :3] = _DEFAULTS[color]
+    return Texture(data, dim=dim)
+
+
 def _texture(subject: Subject, name: str, type_: Sampler, given: Any) -> Texture:
     """A texture in float16's numbers, which all back ends share; one texel of the default where none is given."""
     if given is None:
         hints = [hint.removeprefix("default_") for hint, _ in subject.uniforms[name].hints]
-        color = next((_DEFAULTS[hint] for hint in hints if hint in _DEFAULTS), _DEFAULTS["white"])
-        given = np.ones((*{"2D": (1, 1), "3D": (1, 1, 1), "Cube": (6, 1, 1)}[type_.dim], 4))
-        given[..., :3] = color
+        given = default_texture(spell(type_), next((hint for hint in hints if hint in _DEFAULTS), "white"))
     if not isinstance(given, Texture):
         try:
             given = Texture(np.asarray(given), dim=type_.dim)

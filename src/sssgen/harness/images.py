@@ -60,8 +60,15 @@ def encode_srgb(linear: npt.ArrayLike) -> Array:
     return encoded
 
 
+def decode_srgb(encoded: npt.ArrayLike) -> Array:
+    """Encoded sRGB as linear light (IEC 61966-2-1); values outside 0..1 are cut."""
+    stored = np.clip(np.asarray(encoded, np.float64), 0.0, 1.0)
+    linear: Array = np.where(stored <= 0.04045, stored / 12.92, ((stored + 0.055) / 1.055) ** 2.4)
+    return linear
+
+
 def write_png(path: str | os.PathLike[str], color: npt.ArrayLike) -> None:
-    """Writes an encoded picture, (height, width) or (height, width, 1 to 4), with 8 bits a channel, whole or not at all.
+    """Writes an encoded picture, (height, width) or (height, width, 1 to 4), 8 bits a channel, whole or not at all.
 
     Values are 0..1; they are cut to that and rounded, and NaN becomes 0. Raises SssgenError for another ending than
     .png and where the system refuses.

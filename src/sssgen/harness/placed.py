@@ -95,7 +95,8 @@ def spread(hit: Bools, position: Array, normal: Array, tangent: Array, uv: Array
 def unit(vectors: Array) -> Array:
     """Vectors (n, 3) brought to length 1; those of length 0 stay."""
     length = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return vectors / np.where(length > 0.0, length, 1.0)
+    brought: Array = vectors / np.where(length > 0.0, length, 1.0)
+    return brought
 
 
 def any_tangent(normals: Array) -> Array:
@@ -114,7 +115,8 @@ def tangent_of(normals: Array, grows_u: Array, grows_v: Array) -> Array:
     side = np.sign(np.einsum("nc,nc->n", along, grows_u))
     lost = (np.linalg.norm(along, axis=1) < 1e-9 * np.linalg.norm(grows_v, axis=1)) | (side == 0.0)
     tangent = np.where(lost[:, None], any_tangent(normals), unit(along) * side[:, None])
-    return np.c_[tangent, np.where(lost, 1.0, side)]
+    framed: Array = np.c_[tangent, np.where(lost, 1.0, side)]
+    return framed
 
 
 Projection: TypeAlias = Callable[[Array], tuple[Array, Array, Array]]

@@ -32,7 +32,8 @@ class Ball(Geometry):
         return spread(hit, self.radius * normal, normal, tangent_of(normal, grows_u, grows_v), uv)
 
     def distance(self, points: Array) -> Array:
-        return np.linalg.norm(points, axis=1) - self.radius
+        distance: Array = np.linalg.norm(points, axis=1) - self.radius
+        return distance
 
 
 # Of the faces +x, −x, +y, −y, +z, −z: the directions in which u and v grow.
@@ -119,7 +120,8 @@ class Torus(Geometry):
     def cast(self, origin: Array, directions: Array) -> Hits:
         nearest = -directions @ origin
         closest = origin + nearest[:, None] * directions
-        reach = (self.major + self.minor) ** 2 - np.einsum("nc,nc->n", closest, closest)
+        # wider than the torus, so that both ends of the search are surely outside it
+        reach = (1.001 * (self.major + self.minor)) ** 2 - np.einsum("nc,nc->n", closest, closest)
         near = np.flatnonzero(reach > 0.0)
         t, found = self._first_root(closest[near], directions[near], np.sqrt(reach[near]), -nearest[near])
         hit = np.zeros(len(directions), np.bool_)

@@ -47,6 +47,11 @@ class Builtin(NamedTuple):
     doc: str
     domain: str = ""
     """Where the result is defined, with x, y, z for the arguments in their order; '' means everywhere."""
+    inside: str = ""
+    """The domain as Python, for each component, over the functions of the NumPy runtime; '' means every finite number.
+    It is where the parity is measured, and so leaves out where intermediate results overflow or underflow."""
+    size: str = ""
+    """What the error is measured in ulp of, as Python: the size of terms that may cancel; '' means the result."""
     texts: Mapping[str, str] = MappingProxyType({})
     polyfill: str = ""
     splat: tuple[str, ...] = ("wgsl",)
@@ -77,14 +82,17 @@ _PAIR = tuple(f"gen{k}(gen{k}, {other})" for k, one in zip("FIU", _ONES) for oth
 _SAMPLE = ("vec4(sampler2D, vec2", "vec4(sampler3D, vec3", "vec4(samplerCube, vec3")
 _REDUCE = ("float(vecF, vecF)", "float(float, float)")
 _LOG = "WGSL, Vulkan: 3 ulp, but an absolute error of 2^-21 for x in [0.5, 2]"
-_EXP = "WGSL, Vulkan: 3 + 2·|x| ulp; taken at |x| = 10"
+_EXP = "WGSL, Vulkan: 3 + 2·|x| ulp; taken at |x| = 88"
+_EXP2 = "WGSL, Vulkan: 3 + 2·|x| ulp; taken at |x| = 128"
+_HYPERBOLIC = "WGSL, Vulkan: that of the formula with exp, 3 + 2·|x| ulp, which cancels near 0"
 _TRIG = "WGSL, Vulkan: absolute error of 2^-11 in [-pi, pi]; D3D: 0.0008"
 _ASIN = (
     "GLSL: no bound (Mesa: absolute error of 2e-4); WGSL: 6.81e-5, or that of the formula with atan; Vulkan: the latter"
 )
 _ATAN = "WGSL, Vulkan: 4096 ulp"
 _BY_LOG = "WGSL, Vulkan: that of the formula with log, whose own error is absolute"
-_BY_EXP = "WGSL, Vulkan: that of the formula with exp, which cancels near 0"
+_ACOSH = "WGSL, Vulkan: that of log(x + sqrt(x·x - 1)), which cancels near 1"
+_EIGHT_BITS = "D3D: filter weights of 8 bits; WGSL, Vulkan, GLSL: no bound"
 _SUM = "WGSL, Vulkan: that of the formula, whose sum rounds in any order"
 _NAN, _INF = float("nan"), float("inf")
 _HALF_PI, _PI = 1.5707963267948966, 3.141592653589793
@@ -118,29 +126,35 @@ BUILTINS: dict[str, Builtin] = _table(
         vectors=(((1.0,), 57.29577951308232), ((0.0,), 0.0), ((-0.5,), -28.64788975654116)),
     ),
     Builtin("sin", _F1, "Sine of an angle in radians.",
+        inside="abs(x) <= 3.1415928",
         domain="accurate for |x| <= pi", kind="transcendental", cost=4, absolute=2.0**-11, clause=_TRIG,
         vectors=(((1.0,), 0.8414709848078965), ((0.0,), 0.0), ((-0.5,), -0.479425538604203)),
     ),
     Builtin("cos", _F1, "Cosine of an angle in radians.",
+        inside="abs(x) <= 3.1415928",
         domain="accurate for |x| <= pi", kind="transcendental", cost=4, absolute=2.0**-11, clause=_TRIG,
         vectors=(((1.0,), 0.5403023058681398), ((0.0,), 1.0), ((2.5,), -0.8011436155469337)),
     ),
     Builtin("tan", _F1, "Tangent of an angle in radians.",
+        inside="abs(x) <= 1.0",
         domain="cos(x) != 0; accurate for |x| <= 1", kind="transcendental", cost=12, ulp=8192.0,
         absolute=2.0**-10, clause="WGSL, Vulkan: that of sin(x)/cos(x)",
         vectors=(((1.0,), 1.5574077246549023), ((0.0,), 0.0), ((-0.5,), -0.5463024898437905)),
     ),
     Builtin("asin", _F1, "Arc sine, in [-pi/2, pi/2].",
+        inside="abs(x) <= 1.0",
         domain="-1 <= x <= 1", kind="transcendental", cost=16, ulp=4096.0, absolute=2.0**-11, clause=_ASIN,
         vectors=(((1.0,), _HALF_PI), ((0.0,), 0.0), ((-0.5,), -0.5235987755982989)),
     ),
     Builtin("acos", _F1, "Arc cosine, in [0, pi].",
+        inside="abs(x) <= 1.0",
         domain="-1 <= x <= 1", kind="transcendental", cost=16, ulp=4096.0, absolute=2.0**-11, clause=_ASIN,
         vectors=(((1.0,), 0.0), ((0.5,), 1.0471975511965979), ((-1.0,), _PI)),
     ),
     Builtin("atan", ("genF(genF)", "genF(genF, genF)"),
         "Arc tangent: of x, in [-pi/2, pi/2]; of x/y in the quadrant of (y, x), in [-pi, pi].",
-        domain="with two arguments: x != 0 or y != 0",
+        domain="with two arguments: x != 0 or y != 0, and x != -0, whose sign may be lost; accurate for y != 0 and |y| < 2^126",
+        inside="(floatBitsToInt(x) != -2**31) & (abs(y) >= 2.0**-126) & (abs(y) <= 2.0**126)",
         texts={"hlsl/genF,genF": "atan2", "wgsl/genF,genF": "atan2"}, kind="transcendental", cost=16,
         ulp=4096.0, clause=_ATAN,
         vectors=(
@@ -149,31 +163,37 @@ BUILTINS: dict[str, Builtin] = _table(
         ),
     ),
     Builtin("sinh", _F1, "Hyperbolic sine.",
-        domain="|x| < 88", kind="transcendental", cost=11, ulp=32.0, absolute=2.0**-20, clause=_BY_EXP,
+        inside="abs(x) < 88.0",
+        domain="|x| < 88", kind="transcendental", cost=11, ulp=184.0, absolute=2.0**-20, clause=_HYPERBOLIC,
         vectors=(((1.0,), 1.1752011936438014), ((0.0,), 0.0), ((-0.5,), -0.5210953054937474)),
     ),
     Builtin("cosh", _F1, "Hyperbolic cosine.",
-        domain="|x| < 88", kind="transcendental", cost=11, ulp=32.0, clause=_EXP,
+        inside="abs(x) < 88.0",
+        domain="|x| < 88", kind="transcendental", cost=11, ulp=184.0, clause=_HYPERBOLIC,
         vectors=(((1.0,), 1.5430806348152437), ((0.0,), 1.0), ((-2.0,), 3.7621956910836314)),
     ),
     Builtin("tanh", _F1, "Hyperbolic tangent.",
-        domain="|x| < 44, as sinh(x)/cosh(x) may overflow beyond", kind="transcendental", cost=14, ulp=32.0,
+        inside="abs(x) < 44.0",
+        domain="|x| < 44, as sinh(x)/cosh(x) may overflow beyond", kind="transcendental", cost=14, ulp=184.0,
         absolute=1e-5, clause="WGSL: absolute error of 1e-5, or that of sinh(x)/cosh(x); Vulkan: the latter",
         vectors=(((0.5,), 0.46211715726000974), ((0.0,), 0.0), ((-20.0,), -1.0)),
     ),
     Builtin("asinh", _F1, "Inverse hyperbolic sine.",
-        domain="|x| < 1e19", texts={"hlsl": ""},
+        inside="abs(x) < 1e19",
+        domain="|x| < 1e19", texts={"hlsl": "", "wgsl": ""},
         polyfill="genF asinh(genF x) { return sign(x) * log(abs(x) + sqrt(x * x + 1.0)); }",
         kind="transcendental", cost=14, absolute=2.0**-20, clause=_BY_LOG,
         vectors=(((1.0,), 0.881373587019543), ((0.0,), 0.0), ((-2.0,), -1.4436354751788103)),
     ),
     Builtin("acosh", _F1, "Inverse hyperbolic cosine, not negative.",
+        inside="(x >= 1.0) & (x < 1e19)",
         domain="1 <= x < 1e19", texts={"hlsl": ""},
         polyfill="genF acosh(genF x) { return log(x + sqrt((x - 1.0) * (x + 1.0))); }", kind="transcendental",
-        cost=13, absolute=2.0**-20, clause=_BY_LOG,
+        cost=13, absolute=2.0**-12, clause=_ACOSH,
         vectors=(((1.0,), 0.0), ((1.5,), 0.9624236501192069), ((2.0,), 1.3169578969248168)),
     ),
     Builtin("atanh", _F1, "Inverse hyperbolic tangent.",
+        inside="abs(x) < 1.0",
         domain="-1 < x < 1", texts={"hlsl": ""},
         polyfill="genF atanh(genF x) { return 0.5 * log((1.0 + x) / (1.0 - x)); }", kind="transcendental",
         cost=12, absolute=2.0**-20, clause=_BY_LOG,
@@ -181,73 +201,81 @@ BUILTINS: dict[str, Builtin] = _table(
     ),
     # 8.2 Exponentials
     Builtin("pow", _F2, "x to the power y.",
-        domain="x >= 0 and (x > 0 or y > 0)", kind="transcendental", cost=9, ulp=64.0,
-        clause="WGSL, Vulkan: that of exp2(y·log2(x))",
+        inside="(x > 0.0) & (abs(y) <= 64.0) & (abs(y * log2(max(x, 1e-38))) < 126.0)",
+        domain="x > 0, or x = 0 and y > 0, where WGSL may miss 0; accurate for |y| <= 64", kind="transcendental", cost=9, ulp=600.0,
+        clause="WGSL, Vulkan: that of exp2(y·log2(x)); taken at |y| = 64 and |y·log2(x)| = 126",
         vectors=(((2.0, -1.5), 0.3535533905932738), ((3.0, 2.0), 9.0), ((0.0, 0.5), 0.0), ((5.0, 0.0), 1.0)),
     ),
     Builtin("exp", _F1, "e to the power x.",
-        domain="x < 88", kind="transcendental", cost=5, ulp=23.0, clause=_EXP,
+        inside="x < 88.0",
+        domain="x < 88", kind="transcendental", cost=5, ulp=179.0, clause=_EXP,
         vectors=(((1.0,), 2.718281828459045), ((0.0,), 1.0), ((-2.0,), 0.1353352832366127)),
     ),
     Builtin("log", _F1, "Natural logarithm.",
+        inside="x > 0.0",
         domain="x > 0", kind="transcendental", cost=5, absolute=2.0**-21, clause=_LOG,
         vectors=(((1.0,), 0.0), ((10.0,), 2.302585092994046), ((0.5,), -0.6931471805599453)),
     ),
     Builtin("exp2", _F1, "2 to the power x.",
-        domain="x < 128", kind="transcendental", cost=4, ulp=23.0, clause=_EXP,
+        inside="x < 128.0",
+        domain="x < 128", kind="transcendental", cost=4, ulp=259.0, clause=_EXP2,
         vectors=(((0.5,), 1.4142135623730951), ((0.0,), 1.0), ((-3.0,), 0.125)),
     ),
     Builtin("log2", _F1, "Binary logarithm.",
+        inside="x > 0.0",
         domain="x > 0", kind="transcendental", cost=4, absolute=2.0**-21, clause=_LOG,
         vectors=(((3.0,), 1.584962500721156), ((1.0,), 0.0), ((0.125,), -3.0)),
     ),
     Builtin("sqrt", _F1, "Square root.",
+        inside="x >= 0.0",
         domain="x >= 0", kind="transcendental", cost=4, ulp=6.0,
         clause="WGSL, Vulkan: that of 1/inversesqrt(x), with 2 and 2.5 ulp",
         vectors=(((2.0,), 1.4142135623730951), ((0.0,), 0.0), ((0.0625,), 0.25)),
     ),
     Builtin("inversesqrt", _F1, "1/sqrt(x).",
+        inside="x > 0.0",
         domain="x > 0", texts={"hlsl": "rsqrt", "wgsl": "inverseSqrt"}, kind="transcendental", cost=4,
         vectors=(((2.0,), 0.7071067811865476), ((1.0,), 1.0), ((0.0625,), 4.0)),
     ),
     # 8.3 Common
     Builtin("abs", _PLAIN, "Absolute value.",
+        inside="x != -2147483648",
         domain="for an int: x > -2147483648",
-        vectors=(((-1.5,), 1.5), ((0.0,), 0.0), ((-7,), 7), (((1, -2),), (1, 2))),
+        ulp=0.0, vectors=(((-1.5,), 1.5), ((0.0,), 0.0), ((-7,), 7), (((1, -2),), (1, 2))),
     ),
     Builtin("sign", _PLAIN, "1 for x > 0, -1 for x < 0, else 0.",
         texts={"hlsl/genF": "{type}(sign({0}))"},
-        vectors=(((-2.5,), -1.0), ((0.0,), 0.0), ((0.125,), 1.0), ((-3,), -1), ((0,), 0)),
+        ulp=0.0, vectors=(((-2.5,), -1.0), ((0.0,), 0.0), ((0.125,), 1.0), ((-3,), -1), ((0,), 0)),
     ),
     Builtin("floor", _F1, "Largest integer not above x.",
-        vectors=(((1.75,), 1.0), ((-0.25,), -1.0), ((-2.0,), -2.0)),
+        ulp=0.0, vectors=(((1.75,), 1.0), ((-0.25,), -1.0), ((-2.0,), -2.0)),
     ),
     Builtin("ceil", _F1, "Smallest integer not below x.",
-        vectors=(((1.25,), 2.0), ((-1.75,), -1.0), ((2.0,), 2.0)),
+        ulp=0.0, vectors=(((1.25,), 2.0), ((-1.75,), -1.0), ((2.0,), 2.0)),
     ),
     Builtin("trunc", _F1, "Nearest integer not larger in size: x rounded towards 0.",
-        vectors=(((1.75,), 1.0), ((-1.75,), -1.0), ((3.0,), 3.0)),
+        ulp=0.0, vectors=(((1.75,), 1.0), ((-1.75,), -1.0), ((3.0,), 3.0)),
     ),
     Builtin("round", _F1,
         "Nearest integer; of two, the even one (GLSL leaves that choice open, so it is written roundEven there).",
-        texts={"glsl": "roundEven"}, vectors=(((1.75,), 2.0), ((0.5,), 0.0), ((-1.5,), -2.0), ((2.5,), 2.0)),
+        texts={"glsl": "roundEven"}, ulp=0.0, vectors=(((1.75,), 2.0), ((0.5,), 0.0), ((-1.5,), -2.0), ((2.5,), 2.0)),
     ),
     Builtin("roundEven", _F1, "Nearest integer; of two, the even one.",
         texts={"hlsl": "round", "wgsl": "round"},
-        vectors=(((1.25,), 1.0), ((0.5,), 0.0), ((1.5,), 2.0), ((-2.5,), -2.0)),
+        ulp=0.0, vectors=(((1.25,), 1.0), ((0.5,), 0.0), ((1.5,), 2.0), ((-2.5,), -2.0)),
     ),
     Builtin("fract", _F1, "x - floor(x), in [0, 1); may round to 1 for a tiny negative x.",
         texts={"hlsl": "frac"}, vectors=(((1.75,), 0.75), ((-0.25,), 0.75), ((-3.0,), 0.0)),
     ),
     Builtin("mod", ("genF(genF, genF)", "genF(genF, float)"),
         "Floored remainder x - y·floor(x/y); has the sign of y. Not HLSL's fmod, which truncates.",
-        domain="y != 0", texts={"hlsl": "", "wgsl": ""},
+        inside="(y != 0.0) & ((x == 0.0) | (abs(x / y) > 1e-36)) & (abs(x / y - round(x / y)) >= 2.0**-20 * abs(x / y))", size="max(abs(x), abs(y))",
+        domain="y != 0; where x/y is within rounding of an integer the result may wrap", texts={"hlsl": "", "wgsl": ""},
         polyfill="""
 genF mod(genF x, genF y) { return x - y * floor(x / y); }
 vecF mod(vecF x, float y) { return x - y * floor(x / y); }
 """,
-        cost=4, ulp=16.0,
-        clause="WGSL, Vulkan: that of the formula; where x is near a multiple of y the result may wrap",
+        cost=4,
         vectors=(
             ((5.5, 2.0), 1.5), ((-0.5, 2.0), 1.5), ((5.5, -2.0), -0.5), (((5.5, -0.5), 2.0), (1.5, 1.5)),
         ),
@@ -255,34 +283,35 @@ vecF mod(vecF x, float y) { return x - y * floor(x / y); }
     Builtin("fmod", ("genF(genF, genF)", "genF(genF, float)"),
         "Truncated remainder x - y·trunc(x/y), as in C and HLSL; has the sign of x. Written out in HLSL, where glslang "
         "takes fmod for the floored one.",
-        domain="y != 0", texts={"glsl": "", "hlsl": "", "wgsl": "op:%"},
+        inside="(y != 0.0) & ((x == 0.0) | (abs(x / y) > 1e-36)) & (abs(x / y - round(x / y)) >= 2.0**-20 * abs(x / y))", size="max(abs(x), abs(y))",
+        domain="y != 0; where x/y is within rounding of an integer the result may wrap", texts={"glsl": "", "hlsl": "", "wgsl": "op:%"},
         polyfill="""
 genF fmod(genF x, genF y) { return x - y * trunc(x / y); }
 vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
 """,
-        splat=(), cost=4, ulp=16.0,
-        clause="WGSL, Vulkan: that of the formula; where x is near a multiple of y the result may wrap",
+        splat=(), cost=4,
         vectors=(
             ((5.5, 2.0), 1.5), ((-0.5, 2.0), -0.5), ((5.5, -2.0), 1.5), (((5.5, -0.5), 2.0), (1.5, -0.5)),
         ),
     ),
     Builtin("min", _PAIR, "The smaller; either one where one is NaN.",
         domain="neither is NaN",
-        vectors=(
+        ulp=0.0, vectors=(
             ((1.0, -2.0), -2.0), ((3, 3), 3), (((1.0, 4.0), 2.0), (1.0, 2.0)), (((1, -4), (-1, 2)), (-1, -4)),
         ),
     ),
     Builtin("max", _PAIR, "The larger; either one where one is NaN.",
         domain="neither is NaN",
-        vectors=(
+        ulp=0.0, vectors=(
             ((1.0, -2.0), 1.0), ((3, 3), 3), (((1.0, 4.0), 2.0), (2.0, 4.0)), (((1, -4), (-1, 2)), (1, 2)),
         ),
     ),
     Builtin("clamp",
         tuple(f"gen{k}(gen{k}, {bound}, {bound})" for k, one in zip("FIU", _ONES) for bound in (f"gen{k}", one)),
         "min(max(x, y), z).",
+        inside="y <= z",
         domain="y <= z; x is not NaN", cost=2,
-        vectors=(
+        ulp=0.0, vectors=(
             ((0.5, 0.0, 1.0), 0.5), ((-0.5, 0.0, 1.0), 0.0), ((7, 1, 4), 4),
             (((-1.0, 3.0), 0.0, 2.0), (0.0, 2.0)),
         ),
@@ -290,10 +319,11 @@ vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
     Builtin("saturate", _F1, "clamp(x, 0, 1). Of our own: HLSL and WGSL have it, GLSL has not.",
         domain="x is not NaN", texts={"glsl": ""},
         polyfill="genF saturate(genF x) { return clamp(x, 0.0, 1.0); }",
-        vectors=(((0.25,), 0.25), ((-1.0,), 0.0), ((1.5,), 1.0), (((2.0, -0.0, 1.0),), (1.0, 0.0, 1.0))),
+        ulp=0.0, vectors=(((0.25,), 0.25), ((-1.0,), 0.0), ((1.5,), 1.0), (((2.0, -0.0, 1.0),), (1.0, 0.0, 1.0))),
     ),
     Builtin("mix", ("genF(genF, genF, genF)", "genF(genF, genF, float)", "genF(genF, genF, genB)"),
         "Linear blend x·(1 - z) + y·z; with a bool, z ? y : x, where the other one may be infinite or NaN.",
+        inside="(np.asarray(z).dtype == bool) | (max(abs(x), abs(y)) * max(abs(z), 1.0) < 1e38)", size="max(abs(x), abs(y)) * max(abs(z), 1.0)",
         domain="x and y finite, unless z is a bool",
         texts={"hlsl": "lerp", "hlsl/genF,genF,genB": "", "wgsl/genF,genF,genB": "select"},
         polyfill="""
@@ -311,10 +341,11 @@ vec4 mix(vec4 x, vec4 y, bvec4 a) {
         ),
     ),
     Builtin("step", ("genF(genF, genF)", "genF(float, genF)"), "0 for y < x, else 1.",
-        vectors=(((0.5, 0.25), 0.0), ((0.5, 0.5), 1.0), ((1.0, (0.0, 2.0)), (0.0, 1.0))),
+        ulp=0.0, vectors=(((0.5, 0.25), 0.0), ((0.5, 0.5), 1.0), ((1.0, (0.0, 2.0)), (0.0, 1.0))),
     ),
     Builtin("smoothstep", ("genF(genF, genF, genF)", "genF(float, float, genF)"),
         "Cubic step t·t·(3 - 2·t) with t = clamp((z - x)/(y - x), 0, 1).",
+        inside="(x < y) & (y - x < 1e30)",
         domain="x < y", cost=8, ulp=16.0,
         clause="WGSL, Vulkan: that of the formula, with 2.5 ulp for the division",
         vectors=(((0.0, 2.0, 0.5), 0.15625), ((0.0, 1.0, 0.0), 0.0), ((0.0, 1.0, (0.5, 3.0)), (0.5, 1.0))),
@@ -346,18 +377,21 @@ vecB isinf(vecF x) { return equal(floatBitsToUint(x) & vecU(0x7fffffffu), vecU(0
         vectors=(((1.0,), 0x3F800000), ((-2.0,), 0xC0000000), ((0.0,), 0)),
     ),
     Builtin("intBitsToFloat", ("genF(genI)",), "The float32 with these bits.",
+        inside="abs(intBitsToFloat(x)) < 1e39",
         domain="the bits are those of a finite float",
         texts={"hlsl": "asfloat", "wgsl": "bitcast<{type}>({0})"},
-        vectors=(((0x3F800000,), 1.0), ((-0x40000000,), -2.0), ((0,), 0.0)),
+        ulp=0.0, vectors=(((0x3F800000,), 1.0), ((-0x40000000,), -2.0), ((0,), 0.0)),
     ),
     Builtin("uintBitsToFloat", ("genF(genU)",), "The float32 with these bits.",
+        inside="abs(uintBitsToFloat(x)) < 1e39",
         domain="the bits are those of a finite float",
         texts={"hlsl": "asfloat", "wgsl": "bitcast<{type}>({0})"},
-        vectors=(((0x3F800000,), 1.0), ((0xC0000000,), -2.0), ((0,), 0.0)),
+        ulp=0.0, vectors=(((0x3F800000,), 1.0), ((0xC0000000,), -2.0), ((0,), 0.0)),
     ),
     # 8.4 Packing; the first component goes into the low bits
     Builtin("packSnorm2x16", ("uint(vec2)",),
         "Two numbers in [-1, 1], each as a signed 16-bit fraction of 32767.",
+        inside="abs(fract(clamp(x, -1.0, 1.0) * 32767.0) - 0.5) > 0.01",
         texts={"glsl-330": "", "hlsl": "", "wgsl": "pack2x16snorm"},
         polyfill="""
 uint packSnorm2x16(vec2 x) {
@@ -368,6 +402,7 @@ uint packSnorm2x16(vec2 x) {
         cost=9, vectors=((((-1.0, 1.0),), 0x7FFF8001), (((0.0, 0.0),), 0), (((4.0, -4.0),), 0x80017FFF)),
     ),
     Builtin("packUnorm2x16", ("uint(vec2)",), "Two numbers in [0, 1], each as a 16-bit fraction of 65535.",
+        inside="abs(fract(clamp(x, 0.0, 1.0) * 65535.0) - 0.5) > 0.01",
         texts={"glsl-330": "", "hlsl": "", "wgsl": "pack2x16unorm"},
         polyfill="""
 uint packUnorm2x16(vec2 x) {
@@ -378,6 +413,7 @@ uint packUnorm2x16(vec2 x) {
         cost=8, vectors=((((0.0, 1.0),), 0xFFFF0000), (((0.0, 0.0),), 0), (((2.0, -1.0),), 0xFFFF)),
     ),
     Builtin("packHalf2x16", ("uint(vec2)",), "Two numbers as float16.",
+        inside="unpackHalf2x16(packHalf2x16(x)) == x",
         domain="representable in float16: the rounding is the target's",
         texts={"glsl-330": "", "hlsl": "dot(f32tof16({0}), uint2(1u, 65536u))", "hlsl-dx9": "", "wgsl": "pack2x16float"},
         polyfill="""
@@ -411,6 +447,7 @@ vec2 unpackSnorm2x16(uint x) {
         vectors=(((0xFFFF,), (1.0, 0.0)), ((0,), (0.0, 0.0)), ((0x80000000,), (0.0, 0.5000076295109483))),
     ),
     Builtin("unpackHalf2x16", ("vec2(uint)",), "Two numbers from float16.",
+        inside="abs(unpackHalf2x16(x)) < 1e5",
         domain="both are finite",
         texts={
             "glsl-330": "", "hlsl": "f16tof32(({0}) >> uint2(0u, 16u))", "hlsl-dx9": "", "wgsl": "unpack2x16float",
@@ -426,15 +463,17 @@ vec2 unpackHalf2x16(uint x) {
 }
 """,
         cost=2,
-        vectors=(((0xC0003C00,), (1.0, -2.0)), ((0x3800,), (0.5, 0.0)), ((0x34007BFF,), (65504.0, 0.25))),
+        ulp=0.0, vectors=(((0xC0003C00,), (1.0, -2.0)), ((0x3800,), (0.5, 0.0)), ((0x34007BFF,), (65504.0, 0.25))),
     ),
     # 8.5 Geometry
     Builtin("length", ("float(genF)",), "Euclidean length.",
+        inside="(dot(x, x) < 1e38) & ((dot(x, x) > 1e-30) | (dot(x, x) == 0.0))",
         domain="dot(x, x) does not overflow: |x| < 1e19", kind="transcendental", cost=6, ulp=8.0,
         clause="WGSL, Vulkan: that of sqrt(dot(x, x))",
         vectors=((((3.0, 4.0),), 5.0), (((0.0, 0.0, 0.0),), 0.0), ((-2.0,), 2.0)),
     ),
     Builtin("distance", _REDUCE, "Length of x - y.",
+        inside="(dot(x - y, x - y) < 1e38) & ((dot(x - y, x - y) > 1e-30) | (dot(x - y, x - y) == 0.0))",
         domain="|x - y| < 1e19", texts={"hlsl/float,float": ""}, polyfill="float distance(float x, float y) { return abs(x - y); }",
         kind="transcendental", cost=7, ulp=8.0, clause="WGSL, Vulkan: that of length(x - y)",
         vectors=(
@@ -442,13 +481,15 @@ vec2 unpackHalf2x16(uint x) {
         ),
     ),
     Builtin("dot", _REDUCE, "Sum of the products of the components.",
-        texts={"hlsl/float,float": "op:*", "wgsl/float,float": "op:*"}, cost=2, ulp=8.0, clause=_SUM,
+        inside="dot(abs(x), abs(y)) < 1e38", size="dot(abs(x), abs(y))",
+        texts={"hlsl/float,float": "op:*", "wgsl/float,float": "op:*"}, cost=2,
         vectors=(
             (((1.0, 2.0, 3.0), (4.0, -5.0, 6.0)), 12.0), (((0.0, 1.0), (1.0, 0.0)), 0.0), ((2.0, -3.0), -6.0),
         ),
     ),
     Builtin("cross", ("vec3(vec3, vec3)",), "Cross product, right-handed: x-axis with y-axis gives z-axis.",
-        cost=3, ulp=8.0, clause=_SUM,
+        inside="length(x) * length(y) < 1e38", size="max(abs(x * y[[1, 2, 0]]), abs(y * x[[1, 2, 0]]))",
+        cost=3,
         vectors=(
             (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)), (0.0, 0.0, 1.0)),
             (((1.0, 2.0, 3.0), (4.0, 5.0, 6.0)), (-3.0, 6.0, -3.0)),
@@ -456,6 +497,7 @@ vec2 unpackHalf2x16(uint x) {
         ),
     ),
     Builtin("normalize", ("vecF(vecF)", "float(float)"), "x / length(x).",
+        inside="(dot(x, x) < 1e38) & (dot(x, x) > 1e-30)",
         domain="dot(x, x) > 0 and does not overflow", texts={"hlsl/float": "", "wgsl/float": ""},
         polyfill="float normalize(float x) { return sign(x); }", kind="transcendental", cost=7, ulp=8.0,
         clause="WGSL, Vulkan: that of x / length(x)",
@@ -467,9 +509,10 @@ vec2 unpackHalf2x16(uint x) {
     ),
     Builtin("faceforward", ("vecF(vecF, vecF, vecF)", "float(float, float, float)"),
         "x where dot(z, y) < 0, else -x: the normal x turned against the direction of incidence y.",
+        inside="(dot(abs(z), abs(y)) < 1e38) & ((dot(abs(z), abs(y)) == 0.0) | (abs(dot(z, y)) > max(1e-30, 1e-6 * dot(abs(z), abs(y)))))",
         texts={"hlsl/float,float,float": "", "wgsl": "faceForward", "wgsl/float,float,float": ""},
         polyfill="float faceforward(float x, float y, float z) { return z * y < 0.0 ? x : -x; }", cost=4,
-        vectors=(
+        ulp=0.0, vectors=(
             (((0.0, 1.0), (0.0, -1.0), (0.0, 1.0)), (0.0, 1.0)),
             (((0.0, 1.0), (0.0, 1.0), (0.0, 1.0)), (0.0, -1.0)),
             (((0.0, 0.5, 1.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)), (0.0, -0.5, -1.0)),
@@ -477,6 +520,7 @@ vec2 unpackHalf2x16(uint x) {
     ),
     Builtin("reflect", ("vecF(vecF, vecF)", "float(float, float)"),
         "x - 2·dot(y, x)·y: direction x mirrored at the unit normal y.",
+        inside="(abs(dot(y, y) - 1.0) < 1e-6) & (abs(x) < 1e38)", size="max(abs(x), 2.0 * dot(abs(x), abs(y)) * abs(y))",
         domain="dot(y, y) = 1", texts={"hlsl/float,float": "", "wgsl/float,float": ""},
         polyfill="float reflect(float x, float y) { return x - 2.0 * y * x * y; }", cost=4, ulp=8.0,
         clause=_SUM,
@@ -487,6 +531,7 @@ vec2 unpackHalf2x16(uint x) {
     ),
     Builtin("refract", ("vecF(vecF, vecF, float)", "float(float, float, float)"),
         "Direction x refracted at the unit normal y, z = n_from/n_into; 0 on total internal reflection.",
+        inside="(abs(dot(x, x) - 1.0) < 1e-6) & (abs(dot(y, y) - 1.0) < 1e-6) & (z > 0.0) & (abs(1.0 - z * z * (1.0 - dot(x, y) ** 2)) > 0.1)", size="max(z * z, 1.0)",
         domain="dot(x, x) = dot(y, y) = 1 and z > 0",
         texts={"hlsl/float,float,float": "", "wgsl/float,float,float": ""},
         polyfill="""
@@ -496,7 +541,7 @@ float refract(float x, float y, float z) {
     return k < 0.0 ? 0.0 : z * x - (z * c + sqrt(max(k, 0.0))) * y;
 }
 """,
-        splat=(), kind="transcendental", cost=12, ulp=16.0, absolute=2.0**-20,
+        splat=(), kind="transcendental", cost=12, ulp=16.0,
         clause="WGSL, Vulkan: that of the formula, with sqrt near total internal reflection",
         vectors=(
             (((0.0, -1.0), (0.0, 1.0), 0.75), (0.0, -1.0)), (((1.0, 0.0), (0.0, 1.0), 1.5), (0.0, 0.0)),
@@ -505,6 +550,7 @@ float refract(float x, float y, float z) {
     ),
     # 8.6 Matrices
     Builtin("matrixCompMult", ("mat(mat, mat)",), "Componentwise product.",
+        inside="abs(x * y) < 1e38",
         texts={"hlsl": "", "wgsl": ""},
         polyfill="""
 mat2 matrixCompMult(mat2 x, mat2 y) { return mat2(x[0] * y[0], x[1] * y[1]); }
@@ -519,6 +565,7 @@ mat4 matrixCompMult(mat4 x, mat4 y) { return mat4(x[0] * y[0], x[1] * y[1], x[2]
     ),
     Builtin("outerProduct", ("mat2(vec2, vec2)", "mat3(vec3, vec3)", "mat4(vec4, vec4)"),
         "The matrix whose column i is x·y[i].",
+        inside="length(x) * length(y) < 1e38",
         texts={"hlsl": "", "wgsl": ""},
         polyfill="""
 mat2 outerProduct(vec2 x, vec2 y) { return mat2(x * y.x, x * y.y); }
@@ -533,7 +580,7 @@ mat4 outerProduct(vec4 x, vec4 y) { return mat4(x * y.x, x * y.y, x * y.z, x * y
     ),
     Builtin("transpose", ("mat(mat)",), "Rows for columns.",
         cost=0,
-        vectors=(
+        ulp=0.0, vectors=(
             ((((1.0, 2.0), (3.0, 4.0)),), ((1.0, 3.0), (2.0, 4.0))),
             ((((1.0, 0.0), (0.0, 1.0)),), ((1.0, 0.0), (0.0, 1.0))),
             ((((1.0, 2.0, 3.0), (4.0, 5.0, 6.0), (7.0, 8.0, 9.0)),), ((1.0, 4.0, 7.0), (2.0, 5.0, 8.0), (3.0, 6.0, 9.0))),
@@ -600,6 +647,7 @@ mat4 inverse(mat4 x) {
     # 8.8 Texture reads
     Builtin("unpackNormal", ("vec3(vec4)",),
         "The tangent-space normal of a normal map's texel, y up. Unity may pack it when it imports the map.",
+        size="max(2.0 * abs(x[:3]), 1.0)",
         texts={"glsl": "", "hlsl": "", "wgsl": "", "hlsl-dx9": "UnpackNormal", "hlsl-macros": "UnpackNormal"},
         polyfill="vec3 unpackNormal(vec4 texel) { return texel.xyz * 2.0 - 1.0; }", cost=2,
         vectors=(
@@ -633,7 +681,7 @@ mat4 inverse(mat4 x) {
             "wgsl/sampler3D,vec3,float": "textureSampleBias({texture}, {sampler}, {1}, {2})",
             "wgsl/samplerCube,vec3,float": "textureSampleBias({texture}, {sampler}, {1}, {2})",
         },
-        splat=(), kind="fetch",
+        splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
     ),
     Builtin("textureLod", tuple(f"{read}, float)" for read in _SAMPLE), "Filtered texture read at level z.",
         texts={
@@ -643,7 +691,7 @@ mat4 inverse(mat4 x) {
             "hlsl-macros": "SAMPLE_TEXTURE{dim}_LOD({texture}, {sampler}, {1}, {2})",
             "wgsl": "textureSampleLevel({texture}, {sampler}, {1}, {2})",
         },
-        splat=(), kind="fetch",
+        splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
     ),
     Builtin("textureGrad",
         ("vec4(sampler2D, vec2, vec2, vec2)", *(f"{read}, vec3, vec3)" for read in _SAMPLE[1:])),
@@ -655,7 +703,7 @@ mat4 inverse(mat4 x) {
             "hlsl-macros/sampler2D,vec2,vec2,vec2": "SAMPLE_TEXTURE2D_GRAD({texture}, {sampler}, {1}, {2}, {3})",
             "wgsl": "textureSampleGrad({texture}, {sampler}, {1}, {2}, {3})",
         },
-        splat=(), kind="fetch",
+        splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
     ),
     Builtin("texelFetch", ("vec4(sampler2D, ivec2, int)", "vec4(sampler3D, ivec3, int)"),
         "The texel at y of level z, unfiltered.",
@@ -666,7 +714,7 @@ mat4 inverse(mat4 x) {
             "hlsl-macros": "LOAD_TEXTURE{dim}_LOD({texture}, {1}, {2})",
             "wgsl": "textureLoad({texture}, {1}, {2})",
         },
-        splat=(), kind="fetch",
+        splat=(), kind="fetch", ulp=0.0,
     ),
     # 8.9 Derivatives
     Builtin("dFdx", _F1, "Change of x from one pixel to the next, to the right.",

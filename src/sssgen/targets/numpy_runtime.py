@@ -287,9 +287,14 @@ def all(x: Value) -> Value:
 # 8.8 Texture reads; see `Texture` for what they do
 
 
+def _level(level: Value) -> int:
+    """The level of all lanes: that of the first."""
+    return int(np.ravel(level)[0])
+
+
 def textureSize(texture: Texture, level: Value) -> Value:
     """Of one level for all lanes."""
-    return np.array(texture.size(int(level)), np.int32)[:, None]
+    return np.array(texture.size(_level(level)), np.int32)[:, None]
 
 
 def texture(texture: Texture, coord: Value, bias: Value = 0.0) -> Value:
@@ -309,7 +314,7 @@ def textureGrad(texture: Texture, coord: Value, dx: Value, dy: Value) -> Value:
 
 def texelFetch(texture: Texture, place: Value, level: Value) -> Value:
     """Of one level for all lanes; 0 outside of it. In the working precision."""
-    return texture.fetch(place, int(level)).astype(working())
+    return texture.fetch(place, _level(level)).astype(working())
 
 
 # 8.9 Derivatives: differences within quads of 2×2 pixels, row by row and column by column (the "fine" ones)

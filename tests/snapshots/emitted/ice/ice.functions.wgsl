@@ -40,12 +40,16 @@ fn cell_at(p: vec2f, variation: f32) -> Cell {
     var nearest = vec2f(4.0);
     var second = vec2f(4.0);
     var owner = 0u;
+    // from the corner of its own cell, so that far cells are as exact as near ones
+    let home = floor(p);
+    let within = p - home;
     for (var j = -1; j <= 1; j++) {
         for (var i = -1; i <= 1; i++) {
-            let corner = floor(p) + vec2f(f32(i), f32(j));
+            let offset = vec2f(f32(i), f32(j));
+            let corner = home + offset;
             let seed = hash_bits(u32(i32(corner.x)) + hash_bits(u32(i32(corner.y)) + 1u));
             let shift = vec2f(hash_unit(seed + 1u), hash_unit(seed + 2u)) - 0.5;
-            let to_site = corner + 0.5 + JITTER * shift - p;
+            let to_site = offset + 0.5 + JITTER * shift - within;
             if (dot(to_site, to_site) < dot(nearest, nearest)) {
                 second = nearest;
                 nearest = to_site;
@@ -180,7 +184,9 @@ fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughnes
     let NoV = max(dot(N, V), 0.0001);
     let NoH = clamp(dot(N, H), 0.0, 1.0);
     let a = max(roughness, 0.045) * max(roughness, 0.045);
-    let spread = NoH * NoH * (a * a - 1.0) + 1.0;
+    // (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak
+    let across = cross(N, H);
+    let spread = select(1.0, dot(across, across) + NoH * NoH * a * a, NoH > 0.0);
     // D times pi
     let facets = a * a / (spread * spread);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)

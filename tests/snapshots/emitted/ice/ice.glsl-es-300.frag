@@ -5,6 +5,7 @@
 
 precision highp float;
 precision highp int;
+precision highp sampler2D;
 
 struct Cell {
     float to_edge;
@@ -75,12 +76,16 @@ Cell cell_at(vec2 p) {
     vec2 nearest = vec2(4.0);
     vec2 second = vec2(4.0);
     uint owner = 0u;
+    // from the corner of its own cell, so that far cells are as exact as near ones
+    vec2 home = floor(p);
+    vec2 within = p - home;
     for (int j = -1; j <= 1; j++) {
         for (int i = -1; i <= 1; i++) {
-            vec2 corner = floor(p) + vec2(float(i), float(j));
+            vec2 offset = vec2(float(i), float(j));
+            vec2 corner = home + offset;
             uint seed = hash_bits(uint(int(corner.x)) + hash_bits(uint(int(corner.y)) + 1u));
             vec2 shift = vec2(hash_unit(seed + 1u), hash_unit(seed + 2u)) - 0.5;
-            vec2 to_site = corner + 0.5 + JITTER * shift - p;
+            vec2 to_site = offset + 0.5 + JITTER * shift - within;
             if (dot(to_site, to_site) < dot(nearest, nearest)) {
                 second = nearest;
                 nearest = to_site;
@@ -197,7 +202,9 @@ vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughne
     float NoV = max(dot(N, V), 0.0001);
     float NoH = clamp(dot(N, H), 0.0, 1.0);
     float a = max(roughness, 0.045) * max(roughness, 0.045);
-    float spread = NoH * NoH * (a * a - 1.0) + 1.0;
+    // (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak
+    vec3 across = cross(N, H);
+    float spread = NoH > 0.0 ? dot(across, across) + NoH * NoH * a * a : 1.0;
     // D times pi
     float facets = a * a / (spread * spread);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)

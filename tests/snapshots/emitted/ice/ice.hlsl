@@ -78,14 +78,18 @@ Cell cell_at(float2 p) {
     float2 nearest = (float2)4.0;
     float2 second = (float2)4.0;
     uint owner = 0u;
+    // from the corner of its own cell, so that far cells are as exact as near ones
+    float2 home = floor(p);
+    float2 within = p - home;
     [unroll]
     for (int j = -1; j <= 1; j++) {
         [unroll]
         for (int i = -1; i <= 1; i++) {
-            float2 corner = floor(p) + float2(float(i), float(j));
+            float2 offset = float2(float(i), float(j));
+            float2 corner = home + offset;
             uint seed = hash_bits(uint(int(corner.x)) + hash_bits(uint(int(corner.y)) + 1u));
             float2 shift = float2(hash_unit(seed + 1u), hash_unit(seed + 2u)) - 0.5;
-            float2 to_site = corner + 0.5 + JITTER * shift - p;
+            float2 to_site = offset + 0.5 + JITTER * shift - within;
             if (dot(to_site, to_site) < dot(nearest, nearest)) {
                 second = nearest;
                 nearest = to_site;
@@ -204,7 +208,9 @@ float3 standard(float3 N, float3 V, float3 L, float3 albedo, float metallic, flo
     float NoV = max(dot(N, V), 0.0001);
     float NoH = clamp(dot(N, H), 0.0, 1.0);
     float a = max(roughness, 0.045) * max(roughness, 0.045);
-    float spread = NoH * NoH * (a * a - 1.0) + 1.0;
+    // (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak
+    float3 across = cross(N, H);
+    float spread = NoH > 0.0 ? dot(across, across) + NoH * NoH * a * a : 1.0;
     // D times pi
     float facets = a * a / (spread * spread);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)

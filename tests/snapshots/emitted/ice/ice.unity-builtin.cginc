@@ -42,14 +42,18 @@ Cell cell_at(float2 p, float variation) {
     float2 nearest = (float2)4.0;
     float2 second = (float2)4.0;
     uint owner = 0u;
+    // from the corner of its own cell, so that far cells are as exact as near ones
+    float2 home = floor(p);
+    float2 within = p - home;
     [unroll]
     for (int j = -1; j <= 1; j++) {
         [unroll]
         for (int i = -1; i <= 1; i++) {
-            float2 corner = floor(p) + float2(float(i), float(j));
+            float2 offset = float2(float(i), float(j));
+            float2 corner = home + offset;
             uint seed = hash_bits(uint(int(corner.x)) + hash_bits(uint(int(corner.y)) + 1u));
             float2 shift = float2(hash_unit(seed + 1u), hash_unit(seed + 2u)) - 0.5;
-            float2 to_site = corner + 0.5 + JITTER * shift - p;
+            float2 to_site = offset + 0.5 + JITTER * shift - within;
             if (dot(to_site, to_site) < dot(nearest, nearest)) {
                 second = nearest;
                 nearest = to_site;

@@ -27,12 +27,16 @@ def cell_at(p, variation):
     nearest = splat(2, 4.0)
     second = splat(2, 4.0)
     owner = to_uint(0)
+    # from the corner of its own cell, so that far cells are as exact as near ones
+    home = floor(p)
+    within = p - home
     for j in range(-1, 2):
         for i in range(-1, 2):
-            corner = floor(p) + vec(to_float(i), to_float(j))
+            offset = vec(to_float(i), to_float(j))
+            corner = home + offset
             seed = hash_bits(to_uint(to_int(corner[0])) + hash_bits(to_uint(to_int(corner[1])) + 1))
             shift = vec(hash_unit(seed + 1), hash_unit(seed + 2)) - 0.5
-            to_site = corner + 0.5 + JITTER * shift - p
+            to_site = offset + 0.5 + JITTER * shift - within
             mask = dot(to_site, to_site) < dot(nearest, nearest)
             second = select(mask, nearest, second)
             nearest = select(mask, to_site, nearest)
@@ -139,7 +143,9 @@ def standard(N, V, L, albedo, metallic, roughness, light_color):
     NoV = max(dot(N, V), 0.0001)
     NoH = clamp(dot(N, H), 0.0, 1.0)
     a = max(roughness, 0.045) * max(roughness, 0.045)
-    spread = NoH * NoH * (a * a - 1.0) + 1.0
+    # (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak
+    across = cross(N, H)
+    spread = select(NoH > 0.0, dot(across, across) + NoH * NoH * a * a, 1.0)
     # D times pi
     facets = a * a / (spread * spread)
     # masking and shadowing, over 4 dot(N, L) dot(N, V)

@@ -99,7 +99,9 @@ def standard(N, V, L, albedo, metallic, roughness, light_color):
     NoV = max(dot(N, V), 0.0001)
     NoH = clamp(dot(N, H), 0.0, 1.0)
     a = max(roughness, 0.045) * max(roughness, 0.045)
-    spread = NoH * NoH * (a * a - 1.0) + 1.0
+    # (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak
+    across = cross(N, H)
+    spread = select(NoH > 0.0, dot(across, across) + NoH * NoH * a * a, 1.0)
     # D times pi
     facets = a * a / (spread * spread)
     # masking and shadowing, over 4 dot(N, L) dot(N, V)

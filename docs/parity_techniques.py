@@ -1,0 +1,91 @@
+"""Measures the parity of the techniques and writes docs/parity_techniques.md: python docs/parity_techniques.py"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+from sssgen.harness import backends
+from sssgen.harness.backends import Backend
+from sssgen.harness.deviation import DRAWS, GOAL, MARGIN, Deviation
+from sssgen.harness.parity_techniques import BACKENDS, BOUND_LANES, KNOWN, LANES, SEED, Known, cases, excess, measure
+
+PAGE = Path(__file__).with_name("parity_techniques.md")
+
+
+class Row(NamedTuple):
+    """A technique on the back ends, whatever is bound to its slots."""
+
+    largest: dict[str, float]
+    share: float
+    furthest: float
+
+
+def rows(present: list[Backend]) -> dict[str, Row]:
+    """What was measured, by technique."""
+    found: dict[str, Row] = {}
+    for case in cases():
+        lanes = BOUND_LANES if case.bind else LANES
+        row = found.setdefault(case.technique, Row(dict.fromkeys(BACKENDS, -1.0), 0.0, 0.0))
+        for backend in present:
+            one: Deviation = measure(case, backend, lanes)
+            if wrong := excess(case, backend.name, one, lanes):
+                print(wrong)
+            row.largest[backend.name] = max(row.largest[backend.name], one.largest)
+            row = row._replace(share=max(row.share, one.excused / lanes), furthest=max(row.furthest, one.furthest))
+        found[case.technique] = row
+    return found
+
+
+def page(present: list[Backend], found: dict[str, Row]) -> str:
+    """The page's text."""
+    lines = [
+        "# The techniques on every back end",
+        "",
+        "Measured by `python docs/parity_techniques.py`; `tests/test_parity_techniques.py` holds it. "
+        f"Each technique has {LANES:,} random inputs",
+        f"(seed {SEED}), in the declared meaning of each parameter (`src/sssgen/harness/samples.py`), and again "
+        f"{BOUND_LANES:,} for each other function of",
+        "the library that fits one of its slots. The oracle is what the `numpy` target emits, in float64.",
+        "",
+        "A deviation is |got − wanted| over the larger of |wanted| and 1, both over a value's components. The goal is "
+        f"{GOAL:g}.",
+        "",
+        "*Blurred* lanes are beyond the goal where float32 itself is: where a technique decides, or subtracts nearly",
+        "equal numbers. They are counted apart, and told with the share of the lanes and the largest deviation. A lane",
+        f"is blurred while its deviation is at most {MARGIN:g} times what rounding does without any back end: the "
+        "larger of how",
+        "far the oracle's result moves when each input moves by one unit in the last place, and how far the same",
+        f"formulas in NumPy's float32 are off there ({DRAWS} draws of the moves).",
+        "",
+        *(f"- {backend.name}: {backend.device()}" for backend in present),
+        "",
+        f"| Technique | {' | '.join(BACKENDS)} | Blurred | Up to | Why beyond the goal |",
+        f"|---|{'---|' * len(BACKENDS)}---|---|---|",
+    ]
+    for name, row in sorted(found.items()):
+        cells = [_number(row.largest[backend]) for backend in BACKENDS]
+        blurred = [f"{100.0 * row.share:.2g} %" if row.share else "", f"{row.furthest:.1g}" if row.share else ""]
+        lines.append(f"| {' | '.join([name, *cells, *blurred, _reasons(name, row)])} |")
+    return "\n".join(lines) + "\n"
+
+
+def _number(value: float) -> str:
+    text = "–" if value < 0.0 else "0" if value == 0.0 else f"{value:.1e}".replace("e-0", "e-")
+    return f"**{text}**" if value > GOAL else text
+
+
+def _reasons(name: str, row: Row) -> str:
+    if not row.share and max(row.largest.values()) <= GOAL:
+        return ""
+    told: list[Known] = [one for one in KNOWN if name in one.techniques]
+    reasons = [
+        one.reason if len(one.backends) == len(BACKENDS) else f"{', '.join(one.backends)}: {one.reason}" for one in told
+    ]
+    return "<br>".join(reasons) or "Single lanes just where a decision turns, or nearly equal numbers are subtracted."
+
+
+if __name__ == "__main__":
+    present = [found for found in backends.available() if found.name in BACKENDS]
+    PAGE.write_text(page(present, rows(present)), encoding="utf-8")
+    print(f"wrote {PAGE.name}")

@@ -1,0 +1,99 @@
+"""`sssgen render`: a scene's picture, or how two pictures differ."""
+
+from __future__ import annotations
+
+import os
+import re
+from argparse import Namespace
+
+from ..cli import OK, print_json
+from ..diagnostics import did_you_mean, failure
+
+
+def run(arguments: Namespace) -> int:
+    """Renders, or compares."""
+    try:
+        import numpy  # noqa: F401
+    except ImportError as error:
+        raise failure(f"sssgen render needs more packages: {error}", "pip install 'sssgen[render]'") from None
+    if arguments.compare:
+        return _compare(arguments)
+    if not arguments.SCENE:
+        raise failure("a scene is missing", "sssgen render scene.toml -o picture.png")
+    return _render(arguments)
+
+
+def _render(arguments: Namespace) -> int:
+    from time import perf_counter
+
+    from ..harness import backends, images
+    from ..harness.render import render
+    from ..harness.scene import load
+
+    size = _size(arguments.size) if arguments.size else None
+    if arguments.backend not in backends.NAMES:
+        hint = did_you_mean(arguments.backend, backends.NAMES) or f"choose from: {', '.join(backends.NAMES)}"
+        raise failure(f"unknown back end '{arguments.backend}'", hint)
+    scene = load(arguments.SCENE)
+    name = os.path.splitext(os.path.basename(arguments.SCENE))[0]
+    output = arguments.output or f"{name}.png"
+    if images.check_suffix(output) == ".npy":
+        raise failure("a picture is written as .png or .exr", "", output)
+    try:
+        backend = backends.get(arguments.backend)
+    except backends.CompilerMissing as reason:
+        raise failure(f"the back end {arguments.backend} is missing", str(reason)) from None
+    start = perf_counter()
+    made = render(scene, backend, size, arguments.time)
+    seconds = perf_counter() - start
+    write = {
+        ".png": lambda: images.write_png(output, made.encoded),
+        ".exr": lambda: images.write_exr(output, made.linear),
+    }
+    write[images.check_suffix(output)]()
+    height, width = made.linear.shape[:2]
+    if arguments.json:
+        facts = {"file": output, "size": [width, height], "backend": backend.name, "device": backend.device()}
+        print_json({"ok": True, **facts, "seconds": round(seconds, 3)})
+    else:
+        print(f"wrote {output}: {width} × {height} on {backend.name} ({backend.device()}) in {seconds:.2f} s")
+    return OK
+
+
+def _size(text: str) -> tuple[int, int]:
+    found = re.fullmatch(r"(\d{1,5})[x×](\d{1,5})", text)
+    if not found or not all(1 <= int(side) <= 8192 for side in found.groups()):
+        raise failure(f"'{text}' is no size", "WIDTHxHEIGHT in pixels, as in 640x480, each from 1 to 8192")
+    return int(found[1]), int(found[2])
+
+
+def _compare(arguments: Namespace) -> int:
+    from ..harness import images
+    from ..harness.compare import compare
+
+    if arguments.SCENE:
+        raise failure(
+            "--compare takes two pictures and no scene", "sssgen render --compare a.png b.png -o difference.png"
+        )
+    a, b = (_encoded(images, path) for path in arguments.compare)
+    found = compare(a, b)
+    if arguments.output:
+        images.write_png(arguments.output, found.picture)
+    facts = {"flip": found.flip, "relmse": found.relmse, "p99": found.p99, "max": found.max}
+    if arguments.json:
+        print_json({"ok": True, **facts})
+    else:
+        print(f"FLIP   {found.flip:.6f}  (mean; 0 is the same)")
+        print(f"relMSE {found.relmse:.3e}")
+        print(f"p99    {found.p99:.3f}/255")
+        print(f"max    {found.max:.3f}/255")
+        if arguments.output:
+            print(f"wrote {arguments.output}: FLIP's map")
+    return OK
+
+
+def _encoded(images, path: str):  # type: ignore[no-untyped-def]  # NumPy is not imported here
+    """A picture's colours, encoded: linear ones (.exr, .npy) are encoded first."""
+    picture = images.read(path)
+    color = picture[..., :3] if picture.shape[-1] >= 3 else picture[..., :1].repeat(3, axis=-1)
+    return color if images.check_suffix(path) == ".png" else images.encode_srgb(color)

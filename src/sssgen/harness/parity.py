@@ -1,0 +1,239 @@
+"""The parity of the builtins: every row of the intrinsic table on a back end, against NumPy in float64.
+
+    figures = measure(backends.get("gl"), cases(2000))
+    figures["exp"].ulp, figures["exp"].right
+
+The oracle has the same float32 arguments. An error is counted in ulp: units in the last place, in float32, of the
+result's size. The size of a vector or matrix is that of its largest component, for a rounding error in one component of
+`normalize` or `cross` is as large as those of the others. Where terms of a sum may cancel, as in `dot`, the size is that
+of the terms: the row's `size` says so. A row with `ulp=0` and every int and bool is compared exactly, but for the
+sign of zero.
+
+Not measured is what no language defines: arguments outside of the row's `inside`, and results too large for float32.
+A target may flush denormals to zero. So where an argument or a result is below `TINY`, each component may be
+that for arguments without denormals, or be off by `TINY`; these lanes are counted apart.
+"""
+
+from __future__ import annotations
+
+import keyword
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..compiler import transpile
+from ..ir import signatures
+from ..ir.intrinsics import Builtin
+from ..ir.types import kind_of, spell
+from ..lang.loader import load_text
+from ..targets import numpy_runtime as runtime
+from .backends import Array, Backend, Call, Text
+from .backends.calls import grid
+from .parity_inputs import FEW, MAX, MIN, Case, cases, evaluated, textures, widened
+
+__all__ = ["BACKENDS", "FULL", "Case", "Figure", "cases", "measure", "oracle", "run", "supported"]
+
+BACKENDS = (
+    "gl", "gl-es", "webgpu", "browser", "hlsl", "hlsl-glslang", "unity", "unity-urp", "numpy-f32",
+)  # fmt: skip
+"""What is measured: every back end but the oracle, and but float16, which has other limits."""
+
+FULL = 4000
+"""Lanes to an overload in a full measurement."""
+
+TINY = 2.0**-120
+"""What lies below it is a denormal, or so small that intermediate results may be."""
+
+BATCH = 100
+"""Overloads to a program: more of them make drivers slow."""
+
+
+class Figure(NamedTuple):
+    """What was measured of one builtin on one back end, all overloads together."""
+
+    lanes: int
+    ulp: float
+    """The largest error; of what is compared exactly, 0 or infinity."""
+    most: float
+    """99.9 of 100 lanes are within this many ulp."""
+    absolute: float
+    """The largest absolute error of the lanes that the row's `ulp` does not cover; 0 where it covers all."""
+    wrong: int
+    """Lanes outside of both limits."""
+    flushed: int
+    """Lanes with denormals, which are not in the figures above, that have no right result."""
+    at: str
+    """The overload and the arguments of the largest error, what came and what was expected."""
+
+    @property
+    def right(self) -> bool:
+        return not self.wrong and not self.flushed
+
+
+class _Lanes(NamedTuple):
+    """The lanes of one overload."""
+
+    ulp: Array
+    absolute: Array
+    denormal: Array
+    flushed: Array
+    """Which of the denormal ones are wrong."""
+    measured: Array
+
+
+def measure(backend: Backend, chosen: Sequence[Case]) -> dict[str, Figure]:
+    """A figure for each builtin that the back end's target has."""
+    known = [case for case in chosen if supported(case, backend.target.dialect)]
+    found: dict[str, list[tuple[Case, Array]]] = {}
+    for case, got in zip(known, run(backend, known), strict=True):
+        found.setdefault(case.name, []).append((case, got))
+    return {name: _figure(results) for name, results in found.items()}
+
+
+def supported(case: Case, dialect: str) -> bool:
+    """Whether a dialect has the overload."""
+    return signatures.text(case.name, dialect, case.params) != "" or case.row.polyfill != ""
+
+
+def run(backend: Backend, chosen: Sequence[Case]) -> list[Array]:
+    """The results of the cases, by programs of functions `case_N`."""
+    found: list[Array | None] = [None] * len(chosen)
+    for few in (True, False):
+        numbers = [number for number, case in enumerate(chosen) if (case.lanes == FEW) == few]
+        for start in range(0, len(numbers), BATCH):
+            batch = numbers[start : start + BATCH]
+            for number, got in zip(batch, _program(backend, [chosen[number] for number in batch]), strict=True):
+                found[number] = got
+    return [got for got in found if got is not None]
+
+
+def _program(backend: Backend, chosen: Sequence[Case]) -> list[Array]:
+    lines = []
+    for number, case in enumerate(chosen):
+        names = "abcd"[: len(case.params)]
+        params = ", ".join(f"{spell(type_)} {name}" for type_, name in zip(case.params, names, strict=True))
+        lines.append(f"{spell(case.result)} case_{number}({params}) {{ return {case.name}({', '.join(names)}); }}")
+    made = transpile(load_text("\n".join(lines), "cases"), backend.target.name, "cases")
+    text = next(text for name, text in made.files.items() if not name.endswith(".json"))
+    renames = made.reflection["renames"]
+    calls = [
+        Call(renames.get(f"case_{number}", f"case_{number}"), case.params, case.result, case.args)
+        for number, case in enumerate(chosen)
+    ]
+    return backend.run(Text(text), calls, textures())
+
+
+def oracle(case: Case, flush: bool = False) -> Array:
+    """What NumPy gives in float64; with `flush` for arguments whose denormals are zero."""
+    args: list[Any] = [textures()[arg] if isinstance(arg, str) else arg for arg in widened(case.args)]
+    if flush:
+        args = list(_flushed(tuple(args)))
+    shape = grid(case.lanes)
+    with runtime.precision("float64"), runtime.grid(shape.rows, shape.width):
+        return np.asarray(getattr(runtime, case.name + "_" * keyword.iskeyword(case.name))(*args))
+
+
+def _flushed(args: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Arguments with zeros of the same sign for denormals."""
+    return tuple(np.where(np.abs(arg) < MIN, np.copysign(0.0, arg), arg) if _floats(arg) else arg for arg in args)
+
+
+def _floats(arg: object) -> bool:
+    return isinstance(arg, np.ndarray) and arg.dtype.kind == "f"
+
+
+def _figure(results: Sequence[tuple[Case, Array]]) -> Figure:
+    row = results[0][0].row
+    told = [_lanes(case, got) for case, got in results]
+    ulp = np.concatenate([lanes.ulp[lanes.measured] for lanes in told])
+    absolute = np.concatenate([lanes.absolute[lanes.measured] for lanes in told])
+    beyond = ulp > row.ulp
+    flushed = sum(int(lanes.flushed.sum()) for lanes in told)
+    at = ""
+    worst = [float(np.max(_badness(row, lanes), initial=0.0)) for lanes in told]
+    if max(worst) > 0.0:
+        which = int(np.argmax(worst))
+        at = _told(*results[which], int(np.argmax(_badness(row, told[which]))))
+    return Figure(
+        lanes=len(ulp),
+        ulp=float(ulp.max(initial=0.0)),
+        most=float(np.quantile(ulp, 0.999, method="lower")) if len(ulp) else 0.0,
+        absolute=float(absolute[beyond].max(initial=0.0)),
+        wrong=int((beyond & ~(absolute <= row.absolute)).sum()),
+        flushed=flushed,
+        at=at,
+    )
+
+
+def _badness(row: Builtin, lanes: _Lanes) -> Array:
+    """What orders lanes: first those out of all limits, then by their error."""
+    wrong = (lanes.ulp > row.ulp) & ~(lanes.absolute <= row.absolute)
+    size = np.minimum(np.nan_to_num(lanes.ulp, nan=np.inf, posinf=1e30), 1e30)
+    return np.where(lanes.measured, size + 1e30 * wrong, 1e29 * lanes.flushed)
+
+
+def _lanes(case: Case, got: Array) -> _Lanes:
+    """The errors of one overload, lane by lane."""
+    exact = kind_of(case.result) != "float"
+    wanted: Array = np.broadcast_to(oracle(case), got.shape)
+    tiny = _any_lane(wanted, case.lanes)
+    for arg in case.args:
+        tiny |= _any_lane(arg, case.lanes)
+    error = _error(got, wanted, exact)
+    ulp, absolute = _in_ulp(case, error, wanted, exact)
+    wrong = np.zeros(case.lanes, bool)
+    if tiny.any():
+        flushed = np.broadcast_to(oracle(case, flush=True), got.shape)
+        least, most = _in_ulp(case, np.minimum(error, _error(got, flushed, exact)), wanted, exact)
+        wrong = tiny & (least > case.row.ulp) & ~(most <= max(case.row.absolute, 0.0 if exact else TINY))
+        wrong &= _each_lane(np.isfinite(flushed), case.lanes)
+        if case.row.inside:
+            wrong &= evaluated(case.row.inside, _flushed(widened(case.args)))
+    measured = ~tiny
+    if not exact:
+        with np.errstate(over="ignore"):
+            measured &= _each_lane(np.isfinite(wanted.astype(np.float32)), case.lanes)
+    return _Lanes(ulp, absolute, tiny, wrong, measured)
+
+
+def _error(got: Array, wanted: Array, exact: bool) -> Array:
+    """The absolute error of each component: 0 or infinity for what is compared exactly."""
+    if exact:
+        return np.where(got == wanted.astype(got.dtype), 0.0, np.inf)
+    with np.errstate(all="ignore"):
+        apart = np.where(got == wanted, 0.0, np.abs(got.astype(np.float64) - wanted))
+    return np.nan_to_num(apart, nan=np.inf, posinf=np.inf)
+
+
+def _in_ulp(case: Case, error: Array, wanted: Array, exact: bool) -> tuple[Array, Array]:
+    """(in ulp, absolute), lane by lane, of components' errors."""
+    error = error.reshape(-1, case.lanes).max(axis=0)
+    if exact or case.row.ulp == 0.0:
+        return np.where(error > 0.0, np.inf, 0.0), error
+    if case.row.size:
+        size = evaluated(case.row.size, widened(case.args))
+    else:
+        size = np.abs(wanted).reshape(-1, case.lanes).max(axis=0)
+    with np.errstate(all="ignore"):
+        unit = np.spacing(np.minimum(np.nan_to_num(size), MAX).astype(np.float32))
+        return np.where(error == 0.0, 0.0, error / unit), error
+
+
+def _any_lane(value: Any, lanes: int) -> Array:
+    """Lanes in which a float is below `TINY`."""
+    if not _floats(value):
+        return np.zeros(lanes, bool)
+    size = np.abs(value.astype(np.float64)).reshape(-1, lanes)
+    return ((size > 0.0) & (size < TINY)).any(axis=0)
+
+
+def _each_lane(good: Array, lanes: int) -> Array:
+    """Lanes that are good in all components."""
+    return good.reshape(-1, lanes).all(axis=0)
+
+
+def _told(case: Case, got: Array, lane: int) -> str:
+    args = ", ".join(arg if isinstance(arg, str) else str(arg[..., lane].tolist()) for arg in case.args)
+    wanted = np.broadcast_to(oracle(case), got.shape)[..., lane]
+    return f"{case.title} at {args}: {got[..., lane].tolist()} is not {wanted.tolist()}"

@@ -1,0 +1,319 @@
+"""What the builtins are measured on: every overload of the intrinsic table, with edge and random arguments.
+
+Arguments are numbers of float32 (or int32, uint32, bool), component first and lane last, inside the table's domain. The
+same seed and number of lanes give the same arguments everywhere.
+"""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Mapping
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..ir import signatures
+from ..ir.intrinsics import BUILTINS, Builtin
+from ..ir.types import FLOAT, INT, Matrix, Sampler, Scalar, Type, Vector, components, kind_of, spell
+from ..targets import numpy_runtime as runtime
+from ..targets.numpy_textures import Texture
+from .backends import Array
+from .backends.calls import grid
+
+NEIGHBOURS = ("texture", "textureGrad", "dFdx", "dFdy", "fwidth")
+"""What looks at neighbouring pixels, or has a level that comes from them."""
+
+FEW = 12
+"""Lanes of the texture reads and derivatives."""
+
+MIN, MAX = 2.0**-126, float(np.finfo(np.float32).max)
+"""The smallest and the largest normal float32."""
+
+DTYPES: dict[str, Any] = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.bool_}
+TEXTURES = {"2D": "map", "3D": "volume", "Cube": "cube"}
+UNIT = {"reflect": (1,), "refract": (0, 1)}
+"""Arguments that are unit vectors."""
+
+_PI = float(np.float32(np.pi))
+_SIZES = [
+    0.0,
+    0.5,
+    1.0,
+    2.0,
+    0.25,
+    1.5,
+    2.5,
+    3.0,
+    7.0,
+    10.0,
+    0.1,
+    1.0 / 3.0,
+    1.0 + 2.0**-23,
+    1.0 - 2.0**-24,
+    0.75,
+    88.0,
+]
+_SIZES += [
+    2.0**-10,
+    2.0**10,
+    2.0**23,
+    2.0**24,
+    2.0**22 + 0.5,
+    1e4,
+    1e10,
+    1e-4,
+    1e-10,
+    1e-30,
+    1e30,
+    MIN,
+    MAX,
+    126.0,
+    44.0,
+]
+_SIZES += [_PI / 4.0, _PI / 2.0, _PI, 2.0 * _PI, 1e-40, 2.0**-149, 1.0 - 2.0**-12, 1.0 + 2.0**-12, 0.499999970197678]
+EDGES: Array = np.array([sign * size for size in _SIZES for sign in (1.0, -1.0)], np.float32)
+"""Zeros, powers of two and their neighbours, integers, halves, parts of pi, denormals, and the ends of the domains."""
+INTEGERS = [0, 1, 2, 3, 7, 255, 32767, 32768, 65535, 65536, 2**24, 2**24 + 1, 2**31 - 1, 2**31, 2**32 - 1]
+
+INTERVALS: Mapping[str, Any] = {
+    "sin": (-_PI, _PI), "cos": (-_PI, _PI), "tan": (-1.0, 1.0), "asin": (-1.0, 1.0), "acos": (-1.0, 1.0),
+    "sinh": (-88.0, 88.0), "cosh": (-88.0, 88.0), "tanh": (-44.0, 44.0), "atanh": (-1.0, 1.0), "acosh": (1.0, 1e18),
+    "pow": ((0.0, MAX), (-64.0, 64.0)), "exp": (-88.0, 88.0), "exp2": (-126.0, 127.9), "log": (0.0, MAX),
+    "log2": (0.0, MAX), "sqrt": (0.0, MAX), "inversesqrt": (0.0, MAX), "mix": ((-MAX, MAX), (-MAX, MAX), (0.0, 1.0)),
+    "refract": ((-1.0, 1.0), (-1.0, 1.0), (0.0, 4.0)), "unpackNormal": (0.0, 1.0),
+}  # fmt: skip
+"""The domain's ends: for all arguments, or for one after the other; else every finite number."""
+
+
+class Case(NamedTuple):
+    """One overload of a builtin, and its arguments: arrays over all lanes, and textures by name."""
+
+    name: str
+    params: tuple[Type, ...]
+    result: Type
+    args: tuple[Any, ...]
+
+    @property
+    def title(self) -> str:
+        return f"{self.name}({', '.join(map(spell, self.params))})"
+
+    @property
+    def row(self) -> Builtin:
+        return BUILTINS[self.name]
+
+    @property
+    def lanes(self) -> int:
+        return max(arg.shape[-1] for arg in self.args if not isinstance(arg, str))
+
+
+@cache
+def cases(lanes: int) -> tuple[Case, ...]:
+    """Every overload, over that many lanes; texture reads and derivatives over `FEW`.
+
+    The table's test vectors stand in the first lanes.
+    """
+    found = []
+    for row in BUILTINS.values():
+        signatures.overload(row.name, ())
+        for params, (result, _) in signatures._overloads[row.name].items():
+            if row.name in NEIGHBOURS:
+                args = over_the_image(row, params)
+            elif row.kind == "fetch":
+                args = _reads(row.name, params)
+            else:
+                args = _drawn(row, params, lanes)
+            found.append(Case(row.name, params, result, args))
+    return tuple(found)
+
+
+@cache
+def textures() -> dict[str, Texture]:
+    """A texture of each kind, of numbers that float16 holds."""
+    rng = np.random.default_rng(11)
+
+    def noise(dim: str, *size: int) -> Texture:
+        return Texture(rng.integers(0, 256, (*size, 4)).astype(np.float16) / np.float16(256.0), dim=dim, mipmaps=True)
+
+    return {"map": noise("2D", 8, 16), "volume": noise("3D", 4, 4, 8), "cube": noise("Cube", 6, 4, 4)}
+
+
+def shape(type_: Type) -> tuple[int, ...]:
+    """The axes of a value before that of the lanes."""
+    if isinstance(type_, Matrix):
+        return type_.size, type_.size
+    return (type_.size,) if isinstance(type_, Vector) else ()
+
+
+def evaluated(expression: str, args: tuple[Any, ...]) -> Array:
+    """A row's `inside` or `size` for float64 arguments: the largest, or all, of a value's components; over the lanes.
+
+    An argument that the overload lacks is 1.
+    """
+    names = dict.fromkeys("xyz", 1.0) | dict(zip("xyz", args, strict=False))
+    with runtime.precision("float64"):
+        value = np.asarray(eval(expression, vars(runtime) | {"np": np}, names))  # the table's own text
+    axes = tuple(range(value.ndim - 1))
+    lanes = max(arg.shape[-1] for arg in args)
+    return np.broadcast_to(value.all(axes) if value.dtype.kind == "b" else np.abs(value).max(axes), (lanes,))
+
+
+def widened(args: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Arguments with their floats in float64."""
+    return tuple(arg.astype(np.float64) if not isinstance(arg, str) and arg.dtype.kind == "f" else arg for arg in args)
+
+
+# Drawing
+
+
+def _drawn(row: Builtin, params: tuple[Type, ...], lanes: int) -> tuple[Array, ...]:
+    """Test vectors, and numbers from the domain: those that fall out of it are drawn again."""
+    rng = np.random.default_rng([7, zlib.crc32(f"{row.name}({', '.join(map(spell, params))})".encode())])
+    vectors = _vectors(row, params)
+    parts = [tuple(arg[..., _inside(row, vectors)] for arg in vectors)]
+    wanted = lanes - parts[0][0].shape[-1]
+    for _ in range(32):
+        pool = [_column(row.name, index, type_, max(4 * lanes, 256), rng) for index, type_ in enumerate(params)]
+        pool = [arg if index == 0 else _mixed(arg, rng) for index, arg in enumerate(pool)]
+        _repeat(pool, params, rng)
+        chosen = rng.permutation(np.flatnonzero(_inside(row, tuple(pool))))[: max(wanted, 0)]
+        parts.append(tuple(arg[..., chosen] for arg in pool))
+        wanted -= len(chosen)
+        if wanted <= 0:
+            return tuple(np.concatenate(column, axis=-1)[..., :lanes] for column in zip(*parts, strict=True))
+    raise ValueError(f"{row.name}: too few arguments fall into its domain")
+
+
+def _inside(row: Builtin, args: tuple[Array, ...]) -> Array:
+    """Lanes inside of a row's domain."""
+    return evaluated(row.inside, widened(args)) if row.inside else np.ones(args[0].shape[-1], bool)
+
+
+def _column(name: str, index: int, type_: Type, count: int, rng: np.random.Generator) -> Array:
+    """One argument: a third each of edges, even numbers and even magnitudes."""
+    kind, size = kind_of(type_), (*shape(type_), count)
+    if kind == "bool":
+        return rng.random(size) < 0.5
+    if isinstance(type_, Matrix) and name in ("determinant", "inverse"):
+        regular = 2.0 * np.eye(type_.size)[..., None] + rng.uniform(-0.5, 0.5, size)
+        return (regular * 2.0 ** rng.integers(-4, 5, count)).astype(np.float32)
+    third = (*size[:-1], count // 3)
+    rest = (*size[:-1], count - 2 * (count // 3))
+    if kind in ("int", "uint"):
+        info = np.iinfo(DTYPES[kind])
+        edges = np.array([sign * one for one in INTEGERS for sign in (1, -1)], np.int64)
+        edges = edges[(edges >= info.min) & (edges <= info.max)]
+        low = -9 if kind == "int" else 0
+        drawn = [_each(edges, third, rng), rng.integers(low, 10, third), rng.integers(info.min, info.max, rest)]
+        found: Array = np.concatenate(drawn, axis=-1).astype(DTYPES[kind])
+        return found
+    interval = INTERVALS.get(name, (-MAX, MAX))
+    low_end, high_end = interval[index] if isinstance(interval[0], tuple) else interval
+    edges = np.append(EDGES, [low_end, high_end]).astype(np.float32)
+    if name in ("isnan", "isinf"):
+        edges = np.append(edges, np.array([np.nan, np.inf, -np.inf], np.float32))
+    edges = edges[~((edges < low_end) | (edges > high_end))]
+    even = rng.uniform(max(low_end, -8.0), min(high_end, 8.0), third)
+    sizes = 2.0 ** rng.uniform(-40.0, min(40.0, np.log2(max(abs(low_end), abs(high_end)))), rest)
+    signs = np.where(rng.random(rest) < 0.5, 1.0 if high_end > 0.0 else -1.0, -1.0 if low_end < 0.0 else 1.0)
+    value = np.concatenate([_each(edges, third, rng), even, np.maximum(signs * sizes, low_end)], axis=-1)
+    value = value.astype(np.float32)
+    if index in UNIT.get(name, ()):
+        with np.errstate(invalid="ignore"):
+            value = value / np.linalg.norm(value.astype(np.float64), axis=0) if value.ndim > 1 else np.sign(value)
+    if name == "packHalf2x16":
+        value = np.clip(value, -65504.0, 65504.0).astype(np.float16)
+    return value.astype(np.float32)
+
+
+def _each(edges: Array, size: tuple[int, ...], rng: np.random.Generator) -> Array:
+    """All edges equally often."""
+    return rng.permutation(np.resize(edges, int(np.prod(size)))).reshape(size)
+
+
+def _mixed(arg: Array, rng: np.random.Generator) -> Array:
+    """An argument so that one half of the edges meets edges, and the other meets anything."""
+    half = rng.random(arg.shape[-1]) < 0.5
+    arg[..., half] = arg[..., rng.permutation(np.flatnonzero(half))]
+    return arg
+
+
+def _repeat(pool: list[Array], params: tuple[Type, ...], rng: np.random.Generator) -> None:
+    """In some lanes arguments are equal, in some a vector's components."""
+    equal, alike = rng.random((2, pool[0].shape[-1])) < 0.05
+    for arg, type_ in zip(pool, params, strict=True):
+        if type_ == params[0]:
+            arg[..., equal] = pool[0][..., equal]
+        if isinstance(type_, Vector):
+            arg[:, alike] = arg[:1, alike]
+
+
+def _vectors(row: Builtin, params: tuple[Type, ...]) -> tuple[Array, ...]:
+    """The arguments of the test vectors that are of this overload."""
+    given = [args for args, _ in row.vectors if len(args) == len(params) and all(map(_fits, args, params))]
+    made = []
+    for index, type_ in enumerate(params):
+        value = np.array([args[index] for args in given], DTYPES[kind_of(type_)]).reshape(-1, *shape(type_))
+        made.append(np.moveaxis(value, 0, -1))
+    return tuple(made)
+
+
+def _fits(value: object, type_: Type) -> bool:
+    """Whether a test vector's value has a type; an integer is an int or a uint."""
+    if isinstance(type_, Vector | Matrix):
+        inner = Vector("float", type_.size) if isinstance(type_, Matrix) else Scalar(type_.kind)
+        return isinstance(value, tuple) and len(value) == type_.size and all(_fits(part, inner) for part in value)
+    kind = kind_of(type_)
+    if kind == "bool":
+        return isinstance(value, bool)
+    if kind == "float":
+        return isinstance(value, float)
+    low, high = (0, 2**32) if kind == "uint" else (-(2**31), 2**31)
+    return isinstance(value, int) and not isinstance(value, bool) and low <= value < high
+
+
+# Textures and derivatives
+
+
+def _reads(name: str, params: tuple[Type, ...]) -> tuple[Any, ...]:
+    """Arguments of the reads that name their level; it is the same for all lanes where it is an integer."""
+    rng = np.random.default_rng(7)
+    args: list[Any] = []
+    for index, type_ in enumerate(params):
+        size = (*shape(type_), FEW)
+        if isinstance(type_, Sampler):
+            args.append(TEXTURES[type_.dim])
+        elif kind_of(type_) == "int":
+            args.append(np.ones(size, np.int32) if type_ == INT else rng.integers(0, 2, size).astype(np.int32))
+        else:
+            value = rng.uniform(*((-1.0, 2.0) if index == 1 else (0.0, 3.0)), size)
+            if name == "textureLod" and params[0] == Sampler("Cube") and index == 1:
+                value[1] = 3.0  # to the middle of a cube's face
+            args.append(value.astype(np.float32))
+    return tuple(args)
+
+
+def over_the_image(row: Builtin, params: tuple[Type, ...]) -> tuple[Any, ...]:
+    """Arguments for what looks at neighbours: linear over the image, two texels a pixel, so level 1 everywhere.
+
+    Levels between, and the coarse and the fine derivatives of anything else, are an implementation's own.
+    """
+    width = grid(FEW).width
+    x, y = np.arange(FEW) % width - 2.0, np.arange(FEW) // width - 0.5
+    first = params[0]
+    if not isinstance(first, Sampler):
+        slope = 0.5 * x - 0.25 * y
+        args = [slope * np.arange(1, components(type_) + 1)[:, None] for type_ in params]
+        return tuple(arg.reshape(*shape(first), FEW).astype(np.float32) for arg in args)
+    name = TEXTURES[first.dim]
+    sizes = np.array(textures()[name].size()).reshape(-1, 1)
+    cube = first.dim == "Cube"
+    steps = np.zeros((2, 3 if cube else len(sizes), FEW))
+    steps[0, 0], steps[1, 1] = 2.0 / sizes[0], 2.0 / sizes[1]
+    coord = steps[0] * x + steps[1] * y + 0.3
+    if cube:
+        coord, steps = np.array([coord[0], np.full(FEW, 2.0), coord[1]]), 4.0 * steps[:, [0, 2, 1]]
+    given = [coord, *steps] if row.name == "textureGrad" else [coord]
+    if params[-1] == FLOAT:
+        given.append(np.full(FEW, 0.5))
+    return (name, *[arg.astype(np.float32) for arg in given])

@@ -1,0 +1,147 @@
+"""The parity of the techniques: each of the library on each back end, on random inputs, against NumPy in float64.
+
+    for case in cases():
+        measure(case, backends.get("gl"), lanes=10_000)
+
+What may be beyond `deviation.GOAL` stands in `KNOWN`, with its reason.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+from .. import library, slots
+from .backends import Array, Backend, get
+from .deviation import GOAL, Deviation, blur, deviation
+from .evaluate import Inputs, fitted, run
+from .probes import Subject, subject
+from .samples import samples
+
+BACKENDS = ("gl", "gl-es", "webgpu", "browser", "hlsl", "hlsl-glslang", "unity", "unity-urp")
+LANES, SEED = 10_000, 1
+BOUND_LANES = 2_000
+"""For a technique with other functions in its slots, where the technique itself has had its `LANES`."""
+
+SHARE = 0.005
+"""The share of lanes that may be excused for any technique: a few lie just where a decision turns."""
+
+
+class Case(NamedTuple):
+    """A technique, and what is bound to its slots (slot, function) where that is not the first that fits."""
+
+    technique: str
+    bind: tuple[tuple[str, str], ...] = ()
+
+
+class Known(NamedTuple):
+    """What is known to be beyond the goal, and why."""
+
+    techniques: tuple[str, ...]
+    reason: str
+    backends: tuple[str, ...] = BACKENDS
+    largest: float = GOAL
+    """The largest deviation of lanes that are not excused."""
+    share: float = SHARE
+    """The largest share of lanes that are."""
+
+
+KNOWN = (
+    Known(
+        ("voronoi_thickness", "voronoi_normal"),
+        "The last bit of `uv * cell_count` (up to 400 cells) is 3e-5 of a cell, and the slopes of narrow bevels are "
+        "steep.",
+        share=0.15,
+    ),
+    Known(
+        ("raymarch",),
+        "Its normal alone: it is made from differences of distances 0.001 apart, so that each rounding of a distance "
+        "turns it by up to 6e-5, and more at an edge. Where the ray meets nothing, far away, it is noise.",
+        largest=3e-4,
+        share=1.0,
+    ),
+    Known(
+        ("seed0_raymarch",),
+        "A baseline without a far limit: where the ray meets nothing P grows beyond float32.",
+        share=0.3,
+    ),
+    Known(
+        ("xt95_thickness",),
+        "A baseline with a hash from `fract(sin(n) * 3538.5453)`, as published: it multiplies what the sine rounds.",
+        largest=1e-3,
+        share=0.7,
+    ),
+    Known(
+        ("xt95_thickness",), "The same, with the browser's coarse sine.", ("browser",), largest=0.5, share=0.7
+    ),
+    Known(
+        ("camera_orbit",),
+        "SwiftShader's sine and cosine are off by up to 2e-4; WGSL allows 5e-4.",
+        ("browser",),
+        largest=2e-3,
+        share=0.05,
+    ),
+    Known(
+        ("seed1_lobe", "three_js_port"),
+        "Baselines with a power below 1, where SwiftShader's `pow(0, power)` is 2^(-127 power) and not 0; WGSL leaves "
+        "`log2(0)` open.",
+        ("browser",),
+        largest=20.0,
+    ),
+)  # fmt: skip
+
+
+def cases() -> list[Case]:
+    """Every technique, and again with each other function of the library that fits one of its slots (no baseline)."""
+    found = []
+    for technique in library.load_all():
+        found.append(Case(technique.name))
+        for slot in technique.slots if not technique.baseline else ():
+            found += [Case(technique.name, ((slot.name, function),)) for function in slots.candidates(slot)[1:]]
+    return found
+
+
+def known(technique: str, backend: str) -> Known:
+    """What is known of a technique on a back end; the later entries are the more special ones."""
+    found = [one for one in KNOWN if technique in one.techniques and backend in one.backends]
+    return found[-1] if found else Known((technique,), "")
+
+
+def measure(case: Case, backend: Backend, lanes: int = LANES, seed: int = SEED) -> Deviation:
+    """How far a back end is from the oracle. Raises SssgenError where the driver refuses."""
+    prepared = _prepared(case, lanes, seed)
+    return deviation(run(prepared.subject, prepared.inputs, backend), prepared.oracle, prepared.blurred)
+
+
+def excess(case: Case, backend: str, found: Deviation, lanes: int) -> str:
+    """What of a deviation is neither within the goal nor known, in words; nothing where all is well."""
+    limit = known(case.technique, backend)
+    title = " ".join([case.technique, *("=".join(pair) for pair in case.bind)])
+    if not found.largest <= limit.largest:
+        where = f"{found.output}[{found.lane}] is {found.got.tolist()}, not {found.wanted.tolist()}"
+        return f"{title} on {backend}: {found.largest:.2g} where at most {limit.largest:g} is right: {where}"
+    if found.excused > max(limit.share * lanes, 2):
+        return f"{title} on {backend}: {found.excused} of {lanes} lanes are blurred, of which {limit.share:g} may be"
+    return ""
+
+
+class _Prepared:
+    """What the back ends share; the blur is measured once, where one of them asks."""
+
+    def __init__(self, case: Case, lanes: int, seed: int) -> None:
+        self.subject: Subject = subject(case.technique, dict(case.bind))
+        self.inputs: Inputs = fitted(self.subject, samples(self.subject, lanes, seed))
+        self.oracle: Mapping[str, Array] = run(self.subject, self.inputs, get("numpy"))
+        self._blur: Any = None
+
+    def blurred(self) -> Mapping[str, Array]:
+        if self._blur is None:
+            self._blur = blur(self.subject, self.inputs, self.oracle)
+        found: Mapping[str, Array] = self._blur
+        return found
+
+
+@lru_cache(4)
+def _prepared(case: Case, lanes: int, seed: int) -> _Prepared:
+    return _Prepared(case, lanes, seed)

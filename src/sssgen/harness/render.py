@@ -1,0 +1,235 @@
+"""Renders a scene on a back end: the emitted shader, drawn, and made into a picture.
+
+    done = render(scene.load("lantern.toml"), backends.get("gl"))
+    images.write_png("lantern.png", done.encoded)
+
+On every back end the same points are shaded with the same shader (see `dice`), n × n samples a pixel, and averaged in
+linear light.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..compiler import Compiled, compile
+from ..diagnostics import did_you_mean, failure
+from ..ir.nodes import Uniform
+from ..material import Material, load_material
+from ..material_values import WrongValue, read_value
+from ..targets.numpy_textures import Texture
+from . import dice, inputs
+from .backends import Array, Backend, DrawingBackend
+from .backends.reference import Reference
+from .evaluate import half
+from .images import decode_srgb, encode_srgb
+from .scene import DistanceTexture, Scene
+from .shade_numpy import shade
+from .shell import Shell, drawing
+
+LARGEST = 8192
+"""Samples along a side of what is drawn: the largest picture that every driver takes."""
+
+
+class Rendered(NamedTuple):
+    """A picture, row 0 at the top."""
+
+    linear: Array
+    """(height, width, 3): linear light, exposed, over the background; not cut."""
+    covered: Array
+    """(height, width): how much of each pixel is not background, 0 to 1."""
+
+    @property
+    def encoded(self) -> Array:
+        """(height, width, 3): sRGB, 0..1."""
+        return encode_srgb(self.linear)
+
+
+def render(scene: Scene, backend: Backend, size: tuple[int, int] | None = None, time: float | None = None) -> Rendered:
+    """The picture of a scene. `size` and `time` go before the scene's own.
+
+    Raises SssgenError for a scene that does not fit its material, a picture too large, and a back end that refuses.
+    """
+    scene = dataclasses.replace(scene, size=size or scene.size, time=scene.time if time is None else time)
+    material = load_material(scene.material)
+    compiled = compile(material, backend.target.name)
+    reflection = compiled.reflection
+    width, height = (side * scene.samples for side in scene.size)
+    if max(width, height) + 2 * dice.BORDER > LARGEST:
+        raise failure(
+            f"{scene.size[0]} × {scene.size[1]} pixels of {scene.samples} × {scene.samples} samples are too many",
+            f"at most {LARGEST - 2 * dice.BORDER} samples on a side",
+        )
+    raymarched = reflection["raymarched"] or any(_reads_rays(entry) for entry in reflection["entries"].values())
+    if not raymarched and scene.geometry is None:
+        raise failure(
+            f"{material.name} needs a surface to be on", "add [geometry] to the scene", scene.document.reporter.file
+        )
+    shell = _shell(scene, material, reflection)
+    if raymarched:
+        shell = dataclasses.replace(shell, view_projection=_matrix(scene, backend, width / height))
+        samples, hit = _shade(compiled, shell, backend, (width, height), None), np.ones((height, width), bool)
+    else:
+        samples, hit = _surface(scene, compiled, shell, backend, (width, height))
+    return _developed(scene, reflection, samples, hit)
+
+
+def _reads_rays(entry: Mapping[str, Any]) -> bool:
+    return bool({"ray_origin", "ray_direction"} & set(entry["inputs"]))
+
+
+def _surface(
+    scene: Scene, compiled: Compiled, shell: Shell, backend: Backend, size: tuple[int, int]
+) -> tuple[Array, Array]:
+    """The samples of a surface, and which of them met it."""
+    assert scene.geometry is not None
+    (width, height), edge = size, dice.BORDER
+    whole = width + 2 * edge, height + 2 * edge
+    half_angle = math.tan(math.radians(0.5 * scene.camera.field_of_view)) * whole[1] / height
+    wider = dataclasses.replace(scene.camera, field_of_view=2.0 * math.degrees(math.atan(half_angle)))
+    origin, directions = wider.rays(*whole)
+    hits = scene.geometry.hits(origin, directions)
+    points = dice.vertices(hits, origin, directions, shell.model, whole)
+    far = float(np.linalg.norm(points[:, :3] @ shell.model[:3, :3].T + shell.model[:3, 3] - origin, axis=1).max())
+    deep = dataclasses.replace(scene, camera=dataclasses.replace(wider, near=1e-3 * far, far=2.0 * far))
+    shell = dataclasses.replace(shell, view_projection=_matrix(deep, backend, whole[0] / whole[1]))
+    inner = slice(edge, edge + height), slice(edge, edge + width)
+    picture = _shade(compiled, shell, backend, whole, points)
+    return picture[inner], hits.hit.reshape(whole[1], whole[0])[inner]
+
+
+def _matrix(scene: Scene, backend: Backend, aspect: float) -> Array:
+    """World to clip space in the language's own depth range."""
+    low = backend.target.table.get("conventions", {}).get("clip_z", [-1.0])[0]
+    return scene.camera.view_projection(aspect, zero_to_one=low == 0.0)
+
+
+def _shade(compiled: Compiled, shell: Shell, backend: Backend, size: tuple[int, int], points: Array | None) -> Array:
+    """The samples, (height, width, 4), row 0 at the bottom."""
+    if isinstance(backend, Reference):
+        return shade(compiled, shell, size, points, backend.dtype)
+    if not isinstance(backend, DrawingBackend) or "vertex" not in _all_stages(compiled.reflection):
+        raise failure(f"{backend.name} draws no pictures", "it runs functions: sssgen eval")
+    triangles = None if points is None else dice.triangles(size)
+    picture = backend.draw(drawing(compiled, shell, size, points, triangles))
+    return picture[::-1] if backend.top_first else picture
+
+
+def _all_stages(reflection: Mapping[str, Any]) -> set[str]:
+    return {stage for file in reflection["files"] for stage in file["stages"]}
+
+
+def _developed(scene: Scene, reflection: Mapping[str, Any], samples: Array, hit: Array) -> Rendered:
+    """Samples over the background, averaged to pixels, and turned so that row 0 is at the top."""
+    height, width = hit.shape
+    color, alpha = samples[..., :3].astype(np.float64), samples[..., 3].astype(np.float64)
+    if reflection["color"] == "encoded":
+        color = decode_srgb(color)
+    if not (np.isfinite(color) | ~hit[..., None]).all():
+        bad = int((~np.isfinite(color) & hit[..., None]).any(axis=-1).sum())
+        raise failure(
+            f"{bad} of {hit.size} samples are NaN or infinite", "a guard is missing: find it with sssgen eval"
+        )
+    solid = {"opaque": np.ones_like(alpha), "mask": (alpha > 0.0).astype(float), "blend": np.clip(alpha, 0.0, 1.0)}
+    cover = np.where(hit, solid[reflection["alpha_mode"]], 0.0)
+    up = ((np.arange(height) + 0.5) / height)[:, None, None]
+    behind = np.array(scene.background[0]) * (1.0 - up) + np.array(scene.background[1]) * up
+    exposed = np.where(hit[..., None], color, 0.0) * scene.exposure
+    mixed = exposed * cover[..., None] + np.broadcast_to(behind, (height, width, 3)) * (1.0 - cover[..., None])
+    return Rendered(_averaged(mixed, scene.samples)[::-1], _averaged(cover[..., None], scene.samples)[::-1, :, 0])
+
+
+def _averaged(samples: Array, n: int) -> Array:
+    height, width, channels = samples.shape
+    found: Array = samples.reshape(height // n, n, width // n, n, channels).mean(axis=(1, 3))
+    return found
+
+
+def _shell(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> Shell:
+    """What the scene gives to the shell. Raises SssgenError at the scene's own lines."""
+    positions = [
+        [*light.position, 1.0] if light.position else [*(light.direction or ()), 0.0] for light in scene.lights
+    ]
+    parameters = _parameters(scene, material, reflection)
+    if any(uniform["source_name"] == "aspect" for uniform in reflection["uniforms"]):  # of a camera in the chain
+        parameters.setdefault("aspect", (scene.size[0] / scene.size[1],))
+    return Shell(
+        view_projection=np.eye(4),
+        camera_position=scene.camera.position,
+        time=scene.time,
+        ambient=scene.ambient,
+        light_positions=np.array(positions, float).reshape(-1, 4),
+        light_colors=np.array([light.color for light in scene.lights], float).reshape(-1, 3),
+        model=scene.geometry.to_world() if scene.geometry else np.eye(4),
+        parameters=parameters,
+        textures=_textures(scene, material, reflection),
+    )
+
+
+def _parameters(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> dict[str, tuple[float, ...]]:
+    """The scene's values for the material's uniforms, checked as the material's own are."""
+    known = {uniform["source_name"]: uniform for uniform in reflection["uniforms"]}
+    document, found = scene.document, {}
+    for name, raw in scene.parameters.items():
+        place = document.place("parameters", name)
+        if name not in known:
+            hint = did_you_mean(name, known) or f"it has: {', '.join(known) or 'none'}"
+            document.error(place.key, f"{material.name} has no parameter '{name}'", hint)
+            continue
+        try:
+            found[name] = read_value(_uniform(material, known[name]), raw)
+        except WrongValue as wrong:
+            document.error(place.value, wrong.message, wrong.hint)
+    document.reporter.check()
+    return found
+
+
+def _uniform(material: Material, entry: Mapping[str, Any]) -> Uniform:
+    """The uniform that an entry of the reflection comes from."""
+    for stage in material.stages:
+        modules = [stage.technique.module, *(binding.module for binding in stage.bindings.values())]
+        for uniform in (uniform for module in modules for uniform in module.uniforms):
+            if uniform.name == entry["technique_name"] and stage.technique.name == entry["technique"]:
+                return uniform
+    every = (uniform for stage in material.stages for uniform in stage.technique.module.uniforms)
+    return next(uniform for uniform in every if uniform.name == entry["technique_name"])
+
+
+def _textures(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> dict[str, Texture]:
+    """The scene's textures, and where it has none those that the material suggests."""
+    known = {texture["source_name"]: texture for texture in reflection["textures"]}
+    document, found = scene.document, {}
+    for name in scene.textures:
+        if name not in known:
+            hint = did_you_mean(name, known) or f"it has: {', '.join(known) or 'none'}"
+            document.error(document.place("textures", name).key, f"{material.name} has no texture '{name}'", hint)
+    document.reporter.check()
+    for name, texture in known.items():
+        given = scene.textures.get(name)
+        if isinstance(given, DistanceTexture):
+            if scene.geometry is None:
+                raise failure(f"texture '{name}' is the distance to the scene's geometry, and it has none")
+            found[name] = half(Texture(given.values(scene.geometry), wrap="clamp"))
+        elif given is not None:
+            found[name] = _picture(given.file, given.wrap, texture)
+        elif suggested := _suggested(material, texture):
+            found[name] = _picture(suggested, "repeat", texture)
+    return found
+
+
+def _suggested(material: Material, texture: Mapping[str, Any]) -> str:
+    for stage in material.stages:
+        if stage.technique.name == texture["technique"] and texture["technique_name"] in stage.textures:
+            return str(material.path.parent / stage.textures[texture["technique_name"]])
+    return ""
+
+
+def _picture(file: str, wrap: str, texture: Mapping[str, Any]) -> Texture:
+    made = inputs.texture(file, wrap, srgb=texture["color_space"] == "sRGB")
+    if made.dim != texture["type"].removeprefix("sampler"):
+        raise failure(f"this is a {made.dim} texture, and '{texture['source_name']}' is a {texture['type']}", file=file)
+    return half(made)

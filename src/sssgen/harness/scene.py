@@ -1,0 +1,123 @@
+"""Scenes: what a render shows, described in TOML."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from sssgen.data import posix
+from sssgen.ir.spans import Span
+from sssgen.lang.loader import read_text
+from sssgen.toml_source import Document, parse
+
+from .camera import Camera
+from .geometry import Geometry
+from .images import read
+
+Vector: TypeAlias = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Light:
+    """A point light, or one from afar. Just one of `position` and `direction` is given."""
+
+    position: Vector | None
+    """World space; its light falls off with the square of the distance"""
+    direction: Vector | None
+    """World space, unit, towards the light"""
+    color: Vector
+    """Linear; of a point light at distance 1"""
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A texture from a file."""
+
+    file: str
+    """Its path; the scene's folder is in it"""
+    wrap: str = "repeat"
+    """repeat or clamp"""
+
+    def values(self) -> npt.NDArray[np.float64]:
+        """(height, width, channels), row 0 at the top, or (depth, height, width, channels). Raises SssgenError."""
+        return read(self.file)
+
+
+@dataclass(frozen=True)
+class DistanceTexture:
+    """A 3-D texture of the signed distance to the scene's geometry, in the geometry's object space.
+
+    The convention is that of the technique distance_texture: 0.5 + distance / (2 range), cut to 0..1, positive
+    outside, over the box from `box_min` to `box_max`, a flat one padded as there.
+    """
+
+    texels: tuple[int, int, int]
+    """Along x, y, z"""
+    box_min: Vector
+    box_max: Vector
+    range: float
+
+    def values(self, geometry: Geometry) -> npt.NDArray[np.float64]:
+        """(depth, height, width, 1), z, y and x from the smallest to the largest, at the texels' centres."""
+        low, high = np.array(self.box_min), np.array(self.box_max)
+        size = np.maximum(high - low, 0.001 * np.linalg.norm(high - low))
+        start = 0.5 * (low + high) - 0.5 * size
+        x, y, z = (start[at] + size[at] * (np.arange(n) + 0.5) / n for at, n in enumerate(self.texels))
+        places = np.stack(np.meshgrid(z, y, x, indexing="ij")[::-1], axis=-1)
+        distance = geometry.distance(places.reshape(-1, 3)).reshape(*places.shape[:3], 1)
+        stored: npt.NDArray[np.float64] = np.clip(0.5 + distance / (2.0 * self.range), 0.0, 1.0)
+        return stored
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A scene, checked in itself; whether the material has these parameters and textures is not known here."""
+
+    material: str
+    """An example's name, or the path of a material file"""
+    size: tuple[int, int]
+    """Width and height in pixels"""
+    samples: int
+    """n of n × n samples a pixel"""
+    time: float
+    background: tuple[Vector, Vector]
+    """Linear colour at the picture's bottom and top"""
+    ambient: Vector
+    exposure: float
+    """What the linear picture is multiplied by before it is encoded"""
+    geometry: Geometry | None
+    """None where the material marches rays itself"""
+    camera: Camera
+    lights: tuple[Light, ...]
+    parameters: Mapping[str, object]
+    """The material's uniforms → TOML values, all numbers finite"""
+    textures: Mapping[str, Picture | DistanceTexture]
+    document: Document
+    """The text with its places, for the errors of who knows the material: note them with `document.error`, at
+    `document.place("parameters", "power").value`, then raise them with `document.reporter.check()`"""
+
+    @property
+    def places(self) -> dict[str, Span]:
+        """Where the keys of [parameters] and [textures] stand, as `parameters.power`; and `material`."""
+        found = {"material": self.document.place("material").value}
+        for section in ("parameters", "textures"):
+            for key in getattr(self, section):
+                found[f"{section}.{key}"] = self.document.place(section, key).key
+        return found
+
+
+def load(path: str | os.PathLike[str]) -> Scene:
+    """The scene that a TOML file describes. Raises SssgenError with all that is wrong with it."""
+    return parse_scene(read_text(os.fspath(path), posix(path)), path)
+
+
+def parse_scene(text: str, path: str | os.PathLike[str]) -> Scene:
+    """The scene that a TOML text describes; files that it names are looked for beside `path`. Raises SssgenError."""
+    from .scene_reader import read_scene
+
+    return read_scene(parse(text, posix(path)), os.path.dirname(os.fspath(path)))

@@ -1,0 +1,56 @@
+"""Comparing pictures: known differences come out as known numbers."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sssgen.diagnostics import SssgenError
+from sssgen.harness.compare import compare
+
+pytest.importorskip("flip_evaluator", reason="flip-evaluator is missing: pip install 'sssgen[render]'")
+
+GRAY = np.full((20, 30, 3), 0.5)
+
+
+def test_a_picture_is_itself() -> None:
+    found = compare(GRAY, GRAY)
+    assert found[:4] == (0.0, 0.0, 0.0, 0.0)
+    assert found.picture.shape == GRAY.shape
+    assert found.picture.max() < 0.02  # magma begins almost black
+
+
+def test_black_and_white_are_far_apart() -> None:
+    found = compare(np.ones((20, 30, 3)), np.zeros((20, 30, 3)))
+    assert found.flip == pytest.approx(0.97, abs=0.01)
+    assert found.relmse == pytest.approx(100.0)
+    assert found.p99 == found.max == pytest.approx(255.0)
+    assert found.picture.min() > 0.5  # and ends almost white
+
+
+def test_one_pixel_is_the_largest_difference_but_not_the_99th_part() -> None:
+    other = GRAY.copy()
+    other[3, 4, 1] += 10 / 255
+    found = compare(other, GRAY)
+    assert found.max == pytest.approx(10.0)
+    assert found.p99 == 0.0
+    assert found.relmse == pytest.approx((10 / 255) ** 2 / 0.26 / GRAY.size)
+    assert 0.0 < found.flip < 0.05
+
+
+def test_the_second_picture_is_the_reference() -> None:
+    assert compare(GRAY, GRAY / 2).relmse == pytest.approx(0.0625 / (0.0625 + 0.01))
+    assert compare(GRAY / 2, GRAY).relmse == pytest.approx(0.0625 / (0.25 + 0.01))
+
+
+def test_values_are_cut_to_what_a_display_shows() -> None:
+    assert compare(GRAY + 9.0, np.ones_like(GRAY)).max == 0.0
+
+
+def test_what_cannot_be_compared() -> None:
+    with pytest.raises(SssgenError, match="different sizes: 30 × 20 and 20 × 10 pixels"):
+        compare(GRAY, GRAY[:10, :20])
+    with pytest.raises(SssgenError, match="the picture has the shape"):
+        compare(GRAY[..., 0], GRAY)
+    with pytest.raises(SssgenError, match="the reference holds NaN"):
+        compare(GRAY, GRAY * np.nan)
