@@ -43,12 +43,12 @@ CASES = {
     "asinh(x)": {
         "glsl": "asinh(x)",
         "hlsl": "float(sign(x)) * log(abs(x) + sqrt(x * x + 1.0))",
-        "wgsl": "asinh(x)",
+        "wgsl": "sign(x) * log(abs(x) + sqrt(x * x + 1.0))",
     },
     "asinh(x3)": {
         "glsl": "asinh(x3)",
         "hlsl": "float3(sign(x3)) * log(abs(x3) + sqrt(x3 * x3 + 1.0))",
-        "wgsl": "asinh(x3)",
+        "wgsl": "sign(x3) * log(abs(x3) + sqrt(x3 * x3 + 1.0))",
     },
     "acosh(x)": {"glsl": "acosh(x)", "hlsl": "log(x + sqrt((x - 1.0) * (x + 1.0)))", "wgsl": "acosh(x)"},
     "acosh(x3)": {

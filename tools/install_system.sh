@@ -7,8 +7,9 @@ python=${1:-python3}
 have() { command -v "$1" >/dev/null 2>&1; }
 
 # What comes from outside Python, and what for.
-needed="glslangValidator (GLSL and HLSL), node with npm (Tint), gcc and g++ with the headers of Python, Vulkan and X11
-(DXC's package, the preprocessing of Unity's shaders), and drivers for OpenGL and Vulkan (Mesa's software drivers do)"
+needed="glslangValidator (GLSL and HLSL), spirv-val and spirv-cross (HLSL that runs), node with npm (Tint), gcc and g++
+with the headers of Python, Vulkan and X11 (DXC's package, the preprocessing of Unity's shaders), drivers for OpenGL and
+Vulkan (Mesa's software drivers do), and Chromium or Chrome (WebGPU in a browser)"
 
 if ! have dpkg-query || ! have apt-get; then
     echo "not a Debian or Ubuntu machine: please see that these are there: $needed"
@@ -20,6 +21,9 @@ want_command() { have "$1" || missing="$missing $2"; }
 want_package() { dpkg-query -W -f '${Status}' "$1" 2>/dev/null | grep -q 'ok installed' || missing="$missing $1"; }
 
 want_command glslangValidator glslang-tools
+want_command spirv-val spirv-tools
+want_command spirv-cross spirv-cross
+have chromium || have google-chrome || want_command chromium-browser chromium
 want_command gcc gcc
 want_command g++ g++
 want_command node nodejs

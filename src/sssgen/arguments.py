@@ -111,12 +111,12 @@ def parser() -> argparse.ArgumentParser:
     evaluate.add_argument("TECHNIQUE", help="a name of `sssgen list techniques`, a .sss file, or FILE:FUNCTION")
     evaluate.add_argument("--inputs", "-i", metavar="FILE", help="the inputs, in JSON")
     evaluate.add_argument(
-        "--samples", type=int, metavar="N", help="N random inputs, each in its range; what --inputs has stands before them"
+        "--samples", type=int, metavar="N", help="N random inputs, each in its range, for what --inputs does not have"
     )
     evaluate.add_argument("--seed", type=int, default=0, metavar="N", help="which random inputs (default: 0)")
     evaluate.add_argument(
         "--backend", "-b", metavar="NAME", default="numpy",
-        help="numpy (default), gl, gl-es, webgpu, browser, hlsl, hlsl-glslang, unity, unity-urp, a list of such, or all",
+        help="numpy (default), gl, gl-es, webgpu, browser, hlsl, hlsl-glslang, unity, unity-urp, several, or all",
     )  # fmt: skip
     evaluate.add_argument(
         "--bind", action="append", default=[], metavar="SLOT=FUNCTION", help="a function for a slot, or FILE:FUNCTION"

@@ -37,7 +37,7 @@ def run(arguments: Namespace) -> int:
 
 
 def _sampled(chosen: Any, count: int, seed: int) -> dict[str, Any]:
-    """Random inputs; those of the file stand before them."""
+    """Random inputs, for what the file does not have."""
     if not 1 <= count <= MOST_SAMPLES:
         raise failure(f"--samples {count} is not a number of samples", f"from 1 to {MOST_SAMPLES}")
     if seed < 0:

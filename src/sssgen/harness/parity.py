@@ -4,9 +4,9 @@
     figures["exp"].ulp, figures["exp"].right
 
 The oracle has the same float32 arguments. An error is counted in ulp: units in the last place, in float32, of the
-result's size. The size of a vector or matrix is that of its largest component, for a rounding error in one component of
-`normalize` or `cross` is as large as those of the others. Where terms of a sum may cancel, as in `dot`, the size is that
-of the terms: the row's `size` says so. A row with `ulp=0` and every int and bool is compared exactly, but for the
+result's size. The size of a vector or matrix is that of its largest component, for a rounding error in one component
+of `normalize` or `cross` is as large as those of the others. Where terms of a sum may cancel, as in `dot`, the size is
+that of the terms: the row's `size` says so. A row with `ulp=0` and every int and bool is compared exactly, but for the
 sign of zero.
 
 Not measured is what no language defines: arguments outside of the row's `inside`, and results too large for float32.
@@ -225,12 +225,12 @@ def _any_lane(value: Any, lanes: int) -> Array:
     if not _floats(value):
         return np.zeros(lanes, bool)
     size = np.abs(value.astype(np.float64)).reshape(-1, lanes)
-    return ((size > 0.0) & (size < TINY)).any(axis=0)
+    return np.asarray(((size > 0.0) & (size < TINY)).any(axis=0))
 
 
 def _each_lane(good: Array, lanes: int) -> Array:
     """Lanes that are good in all components."""
-    return good.reshape(-1, lanes).all(axis=0)
+    return np.asarray(good.reshape(-1, lanes).all(axis=0))
 
 
 def _told(case: Case, got: Array, lane: int) -> str:

@@ -104,7 +104,7 @@ class Case(NamedTuple):
 
     @property
     def lanes(self) -> int:
-        return max(arg.shape[-1] for arg in self.args if not isinstance(arg, str))
+        return max(int(arg.shape[-1]) for arg in self.args if not isinstance(arg, str))
 
 
 @cache

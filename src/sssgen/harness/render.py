@@ -78,6 +78,11 @@ def render(scene: Scene, backend: Backend, size: tuple[int, int] | None = None, 
     return _developed(scene, reflection, samples, hit)
 
 
+def with_samples(scene: Scene, samples: int) -> Scene:
+    """The scene with n × n samples a pixel."""
+    return dataclasses.replace(scene, samples=samples)
+
+
 def _reads_rays(entry: Mapping[str, Any]) -> bool:
     return bool({"ray_origin", "ray_direction"} & set(entry["inputs"]))
 

@@ -122,7 +122,7 @@ def _main(
     surface = call("surface") if "surface" in entries else None
     fields = vars(surface) if surface is not None else {}
     if "normal" in fields:
-        x, y, z = surface.normal
+        x, y, z = fields["normal"]
         inputs["N"] = _unit(inputs["T"] * x + inputs["B"] * y + inputs["N"] * z)
     color: Any = np.array(shell.ambient, dtype)[:, None] * fields.get("albedo", 1.0) * fields.get("occlusion", 1.0)
     color = np.broadcast_to(color + fields.get("emission", 0.0), (3, lanes))

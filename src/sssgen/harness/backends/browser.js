@@ -68,9 +68,11 @@ async function draw(plan, piece, keep) {
   const copied = { size: stride * plan.height, usage: GPUBufferUsage.COPY_DST | GPUBufferUsage.MAP_READ };
   const buffer = keep(device.createBuffer(copied));
   encoder.copyTextureToBuffer({ texture: target }, { buffer, bytesPerRow: stride }, size);
+  const start = performance.now();
   device.queue.submit([encoder.finish()]);
   await buffer.mapAsync(GPUMapMode.READ);
-  return [{ stride }, buffer.getMappedRange().slice()];
+  const drew = (performance.now() - start) / 1000;
+  return [{ stride, drew }, buffer.getMappedRange().slice()];
 }
 
 // The pipeline and the layouts of its groups, from the page's own if they are known; or what Tint says against it.

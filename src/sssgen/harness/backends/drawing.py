@@ -15,6 +15,8 @@ class DrawingBackend(Backend):
     """Draws programs. `top_first` says where the first row of a picture is: at the top, or at the bottom."""
 
     top_first = False
+    drew = 0.0
+    """Seconds between the driver's being told to draw and its end, of the last draw; in WebGPU with the reading."""
 
     def __init__(self, name: str, target: str) -> None:
         self.name = name

@@ -63,10 +63,8 @@ class HLSL(OpenGL):
 def compiled(text: str, entry: str, stage: str, compiler: str) -> tuple[bytes, str]:
     """SPIR-V from HLSL by `dxc`, `glslang` or `dx9` (glslang), checked by spirv-val; or nothing and the log."""
     if compiler == "dxc":
-        from compushady.shaders import hlsl
-
         try:
-            module = bytes(hlsl.compile(text, entry, {"vertex": "vs_6_0", "fragment": "ps_6_0"}[stage]))
+            module = dxc.find().spirv(text, stage, entry)
         except ValueError as error:
             return b"", str(error)
     else:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Mapping
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -98,7 +99,11 @@ class OpenGL(DrawingBackend):
             context.viewport = (0, 0, width, height)
             context.disable(context.DEPTH_TEST | context.BLEND | context.CULL_FACE)
             frame.clear()
+            context.finish()
+            start = perf_counter()
             array.render(context.TRIANGLES, vertices=-1 if drawing.triangles is not None else 3)
+            context.finish()
+            self.drew = perf_counter() - start
             dtype: Any = np.float32 if drawing.floats else np.uint32
             data = frame.read(components=4, dtype=kind)
             return np.frombuffer(data, dtype).reshape(height, width, 4)

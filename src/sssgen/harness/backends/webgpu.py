@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import OrderedDict
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -66,9 +67,11 @@ class WebGPU(DrawingBackend):
         else:
             drawing.draw(3)
         drawing.end()
+        start = perf_counter()
         gpu.queue.submit([encoder.finish()])
         layout = {"offset": 0, "bytes_per_row": todo.width * 16, "rows_per_image": todo.height}
-        read = gpu.queue.read_texture({"texture": target}, layout, size)
+        read = gpu.queue.read_texture({"texture": target}, layout, size)  # waits for the draw
+        self.drew = perf_counter() - start
         dtype: Any = np.float32 if todo.format == "rgba32float" else np.uint32
         return np.frombuffer(read, dtype).reshape(todo.height, todo.width, 4)
 

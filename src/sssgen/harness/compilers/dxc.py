@@ -1,13 +1,19 @@
-"""Microsoft's DirectX shader compiler, shader model 6, which the PyPI package compushady carries."""
+"""Microsoft's DirectX shader compiler, shader model 6, which the PyPI package compushady carries.
+
+It runs in a process of its own: where its library and OpenGL's or Vulkan's drivers are in one process, that process
+now and then waits for ever as it ends (in the library's llvm_shutdown).
+"""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from functools import cache
 
 from sssgen.harness.compilers.base import LANGUAGES, Compiler, CompilerMissing, Message, Severity, Source
 from sssgen.harness.compilers.calls import hlsl_entry
 from sssgen.harness.compilers.glslang import LIBRARY_ENTRY
+from sssgen.harness.process import LostError, Process
 
 _PROFILES = {"vertex": "vs_6_0", "fragment": "ps_6_0", "library": "ps_6_0"}
 _OWN = ("", "hlsl.hlsl")  # what the text is called where no #line names it
@@ -19,15 +25,22 @@ _SEVERITY: dict[str, Severity] = {
 }
 
 
+SECONDS = 60.0
+"""How long one text may take."""
+
+Question = tuple[str, str, str]
+"""Text, entry point, stage."""
+
+
 class Dxc(Compiler):
-    """Compiles in this process."""
+    """Asks the other process."""
 
     name = "dxc"
     languages = LANGUAGES["dxc"]
 
-    def __init__(self, compile_hlsl: Callable[[str, str, str], bytes], version: str) -> None:
-        self._compile = compile_hlsl
-        self._version = version
+    def __init__(self, process: Process) -> None:
+        self._process = process
+        self._version = str(process.start())
 
     def version(self) -> str:
         return self._version
@@ -40,14 +53,30 @@ class Dxc(Compiler):
     def check_hlsl(self, text: str, stage: str, entry: str) -> list[Message]:
         """HLSL with separate textures and samplers, to SPIR-V."""
         try:
-            self._compile(text, entry, _PROFILES[stage])
+            self.spirv(text, stage, entry)
         except ValueError as error:
             return messages(str(error))
         return []
 
+    def spirv(self, text: str, stage: str, entry: str) -> bytes:
+        """The SPIR-V of HLSL. Raises ValueError with the compiler's log."""
+        try:
+            return bytes(self._process.ask((text, entry, stage)))
+        except LostError as reason:
+            raise ValueError(f"error: DXC {reason} on this text") from None
 
+
+@cache
 def find() -> Dxc:
-    """DXC inside compushady. Raises CompilerMissing where the package is lacking or does not load."""
+    """DXC, started. Raises CompilerMissing where the package is lacking or does not load."""
+    try:
+        return Dxc(Process(__name__, "dxc", seconds=SECONDS))
+    except LostError as reason:
+        raise CompilerMissing(f"DXC {reason} as it started") from None
+
+
+def serve(_: str) -> tuple[str, Callable[[Question], bytes]]:
+    """What the other process says first, and what answers. Raises CompilerMissing."""
     try:
         from importlib.metadata import version
 
@@ -55,7 +84,12 @@ def find() -> Dxc:
     except Exception as error:
         hint = "pip install compushady (Debian, to build it: g++ libvulkan-dev)"
         raise CompilerMissing(hint if isinstance(error, ImportError) else f"{hint}: {error}") from None
-    return Dxc(hlsl.compile, f"DXC in compushady {version('compushady')}")
+
+    def answer(question: Question) -> bytes:
+        text, entry, stage = question
+        return bytes(hlsl.compile(text, entry, _PROFILES[stage]))
+
+    return f"DXC in compushady {version('compushady')}", answer
 
 
 def messages(log: str) -> list[Message]:

@@ -186,7 +186,7 @@ fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughnes
     let a = max(roughness, 0.045) * max(roughness, 0.045);
     // (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak
     let across = cross(N, H);
-    let spread = select(1.0, dot(across, across) + NoH * NoH * a * a, NoH > 0.0);
+    let spread = select(1.0, dot(across, across) + NoH * NoH * (a * a), NoH > 0.0);
     // D times pi
     let facets = a * a / (spread * spread);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)

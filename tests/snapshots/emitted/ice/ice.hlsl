@@ -210,7 +210,7 @@ float3 standard(float3 N, float3 V, float3 L, float3 albedo, float metallic, flo
     float a = max(roughness, 0.045) * max(roughness, 0.045);
     // (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak
     float3 across = cross(N, H);
-    float spread = NoH > 0.0 ? dot(across, across) + NoH * NoH * a * a : 1.0;
+    float spread = NoH > 0.0 ? dot(across, across) + NoH * NoH * (a * a) : 1.0;
     // D times pi
     float facets = a * a / (spread * spread);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)

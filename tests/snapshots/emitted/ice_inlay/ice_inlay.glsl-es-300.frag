@@ -111,7 +111,7 @@ vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughne
     float a = max(roughness, 0.045) * max(roughness, 0.045);
     // (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak
     vec3 across = cross(N, H);
-    float spread = NoH > 0.0 ? dot(across, across) + NoH * NoH * a * a : 1.0;
+    float spread = NoH > 0.0 ? dot(across, across) + NoH * NoH * (a * a) : 1.0;
     // D times pi
     float facets = a * a / (spread * spread);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)

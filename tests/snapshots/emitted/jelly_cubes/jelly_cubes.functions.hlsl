@@ -82,8 +82,11 @@ bool raymarch(float3 ray_origin, float3 ray_direction, out float3 P, out float3 
         t += gap;
     }
     P = ray_origin + ray_direction * t;
-    N = scene_normal(P);
     V = -ray_direction;
+    N = V;
+    if (hit) {
+        N = scene_normal(P);
+    }
     return hit;
 }
 

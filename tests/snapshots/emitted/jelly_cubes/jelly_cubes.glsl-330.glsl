@@ -75,8 +75,11 @@ bool raymarch(vec3 ray_origin, vec3 ray_direction, out vec3 P, out vec3 N, out v
         t += gap;
     }
     P = ray_origin + ray_direction * t;
-    N = scene_normal(P);
     V = -ray_direction;
+    N = V;
+    if (hit) {
+        N = scene_normal(P);
+    }
     return hit;
 }
 

@@ -116,8 +116,11 @@ Shader "sssgen/Jelly cubes" {
                     t += gap;
                 }
                 P = ray_origin + ray_direction * t;
-                N = scene_normal(P);
                 V = -ray_direction;
+                N = V;
+                if (hit) {
+                    N = scene_normal(P);
+                }
                 return hit;
             }
 

@@ -95,8 +95,11 @@ fn raymarch(ray_origin: vec3f, ray_direction: vec3f, P: ptr<function, vec3f>, N:
         t += gap;
     }
     *P = ray_origin + ray_direction * t;
-    *N = scene_normal(*P);
     *V = -ray_direction;
+    *N = *V;
+    if (hit) {
+        *N = scene_normal(*P);
+    }
     return hit;
 }
 

@@ -71,8 +71,9 @@ def raymarch(ray_origin, ray_direction, max_distance):
         i = i + 1
         running = running & ((i < MAX_STEPS) & (t < max_distance))
     P = ray_origin + ray_direction * t
-    N = scene_normal(P)
     V = -ray_direction
+    N = V
+    N = select(hit, scene_normal(P), N)
     return hit, P, N, V
 
 def thinness_uniform(P, N, reach):

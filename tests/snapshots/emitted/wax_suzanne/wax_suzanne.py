@@ -110,7 +110,7 @@ def standard(N, V, L, albedo, metallic, roughness, light_color):
     a = max(roughness, 0.045) * max(roughness, 0.045)
     # (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak
     across = cross(N, H)
-    spread = select(NoH > 0.0, dot(across, across) + NoH * NoH * a * a, 1.0)
+    spread = select(NoH > 0.0, dot(across, across) + NoH * NoH * (a * a), 1.0)
     # D times pi
     facets = a * a / (spread * spread)
     # masking and shadowing, over 4 dot(N, L) dot(N, V)
