@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from textwrap import wrap
 from typing import NamedTuple
 
 from sssgen.harness import backends
@@ -39,25 +40,23 @@ def rows(present: list[Backend]) -> dict[str, Row]:
 
 def page(present: list[Backend], found: dict[str, Row]) -> str:
     """The page's text."""
+    texts = [
+        "Measured by `python docs/parity_techniques.py`; `tests/test_parity_techniques.py` holds it. "
+        f"Each technique has {LANES:,} random inputs (seed {SEED}), in the declared meaning of each parameter "
+        f"(`src/sssgen/harness/samples.py`), and again {BOUND_LANES:,} for each other function of the library that "
+        "fits one of its slots. The oracle is what the `numpy` target emits, in float64.",
+        "A deviation is |got − wanted| over the larger of |wanted| and 1, both over a value's components. The goal is "
+        f"{_number(GOAL)}; what is beyond it is in bold.",
+        "*Blurred* lanes are beyond the goal where float32 itself is: where a technique decides, or subtracts nearly "
+        "equal numbers. They are counted apart: the largest share of the lanes, and their largest deviation. A lane is "
+        f"blurred while its deviation is at most {MARGIN:g} times what rounding does without any back end: the larger "
+        "of how far the oracle's result moves when each input moves by one unit in the last place, and how far the "
+        f"same formulas in NumPy's float32 are off there ({DRAWS} draws of the moves).",
+    ]
     lines = [
         "# The techniques on every back end",
         "",
-        "Measured by `python docs/parity_techniques.py`; `tests/test_parity_techniques.py` holds it. "
-        f"Each technique has {LANES:,} random inputs",
-        f"(seed {SEED}), in the declared meaning of each parameter (`src/sssgen/harness/samples.py`), and again "
-        f"{BOUND_LANES:,} for each other function of",
-        "the library that fits one of its slots. The oracle is what the `numpy` target emits, in float64.",
-        "",
-        "A deviation is |got − wanted| over the larger of |wanted| and 1, both over a value's components. The goal is "
-        f"{GOAL:g}.",
-        "",
-        "*Blurred* lanes are beyond the goal where float32 itself is: where a technique decides, or subtracts nearly",
-        "equal numbers. They are counted apart, and told with the share of the lanes and the largest deviation. A lane",
-        f"is blurred while its deviation is at most {MARGIN:g} times what rounding does without any back end: the "
-        "larger of how",
-        "far the oracle's result moves when each input moves by one unit in the last place, and how far the same",
-        f"formulas in NumPy's float32 are off there ({DRAWS} draws of the moves).",
-        "",
+        *(line for text in texts for line in [*wrap(text, 120, break_on_hyphens=False), ""]),
         *(f"- {backend.name}: {backend.device()}" for backend in present),
         "",
         f"| Technique | {' | '.join(BACKENDS)} | Blurred | Up to | Why beyond the goal |",
@@ -65,14 +64,19 @@ def page(present: list[Backend], found: dict[str, Row]) -> str:
     ]
     for name, row in sorted(found.items()):
         cells = [_number(row.largest[backend]) for backend in BACKENDS]
-        blurred = [f"{100.0 * row.share:.2g} %" if row.share else "", f"{row.furthest:.1g}" if row.share else ""]
+        blurred = [f"{100.0 * row.share:.2g} %" if row.share else "", _plain(row.furthest) if row.share else ""]
         lines.append(f"| {' | '.join([name, *cells, *blurred, _reasons(name, row)])} |")
     return "\n".join(lines) + "\n"
 
 
 def _number(value: float) -> str:
-    text = "–" if value < 0.0 else "0" if value == 0.0 else f"{value:.1e}".replace("e-0", "e-")
-    return f"**{text}**" if value > GOAL else text
+    return f"**{_plain(value)}**" if value > GOAL else _plain(value)
+
+
+def _plain(value: float) -> str:
+    if value < 0.0:
+        return "–"
+    return f"{value:.2g}" if value == 0.0 or value > 0.01 else f"{value:.1e}".replace("e-0", "e-")
 
 
 def _reasons(name: str, row: Row) -> str:

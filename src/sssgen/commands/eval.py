@@ -24,7 +24,7 @@ def run(arguments: Namespace) -> int:
 
     names = _backends(arguments.backend, arguments.precision, list(backends.NAMES))
     chosen = subject(arguments.TECHNIQUE, inputs.bindings(arguments.bind))
-    given = inputs.read(arguments.inputs) if arguments.inputs else {}
+    given = inputs.read(arguments.inputs, chosen) if arguments.inputs else {}
     sampled = arguments.samples is not None
     if sampled:
         given = _sampled(chosen, arguments.samples, arguments.seed) | given

@@ -13,6 +13,7 @@ from ..diagnostics import Diagnostic, SssgenError, failure
 from ..ir.spans import Span
 from ..targets.numpy_textures import Texture
 from . import images
+from .probes import Subject
 
 
 def bindings(given: Sequence[str]) -> dict[str, str]:
@@ -28,11 +29,11 @@ def bindings(given: Sequence[str]) -> dict[str, str]:
     return found
 
 
-def read(path: str) -> dict[str, Any]:
+def read(path: str, subject: Subject) -> dict[str, Any]:
     """The inputs of a JSON file: name → number, list or, for a texture, a `Texture` from a file beside it.
 
-    A texture is `"wood.png"`, or `{"file": "wood.png", "wrap": "clamp", "filter": "nearest"}`. Raises SssgenError with
-    the place of what is wrong.
+    A texture is `"wood.png"`, or `{"file": "wood.png", "wrap": "clamp", "filter": "nearest"}`; a .png of colours, which
+    the technique calls `source_color`, is decoded. Raises SssgenError with the place of what is wrong.
     """
     file = Path(path)
     try:
@@ -51,17 +52,20 @@ def read(path: str) -> dict[str, Any]:
         raise failure("the lists are nested too deeply", file=path) from None
     if not isinstance(data, dict):
         raise failure("the inputs are no object", 'for instance {"N": [[0, 0, 1]], "power": 4.0}', path)
+    colors = {name for name, uniform in subject.uniforms.items() if "source_color" in dict(uniform.hints)}
     return {
-        name: _texture(name, value, file) if isinstance(value, str | dict) else value for name, value in data.items()
+        name: _texture(name, value, file, name in colors) if isinstance(value, str | dict) else value
+        for name, value in data.items()
     }
 
 
-def _texture(name: str, given: str | dict[str, Any], beside: Path) -> Texture:
+def _texture(name: str, given: str | dict[str, Any], beside: Path, srgb: bool) -> Texture:
     known = {"file", "wrap", "filter"}
     options = {"file": given} if isinstance(given, str) else given
     if "file" not in options or options.keys() - known or not all(isinstance(one, str) for one in options.values()):
         raise failure(f"texture '{name}'", 'a file name, or {"file": …, "wrap": …, "filter": …}', str(beside))
-    return texture(str(beside.parent / options["file"]), options.get("wrap", "repeat"), options.get("filter", "linear"))
+    path, wrap, filter = str(beside.parent / options["file"]), options.get("wrap", "repeat"), options.get("filter")
+    return texture(path, wrap, filter or "linear", srgb)
 
 
 def texture(path: str, wrap: str = "repeat", filter: str = "linear", srgb: bool = False) -> Texture:

@@ -10,8 +10,8 @@ that of the terms: the row's `size` says so. A row with `ulp=0` and every int an
 sign of zero.
 
 Not measured is what no language defines: arguments outside of the row's `inside`, and results too large for float32.
-A target may flush denormals to zero. So where an argument or a result is below `TINY`, each component may be
-that for arguments without denormals, or be off by `TINY`; these lanes are counted apart.
+A target may flush denormals to zero. So where an argument or a result is below `TINY`, each component may be that for
+arguments whose denormals are zero, or be off by `TINY`. Such lanes are in no figure of errors; the wrong ones count.
 """
 
 from __future__ import annotations
@@ -76,10 +76,10 @@ class _Lanes(NamedTuple):
 
     ulp: Array
     absolute: Array
-    denormal: Array
-    flushed: Array
-    """Which of the denormal ones are wrong."""
     measured: Array
+    """Which count: no number is below `TINY`, and float32 holds the result."""
+    flushed: Array
+    """Of those with a number below `TINY`, which are wrong."""
 
 
 def measure(backend: Backend, chosen: Sequence[Case]) -> dict[str, Figure]:
@@ -194,7 +194,7 @@ def _lanes(case: Case, got: Array) -> _Lanes:
     if not exact:
         with np.errstate(over="ignore"):
             measured &= _each_lane(np.isfinite(wanted.astype(np.float32)), case.lanes)
-    return _Lanes(ulp, absolute, tiny, wrong, measured)
+    return _Lanes(ulp, absolute, measured, wrong)
 
 
 def _error(got: Array, wanted: Array, exact: bool) -> Array:

@@ -115,8 +115,7 @@ def cases(lanes: int) -> tuple[Case, ...]:
     """
     found = []
     for row in BUILTINS.values():
-        signatures.overload(row.name, ())
-        for params, (result, _) in signatures._overloads[row.name].items():
+        for params, (result, _) in signatures.overloads(row.name).items():
             if row.name in NEIGHBOURS:
                 args = over_the_image(row, params)
             elif row.kind == "fetch":

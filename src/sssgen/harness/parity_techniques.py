@@ -60,8 +60,7 @@ KNOWN = (
     ),
     Known(
         ("depth_map_absorption",),
-        "A baseline: exp(-sigma_t x), where x is a difference of lengths and sigma_t up to 100. As published, it may be "
-        "large.",
+        "A baseline: exp(-sigma_t x), where x is a difference of lengths and sigma_t up to 100. It may be large.",
     ),
     Known(("parallax_refracted",), "Near the critical angle, on the way into a thinner body: a square root near 0."),
     Known(
@@ -83,7 +82,8 @@ KNOWN = (
     Known(
         ("raymarch",),
         "Its normal is made from differences of distances 0.001 apart, so that the roundings of these turn it by up to "
-        "1e-4 on a curved body (2e-4 from a texture); more on an edge, and P where a ray goes far and meets nothing.",
+        "1e-4 on a curved body (2e-4 from a texture), on most of it; a box has it on 1 % of the lanes. More on an edge, "
+        "and in P where a ray goes far and meets nothing.",
         largest=3e-4,
         share=0.02,
         bound_share=1.0,

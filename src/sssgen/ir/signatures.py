@@ -5,7 +5,7 @@ There are no implicit conversions: an overload matches when every type is the sa
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from .intrinsics import BUILTINS
@@ -24,12 +24,17 @@ class Overload(NamedTuple):
 _overloads: dict[str, dict[tuple[Type, ...], Overload]] = {}
 
 
-def overload(name: str, types: Sequence[Type]) -> Overload | None:
-    """The overload of the builtin `name` for exactly these types; None if there is none or no such builtin."""
+def overloads(name: str) -> Mapping[tuple[Type, ...], Overload]:
+    """All overloads of the builtin `name` by their parameters; none if there is no such builtin."""
     known = _overloads.get(name)
     if known is None:
         known = _overloads[name] = _expand(name)
-    return known.get(tuple(types))
+    return known
+
+
+def overload(name: str, types: Sequence[Type]) -> Overload | None:
+    """The overload of the builtin `name` for exactly these types; None if there is none or no such builtin."""
+    return overloads(name).get(tuple(types))
 
 
 def resolve(name: str, types: Sequence[Type]) -> Type | None:
@@ -78,7 +83,7 @@ def instantiate(name: str, size: int) -> Type | None:
 
 
 def _expand(name: str) -> dict[tuple[Type, ...], Overload]:
-    overloads: dict[tuple[Type, ...], Overload] = {}
+    found: dict[tuple[Type, ...], Overload] = {}
     row = BUILTINS.get(name)
     for signature in row.signatures if row else ():
         names = parse(signature)
@@ -86,5 +91,5 @@ def _expand(name: str) -> dict[tuple[Type, ...], Overload]:
             result, *params = (instantiate(type_name, size) for type_name in names)
             if result is not None and None not in params:
                 key = tuple(param for param in params if param is not None)
-                overloads.setdefault(key, Overload(result, ",".join(names[1:])))
-    return overloads
+                found.setdefault(key, Overload(result, ",".join(names[1:])))
+    return found

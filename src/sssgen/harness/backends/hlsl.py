@@ -38,10 +38,10 @@ class HLSL(OpenGL):
         text = self.prepared(stage.text)
         module, log = compiled(text.text, stage.entry, kind, self.compiler)
         if not module:
-            raise refused(self.name, text, self.messages(log))
+            raise refused(self.name, stage.text, self.messages(log))
         glsl, log = crossed(module)
         if not glsl:
-            raise refused(self.name, text, [Message("error", 0, 0, log)])
+            raise refused(self.name, stage.text, [Message("error", 0, 0, log)])
         return glsl
 
     def prepared(self, text: Text) -> Text:

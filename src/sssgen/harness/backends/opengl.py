@@ -17,7 +17,8 @@ from .drawing import DrawingBackend
 
 _HEADS = {
     "glsl-330": "#version 330 core\n#line 1\n",
-    "glsl-es-300": "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler3D;\n"
+    "glsl-es-300": "#version 300 es\nprecision highp float;\nprecision highp int;\n"
+    "precision highp sampler2D;\nprecision highp sampler3D;\nprecision highp samplerCube;\n"
     "#line 1\n",
 }
 _SCREEN = "void main() { gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0); }"

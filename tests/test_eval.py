@@ -1,0 +1,292 @@
+"""`sssgen eval`: a technique on arrays of inputs, on every back end, and what it says of inputs that do not fit."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sssgen.cli import main
+from sssgen.diagnostics import SssgenError
+from sssgen.harness import backends, inputs
+from sssgen.harness.backends import Backend
+from sssgen.harness.deviation import deviation, errors
+from sssgen.harness.evaluate import evaluate
+from sssgen.harness.images import write_exr, write_png
+from sssgen.harness.isolated import isolated
+from sssgen.harness.probes import subject
+from sssgen.targets.numpy_textures import Texture
+
+LOBE: dict[str, Any] = {"V": [0, 0, 1], "N": [0, 0, 1], "L": [[0, 0, -1], [0.6, 0, -0.8]], "through": 0.5}
+
+
+@pytest.fixture
+def given(tmp_path: Path) -> Callable[..., str]:
+    """Writes inputs to a file."""
+
+    def write(data: object, name: str = "inputs.json") -> str:
+        path = tmp_path / name
+        path.write_text(data if isinstance(data, str) else json.dumps(data), encoding="utf-8")
+        return str(path)
+
+    return write
+
+
+def answer(capsys: pytest.CaptureFixture[str], *arguments: str, status: int = 0) -> Any:
+    """What the command prints as JSON."""
+    assert main(["eval", *arguments, "--json"]) == status
+    return json.loads(capsys.readouterr().out)
+
+
+def complaint(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
+    """What the command says of wrong input."""
+    assert main(["eval", *arguments]) == 2
+    return capsys.readouterr().err
+
+
+# What it computes
+
+
+def test_outputs_of_the_oracle(capsys: pytest.CaptureFixture[str], given: Callable[..., str]) -> None:
+    """GDC 2011: pow(dot(V, −(L + N distortion)), power) scale, and ambient, times what comes through."""
+    values = {**LOBE, "distortion": 0.2, "power": 2.0, "scale": 3.0, "ambient": 0.1, "attenuation": 1.0}
+    found = answer(capsys, "lobe_gdc2011", "-i", given(values | {"subsurface_color": [1.0, 0.5, 0.25]}))
+    lobe = [(-(np.array(light) + [0, 0, 0.2]))[2] ** 2 * 3.0 for light in LOBE["L"]]
+    wanted = [[(each + 0.1) * 0.5 * part for part in (1.0, 0.5, 0.25)] for each in lobe]
+    np.testing.assert_allclose(found["outputs"]["result"], wanted, rtol=1e-6)
+    assert found["lanes"] == 2 and found["backend"] == "numpy"
+
+
+def test_all_back_ends_agree(capsys: pytest.CaptureFixture[str], given: Callable[..., str]) -> None:
+    found = answer(capsys, "lobe_gdc2011", "-i", given(LOBE), "--backend", "all")
+    rows = {row["name"]: row for row in found["backends"]}
+    assert list(rows) == list(backends.NAMES)
+    for name, row in rows.items():
+        assert row.get("missing") or row["deviation"] <= (1e-3 if name == "numpy-f16" else 1e-6), row
+
+
+def test_precisions(capsys: pytest.CaptureFixture[str], given: Callable[..., str]) -> None:
+    file = given(LOBE)
+    wide, single, half = (
+        np.array(answer(capsys, "lobe_gdc2011", "-i", file, "--precision", one)["outputs"]["result"])
+        for one in ("f64", "f32", "f16")
+    )
+    assert 0.0 < np.abs(single - wide).max() < 1e-6 < np.abs(half - wide).max() < 1e-2
+
+
+def test_out_parameters_are_outputs(capsys: pytest.CaptureFixture[str], given: Callable[..., str]) -> None:
+    found = answer(capsys, "camera_orbit", "-i", given({"uv": [[0.5, 0.5], [0.25, 1.0]], "time": 0.0}))
+    assert list(found["outputs"]) == ["ray_origin", "ray_direction"]
+    assert found["outputs"]["ray_origin"][0] == pytest.approx([3.0, 2.5, 0.0])
+
+
+def test_a_function_of_a_file_for_a_slot(
+    capsys: pytest.CaptureFixture[str], given: Callable[..., str], tmp_path: Path
+) -> None:
+    """Full space is not thin, empty space is."""
+    own = tmp_path / "own.sss"
+    own.write_text(
+        "float full(world_position p) { return -10.0; }\nfloat empty(world_position p) { return p.y + 10.0; }\n", "utf-8"
+    )
+    file = given({"P": [[0.0, 0.0, 0.0]], "N": [0.0, 1.0, 0.0]})
+    told = complaint(capsys, "thinness_uniform", "-i", file, "--bind", "nowhere=sphere")
+    assert "has no slot 'nowhere'" in told and "body_distance" in told
+    for name, wanted in (("full", 0.0), ("empty", 1.0)):
+        found = answer(capsys, "thinness_uniform", "-i", file, "--bind", f"body_distance={own}:{name}", "-b", "numpy")
+        assert found["outputs"]["result"] == [wanted]
+    assert evaluate(subject(f"{own}:empty"), {"p": [1.0, 2.0, 3.0]}, backends.get("numpy"))["result"] == [12.0]
+
+
+@pytest.mark.parametrize("name", ["numpy", "gl", "gl-es", "webgpu", "browser", "hlsl", "hlsl-glslang", "unity"])
+def test_textures_of_all_kinds_of_files(name: str, backend: Callable[[str], Backend], tmp_path: Path) -> None:
+    """A picture's lowest row is at v = 0; an sRGB texture's colours are decoded, in .exr and .npy they are linear."""
+    rows = np.array([[[0.0, 1.0, 0.5], [1.0, 0.0, 0.5]], [[0.25, 0.25, 0.25], [0.75, 0.5, 0.125]]])
+    write_png(tmp_path / "a.png", rows)
+    write_exr(tmp_path / "a.exr", rows)
+    np.save(tmp_path / "a.npy", rows[::-1])
+    centres = [[0.25, 0.25], [0.75, 0.25], [0.25, 0.75], [0.75, 0.75]]
+    technique = subject("base_color")
+    assert technique.uniforms["base_color_texture"].hints
+    for file in ("a.png", "a.exr", "a.npy"):
+        texture = inputs.texture(str(tmp_path / file), filter="nearest")
+        found = evaluate(technique, {"uv": centres, "base_color_texture": texture}, backend(name))["albedo"]
+        np.testing.assert_allclose(found, rows[::-1].reshape(4, 3), atol=1 / 500)
+    whole = json.dumps({"uv": centres, "base_color_texture": {"file": "a.png", "filter": "nearest", "wrap": "clamp"}})
+    (tmp_path / "in.json").write_text(whole, encoding="utf-8")
+    read = inputs.read(str(tmp_path / "in.json"), technique)
+    decoded = evaluate(technique, read, backend(name))["albedo"]
+    assert decoded[0] == pytest.approx([((64 / 255 + 0.055) / 1.055) ** 2.4] * 3, abs=1e-4)
+
+
+def test_ten_thousand_lanes_are_one_draw(backend: Callable[[str], Backend], monkeypatch: pytest.MonkeyPatch) -> None:
+    gpu = backend("gl")
+    draws = []
+    draw = gpu.draw  # type: ignore[attr-defined]
+    monkeypatch.setattr(gpu, "draw", lambda drawing: draws.append(drawing) or draw(drawing))
+    rng = np.random.default_rng(3)
+    many = {name: rng.normal(size=(10_000, 3)) for name in "VNL"}
+    many = {name: v / np.linalg.norm(v, axis=1, keepdims=True) for name, v in many.items()} | {"through": 0.5}
+    technique = subject("lobe_gdc2011")
+    found, wanted = (evaluate(technique, many, one) for one in (gpu, backends.get("numpy")))
+    assert len(draws) == 1
+    assert deviation(found, wanted).largest < 1e-5
+
+
+# How far apart
+
+
+def test_deviation_is_relative_above_one_and_absolute_below() -> None:
+    wanted = np.array([[100.0, 0.0], [0.5, 0.0], [np.nan, 0.0], [np.inf, 0.0]])
+    got = np.array([[100.1, 0.05], [0.5, 0.001], [np.nan, 0.0], [np.inf, 0.0]])
+    assert errors(got, wanted) == pytest.approx([0.001, 0.001, 0.0, 0.0])
+    assert np.isinf(errors(np.array([[0.0, 0.0]]), wanted[2:3])) and np.isinf(errors(wanted[2:3], wanted[1:2]))
+    worst = deviation({"a": got[:2], "b": np.array([1.0, 9.0])}, {"a": wanted[:2], "b": np.array([1.0, 3.0])})
+    assert (worst.output, worst.lane, worst.largest) == ("b", 1, 2.0)
+
+
+# Inputs that do not fit
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"V": None}, "needs more inputs: V (vec3)"),
+        ({"M": 1.0}, "has no input 'M'"),
+        ({"distorsion": 0.1}, "did you mean 'distortion'?"),
+        ({"N": [0, 0]}, "input 'N' has the shape 2, which is no vec3"),
+        ({"N": [[0, 0, 1], [0, 1]]}, "input 'N': its rows have different lengths"),
+        ({"N": [[[0, 0, 1]]]}, "input 'N' has the shape 1×1×3"),
+        ({"N": []}, "input 'N'"),
+        ({"N": [[0, 0, 1]] * 3}, "the inputs have different numbers of values: N has 3, L has 2"),
+        ({"N": [0, 0, float("nan")]}, "input 'N' is NaN or infinite at number 0"),
+        ({"L": [[0, 0, 1], [0, float("inf"), 0]]}, "input 'L' is NaN or infinite at number 1"),
+        ({"through": 1e300}, "input 'through' is too large for a 32-bit float"),
+        ({"through": True}, "input 'through' is no float"),
+        ({"through": "half.png"}, "cannot find the picture"),
+        ({"through": {"a": 1}}, "texture 'through'"),
+    ],
+)
+def test_wrong_inputs(
+    capsys: pytest.CaptureFixture[str], given: Callable[..., str], change: dict[str, Any], said: str
+) -> None:
+    values = {name: value for name, value in {**LOBE, **change}.items() if value is not None}
+    assert said in complaint(capsys, "lobe_gdc2011", "-i", given(values))
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("{", "this is no JSON"),
+        ("[1, 2]", "the inputs are no object"),
+        ("[" * 100_000, "nested too deeply"),
+        ('{"V": [0, 0, 1],\n "N": [0, 0, 1,]}', ":2:"),
+    ],
+)
+def test_wrong_json(capsys: pytest.CaptureFixture[str], given: Callable[..., str], text: str, said: str) -> None:
+    assert said in complaint(capsys, "lobe_gdc2011", "-i", given(text))
+
+
+def test_wrong_files(capsys: pytest.CaptureFixture[str], given: Callable[..., str], tmp_path: Path) -> None:
+    assert "cannot read the inputs" in complaint(capsys, "lobe_gdc2011", "-i", str(tmp_path / "none.json"))
+    assert "cannot read the inputs" in complaint(capsys, "lobe_gdc2011", "-i", str(tmp_path))
+    (tmp_path / "binary.json").write_bytes(b"\xff\xfe\x00")
+    assert "no UTF-8" in complaint(capsys, "lobe_gdc2011", "-i", str(tmp_path / "binary.json"))
+    np.save(tmp_path / "volume.npy", np.ones((2, 2, 2, 1)))
+    np.save(tmp_path / "bad.npy", np.full((2, 2, 3), np.nan))
+    for file, said in (("volume.npy", "takes a sampler2D"), ("bad.npy", "NaN or infinity"), ("x.jpg", "'.jpg'")):
+        values = {"uv": [0.5, 0.5], "base_color_texture": file}
+        assert said in complaint(capsys, "base_color", "-i", given(values))
+
+
+def test_wrong_arguments(capsys: pytest.CaptureFixture[str], given: Callable[..., str]) -> None:
+    file = given(LOBE)
+    assert "did you mean 'webgpu'?" in complaint(capsys, "lobe_gdc2011", "-i", file, "-b", "webgpuu")
+    assert "unknown technique 'lobe_gdc2012'" in complaint(capsys, "lobe_gdc2012", "-i", file)
+    assert "own precision" in complaint(capsys, "lobe_gdc2011", "-i", file, "-b", "gl", "--precision", "f64")
+    assert "binds nothing" in complaint(capsys, "lobe_gdc2011", "-i", file, "--bind", "a")
+
+
+def test_a_missing_back_end(given: Callable[..., str]) -> None:
+    """Named alone it is an error that says how to get it; among all it is a line, and the rest goes on."""
+    environment = {**os.environ, "SSSGEN_CHROMIUM": "/nowhere/chromium"}
+    command = [sys.executable, "-m", "sssgen", "eval", "lobe_gdc2011", "-i", given(LOBE), "-b"]
+    alone = subprocess.run([*command, "browser"], env=environment, capture_output=True, text=True, check=False)
+    assert alone.returncode == 2 and "help: chromium" in alone.stderr
+    among = subprocess.run([*command, "numpy,browser,gl"], env=environment, capture_output=True, text=True, check=False)
+    assert "missing: chromium" in among.stdout and "\ngl " in among.stdout and among.returncode == 0
+
+
+# Drivers that refuse, crash and hang
+
+
+def test_a_refusal_comes_with_the_techniques_line(backend: Callable[[str], Backend]) -> None:
+    """A text that the driver does not take: its message stands at the line of ours that it came from."""
+    from sssgen.harness.backends import Call, Text
+    from sssgen.ir.types import FLOAT
+
+    wrong = {
+        "gl": "float f(float x) {\n    return y;\n}\n",
+        "hlsl": "float f(float x) {\n    return y;\n}\n",
+        "hlsl-glslang": "float f(float x) {\n    return y;\n}\n",
+        "unity": "float f(float x) {\n    return y;\n}\n",
+        "unity-urp": "float f(float x) {\n    return y;\n}\n",
+        "webgpu": "fn f(x: f32) -> f32 {\n    return y;\n}\n",
+        "browser": "fn f(x: f32) -> f32 {\n    return y;\n}\n",
+    }
+    for name, text in wrong.items():
+        with pytest.raises(SssgenError) as caught:
+            backend(name).run(Text(text, {2: "lobe.sss:7:3"}), [Call("f", (FLOAT,), FLOAT, (np.ones(4),))])
+        (first, *_) = caught.value.diagnostics
+        assert (first.span.file, first.span.line, first.span.column) == ("lobe.sss", 7, 3), name
+        assert first.message.startswith(f"{name}: ") and "return y;" in first.hint, name
+
+
+def test_a_back_end_that_crashes_comes_again(backend: Callable[[str], Backend]) -> None:
+    backend("gl")
+    gpu = isolated("gl")
+    technique, wanted = subject("lobe_gdc2011"), None
+    try:
+        wanted = evaluate(technique, LOBE, gpu)["result"]
+        assert gpu.process.process is not None
+        os.kill(gpu.process.process.pid, signal.SIGSEGV)
+        with pytest.raises(SssgenError, match=r"gl: the back end crashed \(SIGSEGV\)"):
+            evaluate(technique, LOBE, gpu)
+        assert np.array_equal(evaluate(technique, LOBE, gpu)["result"], wanted)
+    finally:
+        gpu.close()
+
+
+def test_a_back_end_that_hangs_is_ended(backend: Callable[[str], Backend]) -> None:
+    backend("gl")
+    gpu = isolated("gl")
+    try:
+        assert gpu.process.process is not None
+        os.kill(gpu.process.process.pid, signal.SIGSTOP)
+        gpu.process.seconds = 0.3
+        with pytest.raises(SssgenError, match="did not finish within 0.3 seconds"):
+            evaluate(subject("lobe_gdc2011"), LOBE, gpu)
+    finally:
+        gpu.close()
+
+
+def test_no_driver_on_this_machine(tmp_path: Path) -> None:
+    """Without EGL's libraries the message names the packages."""
+    code = "import moderngl; moderngl.create_context = lambda **_: (_ for _ in ()).throw(Exception('libEGL.so not loaded'))"
+    text = f"{code}\nfrom sssgen.harness import backends\nprint(dict(backends.missing())['gl'])"
+    done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, check=True)
+    assert "libegl1" in done.stdout and "libEGL.so not loaded" in done.stdout
+
+
+def test_textures_are_shared_as_half_floats() -> None:
+    from sssgen.harness.evaluate import half
+
+    texture = Texture(np.full((2, 2, 3), 0.1))
+    assert half(texture).levels[0].dtype == np.float16 and half(texture) is half(texture)
