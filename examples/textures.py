@@ -86,7 +86,7 @@ def paper_lantern() -> dict[str, Any]:
     flecks = smooth(0.72, 0.9, noise(3, 1.5, stretch=0.5))
     to_hoop = np.abs(latitude / 9.0 - np.round(latitude / 9.0)) * 9.0
     hoop = smooth(1.25, 0.65, to_hoop)
-    cap = smooth(57.6, 58.6, np.abs(latitude))
+    cap = smooth(50.0, 51.0, np.abs(latitude))
     wood = np.maximum(hoop, cap)
     grain = noise(4, 1.4, stretch=0.1)
     paper = blend(color("#d8c8a8"), color("#f7efdf"), fibres)
@@ -104,10 +104,10 @@ def ice() -> dict[str, Any]:
     u, v = grid()
     clouds, fine = noise(11), noise(12, 1.5)
     drift = 0.24 + 0.1 * np.sin(2.0 * np.pi * (u + 0.1)) + 0.05 * np.sin(6.0 * np.pi * u + 1.0) + 0.09 * (clouds - 0.5)
-    snow = smooth(0.03, -0.03, v - drift + 0.06 * (fine - 0.5))
+    snow = smooth(0.03, -0.03, v - drift + 0.1 * (fine - 0.5))
     frost = 0.5 * smooth(0.55, 0.95, noise(13, 1.7))
-    bare = blend(color("#a9c6d6"), color("#e4f1f7"), np.clip(0.7 * clouds + frost, 0.0, 1.0))
-    powder = blend(color("#e3eaf2"), color("#ffffff"), fine)
+    bare = blend(color("#6ea3c0"), color("#d2e8f3"), np.clip(0.7 * clouds + frost, 0.0, 1.0))
+    powder = blend(color("#eef2f6"), color("#ffffff"), fine)
     base = blend(bare, powder, snow)
     cover = np.clip(snow + 0.3 * frost, 0.0, 1.0)
     nearest, second = around(14)
@@ -118,10 +118,13 @@ def ice() -> dict[str, Any]:
     packed = np.stack([veins, 0.25 + 0.75 * cracks, sparks], axis=-1)
     # what is left: the middle of the sheet, less some holes
     x, y = 2.0 * u - 1.0, 2.0 * v - 1.0
-    rim = 0.93 - (np.abs(x) ** 5 + np.abs(y) ** 5) ** 0.2 + 0.2 * (noise(18, 2.2) - 0.5)
+    rough, rougher = noise(18, 2.0) - 0.5, noise(19, 2.1) - 0.5
+    corners = (0.86, 0.1), (0.84, 1.3), (0.8, 2.2), (0.85, 3.2), (0.87, 4.1), (0.9, 4.9), (0.8, 5.7)
+    sides = [x * np.cos(turn) + y * np.sin(turn) - away for away, turn in corners]
+    rim = -np.max(np.stack(sides), axis=0) + 0.16 * rough
     left = np.clip(0.5 + 1.6 * rim, 0.0, 1.0)
-    for at_x, at_y, radius in ((0.36, 0.34, 0.17), (0.02, 0.55, 0.08), (0.56, -0.02, 0.06), (-0.5, 0.1, 0.05)):
-        away = np.hypot(x - at_x, 1.25 * (y - at_y)) - radius + 0.12 * (noise(19, 2.2) - 0.5)
+    for at_x, at_y, radius in ((0.36, 0.3, 0.17), (0.1, 0.52, 0.09), (0.52, -0.06, 0.07), (-0.5, 0.02, 0.06)):
+        away = np.hypot(x - at_x, 1.2 * (y - at_y)) - radius + 0.2 * rougher
         left = np.minimum(left, np.clip(0.5 + 1.6 * away, 0.0, 1.0))
     return {"base_color": base, "cover": cover, "packed": packed, "erosion": left}
 
@@ -177,12 +180,12 @@ def resin_inlay() -> dict[str, Any]:
     def ring(middle: float, width: float) -> Any:
         return smooth(texel, -texel, np.abs(radius - middle) - 0.5 * width)
 
-    grain = noise(31, 1.5, stretch=0.12)
-    rings = 0.5 + 0.5 * np.sin(26.0 * (y + 0.12 * x * x) + 5.0 * grain)
+    grain = noise(31, 1.6, stretch=7.0)
+    rings = 0.5 + 0.5 * np.sin(20.0 * (y + 0.15 * x * x) + 7.0 * grain)
     walnut = blend(color("#2b170d"), color("#6e4424"), np.clip(0.6 * grain + 0.4 * rings, 0.0, 1.0))
-    brass = blend(color("#b98a33"), color("#f0cf7c"), noise(32, 1.2, stretch=0.2))
+    brass = blend(color("#b98a33"), color("#f0cf7c"), noise(32, 1.4, stretch=4.0))
     pearl = blend(color("#9fc4c9"), color("#f3e6ea"), noise(33, 1.8))
-    ebony = blend(color("#0d1214"), color("#233238"), noise(34, 1.4, stretch=0.2))
+    ebony = blend(color("#0d1214"), color("#233238"), noise(34, 1.6, stretch=5.0))
     picture = walnut
 
     def lay(what: Any, where: Any) -> None:
@@ -218,7 +221,7 @@ def resin_inlay() -> dict[str, Any]:
     lay(brass, smooth(texel, -texel, radius - 0.07))
     lay(ebony, ring(0.05, 0.012))
     edge = np.maximum(np.abs(x), np.abs(y))
-    lay(brass, smooth(texel, -texel, np.abs(edge - 0.875) - 0.01))
+    lay(brass, smooth(texel, -texel, np.abs(edge - 0.86) - 0.01))
     return {"base_color": picture}
 
 

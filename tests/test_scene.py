@@ -161,7 +161,6 @@ def test_a_distance_texture_has_the_technique_s_convention() -> None:
         (HEAD + '[geometry]\nkind = "distance"\ntechnique = "sphere"\nparameters = {radiu = 1}\n', "'radius'", 5),
         (HEAD + "[camera]\nposition = [0, 0, 0]\n", "stands at its target", 2),
         (HEAD + "[camera]\nfield_of_view = 180\n", "'field_of_view' cannot be 180", 3),
-        (HEAD + "[camera]\nnear = 5\nfar = 2\n", "not beyond 'near'", 4),
         (HEAD + "light = 3\n", "lights are a list", 2),
         (HEAD + "[[light]]\nposition = [1, 1, 1]\n" * 5, "the scene has 5 lights", 10),
         (HEAD + "[[light]]\ncolor = [1, 1, 1]\n", "a position or a direction", 2),

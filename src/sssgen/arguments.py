@@ -140,6 +140,24 @@ def parser() -> argparse.ArgumentParser:
     render.add_argument("--time", type=float, metavar="T", help="in seconds, instead of the scene's own")
     render.add_argument("--compare", nargs=2, metavar=("A", "B"), help="FLIP, relMSE, p99 and max of A against B")
 
+    ci = command(
+        "ci",
+        "ci",
+        "check a folder: compile its materials, compare its scenes with golden pictures and its numbers with the oracle",
+        "examples:\n"
+        "  sssgen ci shaders --junit report.xml\n"
+        "  sssgen ci shaders --update\n"
+        "A scene's golden picture is golden/NAME.png beside it. A file NAME.eval.json has numbers: "
+        '{"technique": "lobe_gdc2011", "inputs": {"N": [[0, 0, 1]]}, "tolerance": 1e-5}',
+    )
+    ci.add_argument("DIR", help="the folder of your materials and scenes")
+    ci.add_argument(
+        "--backend", "-b", metavar="NAME", help="or several, with commas; default: gl for scenes, all here for numbers"
+    )
+    ci.add_argument("--update", action="store_true", help="write the golden pictures, instead of comparing with them")
+    ci.add_argument("--flip", type=float, metavar="X", help="the largest mean of FLIP that passes (default: 0.005)")
+    ci.add_argument("--junit", metavar="FILE", help="write a report in JUnit's XML")
+
     new = command("new", "new", "write a commented material to start from")
     new.add_argument("MATERIAL", help="its name, or a .toml file; an old one is never overwritten")
     return top

@@ -81,10 +81,10 @@ KNOWN = (
     ),
     Known(
         ("raymarch",),
-        "Its normal is made from differences of distances 0.001 apart, so that the roundings of these turn it by up to "
-        "1e-4 on a curved body (2e-4 from a texture), on most of it; a box has it on 1 % of the lanes. More on an edge, "
-        "and in P where a ray goes far and meets nothing.",
-        largest=3e-4,
+        "Its normal is made of differences of distances 0.001 apart, so that the roundings of these turn it by up to "
+        "1e-4 on most of a curved body (2e-4 from a texture), and on 1 % of a box; more on an edge. P, where a ray "
+        "goes far and meets nothing.",
+        largest=1e-4,
         share=0.02,
         bound_share=1.0,
     ),

@@ -28,6 +28,7 @@ from .backends.reference import Reference
 from .evaluate import half
 from .images import decode_srgb, encode_srgb
 from .scene import DistanceTexture, Scene
+from .scene_reader import MAX_COUNT
 from .shade_numpy import shade
 from .shell import Shell, drawing
 
@@ -59,10 +60,10 @@ def render(scene: Scene, backend: Backend, size: tuple[int, int] | None = None, 
     compiled = compile(material, backend.target.name)
     reflection = compiled.reflection
     width, height = (side * scene.samples for side in scene.size)
-    if max(width, height) + 2 * dice.BORDER > LARGEST:
+    if max(width, height) + 2 * dice.BORDER > LARGEST or width * height > MAX_COUNT:
         raise failure(
             f"{scene.size[0]} × {scene.size[1]} pixels of {scene.samples} × {scene.samples} samples are too many",
-            f"at most {LARGEST - 2 * dice.BORDER} samples on a side",
+            f"at most {LARGEST - 2 * dice.BORDER} samples on a side, and {MAX_COUNT / 1e6:.0f} million in all",
         )
     raymarched = reflection["raymarched"] or any(_reads_rays(entry) for entry in reflection["entries"].values())
     if not raymarched and scene.geometry is None:

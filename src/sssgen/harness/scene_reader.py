@@ -33,6 +33,8 @@ _SHAPES = {
 }
 MAX_LIGHTS = 4
 MAX_SIDE = 8192
+MAX_COUNT = 2**24
+"""Samples of a picture: what is known of each takes a few hundred bytes."""
 MAX_SAMPLES = 8
 MAX_TEXELS = 256
 
@@ -53,9 +55,9 @@ class _Reader:
         top = Table(self.document, (), self.document.data, _KEYS)
         size = top.wholes("size", (640, 480), (1, MAX_SIDE))
         samples = top.whole("samples", 2, (1, MAX_SAMPLES))
-        if size[0] * size[1] * samples**2 > MAX_SIDE**2:
+        if size[0] * size[1] * samples**2 > MAX_COUNT:
             count = f"{size[0]} × {size[1]} pixels of {samples} × {samples} samples are too many"
-            top.error("size", count, f"at most {MAX_SIDE} × {MAX_SIDE} samples in all: take fewer")
+            top.error("size", count, f"at most {MAX_COUNT / 1e6:.0f} million samples in all: take fewer")
         geometry = self.geometry(top.content.get("geometry"))
         return Scene(
             self.material(top),
@@ -101,18 +103,14 @@ class _Reader:
 
     def camera(self, content: Any) -> Camera:
         usual = Camera()
-        table = Table(self.document, ("camera",), content, ("position", "target", "field_of_view", "near", "far"))
+        table = Table(self.document, ("camera",), content, ("position", "target", "field_of_view"))
         camera = Camera(
             table.vector("position", usual.position),
             table.vector("target", usual.target),
             table.number("field_of_view", usual.field_of_view, (1.0, 170.0)),
-            table.number("near", usual.near, POSITIVE),
-            table.number("far", usual.far, POSITIVE),
         )
         if math.dist(camera.position, camera.target) < 1e-6:
             table.error("target", "the camera stands at its target", "move one of the two")
-        if camera.far <= camera.near:
-            table.error("far", "'far' is not beyond 'near'", f"near is {camera.near:g}")
         return camera
 
     def lights(self, top: Table) -> tuple[Light, ...]:

@@ -56,13 +56,12 @@ fn jelly_scene(p: vec3f) -> f32 {
 // The gradient of the scene at `p`, from the four corners of a tetrahedron about it.
 fn scene_normal(p: vec3f) -> vec3f {
     let e = HIT_TOLERANCE * vec2f(1.0, -1.0);
-    let a = e.xyy;
-    let b = e.yyx;
-    let c = e.yxy;
-    let d = e.xxx;
-    var gradient = a * jelly_scene(p + a) + b * jelly_scene(p + b);
-    gradient += c * jelly_scene(p + c) + d * jelly_scene(p + d);
-    return normalize(gradient);
+    let a = jelly_scene(p + e.xyy);
+    let b = jelly_scene(p + e.yyx);
+    let c = jelly_scene(p + e.yxy);
+    let d = jelly_scene(p + e.xxx);
+    // nearly equal numbers, whose differences are exact
+    return normalize(vec3f(a - b + (d - c), c - a + (d - b), b - a + (d - c)));
 }
 
 // Sphere tracing: draws a scene given as a distance function; where a ray meets nothing it returns false.

@@ -64,13 +64,12 @@ float jelly_scene(vec3 p) {
 // The gradient of the scene at `p`, from the four corners of a tetrahedron about it.
 vec3 scene_normal(vec3 p) {
     vec2 e = HIT_TOLERANCE * vec2(1.0, -1.0);
-    vec3 a = e.xyy;
-    vec3 b = e.yyx;
-    vec3 c = e.yxy;
-    vec3 d = e.xxx;
-    vec3 gradient = a * jelly_scene(p + a) + b * jelly_scene(p + b);
-    gradient += c * jelly_scene(p + c) + d * jelly_scene(p + d);
-    return normalize(gradient);
+    float a = jelly_scene(p + e.xyy);
+    float b = jelly_scene(p + e.yyx);
+    float c = jelly_scene(p + e.yxy);
+    float d = jelly_scene(p + e.xxx);
+    // nearly equal numbers, whose differences are exact
+    return normalize(vec3(a - b + (d - c), c - a + (d - b), b - a + (d - c)));
 }
 
 // Sphere tracing: draws a scene given as a distance function; where a ray meets nothing it returns false.

@@ -59,13 +59,12 @@ float jelly_scene(float3 p) {
 // The gradient of the scene at `p`, from the four corners of a tetrahedron about it.
 float3 scene_normal(float3 p) {
     float2 e = HIT_TOLERANCE * float2(1.0, -1.0);
-    float3 a = e.xyy;
-    float3 b = e.yyx;
-    float3 c = e.yxy;
-    float3 d = e.xxx;
-    float3 gradient = a * jelly_scene(p + a) + b * jelly_scene(p + b);
-    gradient += c * jelly_scene(p + c) + d * jelly_scene(p + d);
-    return normalize(gradient);
+    float a = jelly_scene(p + e.xyy);
+    float b = jelly_scene(p + e.yyx);
+    float c = jelly_scene(p + e.yxy);
+    float d = jelly_scene(p + e.xxx);
+    // nearly equal numbers, whose differences are exact
+    return normalize(float3(a - b + (d - c), c - a + (d - b), b - a + (d - c)));
 }
 
 // Sphere tracing: draws a scene given as a distance function; where a ray meets nothing it returns false.

@@ -48,13 +48,12 @@ def jelly_scene(p):
 def scene_normal(p):
     """The gradient of the scene at `p`, from the four corners of a tetrahedron about it."""
     e = HIT_TOLERANCE * vec(1.0, -1.0)
-    a = swizzle(e, "xyy")
-    b = swizzle(e, "yyx")
-    c = swizzle(e, "yxy")
-    d = swizzle(e, "xxx")
-    gradient = a * jelly_scene(p + a) + b * jelly_scene(p + b)
-    gradient = gradient + (c * jelly_scene(p + c) + d * jelly_scene(p + d))
-    return normalize(gradient)
+    a = jelly_scene(p + swizzle(e, "xyy"))
+    b = jelly_scene(p + swizzle(e, "yyx"))
+    c = jelly_scene(p + swizzle(e, "yxy"))
+    d = jelly_scene(p + swizzle(e, "xxx"))
+    # nearly equal numbers, whose differences are exact
+    return normalize(vec(a - b + (d - c), c - a + (d - b), b - a + (d - c)))
 
 def raymarch(ray_origin, ray_direction, max_distance):
     """Sphere tracing: draws a scene given as a distance function; where a ray meets nothing it returns false."""

@@ -1,0 +1,67 @@
+"""A technique on one back end against the oracle, as one check."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from ..diagnostics import failure
+from . import evaluate
+from .backends import Array, Backend
+from .deviation import GOAL, deviation, errors
+from .evaluate import Inputs
+from .outcome import Outcome
+from .probes import Subject
+
+
+def check_tolerance(given: Any) -> float:
+    """A tolerance. Raises SssgenError where it is none."""
+    good = isinstance(given, int | float) and not isinstance(given, bool) and math.isfinite(given) and given >= 0.0
+    if not good:
+        raise failure(f"{given!r} is no tolerance", f"a number from 0; {GOAL:g} is usual")
+    return float(given)
+
+
+def agrees(
+    subject: Subject,
+    inputs: Inputs,
+    oracle: Mapping[str, Array],
+    backend: Backend,
+    blurred: Callable[[], Mapping[str, Array]],
+    tolerance: float = GOAL,
+) -> tuple[dict[str, Array], Outcome]:
+    """The back end's outputs, and whether they are the oracle's within `tolerance`, relative above 1.
+
+    `blurred` gives what float32 itself blurs, which excuses lanes as in `sssgen.harness.deviation`. Raises SssgenError
+    for a back end that refuses.
+    """
+    found = evaluate.run(subject, inputs, backend)
+    apart = deviation(found, oracle, blurred)
+    excused = f", float32 blurs {apart.excused} more by up to {apart.furthest:.2g}" if apart.excused else ""
+    told = f"{backend.name} deviates by {apart.largest:.2g} at most{excused}"
+    if apart.largest <= tolerance:
+        return found, Outcome("passed", told)
+    where = f"{apart.output}[{apart.lane}] is {apart.got.tolist()}, and in float64 {apart.wanted.tolist()}"
+    return found, Outcome("failed", f"{backend.name} deviates by {apart.largest:.2g}, more than {tolerance:g}", where)
+
+
+def known(oracle: Mapping[str, Array], wanted: Mapping[str, Any], tolerance: float) -> Outcome:
+    """Whether the oracle's outputs are numbers known from elsewhere. Raises SssgenError for what cannot be compared."""
+    for name, given in wanted.items():
+        if name not in oracle:
+            raise failure(f"there is no output '{name}'", f"outputs: {', '.join(oracle)}")
+        got = np.atleast_1d(oracle[name])
+        try:
+            right = np.broadcast_to(np.asarray(given, np.float64), got.shape)
+        except (ValueError, TypeError):
+            shape = "×".join(map(str, got.shape))
+            raise failure(f"output '{name}' cannot be compared with what is given", f"numbers, {shape}") from None
+        apart = errors(got, right)
+        lane = int(np.argmax(apart))
+        if not apart[lane] <= tolerance:
+            where = f"{name}[{lane}] is {got[lane].tolist()}, and {right[lane].tolist()} was given"
+            return Outcome("failed", f"the oracle deviates by {apart[lane]:.2g}, more than {tolerance:g}", where)
+    return Outcome("passed", f"{len(wanted)} outputs as given")

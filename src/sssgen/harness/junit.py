@@ -1,0 +1,56 @@
+"""A run of `sssgen ci` as JUnit's XML, which Jenkins, GitLab and GitHub's readers show."""
+
+from __future__ import annotations
+
+import os
+import xml.etree.ElementTree as ET
+from collections import Counter
+from collections.abc import Sequence
+
+from ..data import posix
+from ..diagnostics import visible
+from ..output import write_files
+from .ci import Ran
+
+SUITE = "sssgen ci"
+
+
+def write(path: str, results: Sequence[Ran]) -> None:
+    """Writes the report, whole or not at all. Raises SssgenError where that cannot be done."""
+    folder, name = os.path.split(path)
+    write_files(folder, {name: document(results)})
+
+
+def document(results: Sequence[Ran]) -> bytes:
+    """The report: one suite, one test case for each case, in UTF-8."""
+    count = Counter(ran.outcome.state for ran in results)
+    counts = {
+        "name": SUITE, "tests": str(len(results)), "failures": str(count["failed"]), "errors": "0",
+        "skipped": str(count["skipped"]), "time": f"{sum(ran.seconds for ran in results):.3f}",
+    }  # fmt: skip
+    top = ET.Element("testsuites", counts)
+    suite = ET.SubElement(top, "testsuite", counts)
+    for ran in results:
+        suite.append(_case(ran))
+    ET.indent(top)
+    found: bytes = ET.tostring(top, "utf-8", xml_declaration=True)
+    return found + b"\n"
+
+
+def _case(ran: Ran) -> ET.Element:
+    case, outcome = ran.case, ran.outcome
+    facts = {"classname": case.kind, "name": case.name, "file": posix(case.path), "time": f"{ran.seconds:.3f}"}
+    element = ET.Element("testcase", {key: _clean(value) for key, value in facts.items()})
+    told = {"message": _clean(outcome.told)}
+    if outcome.state == "failed":
+        ET.SubElement(element, "failure", {**told, "type": case.kind}).text = _clean(outcome.text)
+    elif outcome.state == "skipped":
+        ET.SubElement(element, "skipped", told)
+    if outcome.state != "failed":
+        ET.SubElement(element, "system-out").text = _clean(outcome.text)
+    return element
+
+
+def _clean(text: str) -> str:
+    """Text without what XML cannot hold: a compiler may say anything."""
+    return "\n".join(visible(line) for line in text.split("\n"))
