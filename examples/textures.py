@@ -124,7 +124,7 @@ def ice() -> dict[str, Any]:
     rim = -np.max(np.stack(sides), axis=0) + 0.16 * rough
     left = np.clip(0.5 + 1.6 * rim, 0.0, 1.0)
     for at_x, at_y, radius in ((0.36, 0.3, 0.17), (0.1, 0.52, 0.09), (0.52, -0.06, 0.07), (-0.5, 0.02, 0.06)):
-        away = np.hypot(x - at_x, 1.2 * (y - at_y)) - radius + 0.2 * rougher
+        away = np.hypot(x - at_x, 1.2 * (y - at_y)) - radius + 0.28 * rougher
         left = np.minimum(left, np.clip(0.5 + 1.6 * away, 0.0, 1.0))
     return {"base_color": base, "cover": cover, "packed": packed, "erosion": left}
 
@@ -162,10 +162,10 @@ def ice_inlay() -> dict[str, Any]:
     inside, veins, hue = leaves()
     clouds, mottle = noise(21), noise(22, 1.5)
     bubbles = smooth(0.011, 0.005, around(23)[0])
-    frozen = blend(color("#9dbccd"), color("#eef6fa"), np.clip(clouds + 0.25 * bubbles, 0.0, 1.0))
+    frozen = blend(color("#6c9bb4"), color("#d8eaf2"), np.clip(clouds + 0.25 * bubbles, 0.0, 1.0))
     leaf = blend(color("#a5330f"), color("#e8a928"), np.clip(hue + 0.6 * (mottle - 0.5), 0.0, 1.0))
     base = blend(frozen, blend(leaf, color("#f6d98a"), 0.6 * veins), inside)
-    shade = inside * (0.5 - 0.3 * veins)
+    shade = inside * (0.8 - 0.35 * veins)
     thickness = np.clip(0.16 + 0.5 * clouds - 0.12 * bubbles + shade, 0.0, 1.0)
     return {"base_color": base, "thickness": thickness}
 

@@ -12,7 +12,7 @@ import pytest
 from against_numpy import Array, Draw, arguments, differences
 from random_programs import HELPERS, Programs
 from sssgen.harness.backends import Backend, Call
-from sssgen.harness.probes import _probes
+from sssgen.harness.probes import probes_of
 from sssgen.ir.nodes import Function, Module, Param
 from sssgen.ir.types import kind_of
 from sssgen.lang.loader import load_text
@@ -53,7 +53,7 @@ def random_module() -> tuple[Module, tuple[Function, ...]]:
         functions.append(source[source.index("float f(") :].replace("float f(", f"float random_{seed}(", 1))
     module = load_text("\n".join([HELPERS, *functions]), "random")
     made = [
-        probe for function in module.functions if function.name.startswith("random_") for _, probe in _probes(function)
+        probe for function in module.functions if function.name.startswith("random_") for _, probe in probes_of(function)
     ]
     return module._replace(functions=(*module.functions, *made)), tuple(made)
 

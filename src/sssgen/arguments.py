@@ -143,7 +143,7 @@ def parser() -> argparse.ArgumentParser:
     ci = command(
         "ci",
         "ci",
-        "check a folder: compile its materials, compare its scenes with golden pictures and its numbers with the oracle",
+        "check a folder: compile its materials, compare its scenes with golden pictures, run its numbers",
         "examples:\n"
         "  sssgen ci shaders --junit report.xml\n"
         "  sssgen ci shaders --update\n"

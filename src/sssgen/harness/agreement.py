@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from ..diagnostics import failure
 from . import evaluate
-from .backends import Array, Backend
-from .deviation import GOAL, deviation, errors
+from .backends import Array, Backend, get
+from .deviation import GOAL, blur, deviation, errors
 from .evaluate import Inputs
 from .outcome import Outcome
 from .probes import Subject
@@ -25,25 +25,24 @@ def check_tolerance(given: Any) -> float:
     return float(given)
 
 
-def agrees(
+def against_oracle(
     subject: Subject,
     inputs: Inputs,
-    oracle: Mapping[str, Array],
     backend: Backend,
-    blurred: Callable[[], Mapping[str, Array]],
     tolerance: float = GOAL,
+    oracle: Mapping[str, Array] | None = None,
 ) -> tuple[dict[str, Array], Outcome]:
-    """The back end's outputs, and whether they are the oracle's within `tolerance`, relative above 1.
+    """The back end's outputs, lanes first, and whether they are the oracle's within `tolerance`, relative above 1.
 
-    `blurred` gives what float32 itself blurs, which excuses lanes as in `sssgen.harness.deviation`. Raises SssgenError
-    for a back end that refuses.
+    Lanes that float32 itself must blur are excused as in `sssgen.harness.deviation`. `oracle` has its outputs, where
+    they are known already. Raises SssgenError for a back end that refuses.
     """
+    right = evaluate.run(subject, inputs, get("numpy")) if oracle is None else oracle
     found = evaluate.run(subject, inputs, backend)
-    apart = deviation(found, oracle, blurred)
+    apart = deviation(found, right, lambda: blur(subject, inputs, right))
     excused = f", float32 blurs {apart.excused} more by up to {apart.furthest:.2g}" if apart.excused else ""
-    told = f"{backend.name} deviates by {apart.largest:.2g} at most{excused}"
     if apart.largest <= tolerance:
-        return found, Outcome("passed", told)
+        return found, Outcome("passed", f"{backend.name} deviates by {apart.largest:.2g} at most{excused}")
     where = f"{apart.output}[{apart.lane}] is {apart.got.tolist()}, and in float64 {apart.wanted.tolist()}"
     return found, Outcome("failed", f"{backend.name} deviates by {apart.largest:.2g}, more than {tolerance:g}", where)
 

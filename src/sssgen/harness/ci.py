@@ -20,7 +20,6 @@ import os
 import re
 import tomllib
 from collections.abc import Iterator, Sequence
-from functools import cache
 from time import perf_counter
 from typing import Any, Literal, NamedTuple
 
@@ -29,9 +28,6 @@ from ..diagnostics import SssgenError, failure
 from ..lang.loader import read_text
 from .compiles import compiled
 from .outcome import Outcome, beside, lacking
-
-GOLDEN = "golden"
-"""The folder of golden pictures, beside the scenes."""
 
 EVAL = ".eval.json"
 
@@ -158,7 +154,7 @@ class Run:
         from .render import render
         from .scene import load
 
-        (name,), folder = case.backends, os.path.join(os.path.dirname(case.path), GOLDEN)
+        (name,), folder = case.backends, os.path.join(os.path.dirname(case.path), golden.FOLDER)
         try:
             backend = self._backends().get(name)
         except CompilerMissing as reason:
@@ -170,9 +166,9 @@ class Run:
         return golden.compared(picture, folder, stem(case.path), limit, "" if case.first else f".{name}")
 
     def _eval(self, case: Case) -> Outcome:
-        from .agreement import agrees, check_tolerance, known
+        from .agreement import against_oracle, check_tolerance, known
         from .backends import NAMES, CompilerMissing, get
-        from .deviation import GOAL, blur
+        from .deviation import GOAL
         from .evaluate import fitted, run
         from .inputs import read
         from .probes import subject
@@ -191,16 +187,16 @@ class Run:
         outcome = known(oracle, given.get("outputs", {}), tolerance)
         if outcome.state == "failed":
             return outcome
-        blurred = cache(lambda: blur(chosen, fit, oracle))
         told: dict[str, Outcome] = {}
         for name in case.backends or [name for name in NAMES if name not in ("numpy", "numpy-f16")]:
             try:
-                told[name] = agrees(chosen, fit, oracle, self._backends().get(name), blurred, tolerance)[1]
+                told[name] = against_oracle(chosen, fit, self._backends().get(name), tolerance, oracle)[1]
             except CompilerMissing as reason:
-                told[name] = lacking(f"the back end {name}", str(reason))
+                if case.backends:
+                    told[name] = lacking(f"the back end {name}", str(reason))
             except SssgenError as error:  # of one back end: the others are asked all the same
                 told[name] = Outcome("failed", f"{name} failed", str(error))
-        return _summary(told, named=bool(case.backends))
+        return _summary(told)
 
     def _backends(self) -> Any:
         if self.started is None:
@@ -210,10 +206,8 @@ class Run:
         return self.started
 
 
-def _summary(told: dict[str, Outcome], named: bool) -> Outcome:
-    """What several back ends said, in one; those that are missing count only where they were named."""
-    if not named:
-        told = {name: one for name, one in told.items() if " is missing: " not in one.told}
+def _summary(told: dict[str, Outcome]) -> Outcome:
+    """What several back ends said, in one."""
     bad = [one for one in told.values() if one.state == "failed"]
     skipped = [one for one in told.values() if one.state == "skipped"]
     detail = "\n".join(one.text for one in (bad or told.values()))

@@ -68,7 +68,9 @@ def _diagnostic(result: Result, message: Message) -> Diagnostic:
     name, lines = result.shader.name, result.shader.text.split("\n")
     emitted = f"line {message.line} of {name}: {lines[message.line - 1].strip()}" if message.line else name
     if not (origin := result.origin(message)):
-        return Diagnostic("error", text, Span(name, message.line, message.column, message.line, message.column), emitted)
+        return Diagnostic(
+            "error", text, Span(name, message.line, message.column, message.line, message.column), emitted
+        )
     file, line, column = origin.rsplit(":", 2)
     span = Span(file, int(line), int(column), int(line), int(column) + 1)
     return Diagnostic("error", text, span, emitted, check.source_line(origin))

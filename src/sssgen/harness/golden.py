@@ -29,6 +29,9 @@ less in 1 % of the values, as another driver may round, is 0.002. A change of 5 
 (distortion), 0.019 (power), 0.024 (attenuation_distance) and 0.035 (scale).
 """
 
+FOLDER = "golden"
+"""The folder of golden pictures, beside the scenes or the test file."""
+
 FAILURES = "sssgen-failures"
 """The folder, beside the golden one, for pictures that differ."""
 
@@ -40,20 +43,21 @@ def check_limit(flip: float) -> float:
     return flip
 
 
-def compared(picture: npt.ArrayLike, folder: str, name: str, limit: float = FLIP, label: str = "") -> Outcome:
+def compared(
+    picture: npt.ArrayLike, folder: str, name: str, limit: float = FLIP, label: str = "", update: str = "--update"
+) -> Outcome:
     """An encoded picture, (height, width, 3), against `folder`/`name`.png; both have 8 bits a channel.
 
-    `label` goes into the names of what is written of a failure. Raises SssgenError for a golden picture that cannot be
-    read, and for what is no picture.
+    `label` goes into the names of what is written of a failure; `update` is the option that makes golden pictures.
+    Raises SssgenError for a golden picture that cannot be read, and for what is no picture.
     """
+    check_limit(limit)
     path = _path(folder, name)
     actual, shown = _rounded(picture), posix(path)
     kept = [os.path.join(_failures(folder), f"{name}{label}.{what}.png") for what in ("actual", "difference")]
-    for old in kept:  # of an earlier run: they would be taken for this one's
-        with contextlib.suppress(OSError):
-            os.unlink(old)
+    _clear(kept)  # of an earlier run: they would be taken for this one's
     if not os.path.isfile(path):
-        told = f"there is no golden picture {shown}"
+        told = f"there is no golden picture {shown}: {update} writes it"
         return Outcome("failed", told, _written({kept[0]: actual}))
     golden = _color(images.read(path))
     if golden.shape != actual.shape:
@@ -83,6 +87,14 @@ def _path(folder: str, name: str) -> str:
 
 def _failures(folder: str) -> str:
     return os.path.join(os.path.dirname(os.path.normpath(folder)), FAILURES)
+
+
+def _clear(paths: list[str]) -> None:
+    for path in paths:
+        with contextlib.suppress(OSError):
+            os.unlink(path)
+    with contextlib.suppress(OSError):
+        os.rmdir(os.path.dirname(paths[0]))  # if that was all
 
 
 def _rounded(picture: npt.ArrayLike) -> Array:
@@ -116,4 +128,6 @@ def _write(path: str, picture: Array) -> None:
     try:
         images.write_png(path, picture)
     except SssgenError as error:  # its hint is for commands with -o
-        raise SssgenError([found._replace(hint="may you write to that folder?") for found in error.diagnostics]) from None
+        raise SssgenError(
+            [found._replace(hint="may you write to that folder?") for found in error.diagnostics]
+        ) from None

@@ -67,7 +67,7 @@ def of_stages(name: str, stages: Sequence[LinkStage]) -> Subject:
         linked = link(list(stages))
     except LinkError as error:
         raise failure(error.message) from None
-    made = [(output, probe) for function in linked.functions for output, probe in _probes(function)]
+    made = [(output, probe) for function in linked.functions for output, probe in probes_of(function)]
     module = linked.module._replace(functions=(*linked.module.functions, *(probe for _, probe in made)))
     roots = [probe.key for _, probe in made]
     module, _ = hoist(prune(fold(module), roots), roots)
@@ -111,7 +111,7 @@ def _bound(
     return found
 
 
-def _probes(function: Function) -> list[tuple[str, Function]]:
+def probes_of(function: Function) -> list[tuple[str, Function]]:
     """(output, function): one for each thing that a technique gives."""
     span = function.span
     outs = [param for param in function.params if param.direction != "in"]

@@ -38,8 +38,8 @@ class Reference(Backend):
         try:
             with precision(self.dtype), grid(shape.rows, shape.width):
                 found = functions[call.function](*args)
-                value, gone = found if isinstance(found, tuple) else (found, False)
-                value = np.where(gone, 0, value)
+                value, gone = found if isinstance(found, tuple) else (found, None)
+                value = value if gone is None else np.where(gone, np.zeros_like(value), value)
         except MemoryError:
             raise gave_up(self.name, f"no memory for {lanes} evaluations of {call.function}") from None
         value = np.asarray(value)
