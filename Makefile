@@ -1,5 +1,6 @@
 # make demo   emit every example for every target into out/ and compile all of it
 # make test   the tests, but the slow ones (make test-long)      make lint   ruff and mypy
+# make gallery  the example scenes' pictures, and docs/gallery.md
 # make bench  the benchmarks   make setup  what the others need, done once: .venv, system packages, compilers
 
 PYTHON := $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
@@ -10,16 +11,18 @@ NODE_PACKAGES := webgpu@0.6.2
 BUILT_PACKAGES := compushady==0.17.5
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
+MATERIALS := $(filter-out %/scene.toml %/scene_mesh.toml,$(wildcard examples/*/*.toml))
+
 export PYTHONUTF8 := 1
 .DELETE_ON_ERROR:
-.PHONY: setup demo test test-long lint bench clean
+.PHONY: setup demo test test-long lint bench gallery clean
 
 setup: .venv/done build/node/done
 
 demo: setup
 	rm -rf out
-	$(BIN)/sssgen emit $(wildcard examples/*/*.toml) --target all --form shader -o out
-	$(BIN)/sssgen emit $(wildcard examples/*/*.toml) --target all --form functions -o out
+	$(BIN)/sssgen emit $(MATERIALS) --target all --form shader -o out
+	$(BIN)/sssgen emit $(MATERIALS) --target all --form functions -o out
 	$(BIN)/sssgen check out
 
 test: setup
@@ -35,6 +38,9 @@ lint: setup
 
 bench: setup
 	for file in $(wildcard benchmarks/bench_*.py); do $(BIN)/python $$file || exit 1; done
+
+gallery: setup
+	$(BIN)/python docs/gallery.py
 
 clean:
 	rm -rf .venv build out

@@ -35,7 +35,8 @@ def checkout(state: str, place: Path) -> Path:
 
 def emitted(project: Path, materials: Path, out: Path) -> dict[str, str]:
     """The texts that a state of the project makes of the example materials in `materials`, by file name."""
-    names = [path.relative_to(materials).as_posix() for path in sorted(materials.glob("examples/*/*.toml"))]
+    found = [path for path in sorted(materials.glob("examples/*/*.toml")) if path.stem == path.parent.name]
+    names = [path.relative_to(materials).as_posix() for path in found]
     environment = {**os.environ, "PYTHONPATH": str(project / "src"), "SSSGEN_CACHE": ""}
     for form in ("shader", "functions"):
         command = [sys.executable, "-m", "sssgen", "emit", *names, "--target", "all", "--form", form, "-o", str(out)]

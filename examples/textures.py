@@ -16,26 +16,25 @@ from PIL import Image
 
 SIZE = 512
 """Texels along each side."""
-COARSE = 256
-"""The same where nothing is fine."""
 
 
 # What pictures are made of. Arrays are (height, width), row 0 at v = 0, until they are written.
 
 
-def grid(size: int = SIZE) -> tuple[Any, Any]:
+def grid() -> tuple[Any, Any]:
     """u and v at the texels' centres."""
-    v, u = np.mgrid[0:size, 0:size]
-    return (u + 0.5) / size, (v + 0.5) / size
+    v, u = np.mgrid[0:SIZE, 0:SIZE]
+    return (u + 0.5) / SIZE, (v + 0.5) / SIZE
 
 
-def noise(seed: int, roughness: float = 2.0, size: int = SIZE, stretch: float = 1.0) -> Any:
+def noise(seed: int, roughness: float = 2.0, stretch: float = 1.0) -> Any:
     """Cloudy noise 0 to 1 that tiles: white noise whose spectrum falls with the frequency.
 
     The larger `roughness`, the softer; `stretch` above 1 draws it out along u.
     """
-    frequency = np.hypot(np.fft.fftfreq(size)[:, None] * size, np.fft.fftfreq(size) * size * stretch)
-    white = np.fft.fft2(np.random.default_rng(seed).standard_normal((size, size)))
+    waves = np.fft.fftfreq(SIZE) * SIZE
+    frequency = np.hypot(waves[:, None], waves * stretch)
+    white = np.fft.fft2(np.random.default_rng(seed).standard_normal((SIZE, SIZE)))
     clouds = np.fft.ifft2(white / np.maximum(frequency, 1.0) ** roughness).real
     return np.clip(0.5 + clouds / (5.0 * clouds.std()), 0.0, 1.0)
 
@@ -64,15 +63,17 @@ def bumps(height: Any, strength: float) -> Any:
     return 0.5 + 0.5 * normal / np.linalg.norm(normal, axis=-1, keepdims=True)
 
 
-def around(seed: int, size: int = SIZE) -> tuple[Any, Any]:
+def around(seed: int) -> tuple[Any, Any]:
     """Distances to the nearest and to the second nearest of scattered points, in uv; they tile."""
-    points = np.random.default_rng(seed).random((28, 2))
-    u, v = grid(size)
-    apart = [
-        np.hypot((u - x + 0.5) % 1.0 - 0.5, (v - y + 0.5) % 1.0 - 0.5) for x, y in points
-    ]
-    nearest = np.sort(np.stack(apart), axis=0)
-    return nearest[0], nearest[1]
+    middles = (np.arange(SIZE) + 0.5) / SIZE
+    nearest = np.full((SIZE, SIZE), 4.0)
+    second = nearest
+    for x, y in np.random.default_rng(seed).random((28, 2)):
+        across, up = (np.abs((middles - at + 0.5) % 1.0 - 0.5) for at in (x, y))
+        square = up[:, None] ** 2 + across**2
+        second = np.minimum(second, np.maximum(nearest, square))
+        nearest = np.minimum(nearest, square)
+    return np.sqrt(nearest), np.sqrt(second)
 
 
 # The examples
@@ -106,7 +107,7 @@ def ice() -> dict[str, Any]:
     drift = 0.24 + 0.1 * np.sin(2.0 * np.pi * (u + 0.1)) + 0.05 * np.sin(6.0 * np.pi * u + 1.0) + 0.09 * (clouds - 0.5)
     snow = smooth(0.03, -0.03, v - drift + 0.1 * (fine - 0.5))
     frost = 0.5 * smooth(0.55, 0.95, noise(13, 1.7))
-    bare = blend(color("#6ea3c0"), color("#d2e8f3"), np.clip(0.7 * clouds + frost, 0.0, 1.0))
+    bare = blend(color("#5f97b8"), color("#cce4f0"), np.clip(0.7 * clouds + frost, 0.0, 1.0))
     powder = blend(color("#eef2f6"), color("#ffffff"), fine)
     base = blend(bare, powder, snow)
     cover = np.clip(snow + 0.3 * frost, 0.0, 1.0)
@@ -163,9 +164,9 @@ def ice_inlay() -> dict[str, Any]:
     clouds, mottle = noise(21), noise(22, 1.5)
     bubbles = smooth(0.011, 0.005, around(23)[0])
     frozen = blend(color("#6c9bb4"), color("#d8eaf2"), np.clip(clouds + 0.25 * bubbles, 0.0, 1.0))
-    leaf = blend(color("#a5330f"), color("#e8a928"), np.clip(hue + 0.6 * (mottle - 0.5), 0.0, 1.0))
+    leaf = blend(color("#c0390b"), color("#f2b21f"), np.clip(hue + 0.6 * (mottle - 0.5), 0.0, 1.0))
     base = blend(frozen, blend(leaf, color("#f6d98a"), 0.6 * veins), inside)
-    shade = inside * (0.8 - 0.35 * veins)
+    shade = inside * (0.85 - 0.3 * veins)
     thickness = np.clip(0.16 + 0.5 * clouds - 0.12 * bubbles + shade, 0.0, 1.0)
     return {"base_color": base, "thickness": thickness}
 

@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from sssgen.data import folder
+from sssgen.material import examples
 from sssgen.version import VERSION
 
 ROOT = Path(__file__).parents[1]
@@ -76,7 +77,7 @@ def test_the_wheel_carries_what_it_needs_and_nothing_else(wheel: Path) -> None:
 
 def test_the_wheel_emits_what_the_checkout_emits(installed: Path, tmp_path: Path) -> None:
     """Every example for every target, each side with its own hash seed and with no cache to begin with."""
-    names = [path.stem for path in sorted(folder("examples").glob("*/*.toml"))]
+    names = list(examples())
     wheel_run = [installed / "sssgen", "emit", *names, "--target", "all", "-o", "wheel"]
     run(*wheel_run, cwd=tmp_path, PYTHONHASHSEED="1", SSSGEN_CACHE=str(tmp_path / "cache_1"))
     checkout_run = [sys.executable, "-m", "sssgen", "emit", *names, "--target", "all", "-o", "checkout"]

@@ -41,12 +41,12 @@ CASES = {
     "atan(x, y)": {"glsl": "atan(x, y)", "hlsl": "atan2(x, y)", "wgsl": "atan2(x, y)"},
     "atan(x3, y3)": {"glsl": "atan(x3, y3)", "hlsl": "atan2(x3, y3)", "wgsl": "atan2(x3, y3)"},
     "asinh(x)": {
-        "glsl": "asinh(x)",
+        "glsl": "sign(x) * log(abs(x) + sqrt(x * x + 1.0))",
         "hlsl": "float(sign(x)) * log(abs(x) + sqrt(x * x + 1.0))",
         "wgsl": "sign(x) * log(abs(x) + sqrt(x * x + 1.0))",
     },
     "asinh(x3)": {
-        "glsl": "asinh(x3)",
+        "glsl": "sign(x3) * log(abs(x3) + sqrt(x3 * x3 + 1.0))",
         "hlsl": "float3(sign(x3)) * log(abs(x3) + sqrt(x3 * x3 + 1.0))",
         "wgsl": "sign(x3) * log(abs(x3) + sqrt(x3 * x3 + 1.0))",
     },

@@ -131,7 +131,7 @@ def parser() -> argparse.ArgumentParser:
         "  sssgen render scenes/lantern.toml -o lantern.png\n"
         "  sssgen render --compare lantern.png golden.png -o difference.png",
     )
-    render.add_argument("SCENE", nargs="?", help="a scene's .toml file")
+    render.add_argument("SCENE", nargs="?", help="a scene's .toml file, or an example")
     render.add_argument("-o", "--output", metavar="FILE", help="a .png or .exr; default: SCENE's name and .png")
     render.add_argument(
         "--backend", "-b", metavar="NAME", default="gl", help="gl (default), webgpu, browser, hlsl, numpy, …"

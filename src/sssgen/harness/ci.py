@@ -106,7 +106,7 @@ def _kind(path: str) -> Kind | None:
     try:
         data: dict[str, Any] = tomllib.loads(text)
     except (tomllib.TOMLDecodeError, RecursionError):
-        head = text.partition("\n[")[0]
+        head = f"\n{text}".partition("\n[")[0]
         if re.search(r"^\s*\[material\]", text, re.MULTILINE):
             return "compile"
         return "render" if re.search(r"^\s*material\s*=", head, re.MULTILINE) else None
@@ -137,8 +137,7 @@ class Run:
         try:
             outcome = {"compile": self._compile, "render": self._render, "eval": self._eval}[case.kind](case)
         except SssgenError as error:
-            rest = [found.render() for found in error.diagnostics]
-            outcome = Outcome("failed", error.diagnostics[0].message, "\n\n".join(rest))
+            outcome = _failed(error)
         except ImportError as error:
             outcome = lacking("a package", f"{error}: pip install 'sssgen[render]'")
         except Exception as error:  # the others are checked all the same
@@ -204,6 +203,12 @@ class Run:
 
             self.started = Started()
         return self.started
+
+
+def _failed(error: SssgenError) -> Outcome:
+    shown = "\n\n".join(found.render() for found in error.diagnostics)
+    told = " ".join(error.diagnostics[0].message.split())
+    return Outcome("failed", told, "" if shown == f"error: {told}" else shown)
 
 
 def _summary(told: dict[str, Outcome]) -> Outcome:

@@ -165,28 +165,29 @@ def sssgen_golden(request: pytest.FixtureRequest, sssgen_backend: str, _sssgen_s
         __tracebackhide__ = True
         for module in ("PIL", "flip_evaluator"):
             _need(module)
-        backend = _backend(_sssgen_started, sssgen_backend)
-        _end(_guarded(lambda: _golden(request, picture, name, flip, backend)))
+        from .scene import Scene
+
+        if isinstance(picture, str | os.PathLike | Scene):
+            scene, backend = picture, _backend(_sssgen_started, sssgen_backend)
+            picture = _guarded(lambda: _render(request, scene, backend))
+        _end(_guarded(lambda: _golden(request, picture, name, flip, sssgen_backend)))
 
     return golden
 
 
-def _golden(request: pytest.FixtureRequest, picture: Any, name: str, flip: float | None, backend: Backend) -> Outcome:
+def _golden(request: pytest.FixtureRequest, picture: Any, name: str, flip: float | None, backend: str) -> Outcome:
     from . import golden
     from .render import Rendered
-    from .scene import Scene
 
-    if isinstance(picture, str | os.PathLike | Scene):
-        picture = _render(request, picture, backend)
     encoded = picture.encoded if isinstance(picture, Rendered) else picture
     config, names = request.config, _names(request.config)
     given = str(config.getini("sssgen_golden"))
     folder = str(config.rootpath / given if given else request.path.parent / golden.FOLDER)
-    if config.getoption("sssgen_update") and backend.name == names[0]:
+    if config.getoption("sssgen_update") and backend == names[0]:
         return golden.updated(encoded, folder, name)
     limits = (flip, config.getoption("sssgen_flip"), golden.FLIP)
     limit = next(one for one in limits if one is not None)
-    label = f".{backend.name}" if len(names) > 1 else ""
+    label = f".{backend}" if len(names) > 1 else ""
     return golden.compared(encoded, folder, name, limit, label, update="--sssgen-update")
 
 

@@ -22,9 +22,10 @@ from ..ir.nodes import Uniform
 from ..material import Material, load_material
 from ..material_values import WrongValue, read_value
 from ..targets.numpy_textures import Texture
-from . import dice, inputs
+from . import dice, inputs, unity_shell
 from .backends import Array, Backend, DrawingBackend
 from .backends.reference import Reference
+from .backends.unity import UnityHLSL
 from .evaluate import half
 from .images import decode_srgb, encode_srgb
 from .scene import DistanceTexture, Scene
@@ -118,15 +119,12 @@ def _shade(compiled: Compiled, shell: Shell, backend: Backend, size: tuple[int, 
     """The samples, (height, width, 4), row 0 at the bottom."""
     if isinstance(backend, Reference):
         return shade(compiled, shell, size, points, backend.dtype)
-    if not isinstance(backend, DrawingBackend) or "vertex" not in _all_stages(compiled.reflection):
-        raise failure(f"{backend.name} draws no pictures", "it runs functions: sssgen eval")
+    if isinstance(backend, UnityHLSL):
+        return unity_shell.shade(compiled, shell, backend, size, points)
+    assert isinstance(backend, DrawingBackend)
     triangles = None if points is None else dice.triangles(size)
     picture = backend.draw(drawing(compiled, shell, size, points, triangles))
     return picture[::-1] if backend.top_first else picture
-
-
-def _all_stages(reflection: Mapping[str, Any]) -> set[str]:
-    return {stage for file in reflection["files"] for stage in file["stages"]}
 
 
 def _developed(scene: Scene, reflection: Mapping[str, Any], samples: Array, hit: Array) -> Rendered:

@@ -11,8 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from sssgen.data import posix
+from sssgen.diagnostics import did_you_mean, failure
 from sssgen.ir.spans import Span
 from sssgen.lang.loader import read_text
+from sssgen.material import examples
 from sssgen.toml_source import Document, parse
 
 from .camera import Camera
@@ -112,7 +114,14 @@ class Scene:
 
 
 def load(path: str | os.PathLike[str]) -> Scene:
-    """The scene that a TOML file describes. Raises SssgenError with all that is wrong with it."""
+    """The scene of a TOML file, or of an example by its name. Raises SssgenError with all that is wrong with it."""
+    text = os.fspath(path)
+    if not text.endswith(".toml") and "/" not in text and "\\" not in text and not os.path.isfile(text):
+        known = examples()
+        if text not in known:
+            hint = did_you_mean(text, known) or f"give a path that ends in .toml, or one of: {', '.join(known)}"
+            raise failure(f"unknown scene '{text}'", hint)
+        path = os.path.join(os.path.dirname(known[text]), "scene.toml")
     return parse_scene(read_text(os.fspath(path), posix(path)), path)
 
 

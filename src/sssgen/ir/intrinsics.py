@@ -180,7 +180,7 @@ BUILTINS: dict[str, Builtin] = _table(
     ),
     Builtin("asinh", _F1, "Inverse hyperbolic sine.",
         inside="abs(x) < 1e19",
-        domain="|x| < 1e19", texts={"hlsl": "", "wgsl": ""},
+        domain="|x| < 1e19", texts={"glsl": "", "hlsl": "", "wgsl": ""},  # NVIDIA and SwiftShader lose large negative x
         polyfill="genF asinh(genF x) { return sign(x) * log(abs(x) + sqrt(x * x + 1.0)); }",
         kind="transcendental", cost=14, absolute=2.0**-20, clause=_BY_LOG,
         vectors=(((1.0,), 0.881373587019543), ((0.0,), 0.0), ((-2.0,), -1.4436354751788103)),

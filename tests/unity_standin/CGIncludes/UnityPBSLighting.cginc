@@ -3,6 +3,7 @@
 #define SSSGEN_STANDIN_PBS_LIGHTING
 #include "UnityCG.cginc"
 #include "UnityLightingCommon.cginc"
+#include "StandardLight.hlsl"
 
 struct SurfaceOutputStandard
 {
@@ -29,9 +30,9 @@ UnityGI UnityGlobalIllumination(UnityGIInput data, half occlusion, half3 normal)
 
 half4 LightingStandard(SurfaceOutputStandard s, float3 viewDir, UnityGI gi)
 {
-    half3 diffuse = gi.light.color * saturate(dot(s.Normal, gi.light.dir)) + gi.indirect.diffuse;
-    half sheen = saturate(dot(s.Normal, normalize(viewDir + gi.light.dir))) * s.Smoothness * s.Metallic;
-    return half4(s.Albedo * diffuse + sheen * gi.light.color + gi.indirect.specular, s.Alpha);
+    float3 normal = normalize(s.Normal);
+    half3 direct = standin_standard(normal, viewDir, gi.light.dir, s.Albedo, s.Metallic, 1.0 - s.Smoothness);
+    return half4(s.Albedo * gi.indirect.diffuse + direct * gi.light.color + gi.indirect.specular, s.Alpha);
 }
 
 void LightingStandard_GI(SurfaceOutputStandard s, UnityGIInput data, inout UnityGI gi)

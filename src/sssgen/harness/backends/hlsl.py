@@ -13,7 +13,12 @@ from ..compilers import CompilerMissing, Message, dxc, glslang
 from .base import ATTRIBUTES, Drawing, Stage, Text, refused
 from .opengl import _HEADS, _SCREEN, OpenGL
 
-_SEMANTICS = {"position": "POSITION", "normal": "NORMAL", "tangent": "TANGENT", "uv": "TEXCOORD0"}
+_ENDINGS = {
+    "position": ("POSITION", "_position", "_vertex"),
+    "normal": ("NORMAL", "_normal"),
+    "tangent": ("TANGENT", "_tangent"),
+    "uv": ("TEXCOORD0", "_uv", "_texcoord"),
+}
 _TIMEOUT = 120.0
 
 
@@ -54,8 +59,7 @@ class HLSL(OpenGL):
 
     def attribute(self, program: Any, name: str) -> str:
         """Vertex inputs are called after their semantics by DXC, after their structure's members by glslang."""
-        ends = (_SEMANTICS[name], f"_{name}")
-        members = (member for member in program if member.endswith(ends) and not member.startswith("gl_"))
+        members = (member for member in program if member.endswith(_ENDINGS[name]) and not member.startswith("gl_"))
         return next((member for member in members if type(program[member]).__name__ == "Attribute"), "")
 
 
@@ -110,4 +114,4 @@ def _tools() -> dict[str, str]:
     return {name: str(path) for name, path in found.items()}
 
 
-assert set(_SEMANTICS) == set(ATTRIBUTES)
+assert set(_ENDINGS) == set(ATTRIBUTES)

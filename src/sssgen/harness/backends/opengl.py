@@ -176,4 +176,5 @@ def _owner(member: str, names: Mapping[str, Any]) -> str:
 
 def _write(member: Any, numbers: Array) -> None:
     kind = {"f": np.float32, "I": np.uint32}.get(member.fmt[-1], np.int32)
-    member.write(np.ascontiguousarray(numbers, kind).tobytes())
+    kept = 4 * member.dimension * member.array_length  # of an array the driver may drop what is not read
+    member.write(np.ascontiguousarray(numbers, kind).tobytes()[:kept])

@@ -1,13 +1,18 @@
-"""Unity's HLSL, run in OpenGL: preprocessed with Unity's headers (or the stand-ins), then as other HLSL."""
+"""Unity's HLSL, run in OpenGL: preprocessed with Unity's headers (or the stand-ins), then as other HLSL.
+
+Functions are run here; `whole` draws a whole shader (see `sssgen.harness.unity_shell`).
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 
 from .. import compilers
-from ..compilers import unity
-from .base import Text, gave_up
+from ..compilers import base, unity
+from .base import Stage, Text, gave_up
 from .hlsl import HLSL
+from .unity_program import UnityProgram
 
 
 class UnityHLSL(HLSL):
@@ -18,12 +23,21 @@ class UnityHLSL(HLSL):
         found = compilers.get("unity")
         assert isinstance(found, unity.Unity)
         self.unity = found
+        self.whole = UnityProgram(name, target, compiler)
 
     def device(self) -> str:
         return f"{self.unity.headers()}, {super().device()}"
 
     def prepared(self, text: Text) -> Text:
         return text._replace(text=self._preprocessed(text.text))
+
+    def forward(self, shader: Text, stage: base.Stage, keywords: Sequence[str]) -> Stage:
+        """A stage of an emitted shader's forward pass, as `whole` draws it; `keywords` are macros, `NAME=1`."""
+        try:
+            text, entry = self.unity.forward(shader.text, self.target.name, stage, keywords)
+        except ValueError as error:
+            raise gave_up(self.name, f"the preprocessor: {error}") from None
+        return Stage(shader._replace(text=text), entry)
 
     @lru_cache(16)  # noqa: B019 - a back end lives as long as the process
     def _preprocessed(self, text: str) -> str:

@@ -1,4 +1,4 @@
-"""What Unity makes around a surface shader, as far as a compile check needs it.
+"""What Unity makes around a surface shader, as far as a compile check and a picture lit forward need it.
 
 The editor turns `#pragma surface` into vertex and fragment entries (docs.unity3d.com, "Writing Surface
 Shaders": the fields of `Input`, the order surface function → GI function → lighting function). That
@@ -32,6 +32,7 @@ struct sssgen_varyings {{
     float3 worldBitangent : TEXCOORD4;
     float4 color : COLOR0;
     UNITY_SHADOW_COORDS(5)
+{varyings}
 }};
 sssgen_varyings sssgen_vertex(appdata_full v) {{
     sssgen_varyings i;
@@ -44,6 +45,7 @@ sssgen_varyings sssgen_vertex(appdata_full v) {{
     i.worldTangent = UnityObjectToWorldDir(v.tangent.xyz);
     i.worldBitangent = cross(i.worldNormal, i.worldTangent) * v.tangent.w * unity_WorldTransformParams.w;
     i.color = v.color;
+{carried}
     return i;
 }}
 """
@@ -57,6 +59,7 @@ float4 sssgen_fragment(sssgen_varyings i) : SV_Target0 {{
     {output} o;
     UNITY_INITIALIZE_OUTPUT({output}, o);
     o.Normal = half3(0, 0, 1);
+{defaults}
     {surface}(surfIN, o);
     UNITY_LIGHT_ATTENUATION(atten, i, i.worldPos)
     float3 n = o.Normal;
@@ -79,7 +82,11 @@ float4 sssgen_fragment(sssgen_varyings i) : SV_Target0 {{
     gi.light.color *= atten;
 #endif
     float4 c = {lighting}(o, worldViewDir, gi);
+#ifdef UNITY_PASS_FORWARDBASE
     c.rgb += o.Emission;
+#else
+    c.a = 0.0;
+#endif
     return c;
 }}
 """
@@ -96,6 +103,9 @@ _INPUTS = {
     "internalSurfaceTtoW1": "half3(i.worldTangent.y, i.worldBitangent.y, i.worldNormal.y)",
     "internalSurfaceTtoW2": "half3(i.worldTangent.z, i.worldBitangent.z, i.worldNormal.z)",
 }
+
+
+_TEXTURE_INPUT = re.compile(r"uv(\d?)(_\w+)")
 
 
 class SurfaceError(ValueError):
@@ -121,17 +131,29 @@ def entries(code: str, pragma: str) -> str:
         raise SurfaceError(f"no vertex function {asked.vertex}")
     second = modifier is not None and "," in modifier[1]
     call = f"    Input custom; {asked.vertex}(v{', custom' if second else ''});" if modifier else ""
-    fields = _input_fields(code)
-    textures = sorted({m[1] for name in fields if (m := re.fullmatch(r"uv\d?(_\w+)", name))})
+    fields, own = _input_fields(code), []
+    names = [name for _, name in fields]
+    if second:
+        own = [(kind, name) for kind, name in fields if name not in _INPUTS and not _TEXTURE_INPUT.fullmatch(name)]
+    textures = sorted({m[2] for name in names if (m := _TEXTURE_INPUT.fullmatch(name))})
     for texture in textures:
         if re.search(rf"\b{texture}_ST\s*;", code):
             raise SurfaceError(f"declares {texture}_ST, which Unity declares for the input uv{texture}")
-    inputs = [f"    surfIN.{name} = {value};" for name, value in map(_input, fields) if value]
+    # As the editor, which gives worldNormal only where no frame is asked for.
+    given = [name for name in names if not (name == "worldNormal" and "internalSurfaceTtoW0" in names)]
+    inputs = [f"    surfIN.{name} = {value};" for name in given if (value := _input(name))]
+    inputs += [f"    surfIN.{name} = i.custom_{name};" for _, name in own]
+    varyings = [f"    {kind} custom_{name} : TEXCOORD{6 + k};" for k, (kind, name) in enumerate(own)]
+    carried = [f"    i.custom_{name} = custom.{name};" for _, name in own]
     return (
         "".join(f"float4 {texture}_ST;\n" for texture in textures)
-        + _VERTEX.format(modifier=call)
+        + _VERTEX.format(modifier=call, varyings="\n".join(varyings), carried="\n".join(carried))
         + _FRAGMENT.format(
-            inputs="\n".join(inputs), output=output, surface=asked.surface, lighting=f"Lighting{asked.model}"
+            inputs="\n".join(inputs),
+            output=output,
+            defaults="    o.Occlusion = 1.0;" if _has_occlusion(code, output) else "",
+            surface=asked.surface,
+            lighting=f"Lighting{asked.model}",
         )
     )
 
@@ -156,16 +178,23 @@ def _output_type(code: str, asked: _Pragma) -> str:
     return surface[1]
 
 
-def _input_fields(code: str) -> list[str]:
+def _has_occlusion(code: str, output: str) -> bool:
+    own = re.search(rf"\bstruct\s+{output}\s*\{{(.*?)\}}\s*;", code, re.DOTALL)
+    return output in BUILTIN_LIGHTING.values() if own is None else bool(re.search(r"\bOcclusion\s*;", own[1]))
+
+
+def _input_fields(code: str) -> list[tuple[str, str]]:
+    """(type, name) of the fields of `Input`."""
     struct = re.search(r"\bstruct\s+Input\s*\{(.*?)\}\s*;", code, re.DOTALL)
     if not struct:
         raise SurfaceError("no struct Input")
     body = re.sub(r"//[^\n]*|/\*.*?\*/|:\s*\w+", "", struct[1], flags=re.DOTALL)
-    fields = re.findall(r"\w+\s+(\w+)\s*;", body)
-    return fields + [f"internalSurfaceTtoW{k}" for k in range(3) if "INTERNAL_DATA" in body]
+    fields = re.findall(r"(\w+)\s+(\w+)\s*;", body)
+    return fields + [("half3", f"internalSurfaceTtoW{k}") for k in range(3) if "INTERNAL_DATA" in body]
 
 
-def _input(name: str) -> tuple[str, str]:
-    if match := re.fullmatch(r"uv(\d?)(_\w+)", name):
-        return name, f"i.uv.{'zw' if match[1] == '2' else 'xy'} * {match[2]}_ST.xy + {match[2]}_ST.zw"
-    return name, _INPUTS.get(name, "")
+def _input(name: str) -> str:
+    """What the editor gives for a field; "" for one that is the vertex function's."""
+    if match := _TEXTURE_INPUT.fullmatch(name):
+        return f"i.uv.{'zw' if match[1] == '2' else 'xy'} * {match[2]}_ST.xy + {match[2]}_ST.zw"
+    return _INPUTS.get(name, "")

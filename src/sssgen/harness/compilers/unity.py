@@ -11,7 +11,7 @@ Built-in pipeline: HLSL with DX9 samplers, so glslang reads it. URP and Shader G
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -115,6 +115,21 @@ class Unity(Compiler):
         head = "".join(f'#include "{header}"\n' for header in _LIBRARY_HEADERS[language])
         return self._preprocess(f"{head}#line 1\n{text}", list(macros), self._roots(builtin))
 
+    def forward(self, text: str, language: str, stage: Stage, keywords: Sequence[str]) -> tuple[str, str]:
+        """A stage of an emitted shader's first pass, which is the forward one, preprocessed; and its entry.
+
+        `keywords` are macros, `NAME=1`; of a surface shader its pass is one. Raises ValueError with what is wrong.
+        """
+        shader = shaderlab.parse(text, _TEXT)
+        if shader.messages:
+            raise ValueError(shader.messages[0].text)
+        program = shader.programs[0]
+        if (asked := program.pragma("surface")) is not None:
+            job = _surface_job(program, asked, stage, tuple(keywords))
+        else:
+            job = _pass_job(program, stage, tuple(keywords), language == "unity-builtin")
+        return self._text(job), job.entry
+
     def check(self, source: Source) -> list[Message]:
         if not re.search(r'^\s*Shader\s*"', source.text, re.MULTILINE):
             return self._run(_library_jobs(source, self._has_preview()))
@@ -137,12 +152,10 @@ class Unity(Compiler):
         found: dict[tuple[int, int, str], Message] = {}
         done: set[tuple[str, str]] = set()
         for job in jobs:
-            head = "".join(f'#include "{header}"\n' for header in job.headers)
-            prelude = surface.PRELUDE if job.entry.startswith("sssgen_") and job.builtin else ""
             try:
-                text = self._preprocess(head + prelude + job.code, list(job.macros), self._roots(job.builtin))
+                text = self._text(job)
             except ValueError as error:
-                return [_located(_preprocessing_error(str(error)), job.what)]
+                return [located(_preprocessing_error(str(error)), job.what)]
             if (text, job.entry) in done:
                 continue
             done.add((text, job.entry))
@@ -151,14 +164,20 @@ class Unity(Compiler):
             else:
                 messages = self._dxc.check_hlsl(text, job.stage, job.entry)
             for m in messages:
-                found.setdefault((m.line, m.column, m.text), _located(m, job.what))
+                found.setdefault((m.line, m.column, m.text), located(m, job.what))
         return list(found.values())
+
+    def _text(self, job: _Job) -> str:
+        """Raises ValueError with the preprocessor's words."""
+        head = "".join(f'#include "{header}"\n' for header in job.headers)
+        prelude = surface.PRELUDE if job.entry.startswith("sssgen_") and job.builtin else ""
+        return self._preprocess(head + prelude + job.code, list(job.macros), self._roots(job.builtin))
 
     def _roots(self, builtin: bool) -> list[Path]:
         return [self.root / "CGIncludes", self.root] if builtin else [self.root]
 
 
-def _located(message: Message, what: str) -> Message:
+def located(message: Message, what: str) -> Message:
     """A message with the job it is of; its place only where that is in the text, else in words."""
     if message.file in ("", _TEXT):
         return replace(message, text=f"{what}: {message.text}", file="")
@@ -186,25 +205,33 @@ def _program_jobs(program: shaderlab.Program, language: str) -> Iterator[_Job]:
     stages: tuple[Stage, ...] = ("vertex", "fragment")
     asked = program.pragma("surface")
     if asked is not None:
-        code = f'{program.code}#line 1 "surface entries"\n{surface.entries(program.code, asked)}'
         for macros in _SURFACE_PASSES:
-            what = macros[0].removeprefix("UNITY_PASS_").partition("=")[0]
-            every = (*_BUILTIN_MACROS, *macros)
-            headers = (*_CG_HEADERS, *_SURFACE_HEADERS)
             for stage in stages:
-                with_stage = (*every, f"SHADER_STAGE_{stage.upper()}=1")
-                yield _Job(what, headers, with_stage, code, stage, f"sssgen_{stage}", True)
+                yield _surface_job(program, asked, stage, macros)
         return
-    included = _CG_HEADERS if program.dialect == "CG" else ()
     for stage in stages:
         for keywords in program.keyword_sets(stage):
-            entry = program.pragma(stage)
-            if entry is None:
-                raise surface.SurfaceError(f"{program.name}: no #pragma {stage}")
-            common = _BUILTIN_MACROS if builtin else (*_URP_MACROS, _INSTANCED)
-            on = (f"{word}=1" for word in keywords if not (builtin and word == "INSTANCING_ON"))
-            defines = (*common, f"SHADER_STAGE_{stage.upper()}=1", *on)
-            yield _Job(f"{program.name} {stage}", included, defines, program.code, stage, entry, builtin)
+            on = tuple(f"{word}=1" for word in keywords if not (builtin and word == "INSTANCING_ON"))
+            yield _pass_job(program, stage, on, builtin)
+
+
+def _surface_job(program: shaderlab.Program, asked: str, stage: Stage, macros: tuple[str, ...]) -> _Job:
+    """A stage of one of the passes that the editor makes of a surface shader; `macros[0]` names the pass."""
+    code = f'{program.code}#line 1 "surface entries"\n{surface.entries(program.code, asked)}'
+    what = macros[0].removeprefix("UNITY_PASS_").partition("=")[0]
+    every = (*_BUILTIN_MACROS, *macros, f"SHADER_STAGE_{stage.upper()}=1")
+    return _Job(what, (*_CG_HEADERS, *_SURFACE_HEADERS), every, code, stage, f"sssgen_{stage}", True)
+
+
+def _pass_job(program: shaderlab.Program, stage: Stage, on: tuple[str, ...], builtin: bool) -> _Job:
+    """A stage of a pass with vertex and fragment programs of its own. Raises SurfaceError."""
+    entry = program.pragma(stage)
+    if entry is None:
+        raise surface.SurfaceError(f"{program.name}: no #pragma {stage}")
+    included = _CG_HEADERS if program.dialect == "CG" else ()
+    common = _BUILTIN_MACROS if builtin else (*_URP_MACROS, _INSTANCED)
+    defines = (*common, f"SHADER_STAGE_{stage.upper()}=1", *on)
+    return _Job(f"{program.name} {stage}", included, defines, program.code, stage, entry, builtin)
 
 
 def _check_batcher(shader: shaderlab.Shader) -> list[Message]:

@@ -17,9 +17,10 @@ float4 unity_FogColor;
 float4 unity_FogParams;
 float4 _MainLightPosition;
 half4 _MainLightColor;
+half4 unity_SHAr, unity_SHAg, unity_SHAb;
 half4 _AdditionalLightsCount;
 uint _AdditionalLightsDirectionalCount;
-float4 _AdditionalLightsPosition[MAX_VISIBLE_LIGHTS];
+float4 _AdditionalLightsPosition[MAX_VISIBLE_LIGHTS];  // w: 1 a position, 0 a direction
 half4 _AdditionalLightsColor[MAX_VISIBLE_LIGHTS];
 
 struct InputData

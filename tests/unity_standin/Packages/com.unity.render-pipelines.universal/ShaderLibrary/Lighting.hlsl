@@ -5,6 +5,7 @@
 #include "Packages/com.unity.render-pipelines.core/ShaderLibrary/CommonMaterial.hlsl"
 #include "Packages/com.unity.render-pipelines.universal/ShaderLibrary/SurfaceData.hlsl"
 #include "Packages/com.unity.render-pipelines.universal/ShaderLibrary/Shadows.hlsl"
+#include "StandardLight.hlsl"
 
 struct Light
 {
@@ -58,7 +59,8 @@ int GetAdditionalLightsCount()
 Light GetAdditionalLight(uint i, float3 positionWS)
 {
     Light light;
-    float3 toLight = _AdditionalLightsPosition[i].xyz - positionWS;
+    float4 position = _AdditionalLightsPosition[i];
+    float3 toLight = position.xyz - positionWS * position.w;
     light.direction = SafeNormalize(toLight);
     light.color = _AdditionalLightsColor[i].rgb;
     light.distanceAttenuation = rcp(max(dot(toLight, toLight), HALF_MIN));
@@ -76,17 +78,30 @@ Light GetAdditionalLight(uint i, float3 positionWS, half4 shadowMask)
 
 half3 SampleSH(half3 normalWS)
 {
-    return max(normalWS.yyy, 0.0);
+    half4 normal = half4(normalWS, 1.0);
+    return half3(dot(unity_SHAr, normal), dot(unity_SHAg, normal), dot(unity_SHAb, normal));
+}
+
+half3 standin_received(Light light, InputData inputData, SurfaceData surfaceData)
+{
+    return light.color * light.distanceAttenuation * light.shadowAttenuation
+        * standin_standard(inputData.normalWS, inputData.viewDirectionWS, light.direction, surfaceData.albedo,
+            surfaceData.metallic, 1.0 - surfaceData.smoothness);
 }
 
 half4 UniversalFragmentPBR(InputData inputData, SurfaceData surfaceData)
 {
     Light light = GetMainLight(inputData.shadowCoord, inputData.positionWS, inputData.shadowMask);
-    half3 received = light.color * light.shadowAttenuation * saturate(dot(inputData.normalWS, light.direction));
-    half sheen = saturate(dot(inputData.normalWS, normalize(inputData.viewDirectionWS + light.direction)));
-    half3 color = surfaceData.albedo * (received + inputData.bakedGI * surfaceData.occlusion);
-    color += sheen * surfaceData.smoothness * lerp(0.04, surfaceData.albedo, surfaceData.metallic) * received;
-    return half4(color + surfaceData.emission, surfaceData.alpha);
+    half3 color = surfaceData.albedo * inputData.bakedGI * surfaceData.occlusion + surfaceData.emission;
+    color += standin_received(light, inputData, surfaceData);
+#if defined(_ADDITIONAL_LIGHTS)
+    uint lightCount = GetAdditionalLightsCount();
+    LIGHT_LOOP_BEGIN(lightCount)
+        light = GetAdditionalLight(lightIndex, inputData.positionWS, inputData.shadowMask);
+        color += standin_received(light, inputData, surfaceData);
+    LIGHT_LOOP_END
+#endif
+    return half4(color, surfaceData.alpha);
 }
 
 #endif

@@ -1,0 +1,193 @@
+"""Draws the example scenes into docs/gallery/ and writes docs/gallery.md: python docs/gallery.py
+
+The pictures are drawn by the GLSL that `sssgen` emits. The page says of each what it shows, which techniques make it,
+and what they cost; and, from smaller pictures, how far the back ends are apart.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from pathlib import Path
+from textwrap import wrap
+from typing import Any
+
+import numpy as np
+from PIL import Image
+
+import sssgen
+from sssgen.harness import backends
+from sssgen.harness.backends import Backend
+from sssgen.harness.render import render
+from sssgen.harness.scene import load
+from sssgen.material import Material, load_material
+from sssgen.output import write_files
+
+ROOT = Path(__file__).parents[1]
+PAGE = Path(__file__).with_name("gallery.md")
+PICTURES = Path(__file__).with_name("gallery")
+
+BACKENDS = ("gl", "webgpu", "browser", "hlsl")
+SMALL = (160, 120)
+"""The size in pixels of the pictures that are compared."""
+
+CAPTIONS = {
+    "jelly_cubes": "Seed 0, 42yeah's raymarched scene, drawn by the shader alone: rays are marched through distance "
+    "functions. Where a cube is thin, at its edges and corners, the evening sky comes through.",
+    "paper_lantern": "Seed 1, Alisavakis's simple subsurface scattering, on paper and wood. The lamp is inside, so "
+    "that every side is lit from behind; a map says how thick the paper is, fibre by fibre, and the hoops let nothing "
+    "through.",
+    "wax_suzanne": "Seed 2, subsurface scattering with 3-D distance fields, on a candle. The way of the light through "
+    "the wax is marched through a 3-D distance texture, which is measured on the geometry: the ears glow, the body "
+    "stays deep. For those who have Blender's monkey: `scene_mesh.toml`, in the same folder.",
+    "ice": "Seed 3, ice after Zucconi's fast subsurface scattering. Voronoi facets give thickness and normals, the sun "
+    "stands behind them, light moves in the veins below; snow has drifted against the foot, and the edges and some "
+    "holes melt.",
+    "resin_inlay": "Seed 4, subsurface parallax: marquetry below clear resin. Refraction says where the inlay is seen: "
+    "flat below the flat top, bent below the round edges.",
+    "ice_inlay": "The parallax of seed 4 and the lobe of GDC 2011 in one material: leaves lie below the surface of the "
+    "ice, by refracted parallax, and the low sun shines through around them.",
+}
+"""What each example's picture shows, in the order of the page."""
+
+
+SHOWN = {
+    "jelly_cubes": "Two red cubes of jelly on a checkered floor, their edges lit by the evening sky behind them",
+    "paper_lantern": "A round paper lantern with dark wooden hoops and a red tassel, lit from inside, at dusk",
+    "wax_suzanne": "A sitting mouse of amber wax with large round ears that glow in the light behind it",
+    "ice": "A broken sheet of blue ice with bright facets, snow at its foot and holes near its top",
+    "resin_inlay": "A square tile of walnut with an inlaid compass rose, under glossy resin with round edges",
+    "ice_inlay": "Autumn leaves in a round disc of ice, with the sun behind it",
+}
+"""The same for those who do not see it."""
+
+
+def scene_of(name: str) -> Path:
+    """An example's scene file."""
+    return ROOT / "examples" / name / "scene.toml"
+
+
+def draw(backend: Backend) -> dict[str, bytes]:
+    """File name → PNG of every scene."""
+    files = {}
+    for name in CAPTIONS:
+        color = render(load(scene_of(name)), backend).encoded
+        buffer = io.BytesIO()
+        Image.fromarray(np.rint(255.0 * color).astype(np.uint8)).save(buffer, "PNG", optimize=True)
+        files[f"{name}.png"] = buffer.getvalue()
+    return files
+
+
+def differences(name: str, present: list[Backend], size: tuple[int, int] | None = None) -> list[Any]:
+    """For each back end how far each pixel's worst channel is from NumPy in float64: (height, width), in 1/255."""
+    scene = load(scene_of(name))
+    wanted = render(scene, backends.get("numpy"), size).encoded
+    return [255.0 * np.abs(render(scene, one, size).encoded - wanted).max(axis=2) for one in present]
+
+
+def page(present: list[Backend]) -> str:
+    """The page's text, with the figures of this machine."""
+    lines = [
+        "# Gallery",
+        "",
+        *_paragraph(
+            "One scene for each example material, drawn by the emitted GLSL. Made by `make gallery` "
+            "(`docs/gallery.py`); the scenes' textures are made by `examples/textures.py`. Costs are static: what one "
+            "evaluation does at most, for each fragment and again for each light, as the reflection has them."
+        ),
+    ]
+    for name, caption in CAPTIONS.items():
+        lines += _entry(load_material(name), caption)
+    lines += [
+        "## The same picture everywhere",
+        "",
+        *_paragraph(
+            f"Each scene at {SMALL[0]} × {SMALL[1]} on every back end: the largest difference of any channel of any "
+            "pixel from what NumPy draws in float64, in 1/255 of the encoded sRGB value, before rounding to 8 bits. "
+            "At 64 × 48, with one sample a pixel, `tests/test_gallery.py` holds it below 1."
+        ),
+        f"| Scene | {' | '.join(f'`{backend.name}`' for backend in present)} |",
+        f"|---|{'---|' * len(present)}",
+    ]
+    for name in CAPTIONS:
+        cells = " | ".join(f"{far.max():.3f}" for far in differences(name, present, SMALL))
+        lines.append(f"| `{name}` | {cells} |")
+    lines += ["", *_paragraph(_on_edges(present))]
+    lines += [*(f"- `{one.name}`: {backends.NAMES[one.name]}; {one.device()}" for one in present)]
+    return "\n".join(lines) + "\n"
+
+
+def _on_edges(present: list[Backend]) -> str:
+    """What the table leaves out: at full size some rays of the shader's own meet an edge."""
+    found = differences("jelly_cubes", present)
+    counts = (f"{(far > 1.0).sum()} in `{one.name}`" for one, far in zip(present, found, strict=True))
+    return (
+        "The surfaces' points are the same for every back end; `jelly_cubes` finds its own in float32. A sample on the "
+        "edge of a cube, a tile or a shadow may then fall to either side. At its full size, of "
+        f"{found[0].size:,} pixels these are more than 1/255 off: {', '.join(counts)}."
+    )
+
+
+def _entry(material: Material, caption: str) -> list[str]:
+    name = material.name
+    return [
+        f"## {material.title}",
+        "",
+        f"![{SHOWN[name]}](gallery/{name}.png)",
+        "",
+        *_paragraph(caption),
+        f"`sssgen render {name} -o {name}.png`",
+        "",
+        *(line for stage in dict.fromkeys(_techniques(material)) for line in _item(stage)),
+        "",
+        *_paragraph(f"Cost: {_cost(name)}."),
+    ]
+
+
+def _techniques(material: Material) -> Iterator[str]:
+    """The techniques of a material, each with its source."""
+    for stage in material.stages:
+        yield f"`{stage.technique.name}` ({stage.technique.role}): {stage.technique.doc['source']}"
+
+
+def _cost(name: str) -> str:
+    """What a fragment does, and what each light adds to that."""
+    entries = sssgen.compile(name, "glsl-330").reflection["entries"].values()
+    lights = {"L", "L_object", "light_color"}
+    parts = {
+        "a fragment": [entry for entry in entries if not lights & {*entry["inputs"]}],
+        "each light": [entry for entry in entries if lights & {*entry["inputs"]}],
+    }
+    return "; ".join(f"{when} {_sum(of)}" for when, of in parts.items() if of)
+
+
+def _sum(entries: list[dict[str, Any]]) -> str:
+    counts = {kind: sum(entry["cost"][kind] for entry in entries) for kind in entries[0]["cost"]}
+    words = {"operations": "operation", "transcendentals": "transcendental", "fetches": "texture fetch"}
+    words |= {"distance_evaluations": "distance evaluation"}
+    return ", ".join(_counted(count, words[kind]) for kind, count in counts.items() if count)
+
+
+def _counted(count: int, word: str) -> str:
+    ending = "" if count == 1 else "es" if word.endswith("ch") else "s"
+    return f"{count:,} {word}{ending}"
+
+
+def _paragraph(text: str) -> list[str]:
+    return [*wrap(text, 120, break_on_hyphens=False, break_long_words=False), ""]
+
+
+def _item(text: str) -> list[str]:
+    return wrap(f"- {text}", 120, subsequent_indent="  ", break_on_hyphens=False, break_long_words=False)
+
+
+def main() -> None:
+    """Draws, measures and writes."""
+    files = draw(backends.get("gl"))
+    write_files(str(PICTURES), files)
+    PAGE.write_text(page([backends.get(name) for name in BACKENDS]), encoding="utf-8")
+    print(f"wrote {PAGE.name} and {len(files)} pictures, {sum(map(len, files.values())) / 1000:.0f} kB")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,182 @@
+"""`sssgen ci`: what it finds in a folder, what it says of faulty files, and its report."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import xml.etree.ElementTree as ET
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from sssgen import cli
+from sssgen.diagnostics import SssgenError
+from sssgen.harness import junit
+from sssgen.harness.backends import Backend
+from sssgen.harness.ci import Case, Ran, Run, cases
+from sssgen.harness.isolated import Isolated
+from sssgen.harness.outcome import Outcome
+from sssgen.output import write_files
+
+MATERIAL = '[material]\nname = "lamp"\ndoc = "A lamp."\nshading = "lit"\n[[surface]]\ntechnique = "base_color"\n'
+SCENE = 'material = "lamp.toml"\nsize = [24, 18]\n[geometry]\nkind = "ball"\n'
+HALF = {"technique": "beer_lambert", "inputs": {"d": [0.0, 0.5], "attenuation_distance": 0.5}}
+
+
+@pytest.fixture(autouse=True)
+def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("CI", raising=False)
+
+
+def test_what_is_found() -> None:
+    write_files(
+        ".",
+        {
+            "a/lamp.toml": MATERIAL,
+            "a/scene.toml": SCENE,
+            "a/half.eval.json": "{}",
+            "a/data.json": "{}",
+            "broken_material.toml": "[material]\nname = \n",
+            "broken_scene.toml": 'material = "lamp.toml"\nsize = [\n',
+            "broken_other.toml": "[tool]\nmaterial = \n",
+            "latin.toml": b"\xff\xfe\xe9",
+            "pyproject.toml": '[project]\nname = "a"\n',
+            ".hidden/lamp.toml": MATERIAL,
+            "node_modules/lamp.toml": MATERIAL,
+            "env/pyvenv.cfg": "",
+            "env/lib/lamp.toml": MATERIAL,
+        },
+    )
+    found = {
+        (case.kind, Path(case.path).as_posix(), case.backends, case.first) for case in cases(".", ["webgpu", "gl"])
+    }
+    assert found == {
+        ("compile", "a/lamp.toml", (), True),
+        ("render", "a/scene.toml", ("webgpu",), True),
+        ("render", "a/scene.toml", ("gl",), False),
+        ("eval", "a/half.eval.json", ("webgpu", "gl"), True),
+        ("compile", "broken_material.toml", (), True),
+        ("render", "broken_scene.toml", ("webgpu",), True),
+        ("render", "broken_scene.toml", ("gl",), False),
+        ("compile", "latin.toml", (), True),
+    }
+    assert [case.backends for case in cases("a")] == [(), (), ("gl",)]
+
+
+def test_folders_with_nothing_to_check() -> None:
+    write_files(".", {"empty/readme.txt": "nothing"})
+    for folder, told in (
+        ("empty", "nothing to check"),
+        ("none", "no such folder"),
+        ("empty/readme.txt", "not a folder"),
+    ):
+        with pytest.raises(SssgenError, match=told):
+            cases(folder)
+        assert cli.main(["ci", folder]) == cli.WRONG_INPUT
+
+
+def test_faulty_files_are_failures_and_the_rest_goes_on(capsys: pytest.CaptureFixture[str]) -> None:
+    write_files(".", {"all/broken.toml": "[material]\nname = \n", "all/half.eval.json": json.dumps(HALF)})
+    status = cli.main(["ci", "all", "--backend", "numpy-f32", "--json", "--junit", "report.xml"])
+    found = json.loads(capsys.readouterr().out)
+    assert status == cli.CHECK_FAILED and found["ok"] is False
+    assert [(case["kind"], case["outcome"]) for case in found["cases"]] == [("compile", "failed"), ("eval", "passed")]
+    assert "all/broken.toml:2" in found["cases"][0]["detail"]
+    assert [len(ET.parse("report.xml").findall(f".//{name}")) for name in ("testcase", "failure")] == [2, 1]
+
+
+@pytest.mark.parametrize(
+    ("change", "state", "told"),
+    [
+        ({}, "passed", "as in float64 on numpy-f32"),
+        ({"outputs": {"result": [1.0, 0.36787944]}}, "passed", "as in float64"),
+        ({"outputs": {"result": [1.0, 0.4]}}, "failed", "the oracle deviates by 0.032, more than 1e-05"),
+        ({"outputs": {"result": [1.0, 2.0, 3.0]}}, "failed", "output 'result' cannot be compared"),
+        ({"outputs": {"out": 1.0}}, "failed", "there is no output 'out'"),
+        ({"inputs": {}, "samples": 100}, "passed", "as in float64 on numpy-f32"),
+        ({"inputs": "numbers.json"}, "passed", "as in float64 on numpy-f32"),
+        ({"technique": "own.sss"}, "passed", "as in float64 on numpy-f32"),
+        ({"technique": "own.sss:own"}, "passed", "as in float64 on numpy-f32"),
+        ({"tolerance": 0.0}, "failed", "1 of 1 back ends failed"),
+        ({"tolerance": -1.0}, "failed", "-1.0 is no tolerance"),
+        ({"tolerance": "1"}, "failed", "'tolerance' is no int or float"),
+        ({"samples": 0}, "failed", "'samples' is from 1"),
+        ({"sample": 1}, "failed", "unknown key 'sample'"),
+        ({"technique": "beer_lamber"}, "failed", "unknown technique 'beer_lamber'"),
+        ({"inputs": {"x": 1.0}}, "failed", "has no input 'x'"),
+        ({"bind": {"x": "y"}}, "failed", "has no slot 'x'"),
+    ],
+)
+def test_numbers(change: dict[str, Any], state: str, told: str) -> None:
+    own = (
+        "/** Half.\n * role: conversion */\ntransmittance own(thickness d)\n{\n    return transmittance(d / 3.0);\n}\n"
+    )
+    given = {**HALF, **change}
+    if "own" in given["technique"]:
+        given["inputs"] = {"d": 0.7}
+    numbers = json.dumps(HALF["inputs"])
+    write_files("in", {"own.sss": own, "numbers.json": numbers, "half.eval.json": json.dumps(given)})
+    with Run() as run:
+        outcome = run(Case("eval", "in/half.eval.json", ("numpy-f32",))).outcome
+    assert (outcome.state, told in outcome.told) == (state, True), outcome
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", "{}", "[" * 100000, '"a"'])
+def test_numbers_that_are_none(text: str) -> None:
+    write_files(".", {"bad.eval.json": text})
+    with Run() as run:
+        assert run(Case("eval", "bad.eval.json")).outcome.state == "failed"
+
+
+def test_a_back_end_that_dies_fails_one_case(backend: Callable[[str], Backend]) -> None:
+    backend("gl")
+    write_files(".", {"lamp.toml": MATERIAL, "scene.toml": SCENE})
+    case = Case("render", "scene.toml", ("gl",))
+    with Run(update=True) as run:
+        assert run(case).outcome.told == "wrote golden/scene.png"
+        gpu = run.started.get("gl")
+        assert isinstance(gpu, Isolated) and gpu.process.process is not None
+        os.kill(gpu.process.process.pid, signal.SIGKILL)
+        assert "crashed (SIGKILL)" in run(case).outcome.told
+        assert run(case).outcome.state == "passed"
+
+
+def test_the_report_is_xml_whatever_was_said() -> None:
+    said = "a\x00b\x1b[31m <&> ]]> \ud800 \ufffe\nsecond line"
+    results = [
+        Ran(Case("compile", "odd \x01 <name>.toml"), Outcome("failed", said, said), 0.25),
+        Ran(Case("render", "scene.toml", ("gl",)), Outcome("skipped", "gl is missing"), 0.5),
+        Ran(Case("eval", "half.eval.json"), Outcome("passed", "good", "more"), 1.0),
+    ]
+    top = ET.fromstring(junit.document(results))
+    suite = top.find("testsuite")
+    assert suite is not None
+    assert (suite.attrib["tests"], suite.attrib["failures"], suite.attrib["skipped"]) == ("3", "1", "1")
+    assert suite.attrib["time"] == "1.750"
+    failed, skipped, passed = suite
+    assert failed.find("failure").text.endswith("second line")  # type: ignore[union-attr]
+    assert skipped.find("skipped").attrib["message"] == "gl is missing"  # type: ignore[union-attr]
+    assert passed.find("system-out").text == "good\nmore"  # type: ignore[union-attr]
+
+
+def test_an_empty_report() -> None:
+    assert ET.fromstring(junit.document([])).find("testsuite") is not None
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (["--backend", "gll"], "did you mean 'gl'"),
+        (["--flip", "2"], "no threshold for FLIP"),
+        (["--flip", "much"], "invalid float value"),
+        (["--junit", "lamp.toml/report.xml"], "cannot write"),
+    ],
+)
+def test_wrong_options(options: list[str], told: str, capsys: pytest.CaptureFixture[str]) -> None:
+    write_files(".", {"lamp.toml": MATERIAL})
+    assert cli.main(["ci", ".", *options]) == cli.WRONG_INPUT
+    assert told in capsys.readouterr().err
