@@ -52,9 +52,8 @@ def random_module() -> tuple[Module, tuple[Function, ...]]:
         source = ProgramsInBounds(Random(seed), size=3).program()
         functions.append(source[source.index("float f(") :].replace("float f(", f"float random_{seed}(", 1))
     module = load_text("\n".join([HELPERS, *functions]), "random")
-    made = [
-        probe for function in module.functions if function.name.startswith("random_") for _, probe in probes_of(function)
-    ]
+    random = [function for function in module.functions if function.name.startswith("random_")]
+    made = [probe for function in random for _, probe in probes_of(function)]
     return module._replace(functions=(*module.functions, *made)), tuple(made)
 
 

@@ -21,7 +21,14 @@ from sssgen.harness.render import Rendered, render
 from sssgen.harness.scene import load
 
 DRAWING = ["gl", "gl-es", "webgpu", "browser", "hlsl", "hlsl-glslang"]
-LAMP = "[[light]]\nposition = [0.6, 0.6, -1.6]\ncolor = [2.4, 2.2, 1.9]\n[[light]]\ndirection = [1, 2, 2]\ncolor = [1, 1, 1]\n"
+LAMP = """
+[[light]]
+position = [0.6, 0.6, -1.6]
+color = [2.4, 2.2, 1.9]
+[[light]]
+direction = [1, 2, 2]
+color = [1, 1, 1]
+"""
 BALL = '[geometry]\nkind = "ball"\nrotation = [20, 30, 40]\nposition = [0.1, 0, 0]\nscale = 0.9\n'
 SIZE = (48, 36)
 
@@ -247,7 +254,8 @@ def test_a_surface_material_needs_geometry(scene: Callable[..., str]) -> None:
 
 def test_nan_is_told_and_not_written(scene: Callable[..., str], tmp_path: Path) -> None:
     (tmp_path / "hole.sss").write_text(
-        "/** A hole.\nrole: surface\n*/\nvoid hole(uv_position uv, out vec3 albedo) { albedo = vec3(sqrt(uv.x - 0.9)); }\n",
+        "/** A hole.\nrole: surface\n*/\n"
+        "void hole(uv_position uv, out vec3 albedo) { albedo = vec3(sqrt(uv.x - 0.9)); }\n",
         encoding="utf-8",
     )
     material = '[material]\nname = "hole"\nshading = "lit"\n[surface]\ntechnique = "hole.sss"\n'
