@@ -3,7 +3,7 @@
 #define SSSGEN_STANDIN_PBS_LIGHTING
 #include "UnityCG.cginc"
 #include "UnityLightingCommon.cginc"
-#include "StandardLight.hlsl"
+#include "Packages/com.unity.render-pipelines.core/ShaderLibrary/StandardLight.hlsl"
 
 struct SurfaceOutputStandard
 {

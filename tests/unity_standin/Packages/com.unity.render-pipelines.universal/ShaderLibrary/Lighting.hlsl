@@ -5,7 +5,7 @@
 #include "Packages/com.unity.render-pipelines.core/ShaderLibrary/CommonMaterial.hlsl"
 #include "Packages/com.unity.render-pipelines.universal/ShaderLibrary/SurfaceData.hlsl"
 #include "Packages/com.unity.render-pipelines.universal/ShaderLibrary/Shadows.hlsl"
-#include "StandardLight.hlsl"
+#include "Packages/com.unity.render-pipelines.core/ShaderLibrary/StandardLight.hlsl"
 
 struct Light
 {

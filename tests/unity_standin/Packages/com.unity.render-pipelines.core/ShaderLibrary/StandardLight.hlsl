@@ -1,4 +1,4 @@
-// Stand-in (see README.md): this project's own standard light (techniques/lighting/standard.sss), for both pipelines.
+// Stand-in (see the README above): this project's own standard light (techniques/lighting/standard.sss), for both pipelines.
 // Unity's differs a little; with this one a picture is the same as that of the other targets' shells.
 #ifndef SSSGEN_STANDIN_STANDARD_LIGHT
 #define SSSGEN_STANDIN_STANDARD_LIGHT
