@@ -14,10 +14,11 @@ import time
 from collections.abc import Callable
 
 from sssgen.data import place
-from sssgen.harness import backends, evaluate, render, scene
+from sssgen.harness import backends, evaluate, render
 from sssgen.harness.backends import DrawingBackend
 from sssgen.harness.probes import subject
 from sssgen.harness.samples import samples
+from sssgen.harness.scenes import scene
 from sssgen.material import examples
 
 TECHNIQUES = ("lobe_gdc2011", "standard", "thinness_uniform")

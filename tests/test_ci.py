@@ -14,11 +14,11 @@ import pytest
 
 from sssgen import cli
 from sssgen.diagnostics import SssgenError
-from sssgen.harness import junit
 from sssgen.harness.backends import Backend
-from sssgen.harness.ci import Case, Ran, Run, cases
 from sssgen.harness.isolated import Isolated
-from sssgen.harness.outcome import Outcome
+from sssgen.harness.testing import junit
+from sssgen.harness.testing.ci import Case, Ran, Run, cases
+from sssgen.harness.testing.outcome import Outcome
 from sssgen.output import write_files
 
 MATERIAL = '[material]\nname = "lamp"\ndoc = "A lamp."\nshading = "lit"\n[[surface]]\ntechnique = "base_color"\n'

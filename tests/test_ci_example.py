@@ -43,7 +43,9 @@ def run(*arguments: str, **variables: str) -> tuple[int, str]:
 
 
 def run_pytest(*arguments: str, **variables: str) -> tuple[int, str]:
-    return run("pytest", "-p", "sssgen.harness.pytest_plugin", "-p", "no:cacheprovider", *arguments, **variables)
+    return run(
+        "pytest", "-p", "sssgen.harness.testing.pytest_plugin", "-p", "no:cacheprovider", *arguments, **variables
+    )
 
 
 def run_ci(*arguments: str, **variables: str) -> tuple[int, str]:
@@ -74,7 +76,7 @@ def test_with_pytest() -> None:
     assert status == 1
     assert "FLIP 0.0" in told and "is more than 0.005" in told and "max" in told
     assert 'sssgen_golden(SCENE, "lamp")' in told
-    assert "pytest_plugin.py" not in told.replace("-p sssgen.harness.pytest_plugin", "")
+    assert "pytest_plugin.py" not in told.replace("-p sssgen.harness.testing.pytest_plugin", "")
     assert failures() == ["lamp.actual.png", "lamp.difference.png"]
     assert images.read("scenes/sssgen-failures/lamp.difference.png").shape == (72, 96, 3)
     assert run_pytest("-k", "looks", "--sssgen-flip", "0.2")[0] == 0

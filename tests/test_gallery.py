@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
-import importlib.util
 import re
+import runpy
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -18,7 +17,7 @@ from PIL import Image
 from sssgen.harness import backends, images
 from sssgen.harness.backends import Backend
 from sssgen.harness.render import Rendered, render
-from sssgen.harness.scene import load
+from sssgen.harness.scenes.scene import load
 from sssgen.material import examples
 
 ROOT = Path(__file__).parents[1]
@@ -66,9 +65,9 @@ def test_light_comes_through() -> None:
 
 
 def test_the_textures_are_what_their_script_makes(tmp_path: Path) -> None:
-    script = _module(ROOT / "examples" / "textures.py")
+    script = runpy.run_path(str(ROOT / "examples" / "textures.py"))
     kept = set((ROOT / "examples").glob("*/textures/*"))
-    for example in script.EXAMPLES:
+    for example in script["EXAMPLES"]:
         for name, picture in example().items():
             file = ROOT / "examples" / example.__name__ / "textures" / f"{name}.png"
             kept.remove(file)
@@ -76,7 +75,7 @@ def test_the_textures_are_what_their_script_makes(tmp_path: Path) -> None:
             wanted = np.clip(picture, 0.0, 1.0).reshape(stored.shape)
             assert np.abs(stored - wanted).max() < 1.5 / 255.0, file  # another NumPy rounds another way
     assert not kept
-    script.write(tmp_path / "new" / "step.png", np.array([[0.0, 0.0], [1.0, 1.0]]))
+    script["write"](tmp_path / "new" / "step.png", np.array([[0.0, 0.0], [1.0, 1.0]]))
     assert _picture(tmp_path / "new" / "step.png")[:, 0, 0].tolist() == [1.0, 0.0]  # row 0 is the lowest
 
 
@@ -124,11 +123,3 @@ def test_the_gallery_shows_the_scenes_as_they_are(backend: Callable[[str], Backe
 
 def _picture(path: Path) -> npt.NDArray[np.float64]:
     return images.read(path)
-
-
-def _module(path: Path) -> Any:
-    spec = importlib.util.spec_from_file_location(path.stem, path)
-    assert spec and spec.loader
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from sssgen.diagnostics import SssgenError
-from sssgen.harness.camera import Camera
-from sssgen.harness.geometry import Ball, Box, Distance, Geometry, Mesh, Slab, Torus
+from sssgen.harness.scenes.camera import Camera
+from sssgen.harness.scenes.geometry import Ball, Box, Distance, Geometry, Mesh, Slab, Torus
 
 MESHES = Path(__file__).parents[2] / "shared" / "data" / "meshes"
 

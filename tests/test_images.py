@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from sssgen.diagnostics import SssgenError
-from sssgen.harness.camera import Camera
 from sssgen.harness.images import encode_srgb, read, write_exr, write_png
+from sssgen.harness.scenes.camera import Camera
 
 pytest.importorskip("PIL", reason="Pillow is missing: pip install 'sssgen[render]'")
 pytest.importorskip("OpenEXR", reason="OpenEXR is missing: pip install 'sssgen[render]'")

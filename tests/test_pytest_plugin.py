@@ -12,8 +12,9 @@ from pathlib import Path
 import pytest
 
 # pytester forgets the modules that a run was the first to import, and their classes would then be there twice
-from sssgen.harness import agreement, compiles, golden, render, started  # noqa: F401
+from sssgen.harness import render  # noqa: F401
 from sssgen.harness.backends import Backend
+from sssgen.harness.testing import agreement, compiles, golden, started  # noqa: F401
 
 pytest.importorskip("flip_evaluator", reason="flip-evaluator is missing: pip install 'sssgen[render]'")
 
@@ -48,7 +49,7 @@ def run(
 
     def call(test: str, *options: str) -> pytest.RunResult:
         pytester.makepyfile(test)
-        return pytester.runpytest_inprocess("-p", "sssgen.harness.pytest_plugin", *options)
+        return pytester.runpytest_inprocess("-p", "sssgen.harness.testing.pytest_plugin", *options)
 
     return call
 
@@ -222,7 +223,8 @@ def test_pytest_finds_it_and_it_costs_next_to_nothing(tmp_path: Path) -> None:
         "import sys\n\ndef test_it(request):\n"
         "    assert request.config.pluginmanager.has_plugin('sssgen')\n"
         "    ours = {name for name in sys.modules if name.partition('.')[0] == 'sssgen'}\n"
-        "    assert ours == {'sssgen', 'sssgen.harness', 'sssgen.harness.pytest_plugin', 'sssgen.version'}\n"
+        "    plugin = 'sssgen.harness.testing.pytest_plugin'\n"
+        "    assert ours == {'sssgen', 'sssgen.version', 'sssgen.harness', 'sssgen.harness.testing', plugin}\n"
         "    assert 'numpy' not in sys.modules\n",
         encoding="utf-8",
     )

@@ -15,10 +15,10 @@ from sssgen.cli import main
 from sssgen.diagnostics import SssgenError
 from sssgen.harness import backends, dice, images
 from sssgen.harness.backends import Backend
-from sssgen.harness.camera import Camera
-from sssgen.harness.geometry import Ball
 from sssgen.harness.render import Rendered, render
-from sssgen.harness.scene import load
+from sssgen.harness.scenes.camera import Camera
+from sssgen.harness.scenes.geometry import Ball
+from sssgen.harness.scenes.scene import load
 
 DRAWING = ["gl", "gl-es", "webgpu", "browser", "hlsl", "hlsl-glslang"]
 LAMP = """

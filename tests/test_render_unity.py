@@ -18,7 +18,7 @@ from sssgen.harness import backends, images
 from sssgen.harness.backends import Backend, Text
 from sssgen.harness.backends.unity import UnityHLSL
 from sssgen.harness.render import Rendered, render
-from sssgen.harness.scene import Scene, parse_scene
+from sssgen.harness.scenes.scene import Scene, parse_scene
 from test_render import BALL, LAMP, SIZE, apart
 
 UNITY = ["unity", "unity-urp"]

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from sssgen.diagnostics import SssgenError
-from sssgen.harness.camera import Camera
-from sssgen.harness.geometry import Ball, Box, Distance, Mesh, Slab, Torus
-from sssgen.harness.scene import DistanceTexture, Light, Picture, Scene, load, parse_scene
+from sssgen.harness.scenes.camera import Camera
+from sssgen.harness.scenes.geometry import Ball, Box, Distance, Mesh, Slab, Torus
+from sssgen.harness.scenes.scene import DistanceTexture, Light, Picture, Scene, load, parse_scene
 from sssgen.targets.numpy_textures import Texture
 
 HEAD = 'material = "paper_lantern"\n'

@@ -74,9 +74,13 @@ def test_what_an_emit_with_warm_caches_loads(tmp_path: Path) -> None:
 
 def test_the_same_input_gives_the_same_result() -> None:
     material, path = load_material("ice"), examples()["ice"]
-    assert compiler.compile(material, "wgsl") is compiler.compile(material, "wgsl")
-    assert compiler.compile(path, "wgsl") is compiler.compile(path, "wgsl")
-    assert compiler.compile(material, "wgsl") is not compiler.compile(material, "wgsl", "functions")
+    made, again, by_path = (compiler.compile(one, "wgsl").files for one in (material, material, path))
+    assert made.keys() == by_path.keys()
+    assert all(text is again[name] for name, text in made.items())  # the same text, not one like it
+    assert all(text is compiler.compile(path, "wgsl").files[name] for name, text in by_path.items())
+    made["ice.wgsl"] = "the caller's own"
+    assert compiler.compile(material, "wgsl").files == again
+    assert again.keys() != compiler.compile(material, "wgsl", "functions").files.keys()
 
 
 def test_a_changed_file_is_compiled_again(tmp_path: Path) -> None:

@@ -80,14 +80,19 @@ def compile(
     key = (id(material), target, form)
     known = _compiled.get(key) if templates is None else None
     if known is not None and known[0] is material:
-        return known[1]
+        return _copy(known[1])
     program = _program_of(material, chosen, form)._replace(about=_about(material))
     made = _finish(program, chosen, form, os.fspath(templates) if templates else None)
     if templates is None:
         if len(_compiled) >= _KEPT:
             _compiled.clear()
         _compiled[key] = material, made
-    return made
+    return _copy(made)
+
+
+def _copy(made: Compiled) -> Compiled:
+    """The caller's own: what is done to it is not done to what is kept."""
+    return Compiled(dict(made.files), list(made.warnings))
 
 
 def transpile(module: Module, target: str, name: str) -> Compiled:

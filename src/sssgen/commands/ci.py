@@ -7,8 +7,8 @@ from collections import Counter
 
 from ..cli import CHECK_FAILED, OK, print_json
 from ..diagnostics import visible
-from ..harness import ci, junit
-from ..harness.ci import Case, Ran
+from ..harness.testing import ci, junit
+from ..harness.testing.ci import Case, Ran
 
 WORDS = {"passed": "ok  ", "failed": "FAIL", "skipped": "skip"}
 
@@ -45,7 +45,7 @@ def run(arguments: Namespace) -> int:
 def _backends(text: str | None) -> list[str]:
     if text is None:
         return []
-    from ..harness.started import chosen
+    from ..harness.testing.started import chosen
 
     return chosen(text)
 
@@ -53,7 +53,7 @@ def _backends(text: str | None) -> list[str]:
 def _limit(flip: float | None) -> float | None:
     if flip is None:
         return None
-    from ..harness.golden import check_limit
+    from ..harness.testing.golden import check_limit
 
     return check_limit(flip)
 

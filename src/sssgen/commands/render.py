@@ -28,7 +28,7 @@ def _render(arguments: Namespace) -> int:
 
     from ..harness import backends, images
     from ..harness.render import render
-    from ..harness.scene import load
+    from ..harness.scenes.scene import load
 
     size = _size(arguments.size) if arguments.size else None
     if arguments.backend not in backends.NAMES:

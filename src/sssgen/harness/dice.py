@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from .backends import Array
-from .geometry import Hits
+from .scenes.geometry import Hits
 
 
 def vertices(hits: Hits, origin: Array, directions: Array, model: Array, size: tuple[int, int]) -> Array:

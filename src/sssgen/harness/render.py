@@ -28,8 +28,8 @@ from .backends.reference import Reference
 from .backends.unity import UnityHLSL
 from .evaluate import half
 from .images import decode_srgb, encode_srgb
-from .scene import DistanceTexture, Scene
-from .scene_reader import MAX_COUNT
+from .scenes.reader import MAX_COUNT
+from .scenes.scene import DistanceTexture, Scene
 from .shade_numpy import shade
 from .shell import Shell, drawing
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from ..diagnostics import SssgenError, did_you_mean, failure
-from . import backends
-from .backends import Backend, CompilerMissing
-from .isolated import Isolated, isolated
+from ...diagnostics import SssgenError, did_you_mean, failure
+from .. import backends
+from ..backends import Backend, CompilerMissing
+from ..isolated import Isolated, isolated
 
 
 def chosen(text: str) -> list[str]:

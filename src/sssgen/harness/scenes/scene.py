@@ -17,9 +17,9 @@ from sssgen.lang.loader import read_text
 from sssgen.material import examples
 from sssgen.toml_source import Document, parse
 
+from ..images import read
 from .camera import Camera
 from .geometry import Geometry
-from .images import read
 
 Vector: TypeAlias = tuple[float, float, float]
 
@@ -127,6 +127,6 @@ def load(path: str | os.PathLike[str]) -> Scene:
 
 def parse_scene(text: str, path: str | os.PathLike[str]) -> Scene:
     """The scene that a TOML text describes; files that it names are looked for beside `path`. Raises SssgenError."""
-    from .scene_reader import read_scene
+    from .reader import read_scene
 
     return read_scene(parse(text, posix(path)), os.path.dirname(os.fspath(path)))

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ..compiler import all_targets
-from ..diagnostics import Diagnostic, did_you_mean, failure
-from ..ir.spans import Span
-from . import check
-from .check import Report, Result
-from .compilers import Message, errors, readers
+from ...compiler import all_targets
+from ...diagnostics import Diagnostic, did_you_mean, failure
+from ...ir.spans import Span
+from .. import check
+from ..check import Report, Result
+from ..compilers import Message, errors, readers
+from ..shader_files import of_material
 from .outcome import Outcome, lacking
-from .shader_files import of_material
 
 
 def compiled(material: str, targets: str | Iterable[str] = "all") -> Outcome:

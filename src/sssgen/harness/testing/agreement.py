@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from ..diagnostics import failure
-from . import evaluate
-from .backends import Array, Backend, get
-from .deviation import GOAL, blur, deviation, errors
-from .evaluate import Inputs
+from ...diagnostics import failure
+from .. import evaluate
+from ..backends import Array, Backend, get
+from ..deviation import GOAL, blur, deviation, errors
+from ..evaluate import Inputs
+from ..probes import Subject
 from .outcome import Outcome
-from .probes import Subject
 
 
 def check_tolerance(given: Any) -> float:

@@ -13,12 +13,12 @@ import os
 import numpy as np
 import numpy.typing as npt
 
-from ..data import posix
-from ..diagnostics import SssgenError, failure
-from ..output import check_names
-from . import images
-from .compare import compare
-from .images import Array
+from ...data import posix
+from ...diagnostics import SssgenError, failure
+from ...output import check_names
+from .. import images
+from ..compare import compare
+from ..images import Array
 from .outcome import Outcome
 
 FLIP = 0.005

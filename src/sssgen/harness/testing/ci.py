@@ -23,9 +23,9 @@ from collections.abc import Iterator, Sequence
 from time import perf_counter
 from typing import Any, Literal, NamedTuple
 
-from ..data import posix, stem
-from ..diagnostics import SssgenError, failure
-from ..lang.loader import read_text
+from ...data import posix, stem
+from ...diagnostics import SssgenError, failure
+from ...lang.loader import read_text
 from .compiles import compiled
 from .outcome import Outcome, beside, lacking
 
@@ -148,10 +148,10 @@ class Run:
         return compiled(case.path)
 
     def _render(self, case: Case) -> Outcome:
+        from ..compilers import CompilerMissing
+        from ..render import render
+        from ..scenes.scene import load
         from . import golden
-        from .compilers import CompilerMissing
-        from .render import render
-        from .scene import load
 
         (name,), folder = case.backends, os.path.join(os.path.dirname(case.path), golden.FOLDER)
         try:
@@ -165,13 +165,13 @@ class Run:
         return golden.compared(picture, folder, stem(case.path), limit, "" if case.first else f".{name}")
 
     def _eval(self, case: Case) -> Outcome:
+        from ..backends import NAMES, CompilerMissing, get
+        from ..deviation import GOAL
+        from ..evaluate import fitted, run
+        from ..inputs import read
+        from ..probes import subject
+        from ..samples import samples
         from .agreement import against_oracle, check_tolerance, known
-        from .backends import NAMES, CompilerMissing, get
-        from .deviation import GOAL
-        from .evaluate import fitted, run
-        from .inputs import read
-        from .probes import subject
-        from .samples import samples
 
         given, folder = _read(case.path), [os.path.dirname(case.path)]
         tolerance = check_tolerance(given.get("tolerance", GOAL))

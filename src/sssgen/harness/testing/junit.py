@@ -7,9 +7,9 @@ import xml.etree.ElementTree as ET
 from collections import Counter
 from collections.abc import Sequence
 
-from ..data import posix
-from ..diagnostics import visible
-from ..output import write_files
+from ...data import posix
+from ...diagnostics import visible
+from ...output import write_files
 from .ci import Ran
 
 SUITE = "sssgen ci"

@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import pytest
 
 if TYPE_CHECKING:
-    from .backends import Array, Backend
+    from ..backends import Array, Backend
+    from ..render import Rendered
+    from ..scenes.scene import Scene
     from .outcome import Outcome
-    from .render import Rendered
-    from .scene import Scene
     from .started import Started
 
 Found = TypeVar("Found")
@@ -48,7 +48,7 @@ def pytest_configure(config: pytest.Config) -> None:
     if flip is not None and not 0.0 <= flip <= 1.0:
         raise pytest.UsageError(f"--sssgen-flip {flip}: it is from 0, which is the same, to 1")
     if given := config.getoption("sssgen_backend"):
-        from ..diagnostics import SssgenError
+        from ...diagnostics import SssgenError
 
         try:
             from .started import chosen
@@ -165,7 +165,7 @@ def sssgen_golden(request: pytest.FixtureRequest, sssgen_backend: str, _sssgen_s
         __tracebackhide__ = True
         for module in ("PIL", "flip_evaluator"):
             _need(module)
-        from .scene import Scene
+        from ..scenes.scene import Scene
 
         if isinstance(picture, str | os.PathLike | Scene):
             scene, backend = picture, _backend(_sssgen_started, sssgen_backend)
@@ -176,8 +176,8 @@ def sssgen_golden(request: pytest.FixtureRequest, sssgen_backend: str, _sssgen_s
 
 
 def _golden(request: pytest.FixtureRequest, picture: Any, name: str, flip: float | None, backend: str) -> Outcome:
+    from ..render import Rendered
     from . import golden
-    from .render import Rendered
 
     encoded = picture.encoded if isinstance(picture, Rendered) else picture
     config, names = request.config, _names(request.config)
@@ -198,8 +198,8 @@ def _render(
     size: tuple[int, int] | None = None,
     time: float | None = None,
 ) -> Rendered:
-    from .render import render
-    from .scene import Scene, load
+    from ..render import render
+    from ..scenes.scene import Scene, load
 
     read = scene if isinstance(scene, Scene) else load(_place(request, scene))
     return render(read, backend, size, time)
@@ -208,9 +208,9 @@ def _render(
 def _run(
     technique: str, bind: Mapping[str, str], inputs: Mapping[str, Any], backend: Backend, tolerance: float
 ) -> tuple[dict[str, Array], Outcome]:
+    from ..evaluate import fitted
+    from ..probes import subject
     from .agreement import against_oracle, check_tolerance
-    from .evaluate import fitted
-    from .probes import subject
 
     check_tolerance(tolerance)
     chosen = subject(technique, bind)
@@ -232,7 +232,7 @@ def _place(request: pytest.FixtureRequest, path: str | os.PathLike[str]) -> str:
 def _backend(started: Started, name: str) -> Backend:
     """The back end; a skip where this machine lacks it, with CI set a failure."""
     __tracebackhide__ = True
-    from .compilers import CompilerMissing
+    from ..compilers import CompilerMissing
     from .outcome import lacking
 
     try:
@@ -262,7 +262,7 @@ def _need(module: str) -> None:
 def _guarded(call: Callable[[], Found]) -> Found:
     """What the call gives. An error of its input is shown at the test's own line, not at ours."""
     __tracebackhide__ = True
-    from ..diagnostics import SssgenError
+    from ...diagnostics import SssgenError
 
     try:
         return call()

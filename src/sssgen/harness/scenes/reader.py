@@ -11,12 +11,13 @@ from sssgen.diagnostics import SssgenError, did_you_mean
 from sssgen.material import examples
 from sssgen.toml_source import Document, Path
 
-from . import images, mesh
+from .. import images
+from . import mesh
 from .camera import Camera
 from .distance_field import PROJECTIONS
 from .geometry import Ball, Box, Distance, Geometry, Mesh, Slab, Torus
 from .scene import DistanceTexture, Light, Picture, Scene
-from .scene_table import ANY, NOT_NEGATIVE, POSITIVE, Table
+from .table import ANY, NOT_NEGATIVE, POSITIVE, Table
 
 _KEYS = (
     "material", "size", "samples", "time", "background", "ambient", "exposure",

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from sssgen.data import posix
 from sssgen.diagnostics import did_you_mean, failure
 
-from .extras import need
+from ..extras import need
 from .placed import Array, Geometry, Hits, any_tangent, spherical, spread, tangent_of, unit
 
 Indices: TypeAlias = npt.NDArray[np.int64]

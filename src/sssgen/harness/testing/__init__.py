@@ -1,0 +1,1 @@
+"""Users' own tests: the pytest plug-in, `sssgen ci`, golden pictures."""
