@@ -17,24 +17,24 @@ from .scenes.geometry import Hits
 def vertices(hits: Hits, origin: Array, directions: Array, model: Array, size: tuple[int, int]) -> Array:
     """(width * height, 12) float32: position, normal, tangent with handedness and uv, in object space.
 
-    `hits` are in world space, row by row from the bottom. A pixel that meets nothing has the attributes of a neighbour
-    that does, so that the surface's edge has no false slope, and a position behind it.
+    `hits` are in world space, row by row from the bottom. A pixel that meets nothing has the attributes and the distance
+    of a neighbour that does, so that the surface's edge has no steep slope, whose rounding would show.
     """
     hit = hits.hit
     distance = np.linalg.norm(hits.position - origin, axis=1)
-    behind = 1.5 * (distance[hit].max() if hit.any() else 1.0)
-    position = np.where(hit[:, None], hits.position, origin + behind * directions)
+    distance = _grown(distance[:, None], hit, size, [distance[hit].mean() if hit.any() else 1.0])
+    position = np.where(hit[:, None], hits.position, origin + distance * directions)
     inverse = np.linalg.inv(model)
     placed = position @ inverse[:3, :3].T + inverse[:3, 3]
     normal = hits.normal @ model[:3, :3]  # the shell multiplies by the inverse transpose
     tangent = hits.tangent[:, :3] @ inverse[:3, :3].T
     around = np.concatenate([normal, tangent, hits.tangent[:, 3:], hits.uv], axis=1)
-    around = _grown(around, hit, size)
+    around = _grown(around, hit, size, [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0])
     return np.concatenate([placed, around], axis=1).astype(np.float32)
 
 
-def _grown(values: Array, known: Array, size: tuple[int, int]) -> Array:
-    """Values that also their unknown neighbours have, above, below, left and right."""
+def _grown(values: Array, known: Array, size: tuple[int, int], other: list[float]) -> Array:
+    """Values that also their unknown neighbours have, all around; what is further away has the other value."""
     width, height = size
     grown, seen = values.reshape(height, width, -1).copy(), known.reshape(height, width).copy()
     for axis in (0, 1):
@@ -45,7 +45,7 @@ def _grown(values: Array, known: Array, size: tuple[int, int]) -> Array:
             new = from_there & ~seen
             grown[new] = np.roll(grown, step, axis)[new]
             seen |= new
-    grown[~seen] = np.array([0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0])
+    grown[~seen] = other
     return grown.reshape(len(values), -1)
 
 
