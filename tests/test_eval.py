@@ -16,7 +16,7 @@ import pytest
 
 from sssgen.cli import main
 from sssgen.diagnostics import SssgenError
-from sssgen.harness import backends, inputs
+from sssgen.harness import backends, compilers, inputs
 from sssgen.harness.backends import Backend
 from sssgen.harness.deviation import deviation, errors
 from sssgen.harness.evaluate import evaluate
@@ -263,6 +263,17 @@ def test_a_back_end_that_crashes_comes_again(backend: Callable[[str], Backend]) 
         assert np.array_equal(evaluate(technique, LOBE, gpu)["result"], wanted)
     finally:
         gpu.close()
+
+
+def test_a_lost_device_is_told_and_replaced(backend: Callable[[str], Backend]) -> None:
+    """As when a driver is reset. The browser's and the processes' own losses are in test_browser.py and here below."""
+    gpu = backend("webgpu")
+    technique, given = subject("beer_lambert"), {"d": [0.1, 0.2], "attenuation_distance": 0.1}
+    gpu.gpu.destroy()  # type: ignore[attr-defined]
+    with pytest.raises(SssgenError, match="webgpu: the device was lost"):
+        evaluate(technique, given, gpu)
+    assert evaluate(technique, given, gpu)["result"] == pytest.approx(np.exp([-1.0, -2.0]))
+    assert compilers.get("naga").check(compilers.Source("fn f() -> f32 { return 1.0; }", "wgsl", "library")) == []
 
 
 def test_a_back_end_that_hangs_is_ended(backend: Callable[[str], Backend]) -> None:

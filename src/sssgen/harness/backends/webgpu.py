@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from .. import compilers
-from ..compilers.naga import Naga
+from ..compilers.naga import Naga, find
 from .base import Array, Drawing, gave_up, refused
 from .drawing import DrawingBackend
 from .webgpu_plan import ATTRIBUTE_PLAN, STRIDE, Plan, TexturePlan, layout_entries, plan
@@ -28,6 +28,10 @@ class WebGPU(DrawingBackend):
         super().__init__(name, "wgsl")
         naga = compilers.get("naga")
         assert isinstance(naga, Naga)
+        self.start(naga)
+
+    def start(self, naga: Naga) -> None:
+        """Takes naga's device; nothing is compiled for it yet."""
         self.naga = naga
         self.gpu: Any = naga.gpu
         self.pipelines: OrderedDict[tuple[object, ...], Any] = OrderedDict()
@@ -42,10 +46,24 @@ class WebGPU(DrawingBackend):
         try:
             return self.carry_out(todo)
         except wgpu.GPUError as error:
+            if self.lost():
+                self.naga.gpu = find().gpu  # the compiler's device is the same
+                self.start(self.naga)
+                raise gave_up(self.name, "the device was lost", "a new one is there for the next run") from None
             told = self.naga.complaints(todo.code)
             if told:
                 raise refused(self.name, drawing.fragment.text, told) from None
             raise gave_up(self.name, f"{type(error).__name__}: {error}") from error
+
+    def lost(self) -> bool:
+        """Whether the device does nothing any more."""
+        import wgpu
+
+        try:
+            self.gpu.create_buffer(size=4, usage=_UNIFORM)
+        except wgpu.GPUError:
+            return True
+        return False
 
     def carry_out(self, todo: Plan) -> Array:
         """Draws and reads the picture."""

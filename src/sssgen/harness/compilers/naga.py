@@ -38,7 +38,7 @@ class Naga(Compiler):
         return []
 
 
-def find() -> Compiler:
+def find() -> Naga:
     """naga behind a WebGPU device. Raises CompilerMissing where wgpu or an adapter is lacking."""
     import os
     import tempfile
