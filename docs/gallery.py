@@ -117,7 +117,7 @@ def page(present: list[Backend]) -> str:
         *_paragraph(
             "Of the 307,200 pixels of the full size, with one sample each, so many are more than 1/255 off. There "
             "float32 decides otherwise than float64: `jelly_cubes` finds its own surface, and a ray on the edge of a "
-            "cube, a tile or a shadow falls to either side; in the others it is where the surface is seen edge on."
+            "cube, a tile or a shadow falls to either side."
         ),
         f"| Scene | {' | '.join(f'`{backend.name}`' for backend in present)} |",
         f"|---|{'---|' * len(present)}",
