@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import os
 import re
-import runpy
 import shutil
 import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any

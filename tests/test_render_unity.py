@@ -17,6 +17,7 @@ from sssgen.diagnostics import SssgenError
 from sssgen.harness import backends, images
 from sssgen.harness.backends import Backend, Text
 from sssgen.harness.backends.unity import UnityHLSL
+from sssgen.harness.isolated import isolated
 from sssgen.harness.render import Rendered, render
 from sssgen.harness.scenes.scene import Scene, parse_scene
 from test_render import BALL, LAMP, SIZE, apart
@@ -186,3 +187,18 @@ def test_a_shader_that_does_not_compile(unity: UnityHLSL) -> None:
     shader = Text(f'Shader "x" {{ SubShader {{ Pass {{\nHLSLPROGRAM\n{code}\nENDHLSL\n}} }} }}', {4: "glow.sss:7:1"})
     with pytest.raises(SssgenError, match=rf"{unity.name}: forward pass: .*missing[^$]*glow.sss:7"):
         unity.whole.glsl(unity.forward(shader, "fragment", ()), "fragment")
+
+
+def test_in_a_process_of_its_own(unity: UnityHLSL, backend: Callable[[str], Backend]) -> None:
+    """As `sssgen ci` draws. The lamp's parameters are packed as GLSL packs none: a colour behind a number."""
+    backend("gl")
+    path = EXAMPLES / "ci" / "scenes" / "lamp.toml"
+    scene = parse_scene(path.read_text(encoding="utf-8"), str(path))
+    other = isolated(unity.name)
+    try:
+        there = render(scene, other, SIZE)
+    finally:
+        other.close()
+    here = render(scene, unity, SIZE)
+    assert np.array_equal(there.linear, here.linear)
+    assert apart(here, render(scene, backends.get("gl"), SIZE)) < (10.0 if unity.unity.real else 0.3)

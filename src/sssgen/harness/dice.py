@@ -17,8 +17,8 @@ from .scenes.geometry import Hits
 def vertices(hits: Hits, origin: Array, directions: Array, model: Array, size: tuple[int, int]) -> Array:
     """(width * height, 12) float32: position, normal, tangent with handedness and uv, in object space.
 
-    `hits` are in world space, row by row from the bottom. A pixel that meets nothing has the attributes and the distance
-    of a neighbour that does, so that the surface's edge has no steep slope, whose rounding would show.
+    `hits` are in world space, row by row from the bottom. A pixel that meets nothing has the attributes and the
+    distance of a neighbour that does, so that the surface's edge has no steep slope, whose rounding would show.
     """
     hit = hits.hit
     distance = np.linalg.norm(hits.position - origin, axis=1)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
+from ..compiler import Compiled
 from ..diagnostics import SssgenError
 from ..targets import descriptor
 from ..targets.numpy_textures import Texture
@@ -53,6 +54,11 @@ class Isolated(DrawingBackend):
         found: Array = self._ask("draw", drawing)
         return found
 
+    def shade(self, compiled: Compiled, shell: Any, size: tuple[int, int], points: Array | None) -> Array:
+        """As `shade.shade` has it, in the other process."""
+        found: Array = self._ask("shade", compiled, shell, size, points)
+        return found
+
     def close(self) -> None:
         """Ends the process."""
         self.process.close()
@@ -76,6 +82,11 @@ def serve(name: str) -> tuple[_Facts, Callable[[tuple[str, tuple[Any, ...]]], An
     def answer(question: tuple[str, tuple[Any, ...]]) -> Any:
         what, given = question
         try:
+            if what == "shade":
+                from .shade import shade
+
+                compiled, shell, *rest = given
+                return shade(compiled, shell, backend, *rest)
             return getattr(backend, what)(*given)
         except (SssgenError, CompilerMissing):
             raise

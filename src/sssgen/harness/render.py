@@ -22,16 +22,14 @@ from ..ir.nodes import Uniform
 from ..material import Material, load_material
 from ..material_values import WrongValue, read_value
 from ..targets.numpy_textures import Texture
-from . import dice, inputs, unity_shell
-from .backends import Array, Backend, DrawingBackend
-from .backends.reference import Reference
-from .backends.unity import UnityHLSL
+from . import dice, inputs
+from .backends import Array, Backend
 from .evaluate import half
 from .images import decode_srgb, encode_srgb
 from .scenes.reader import MAX_COUNT
 from .scenes.scene import DistanceTexture, Scene
-from .shade_numpy import shade
-from .shell import Shell, drawing
+from .shade import shade
+from .shell import Shell
 
 LARGEST = 8192
 """Samples along a side of what is drawn: the largest picture that every driver takes."""
@@ -74,7 +72,7 @@ def render(scene: Scene, backend: Backend, size: tuple[int, int] | None = None, 
     shell = _shell(scene, material, reflection)
     if raymarched:
         shell = dataclasses.replace(shell, view_projection=_matrix(scene, backend, width / height))
-        samples, hit = _shade(compiled, shell, backend, (width, height), None), np.ones((height, width), bool)
+        samples, hit = shade(compiled, shell, backend, (width, height), None), np.ones((height, width), bool)
     else:
         samples, hit = _surface(scene, compiled, shell, backend, (width, height))
     return _developed(scene, reflection, samples, hit)
@@ -105,7 +103,7 @@ def _surface(
     deep = dataclasses.replace(scene, camera=dataclasses.replace(wider, near=1e-3 * far, far=2.0 * far))
     shell = dataclasses.replace(shell, view_projection=_matrix(deep, backend, whole[0] / whole[1]))
     inner = slice(edge, edge + height), slice(edge, edge + width)
-    picture = _shade(compiled, shell, backend, whole, points)
+    picture = shade(compiled, shell, backend, whole, points)
     return picture[inner], hits.hit.reshape(whole[1], whole[0])[inner]
 
 
@@ -113,18 +111,6 @@ def _matrix(scene: Scene, backend: Backend, aspect: float) -> Array:
     """World to clip space in the language's own depth range."""
     low = backend.target.table.get("conventions", {}).get("clip_z", [-1.0])[0]
     return scene.camera.view_projection(aspect, zero_to_one=low == 0.0)
-
-
-def _shade(compiled: Compiled, shell: Shell, backend: Backend, size: tuple[int, int], points: Array | None) -> Array:
-    """The samples, (height, width, 4), row 0 at the bottom."""
-    if isinstance(backend, Reference):
-        return shade(compiled, shell, size, points, backend.dtype)
-    if isinstance(backend, UnityHLSL):
-        return unity_shell.shade(compiled, shell, backend, size, points)
-    assert isinstance(backend, DrawingBackend)
-    triangles = None if points is None else dice.triangles(size)
-    picture = backend.draw(drawing(compiled, shell, size, points, triangles))
-    return picture[::-1] if backend.top_first else picture
 
 
 def _developed(scene: Scene, reflection: Mapping[str, Any], samples: Array, hit: Array) -> Rendered:

@@ -50,13 +50,33 @@ class UnityProgram(HLSL):
     def spirv_cross(self, stage: Stage, kind: str, *options: str) -> str:
         """What spirv-cross makes of a stage."""
         told = stage.text._replace(text="")  # the lines that are told are the .shader's
-        module, log = compiled(stage.text.text, stage.entry, kind, self.compiler)
+        module, log = compiled(_aligned(stage.text.text), stage.entry, kind, self.compiler)
         if not module:
             raise refused(self.name, told, self.messages(log))
         made, log = crossed(module, *options)
         if not made:
             raise refused(self.name, told, [Message("error", 0, 0, log)])
         return made
+
+
+def _aligned(text: str) -> str:
+    """The program with the material's members in the order of their sizes, the largest first.
+
+    As emitted they follow HLSL's packing, where a float3 may stand behind a float. GLSL has no such layout, so
+    spirv-cross refuses it. Members are set by name, so their order is free here.
+    """
+
+    def ordered(match: re.Match[str]) -> str:
+        members = re.findall(r"[^;]*;", match[2])
+        return match[1] + "".join(sorted(members, key=_size, reverse=True)) + match[3]
+
+    return re.sub(r"(cbuffer\s+UnityPerMaterial\s*\{)([^{}]*;)(\s*\})", ordered, text)
+
+
+def _size(member: str) -> int:
+    """What orders a member: matrices and arrays, then vectors, then scalars."""
+    kind = re.search(r"\b(?:float|half|int|uint|bool)(\d?)(x\d)?\b", member)
+    return 5 if "[" in member or (kind and kind[2]) else int(kind[1] or 1) if kind else 1
 
 
 def black(dim: str) -> Texture:
