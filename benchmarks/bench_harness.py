@@ -2,8 +2,8 @@
 
 Each technique is evaluated COUNT times (10,000) in one draw, on every back end, and the table has evaluations a second,
 the share of the time that is spent outside the draw, and the time of the first call, which compiles, over that of the
-later ones. Then each example's scene, at 1920×1080 with one sample a pixel: the time of a frame's draw. On a software
-driver that is the CPU's; a GPU's own timer would say the same but for the wait around it.
+later ones. Then each example's scene, at 640×360 with one sample a pixel: the share of the time that its draw takes,
+and the draw's time beside that of the first scene. On a software driver that is the CPU's.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ import sys
 import time
 from collections.abc import Callable
 
-from sssgen.data import place
 from sssgen.harness import backends, evaluate, render
 from sssgen.harness.backends import DrawingBackend
 from sssgen.harness.probes import subject
@@ -23,6 +22,7 @@ from sssgen.material import examples
 
 TECHNIQUES = ("lobe_gdc2011", "standard", "thinness_uniform")
 ROUNDS = 7
+SIZE = (640, 360)
 
 
 def median(work: Callable[[], object], rounds: int = ROUNDS) -> float:
@@ -67,19 +67,21 @@ def cell(backend: backends.Backend, name: str, count: int) -> str:
 
 def frames(names: list[str]) -> None:
     """The scenes, one frame each."""
-    print("\none frame of 1920×1080, ms (the emitted shader's draw alone)")
+    print(f"\none frame of {SIZE[0]}×{SIZE[1]}: the draw's share of it, and the draw over that of the first scene")
     machines = [one for one in backends.available() if isinstance(one, DrawingBackend) and one.name in names]
-    print(f"{'':14} " + "  ".join(f"{one.name:>10}" for one in machines))
+    print(f"{'':14} " + "  ".join(f"{one.name:>16}" for one in machines))
+    first: dict[str, float] = {}
     for name in examples():
-        path = f"{place('examples')}/{name}/scene.toml"
-        times = []
+        shown = render.with_samples(scene.load(name), 1)
+        cells = []
         for machine in machines:
-            shown = scene.load(path)
             render.render(shown, machine, size=(64, 36))  # compiles
-            shown = render.with_samples(shown, 1)
-            render.render(shown, machine, size=(1920, 1080))
-            times.append(1000.0 * machine.drew)
-        print(f"{name:14} " + "  ".join(f"{one:10.2f}" for one in times))
+            start = time.perf_counter()
+            render.render(shown, machine, size=SIZE)
+            share = machine.drew / (time.perf_counter() - start)
+            first.setdefault(machine.name, machine.drew)
+            cells.append(f"{share:5.0%}  {machine.drew / first[machine.name]:6.1f} ×")
+        print(f"{name:14} " + "  ".join(f"{one:>16}" for one in cells))
 
 
 if __name__ == "__main__":
