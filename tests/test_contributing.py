@@ -40,7 +40,7 @@ def test_add_a_technique(tmp_path: Path, compiler: Callable[[str], Any]) -> None
         compiler(name)
     reader = checkout(tmp_path, programs(tmp_path / "programs"))
     steps = blocks(CONTRIBUTING, "Add a technique")
-    assert [step.verb for step in steps] == ["write", "output", "write", "run", "write", "run"]
+    assert [step.verb for step in steps] == ["write", "output", "write", "run", "write", "run", "run"]
     for step in steps:
         reader.follow(step)
     assert "sheet_thickness" in reader.run("sssgen list techniques --role thickness")[0]
