@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import tempfile
+from collections.abc import Collection
 from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
@@ -48,6 +49,19 @@ class HLSL(OpenGL):
         if not glsl:
             raise refused(self.name, stage.text, [Message("error", 0, 0, log)])
         return glsl
+
+    def owner(self, member: str, names: Collection[str]) -> str:
+        """DXC writes `type_` before a block's name; spirv-cross joins a texture's name with its sampler's."""
+        for plain in (member, member.removeprefix("type_")):
+            if plain in names:
+                return plain
+        joined = member.removeprefix("SPIRV_Cross_Combined")
+        if joined == member:
+            return ""
+        for name in names:
+            if joined.startswith((f"{name}sampler", f"{name}SPIRV_Cross_DummySampler", f"{name}{name}_sampler")):
+                return name
+        return ""
 
     def prepared(self, text: Text) -> Text:
         """What the compiler is given: Unity's text is preprocessed first."""

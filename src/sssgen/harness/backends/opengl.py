@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from time import perf_counter
 from typing import Any
 
@@ -88,7 +88,7 @@ class OpenGL(DrawingBackend):
             frame = keep(context.framebuffer([keep(context.texture(drawing.size, 4, dtype=kind))]))
             textures = {name: keep(self.upload(bound.data)) for name, bound in drawing.textures.items()}
             for unit, member in enumerate(name for name in program if is_loose(program[name])):
-                name = _owner(member, textures)
+                name = self.owner(member, textures)
                 if name:
                     textures[name].use(unit)
                     program[member].value = unit
@@ -113,14 +113,18 @@ class OpenGL(DrawingBackend):
                 one.release()
 
     def bind_blocks(self, program: Any, blocks: Mapping[str, Block], keep: Any) -> None:
-        """Binds the uniform blocks that the program has; a compiler may have put something around their names."""
+        """Binds the uniform blocks that the program has."""
         members = [name for name in program if hasattr(program[name], "binding")]
         for number, member in enumerate(members):
-            name = _owner(member, blocks)
+            name = self.owner(member, blocks)
             if name:
                 buffer = keep(self.context.buffer(blocks[name].data))
                 program[member].binding = number
                 buffer.bind_to_uniform_block(number)
+
+    def owner(self, member: str, names: Collection[str]) -> str:
+        """Which of our textures or blocks a member of the program is; '' where it is none."""
+        return member if member in names else ""
 
     def vertex_array(self, program: Any, drawing: Drawing, keep: Any) -> Any:
         """The vertices, of which the program takes the attributes that it has."""
@@ -167,11 +171,6 @@ def is_loose(member: Any) -> bool:
     import moderngl
 
     return isinstance(member, moderngl.Uniform)
-
-
-def _owner(member: str, names: Mapping[str, Any]) -> str:
-    """Which of ours a program's name means: HLSL comes with a prefix, a texture with its sampler's name behind it."""
-    return next((name for name in sorted(names, key=len, reverse=True) if name in member), "")
 
 
 def _write(member: Any, numbers: Array) -> None:

@@ -36,7 +36,7 @@ class UnityProgram(HLSL):
         for stage, kind in ((drawing.vertex, "vertex"), (drawing.fragment, "fragment")):
             blocks |= _blocks(json.loads(self.spirv_cross(stage, kind, "--reflect")), drawing.values)
             for dim, name in _SAMPLER.findall(self.glsl(stage, kind)):
-                if not any(known in name for known in textures):
+                if not self.owner(name, textures):
                     textures[name] = Bound(black(dim), Place(0, 0))
         return super().draw(drawing._replace(blocks=blocks, textures=textures, values={}))
 
