@@ -73,6 +73,7 @@ class Tint(Compiler):
         with contextlib.suppress(OSError):
             self._process.stdin.close()
         self._process.wait(timeout=10)
+        self._process.stdout.close()
 
     def _start(self) -> None:
         import subprocess
