@@ -166,6 +166,7 @@ def test_deviation_is_relative_above_one_and_absolute_below() -> None:
         ({"N": [[0, 0, 1], [0, 1]]}, "input 'N': its rows have different lengths"),
         ({"N": [[[0, 0, 1]]]}, "input 'N' has the shape 1×1×3"),
         ({"N": []}, "input 'N'"),
+        ({"through": [[0.5]]}, "input 'through' has the shape 1×1, which is no float"),
         ({"N": [[0, 0, 1]] * 3}, "the inputs have different numbers of values: N has 3, L has 2"),
         ({"N": [0, 0, float("nan")]}, "input 'N' is NaN or infinite at number 0"),
         ({"L": [[0, 0, 1], [0, float("inf"), 0]]}, "input 'L' is NaN or infinite at number 1"),
@@ -217,11 +218,16 @@ def test_wrong_arguments(capsys: pytest.CaptureFixture[str], given: Callable[...
 
 def test_a_missing_back_end(given: Callable[..., str]) -> None:
     """Named alone it is an error that says how to get it; among all it is a line, and the rest goes on."""
-    environment = {**os.environ, "SSSGEN_CHROMIUM": "/nowhere/chromium"}
+    environment = {**os.environ, "SSSGEN_CHROMIUM": "/nowhere/chromium", "CI": ""}
     command = [sys.executable, "-m", "sssgen", "eval", "lobe_gdc2011", "-i", given(LOBE), "-b"]
     alone = subprocess.run([*command, "browser"], env=environment, capture_output=True, text=True, check=False)
     assert alone.returncode == 2 and "help: chromium" in alone.stderr
     among = subprocess.run([*command, "numpy,browser,gl"], env=environment, capture_output=True, text=True, check=False)
+    bare = {**environment, "PATH": "/nowhere"}
+    none = subprocess.run([*command, "browser,hlsl"], env=bare, capture_output=True, text=True, check=False)
+    assert none.returncode == 1 and none.stdout.count("missing: ") == 2
+    strict = {**environment, "CI": "true"}
+    assert subprocess.run([*command, "numpy,browser"], env=strict, capture_output=True, check=False).returncode == 1
     assert "missing: chromium" in among.stdout and "\ngl " in among.stdout and among.returncode == 0
 
 

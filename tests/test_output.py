@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -31,6 +32,14 @@ def test_sub_folders_are_made_but_links_out_are_not_followed(tmp_path: Path) -> 
         write_files(Path("out"), {"link/wax.hlsl": "a\n"})
     with pytest.raises(SssgenError, match="a link out of the output folder"):
         write_files(Path("out"), {"link/deeper/wax.hlsl": "a\n"})
+
+
+def test_a_pipe_is_not_replaced(tmp_path: Path) -> None:
+    """Nor a device, which needs more rights to try."""
+    os.mkfifo(tmp_path / "a.wgsl")
+    with pytest.raises(SssgenError, match="this is a device or a pipe"):
+        write_files(tmp_path, {"a.wgsl": "new"})
+    assert (tmp_path / "a.wgsl").is_fifo()
 
 
 def test_a_linked_file_is_replaced_not_written_through() -> None:

@@ -216,6 +216,8 @@ def test_a_scene_that_does_not_fit_its_material(
         (["SCENE", "--size", "0x10"], "is no size"),
         (["SCENE", "--size", "8192x8192"], "samples are too many"),
         (["SCENE", "--backend", "opengl"], "unknown back end"),
+        (["SCENE", "--time", "nan"], "is no time"),
+        (["SCENE", "--time", "1e39"], "is no time"),
         (["SCENE", "-o", "x.jpg"], "'.jpg'"),
         (["SCENE", "-o", "x.npy"], "written as .png or .exr"),
         (["nothing.toml"], "nothing.toml"),
@@ -272,3 +274,24 @@ def test_field_of_view_grows_by_the_border() -> None:
     inner = camera.rays(width, height)[1].reshape(height, width, 3)
     whole: Any = Camera(field_of_view=wider).rays(width + 2, height + 2)[1].reshape(height + 2, width + 2, 3)
     np.testing.assert_allclose(whole[1:-1, 1:-1], inner, atol=1e-12)
+
+
+def test_a_texture_that_the_driver_does_not_take(
+    backend: Callable[[str], Backend], scene: Callable[..., str], tmp_path: Path
+) -> None:
+    """OpenGL would draw on with nothing in it, and say nothing."""
+    for name in ("gl", "hlsl", "webgpu"):
+        gpu = backend(name)
+        widest = gpu.largest["2D"]  # type: ignore[attr-defined]
+        np.save(tmp_path / "wide.npy", np.ones((1, widest + 1, 3)))
+        path = scene(f'material = "resin_inlay"\n{BALL}[textures]\nbase_color_texture = "wide.npy"\n')
+        with pytest.raises(SssgenError, match=f"texture 'base_color_texture' is {widest + 1} texels wide"):
+            render(load(path), gpu, SIZE)
+
+
+@pytest.mark.parametrize("texel", [np.nan, 1e300])
+def test_a_texture_with_no_numbers_in_it(scene: Callable[..., str], tmp_path: Path, texel: float) -> None:
+    np.save(tmp_path / "none.npy", np.full((2, 2, 3), texel))
+    path = scene(f'material = "resin_inlay"\n{BALL}[textures]\nbase_color_texture = "none.npy"\n')
+    with pytest.raises(SssgenError, match="a texture has NaN, infinity or numbers beyond 65504"):
+        render(load(path), backends.get("numpy"), SIZE)

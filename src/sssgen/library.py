@@ -107,6 +107,9 @@ def _read_technique(path: str) -> Technique:
         raise failure(f"the file has no function '{name}'", "a technique is named like its file", shown)
     doc = sections(function.doc)
     role = doc.get("role", folder_of(path))
+    if "role" not in doc and role not in ROLES:
+        hint = "write `role: translucency`, say, in the doc comment that stands directly before the function"
+        raise failure(f"the technique '{name}' has no role", hint, shown)
     if role not in ROLES:
         raise failure(f"unknown role '{role}'", did_you_mean(role, ROLES) or f"roles: {', '.join(ROLES)}", shown)
     return Technique(name, role, path, module, function, doc)

@@ -59,8 +59,8 @@ def write_files(folder: str | os.PathLike[str], files: Mapping[str, str | bytes]
     """Writes texts (UTF-8, as they are) and bytes into a folder, making it if need be; names may have sub-folders.
 
     All of them stand in temporary files before the first old file is replaced, each in one step:
-    whatever interrupts, every file is either the old or the new one, whole. Raises SssgenError where a name
-    climbs out of the folder or the system refuses.
+    whatever interrupts, every file is either the old or the new one, whole. A link is replaced, not
+    followed. Raises SssgenError where a name climbs out of the folder, is a device's, or the system refuses.
     """
     folder = os.fspath(folder)
     check_names(files)
@@ -70,6 +70,8 @@ def write_files(folder: str | os.PathLike[str], files: Mapping[str, str | bytes]
     try:
         for name, content in files.items():
             path = os.path.join(folder, name)
+            if _is_special(path):
+                raise failure("cannot write the file: this is a device or a pipe", "name a file", posix(path))
             data = content if isinstance(content, bytes) else content.encode("utf-8")
             if _holds(path, data):
                 written.append(Written(path, False))
@@ -94,6 +96,11 @@ def write_files(folder: str | os.PathLike[str], files: Mapping[str, str | bytes]
             with contextlib.suppress(OSError):
                 os.unlink(temporary)
     return written
+
+
+def _is_special(path: str) -> bool:
+    """Whether a device, a pipe or a socket has the name: a file in its place would be a loss."""
+    return not os.path.islink(path) and os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path)
 
 
 def _write_bytes(path: str, data: bytes) -> None:

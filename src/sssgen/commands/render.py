@@ -34,6 +34,8 @@ def _render(arguments: Namespace) -> int:
     if arguments.backend not in backends.NAMES:
         hint = did_you_mean(arguments.backend, backends.NAMES) or f"choose from: {', '.join(backends.NAMES)}"
         raise failure(f"unknown back end '{arguments.backend}'", hint)
+    if arguments.time is not None and not abs(arguments.time) < 1e9:
+        raise failure(f"--time {arguments.time:g} is no time", "seconds, less than 1e9")
     scene = load(arguments.SCENE)
     name = os.path.splitext(os.path.basename(arguments.SCENE))[0]
     output = arguments.output or f"{name}.png"

@@ -140,7 +140,7 @@ def _value(name: str, type_: Type, given: Any) -> Array:
     if array.dtype.kind not in "fiub" or (kind_of(type_) == "bool") != (array.dtype.kind == "b"):
         raise failure(f"input '{name}' is no {wanted}", "true or false" if kind_of(type_) == "bool" else "numbers")
     if array.shape[array.ndim - len(shape) :] != shape or array.ndim > len(shape) + 1 or array.ndim < len(shape):
-        each = {0: "a number", 1: f"{components(type_)} numbers"}.get(len(shape), f"{shape[0]} columns of {shape[0]}")
+        each = ("a number", f"{components(type_)} numbers", f"{components(type_)} numbers in columns")[len(shape)]
         raise failure(
             f"input '{name}' has the shape {'×'.join(map(str, array.shape)) or 'of one number'}, which is no {wanted}",
             f"{each}, or a list of such",
@@ -194,7 +194,11 @@ def _texture(subject: Subject, name: str, type_: Sampler, given: Any) -> Texture
 
 @lru_cache(64)
 def half(texture: Texture) -> Texture:
-    """The texture in float16's numbers."""
-    made = Texture(texture.levels[0].astype(np.float16), texture.filter, texture.wrap, texture.dim)
-    made.levels = [level.astype(np.float16) for level in texture.levels]
+    """The texture in float16's numbers. Raises SssgenError where these do not hold it."""
+    with np.errstate(over="ignore"):
+        levels = [level.astype(np.float16) for level in texture.levels]
+    if not all(np.isfinite(level).all() for level in levels):
+        raise failure("a texture has NaN, infinity or numbers beyond 65504 in it", "these are no texels of 16 bits")
+    made = Texture(levels[0], texture.filter, texture.wrap, texture.dim)
+    made.levels = levels
     return made

@@ -63,7 +63,11 @@ def _texture(name: str, given: str | dict[str, Any], beside: Path, srgb: bool) -
     known = {"file", "wrap", "filter"}
     options = {"file": given} if isinstance(given, str) else given
     if "file" not in options or options.keys() - known or not all(isinstance(one, str) for one in options.values()):
-        raise failure(f"texture '{name}'", 'a file name, or {"file": …, "wrap": …, "filter": …}', str(beside))
+        raise failure(
+            f"texture '{name}' is given in a way that is not understood",
+            'a file name, or {"file": …, "wrap": …, "filter": …}',
+            str(beside),
+        )
     path, wrap, filter = str(beside.parent / options["file"]), options.get("wrap", "repeat"), options.get("filter")
     return texture(path, wrap, filter or "linear", srgb)
 

@@ -45,6 +45,7 @@ class Browser(DrawingBackend):
         return f"Tint in Chromium {self.told['version']} on {self.told['adapter']}"
 
     def draw(self, drawing: Drawing) -> Array:
+        self.check(drawing)
         todo = plan(drawing)
         if drawing.fragment.entry == FRAGMENT:
             todo = todo._replace(code=_WHOLE_QUADS + todo.code)  # on the first line: the others keep their numbers

@@ -181,13 +181,21 @@ def _flags(folder: str, adapter: str) -> list[str]:
     return flags
 
 
+# Beside its profile the browser has a folder for a socket, to which a link in the profile leads.
+_RUN_AND_REMOVE = """
+"$@"; status=$?
+socket=$(readlink "$0/SingletonSocket") && case "$socket" in */org.chromium.*/*) rm -rf "${socket%/*}";; esac
+rm -rf "$0"; exit $status
+"""
+
+
 def _launch(command: list[str], folder: str, said: IO[bytes]) -> subprocess.Popen[bytes]:
     """Starts the browser in a session of its own, so that all its processes can be ended, and Ctrl-C is not its matter.
 
     A shell waits for it and removes its folder: this process may be killed before.
     """
     posix = os.name == "posix"
-    command = ["/bin/sh", "-c", '"$@"; status=$?; rm -rf "$0"; exit $status', folder, *command] if posix else command
+    command = ["/bin/sh", "-c", _RUN_AND_REMOVE, folder, *command] if posix else command
     quiet = subprocess.DEVNULL
     return subprocess.Popen(command, stdin=quiet, stdout=quiet, stderr=said, start_new_session=posix)
 
@@ -200,6 +208,10 @@ def _end(process: subprocess.Popen[bytes], folder: str) -> None:
             os.killpg(process.pid, signal.SIGKILL)
     process.kill()
     process.wait()
+    with contextlib.suppress(OSError):
+        socket_folder = Path(os.readlink(Path(folder) / "SingletonSocket")).parent
+        if socket_folder.name.startswith("org.chromium."):
+            shutil.rmtree(socket_folder, ignore_errors=True)
     for _ in range(20):  # processes of the browser may still write as they go
         shutil.rmtree(folder, ignore_errors=True)
         if not Path(folder).exists():

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from ...targets import descriptor
 from ...targets.numpy_textures import Texture
 from . import calls as programs
-from .base import Array, Backend, Call, Drawing, Text
+from .base import Array, Backend, Call, Drawing, Text, gave_up
 
 
 class DrawingBackend(Backend):
@@ -18,9 +18,23 @@ class DrawingBackend(Backend):
     drew = 0.0
     """Seconds between the driver's being told to draw and its end, of the last draw; in WebGPU with the reading."""
 
+    largest: Mapping[str, int] = {}
+    """The most texels along a side of a 2D, 3D or Cube texture; a kind that is not here has no limit."""
+
     def __init__(self, name: str, target: str) -> None:
         self.name = name
         self.target = descriptor.load(target)
+
+    def check(self, drawing: Drawing) -> None:
+        """Raises SssgenError for a texture or a picture that the driver does not take: not all drivers say so."""
+        for name, bound in drawing.textures.items():
+            if isinstance(bound.data, Texture):
+                side, most = max(bound.data.size()), self.largest.get(bound.data.dim, 1 << 30)
+                if side > most:
+                    raise gave_up(self.name, f"texture '{name}' is {side} texels wide", f"this driver takes {most}")
+        most = self.largest.get("2D", 1 << 30)
+        if max(drawing.size) > most:
+            raise gave_up(self.name, f"{drawing.size[0]} × {drawing.size[1]} is too large", f"at most {most} on a side")
 
     @abstractmethod
     def draw(self, drawing: Drawing) -> Array:

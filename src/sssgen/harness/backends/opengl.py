@@ -35,12 +35,15 @@ class OpenGL(DrawingBackend):
         assert isinstance(driver, DriverGL)
         self.driver = driver
         self.context: Any = driver.context
+        kinds = {"2D": "GL_MAX_TEXTURE_SIZE", "3D": "GL_MAX_3D_TEXTURE_SIZE", "Cube": "GL_MAX_CUBE_MAP_TEXTURE_SIZE"}
+        self.largest = {dim: int(self.context.info[name]) for dim, name in kinds.items()}
         self.programs: OrderedDict[tuple[str, str], Any] = OrderedDict()
 
     def device(self) -> str:
         return self.driver.version()
 
     def draw(self, drawing: Drawing) -> Array:
+        self.check(drawing)
         vertex, fragment = self.stages(drawing)
         with self.context:  # other libraries make contexts of their own current
             program = self.program(vertex, fragment, drawing.fragment.text)

@@ -34,6 +34,8 @@ class WebGPU(DrawingBackend):
         """Takes naga's device; nothing is compiled for it yet."""
         self.naga = naga
         self.gpu: Any = naga.gpu
+        flat = int(self.gpu.limits["max-texture-dimension-2d"])
+        self.largest = {"2D": flat, "Cube": flat, "3D": int(self.gpu.limits["max-texture-dimension-3d"])}
         self.pipelines: OrderedDict[tuple[object, ...], Any] = OrderedDict()
 
     def device(self) -> str:
@@ -42,6 +44,7 @@ class WebGPU(DrawingBackend):
     def draw(self, drawing: Drawing) -> Array:
         import wgpu
 
+        self.check(drawing)
         todo = plan(drawing)
         try:
             return self.carry_out(todo)

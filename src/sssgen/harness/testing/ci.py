@@ -26,10 +26,14 @@ from typing import Any, Literal, NamedTuple
 from ...data import posix, stem
 from ...diagnostics import SssgenError, failure
 from ...lang.loader import read_text
+from ...library import ROLES
 from .compiles import compiled
 from .outcome import Outcome, beside, lacking
 
 EVAL = ".eval.json"
+
+_OF_SCENES = {"geometry", "camera", "light", "background", "samples"}
+"""Keys by which a scene is known whose `material` is misspelt; a material is known by its roles."""
 
 Kind = Literal["compile", "render", "eval"]
 
@@ -98,7 +102,7 @@ def _foreign(parent: str, name: str) -> bool:
 
 
 def _kind(path: str) -> Kind | None:
-    """What a .toml file describes; None for what is not ours. A faulty one is told apart by its lines."""
+    """What a .toml file describes; None for another tool's. One that cannot be read is a case, which fails."""
     try:
         text = read_text(path, posix(path))
     except SssgenError:
@@ -107,12 +111,12 @@ def _kind(path: str) -> Kind | None:
         data: dict[str, Any] = tomllib.loads(text)
     except (tomllib.TOMLDecodeError, RecursionError):
         head = f"\n{text}".partition("\n[")[0]
-        if re.search(r"^\s*\[material\]", text, re.MULTILINE):
-            return "compile"
-        return "render" if re.search(r"^\s*material\s*=", head, re.MULTILINE) else None
+        return "render" if re.search(r"^\s*material\s*=", head, re.MULTILINE) else "compile"
     if isinstance(data.get("material"), dict):
         return "compile"
-    return "render" if "material" in data else None
+    if "material" in data or data.keys() & _OF_SCENES:
+        return "render"
+    return "compile" if data.keys() & set(ROLES) else None
 
 
 class Run:
