@@ -74,6 +74,7 @@ class Tint(Compiler):
             self._process.stdin.close()
         self._process.wait(timeout=10)
         self._process.stdout.close()
+        self._process.stderr.close()
 
     def _start(self) -> None:
         import subprocess
