@@ -116,7 +116,9 @@ def _load(path: str) -> Any:
     try:
         return trimesh.load_mesh(path, process=False, skip_materials=True)
     except Exception as error:  # its readers raise whatever a faulty file leads them to
-        raise failure(f"the mesh cannot be read: {error}", "write it anew", posix(path)) from None
+        kind = os.path.splitext(path)[1].lower()
+        hint = f"the reader says: {type(error).__name__}: {error}"
+        raise failure(f"the mesh cannot be read: it is no faultless {kind} file", hint, posix(path)) from None
 
 
 def _prepare(loaded: Any, shown: str) -> Triangles:
