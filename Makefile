@@ -11,7 +11,7 @@ NODE_PACKAGES := webgpu@0.6.2
 BUILT_PACKAGES := compushady==0.17.5
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-MATERIALS := $(filter-out %/scene.toml %/scene_mesh.toml,$(wildcard examples/*/*.toml))
+MATERIALS := $(foreach folder,$(wildcard examples/*),$(wildcard $(folder)/$(notdir $(folder)).toml))
 
 export PYTHONUTF8 := 1
 .DELETE_ON_ERROR:

@@ -11,8 +11,9 @@ import numpy as np
 
 from sssgen.compiler import transpile
 from sssgen.harness.backends import Backend, Call, Text
+from sssgen.harness.evaluate import shape_of
 from sssgen.ir.nodes import Function, Module, Param
-from sssgen.ir.types import Matrix, Sampler, Type, Vector, kind_of
+from sssgen.ir.types import Sampler, kind_of
 from sssgen.targets import numpy_runtime as rt
 from sssgen.targets.numpy_textures import Texture
 from validate import code
@@ -26,13 +27,6 @@ Draw: TypeAlias = Callable[[Param, np.random.Generator, int], Array]
 
 DTYPES = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.bool_}
 TEXTURES = {"2D": "map", "3D": "volume", "Cube": "cube"}
-
-
-def shape(type_: Type) -> tuple[int, ...]:
-    """The axes of a value before that of the lanes."""
-    if isinstance(type_, Matrix):
-        return type_.size, type_.size
-    return (type_.size,) if isinstance(type_, Vector) else ()
 
 
 def pixels(lanes: int) -> tuple[Array, Array]:
@@ -57,7 +51,7 @@ def textures(mipmaps: bool = True) -> dict[str, Texture]:
 
 def drawn(param: Param, rng: np.random.Generator, lanes: int) -> Array:
     """Any argument; coordinates called `uv` are linear over the image, two texels of `map` a pixel."""
-    kind, size = kind_of(param.type), (*shape(param.type), lanes)
+    kind, size = kind_of(param.type), (*shape_of(param.type), lanes)
     if kind == "bool":
         return rng.random(size) < 0.5
     if kind in ("int", "uint"):

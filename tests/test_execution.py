@@ -17,13 +17,13 @@ from against_numpy import (
     arguments,
     differences,
     drawn_beside_textures,
-    shape,
     textures,
     transpiled,
 )
 from against_numpy import drawn as drawn_freely
 from sssgen.harness.backends import Backend, Block, Call, DrawingBackend, Place, Text
 from sssgen.harness.backends.calls import drawing, results
+from sssgen.harness.evaluate import shape_of
 from sssgen.ir.types import (
     BY_NAME,
     VEC2,
@@ -147,4 +147,4 @@ def test_uniforms_lie_where_the_reflection_says(gpu: Backend, tmp_path: Path) ->
 def in_layout(type_: Type, is_array: bool, numbers: tuple[float, ...]) -> Array:
     """A uniform's numbers as the numpy target has them, in one lane."""
     dtype = np.float64 if kind_of(type_) == "float" else DTYPES[kind_of(type_)]
-    return np.array(numbers, dtype).reshape(*([-1] if is_array else []), *shape(type_), 1)
+    return np.array(numbers, dtype).reshape(*([-1] if is_array else []), *shape_of(type_), 1)

@@ -216,6 +216,7 @@ def test_a_scene_that_does_not_fit_its_material(
         (["SCENE", "--size", "0x10"], "is no size"),
         (["SCENE", "--size", "8192x8192"], "samples are too many"),
         (["SCENE", "--backend", "opengl"], "unknown back end"),
+        (["SCENE", "--backend", "gl,webgpu"], "are several back ends"),
         (["SCENE", "--time", "nan"], "is no time"),
         (["SCENE", "--time", "1e39"], "is no time"),
         (["SCENE", "-o", "x.jpg"], "'.jpg'"),

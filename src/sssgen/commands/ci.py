@@ -45,7 +45,7 @@ def run(arguments: Namespace) -> int:
 def _backends(text: str | None) -> list[str]:
     if text is None:
         return []
-    from ..harness.testing.started import chosen
+    from ..harness.backends import chosen
 
     return chosen(text)
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..cli import CHECK_FAILED, OK, print_json
-from ..diagnostics import did_you_mean, failure
+from ..diagnostics import failure
 
 SHOWN = 12
 """How many lanes a person is shown."""
@@ -17,12 +17,12 @@ MOST_SAMPLES = 1_000_000
 def run(arguments: Namespace) -> int:
     """Prints the outputs, and with several back ends how far each is from the oracle."""
     try:
-        from ..harness import backends, inputs
+        from ..harness import inputs
     except ImportError as error:
         raise failure(f"sssgen eval needs NumPy: {error}", "pip install 'sssgen[numpy]'") from None
     from ..harness.probes import subject
 
-    names = _backends(arguments.backend, arguments.precision, list(backends.NAMES))
+    names = _backends(arguments.backend, arguments.precision)
     chosen = subject(arguments.TECHNIQUE, inputs.bindings(arguments.bind))
     given = inputs.read(arguments.inputs, chosen) if arguments.inputs else {}
     sampled = arguments.samples is not None
@@ -47,12 +47,11 @@ def _sampled(chosen: Any, count: int, seed: int) -> dict[str, Any]:
     return samples(chosen, count, seed)
 
 
-def _backends(given: str, precision: str | None, known: list[str]) -> list[str]:
+def _backends(given: str, precision: str | None) -> list[str]:
     """The back ends that are meant; the oracle comes first."""
-    names = known if given == "all" else list(dict.fromkeys(name.strip() for name in given.split(",")))
-    if unknown := [name for name in names if name not in known]:
-        hint = did_you_mean(unknown[0], known) or f"choose from: {', '.join(known)}, all"
-        raise failure(f"unknown back end '{unknown[0]}'", hint)
+    from ..harness.backends import NAMES, chosen
+
+    names = list(NAMES) if given == "all" else chosen(given)
     if given == "all" and precision is None:
         return names
     wanted = {None: "", "f64": "numpy", "f32": "numpy-f32", "f16": "numpy-f16"}[precision]
@@ -64,13 +63,10 @@ def _backends(given: str, precision: str | None, known: list[str]) -> list[str]:
 
 
 def _one(subject: Any, fit: Any, name: str, as_json: bool) -> int:
-    from ..harness.backends import CompilerMissing, get
+    from ..harness.backends import needed
     from ..harness.evaluate import run as evaluated
 
-    try:
-        backend = get(name)
-    except CompilerMissing as reason:
-        raise failure(f"the back end {name} is missing", str(reason)) from None
+    backend = needed(name)
     outputs = evaluated(subject, fit, backend)
     if as_json:
         plain = {key: _plain(value) for key, value in outputs.items()}

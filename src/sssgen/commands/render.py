@@ -5,17 +5,16 @@ from __future__ import annotations
 import os
 import re
 from argparse import Namespace
+from importlib.util import find_spec
 
 from ..cli import OK, print_json
-from ..diagnostics import did_you_mean, failure
+from ..diagnostics import failure
 
 
 def run(arguments: Namespace) -> int:
     """Renders, or compares."""
-    try:
-        import numpy  # noqa: F401
-    except ImportError as error:
-        raise failure(f"sssgen render needs more packages: {error}", "pip install 'sssgen[render]'") from None
+    if find_spec("numpy") is None:
+        raise failure("sssgen render needs more packages", "pip install 'sssgen[render]'")
     if arguments.compare:
         return _compare(arguments)
     if not arguments.SCENE:
@@ -31,20 +30,16 @@ def _render(arguments: Namespace) -> int:
     from ..harness.scenes.scene import load
 
     size = _size(arguments.size) if arguments.size else None
-    if arguments.backend not in backends.NAMES:
-        hint = did_you_mean(arguments.backend, backends.NAMES) or f"choose from: {', '.join(backends.NAMES)}"
-        raise failure(f"unknown back end '{arguments.backend}'", hint)
+    name, *more = backends.chosen(arguments.backend)
+    if more:
+        raise failure(f"{arguments.backend} are several back ends", "a picture is drawn on one")
     if arguments.time is not None and not abs(arguments.time) < 1e9:
         raise failure(f"--time {arguments.time:g} is no time", "seconds, less than 1e9")
     scene = load(arguments.SCENE)
-    name = os.path.splitext(os.path.basename(arguments.SCENE))[0]
-    output = arguments.output or f"{name}.png"
+    output = arguments.output or f"{os.path.splitext(os.path.basename(arguments.SCENE))[0]}.png"
     if images.check_suffix(output) == ".npy":
         raise failure("a picture is written as .png or .exr", "", output)
-    try:
-        backend = backends.get(arguments.backend)
-    except backends.CompilerMissing as reason:
-        raise failure(f"the back end {arguments.backend} is missing", str(reason)) from None
+    backend = backends.needed(name)
     start = perf_counter()
     made = render(scene, backend, size, arguments.time)
     seconds = perf_counter() - start
@@ -77,7 +72,7 @@ def _compare(arguments: Namespace) -> int:
         raise failure(
             "--compare takes two pictures and no scene", "sssgen render --compare a.png b.png -o difference.png"
         )
-    a, b = (_encoded(images, path) for path in arguments.compare)
+    a, b = map(images.encoded, arguments.compare)
     found = compare(a, b)
     if arguments.output:
         images.write_png(arguments.output, found.picture)
@@ -92,10 +87,3 @@ def _compare(arguments: Namespace) -> int:
         if arguments.output:
             print(f"wrote {arguments.output}: FLIP's map")
     return OK
-
-
-def _encoded(images, path: str):  # type: ignore[no-untyped-def]  # NumPy is not imported here
-    """A picture's colours, encoded: linear ones (.exr, .npy) are encoded first."""
-    picture = images.read(path)
-    color = picture[..., :3] if picture.shape[-1] >= 3 else picture[..., :1].repeat(3, axis=-1)
-    return color if images.check_suffix(path) == ".png" else images.encode_srgb(color)

@@ -16,9 +16,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..diagnostics import SssgenError
-from .backends import Array, Backend, CompilerMissing, get
+from .backends import Array, CompilerMissing, get
 from .evaluate import Inputs, run
-from .isolated import isolated
+from .isolated import started
 from .probes import Subject
 
 GOAL = 1e-5
@@ -162,7 +162,7 @@ def _row(
     subject: Subject, inputs: Inputs, oracle: Mapping[str, Array], blurred: Callable[[], Mapping[str, Array]], name: str
 ) -> Row:
     try:
-        backend: Backend = get(name) if name.startswith("numpy") else isolated(name)
+        backend = started(name)
     except CompilerMissing as reason:
         return Row(name, "", None, str(reason), missing=True)
     except SssgenError as error:

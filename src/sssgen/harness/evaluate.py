@@ -107,7 +107,7 @@ def fitted(subject: Subject, given: Mapping[str, Any]) -> Inputs:
             values[name] = _value(name, param.type, given[name])
         elif name in subject.uniforms and subject.uniforms[name].default:
             default = np.array(subject.uniforms[name].default, np.float64)
-            values[name] = _value(name, param.type, default.reshape(_shape(param.type)))
+            values[name] = _value(name, param.type, default.reshape(shape_of(param.type)))
         else:
             missing = [
                 f"{name} ({spell(one.type)})"
@@ -122,7 +122,8 @@ def fitted(subject: Subject, given: Mapping[str, Any]) -> Inputs:
     return Inputs(values, textures, next(iter(counts.values()), 1))
 
 
-def _shape(type_: Type) -> tuple[int, ...]:
+def shape_of(type_: Type) -> tuple[int, ...]:
+    """A value's axes without its lanes."""
     if isinstance(type_, Matrix):
         return type_.size, type_.size
     return (type_.size,) if isinstance(type_, Vector) else ()
@@ -132,7 +133,7 @@ def _value(name: str, type_: Type, given: Any) -> Array:
     """An input, lanes last."""
     if isinstance(type_, ArrayType):
         raise failure(f"input '{name}' is an array of {spell(type_.element)}: a technique with one cannot be evaluated")
-    shape, wanted = _shape(type_), spell(type_)
+    shape, wanted = shape_of(type_), spell(type_)
     try:
         array = np.asarray(given)
     except ValueError:

@@ -53,6 +53,13 @@ def check_suffix(path: str | os.PathLike[str]) -> str:
     return suffix
 
 
+def encoded(path: str | os.PathLike[str]) -> Array:
+    """A picture file's colours, (height, width, 3), encoded: linear ones (.exr, .npy) are encoded first."""
+    picture = read(path)
+    color = picture[..., :3] if picture.shape[-1] >= 3 else picture[..., :1].repeat(3, axis=-1)
+    return color if check_suffix(path) == ".png" else encode_srgb(color)
+
+
 def encode_srgb(linear: npt.ArrayLike) -> Array:
     """Linear light, cut to 0..1, as encoded sRGB 0..1 (IEC 61966-2-1)."""
     light = np.clip(np.asarray(linear, np.float64), 0.0, 1.0)

@@ -14,7 +14,7 @@ from ..diagnostics import SssgenError
 from ..targets import descriptor
 from ..targets.numpy_textures import Texture
 from . import backends
-from .backends import Array, Call, CompilerMissing, Drawing, DrawingBackend, Text
+from .backends import Array, Backend, Call, CompilerMissing, Drawing, DrawingBackend, Text
 from .backends.base import gave_up
 from .process import LostError, Process
 
@@ -73,6 +73,11 @@ class Isolated(DrawingBackend):
 def isolated(name: str, seconds: float = SECONDS) -> Isolated:
     """The back end of that name in a process of its own. Raises CompilerMissing where this machine lacks it."""
     return Isolated(name, seconds)
+
+
+def started(name: str) -> Backend:
+    """A back end whose driver cannot harm this process; NumPy has none. Raises as `isolated` does."""
+    return backends.get(name) if name.startswith("numpy") else isolated(name)
 
 
 def serve(name: str) -> tuple[_Facts, Callable[[tuple[str, tuple[Any, ...]]], Any]]:

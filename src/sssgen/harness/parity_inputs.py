@@ -20,6 +20,7 @@ from ..targets import numpy_runtime as runtime
 from ..targets.numpy_textures import Texture
 from .backends import Array
 from .backends.calls import grid
+from .evaluate import shape_of
 
 NEIGHBOURS = ("texture", "textureGrad", "dFdx", "dFdy", "fwidth")
 """What looks at neighbouring pixels, or has a level that comes from them."""
@@ -137,13 +138,6 @@ def textures() -> dict[str, Texture]:
     return {"map": noise("2D", 8, 16), "volume": noise("3D", 4, 4, 8), "cube": noise("Cube", 6, 4, 4)}
 
 
-def shape(type_: Type) -> tuple[int, ...]:
-    """The axes of a value before that of the lanes."""
-    if isinstance(type_, Matrix):
-        return type_.size, type_.size
-    return (type_.size,) if isinstance(type_, Vector) else ()
-
-
 def evaluated(expression: str, args: tuple[Any, ...]) -> Array:
     """A row's `inside` or `size` for float64 arguments: the largest, or all, of a value's components; over the lanes.
 
@@ -190,7 +184,7 @@ def _inside(row: Builtin, args: tuple[Array, ...]) -> Array:
 
 def _column(name: str, index: int, type_: Type, count: int, rng: np.random.Generator) -> Array:
     """One argument: a third each of edges, even numbers and even magnitudes."""
-    kind, size = kind_of(type_), (*shape(type_), count)
+    kind, size = kind_of(type_), (*shape_of(type_), count)
     if kind == "bool":
         return rng.random(size) < 0.5
     if isinstance(type_, Matrix) and name in ("determinant", "inverse"):
@@ -252,7 +246,7 @@ def _vectors(row: Builtin, params: tuple[Type, ...]) -> tuple[Array, ...]:
     given = [args for args, _ in row.vectors if len(args) == len(params) and all(map(_fits, args, params))]
     made = []
     for index, type_ in enumerate(params):
-        value = np.array([args[index] for args in given], DTYPES[kind_of(type_)]).reshape(-1, *shape(type_))
+        value = np.array([args[index] for args in given], DTYPES[kind_of(type_)]).reshape(-1, *shape_of(type_))
         made.append(np.moveaxis(value, 0, -1))
     return tuple(made)
 
@@ -279,7 +273,7 @@ def _reads(name: str, params: tuple[Type, ...]) -> tuple[Any, ...]:
     rng = np.random.default_rng(7)
     args: list[Any] = []
     for index, type_ in enumerate(params):
-        size = (*shape(type_), FEW)
+        size = (*shape_of(type_), FEW)
         if isinstance(type_, Sampler):
             args.append(TEXTURES[type_.dim])
         elif kind_of(type_) == "int":
@@ -303,7 +297,7 @@ def over_the_image(row: Builtin, params: tuple[Type, ...]) -> tuple[Any, ...]:
     if not isinstance(first, Sampler):
         slope = 0.5 * x - 0.25 * y
         args = [slope * np.arange(1, components(type_) + 1)[:, None] for type_ in params]
-        return tuple(arg.reshape(*shape(first), FEW).astype(np.float32) for arg in args)
+        return tuple(arg.reshape(*shape_of(first), FEW).astype(np.float32) for arg in args)
     name = TEXTURES[first.dim]
     sizes = np.array(textures()[name].size()).reshape(-1, 1)
     cube = first.dim == "Cube"

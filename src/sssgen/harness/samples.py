@@ -14,9 +14,10 @@ from zlib import crc32
 import numpy as np
 
 from ..ir.nodes import Param, Uniform
-from ..ir.types import Matrix, Sampler, Scalar, Type, Vector, kind_of
+from ..ir.types import Matrix, Sampler, Scalar, Vector, kind_of
 from ..targets.numpy_textures import Texture
 from .backends import Array
+from .evaluate import shape_of
 from .probes import Subject
 
 ENDS = 0.04
@@ -89,7 +90,7 @@ def texture(dim: str, rng: np.random.Generator) -> Texture:
 
 
 def _parameter(param: Param, count: int, seed: int) -> Array:
-    name, quantity, shape = param.name, param.quantity, _shape(param.type)
+    name, quantity, shape = param.name, param.quantity, shape_of(param.type)
     if quantity.endswith("_direction") or (shape == (3,) and name in ("N", "V", "L", "T", "B")):
         return _direction(name, quantity, (count, *shape), seed)
     rng = _rng(name, seed)
@@ -124,7 +125,7 @@ def _direction(name: str, quantity: str, size: tuple[int, ...], seed: int) -> Ar
 
 def _uniform(subject: Subject, uniform: Uniform, count: int, seed: int) -> Array:
     rng, hints = _rng(uniform.name, seed), dict(uniform.hints)
-    size = (count, *_shape(uniform.type))
+    size = (count, *shape_of(uniform.type))
     default = np.array(uniform.default, np.float64).reshape(size[1:])
     ends = LIMITS.get((subject.name, uniform.name)) or LIMITS.get(("", uniform.name)) or hints.get("hint_range")
     if ends or "source_color" in hints:
@@ -155,12 +156,6 @@ def _within(rng: np.random.Generator, size: tuple[int, ...], low: float, high: f
     chance = rng.random(size)
     found: Array = np.where(chance < 0.5 * ENDS, low, np.where(chance > 1.0 - 0.5 * ENDS, high, drawn))
     return found
-
-
-def _shape(type_: Type) -> tuple[int, ...]:
-    if isinstance(type_, Matrix):
-        return type_.size, type_.size
-    return (type_.size,) if isinstance(type_, Vector) else ()
 
 
 def _unit(vectors: Array) -> Array:

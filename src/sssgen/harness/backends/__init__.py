@@ -10,13 +10,14 @@ from __future__ import annotations
 
 from functools import cache
 
+from ...diagnostics import did_you_mean, failure
 from ..compilers import CompilerMissing
 from .base import Array, Backend, Block, Bound, Call, Drawing, Place, Stage, Text
 from .drawing import DrawingBackend
 
 __all__ = [
     "NAMES", "Array", "Backend", "Block", "Bound", "Call", "CompilerMissing", "Drawing", "DrawingBackend", "Place",
-    "Stage", "Text", "available", "get", "missing",
+    "Stage", "Text", "available", "chosen", "get", "missing", "needed",
 ]  # fmt: skip
 
 NAMES = {
@@ -41,6 +42,23 @@ def get(name: str) -> Backend:
     if isinstance(found, str):
         raise CompilerMissing(found)
     return found
+
+
+def chosen(text: str) -> list[str]:
+    """The back ends that `NAME,NAME` names, each once. Raises SssgenError for unknown ones."""
+    names = list(dict.fromkeys(name.strip() for name in text.split(",")))
+    for name in names:
+        if name not in NAMES:
+            raise failure(f"unknown back end '{name}'", did_you_mean(name, NAMES) or f"choose from: {', '.join(NAMES)}")
+    return names
+
+
+def needed(name: str) -> Backend:
+    """The back end of that name, for who cannot go on without it. Raises SssgenError where this machine lacks it."""
+    try:
+        return get(name)
+    except CompilerMissing as reason:
+        raise failure(f"the back end {name} is missing", str(reason)) from None
 
 
 def available() -> list[Backend]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import tempfile
 from collections.abc import Collection
@@ -29,7 +28,7 @@ class HLSL(OpenGL):
     def __init__(self, name: str, target: str, compiler: str) -> None:
         super().__init__(name, target)
         self.compiler = compiler
-        self.tools = _tools()
+        _tools()  # where they are missing this back end is
         self.found = dxc.find() if compiler == "dxc" else glslang.find()
 
     def device(self) -> str:
@@ -80,22 +79,13 @@ class HLSL(OpenGL):
 @lru_cache(64)
 def compiled(text: str, entry: str, stage: str, compiler: str) -> tuple[bytes, str]:
     """SPIR-V from HLSL by `dxc`, `glslang` or `dx9` (glslang), checked by spirv-val; or nothing and the log."""
-    if compiler == "dxc":
-        try:
+    try:
+        if compiler == "dxc":
             module = dxc.find().spirv(text, stage, entry)
-        except ValueError as error:
-            return b"", str(error)
-    else:
-        short = {"vertex": "vert", "fragment": "frag"}[stage]
-        options = ["--stdin", "-D", "-V", "-S", short, "-e", entry, "--auto-map-bindings", "--auto-map-locations"]
-        options += ["--hlsl-dx9-compatible"] if compiler == "dx9" else []
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "out.spv"
-            program = os.environ.get("SSSGEN_GLSLANG", "glslangValidator")
-            done = _process([program, *options, "-o", str(path)], text.encode())
-            if done.returncode:
-                return b"", (done.stdout + done.stderr).decode(errors="replace")
-            module = path.read_bytes()
+        else:
+            module = glslang.find().spirv(text, stage, entry, dx9_samplers=compiler == "dx9")
+    except ValueError as error:
+        return b"", str(error)
     done = _process([_tools()["spirv-val"], "--target-env", "vulkan1.1"], module)
     return (b"", f"spirv-val: {done.stderr.decode(errors='replace').strip()}") if done.returncode else (module, "")
 

@@ -29,7 +29,10 @@ class UnityHLSL(HLSL):
         return f"{self.unity.headers()}, {super().device()}"
 
     def prepared(self, text: Text) -> Text:
-        return text._replace(text=self._preprocessed(text.text))
+        try:
+            return text._replace(text=_preprocessed(self.unity, text.text, self.target.name))
+        except ValueError as error:
+            raise gave_up(self.name, f"the preprocessor: {error}") from None
 
     def forward(self, shader: Text, stage: base.Stage, keywords: Sequence[str]) -> Stage:
         """A stage of an emitted shader's forward pass, as `whole` draws it; `keywords` are macros, `NAME=1`."""
@@ -39,9 +42,7 @@ class UnityHLSL(HLSL):
             raise gave_up(self.name, f"the preprocessor: {error}") from None
         return Stage(shader._replace(text=text), entry)
 
-    @lru_cache(16)  # noqa: B019 - a back end lives as long as the process
-    def _preprocessed(self, text: str) -> str:
-        try:
-            return self.unity.preprocessed(text, self.target.name)
-        except ValueError as error:
-            raise gave_up(self.name, f"the preprocessor: {error}") from None
+
+@lru_cache(16)
+def _preprocessed(unity: unity.Unity, text: str, target: str) -> str:
+    return unity.preprocessed(text, target)

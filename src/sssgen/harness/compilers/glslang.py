@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from subprocess import CompletedProcess
 
 from sssgen.harness.compilers.base import LANGUAGES, Compiler, CompilerMissing, Message, Severity, Source
 from sssgen.harness.compilers.calls import glsl_entry, hlsl_entry
@@ -39,27 +40,43 @@ class Glslang(Compiler):
             return self.check_hlsl(text, source.stage, source.entry)
         text = with_version(text, source.language)
         text = glsl_entry(text) if source.stage == "library" else text
-        return self._run(text, ["-S", _STAGES[source.stage]])
+        return _told(self._run(text, ["-S", _STAGES[source.stage]]))
 
     def check_hlsl(self, text: str, stage: str, entry: str, dx9_samplers: bool = False) -> list[Message]:
         """HLSL to SPIR-V. `dx9_samplers` allows `sampler2D` and `tex2D`, as in Unity's built-in pipeline."""
+        return _told(self._hlsl(text, stage, entry, dx9_samplers)[0])
+
+    def spirv(self, text: str, stage: str, entry: str, dx9_samplers: bool = False) -> bytes:
+        """The SPIR-V of HLSL. Raises ValueError with the compiler's log."""
+        done, module = self._hlsl(text, stage, entry, dx9_samplers)
+        if done.returncode:
+            raise ValueError(f"{done.stdout}{done.stderr}")
+        return module
+
+    def _hlsl(self, text: str, stage: str, entry: str, dx9_samplers: bool) -> tuple[CompletedProcess[str], bytes]:
         import tempfile
 
         with tempfile.TemporaryDirectory() as folder:
             options = ["-D", "-V", "-S", _STAGES[stage], "-e", entry]
             options += ["--auto-map-bindings", "--auto-map-locations"]
             options += ["--hlsl-dx9-compatible"] if dx9_samplers else []
-            return self._run(text, [*options, "-o", str(Path(folder) / "out.spv")])
+            path = Path(folder) / "out.spv"
+            done = self._run(text, [*options, "-o", str(path)])
+            return done, path.read_bytes() if path.is_file() else b""
 
-    def _run(self, text: str, options: list[str]) -> list[Message]:
+    def _run(self, text: str, options: list[str]) -> CompletedProcess[str]:
         import subprocess
 
         command = [self._program, "--stdin", *options]
-        done = subprocess.run(command, input=text, capture_output=True, encoding="utf-8", check=False)
-        found = messages(done.stdout + done.stderr)
-        if done.returncode and not any(m.severity == "error" for m in found):
-            found.append(Message("error", 0, 0, done.stdout.strip() or f"exit status {done.returncode}"))
-        return found
+        return subprocess.run(command, input=text, capture_output=True, encoding="utf-8", check=False)
+
+
+def _told(done: CompletedProcess[str]) -> list[Message]:
+    """What a run said; that it failed without a word is an error, too."""
+    found = messages(done.stdout + done.stderr)
+    if done.returncode and not any(m.severity == "error" for m in found):
+        found.append(Message("error", 0, 0, done.stdout.strip() or f"exit status {done.returncode}"))
+    return found
 
 
 def find() -> Glslang:

@@ -27,6 +27,7 @@ from sssgen.passes.link import LinkStage, link
 from .placed import Array, Bools, Geometry, Hits, planar, spherical, spread, tangent_of, unit
 
 PROJECTIONS = {"spherical": spherical, "planar": planar}
+"""Points (n, 3) → their uv (n, 2) and the gradients of u and of v, (n, 3) each, up to a positive factor."""
 
 _STEPS = 1000
 _SHORTEST = 1e-4

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from typing import NamedTuple, TypeAlias
 
@@ -30,7 +30,7 @@ class Hits(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Geometry:
+class Geometry(ABC):
     """A shape in object space, and where it stands: scaled, then turned about x, y and z, then moved."""
 
     position: Vector = field(default=(0.0, 0.0, 0.0), kw_only=True)
@@ -64,13 +64,13 @@ class Geometry:
         place = self.scale * found.position @ turn.T + self.position
         return Hits(hit, np.where(hit[:, None], place, 0.0), found.normal @ turn.T, tangent, found.uv)
 
+    @abstractmethod
     def cast(self, origin: Array, directions: Array) -> Hits:
         """What rays in object space find."""
-        raise NotImplementedError
 
+    @abstractmethod
     def distance(self, points: Array) -> Array:
         """The signed distance, (n,), negative inside, from points (n, 3); all in object space."""
-        raise NotImplementedError
 
     def _turn(self) -> Array:
         x, y, z = np.radians(self.rotation)
@@ -117,10 +117,6 @@ def tangent_of(normals: Array, grows_u: Array, grows_v: Array) -> Array:
     tangent = np.where(lost[:, None], any_tangent(normals), unit(along) * side[:, None])
     framed: Array = np.c_[tangent, np.where(lost, 1.0, side)]
     return framed
-
-
-Projection: TypeAlias = Callable[[Array], tuple[Array, Array, Array]]
-"""Points (n, 3) → their uv (n, 2) and the gradients of u and of v, (n, 3) each, up to a positive factor."""
 
 
 def spherical(points: Array) -> tuple[Array, Array, Array]:

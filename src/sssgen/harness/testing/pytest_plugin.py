@@ -51,7 +51,7 @@ def pytest_configure(config: pytest.Config) -> None:
         from ...diagnostics import SssgenError
 
         try:
-            from .started import chosen
+            from ..backends import chosen
         except ImportError:  # without NumPy: the fixtures say so
             return
         try:

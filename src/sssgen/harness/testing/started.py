@@ -5,20 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from ...diagnostics import SssgenError, did_you_mean, failure
-from .. import backends
+from ...diagnostics import SssgenError
 from ..backends import Backend, CompilerMissing
-from ..isolated import Isolated, isolated
-
-
-def chosen(text: str) -> list[str]:
-    """The back ends that `NAME,NAME` names, each once. Raises SssgenError for unknown ones."""
-    names = list(dict.fromkeys(name.strip() for name in text.split(",")))
-    for name in names:
-        if name not in backends.NAMES:
-            hint = did_you_mean(name, backends.NAMES) or f"choose from: {', '.join(backends.NAMES)}"
-            raise failure(f"unknown back end '{name}'", hint)
-    return names
+from ..isolated import Isolated, started
 
 
 class Started:
@@ -48,7 +37,7 @@ class Started:
 def _start(name: str) -> Callable[[], Backend]:
     """What gives the back end, or says again why there is none."""
     try:
-        backend: Backend = backends.get(name) if name.startswith("numpy") else isolated(name)
+        backend = started(name)
     except (CompilerMissing, SssgenError) as reason:
         return partial(_refuse, reason)
     return lambda: backend
