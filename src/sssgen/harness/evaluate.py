@@ -21,7 +21,7 @@ from ..ir.nodes import Param
 from ..ir.types import Array as ArrayType
 from ..ir.types import Matrix, Sampler, Type, Vector, components, kind_of, spell
 from ..targets.numpy_textures import Texture
-from .backends import Array, Backend, Call, Text
+from .backends import Array, Backend, Call, Text, emitted
 from .probes import Subject
 
 DTYPES: dict[str, Any] = {"float": np.float64, "int": np.int32, "uint": np.uint32, "bool": np.bool_}
@@ -80,11 +80,10 @@ def _emitted(subject: Subject, target: str) -> tuple[Text, dict[str, str]]:
     kept = _texts.get(key)
     if kept is None or kept[0].module is not subject.module:
         made = transpile(subject.module, target, "evaluated")
-        file, text = next((name, text) for name, text in made.files.items() if not name.endswith(".json"))
-        origin = {int(line): place for line, place in made.reflection["source_map"].get(file, {}).items()}
+        file, reflection = next(name for name in made.files if not name.endswith(".json")), made.reflection
         if len(_texts) >= 256:
             _texts.clear()
-        kept = _texts[key] = subject, Text(text, origin), made.reflection["renames"]
+        kept = _texts[key] = subject, emitted(made, reflection, file), reflection["renames"]
     return kept[1], kept[2]
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from ..compiler import Compiled
 from ..ir.types import BY_NAME, Matrix, Vector, kind_of
 from ..targets.numpy_textures import Texture
-from .backends import Array, Block, Bound, Drawing, Place, Stage, Text
+from .backends import Array, Block, Bound, Drawing, Place, Stage, emitted
 from .evaluate import default_texture
 
 LIGHTS = 4
@@ -53,15 +53,9 @@ def drawing(
         uniform["name"]: np.asarray(shell.parameters.get(uniform["source_name"], uniform["default"]))
         for uniform in reflection["uniforms"]
     }
-    textures = {
-        texture["name"]: Bound(
-            shell.textures.get(texture["source_name"]) or default_texture(texture["type"], texture["default"]),
-            _texture_place(texture.get("binding", {})),
-        )
-        for texture in reflection["textures"]
-    }
     return Drawing(
-        size, fragment, vertex, floats=True, textures=textures, blocks=_blocks(reflection, shell, parameters),
+        size, fragment, vertex, floats=True, textures=textures(reflection, shell),
+        blocks=_blocks(reflection, shell, parameters),
         values=_values(shell) | parameters, vertices=vertices, triangles=triangles,
     )  # fmt: skip
 
@@ -70,11 +64,21 @@ def _stages(compiled: Compiled, reflection: Mapping[str, Any]) -> tuple[Stage, S
     """The vertex and the fragment stage."""
     found: dict[str, Stage] = {}
     for file in reflection["files"]:
-        name = file["name"]
-        origin = {int(line): place for line, place in reflection["source_map"].get(name, {}).items()}
+        text = emitted(compiled, reflection, file["name"])
         for stage, entry in file["stages"].items():
-            found[stage] = Stage(Text(compiled.files[name], origin), entry or "main")
+            found[stage] = Stage(text, entry or "main")
     return found["vertex"], found["fragment"]
+
+
+def textures(reflection: Mapping[str, Any], shell: Shell) -> dict[str, Bound]:
+    """The material's textures, by the names in its text."""
+    return {
+        texture["name"]: Bound(
+            shell.textures.get(texture["source_name"]) or default_texture(texture["type"], texture["default"]),
+            _texture_place(texture.get("binding", {})),
+        )
+        for texture in reflection["textures"]
+    }
 
 
 def _texture_place(binding: Mapping[str, Any]) -> Place:

@@ -16,10 +16,9 @@ from ..compiler import Compiled
 from ..ir.types import BY_NAME, Matrix, Vector
 from ..targets.numpy_textures import Texture
 from . import dice
-from .backends import Array, Bound, Drawing, Place, Text
+from .backends import Array, Bound, Drawing, Place, emitted
 from .backends.unity import UnityHLSL
-from .evaluate import default_texture
-from .shell import Shell
+from .shell import Shell, textures
 
 _BASE = ("UNITY_PASS_FORWARDBASE=1", "DIRECTIONAL=1", "LIGHTPROBE_SH=1")
 _ADD = {0.0: ("UNITY_PASS_FORWARDADD=1", "DIRECTIONAL=1"), 1.0: ("UNITY_PASS_FORWARDADD=1", "POINT=1")}
@@ -64,20 +63,12 @@ def _passes(
     """The draws whose pictures add up."""
     reflection = compiled.reflection
     (name,) = (file["name"] for file in reflection["files"])
-    origin = {int(line): place for line, place in reflection["source_map"].get(name, {}).items()}
-    shader = Text(compiled.files[name], origin)
-    textures = {
-        texture["name"]: Bound(
-            shell.textures.get(texture["source_name"]) or default_texture(texture["type"], texture["default"]),
-            Place(0, 0),
-        )
-        for texture in reflection["textures"]
-    }
+    shader, own = emitted(compiled, reflection, name), textures(reflection, shell)
     values = _engine(shell, size) | _properties(reflection, shell)
 
     def drawing(keywords: tuple[str, ...], light: dict[str, Array], falloff: Texture | None = None) -> Drawing:
         vertex, fragment = (backend.forward(shader, stage, keywords) for stage in ("vertex", "fragment"))
-        bound = textures | ({"_LightTexture0": Bound(falloff, Place(0, 0))} if falloff else {})
+        bound = own | ({"_LightTexture0": Bound(falloff, Place(0, 0))} if falloff else {})
         return Drawing(size, fragment, vertex, floats=True, textures=bound, values=values | light)
 
     lights = list(zip(shell.light_positions, shell.light_colors, strict=True))

@@ -12,12 +12,12 @@ from functools import cache
 
 from ...diagnostics import did_you_mean, failure
 from ..compilers import CompilerMissing
-from .base import Array, Backend, Block, Bound, Call, Drawing, Place, Stage, Text
+from .base import Array, Backend, Block, Bound, Call, Drawing, Place, Stage, Text, emitted
 from .drawing import DrawingBackend
 
 __all__ = [
     "NAMES", "Array", "Backend", "Block", "Bound", "Call", "CompilerMissing", "Drawing", "DrawingBackend", "Place",
-    "Stage", "Text", "available", "chosen", "get", "missing", "needed",
+    "Stage", "Text", "available", "chosen", "emitted", "get", "missing", "needed",
 ]  # fmt: skip
 
 NAMES = {

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy.typing as npt
 
+from ...compiler import Compiled
 from ...diagnostics import Diagnostic, SssgenError
 from ...ir.spans import Span
 from ...ir.types import Type
@@ -24,6 +25,12 @@ class Text(NamedTuple):
 
     text: str
     origin: Mapping[int, str] = {}
+
+
+def emitted(compiled: Compiled, reflection: Mapping[str, Any], name: str) -> Text:
+    """One of the files of a compiled material."""
+    places = reflection["source_map"].get(name, {})
+    return Text(compiled.files[name], {int(line): place for line, place in places.items()})
 
 
 class Call(NamedTuple):
