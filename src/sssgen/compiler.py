@@ -7,6 +7,7 @@ declarations, in an engine's properties and in the reflection, so that a variant
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from . import cache, library
@@ -23,6 +24,8 @@ from .targets.emit import About, Program, emit
 from .targets.reflection import as_text, reflect
 
 FORMS = ("shader", "functions")
+GUARDS = ("auto", "all", "none")
+"""Where operations that may go wrong are made safe: where that is not proven, everywhere, nowhere."""
 
 
 class Compiled(NamedTuple):
@@ -41,8 +44,8 @@ class Compiled(NamedTuple):
         return found
 
 
-_compiled: dict[tuple[int, str, str], tuple[Material, Compiled]] = {}
-_programs: dict[tuple[str, str, str], Program] = {}
+_compiled: dict[tuple[int, str, str, str], tuple[Material, Compiled]] = {}
+_programs: dict[tuple[str, str, str, str], Program] = {}
 _KEPT = 128
 
 
@@ -56,11 +59,13 @@ def compile(
     target: str,
     form: str = "shader",
     templates: str | os.PathLike[str] | None = None,
+    guards: str = "auto",
 ) -> Compiled:
     """Compiles a material for a target.
 
     `material` is a checked material, the path of a material file, or the name of an example; `form` is `shader` (a
-    complete shader) or `functions` (a library to paste); `templates` a folder whose templates go before ours.
+    complete shader) or `functions` (a library to paste); `templates` a folder whose templates go before ours;
+    `guards` puts them where they are needed (`auto`), everywhere (`all`), or nowhere (`none`).
     Raises SssgenError for anything wrong with the input.
 
     >>> import sssgen
@@ -76,12 +81,13 @@ def compile(
         from .diagnostics import did_you_mean, failure
 
         raise failure(f"unknown form '{form}'", did_you_mean(form, FORMS) or "forms: shader, functions")
+    _check_guards(guards)
     chosen = descriptor.load(target)
-    key = (id(material), target, form)
+    key = (id(material), target, form, guards)
     known = _compiled.get(key) if templates is None else None
     if known is not None and known[0] is material:
         return _copy(known[1])
-    program = _program_of(material, chosen, form)._replace(about=_about(material))
+    program = _program_of(material, chosen, form, guards)._replace(about=_about(material))
     made = _finish(program, chosen, form, os.fspath(templates) if templates else None)
     if templates is None:
         if len(_compiled) >= _KEPT:
@@ -95,40 +101,55 @@ def _copy(made: Compiled) -> Compiled:
     return Compiled(dict(made.files), list(made.warnings))
 
 
-def transpile(module: Module, target: str, name: str) -> Compiled:
-    """The functions form of a module of plain functions (no chain): what `sssgen transpile` writes."""
+def transpile(
+    module: Module, target: str, name: str, guards: str = "none", called: Sequence[str] | None = None
+) -> Compiled:
+    """The functions form of a module of plain functions (no chain): what `sssgen transpile` writes.
+
+    `called` are the keys of the functions that are called from outside, with any argument that they allow; None: all.
+    """
     from .programs import make_library
 
+    _check_guards(guards)
     chosen = descriptor.load(target)
-    return _finish(make_library(module, chosen)._replace(about=About(name, name)), chosen, "functions", None)
+    program = make_library(module, chosen, guards, called)._replace(about=About(name, name))
+    return _finish(program, chosen, "functions", None)
 
 
-def _program_of(material: Material, target: Target, form: str) -> Program:
+def _check_guards(guards: str) -> None:
+    if guards not in GUARDS:
+        from .diagnostics import did_you_mean, failure
+
+        raise failure(f"unknown guards '{guards}'", did_you_mean(guards, GUARDS) or "guards: auto, all, none")
+
+
+def _program_of(material: Material, target: Target, form: str, guards: str) -> Program:
     """The program of a material, with the material's values as the uniforms' defaults."""
     fixed = {name for stage in material.stages for name in stage.fixed}
     bare = material._replace(stages=tuple([_bare(stage, fixed) for stage in material.stages]))
     structure = _structure(bare, target)
-    program = _programs.get((structure, target.name, form)) if structure else None
+    key = (structure, target.name, form, guards)
+    program = _programs.get(key) if structure else None
     if program is None:
-        program = _stored_program(bare, structure, target, form)
+        program = _stored_program(bare, structure, target, form, guards)
         if len(_programs) >= _KEPT:
             _programs.clear()
-        _programs[structure, target.name, form] = program
+        _programs[key] = program
     uniforms = tuple([_with_value(uniform, program, material) for uniform in program.module.uniforms])
     return program._replace(module=program.module._replace(uniforms=uniforms))
 
 
-def _stored_program(bare: Material, structure: str, target: Target, form: str) -> Program:
+def _stored_program(bare: Material, structure: str, target: Target, form: str, guards: str) -> Program:
     """A program from the cache folder, or made: of each material's file, that of the newest structure is kept."""
 
     def made() -> Program:
         from .programs import make
 
-        return make(bare, structure, target, form)
+        return make(bare, structure, target, form, guards)
 
     if not structure or target.folder != place("targets"):  # what a plug-in's program depends on is not known here
         return made()
-    name = "\0".join([os.path.abspath(bare.file), target.name, form])
+    name = "\0".join([os.path.abspath(bare.file), target.name, form, guards])
     program: Program = cache.kept(f"program-{cache.digest(name)}", [installation(), structure], made)
     return program
 

@@ -5,19 +5,22 @@ The part up to `legalise` is the same for every target of one kind and is done o
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from . import library
 from .diagnostics import Diagnostic, SssgenError
+from .ir.formats import FLOAT16, FLOAT32, Format
 from .ir.nodes import Function, Local, Module, Return, Span
 from .ir.types import Struct
 from .lang.loader import comments_before, source_line
+from .lang.polyfills import guard as guard_source
 from .lang.polyfills import polyfill
 from .material import Material
 from .passes.chain import TAKEN, ChainStage, Entry, assemble
 from .passes.cost import Cost, cost_of
 from .passes.fold import fold
+from .passes.guards import Guarded, guard
 from .passes.hoist import Note, hoist
 from .passes.inline import inline
 from .passes.legalise import Unsupported, legalise
@@ -45,36 +48,48 @@ class _Middle(NamedTuple):
     """Whether an output technique has encoded the colour."""
     settings: Mapping[str, list[tuple[int, str]]] = {}
     """A uniform → the stages that may give it a value, and its name there."""
+    guarded: Guarded | None = None
 
 
-_middles: dict[tuple[str, str, bool], _Middle] = {}
+_middles: dict[tuple[str, str, bool, str, str, str], _Middle] = {}
 _KEPT = 8
 """Materials come one after another, each for all targets."""
 
 
-def make(material: Material, structure: str, target: Target, form: str) -> Program:
+def make(material: Material, structure: str, target: Target, form: str, guards: str) -> Program:
     """The program of a material for a target. Raises SssgenError.
 
     `structure` says what it depends on, and is '' where that cannot be told.
     """
-    return _finish(_middle_of(material, structure, target), target, form)
+    return _finish(_middle_of(material, structure, target, form, guards), target, form)
 
 
-def make_library(module: Module, target: Target) -> Program:
-    """The program of a module of plain functions. Raises SssgenError."""
+def make_library(module: Module, target: Target, guards: str, called: Sequence[str] | None) -> Program:
+    """The program of a module of plain functions. Raises SssgenError.
+
+    `called` are the keys of those that are called from outside; None means all of them.
+    """
     roots = [function.key for function in module.functions if function.body is not None]
     module, notes = hoist(prune(_folded(module, {}), roots), roots)
-    return _finish(_Middle(module, {}, None, {}, {}, _warnings(notes)), target, "functions")
+    guarded = guard(module, called or roots, guards, guard_source, polyfill, format_of(target))
+    middle = _Middle(guarded.module, {}, None, {}, {}, _warnings(notes), guarded=guarded)
+    return _finish(middle, target, "functions")
 
 
-def _middle_of(material: Material, structure: str, target: Target) -> _Middle:
-    """Links, assembles, folds, prunes and hoists; kept for the other targets of the same kind."""
-    key = (structure, target.lighting, bool(target.table.get("engine_encodes")))
+def format_of(target: Target) -> Format:
+    """What the target's text computes in."""
+    return FLOAT16 if target.table.get("precision") == "half" else FLOAT32
+
+
+def _middle_of(material: Material, structure: str, target: Target, form: str, guards: str) -> _Middle:
+    """Links, assembles, folds, prunes, hoists and guards; kept for the other targets of the same kind."""
+    encodes = bool(target.table.get("engine_encodes"))
+    key = (structure, target.lighting, encodes, form, guards, format_of(target).name)
     middle = _middles.get(key) if structure else None
     if middle is None:
         if len(_middles) >= _KEPT:
             _middles.clear()
-        middle = _middles[key] = _build(material, target)
+        middle = _middles[key] = _build(material, target, form, guards)
     return middle
 
 
@@ -99,7 +114,7 @@ def _stages(material: Material, target: Target) -> list[_Stage]:
     return [stage for stage in stages if stage.link.role not in engine]
 
 
-def _build(material: Material, target: Target) -> _Middle:
+def _build(material: Material, target: Target, form: str, guards: str) -> _Middle:
     stages = _stages(material, target)
     lit = material.shading == "lit"
     try:
@@ -114,6 +129,10 @@ def _build(material: Material, target: Target) -> _Middle:
     roots = [entry.function.key for entry in chain.entries.values()]
     module = prune(inline(_folded(chain.module, linked.fixed), _only_renames), roots)
     module, notes = hoist(module, roots)
+    kept = {function.key for function in module.functions}
+    called = [*roots, *(f.key for f in linked.functions if f.key in kept)] if form == "functions" else roots
+    guarded = guard(module, called, guards, guard_source, polyfill, format_of(target))
+    module = guarded.module
     slots = _slot_functions(material, linked.module)
     costs = {kind: cost_of(module, entry.function.key, slots) for kind, entry in chain.entries.items()}
     encoded = not lit and any(stage.link.role == "output" for stage in stages)
@@ -122,7 +141,7 @@ def _build(material: Material, target: Target) -> _Middle:
         for name, found in linked.settings.items()
     }
     entries = dict(chain.entries)
-    return _Middle(module, entries, chain.surface, linked.owners, costs, _warnings(notes), encoded, settings)
+    return _Middle(module, entries, chain.surface, linked.owners, costs, _warnings(notes), encoded, settings, guarded)
 
 
 def _folded(module: Module, fixed: Mapping[str, tuple[float, ...]]) -> Module:

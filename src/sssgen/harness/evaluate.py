@@ -36,18 +36,21 @@ class Inputs(NamedTuple):
     lanes: int
 
 
-def evaluate(subject: Subject, given: Mapping[str, Any], backend: Backend) -> dict[str, Array]:
+def evaluate(
+    subject: Subject, given: Mapping[str, Any], backend: Backend, guards: str = "auto"
+) -> dict[str, Array]:
     """The outputs by name (`result` is the return value), lanes first.
 
     `given` has numbers, arrays and `Texture`s by the name of the technique's parameter or uniform; uniforms left out
-    have their defaults. Raises SssgenError for inputs that do not fit and for a back end that refuses.
+    have their defaults; `guards` as in `compile`. Raises SssgenError for inputs that do not fit and for a back end that
+    refuses.
     """
-    return run(subject, fitted(subject, given), backend)
+    return run(subject, fitted(subject, given), backend, guards)
 
 
-def run(subject: Subject, inputs: Inputs, backend: Backend) -> dict[str, Array]:
+def run(subject: Subject, inputs: Inputs, backend: Backend, guards: str = "auto") -> dict[str, Array]:
     """The outputs, lanes first."""
-    text, names = _emitted(subject, backend.target.name)
+    text, names = _emitted(subject, backend.target.name, guards)
     calls = [
         Call(
             names.get(probe.function, probe.function),
@@ -71,15 +74,15 @@ def _argument(param: Param, inputs: Inputs) -> Any:
     return np.broadcast_to(value, (*value.shape[:-1], inputs.lanes))
 
 
-_texts: dict[tuple[int, str], tuple[Subject, Text, dict[str, str]]] = {}
+_texts: dict[tuple[int, str, str], tuple[Subject, Text, dict[str, str]]] = {}
 
 
-def _emitted(subject: Subject, target: str) -> tuple[Text, dict[str, str]]:
+def _emitted(subject: Subject, target: str, guards: str) -> tuple[Text, dict[str, str]]:
     """The functions form of a subject for a target, and what was renamed in it."""
-    key = (id(subject.module), target)
+    key = (id(subject.module), target, guards)
     kept = _texts.get(key)
     if kept is None or kept[0].module is not subject.module:
-        made = transpile(subject.module, target, "evaluated")
+        made = transpile(subject.module, target, "evaluated", guards, subject.called)
         file, reflection = next(name for name in made.files if not name.endswith(".json")), made.reflection
         if len(_texts) >= 256:
             _texts.clear()

@@ -45,6 +45,12 @@ class Subject(NamedTuple):
     uniforms: Mapping[str, Uniform]
 
     @property
+    def called(self) -> list[str]:
+        """The keys of the probes."""
+        shown = {probe.function for probe in self.probes}
+        return [function.key for function in self.module.functions if function.name in shown]
+
+    @property
     def params(self) -> dict[str, Param]:
         """Every input that some probe takes, by name."""
         return {param.name: param for probe in self.probes for param in probe.params}

@@ -156,6 +156,13 @@ class Evaluate(NamedTuple):
     span: Span
 
 
+class Assume(NamedTuple):
+    """A fact that the author vouches for: the range pass believes it, and it leaves no text."""
+
+    condition: Expr
+    span: Span
+
+
 class If(NamedTuple):
     """Two-armed choice; `otherwise` may be empty."""
 
@@ -208,7 +215,7 @@ class Discard(NamedTuple):
     span: Span
 
 
-Stmt: TypeAlias = Declare | Assign | Evaluate | If | For | While | Break | Continue | Return | Discard
+Stmt: TypeAlias = Declare | Assign | Evaluate | Assume | If | For | While | Break | Continue | Return | Discard
 Block: TypeAlias = tuple[Stmt, ...]
 
 

@@ -9,6 +9,7 @@ from math import isfinite
 from .nodes import (
     NOWHERE,
     Assign,
+    Assume,
     Binary,
     Block,
     Break,
@@ -68,6 +69,9 @@ _TOKEN = re.compile(
     | (?P<op>(?:<<|>>|[-+*/%&|^])=|&&|\|\||\^\^|==|!=|<=|>=|<<|>>|[-+*/%&|^<>!~?:=.,;()\[\]{}])""",
     re.VERBOSE | re.ASCII,
 )
+_MAX_NUMBER = 400
+"""The longest number, and the longest place; the largest float32 has 39 digits."""
+
 _ESCAPE = re.compile(r'\\(["\\]|[0-9a-f]+;)')
 
 
@@ -88,6 +92,8 @@ class _Reader:
             match = _TOKEN.match(text, position)
             if match is None:
                 raise self.error(f"{text[position]!r} has no meaning here", position)
+            if match.lastgroup in ("number", "span") and len(match.group()) > _MAX_NUMBER:
+                raise self.error("this number is too long", position)
             if match.lastgroup != "space":
                 self.tokens.append((str(match.lastgroup), match.group(), position))
             position = match.end()
@@ -299,6 +305,8 @@ class _Reader:
             stmt = Assign(target, op[:-1], self.expr(), span)
         elif what == "call":
             stmt = Evaluate(self.expr(), span)
+        elif what == "assume":
+            stmt = Assume(self.expr(), span)
         elif what == "return":
             stmt = Return(None if self.peek() == ";" else self.expr(), span)
         elif what in _JUMPS:

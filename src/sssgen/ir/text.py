@@ -28,6 +28,7 @@ from math import isfinite
 from .nodes import (
     NOWHERE,
     Assign,
+    Assume,
     Binary,
     Block,
     Call,
@@ -126,6 +127,8 @@ class _Printer:
             return f"set{at} {self.expr(stmt.target)} {stmt.op}= {self.expr(stmt.value)};"
         if isinstance(stmt, Evaluate):
             return f"call{at} {self.expr(stmt.call)};"
+        if isinstance(stmt, Assume):
+            return f"assume{at} {self.expr(stmt.condition)};"
         if isinstance(stmt, If):
             otherwise = f" else {self.block(stmt.otherwise, depth)}" if stmt.otherwise else ""
             return f"if{at} {self.expr(stmt.condition)} then {self.block(stmt.then, depth)}{otherwise}"

@@ -11,6 +11,7 @@ from math import isfinite
 
 from .nodes import (
     Assign,
+    Assume,
     Binary,
     Block,
     Break,
@@ -230,6 +231,8 @@ class _Verifier:
             if not isinstance(stmt.call, Call):
                 self.report(stmt.span, f"a {type(stmt.call).__name__} is evaluated and dropped")
             self.expression(stmt.call, nothing=True)
+        elif isinstance(stmt, Assume):
+            self.condition(stmt.condition)
         elif isinstance(stmt, If):
             self.condition(stmt.condition)
             self.inner(stmt.then, loop)

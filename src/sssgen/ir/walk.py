@@ -10,6 +10,7 @@ from typing import TypeAlias, cast
 
 from .nodes import (
     Assign,
+    Assume,
     Binary,
     Block,
     Call,
@@ -125,6 +126,9 @@ def rewrite_stmt(stmt: Stmt, change: RewriteExpr, restate: RewriteStmt | None = 
     elif isinstance(stmt, Evaluate):
         call = rewrite(stmt.call, change)
         new = stmt if call is stmt.call else stmt._replace(call=call)
+    elif isinstance(stmt, Assume):
+        condition = rewrite(stmt.condition, change)
+        new = stmt if condition is stmt.condition else Assume(condition, stmt.span)
     if restate is not None:
         replacement = restate(new)
         if replacement is not None:
@@ -168,7 +172,7 @@ def expressions(stmt: Stmt) -> tuple[Expr, ...]:
         return (stmt.value,) if stmt.value is not None else ()
     if isinstance(stmt, Assign):
         return (stmt.target, stmt.value)
-    if isinstance(stmt, If | While):
+    if isinstance(stmt, If | While | Assume):
         return (stmt.condition,)
     if isinstance(stmt, For):
         return (stmt.condition,) if stmt.condition is not None else ()

@@ -329,10 +329,24 @@ class _FileChecker(ExpressionChecker):
         return [ir.Assign(target.expr, op, right.expr, span)]
 
     def _expressionstatement(self, statement: s.ExpressionStatement) -> list[ir.Stmt]:
-        call = self.check(statement.value).expr
+        value = statement.value
+        callee = value.callee if isinstance(value, s.CallOf) else None
+        if isinstance(callee, s.Name) and callee.text == "assume" and "assume" not in self.functions:
+            return self.assumption(value)
+        call = self.check(value).expr
         if not isinstance(call, ir.Call):
             raise self.fail(statement.span, "this computes a value and drops it", "assign it, or remove the statement")
         return [ir.Evaluate(call, statement.span)]
+
+    def assumption(self, call: s.Expression) -> list[ir.Stmt]:
+        """`assume(condition);`"""
+        assert isinstance(call, s.CallOf)
+        if len(call.args) != 1:
+            raise self.fail(call.span, "assume takes one condition", "write assume(x > 0.0);")
+        condition = self.condition(call.args[0])
+        if condition is not None and any(isinstance(part, ir.Call) for part in subexpressions(condition)):
+            raise self.fail(call.span, "an assumption calls no function", "assume something of a variable's value")
+        return [ir.Assume(condition, call.span)] if condition is not None else []
 
     def _ifstatement(self, statement: s.IfStatement) -> list[ir.Stmt]:
         condition = self.condition(statement.condition)

@@ -1,4 +1,4 @@
-"""Instantiates the intrinsic table's polyfills: source in our own language, parsed by the same front end."""
+"""Instantiates what the intrinsic table has in our own language, polyfills and guards, with the same front end."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import functools
 import re
 from collections.abc import Sequence
 
-from ..ir.intrinsics import BUILTINS
+from ..ir.formats import Format
+from ..ir.intrinsics import BUILTINS, Guard
 from ..ir.nodes import Module
 from ..ir.signatures import instantiate, overload
 from ..ir.types import Matrix, Type, components, spell
@@ -39,6 +40,39 @@ def _polyfill(name: str, types: tuple[Type, ...]) -> Module:
         if wanted == [spell(type_) for type_ in types]:
             return load_text(text, f"intrinsics/{name}")
     raise KeyError(name, *types)
+
+
+def guard(
+    found: Guard, name: str, types: Sequence[Type], result: Type, format: Format, limits: tuple[float, float]
+) -> tuple[Module, str]:
+    """The function of a guard's text, and the letters of the arguments that it takes.
+
+    `types` are those of the guarded operation's arguments, `result` that of its result. The function is called after
+    the operation, `name`, and is to be called with the arguments named.
+    """
+    letters = "x" if found.replaces == "result" else "xyz"[: len(types)]
+    known = {"x": result} if found.replaces == "result" else dict(zip(letters, types, strict=True))
+    given = known.get(found.replaces, result)
+    text = found.text
+    used = "".join(letter for letter in letters if re.search(rf"\b{letter}\b", text))
+    numbers = {
+        "TINY": format.tiny, "DIVISOR": format.divisor, "EPSILON": format.epsilon, "EXPONENT": format.exponent,
+        "LARGEST": format.largest, "ROOT": format.largest**0.5, "LOW": limits[0], "HIGH": limits[1],
+    }  # fmt: skip
+    for constant, number in numbers.items():
+        text = re.sub(rf"\b{constant}\b", repr(float(number)), text)
+    text = text.replace("LAST", str(int(limits[1]))).replace("genF", spell(given))
+    params = ", ".join(f"{spell(known[letter])} {letter}" for letter in used)
+    body = text if text.startswith("{") else f"{{ return {text}; }}"
+    doc = f"/// {found.doc}\n" if found.doc else ""
+    return _guard(f"{doc}{spell(given)} {name}({params}) {body}", name), used
+
+
+@functools.cache
+def _guard(text: str, name: str) -> Module:
+    from .loader import load_text
+
+    return load_text(text, f"guards/{name}")
 
 
 def _spelled(generic: str, size: int) -> str:

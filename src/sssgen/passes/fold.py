@@ -18,6 +18,7 @@ from typing import Any
 
 from ..ir.nodes import (
     Assign,
+    Assume,
     Binary,
     Block,
     Call,
@@ -192,6 +193,11 @@ class _Folder:
         elif isinstance(stmt, Evaluate):
             call = self.expression(stmt.call)
             stmt = stmt if call is stmt.call else Evaluate(call, stmt.span)
+        elif isinstance(stmt, Assume):
+            condition = self.expression(stmt.condition)
+            if isinstance(condition, Literal):
+                return
+            stmt = stmt if condition is stmt.condition else Assume(condition, stmt.span)
         elif isinstance(stmt, For):
             self.loop(stmt, out)
             return

@@ -17,6 +17,7 @@ from typing import NamedTuple
 
 from ..ir.nodes import (
     Assign,
+    Assume,
     Binary,
     Block,
     Call,
@@ -202,6 +203,8 @@ class _Hoister:
             return Return(self.expression(stmt.value), stmt.span)
         if isinstance(stmt, Evaluate):
             return Evaluate(self.expression(stmt.call), stmt.span)
+        if isinstance(stmt, Assume):
+            return Assume(self.expression(stmt.condition), stmt.span)
         return stmt
 
     def define(self, name: str, value: Expr | None) -> None:

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from ..ir.nodes import (
     Assign,
+    Assume,
     Binary,
     Block,
     Call,
@@ -170,6 +171,9 @@ class _Inliner:
         if isinstance(stmt, Return) and stmt.value is not None:
             value = self.expression(stmt.value)
             return stmt if value is stmt.value else Return(value, stmt.span)
+        if isinstance(stmt, Assume):
+            condition = self.expression(stmt.condition)
+            return stmt if condition is stmt.condition else Assume(condition, stmt.span)
         if isinstance(stmt, Evaluate):
             # the call itself is made for its effects; one that is only a value has none
             args = tuple([self.expression(arg) for arg in operands(stmt.call)])

@@ -31,6 +31,7 @@ from . import blocks
 from .integers import counts_up, with_result
 from .lift_calls import is_awkward, lift
 from .stores import is_dynamic_store, is_swizzle_store, parts_of, whole_store
+from .substitute import in_place, is_cheap
 
 Polyfill = Callable[[str, Sequence[Type]], ir.Module]
 """Gives the module whose last function stands in for a builtin with these argument types."""
@@ -311,22 +312,9 @@ class _Legaliser:
         """The polyfill's expression itself where it is short and its arguments are cheap, else a call of it."""
         module = self.polyfill(call.name, types)
         function = module.functions[-1]
-        body = function.body or ()
-        if (
-            len(module.functions) == 1
-            and len(body) == 1
-            and isinstance(body[0], ir.Return)
-            and body[0].value is not None
-        ):
-            value = body[0].value
-            uses: dict[str, int] = {}
-            for part in subexpressions(value):
-                if isinstance(part, ir.Local):
-                    uses[part.name] = uses.get(part.name, 0) + 1
-            args = {param.name: arg for param, arg in zip(function.params, call.args, strict=True)}
-            if all(uses.get(name, 0) <= 1 or is_cheap(arg) for name, arg in args.items()):
-                placed = rewrite(value, lambda part: args[part.name] if isinstance(part, ir.Local) else part)
-                return self.expr(_respan(placed, call.span))
+        placed = in_place(module, call.args, call.span)
+        if placed is not None:
+            return self.expr(placed)
         for helper in module.functions:
             if helper.key not in self.helpers:
                 self.functions[helper.key] = helper
@@ -490,17 +478,3 @@ def _widened(value: ir.Expr, size: int) -> ir.Expr:
 
 def _is_costly(expr: ir.Expr) -> bool:
     return isinstance(expr, ir.Call) or (isinstance(expr, ir.Intrinsic) and BUILTINS[expr.name].kind == "fetch")
-
-
-def is_cheap(expr: ir.Expr) -> bool:
-    """Whether writing an expression twice costs nothing."""
-    if isinstance(expr, ir.Swizzle | ir.Member):
-        return is_cheap(expr.value)
-    if isinstance(expr, ir.Construct) and len(expr.args) == 1:
-        return is_cheap(expr.args[0])
-    return isinstance(expr, ir.Local | ir.Global | ir.Literal)
-
-
-def _respan(expr: ir.Expr, span: ir.Span) -> ir.Expr:
-    """What a polyfill computes stems from its call."""
-    return rewrite(expr, lambda part: part._replace(span=span) if part.span.file.startswith("intrinsics/") else part)

@@ -182,7 +182,7 @@ class _Converter:
         elif isinstance(stmt, Discard):
             self.discard(stmt)
             return True
-        else:
+        elif isinstance(stmt, Break | Continue):
             self.leave_loop(stmt)
             return True
         return False

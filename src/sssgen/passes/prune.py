@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..ir.nodes import (
     Assign,
+    Assume,
     Binary,
     Block,
     Call,
@@ -191,6 +192,7 @@ class _FunctionCleaner:
         self.live: list[bool] = []
         self.jumps: list[_Unit] | None = None
         self.essential: list[_Unit] = []
+        self.assumptions: list[_Unit] = []
         self.discards = function.body is None
 
     def run(self) -> _Cleaned:
@@ -199,6 +201,9 @@ class _FunctionCleaner:
             self.number(param.name, param.direction != "in")
         units, _ = self.block(function.body or (), None)
         self.keep(self.essential)
+        for unit in self.assumptions:  # they keep nothing alive
+            if all(self.live[number] for number in unit.variables) and (unit.parent is None or unit.parent.kept):
+                unit.kept = True
         needs = _Needs({}, set(), set())
         _note_types(needs, function.result, function.params)
         body = self.rebuild(units, function.body or (), needs)
@@ -261,6 +266,9 @@ class _FunctionCleaner:
             return True
         elif isinstance(stmt, Evaluate):
             self.expression(stmt.call, unit)
+        elif isinstance(stmt, Assume):
+            self.expression(stmt.condition, unit)
+            self.assumptions.append(unit)
         elif isinstance(stmt, Discard):
             # a target may still want a return after it, so what follows stays
             self.discards = True

@@ -11,6 +11,7 @@ from typing import Any
 
 from ..ir.nodes import (
     Assign,
+    Assume,
     Binary,
     Block,
     Call,
@@ -266,6 +267,10 @@ class Renamer:
             call = self.expression(stmt.call)
             if call is not stmt.call:
                 return Evaluate(call, stmt.span)
+        elif isinstance(stmt, Assume):
+            condition = self.expression(stmt.condition)
+            if condition is not stmt.condition:
+                return Assume(condition, stmt.span)
         return stmt
 
     def loop(self, stmt: For) -> For:

@@ -1,0 +1,96 @@
+"""What a shader's inputs may be: the assumptions of the range pass, and what `sssgen stress` feeds.
+
+A parameter's range comes from its quantity or its name in the chain, a uniform's from its hints. What gives no word of
+itself is a number of ordinary size. A technique's result keeps to the range of its quantity, so that the next one may
+rely on it: where the range pass cannot prove it, the guard pass clamps it there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from .formats import FLOAT32, Format
+from .nodes import Param, Uniform
+from .types import Matrix, Sampler, kind_of
+
+
+class Contract(NamedTuple):
+    """Lowest and highest value of each component, and the greatest length of a vector (infinite: none is known)."""
+
+    low: float
+    high: float
+    length: float = float("inf")
+    finite: bool = True
+    """False for texels of a texture that holds data: a float format may hold NaN and infinity."""
+
+
+LENGTH = 1.001
+"""The greatest length of a direction. Interpolated normals are shorter than 1, missing ones 0."""
+ONE = 1.0 + 2.0**-10
+"""The most that thinness and transmittance may be: 1, and what functions of few digits add to it."""
+POSITION = {FLOAT32.name: 1e6, "half": 100.0}
+"""The largest coordinate, length, time and number without a hint."""
+THICKNESS = {FLOAT32.name: 1e12, "half": 1e4}
+"""The longest way through matter: what is beyond is as opaque."""
+MATRIX = {FLOAT32.name: 1e3, "half": 10.0}
+UV = {FLOAT32.name: 1e4, "half": 100.0}
+COLOR = {FLOAT32.name: 65504.0, "half": 1000.0}
+INTEGERS = {"int": (-(2.0**31), 2.0**31 - 1.0), "uint": (0.0, 2.0**32 - 1.0), "bool": (0.0, 1.0)}
+
+_UNIT = {"thinness", "transmittance"}
+_FRACTIONS = {"alpha", "metallic", "roughness", "occlusion"}
+_COLORS = {"light_color", "albedo", "emission", "color", "translucency"}
+_FRAME = {"N", "V", "L", "T", "B", "normal"}
+
+
+def of_param(param: Param, format: Format = FLOAT32) -> Contract:
+    """The contract of a technique's parameter."""
+    kind = kind_of(param.type)
+    if kind != "float":
+        return Contract(*INTEGERS.get(kind, (0.0, 0.0)))
+    found = of_quantity(param.quantity, format)
+    if found is not None:
+        return found
+    if isinstance(param.type, Matrix):
+        return _around(MATRIX[format.name])
+    if param.name in _FRAME:
+        return Contract(-LENGTH, LENGTH, LENGTH)
+    if param.name in _FRACTIONS:
+        return Contract(0.0, 1.0)
+    if param.name in _COLORS:
+        return Contract(0.0, COLOR[format.name])
+    return _around(POSITION[format.name])
+
+
+def of_quantity(quantity: str, format: Format = FLOAT32) -> Contract | None:
+    """The contract of a quantity, None for a plain number."""
+    if quantity.endswith("_direction"):
+        return Contract(-LENGTH, LENGTH, LENGTH)
+    if quantity in _UNIT:
+        return Contract(0.0, ONE)
+    if quantity == "thickness":
+        return Contract(0.0, THICKNESS[format.name])
+    if quantity.endswith("_position"):
+        return _around((UV if quantity == "uv_position" else POSITION)[format.name])
+    return None
+
+
+def of_uniform(uniform: Uniform, format: Format = FLOAT32) -> Contract:
+    """The contract of a uniform's components, or of a texture's texels."""
+    hints: Mapping[str, tuple[float | str, ...]] = dict(uniform.hints)
+    if isinstance(uniform.type, Sampler):
+        return Contract(0.0, 1.0, finite="holds" not in hints)
+    if "hint_range" in hints:
+        low, high = hints["hint_range"][:2]
+        return Contract(format.rounded(float(low)), format.rounded(float(high)))
+    kind = kind_of(uniform.type)
+    if kind != "float":
+        return Contract(*INTEGERS.get(kind, (0.0, 0.0)))
+    if "source_color" in hints:
+        return Contract(0.0, 1.0)
+    return _around((MATRIX if isinstance(uniform.type, Matrix) else POSITION)[format.name])
+
+
+def _around(size: float) -> Contract:
+    return Contract(-size, size)

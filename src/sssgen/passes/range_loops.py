@@ -1,0 +1,209 @@
+"""Ranges through loops.
+
+A loop is interpreted once as its first round, then until nothing new is found; a variable that is only added to grows
+by what is added, times the rounds.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..ir import nodes as ir
+from ..ir.walk import root, statements
+from .intervals import INF, Range, clip, widened
+from .range_expressions import Expressions
+from .range_state import Loop, State
+from .shapes import calls_in
+from .vectors import Value, length_of
+
+_ROUNDS = 3
+"""Joins of a loop's state before it is widened."""
+_UNROLLED = 8
+"""The most rounds of a loop that are interpreted one by one."""
+_STEPS = (0.0, 1.0, 10.0, 1e3, 1e6, 1e12, 1e20, 1e30)
+
+
+class Loops(Expressions):
+    """The loops' part of the analysis."""
+
+    def loop(self, stmt: ir.For | ir.While) -> State | None:
+        is_for = isinstance(stmt, ir.For)
+        state: State | None = self.state
+        if is_for and stmt.init is not None:  # type: ignore[union-attr]  # it is a For
+            state = self.block((stmt.init,), state)  # type: ignore[union-attr]  # it is a For
+        assert state is not None
+        trips = self.trips(stmt)
+        ways: list[State | None] = []
+        # the first round as it is: what it adds keeps sums from being 0; of a short loop, all of them
+        for _ in range(int(trips) if trips <= _UNROLLED else 1):
+            frame, after, left = self.round(stmt, state.copy(), 1.0)
+            ways += [left, *frame.broken]
+            if after is None:
+                return self.join_all(ways)
+            state = after
+        return self.join_all([*ways, *self.rounds(stmt, state, max(trips - 1.0, 1.0))])
+
+    def round(self, stmt: ir.For | ir.While, state: State, trips: float) -> tuple[Loop, State | None, State | None]:
+        """One round: the loop's ways out, the state at its end, and the state in which it does not run."""
+        loop = Loop(trips)
+        self.state = state
+        left: State | None = None
+        inside: State | None = state
+        if stmt.condition is not None:
+            condition = self.expr(stmt.condition)
+            known = condition.parts[0]
+            if known.low < 1.0:
+                self.state = state.copy()
+                self.learn(condition.numbers[0], False)
+                left = self.state
+            inside = state.copy() if known.high > 0.0 else None
+            if inside is not None:
+                self.state = inside
+                self.learn(condition.numbers[0], True)
+        if inside is None:
+            return loop, None, left
+        self.loops.append(loop)
+        after = self.join_all([self.block(stmt.body, inside), *loop.continued])
+        if isinstance(stmt, ir.For) and stmt.step is not None:
+            after = self.block((stmt.step,), after)
+        self.loops.pop()
+        return loop, after, left
+
+    def rounds(self, stmt: ir.For | ir.While, entry: State, trips: float) -> list[State | None]:
+        """Any number of rounds from `entry`: the ways out."""
+        block = (*stmt.body, *((stmt.step,) if isinstance(stmt, ir.For) and stmt.step is not None else ()))
+        written = self.written(block)
+        summed = {name for name in written if name in entry.env and self.is_sum(name, block)}
+        numbers = {name: [self.numbers.fresh() for _ in value.parts] for name, value in entry.env.items()}
+        recording, self.recording = self.recording, False
+        ranges = {name: entry.env[name].parts for name in written if name in entry.env}
+        for attempt in range(24):
+            head = self.head(entry, ranges, numbers)
+            loop, after, _ = self.round(stmt, head.copy(), trips)
+            if after is None:
+                break
+            found = {
+                name: self.grown(entry.env[name].parts, loop.added.get(name, {}), trips)
+                if name in summed
+                else self.after(after, name, ranges[name])
+                for name in ranges
+            }
+            if all(a.within(b) for name in ranges for a, b in zip(found[name], ranges[name], strict=True)):
+                break
+            ranges = {
+                name: tuple([
+                    self.wider(old, new, attempt) for old, new in zip(ranges[name], found[name], strict=True)
+                ])
+                for name in ranges
+            }  # fmt: skip
+        else:
+            kinds = {name: entry.env[name].parts for name in ranges}
+            ranges = {name: tuple([self.everything(part) for part in parts]) for name, parts in kinds.items()}
+        self.recording = recording
+        loop, _, left = self.round(stmt, self.head(entry, ranges, numbers), trips)
+        return [left, *loop.broken]
+
+    def head(self, entry: State, ranges: dict[str, tuple[Range, ...]], numbers: dict[str, list[int]]) -> State:
+        """The state at the beginning of a later round."""
+        env = dict(entry.env)
+        for name, parts in ranges.items():
+            env[name] = Value(parts, tuple(numbers[name]), length_of(parts))
+        return State(env, entry.facts.copy())
+
+    def after(self, state: State, name: str, before: tuple[Range, ...]) -> tuple[Range, ...]:
+        """A variable's ranges at a round's end, and those at its beginning."""
+        facts, value = state.facts.ranges, state.env[name]
+        parts = [p.met(facts[n]) if n in facts else p for p, n in zip(value.parts, value.numbers, strict=True)]
+        return tuple([part.joined(old) for part, old in zip(parts, before, strict=True)])
+
+    def grown(self, start: tuple[Range, ...], added: dict[int, tuple[list[Range], float]], trips: float) -> Any:
+        """A sum after any number of rounds."""
+        found = list(start)
+        for parts, times in added.values():
+            for index, part in enumerate(parts):
+                low, high = min(part.low, 0.0), max(part.high, 0.0)
+                count = trips * times
+                most = Range(low * count if low else 0.0, high * count if high else 0.0)
+                # each sum rounds
+                found[index] = widened(
+                    found[index] + most, self.format.epsilon * min(count, 1e3) if count > 1.0 else 0.0
+                )
+        return tuple([self.whole(part) for part in found])
+
+    def whole(self, part: Range) -> Range:
+        largest = max(self.format.largest, 2.0**32)
+        return clip(part, -largest, largest)
+
+    def wider(self, old: Range, new: Range, attempt: int) -> Range:
+        """A range for the next attempt: what was found, then more and more."""
+        both = old.joined(new)
+        if attempt < _ROUNDS:
+            return both
+        largest = max(self.format.largest, 2.0**32)
+        low = old.low if new.low >= old.low else next((-s for s in _STEPS if -s <= new.low), -largest)
+        if 0.0 <= new.low < old.low:
+            low = 0.0
+        high = old.high if new.high <= old.high else next((s for s in _STEPS if s >= new.high), largest)
+        gap = old.gap if new.gap >= old.gap and low != 0.0 and high != 0.0 else 0.0
+        return Range(low, high, gap)
+
+    def everything(self, part: Range) -> Range:
+        del part
+        return Range(-self.format.largest, self.format.largest)
+
+    def add(self, name: str, stmt: ir.Assign, value: Value) -> None:
+        """Notes what a statement adds to a variable, for every loop around it."""
+        parts = [-part for part in value.parts] if stmt.op == "-" else list(value.parts)
+        times = 1.0
+        for loop in reversed(self.loops):
+            known = loop.added.setdefault(name, {}).get(id(stmt))
+            joined = parts if known is None else [a.joined(b) for a, b in zip(known[0], parts, strict=True)]
+            loop.added[name][id(stmt)] = joined, max(times, known[1] if known else 0.0)
+            times *= loop.trips
+
+    def written(self, block: ir.Block) -> set[str]:
+        found = {v.name for s in statements(block) if isinstance(s, ir.Assign) and (v := root(s.target)) is not None}
+        for stmt in statements(block):
+            for expr in calls_in(stmt):
+                params = self.functions[expr.function].params
+                for param, arg in zip(params, expr.args, strict=True):
+                    variable = root(arg) if param.direction != "in" else None
+                    if variable is not None:
+                        found.add(variable.name)
+        return found
+
+    def is_sum(self, name: str, block: ir.Block) -> bool:
+        """Whether a variable is only added to in a block."""
+        for stmt in statements(block):
+            if isinstance(stmt, ir.Assign):
+                variable = root(stmt.target)
+                plain = stmt.op in ("+", "-") and variable is stmt.target
+                if variable is not None and variable.name == name and not plain:
+                    return False
+            for call in calls_in(stmt):
+                params = self.functions[call.function].params
+                for param, arg in zip(params, call.args, strict=True):
+                    variable = root(arg) if param.direction != "in" else None
+                    if variable is not None and variable.name == name:
+                        return False
+        return True
+
+    def trips(self, stmt: ir.For | ir.While) -> float:
+        """The most rounds of a loop, as its header says; infinite where it does not."""
+        if not isinstance(stmt, ir.For) or not isinstance(stmt.step, ir.Assign) or stmt.step.op not in ("+", "-"):
+            return INF
+        counter = stmt.step.target
+        conditions = [stmt.condition]
+        while conditions:
+            condition = conditions.pop()
+            if isinstance(condition, ir.Binary) and condition.op == "&&":
+                conditions += [condition.left, condition.right]
+            elif isinstance(condition, ir.Binary) and isinstance(counter, ir.Local):
+                for near, far in ((condition.left, condition.right), (condition.right, condition.left)):
+                    if isinstance(near, ir.Local) and near.name == counter.name:
+                        start, end = self.expr(near).parts[0], self.expr(far).parts[0]
+                        step = self.expr(stmt.step.value).parts[0]
+                        if step.gap > 0.0:
+                            way = max(end.high - start.low, start.high - end.low, 0.0)
+                            return float(int(way / step.gap)) + 1.0
+        return INF

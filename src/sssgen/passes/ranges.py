@@ -1,0 +1,232 @@
+"""Value ranges: interprets a program over ranges and says of each operation with a domain whether it can go wrong.
+
+Sound under the rounding of the format: every value that a run may have lies in the range found, as long as the inputs
+keep to their contracts (`ir.contracts`) and each operation found unsafe is guarded, or happens not to occur: behind
+such an operation the analysis goes on with what the guard would let through. Functions are interpreted at each call,
+with the ranges there. A loop is interpreted once as its first round, then until nothing new is found; a variable
+that is only added to grows by what is added, times the rounds.
+Place: after `hoist`, since the program is then the one that every target gets; before `parameters`, which takes the
+uniforms' hints away.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple, cast
+
+from ..ir import contracts
+from ..ir import nodes as ir
+from ..ir.formats import FLOAT32, Format
+from ..ir.types import VOID, Array, Struct, kind_of
+from ..ir.walk import root
+from .intervals import INF, clip
+from .knowledge import Facts
+from .range_loops import Loops
+from .range_state import Frame, State
+from .shapes import field_at, scalars
+from .sites import BOUNDS, Site
+from .vectors import Value
+
+
+class Findings(NamedTuple):
+    """What the analysis found."""
+
+    sites: list[Site]
+    """Every operation with a domain that was reached, in the order in which it was."""
+    compounds: dict[int, ir.Binary]
+    """The operations of compound assignments, by the identity of the statement."""
+
+
+def analyse(module: ir.Module, roots: Iterable[str], format: Format = FLOAT32) -> Findings:
+    """Interprets the functions with the keys `roots`, their parameters within their contracts."""
+    analysis = _Analysis(module, format)
+    for key in roots:
+        analysis.root(key)
+    return Findings(list(analysis.sites.values()), analysis.compounds)
+
+
+class _Analysis(Loops):
+    """The whole: functions and statements."""
+
+    # Functions
+
+    def root(self, key: str) -> None:
+        """Interprets a function whose parameters keep to their contracts."""
+        function = self.functions[key]
+        if function.body is None:
+            return
+        self.state = State({}, Facts({}, {}))
+        args = [
+            self.unknown(param.type) if param.direction == "out" else self.given(
+                param.type, contracts.of_param(param, self.format)
+            )
+            for param in function.params
+        ]  # fmt: skip
+        self.enter(function, args)
+
+    def enter(self, function: ir.Function, args: Sequence[Value]) -> tuple[Value | None, list[Value]]:
+        """Interprets a function's body; its result, and the parameters' values at its end."""
+        outer, loops, self.loops = self.state, self.loops, []
+        env = {param.name: arg for param, arg in zip(function.params, args, strict=True)}
+        frame = Frame(function, [])
+        self.frames.append(frame)
+        end = self.block(function.body or (), State(env, outer.facts.copy()))
+        if end is not None:
+            frame.returned.append((end, None))
+        self.frames.pop()
+        self.loops = loops
+        if not frame.returned:  # every way is a discard
+            self.state = outer
+            return (None if function.result == VOID else self.unknown(function.result)), list(args)
+        state, found = frame.returned[0]
+        for other, value in frame.returned[1:]:
+            if found is not None and value is not None:
+                found = self.joined(found, value, state.facts, other.facts)
+            state = self.join(state, other)
+        self.state = State(outer.env, state.facts)
+        if found is None and function.result != VOID:
+            found = self.unknown(function.result)
+        return found, [state.env.get(param.name, arg) for param, arg in zip(function.params, args, strict=True)]
+
+    def call(self, node: ir.Call) -> Value:
+        function = self.functions[node.function]
+        args = [
+            self.unknown(param.type) if param.direction == "out" else self.expr(arg)
+            for param, arg in zip(function.params, node.args, strict=True)
+        ]
+        result, ends = self.enter(function, args) if function.body is not None else (None, args)
+        for param, arg, end in zip(function.params, node.args, ends, strict=True):
+            if param.direction != "in":
+                self.store(arg, self.value(end.parts, end.numbers, end.length))
+        return result if result is not None else (Value((), ()) if node.type == VOID else self.unknown(node.type))
+
+    # Statements
+
+    def block(self, block: ir.Block, state: State | None) -> State | None:
+        """The state at a block's end; None where control does not come there."""
+        for stmt in block:
+            if state is None:
+                return None
+            self.state = state
+            state = self.statement(stmt)
+        return state
+
+    def statement(self, stmt: ir.Stmt) -> State | None:
+        if isinstance(stmt, ir.Declare):
+            value = self.expr(stmt.value) if stmt.value is not None else self.unknown(stmt.type)
+            self.state.env[stmt.name] = value
+        elif isinstance(stmt, ir.Assign):
+            self.assign(stmt)
+        elif isinstance(stmt, ir.Evaluate):
+            self.expr(stmt.call)
+        elif isinstance(stmt, ir.Assume):
+            self.learn(self.expr(stmt.condition).numbers[0], True)
+        elif isinstance(stmt, ir.Return):
+            found = self.bounded(stmt.value, self.frames[-1].function.quantity) if stmt.value is not None else None
+            self.frames[-1].returned.append((self.state, found))
+            return None
+        elif isinstance(stmt, ir.If):
+            return self.branch(stmt)
+        elif isinstance(stmt, ir.For | ir.While):
+            return self.loop(stmt)
+        elif isinstance(stmt, ir.Break):
+            self.loops[-1].broken.append(self.state)
+            return None
+        elif isinstance(stmt, ir.Continue):
+            self.loops[-1].continued.append(self.state)
+            return None
+        elif isinstance(stmt, ir.Discard):
+            return None
+        return self.state
+
+    def assign(self, stmt: ir.Assign) -> None:
+        value = self.bounded(stmt.value, self.quantity_of(stmt.target))
+        variable = root(stmt.target)
+        if stmt.op:
+            if stmt.op in ("+", "-") and variable is stmt.target and self.loops:
+                self.add(stmt.target.name, stmt, value)
+            before = self.expr(stmt.target)
+            value = self.operation(self.compound_of(stmt), before, value)
+        self.store(stmt.target, value)
+
+    def compound_of(self, stmt: ir.Assign) -> ir.Binary:
+        """The operation of `target op= value`, one and the same each time."""
+        known = self.compounds.get(id(stmt))
+        if known is None:
+            known = ir.Binary(stmt.target.type, stmt.op, stmt.target, stmt.value, stmt.span)
+            self.compounds[id(stmt)] = known
+        return known
+
+    def quantity_of(self, target: ir.Expr) -> str:
+        """The quantity of an out parameter that is assigned to."""
+        if not isinstance(target, ir.Local) or not self.frames:
+            return ""
+        return next(
+            (p.quantity for p in self.frames[-1].function.params if p.name == target.name and p.direction != "in"), ""
+        )
+
+    def bounded(self, expr: ir.Expr, quantity: str) -> Value:
+        """A value that becomes a result of this quantity: within its contract."""
+        value = self.expr(expr)
+        contract = contracts.of_quantity(quantity, self.format) if kind_of(expr.type) == "float" else None
+        if contract is None or contract.length < INF or quantity.endswith("_position"):
+            return value
+        (part,) = value.parts
+        limits = (contract.low, min(contract.high, 1.0) if contract.high == contracts.ONE else contract.high)
+        inside = part.low >= contract.low and part.high <= contract.high
+        self.note(expr, quantity, inside, BOUNDS, (part,), limits)
+        return value if inside else value._replace(parts=(clip(part, contract.low, contract.high),))
+
+    def branch(self, stmt: ir.If) -> State | None:
+        condition = self.expr(stmt.condition)
+        known = condition.parts[0]
+        start = self.state
+        ways: list[State | None] = []
+        for truth, block in ((True, stmt.then), (False, stmt.otherwise)):
+            if (known.high == 0.0 and truth) or (known.low == 1.0 and not truth):
+                continue
+            self.state = start.copy()
+            self.learn(condition.numbers[0], truth)
+            ways.append(self.block(block, self.state))
+        return self.join_all(ways)
+
+    # Stores
+
+    def store(self, target: ir.Expr, value: Value) -> None:
+        """Writes to a variable or a part of one."""
+        variable = root(target)
+        if variable is None or variable.name not in self.state.env:
+            return
+        if variable is target:
+            self.state.env[variable.name] = value
+            return
+        old = self.state.env[variable.name]
+        places, sure = self.places(target)
+        parts, numbers = list(old.parts), list(old.numbers)
+        for index, place in enumerate(places):
+            part, number = value.parts[index % len(value.parts)], value.numbers[index % len(value.numbers)]
+            parts[place] = part if sure else part.joined(parts[place])
+            numbers[place] = number if sure else self.numbers.fresh()
+        self.state.env[variable.name] = self.value(tuple(parts), tuple(numbers))
+
+    def places(self, target: ir.Expr) -> tuple[list[int], bool]:
+        """Which scalars of its variable a target is, and whether it is sure to be these and all of these."""
+        if isinstance(target, ir.Local):
+            return list(range(scalars(target.type))), True
+        if isinstance(target, ir.Swizzle):
+            inner, sure = self.places(target.value)
+            return [inner["xyzw".index(letter)] for letter in target.components], sure
+        if isinstance(target, ir.Member):
+            inner, sure = self.places(target.value)
+            start, count = field_at(cast(Struct, target.value.type), target.field)
+            return inner[start : start + count], sure
+        assert isinstance(target, ir.Index)
+        inner, sure = self.places(target.value)
+        if isinstance(target.value.type, Array):
+            return inner, False
+        size = scalars(target.type)
+        index = self.expr(target.index).parts[0]
+        if index.low == index.high and 0 <= index.low < len(inner) // size:
+            start = int(index.low) * size
+            return inner[start : start + size], sure
+        return inner, False

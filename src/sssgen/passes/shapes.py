@@ -1,0 +1,68 @@
+"""The scalars that a value is made of, in one order: what ranges are kept for."""
+
+from __future__ import annotations
+
+from typing import cast
+
+from ..ir import nodes as ir
+from ..ir.types import Array, Matrix, Scalar, Struct, Type, components, kind_of
+from ..ir.walk import expressions, subexpressions
+from .intervals import ANY, Range
+
+
+def calls_in(stmt: ir.Stmt) -> list[ir.Call]:
+    """The calls that stand directly in a statement."""
+    return [part for expr in expressions(stmt) for part in subexpressions(expr) if isinstance(part, ir.Call)]
+
+
+def scalars(type_: Type) -> int:
+    """How many ranges a value of this type has: an array's elements share those of one."""
+    if isinstance(type_, Array):
+        return scalars(type_.element)
+    if isinstance(type_, Struct):
+        return sum(scalars(field.type) for field in type_.fields)
+    return components(type_)
+
+
+def scalar_kinds(type_: Type) -> list[str]:
+    """The kind of each of these scalars."""
+    if isinstance(type_, Array):
+        return scalar_kinds(type_.element)
+    if isinstance(type_, Struct):
+        return [kind for field in type_.fields for kind in scalar_kinds(field.type)]
+    return [kind_of(type_)] * components(type_)
+
+
+def field_at(type_: Struct, name: str) -> tuple[int, int]:
+    """Where a field's scalars begin in its struct's, and how many there are."""
+    start = 0
+    for field in type_.fields:
+        count = scalars(field.type)
+        if field.name == name:
+            return start, count
+        start += count
+    raise KeyError(name)
+
+
+def matrix_product(left: Type, a: tuple[Range, ...], right: Type, b: tuple[Range, ...]) -> list[Range] | None:
+    """The components of a matrix product; None for a product with a number."""
+    if isinstance(left, Scalar) or isinstance(right, Scalar):
+        return None
+    size = left.size if isinstance(left, Matrix) else cast(Matrix, right).size
+    rows = [[a[k * size + row] for k in range(size)] for row in range(size)] if isinstance(left, Matrix) else [list(a)]
+    columns = [list(b[c * size : (c + 1) * size]) for c in range(size)] if isinstance(right, Matrix) else [list(b)]
+    found = []
+    for column in columns:
+        for row in rows:
+            total = Range(0.0, 0.0)
+            for x, y in zip(row, column, strict=True):
+                total = total + x * y
+            found.append(total)
+    return found
+
+
+def hull_of(parts: tuple[Range, ...]) -> Range:
+    found = parts[0] if parts else ANY
+    for part in parts[1:]:
+        found = found.joined(part)
+    return found

@@ -1,0 +1,45 @@
+"""The places of a program where something may go wrong, and what is known of each."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ..ir import nodes as ir
+from ..ir.intrinsics import NONZERO, Guard
+from .intervals import Range
+
+OVERFLOW = Guard("", "a number too large for its format", "clamp(x, -LARGEST, LARGEST)", "result")
+"""Beside the table's: what any sum or product may do."""
+TEXEL = Guard(
+    "", "a texel of a float texture that is no number", "mix(clamp(x, LOW, HIGH), genF(0.0), isnan(x))", "result",
+    "A texel within its range; 0 in place of NaN.",
+)  # fmt: skip
+BOUNDS = Guard("", "a quantity beyond its range", "clamp(x, LOW, HIGH)", "result")
+DIVISION = Guard("", "a division by 0", NONZERO, "y", "A divisor that is not 0, with the sign of `y`.")
+WHOLE_NUMBER = Guard("", "a float too large for an integer", "clamp(x, LOW, HIGH)", "x")
+ELEMENT = Guard("", "an index beyond the elements", "clamp(y, 0, LAST)", "y")
+
+
+class Site(NamedTuple):
+    """One operation with a domain."""
+
+    node: ir.Expr
+    what: str
+    """The operator or builtin, or `overflow`, `texel`, a quantity's name, `int`, `index`."""
+    function: str
+    """The key of the function that it stands in."""
+    proven: bool
+    guard: Guard
+    args: tuple[Range, ...]
+    """What was found of the arguments (of each: all its components), or of the result."""
+    limits: tuple[float, float] = (0.0, 0.0)
+    """LOW and HIGH of the guard's text."""
+
+    def joined(self, other: Site) -> Site:
+        """What holds in both contexts: the guard that is needed in either, the ranges of both."""
+        args = tuple([a.joined(b) for a, b in zip(self.args, other.args, strict=True)])
+        if self.proven != other.proven:
+            worse = other if self.proven else self
+        else:
+            worse = min(self, other, key=lambda site: site.guard.replaces != "")
+        return worse._replace(args=args)
