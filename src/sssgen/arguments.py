@@ -121,7 +121,32 @@ def parser() -> argparse.ArgumentParser:
     evaluate.add_argument(
         "--bind", action="append", default=[], metavar="SLOT=FUNCTION", help="a function for a slot, or FILE:FUNCTION"
     )
-    evaluate.add_argument("--precision", choices=("f64", "f32", "f16"), help="what numpy computes in (default: f64)")
+    evaluate.add_argument("--precision", choices=("f64", "f32", "f16"), help="of numpy (default: f64); webgpu has f16")
+
+    stress = command(
+        "stress",
+        "stress",
+        "run techniques on dangerous, boundary and random inputs, on several back ends",
+        "examples:\n"
+        "  sssgen stress lobe_normalized\n"
+        "  sssgen stress wax.toml --backend gl,webgpu --samples 1000000 -o stress.md\n"
+        "Without a name: the library, but its published baselines.",
+    )
+    stress.add_argument("NAME", nargs="*", help="a technique, a .sss file, a material's .toml file, or an example")
+    stress.add_argument(
+        "--backend", "-b", metavar="NAME", help="default: numpy-f32,gl,webgpu,browser,hlsl; several, or all"
+    )
+    stress.add_argument("--samples", type=int, default=10_000, metavar="N", help="random inputs (default: 10000)")
+    stress.add_argument("--seed", type=int, default=0, metavar="N", help="which random inputs (default: 0)")
+    stress.add_argument(
+        "--row", action="append", default=[], metavar="NAME", help="only this row of the dangerous table; repeatable"
+    )
+    stress.add_argument("--precision", choices=("f32", "f16"), help="f16: numpy and webgpu, in half (default: f32)")
+    stress.add_argument(
+        "--guards", choices=("auto", "all", "none"), default="auto",
+        help="guards in the emitted functions: where they are needed (default), everywhere, nowhere",
+    )  # fmt: skip
+    stress.add_argument("-o", "--output", metavar="REPORT", help="a .md or .json file to write the report to")
 
     render = command(
         "render",

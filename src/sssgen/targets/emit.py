@@ -18,7 +18,7 @@ from .layout import Member, place
 from .printer import Comments, Line, Printer, comment_text
 from .templates import render
 
-_MARK = re.compile(r"\x02(\d+)\x03")
+_MARK = re.compile(r"\x02(\d{1,9})\x03", re.ASCII)
 
 _DEFAULTS = {"default_white": "white", "default_black": "black", "default_gray": "gray", "default_bump": "bump"}
 
@@ -255,19 +255,15 @@ def _finish(text: str, marks: list[Span]) -> tuple[str, dict[int, Span]]:
     lines: list[str] = []
     spans: dict[int, Span] = {}
     for line in text.split("\n"):
-        mark = ""
-        if "\x02" in line:
-            line, _, rest = line.partition("\x02")
-            mark, _, rest = rest.partition("\x03")
-            line += _MARK.sub("", rest)
-        line = line.rstrip()
+        mark = _MARK.search(line)
+        line = _MARK.sub("", line).rstrip()
         if not line and (not lines or not lines[-1] or lines[-1].endswith("{")):
             continue
         if lines and not lines[-1] and line.lstrip().startswith("}"):
             lines.pop()
         lines.append(line)
-        if mark:
-            spans[len(lines)] = marks[int(mark)]
+        if mark is not None and int(mark[1]) < len(marks):  # a template may have written one of its own
+            spans[len(lines)] = marks[int(mark[1])]
     while lines and not lines[-1]:
         lines.pop()
     return "\n".join(lines) + "\n", spans

@@ -75,7 +75,9 @@ class NumpyExpressions(Printer):
         kind, plain = kind_of(left.type), self.numbers.plain(left) and self.numbers.plain(right)
         function = self.operator_function(binary, plain)
         if function:
-            text = f"{function}({', '.join(self.typed(left, right))})"
+            # what is shifted and the count may be of two types: neither tells the other's
+            texts = [*self.typed(left), *self.typed(right)] if op in ("<<", ">>") else self.typed(left, right)
+            text = f"{function}({', '.join(texts)})"
             return (f"not_({text})" if op == "!=" else text), PRIMARY
         op = _OPERATORS.get(op, op)
         level = PYTHON_PRECEDENCE[op]

@@ -282,16 +282,22 @@ def int_remainder(x: Value, y: Value) -> Value:
     return np.fmod(x, np.where(y == 0, y.dtype.type(1), y))
 
 
-@silent
+def _shifted(x: Value, count: Value) -> tuple[Value, Value]:
+    """What is shifted as an array, and the count's low five bits as one of the same type."""
+    (shifted,), (bits,) = arrays((x,)), arrays((count,))
+    return shifted, (bits & 31).astype(shifted.dtype)
+
+
 def shift_left(x: Value, count: Value) -> Value:
     """`x << count`; of the count the low five bits are taken, as in WGSL and HLSL."""
-    return x << (count & 31).astype(x.dtype)
+    x, count = _shifted(x, count)
+    return x << count
 
 
-@silent
 def shift_right(x: Value, count: Value) -> Value:
     """`x >> count`; fills with the sign for int. Of the count the low five bits are taken."""
-    return x >> (count & 31).astype(x.dtype)
+    x, count = _shifted(x, count)
+    return x >> count
 
 
 @silent

@@ -7,12 +7,12 @@ span of source that it came from.
 from __future__ import annotations
 
 import math
-import struct
 from collections.abc import Callable
 from typing import NamedTuple
 
 from ..ir import nodes as ir
 from ..ir import signatures
+from ..ir.formats import FLOAT32, Format
 from ..ir.intrinsics import BUILTINS
 from ..ir.operators import PRECEDENCE
 from ..ir.rules import FLOAT_MAX
@@ -336,10 +336,15 @@ def float_text(value: float) -> str:
         return "-3.4028234e38" if value < 0.0 else "3.4028234e38"
     if value == 0.0:
         return "-0.0" if math.copysign(1.0, value) < 0.0 else "0.0"
-    (nearest,) = struct.unpack("f", struct.pack("f", value))
+    return shortest(value, FLOAT32)
+
+
+def shortest(value: float, format: Format) -> str:
+    """The shortest decimal, always with a point, that reads back to the same number of the format; not for 0."""
+    nearest = format.rounded(value)
     for digits in range(1, 10):
         text = f"{nearest:.{digits}g}"
-        if struct.unpack("f", struct.pack("f", float(text)))[0] == nearest:
+        if format.rounded(float(text)) == nearest:
             break
     mantissa, _, exponent = text.partition("e")
     if exponent and -5 < int(exponent) < 8:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from .. import cache
 from ..data import place, posix
-from ..diagnostics import Diagnostic, SssgenError, failure
+from ..diagnostics import MAX_MESSAGE, Diagnostic, SssgenError
 from ..ir.spans import Span
 
 if TYPE_CHECKING:
@@ -24,19 +24,31 @@ def render(template: str, context: dict[str, Any], templates: str | None, beside
 
     `templates` is the user's folder, whose templates are rendered in Jinja's sandbox; `beside` that of the descriptor.
     """
-    from jinja2 import TemplateError, TemplateNotFound, TemplateSyntaxError
+    from jinja2 import TemplateNotFound, TemplateSyntaxError
 
+    environment = _environment(templates, beside)
+    if templates is not None:
+        from copy import deepcopy
+
+        from .sandbox import begin
+
+        begin()
+        context = deepcopy(context)  # what a template does to it is not done to the target
     try:
-        return _environment(templates, beside).get_template(template).render(context)
+        return environment.get_template(template).render(context)
     except TemplateNotFound as error:
-        raise failure(f"there is no template '{error.name}'", file=template) from None
+        raise _failure(f"there is no template '{error.name}'", "", _place(error) or (template, 0)) from None
     except TemplateSyntaxError as error:
-        raise failure(f"line {error.lineno}: {error.message}", file=error.name or template) from None
-    except (TemplateError, TypeError, ValueError, KeyError, ArithmeticError, RecursionError, MemoryError) as error:
-        file, line = _place(error) or (template, 0)
-        message = f"the template cannot be rendered: {error or type(error).__name__}"
+        raise _failure(str(error.message), "", (error.filename or template, error.lineno)) from None
+    except Exception as error:  # whatever a template's expressions lead to
+        message = f"the template cannot be rendered: {str(error) or type(error).__name__}"
         hint = "docs/templates.md lists what a template may use"
-        raise SssgenError([Diagnostic("error", message, Span(posix(file), line, 1, line, 2), hint)]) from None
+        raise _failure(message, hint, _place(error) or (template, 0)) from None
+
+
+def _failure(message: str, hint: str, place: tuple[str, int]) -> SssgenError:
+    file, line = place
+    return SssgenError([Diagnostic("error", message[:MAX_MESSAGE], Span(posix(file), line, 1, line, 2), hint)])
 
 
 def _place(error: BaseException) -> tuple[str, int] | None:
@@ -57,9 +69,9 @@ def _environment(templates: str | None, beside: str) -> Environment:
         from jinja2 import FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
 
         if templates is not None:
-            from jinja2.sandbox import SandboxedEnvironment as Chosen
+            from .sandbox import Sandbox as Chosen
         else:
-            from jinja2 import Environment as Chosen  # type: ignore[assignment]  # the same without the sandbox
+            from jinja2 import Environment as Chosen  # type: ignore[assignment]  # the same without a bound
         places = [templates] if templates is not None else []
         kept = cache.folder()
         _environments[key] = Chosen(
@@ -68,7 +80,7 @@ def _environment(templates: str | None, beside: str) -> Environment:
             trim_blocks=True,
             lstrip_blocks=True,
             keep_trailing_newline=True,
-            bytecode_cache=FileSystemBytecodeCache(str(kept)) if kept else None,
+            bytecode_cache=FileSystemBytecodeCache(str(kept), f"{Chosen.__name__.lower()}_%s.cache") if kept else None,
             auto_reload=templates is not None,
         )
     return _environments[key]

@@ -16,8 +16,8 @@ from .base import Array, Backend, Block, Bound, Call, Drawing, Place, Stage, Tex
 from .drawing import DrawingBackend
 
 __all__ = [
-    "NAMES", "Array", "Backend", "Block", "Bound", "Call", "CompilerMissing", "Drawing", "DrawingBackend", "Place",
-    "Stage", "Text", "available", "chosen", "emitted", "get", "missing", "needed",
+    "HALF", "NAMES", "Array", "Backend", "Block", "Bound", "Call", "CompilerMissing", "Drawing", "DrawingBackend",
+    "Place", "Stage", "Text", "available", "chosen", "emitted", "get", "missing", "needed",
 ]  # fmt: skip
 
 NAMES = {
@@ -27,6 +27,7 @@ NAMES = {
     "gl": "GLSL 3.30 in OpenGL",
     "gl-es": "GLSL ES 3.00 in OpenGL",
     "webgpu": "WGSL through naga, in wgpu",
+    "webgpu-f16": "the same in half precision",
     "browser": "WGSL through Tint, in a headless Chromium",
     "hlsl": "HLSL through DXC and SPIR-V, in OpenGL",
     "hlsl-glslang": "HLSL through glslang and SPIR-V, in OpenGL",
@@ -34,6 +35,9 @@ NAMES = {
     "unity-urp": "Unity's URP: preprocessed, through DXC and SPIR-V, in OpenGL",
 }
 """Every back end, and what it is."""
+
+HALF = {"numpy": "numpy-f16", "webgpu": "webgpu-f16"}
+"""The back ends that compute in half precision, too, and what they are called then."""
 
 
 def get(name: str) -> Backend:
@@ -89,10 +93,10 @@ def _start(name: str) -> Backend:
         from .opengl import OpenGL
 
         return OpenGL(name, "glsl-330" if name == "gl" else "glsl-es-300")
-    if name == "webgpu":
+    if name in ("webgpu", "webgpu-f16"):
         from .webgpu import WebGPU
 
-        return WebGPU(name)
+        return WebGPU(name, "wgsl" if name == "webgpu" else "wgsl-f16")
     if name == "browser":
         from .browser import Browser
 

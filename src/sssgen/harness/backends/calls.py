@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...ir.types import Matrix, Sampler, Scalar, Type, Vector, components, kind_of, spell
-from ...targets.descriptor import Target
+from ...ir.types import Matrix, Sampler, Scalar, Type, Vector, components, kind_of, spell, vector_of
+from ...targets.descriptor import Target, load
 from ...targets.numpy_textures import Texture
 from .base import Array, Bound, Call, Drawing, Place, Stage, Text
 
@@ -99,6 +99,12 @@ uint4 sssgen_main(float4 place : SV_Position) : SV_Target0 {{
 """,
     ),
 }
+_HALF = {
+    "bits": {"float": "{type}(bitcast<{single}>({0}))"},
+    "words": {"float": "bitcast<{unsigned}>({single}({0}))"},
+}
+"""WGSL in half precision: both ends are float32, which holds every half, infinity and NaN; `{single}` is that type."""
+
 _TEXTURES = {
     "glsl": "uniform highp {type} {name};",
     "hlsl": "{type} {name};\nSamplerState {sampler};",
@@ -146,8 +152,8 @@ def drawing(
     main = writer.language.main.format(textures="\n".join(declared), body=body, rows=writer.grid.rows)
     rows = writer.data or [np.zeros((writer.grid.rows * writer.grid.width, 4), np.uint32)]
     bound["sssgen_data"] = Bound(np.concatenate(rows).reshape(-1, writer.grid.width, 4), Place(0, 0))
-    stage = Stage(Text(text.text + main, text.origin), "main" if target.language == "glsl" else FRAGMENT)
-    vertex = Stage(stage.text, CORNER) if target.language == "wgsl" else None
+    stage = Stage(Text(text.text + main, text.origin), "main" if _family(target) == "glsl" else FRAGMENT)
+    vertex = Stage(stage.text, CORNER) if _family(target) == "wgsl" else None
     size = writer.grid.width, writer.slots * writer.grid.rows
     return Drawing(size, stage, vertex, textures=bound), Layout(lanes, writer.grid, writer.places)
 
@@ -166,7 +172,12 @@ class _Writer:
 
     def __init__(self, target: Target, grid: Grid) -> None:
         self.target, self.grid = target, grid
-        self.language = LANGUAGES[target.language]
+        self.language = LANGUAGES[_family(target)]
+        self.half = target.table.get("precision") == "half"
+        self.single = load(target.table["single"]).types if self.half else target.types
+        if self.half:
+            bits, words = {**self.language.bits, **_HALF["bits"]}, {**self.language.words, **_HALF["words"]}
+            self.language = self.language._replace(bits=bits, words=words)
         self.data: list[Array] = []
         self.body: list[str] = []
         self.places: list[tuple[int, int]] = []
@@ -181,7 +192,7 @@ class _Writer:
                 continue
             before.append(self._declare(type_, name, self._read(type_, len(self.data) * self.grid.rows)))
             args.append(name)
-            self.data += _rows(type_, np.asarray(arg), self.grid)
+            self.data += _rows(type_, self._rounded(np.asarray(arg)), self.grid)
         result = f"r{number}"
         before.append(self._declare(call.result, result, f"{call.function}({', '.join(args)})"))
         columns = call.result.size if isinstance(call.result, Matrix) else 1
@@ -192,6 +203,13 @@ class _Writer:
         self.body += [inside, *before, "}"]
         self.places.append((self.slots, columns))
         self.slots += columns
+
+    def _rounded(self, arg: Array) -> Array:
+        """An argument in the numbers that the target computes in."""
+        if not self.half or arg.dtype.kind != "f":
+            return arg
+        with np.errstate(over="ignore"):
+            return arg.astype(np.float16)
 
     def _declare(self, type_: Type, name: str, value: str) -> str:
         return self.language.declare.format(type=self.target.types[spell(type_)], name=name, value=value)
@@ -207,19 +225,26 @@ class _Writer:
         if pattern.startswith("notEqual") and size == 1:
             pattern = "({0} != {zero})"
         zero = f"{unsigned}(0u)" if size > 1 else "0u"
-        return pattern.format(fetched, type=self.target.types[spell(type_)], zero=zero)
+        types = {"type": self.target.types[spell(type_)], "single": self.single[spell(type_)]}
+        return pattern.format(fetched, **types, zero=zero)
 
     def _words(self, type_: Type, value: str) -> str:
         """Four words, the value's in front."""
         size = type_.size if isinstance(type_, Matrix | Vector) else 1
         unsigned = self.target.types["uint" if size == 1 else f"uvec{size}"]
-        bits = self.language.words[kind_of(type_)].format(value, unsigned=unsigned)
+        single = self.single[spell(vector_of(kind_of(type_), size))]
+        bits = self.language.words[kind_of(type_)].format(value, unsigned=unsigned, single=single)
         return f"{self.target.types['uvec4']}({', '.join([bits, *['0u'] * (4 - size)])})"
+
+
+def _family(target: Target) -> str:
+    """The language that the target's dialect is one of: glsl, hlsl, wgsl."""
+    return target.dialect.partition("-")[0]
 
 
 def _declared(target: Target, name: str, bound: Bound) -> str:
     assert isinstance(bound.data, Texture)
-    pattern = _TEXTURES.get(target.dialect) or _TEXTURES[target.language]
+    pattern = _TEXTURES.get(target.dialect) or _TEXTURES[_family(target)]
     type_ = target.types[spell(Sampler(bound.data.dim))]
     first, second = bound.place.binding, bound.place.sampler
     return pattern.format(name=name, sampler=f"{name}_sampler", type=type_, first=first, second=second)

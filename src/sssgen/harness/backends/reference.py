@@ -48,7 +48,8 @@ class Reference(Backend):
 
     def _lanes(self, value: Array, lanes: int) -> Array:
         """An argument in the working precision; the grid's last lanes are as empty as in a picture: zeros."""
-        value = value.astype(self.dtype) if value.dtype.kind == "f" else value
+        with np.errstate(over="ignore"):
+            value = value.astype(self.dtype) if value.dtype.kind == "f" else value
         if value.shape[-1] == 1:
             return value
         return np.pad(value, [(0, 0)] * (value.ndim - 1) + [(0, lanes - value.shape[-1])])

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from .. import compilers
+from ..compilers import CompilerMissing
 from ..compilers.naga import Naga, find
 from .base import Array, Drawing, gave_up, refused
 from .drawing import DrawingBackend
@@ -20,15 +21,17 @@ _INDEX, _VERTEX, _UNIFORM = 0x10, 0x20, 0x40
 
 
 class WebGPU(DrawingBackend):
-    """Compiles WGSL and draws with it."""
+    """Compiles WGSL and draws with it. In half precision it runs functions alone; there are no whole shaders in it."""
 
     top_first = True
 
-    def __init__(self, name: str) -> None:
-        super().__init__(name, "wgsl")
+    def __init__(self, name: str, target: str = "wgsl") -> None:
+        super().__init__(name, target)
         naga = compilers.get("naga")
         assert isinstance(naga, Naga)
         self.start(naga)
+        if self.target.table.get("precision") == "half" and "shader-f16" not in self.gpu.features:
+            raise CompilerMissing(f"a WebGPU adapter with the feature shader-f16, which {self.device()} has not")
 
     def start(self, naga: Naga) -> None:
         """Takes naga's device; nothing is compiled for it yet."""

@@ -15,7 +15,6 @@ ones there are for the rest, `seed` which; `outputs` are numbers that the oracle
 
 from __future__ import annotations
 
-import json
 import os
 import re
 import tomllib
@@ -23,6 +22,7 @@ from collections.abc import Iterator, Sequence
 from time import perf_counter
 from typing import Any, Literal, NamedTuple
 
+from ... import json_source
 from ...data import posix, stem
 from ...diagnostics import SssgenError, failure
 from ...lang.loader import read_text
@@ -109,7 +109,7 @@ def _kind(path: str) -> Kind | None:
         return "compile"  # which says why it cannot be read
     try:
         data: dict[str, Any] = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError):
+    except (ValueError, RecursionError):  # wrong syntax, or thousands of digits
         head = f"\n{text}".partition("\n[")[0]
         return "render" if re.search(r"^\s*material\s*=", head, re.MULTILINE) else "compile"
     if isinstance(data.get("material"), dict):
@@ -169,7 +169,7 @@ class Run:
         return golden.compared(picture, folder, stem(case.path), limit, "" if case.first else f".{name}")
 
     def _eval(self, case: Case) -> Outcome:
-        from ..backends import NAMES, CompilerMissing, get
+        from ..backends import HALF, NAMES, CompilerMissing, get
         from ..deviation import GOAL
         from ..evaluate import fitted, run
         from ..inputs import read
@@ -191,7 +191,7 @@ class Run:
         if outcome.state == "failed":
             return outcome
         told: dict[str, Outcome] = {}
-        for name in case.backends or [name for name in NAMES if name not in ("numpy", "numpy-f16")]:
+        for name in case.backends or [name for name in NAMES if name not in ("numpy", *HALF.values())]:
             try:
                 told[name] = against_oracle(chosen, fit, self._backends().get(name), tolerance, oracle)[1]
             except CompilerMissing as reason:
@@ -236,12 +236,7 @@ _SHAPE: dict[str, tuple[type, ...]] = {
 def _read(path: str) -> dict[str, Any]:
     """A file `*.eval.json`. Raises SssgenError."""
     shown = posix(path)
-    try:
-        data = json.loads(read_text(path, shown))
-    except json.JSONDecodeError as error:
-        raise failure(f"this is no JSON: {error.msg}, line {error.lineno}", file=shown) from None
-    except RecursionError:
-        raise failure("the lists are nested too deeply", file=shown) from None
+    data = json_source.parse(read_text(path, shown), shown)
     if not isinstance(data, dict) or "technique" not in data:
         raise failure("no technique is named", '{"technique": "lobe_gdc2011", "inputs": {…}}', shown)
     for key, value in data.items():

@@ -1,0 +1,83 @@
+"""WGSL with an f16 for every float: no target for users; the harness runs it to see techniques in half precision.
+
+What WGSL has for float32 alone (texture reads, derivatives, the bits of numbers) is computed in it, and rounded.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..diagnostics import Diagnostic, SssgenError, failure
+from ..ir import nodes as ir
+from ..ir.formats import FLOAT16
+from ..ir.intrinsics import BUILTINS
+from ..ir.types import FLOAT, Sampler, kind_of
+from .descriptor import OutputFile, Target, load
+from .layout import Member
+from .printer import PRIMARY, Line, shortest
+from .wgsl import WgslPrinter
+
+_BITS = frozenset(("floatBitsToInt", "floatBitsToUint", "intBitsToFloat", "uintBitsToFloat")) | {
+    f"{way}{form}2x16" for way in ("pack", "unpack") for form in ("Half", "Snorm", "Unorm")
+}
+
+
+def target() -> Target:
+    """The target `wgsl` in half precision. It has the functions form alone: uniform blocks hold float32."""
+    single = load("wgsl")
+    sizes = (2, 3, 4)
+    halves = {f"vec{size}": f"vec{size}h" for size in sizes} | {f"mat{size}": f"mat{size}x{size}h" for size in sizes}
+    library = OutputFile("{material}.functions.wgsl", "wgsl/functions_half.wgsl.j2", {"library": ""})
+    return single._replace(
+        name="wgsl-f16",
+        title="WGSL in half precision",
+        language=f"{__name__}:{WgslHalfPrinter.__name__}",
+        types={**single.types, "float": "f16", **halves},
+        files={"functions": [library]},
+        table={**single.table, "precision": "half", "single": single.name},
+    )
+
+
+class WgslHalfPrinter(WgslPrinter):
+    """Literals are halves, and what there is in float32 alone is converted around the call."""
+
+    def __init__(self, target: Target, module: ir.Module) -> None:
+        super().__init__(target, module)
+        self.single = WgslPrinter(load(target.table["single"]), module)
+
+    def literal(self, literal: ir.Literal) -> str:
+        if literal.type != FLOAT:
+            return super().literal(literal)
+        nearest = FLOAT16.rounded(float(literal.value))
+        if math.isinf(nearest):
+            message = f"{literal.value:.9g} is beyond the largest half, {FLOAT16.largest:g}"
+            raise SssgenError([Diagnostic("error", message, literal.span, "write the formula with smaller numbers")])
+        return half_text(nearest)
+
+    def intrinsic(self, call: ir.Intrinsic) -> tuple[str, int]:
+        if not in_single(call.name):
+            return super().intrinsic(call)
+        text, binding = self.single.intrinsic(call._replace(args=tuple([self.widened(arg) for arg in call.args])))
+        return (f"{self.type(call.type)}({text})", PRIMARY) if kind_of(call.type) == "float" else (text, binding)
+
+    def widened(self, arg: ir.Expr) -> ir.Expr:
+        """An argument in float32, as a name to the printer of float32, which prints names as they are."""
+        if isinstance(arg.type, Sampler):
+            return arg
+        text = self.expr(arg)
+        if kind_of(arg.type) == "float":
+            text = f"{self.single.type(arg.type)}({text})"
+        return ir.Local(arg.type, text, arg.span)
+
+    def print_uniforms(self, members: list[Member]) -> list[Line]:
+        raise failure("in half precision there are functions only, no whole shader", "sssgen eval runs functions")
+
+
+def in_single(name: str) -> bool:
+    """Whether WGSL has the builtin for float32 alone."""
+    return name in _BITS or BUILTINS[name].kind in ("fetch", "derivative")
+
+
+def half_text(value: float) -> str:
+    """A finite half as WGSL writes it, in the shortest decimal that reads back to it."""
+    return f"{shortest(value, FLOAT16) if value else math.copysign(0.0, value)}h"

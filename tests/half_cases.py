@@ -1,0 +1,129 @@
+"""What the builtins are measured on in half precision, halves with which nothing overflows, and within what limits."""
+
+from __future__ import annotations
+
+import zlib
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from sssgen.harness.backends import Array
+from sssgen.harness.evaluate import shape_of
+from sssgen.harness.parity import Case, cases, oracle
+from sssgen.harness.parity_inputs import FEW, INTERVALS, UNIT, evaluated, widened
+from sssgen.ir.types import Matrix, Type, kind_of
+
+LANES = 400
+LARGEST, LEAST = 8.0, 2.0**-6
+"""Sizes of arguments: products of four of the largest, and its exp, are halves; squares of the least are normal."""
+
+DOMAINS: dict[str, Any] = {
+    "acosh": (1.0, 8.0), "pow": ((0.125, 8.0), (-4.0, 4.0)), "atanh": (-0.9, 0.9),
+}  # fmt: skip
+"""Where the table's domain leads to halves too large or too small."""
+
+ROUNDING = {"mod": ("2.0**-20", "2.0**-7"), "fmod": ("2.0**-20", "2.0**-7")} | dict.fromkeys(
+    ("faceforward", "reflect", "refract"), ("1e-6", "1e-2")
+)
+"""What the table's `inside` calls within rounding in float32, and what is within it in half."""
+
+LIMITS = {
+    "sin": (4.0, 2.0**-7),
+    "cos": (4.0, 2.0**-7),
+    "tan": (4.0, 2.0**-4),  # sin/cos with 2^-7 each, and cos >= 0.54
+    "asin": (4.0, 3.91e-3),
+    "acos": (4.0, 3.91e-3),
+    "atan": (5.0, 0.0),
+    "exp": (17.0, 0.0),  # 1 + 2·|x| at 8
+    "exp2": (17.0, 0.0),
+    "log": (4.0, 2.0**-7),
+    "log2": (4.0, 2.0**-7),
+    "pow": (50.0, 0.0),  # exp2(y·log2(x)): 1 + 2·12 of exp2, and four times log2's 2^-7
+    "sinh": (20.0, 2.0**-8),  # the formulas with exp, which cancel near 0
+    "cosh": (20.0, 0.0),
+    "tanh": (42.0, 2.0**-8),
+    "asinh": (4.0, 2.0**-6),  # the formulas with log
+    "acosh": (4.0, 2.0**-6),
+    "atanh": (4.0, 2.0**-6),
+    "intBitsToFloat": (1.0, 2.0**-14),  # a float32 rounded to half, whose denormals may be lost
+    "uintBitsToFloat": (1.0, 2.0**-14),
+}
+"""(ulp of half, or absolute): WGSL, "Accuracy of Concrete Floating Point Expressions", where its column of f16 is not
+that of f32; else the table's own limits, which come from counting roundings."""
+
+
+@cache
+def half_cases() -> tuple[Case, ...]:
+    """Every overload that has a float in it."""
+    return tuple(case._replace(args=_args(case)) for case in cases(FEW) if _has_floats((*case.params, case.result)))
+
+
+def wrong_lanes(case: Case, got: Array) -> str:
+    """The lane that is furthest outside of the limits, in words; '' where all are within them."""
+    wanted = np.broadcast_to(oracle(case), got.shape)
+    if kind_of(case.result) != "float":
+        error = np.where(got == wanted, 0.0, np.inf).reshape(-1, case.lanes).max(axis=0)
+        return _told(case, got, wanted, error, np.zeros(case.lanes))
+    each = np.abs(wanted).reshape(-1, case.lanes).max(axis=0)
+    size = evaluated(case.row.size, widened(case.args)) if case.row.size else each
+    ulp, absolute = LIMITS.get(case.name, (case.row.ulp, case.row.absolute))
+    with np.errstate(all="ignore"):
+        error = np.abs(got - wanted).reshape(-1, case.lanes).max(axis=0)
+        limit = np.maximum(ulp * np.spacing(size.astype(np.float16)).astype(np.float64), absolute)
+    error = np.where(each < 65504.0, error, 0.0)  # of bits that are no half
+    return _told(case, got, wanted, np.nan_to_num(error, nan=np.inf), limit)
+
+
+def _told(case: Case, got: Array, wanted: Array, error: Array, limit: Array) -> str:
+    beyond = np.where(error > limit, error, -1.0)
+    lane = int(np.argmax(beyond))
+    if beyond[lane] < 0.0:
+        return ""
+    args = [arg if isinstance(arg, str) else arg[..., lane].tolist() for arg in case.args]
+    return f"{case.title} at {args}: {got[..., lane].tolist()} is not {wanted[..., lane].tolist()}"
+
+
+def _has_floats(types: tuple[Type, ...]) -> bool:
+    return any(kind_of(type_) == "float" for type_ in types)
+
+
+def _args(case: Case) -> tuple[Any, ...]:
+    """The parity's own arguments of reads, derivatives and bits, in halves; of the others, halves of the domain."""
+    if case.row.kind in ("fetch", "derivative") or not _has_floats(case.params):
+        return tuple(arg if isinstance(arg, str) else _halves(arg) for arg in case.args)
+    rng = np.random.default_rng([16, zlib.crc32(case.title.encode())])
+    pool = tuple(_column(case, index, type_, 8 * LANES, rng) for index, type_ in enumerate(case.params))
+    inside = case.row.inside.replace(*ROUNDING.get(case.name, ("", ""))) or "True"
+    chosen = np.resize(np.flatnonzero(evaluated(inside, widened(pool))), LANES)
+    return tuple(arg[..., chosen] for arg in pool)
+
+
+def _column(case: Case, index: int, type_: Type, count: int, rng: np.random.Generator) -> Array:
+    """One argument: even numbers and even magnitudes, with zeros."""
+    size, kind = (*shape_of(type_), count), kind_of(type_)
+    if kind == "bool":
+        return rng.random(size) < 0.5
+    if kind != "float":
+        return rng.integers(-9 if kind == "int" else 0, 10, size).astype(np.int32 if kind == "int" else np.uint32)
+    if isinstance(type_, Matrix) and case.name in ("determinant", "inverse"):
+        return _halves(2.0 * np.eye(type_.size)[..., None] + rng.uniform(-0.5, 0.5, size))
+    low, high = _ends(case.name, index)
+    sizes = 2.0 ** rng.uniform(np.log2(LEAST), np.log2(LARGEST), size) * rng.choice([-1.0, 1.0], size)
+    value = np.where(rng.random(size) < 0.5, rng.uniform(low, high, size), np.clip(sizes, low, high))
+    value = np.where(np.abs(value) < LEAST, 0.0, value)
+    if index in UNIT.get(case.name, ()):
+        value = value / np.linalg.norm(value, axis=0) if value.ndim > 1 else np.sign(value)
+    if case.name in ("isnan", "isinf"):
+        value = np.where(rng.random(size) < 0.5, value, rng.choice([np.nan, np.inf, -np.inf], size))
+    return _halves(value)
+
+
+def _ends(name: str, index: int) -> tuple[float, float]:
+    interval = DOMAINS.get(name) or INTERVALS.get(name, (-LARGEST, LARGEST))
+    low, high = interval[index] if isinstance(interval[0], tuple) else interval
+    return max(low, -LARGEST), min(high, LARGEST)
+
+
+def _halves(value: Array) -> Array:
+    return value.astype(np.float16).astype(np.float32) if value.dtype.kind == "f" else value
