@@ -1,6 +1,7 @@
 # make demo   emit every example for every target into out/ and compile all of it
 # make test   the tests, but the slow ones (make test-long)      make lint   ruff and mypy
 # make gallery  the example scenes' pictures, and docs/gallery.md
+# make stability  what fails in the published techniques and holds in ours: docs/stability.md
 # make bench  the benchmarks   make setup  what the others need, done once: .venv, system packages, compilers
 
 PYTHON := $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
@@ -15,7 +16,7 @@ MATERIALS := $(foreach folder,$(wildcard examples/*),$(wildcard $(folder)/$(notd
 
 export PYTHONUTF8 := 1
 .DELETE_ON_ERROR:
-.PHONY: setup demo test test-long lint bench gallery clean
+.PHONY: setup demo test test-long lint bench gallery stability clean
 
 setup: .venv/done build/node/done
 
@@ -41,6 +42,9 @@ bench: setup
 
 gallery: setup
 	$(BIN)/python docs/gallery.py
+
+stability: setup
+	$(BIN)/python docs/stability.py
 
 clean:
 	rm -rf .venv build out

@@ -1,0 +1,107 @@
+"""One erratum: a technique as published and the one in its place, on the same inputs, and what theory says of both."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from types import MappingProxyType
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+
+from ..backends import Array, Backend
+from ..evaluate import evaluate
+from ..probes import Subject, subject
+
+Outputs: TypeAlias = Mapping[str, Array]
+Figures: TypeAlias = tuple[float, ...]
+
+NONE: Mapping[str, str] = MappingProxyType({})
+
+
+def each(outputs: Outputs) -> Figures:
+    """Every number of the result, lane by lane."""
+    return tuple(float(value) for value in np.ravel(outputs["result"]))
+
+
+class Measure(NamedTuple):
+    """A technique on given inputs, and the figures made of what it returns."""
+
+    technique: str
+    runs: tuple[Mapping[str, Any], ...]
+    """The inputs of each evaluation, as `evaluate` takes them; the figures stand one behind another."""
+    made: Callable[[Outputs], Figures] = each
+    bind: Mapping[str, str] = NONE
+    """Slot → function."""
+
+
+class Right(NamedTuple):
+    """Where a figure must lie, from `low` to `high`."""
+
+    low: float
+    high: float
+
+
+def about(value: float, tolerance: float) -> Right:
+    """`value`, give or take `tolerance`."""
+    return Right(value - tolerance, value + tolerance)
+
+
+class Erratum(NamedTuple):
+    """A fault of a source, with the numbers that show it."""
+
+    name: str
+    source: str
+    """Whose it is, in few words."""
+    shown: str
+    """What goes in, and what the figures are."""
+    published: Measure
+    theory: Figures
+    """What the formula as published gives; NaN and infinity are figures as well, () where nothing says what."""
+    mended: Measure
+    right: tuple[Right, ...]
+    """What is so, with the bounds that ours keeps."""
+    everywhere: bool = True
+    """Whether each back end gives what theory says; else they differ, and at least one is wrong."""
+    tolerance: float = 1e-4
+    """How far the published figures may be from theory, relative to those above 1."""
+
+
+def as_published(erratum: Erratum, backend: Backend) -> Figures:
+    """The figures of the technique as published, without our guards. Raises SssgenError where the back end refuses."""
+    return _figures(erratum.published, backend, "none")
+
+
+def as_mended(erratum: Erratum, backend: Backend) -> Figures:
+    """The figures of ours, as it is emitted. Raises SssgenError where the back end refuses."""
+    return _figures(erratum.mended, backend, "auto")
+
+
+def _figures(measure: Measure, backend: Backend, guards: str) -> Figures:
+    chosen = subject_of(measure.technique, tuple(sorted(measure.bind.items())))
+    every = (evaluate(chosen, given, backend, guards) for given in measure.runs)
+    return tuple(figure + 0.0 for outputs in every for figure in measure.made(outputs))  # + 0: no -0
+
+
+def shows(erratum: Erratum, found: Figures) -> bool:
+    """Whether figures of the published technique are those that theory says."""
+    return len(found) == len(erratum.theory) and all(
+        math.isclose(got, wanted, rel_tol=erratum.tolerance, abs_tol=erratum.tolerance)
+        or (math.isnan(got) and math.isnan(wanted))
+        or (math.isinf(wanted) and not math.isfinite(got))
+        for got, wanted in zip(found, erratum.theory, strict=True)
+    )
+
+
+def holds(erratum: Erratum, found: Figures) -> bool:
+    """Whether all figures lie where they must; NaN never does."""
+    return len(found) == len(erratum.right) and all(
+        right.low <= figure <= right.high for figure, right in zip(found, erratum.right, strict=True)
+    )
+
+
+@lru_cache(64)
+def subject_of(technique: str, bind: tuple[tuple[str, str], ...] = ()) -> Subject:
+    """A technique of the library, kept for the next back end."""
+    return subject(technique, dict(bind))
