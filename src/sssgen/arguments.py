@@ -8,6 +8,9 @@ from typing import NoReturn
 
 from .diagnostics import did_you_mean, failure
 
+GUARDS = ("auto", "all", "none")
+GUARDS_HELP = "make safe what may fail: auto (default) where it is not proven safe, all everywhere, none nowhere"
+
 
 class _Parser(argparse.ArgumentParser):
     """argparse, whose errors are ours."""
@@ -73,6 +76,7 @@ def parser() -> argparse.ArgumentParser:
         default="shader",
         help="whole shaders (default), or functions to paste into one's own",
     )
+    emit.add_argument("--guards", choices=GUARDS, default="auto", help=GUARDS_HELP)
     emit.add_argument("--templates", metavar="DIR", help="a folder of templates that stand before ours")
 
     check = command(
@@ -95,7 +99,21 @@ def parser() -> argparse.ArgumentParser:
     transpile = command("transpile", "transpile", "translate functions in plain GLSL to a target's language")
     transpile.add_argument("FILE", help="a GLSL file of the subset (functions and uniforms; no main)")
     transpile.add_argument("--target", "-t", metavar="T", required=True, help="a target of `sssgen list targets`")
+    transpile.add_argument(
+        "--guards", choices=GUARDS, default="none", help="make safe what may fail: nowhere (default), auto, or all"
+    )
     transpile.add_argument("-o", "--output", metavar="FILE", help="the file to write, and its reflection beside it")
+
+    lint = command(
+        "lint",
+        "lint",
+        "tell what may go wrong in techniques, materials and plain GLSL, and what is proven not to",
+        "examples:\n  sssgen lint ice\n  sssgen lint mine.glsl --json\n"
+        "Exit status 1: a plain function may fail. What a material emits is guarded.",
+    )
+    lint.add_argument("NAME", nargs="+", help="a technique, a material's .toml file, an example, or a GLSL file")
+    lint.add_argument("--all", action="store_true", help="also what is proven safe")
+    lint.add_argument("--no-examples", action="store_true", help="do not look for inputs that fail: quicker")
 
     evaluate = command(
         "eval",
@@ -121,6 +139,7 @@ def parser() -> argparse.ArgumentParser:
     evaluate.add_argument(
         "--bind", action="append", default=[], metavar="SLOT=FUNCTION", help="a function for a slot, or FILE:FUNCTION"
     )
+    evaluate.add_argument("--guards", choices=GUARDS, default="auto", help=GUARDS_HELP)
     evaluate.add_argument("--precision", choices=("f64", "f32", "f16"), help="of numpy (default: f64); webgpu has f16")
 
     stress = command(
@@ -142,10 +161,7 @@ def parser() -> argparse.ArgumentParser:
         "--row", action="append", default=[], metavar="NAME", help="only this row of the dangerous table; repeatable"
     )
     stress.add_argument("--precision", choices=("f32", "f16"), help="f16: numpy and webgpu, in half (default: f32)")
-    stress.add_argument(
-        "--guards", choices=("auto", "all", "none"), default="auto",
-        help="guards in the emitted functions: where they are needed (default), everywhere, nowhere",
-    )  # fmt: skip
+    stress.add_argument("--guards", choices=GUARDS, default="auto", help=GUARDS_HELP)
     stress.add_argument("-o", "--output", metavar="REPORT", help="a .md or .json file to write the report to")
 
     render = command(

@@ -7,8 +7,8 @@ declarations, in an engine's properties and in the reflection, so that a variant
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
-from typing import Any, NamedTuple
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from . import cache, library
 from .data import place
@@ -22,6 +22,9 @@ from .targets import descriptor
 from .targets.descriptor import Target
 from .targets.emit import About, Program, emit
 from .targets.reflection import as_text, reflect
+
+if TYPE_CHECKING:
+    from .passes.sites import Site
 
 FORMS = ("shader", "functions")
 GUARDS = ("auto", "all", "none")
@@ -102,18 +105,27 @@ def _copy(made: Compiled) -> Compiled:
 
 
 def transpile(
-    module: Module, target: str, name: str, guards: str = "none", called: Sequence[str] | None = None
-) -> Compiled:
+    module: Module, target: str, name: str, guards: str = "none", called: Sequence[str] | None = None,
+    at: Callable[[Site], str] | None = None,
+) -> Compiled:  # fmt: skip
     """The functions form of a module of plain functions (no chain): what `sssgen transpile` writes.
 
     `called` are the keys of the functions that are called from outside, with any argument that they allow; None: all.
+    `at` is that of `passes.guards.guard`.
     """
     from .programs import make_library
 
     _check_guards(guards)
     chosen = descriptor.load(target)
-    program = make_library(module, chosen, guards, called)._replace(about=About(name, name))
+    program = make_library(module, chosen, guards, called, at)._replace(about=About(name, name))
     return _finish(program, chosen, "functions", None)
+
+
+def guarded_sites(material: Material, target: str = "glsl-330", form: str = "shader") -> list[Site]:
+    """Every operation with a domain in a material's program, and what is known of it. Raises SssgenError."""
+    from .programs import sites_of
+
+    return sites_of(material, descriptor.load(target), form)
 
 
 def _check_guards(guards: str) -> None:

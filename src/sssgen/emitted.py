@@ -25,22 +25,24 @@ class Made(NamedTuple):
     warnings: list[Diagnostic]
 
 
-def recall(materials: Sequence[str], target: str, form: str) -> Made | None:
+def recall(materials: Sequence[str], target: str, form: str, guards: str) -> Made | None:
     """What the command made, if nothing has changed since."""
-    found = cache.unpickled(cache.read(_name(materials, target, form)))
+    found = cache.unpickled(cache.read(_name(materials, target, form, guards)))
     if not isinstance(found, tuple) or found[0] != installation():
         return None
     _, state, made = found
     return Made(*made) if _state(state) == state else None
 
 
-def remember(materials: Sequence[str], target: str, form: str, made: Made, files: Iterable[str]) -> None:
+def remember(
+    materials: Sequence[str], target: str, form: str, guards: str, made: Made, files: Iterable[str]
+) -> None:
     """Keeps what a command made, unless a plug-in may have had a part in it, whose files are not known here."""
     from .targets import descriptor
 
     if descriptor.has_plugins():
         return
-    cache.write(_name(materials, target, form), cache.pickled((installation(), _state(files), tuple(made))))
+    cache.write(_name(materials, target, form, guards), cache.pickled((installation(), _state(files), tuple(made))))
 
 
 def _state(files: Iterable[str]) -> dict[str, str]:
@@ -55,8 +57,8 @@ def _state(files: Iterable[str]) -> dict[str, str]:
     return found
 
 
-def _name(materials: Sequence[str], target: str, form: str) -> str:
-    return "emitted-" + cache.digest("\0".join([os.getcwd(), target, form, *materials]))
+def _name(materials: Sequence[str], target: str, form: str, guards: str) -> str:
+    return "emitted-" + cache.digest("\0".join([os.getcwd(), target, form, guards, *materials]))
 
 
 @functools.cache

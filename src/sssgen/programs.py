@@ -5,7 +5,7 @@ The part up to `legalise` is the same for every target of one kind and is done o
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from . import library
@@ -29,6 +29,8 @@ from .passes.names import rename
 from .passes.parameters import uniforms_to_parameters
 from .passes.predicate import predicate
 from .passes.prune import prune
+from .passes.ranges import analyse
+from .passes.sites import Site, report
 from .passes.undefined import undefined_constants
 from .targets import descriptor
 from .targets.descriptor import Target, Words
@@ -64,16 +66,36 @@ def make(material: Material, structure: str, target: Target, form: str, guards: 
     return _finish(_middle_of(material, structure, target, form, guards), target, form)
 
 
-def make_library(module: Module, target: Target, guards: str, called: Sequence[str] | None) -> Program:
+def make_library(
+    module: Module, target: Target, guards: str, called: Sequence[str] | None, at: Callable[[Site], str] | None = None
+) -> Program:
     """The program of a module of plain functions. Raises SssgenError.
 
-    `called` are the keys of those that are called from outside; None means all of them.
+    `called` are the keys of those that are called from outside; None means all of them. `at` is that of `guard`.
     """
-    roots = [function.key for function in module.functions if function.body is not None]
-    module, notes = hoist(prune(_folded(module, {}), roots), roots)
-    guarded = guard(module, called or roots, guards, guard_source, polyfill, format_of(target))
+    module, notes, roots = _plain(module)
+    guarded = guard(module, called or roots, guards, guard_source, polyfill, format_of(target), at)
     middle = _Middle(guarded.module, {}, None, {}, {}, _warnings(notes), guarded=guarded)
     return _finish(middle, target, "functions")
+
+
+def sites_of(material: Material, target: Target, form: str) -> list[Site]:
+    """Every operation with a domain in the program of a material. Raises SssgenError."""
+    guarded = _build(material, target, form, "auto").guarded
+    return guarded.sites if guarded is not None else []
+
+
+def library_sites(module: Module, called: Sequence[str] | None = None, format: Format = FLOAT32) -> list[Site]:
+    """Every operation with a domain in a module of plain functions. Raises SssgenError."""
+    module, _, roots = _plain(module)
+    return analyse(module, called or roots, format).sites
+
+
+def _plain(module: Module) -> tuple[Module, list[Note], list[str]]:
+    """A module of plain functions folded, pruned and hoisted, and the keys of all of them."""
+    roots = [function.key for function in module.functions if function.body is not None]
+    module, notes = hoist(prune(_folded(module, {}), roots), roots)
+    return module, notes, roots
 
 
 def format_of(target: Target) -> Format:
@@ -210,6 +232,7 @@ def _finish(middle: _Middle, target: Target, form: str) -> Program:
     return Program(
         module, entries, surface, source_names, About("", ""), middle.encoded, parts, middle.owners, renames,
         {kind: cost._asdict() for kind, cost in middle.costs.items()}, middle.warnings, middle.settings,
+        report(middle.guarded.sites, middle.guarded.guarded) if middle.guarded else {},
     )  # fmt: skip
 
 

@@ -42,7 +42,7 @@ def _recalled_or_made(arguments: Namespace) -> Made:
     """What the same command made before, where nothing has changed since; with templates of one's own, always anew."""
     if arguments.templates is not None:
         return _made(arguments)
-    command = (arguments.MATERIAL, arguments.target, arguments.form)
+    command = (arguments.MATERIAL, arguments.target, arguments.form, arguments.guards)
     known = emitted.recall(*command)
     if known is not None:
         return known
@@ -65,7 +65,7 @@ def _made(arguments: Namespace) -> Made:
     for material in materials:
         for name in names:
             try:
-                compiled = compile(material, name, arguments.form, templates)
+                compiled = compile(material, name, arguments.form, templates, arguments.guards)
             except SssgenError as error:
                 wrong += error.diagnostics
             else:

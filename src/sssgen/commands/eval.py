@@ -32,8 +32,8 @@ def run(arguments: Namespace) -> int:
 
     fit = fitted(chosen, given)
     if len(names) == 1:
-        return _one(chosen, fit, names[0], arguments.json)
-    return _several(chosen, fit, names, arguments.json, listed=not sampled)
+        return _one(chosen, fit, names[0], arguments.json, arguments.guards)
+    return _several(chosen, fit, names, arguments.json, not sampled, arguments.guards)
 
 
 def _sampled(chosen: Any, count: int, seed: int) -> dict[str, Any]:
@@ -74,12 +74,12 @@ def _in_half(names: list[str]) -> list[str]:
     return list(dict.fromkeys(HALF.get(name, name) for name in names))
 
 
-def _one(subject: Any, fit: Any, name: str, as_json: bool) -> int:
+def _one(subject: Any, fit: Any, name: str, as_json: bool, guards: str) -> int:
     from ..harness.backends import needed
     from ..harness.evaluate import run as evaluated
 
     backend = needed(name)
-    outputs = evaluated(subject, fit, backend)
+    outputs = evaluated(subject, fit, backend, guards)
     if as_json:
         plain = {key: _plain(value) for key, value in outputs.items()}
         print_json({"ok": True, "backend": name, "device": backend.device(), "lanes": fit.lanes, "outputs": plain})
@@ -89,11 +89,11 @@ def _one(subject: Any, fit: Any, name: str, as_json: bool) -> int:
     return OK
 
 
-def _several(subject: Any, fit: Any, names: list[str], as_json: bool, listed: bool) -> int:
+def _several(subject: Any, fit: Any, names: list[str], as_json: bool, listed: bool, guards: str) -> int:
     from ..harness.deviation import GOAL, compared
     from ..harness.testing.outcome import in_ci
 
-    oracle, rows = compared(subject, fit, names)
+    oracle, rows = compared(subject, fit, names, guards)
     here = [row for row in rows if not row.missing]
     good = bool(here) and all(row.ok for row in rows) and not (in_ci() and len(here) < len(rows))
     if as_json:

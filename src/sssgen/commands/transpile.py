@@ -39,7 +39,7 @@ def run(arguments: Namespace) -> int:
     if wrong:
         raise SssgenError(wrong)
     name = re.sub(r"\W", "_", path.stem, flags=re.ASCII)
-    compiled = transpile(module, names[0], name if name[:1].isalpha() else f"file_{name}")
+    compiled = transpile(module, names[0], name if name[:1].isalpha() else f"file_{name}", arguments.guards)
     print_json_or_text(arguments, compiled.files, compiled.warnings)
     return OK
 

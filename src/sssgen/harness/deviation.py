@@ -112,14 +112,16 @@ def deviation(
     return worst._replace(excused=count, furthest=furthest)
 
 
-def blur(subject: Subject, inputs: Inputs, oracle: Mapping[str, Array]) -> dict[str, Array]:
+def blur(
+    subject: Subject, inputs: Inputs, oracle: Mapping[str, Array], guards: str = "auto"
+) -> dict[str, Array]:
     """How far rounding alone takes each lane of each output from the oracle, (lanes,), measured as `errors` does."""
     rounded, exact = get("numpy-f32"), get("numpy")
-    found = {name: _apart(value, oracle[name]) for name, value in run(subject, inputs, rounded).items()}
+    found = {name: _apart(value, oracle[name]) for name, value in run(subject, inputs, rounded, guards).items()}
     rng = np.random.default_rng(0)
     for _ in range(DRAWS):
         near = inputs._replace(values={name: _moved(value, rng) for name, value in inputs.values.items()})
-        right, got = run(subject, near, exact), run(subject, near, rounded)
+        right, got = run(subject, near, exact, guards), run(subject, near, rounded, guards)
         for name, value in right.items():
             apart = np.maximum(_apart(value, oracle[name]), _apart(got[name], value))
             found[name] = np.maximum(found[name], apart)
@@ -151,16 +153,19 @@ def errors(got: Array, wanted: Array) -> Array:
     return found
 
 
-def compared(subject: Subject, inputs: Inputs, names: Sequence[str]) -> tuple[dict[str, Array], list[Row]]:
+def compared(
+    subject: Subject, inputs: Inputs, names: Sequence[str], guards: str = "auto"
+) -> tuple[dict[str, Array], list[Row]]:
     """The oracle's outputs, and each back end's deviation. Each back end runs in a process of its own."""
-    oracle = run(subject, inputs, get("numpy"))
-    blurred = cache(lambda: blur(subject, inputs, oracle))
-    return oracle, [_row(subject, inputs, oracle, blurred, name) for name in names]
+    oracle = run(subject, inputs, get("numpy"), guards)
+    blurred = cache(lambda: blur(subject, inputs, oracle, guards))
+    return oracle, [_row(subject, inputs, oracle, blurred, name, guards) for name in names]
 
 
 def _row(
-    subject: Subject, inputs: Inputs, oracle: Mapping[str, Array], blurred: Callable[[], Mapping[str, Array]], name: str
-) -> Row:
+    subject: Subject, inputs: Inputs, oracle: Mapping[str, Array], blurred: Callable[[], Mapping[str, Array]],
+    name: str, guards: str,
+) -> Row:  # fmt: skip
     try:
         backend = started(name)
     except CompilerMissing as reason:
@@ -168,7 +173,7 @@ def _row(
     except SssgenError as error:
         return Row(name, "", None, error.diagnostics[0].message)
     try:
-        found = run(subject, inputs, backend)
+        found = run(subject, inputs, backend, guards)
     except SssgenError as error:
         return Row(name, backend.device(), None, str(error))
     finally:

@@ -9,7 +9,7 @@ column, row). The back ends have lanes last.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -20,6 +20,7 @@ from ..diagnostics import did_you_mean, failure
 from ..ir.nodes import Param
 from ..ir.types import Array as ArrayType
 from ..ir.types import Matrix, Sampler, Type, Vector, components, kind_of, spell
+from ..passes.sites import Site
 from ..targets.numpy_textures import Texture
 from .backends import Array, Backend, Call, Text, emitted
 from .probes import Subject
@@ -36,9 +37,7 @@ class Inputs(NamedTuple):
     lanes: int
 
 
-def evaluate(
-    subject: Subject, given: Mapping[str, Any], backend: Backend, guards: str = "auto"
-) -> dict[str, Array]:
+def evaluate(subject: Subject, given: Mapping[str, Any], backend: Backend, guards: str = "auto") -> dict[str, Array]:
     """The outputs by name (`result` is the return value), lanes first.
 
     `given` has numbers, arrays and `Texture`s by the name of the technique's parameter or uniform; uniforms left out
@@ -48,9 +47,11 @@ def evaluate(
     return run(subject, fitted(subject, given), backend, guards)
 
 
-def run(subject: Subject, inputs: Inputs, backend: Backend, guards: str = "auto") -> dict[str, Array]:
-    """The outputs, lanes first."""
-    text, names = _emitted(subject, backend.target.name, guards)
+def run(
+    subject: Subject, inputs: Inputs, backend: Backend, guards: str = "auto", at: Callable[[Site], str] | None = None
+) -> dict[str, Array]:
+    """The outputs, lanes first; `at` is that of `passes.guards.guard`."""
+    text, names = _emitted(subject, backend.target.name, guards, at)
     calls = [
         Call(
             names.get(probe.function, probe.function),
@@ -74,15 +75,17 @@ def _argument(param: Param, inputs: Inputs) -> Any:
     return np.broadcast_to(value, (*value.shape[:-1], inputs.lanes))
 
 
-_texts: dict[tuple[int, str, str], tuple[Subject, Text, dict[str, str]]] = {}
+_texts: dict[tuple[object, ...], tuple[Subject, Text, dict[str, str]]] = {}
 
 
-def _emitted(subject: Subject, target: str, guards: str) -> tuple[Text, dict[str, str]]:
+def _emitted(
+    subject: Subject, target: str, guards: str, at: Callable[[Site], str] | None
+) -> tuple[Text, dict[str, str]]:
     """The functions form of a subject for a target, and what was renamed in it."""
-    key = (id(subject.module), target, guards)
+    key = (id(subject.module), target, guards, at)
     kept = _texts.get(key)
     if kept is None or kept[0].module is not subject.module:
-        made = transpile(subject.module, target, "evaluated", guards, subject.called)
+        made = transpile(subject.module, target, "evaluated", guards, subject.called, at)
         file, reflection = next(name for name in made.files if not name.endswith(".json")), made.reflection
         if len(_texts) >= 256:
             _texts.clear()

@@ -28,8 +28,8 @@ _WHOLE = {np.dtype(np.uint8): 255.0, np.dtype(np.uint16): 65535.0}
 def read(path: str | os.PathLike[str]) -> Array:
     """The picture in a file, (height, width, channels), row 0 at the top; channels are 1 to 4.
 
-    .png: 8 bits, and 16 where it is gray; values 0..1 as they are stored, no colour conversion. .exr: as stored,
-    which is linear light; R, G, B, A, or Y alone. .npy: an array of 2 to 4 axes, (height, width),
+    .png: one frame; 8 bits, and 16 where it is gray; values 0..1 as they are stored, no colour conversion. .exr: as
+    stored, which is linear light; R, G, B, A, or Y alone. .npy: an array of 2 to 4 axes, (height, width),
     (height, width, channels) or, for 3-D textures, (depth, height, width, channels); floats as they are, uint8
     and uint16 as in a PNG. Raises SssgenError for a file that is missing, faulty, or none of these.
     """
@@ -129,6 +129,7 @@ def _read_png(path: str, shown: str) -> Array:
         with warnings.catch_warnings():
             warnings.simplefilter("error", pillow.DecompressionBombWarning)
             with pillow.open(path, formats=["PNG"]) as image:
+                frames = getattr(image, "n_frames", 1)
                 image.load()
     except (pillow.DecompressionBombError, pillow.DecompressionBombWarning, MemoryError):
         raise failure("the picture is too large to be read", "make it smaller", shown) from None
@@ -136,6 +137,8 @@ def _read_png(path: str, shown: str) -> Array:
         raise failure("this is not a PNG picture", "write it as PNG anew; a new name alone does not", shown) from None
     except (OSError, SyntaxError, ValueError) as error:
         raise failure(f"the picture is faulty: {error}", "write it anew", shown) from None
+    if frames > 1:
+        raise failure("this picture moves: it has several frames", "save one of them", shown)
     if image.mode in ("RGB", "RGBA", "LA") and _depth(path) == 16:  # the package would halve the bits in silence
         hint = "save it with 8 bits a channel, in gray, or as .exr"
         raise failure("a colour PNG of 16 bits a channel cannot be read", hint, shown)
@@ -177,7 +180,7 @@ def _read_exr(path: str, shown: str) -> Array:
 def _read_npy(path: str, shown: str) -> Array:
     try:
         array = np.load(path, allow_pickle=False)
-    except (OSError, ValueError, EOFError, MemoryError) as error:
+    except Exception as error:  # its header is read by Python's own tokenizer, which raises what it likes
         raise failure(f"this is not a NumPy array: {error}", "write it with numpy.save", shown) from None
     if not isinstance(array, np.ndarray):  # an .npz under another name
         raise failure("this holds several arrays", "write one, with numpy.save", shown)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..diagnostics import Diagnostic, SssgenError, failure
-from ..ir.spans import Span
+from .. import json_source
+from ..diagnostics import failure
+from ..lang.loader import refuse_special
 from ..targets.numpy_textures import Texture
 from . import images
 from .probes import Subject
@@ -37,19 +37,15 @@ def read(path: str, subject: Subject) -> dict[str, Any]:
     """
     file = Path(path)
     try:
+        refuse_special(path, path)
         text = file.read_text(encoding="utf-8")
     except UnicodeDecodeError:
         raise failure("the inputs are no UTF-8 text", "numbers by name, in JSON", path) from None
     except OSError as error:
         raise failure(f"cannot read the inputs: {error.strerror}", file=path) from None
-    try:
-        data = json.loads(text)
-    except json.JSONDecodeError as error:
-        span = Span(path, error.lineno, error.colno, error.lineno, error.colno + 1)
-        line = text.splitlines()[error.lineno - 1] if error.lineno <= len(text.splitlines()) else ""
-        raise SssgenError([Diagnostic("error", f"this is no JSON: {error.msg}", span, "", line)]) from None
-    except RecursionError:
-        raise failure("the lists are nested too deeply", file=path) from None
+    except ValueError:
+        raise failure("no file can have this name", file=path) from None
+    data = json_source.parse(text, path)
     if not isinstance(data, dict):
         raise failure("the inputs are no object", 'for instance {"N": [[0, 0, 1]], "power": 4.0}', path)
     colors = {name for name, uniform in subject.uniforms.items() if "source_color" in dict(uniform.hints)}

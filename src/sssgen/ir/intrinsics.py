@@ -38,6 +38,8 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import NamedTuple
 
+from .formats import Format
+
 
 class Guard(NamedTuple):
     """What arguments must keep to, and what stands in the call's place where the range pass cannot prove it."""
@@ -55,6 +57,14 @@ class Guard(NamedTuple):
     """The argument that `text` stands for; `result`: the call's own, x in it; '' means the whole call."""
     doc: str = ""
     """The comment of the function that it becomes where it is too long to stand in the text."""
+
+
+def constants(format: Format, limits: tuple[float, float]) -> dict[str, float]:
+    """The constants of guards' texts, in a format; LOW and HIGH are those of the place."""
+    return {
+        "TINY": format.tiny, "DIVISOR": format.divisor, "EPSILON": format.epsilon, "EXPONENT": format.exponent,
+        "LARGEST": format.largest, "ROOT": format.largest**0.5, "LOW": limits[0], "HIGH": limits[1],
+    }  # fmt: skip
 
 
 class Builtin(NamedTuple):

@@ -72,6 +72,9 @@ _TOKEN = re.compile(
 _MAX_NUMBER = 400
 """The longest number, and the longest place; the largest float32 has 39 digits."""
 
+_MAX_MESSAGE = 500
+"""The longest message: it may quote a name."""
+
 _ESCAPE = re.compile(r'\\(["\\]|[0-9a-f]+;)')
 
 
@@ -101,7 +104,7 @@ class _Reader:
 
     def error(self, message: str, position: int) -> TextError:
         line = self.text.count("\n", 0, position) + 1
-        return TextError(message, line, position - self.text.rfind("\n", 0, position))
+        return TextError(message[:_MAX_MESSAGE], line, position - self.text.rfind("\n", 0, position))
 
     def fail(self, message: str, back: int = 0) -> TextError:
         """An error at the next token, or at one before it."""

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import re
+import stat
 from collections.abc import Sequence
 
 from .. import cache
@@ -16,6 +17,9 @@ from ..watch import note
 
 MAX_BYTES = 4 << 20
 """The largest source file that is read. Shader libraries of thousands of functions stay below 1 MB."""
+
+MAX_INCLUDED = 50
+"""How deeply files may include files. The library's own do so two deep."""
 
 _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"([^"\n]*)"', re.MULTILINE)
 
@@ -36,19 +40,21 @@ def load_file(path: str | os.PathLike[str], shown: str, roots: Sequence[str | os
 
 def load_text(text: str, shown: str, roots: Sequence[str | os.PathLike[str]] = ()) -> Module:
     """The checked module of a source text; see `load_file`."""
-    return _load(text, shown, roots, ())[0]
+    return _load(text, shown, tuple([os.fspath(root) for root in roots]), (), {})[0]
+
+
+_Loaded = dict[tuple[str, tuple[str, ...]], tuple[Module, str]]
+"""The files included so far, by path and roots: each is read once, however many ways lead to it."""
 
 
 def _load(
-    text: str, shown: str, roots: Sequence[str | os.PathLike[str]], within: tuple[str, ...]
+    text: str, shown: str, roots: tuple[str, ...], within: tuple[str, ...], loaded: _Loaded
 ) -> tuple[Module, str]:
     """A text's module and the hash of all that it was made from."""
     _lines[shown] = text.split("\n")
     included, parts = Module(), [front_end_stamp(), shown, text]
-    for match in _INCLUDE.finditer(text):
-        line = text.count("\n", 0, match.start()) + 1
-        place = Span(shown, line, match.start(1) - text.rfind("\n", 0, match.start(1)), line, match.end(1) + 1)
-        module, key = _include(match.group(1), place, text, roots, (*within, shown))
+    for name, place in _includes(text, shown).items():
+        module, key = _include(name, place, roots, (*within, shown), loaded)
         included = merge(included, module)
         parts.append(key)
     key = cache.digest("\0".join(parts))
@@ -62,6 +68,17 @@ def _load(
     _memory[key] = known
     _keys[id(known)] = key
     return known, key
+
+
+def _includes(text: str, shown: str) -> dict[str, Span]:
+    """The names that a text includes, each with its first place."""
+    found: dict[str, Span] = {}
+    for match in _INCLUDE.finditer(text):
+        if match.group(1) not in found:
+            line = text.count("\n", 0, match.start()) + 1
+            column = match.start(1) - text.rfind("\n", 0, match.start(1))
+            found[match.group(1)] = Span(shown, line, column, line, column + len(match.group(1)))
+    return found
 
 
 def key_of(module: Module) -> str:
@@ -89,9 +106,10 @@ def source_line(span: Span) -> str:
 
 
 def read_text(path: str | os.PathLike[str], shown: str) -> str:
-    """The text of a source file. Raises SssgenError where it is missing or is not text."""
+    """The text of a source file. Raises SssgenError where it is missing, no file (a pipe, a device), or not text."""
     note(path)
     try:
+        refuse_special(path, shown)
         with open(path, "rb") as file:
             size = os.fstat(file.fileno()).st_size
             if size > MAX_BYTES:
@@ -101,16 +119,28 @@ def read_text(path: str | os.PathLike[str], shown: str) -> str:
         raise failure("no such file", file=shown) from None
     except OSError as error:
         raise failure(f"cannot read the file: {error.strerror}", file=shown) from None
+    except ValueError:  # a zero byte or half a surrogate in its name
+        raise failure("no file can have this name", file=shown) from None
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        column = error.start - data.rfind(b"\n", 0, error.start)
-        place = Span(shown, line, column, line, column + 1)
-        raise SssgenError([Diagnostic("error", "this is not UTF-8 text", place)]) from None
+        raise _no_text("this is not UTF-8 text", data, error.start, shown) from None
     if "\x00" in text:
-        raise failure("this is not a text file: it holds a zero byte", file=shown)
+        raise _no_text("this is not a text file: it holds a zero byte", data, data.index(b"\x00"), shown)
     return text.replace("\r\n", "\n")
+
+
+def refuse_special(path: str | os.PathLike[str], shown: str) -> None:
+    """Raises SssgenError for a pipe, which would wait, and for a device, which may have no end; OSError as `stat`."""
+    mode = os.stat(path).st_mode
+    if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
+        raise failure("this is not a file", "write what it gives into a file", shown)
+
+
+def _no_text(message: str, data: bytes, position: int, shown: str) -> SssgenError:
+    line = data.count(b"\n", 0, position) + 1
+    column = position - data.rfind(b"\n", 0, position)
+    return SssgenError([Diagnostic("error", message, Span(shown, line, column, line, column + 1))])
 
 
 def merge(first: Module, second: Module) -> Module:
@@ -124,17 +154,24 @@ def _union(first: tuple, second: tuple) -> tuple:  # type: ignore[type-arg]  # a
 
 
 def _include(
-    name: str, place: Span, text: str, roots: Sequence[str | os.PathLike[str]], within: tuple[str, ...]
+    name: str, place: Span, roots: tuple[str, ...], within: tuple[str, ...], loaded: _Loaded
 ) -> tuple[Module, str]:
     """The module of an included file, and its hash."""
-    line = text.splitlines()[place.line - 1]
+    line = source_line(place)
     for root in roots:
         path = os.path.join(root, name)
         if os.path.isfile(path):
             if name in within:
                 message = f"'{name}' includes itself: {' → '.join((*within, name))}"
                 raise SssgenError([Diagnostic("error", message, place, "", line)])
-            return _load(read_text(path, name), name, (os.path.dirname(path), *roots), within)
+            if len(within) > MAX_INCLUDED:
+                message = f"files include files more than {MAX_INCLUDED} deep"
+                raise SssgenError([Diagnostic("error", message, place, "include what is needed itself", line)])
+            known = loaded.get((path, roots))
+            if known is None:
+                inner = tuple(dict.fromkeys((os.path.dirname(path), *roots)))
+                known = loaded[path, roots] = _load(read_text(path, name), name, inner, within, loaded)
+            return known
         note(path)
     hint = "it is looked for beside the file and in the technique library"
     raise SssgenError([Diagnostic("error", f"cannot find '{name}' to include", place, hint, line)])

@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 
 from ..ir.formats import Format
-from ..ir.intrinsics import BUILTINS, Guard
+from ..ir.intrinsics import BUILTINS, Guard, constants
 from ..ir.nodes import Module
 from ..ir.signatures import instantiate, overload
 from ..ir.types import Matrix, Type, components, spell
@@ -55,11 +55,7 @@ def guard(
     given = known.get(found.replaces, result)
     text = found.text
     used = "".join(letter for letter in letters if re.search(rf"\b{letter}\b", text))
-    numbers = {
-        "TINY": format.tiny, "DIVISOR": format.divisor, "EPSILON": format.epsilon, "EXPONENT": format.exponent,
-        "LARGEST": format.largest, "ROOT": format.largest**0.5, "LOW": limits[0], "HIGH": limits[1],
-    }  # fmt: skip
-    for constant, number in numbers.items():
+    for constant, number in constants(format, limits).items():
         text = re.sub(rf"\b{constant}\b", repr(float(number)), text)
     text = text.replace("LAST", str(int(limits[1]))).replace("genF", spell(given))
     params = ", ".join(f"{spell(known[letter])} {letter}" for letter in used)

@@ -8,13 +8,14 @@ code.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
 from ..ir import nodes as ir
 from ..ir.formats import FLOAT32, Format
-from ..ir.intrinsics import BUILTINS, Guard
-from ..ir.types import Type
+from ..ir.intrinsics import BUILTINS, Guard, constants
+from ..ir.types import BOOL, FLOAT, UINT, Type, components, kind_of, spell, vector_of
 from ..ir.walk import operands, rewrite_function, rewrite_module, with_operands
 from .ranges import Findings, analyse
 from .sites import BOUNDS, DIVISION, Site
@@ -37,21 +38,23 @@ class Guarded(NamedTuple):
 
 def guard(
     module: ir.Module, roots: Iterable[str], mode: str, source: Source, polyfill: Polyfill, format: Format = FLOAT32,
-    without: Callable[[Site], bool] | None = None,
+    at: Callable[[Site], str] | None = None,
 ) -> Guarded:  # fmt: skip
     """The module with guards where `mode` wants them: `auto` those that are needed, `all` everywhere, `none`.
 
-    `roots` are the keys of the functions that are called from outside. `without` tells guards to leave out, for tests.
+    `roots` are the keys of the functions that are called from outside. `at` tells what becomes of a single guard:
+    `keep`, `drop` it, or `poison`: NaN wherever the guard would have changed anything, to see whether that is reached.
     """
     if mode == "none":
         return Guarded(_without_assumptions(module), [], [])
     found = analyse(module, roots, format)
     chosen = [site for site in found.sites if mode == "all" or not site.proven]
-    if without is not None:
-        chosen = [site for site in chosen if not without(site)]
+    poisoned = [site for site in chosen if at is not None and at(site) == "poison"]
+    chosen = [site for site in chosen if at is None or at(site) != "drop"]
     if not chosen:
         return Guarded(_without_assumptions(module), found.sites, [])
     guarder = _Guarder(module, found, chosen, mode == "all", source, polyfill, format)
+    guarder.poisoned = {id(site) for site in poisoned}
     return Guarded(guarder.run(), found.sites, chosen)
 
 
@@ -76,6 +79,7 @@ class _Guarder:
         self.helpers: dict[str, ir.Function] = {}
         self.safe: dict[str, ir.Function] = {}
         """A polyfill's key → the function with its divisions guarded."""
+        self.poisoned: set[int] = set()
 
     def run(self) -> ir.Module:
         functions = [
@@ -137,31 +141,13 @@ class _Guarder:
 
     def guarded(self, node: ir.Expr, sites: list[Site]) -> ir.Expr:
         """A node with its guards: those of its arguments, then those of its result."""
-        for site in sorted(sites, key=lambda site: self.guard_of(site).replaces == "result"):
-            node = self.apply(node, site)
+        for site in sorted(sites, key=lambda site: guard_of(site, self.strongest).replaces == "result"):
+            safe = self.apply(node, site)
+            node = poisoned(node, safe, guard_of(site, self.strongest)) if id(site) in self.poisoned else safe
         return node
 
-    def guard_of(self, site: Site) -> Guard:
-        """The guard of a site; the least that its ranges ask for."""
-        if self.strongest and site.what in BUILTINS:
-            return BUILTINS[site.what].guards[0]
-        found = site.guard
-        if found is DIVISION and not self.strongest:
-            divisor = site.args[1]
-            if divisor.low >= 0.0:
-                return found._replace(text="max(y, DIVISOR)")
-            if divisor.high <= 0.0:
-                return found._replace(text="min(y, -DIVISOR)")
-        if found is BOUNDS and not self.strongest:
-            low, high = site.limits
-            if site.args[0].high <= high:
-                return found._replace(text="max(x, LOW)")
-            if site.args[0].low >= low:
-                return found._replace(text="min(x, HIGH)")
-        return found
-
     def apply(self, node: ir.Expr, site: Site) -> ir.Expr:
-        chosen = self.guard_of(site)
+        chosen = guard_of(site, self.strongest)
         if not chosen.text:
             return self.with_safe_divisions(node)
         args = operands(node)
@@ -211,6 +197,74 @@ class _Guarder:
             made = self.helper(rewrite_function(function, change)._replace(name=f"safe_{node.name}"))
             self.safe[function.key] = made
         return ir.Call(made.result, made.key, node.args, node.span)
+
+
+def guard_of(site: Site, strongest: bool = False) -> Guard:
+    """The guard of a site: the least that its ranges ask for, or the one that asks for nothing."""
+    if strongest and site.what in BUILTINS:
+        return BUILTINS[site.what].guards[0]
+    found = site.guard
+    if strongest:
+        return found
+    if found is DIVISION:
+        divisor = site.args[1]
+        if divisor.low >= 0.0:
+            return found._replace(text="max(y, DIVISOR)")
+        if divisor.high <= 0.0:
+            return found._replace(text="min(y, -DIVISOR)")
+    if found is BOUNDS:
+        low, high = site.limits
+        if site.args[0].high <= high:
+            return found._replace(text="max(x, LOW)")
+        if site.args[0].low >= low:
+            return found._replace(text="min(x, HIGH)")
+    return found
+
+
+def remedy(site: Site, format: Format) -> str:
+    """What stands in for the argument, the result or the call, for people."""
+    found = guard_of(site)
+    text = found.text or found.doc
+    for name, number in constants(format, site.limits).items():
+        text = re.sub(rf"\b{name}\b", f"{number:g}", text)
+    text = text.replace("genF", spell(site.node.type))
+    if found.replaces == "result":
+        return f"{text}, x its result"
+    return f"{text} in place of {found.replaces or 'the call'}"
+
+
+def poisoned(plain: ir.Expr, safe: ir.Expr, guard: Guard) -> ir.Expr:
+    """`plain` where its guard changes nothing, else NaN, by component; integers: the plain value."""
+    if kind_of(plain.type) != "float":
+        return plain
+    span, size = plain.span, components(plain.type)
+    before, after = plain, safe
+    if guard.replaces in ("x", "y", "z"):
+        at = "xyz".index(guard.replaces)
+        before, after = operands(plain)[at], operands(safe)[at]
+    same = _close(before, after, guard.replaces == "")
+    nan: ir.Expr = ir.Intrinsic(FLOAT, "uintBitsToFloat", (ir.Literal(UINT, 0x7FC00000, span),), span)
+    if components(before.type) != size:  # one argument for all components
+        return ir.Select(plain.type, same, plain, ir.Construct(plain.type, (nan,), span), span)
+    if size == 1:
+        return ir.Select(plain.type, same, plain, nan, span)
+    return ir.Intrinsic(plain.type, "mix", (ir.Construct(plain.type, (nan,), span), plain, same), span)
+
+
+def _close(one: ir.Expr, other: ir.Expr, roughly: bool) -> ir.Expr:
+    """Whether two values are the same, by component; `roughly`: to rounding."""
+    size, span = components(one.type), one.span
+    result = vector_of("bool", size)
+    if not roughly:
+        return (
+            ir.Binary(BOOL, "==", one, other, span) if size == 1 else ir.Intrinsic(result, "equal", (one, other), span)
+        )
+    apart = ir.Intrinsic(one.type, "abs", (ir.Binary(one.type, "-", one, other, span),), span)
+    part = ir.Binary(one.type, "*", ir.Intrinsic(one.type, "abs", (one,), span), ir.Literal(FLOAT, 1e-3, span), span)
+    limit = ir.Intrinsic(one.type, "max", (part, ir.Literal(FLOAT, 1e-6, span)), span)
+    if size == 1:
+        return ir.Binary(BOOL, "<=", apart, limit, span)
+    return ir.Intrinsic(result, "lessThanEqual", (apart, limit), span)
 
 
 _NAMES = {"/": "nonzero", "mod": "nonzero", "fmod": "nonzero", "overflow": "bounded", "texel": "valid_texel"}

@@ -23,7 +23,7 @@ class Builtins(Known):
 
     def builtin(self, node: ir.Intrinsic, args: tuple[Value, ...], as_texel: bool) -> Value:
         row = BUILTINS[node.name]
-        args = self.guarded(node, args)
+        args, needed = self.guarded(node, args)
         size = scalars(node.type)
         parts, length = builtin_ranges.result(node.name, args, size, self.format)
         if kind_of(node.type) != "float" and not row.range:
@@ -37,6 +37,8 @@ class Builtins(Known):
             absolute = 0.0 if exact else min(row.absolute * min(scale, 4.0), 1e-2)
             relative = row.ulp * self.format.epsilon if not exact else 0.0
             parts = [self.kept(widened(part, min(relative, 0.05), absolute), part, node.name) for part in parts]
+        if needed:  # what a guard lets through is finite
+            parts = [clip(part, -self.format.largest, self.format.largest) for part in parts]
         return self.computed(node, parts, self.builtin_numbers(node, args, size), length)
 
     def kept(self, wide: Range, part: Range, name: str) -> Range:
@@ -72,11 +74,11 @@ class Builtins(Known):
             for index in range(size)
         ]
 
-    def guarded(self, node: ir.Intrinsic, args: tuple[Value, ...]) -> tuple[Value, ...]:
-        """Checks a builtin's domain; the arguments as its guard leaves them."""
+    def guarded(self, node: ir.Intrinsic, args: tuple[Value, ...]) -> tuple[tuple[Value, ...], bool]:
+        """Checks a builtin's domain; the arguments as its guard leaves them, and whether it needs one."""
         row = BUILTINS[node.name]
         if not row.guards or kind_of(node.type) not in ("float", ""):
-            return args
+            return args, False
         whole = row.range.startswith("whole:")
         seen = [arg.length if whole else hull_of(arg.parts) for arg in args]
         needed = None
@@ -89,7 +91,7 @@ class Builtins(Known):
                 needed = guard
                 break
         self.note(node, node.name, needed is None, needed or row.guards[-1], tuple(seen))
-        return args if needed is None else self.as_guarded(node.name, args)
+        return (args, False) if needed is None else (self.as_guarded(node.name, args), True)
 
     def as_guarded(self, name: str, args: tuple[Value, ...]) -> tuple[Value, ...]:
         if name in ("mod", "fmod"):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 from ..ir import nodes as ir
 from ..ir.intrinsics import NONZERO, Guard
@@ -43,3 +44,29 @@ class Site(NamedTuple):
         else:
             worse = min(self, other, key=lambda site: site.guard.replaces != "")
         return worse._replace(args=args)
+
+    @property
+    def place(self) -> str:
+        """Where it stands, as `file:line:column`."""
+        span = self.node.span
+        return f"{span.file}:{span.line}:{span.column}"
+
+    @property
+    def found(self) -> str:
+        """The ranges that were found, for people."""
+        if self.guard.replaces == "result" or not self.args:
+            return f"{_shown(self.args[0])}" if self.args and self.what != "texel" else ""
+        return ", ".join([f"{letter} in {_shown(arg)}" for letter, arg in zip("xyz", self.args, strict=False)])
+
+
+def _shown(range: Range) -> str:
+    gap = f" but not within {range.gap:.4g} of 0" if range.gap and range.low < 0.0 < range.high else ""
+    return f"{range.low:.4g}..{range.high:.4g}{gap}"
+
+
+def report(sites: Sequence[Site], guarded: Sequence[Site]) -> dict[str, Any]:
+    """For the reflection: how many are proven safe, and each that has a guard."""
+    rows = [
+        {"at": site.place, "operation": site.what, "reason": site.guard.says, "found": site.found} for site in guarded
+    ]
+    return {"proven": sum(site.proven for site in sites), "guarded": rows}

@@ -56,6 +56,8 @@ class Program(NamedTuple):
     warnings: list[Diagnostic]
     settings: Mapping[str, list[tuple[int, str]]]
     """A uniform's source name → the material's stages that may give it a value, and its name there."""
+    guards: Mapping[str, Any]
+    """How many operations with a domain are proven safe, and each that is guarded: where, what, why."""
 
 
 class Emitted(NamedTuple):

@@ -11,7 +11,7 @@ transposed where it is read.
 from __future__ import annotations
 
 from ..ir import nodes as ir
-from ..ir.types import Array, Matrix, Scalar, Struct, Vector
+from ..ir.types import Array, Matrix, Scalar, Struct, Vector, kind_of
 from ..passes.blocks import block_type
 from .layout import Member
 from .printer import POSTFIX, PRIMARY, UNARY, Line, Printer, documented
@@ -34,6 +34,9 @@ class HlslPrinter(Printer):
         linear = isinstance(left, Matrix | Vector) and isinstance(right, Matrix | Vector)
         if binary.op == "*" and linear and (isinstance(left, Matrix) or isinstance(right, Matrix)):
             return f"mul({self.expr(binary.right)}, {self.expr(binary.left)})", PRIMARY
+        if binary.op in ("<<", ">>") and isinstance(binary.left, ir.Literal) and kind_of(left) != kind_of(right):
+            # a bare literal would take the count's type, and shift in zeros where the sign is meant
+            binary = binary._replace(left=ir.Construct(left, (binary.left,), binary.left.span))
         return super().binary(binary)
 
     def construct(self, construct: ir.Construct) -> tuple[str, int]:

@@ -66,6 +66,8 @@ def reflect(
             }
             for kind, (function, inputs) in program.entries.items()
         },
+        "proven_safe": program.guards.get("proven", 0),
+        "guards": program.guards.get("guarded", []),
         "renames": dict(program.renames),
         "conventions": target.table.get("conventions", {}),
         "source_map": {

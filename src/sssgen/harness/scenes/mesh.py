@@ -15,8 +15,12 @@ from sssgen.diagnostics import did_you_mean, failure
 
 from ..extras import need
 from .placed import Array, Geometry, Hits, any_tangent, spherical, spread, tangent_of, unit
+from .table import ANY
 
 Indices: TypeAlias = npt.NDArray[np.int64]
+
+FARTHEST = ANY[1]
+"""The largest coordinate: of a scene's numbers, so that no product of a few of them overflows."""
 
 SUFFIXES = (".obj", ".ply", ".stl", ".glb")
 
@@ -122,17 +126,20 @@ def _load(path: str) -> Any:
 
 
 def _prepare(loaded: Any, shown: str) -> Triangles:
-    vertices = np.asarray(getattr(loaded, "vertices", ()), np.float64).reshape(-1, 3)
-    faces = np.asarray(getattr(loaded, "faces", ()), np.int64).reshape(-1, 3)
+    try:
+        vertices = np.asarray(getattr(loaded, "vertices", ()), np.float64).reshape(-1, 3)
+        faces = np.asarray(getattr(loaded, "faces", ()), np.int64).reshape(-1, 3)
+    except (ValueError, TypeError):
+        raise failure("its vertices have not three coordinates each", "write it anew", shown) from None
     if not len(faces):
         raise failure("the file holds no triangles", "", shown)
     if faces.min() < 0 or faces.max() >= len(vertices):
         raise failure("a triangle names a vertex that there is not", "write it anew", shown)
-    if not np.isfinite(vertices).all():
-        raise failure("a vertex is no number", "write it anew", shown)
+    if not (np.abs(vertices) <= FARTHEST).all():
+        raise failure(f"a vertex is no number, or beyond {FARTHEST:g}", "write it anew", shown)
     uv = getattr(loaded.visual, "uv", None)
     uv = None if uv is None else np.asarray(uv, np.float64)
-    if uv is not None and (uv.shape != (len(vertices), 2) or not np.isfinite(uv).all()):
+    if uv is not None and (uv.shape != (len(vertices), 2) or not (np.abs(uv) <= FARTHEST).all()):
         uv = None
     places, place_of = np.unique(vertices, axis=0, return_inverse=True)
     corners = place_of.reshape(-1)[faces]

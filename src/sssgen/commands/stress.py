@@ -1,0 +1,116 @@
+"""`sssgen stress`: techniques on dangerous, boundary and random inputs, on several back ends."""
+
+from __future__ import annotations
+
+import os
+from argparse import Namespace
+from typing import TYPE_CHECKING, Any
+
+from ..cli import CHECK_FAILED, OK, print_json
+from ..diagnostics import failure
+
+if TYPE_CHECKING:
+    from ..harness.stress.report import Report
+
+DEFAULT = {None: "numpy-f32,gl,webgpu,browser,hlsl", "f32": "numpy-f32,gl,webgpu,browser,hlsl", "f16": "numpy,webgpu"}
+"""The back ends for each precision."""
+MOST_SAMPLES = 10**9
+
+
+def run(arguments: Namespace) -> int:
+    """Stresses what is named, and prints what is wrong; 1 where something that counts is."""
+    try:
+        from ..harness.stress import dangerous, report
+    except ImportError as error:
+        raise failure(f"sssgen stress needs NumPy: {error}", "pip install 'sssgen[numpy]'") from None
+    from ..harness.stress.run import Settings
+    from ..harness.stress.specimen import specimens
+    from ..harness.testing.outcome import in_ci
+
+    if not 1 <= arguments.samples <= MOST_SAMPLES:
+        raise failure(f"--samples {arguments.samples} is not a number of samples", f"from 1 to {MOST_SAMPLES}")
+    if arguments.seed < 0:
+        raise failure(f"--seed {arguments.seed} is below 0")
+    suffix = os.path.splitext(arguments.output)[1].lower() if arguments.output else ".md"
+    if suffix not in report.SUFFIXES:
+        raise failure(f"a report is no '{suffix}' file", f"it is one of {', '.join(report.SUFFIXES)}", arguments.output)
+    half = arguments.precision == "f16"
+    rows = dangerous.chosen(arguments.row)
+    settings = Settings(arguments.samples, arguments.seed, arguments.guards, half, rows)
+    names = _backends(arguments.backend or DEFAULT[arguments.precision], half)
+    made = _stressed(specimens(arguments.NAME), names, settings)
+    if arguments.output:
+        _write(arguments.output, suffix, made)
+    if arguments.json:
+        print_json(report.as_json(made))
+    else:
+        _print(made, arguments.output)
+    return OK if made.ok and not (in_ci() and made.missing) else CHECK_FAILED
+
+
+def _backends(given: str, half: bool) -> list[str]:
+    """The back ends that are meant. Raises SssgenError for unknown ones, and ones of the other precision."""
+    from ..harness.backends import HALF, NAMES, chosen
+
+    halves = set(HALF.values())
+    names = [name for name in NAMES if name != "numpy" and name not in halves] if given == "all" else chosen(given)
+    if not half:
+        wrong = [name for name in names if name in halves]
+        if wrong:
+            raise failure(f"{wrong[0]} computes in half precision", "--precision f16 --backend numpy,webgpu")
+        return names
+    if given == "all":
+        return list(HALF.values())
+    for name in names:
+        if name not in HALF and name not in halves:
+            raise failure(f"{name} does not compute in half precision", f"--backend {' or '.join(HALF)}")
+    return list(dict.fromkeys(HALF.get(name, name) for name in names))
+
+
+def _stressed(chosen: list[Any], names: list[str], settings: Any) -> Report:
+    """Everything, with a progress line; a technique at a time on all back ends."""
+    from ..harness.stress.progress import Progress
+    from ..harness.stress.report import Report
+    from ..harness.stress.run import Machines, stress
+
+    with Machines(names) as machines, Progress(len(chosen)) as progress:
+        rows = []
+        for one in chosen:
+
+            def told(what: str, done: int, title: str = one.title) -> None:
+                progress(title, what, done / settings.samples)
+
+            rows.append(stress(one, machines, settings, told))
+        devices = {name: backend.device() for name, backend in machines.here.items()}
+    return Report(settings, devices, machines.missing, rows)
+
+
+def _write(path: str, suffix: str, made: Report) -> None:
+    """The report's file, whole or not at all."""
+    import json
+
+    from ..harness.stress import report
+    from ..output import write_files
+
+    text = report.as_markdown(made)
+    if suffix == ".json":
+        text = json.dumps(report.as_json(made), indent=2, ensure_ascii=False) + "\n"
+    folder, name = os.path.split(path)
+    write_files(folder or ".", {name: text})
+
+
+def _print(made: Report, written: str | None) -> None:
+    from ..harness.stress import report
+
+    for line in report.summary(made):
+        print(line)
+    told = [line for row in made.rows for line in report.faults(row)]
+    if told:
+        print()
+    for line in told:
+        print(line)
+    print(f"\n{report.total(made)}")
+    if written:
+        print(f"wrote {written}")
+    if not made.devices:
+        print("nothing was run: none of these back ends is here")

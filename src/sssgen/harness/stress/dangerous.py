@@ -1,0 +1,110 @@
+"""The table of dangerous inputs, as data: what each row is about, what it asks, and the inputs that it makes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple
+
+from ...diagnostics import did_you_mean, failure
+from . import rows_field as field
+from . import rows_light as light
+from . import rows_surface as surface
+from .specimen import Specimen
+from .trial import Trial
+
+Makes = Callable[[Specimen], Iterator[Trial]]
+
+
+class DangerousRow(NamedTuple):
+    """A row of the table."""
+
+    name: str
+    inputs: str
+    requires: str
+    trials: Makes | None
+    """None where the row is not about a technique."""
+    elsewhere: str = ""
+    """What holds it then."""
+
+
+ROWS = (
+    DangerousRow(
+        "powers", "pow(0, 0), pow(0, negative), pow(negative, p)",
+        "a saturated base, the documented limit at 0, an exponent above 0", light.powers,
+    ),
+    DangerousRow(
+        "large-power", "a large power in half precision", "a finite lobe", light.large_powers,
+    ),
+    DangerousRow(
+        "zero-vectors", "L + distortion N = 0; zero or non-unit V, L, N", "finite", light.zero_vectors,
+    ),
+    DangerousRow(
+        "lamp-at-surface", "a point light at the surface", "a bounded falloff, no direction to it",
+        light.lamp_at_surface,
+    ),
+    DangerousRow("long-vectors", "|L| > 255 in half precision", "normalised without overflow", light.long_vectors),
+    DangerousRow(
+        "quantities", "thickness, thinness, transmittance < 0, > 1", "finite; clamped where it is made",
+        light.wrong_quantities,
+    ),
+    DangerousRow(
+        "texels", "texels < 0, > 1, NaN in maps that hold a quantity", "clamped at the typed boundary",
+        surface.bad_texels,
+    ),
+    DangerousRow(
+        "thick-matter", "sigma d huge, sigma infinite, attenuation distance 0",
+        "T(0) = 1 exactly; a distance of 0 is opaque", light.thick_matter,
+    ),
+    DangerousRow(
+        "black-attenuation", "attenuation colour component 0 with thickness 0", "T(0) = 1", light.black_attenuation,
+    ),
+    DangerousRow("anisotropy", "g towards -1 and 1", "clamped", light.extreme_anisotropy),
+    DangerousRow(
+        "grazing-view", "the view goes to grazing, without refraction",
+        "a documented maximum, fading to the base coordinates", surface.grazing,
+    ),
+    DangerousRow(
+        "critical-angle", "past the critical angle", "the base coordinates, with a smooth fade",
+        surface.past_the_critical_angle,
+    ),
+    DangerousRow("from-behind", "the view from behind, bent normals", "finite, continuous", surface.from_behind),
+    DangerousRow(
+        "tangent-frame", "mirrored, sheared, zero tangent frames", "a true inverse; no tangent, no offset",
+        surface.bad_frames,
+    ),
+    DangerousRow("seams", "a seam in the texture coordinates, a leap of derivatives", "finite", surface.seams),
+    DangerousRow("lipschitz", "a field that is no distance", "each tap clamped", field.not_lipschitz),
+    DangerousRow(
+        "medial-axis", "across the medial axis", "no jump; a leap of the slope is said aloud", field.medial_axis,
+    ),
+    DangerousRow("hit-offset", "a hit a little inside", "at least 0, as on the surface", field.hit_offset),
+    DangerousRow("grazing-march", "a march from the surface itself, grazing", "no jump", field.grazing_march),
+    DangerousRow(
+        "flat-box", "a flat bounding box, or one above 0", "padded; its lowest corner taken off", field.flat_box,
+    ),
+    DangerousRow(
+        "meshes", "open, non-manifold, self-intersecting, inverted meshes", "signed by winding, or refused", None,
+        "a scene's mesh: the sign is that of the winding number, and what is no mesh is refused by name",
+    ),
+    DangerousRow("concave", "concave bodies, gaps", "the sum of the intervals inside", field.concave),
+    DangerousRow("eight-bits", "an 8-bit distance or thickness", "half a step off at most", surface.eight_bits),
+    DangerousRow("few-steps", "steps of 0 and 1, or larger than the body", "at least one step", field.few_steps),
+    DangerousRow("fast-math", "NaN tests under fast-math", "tests of bits: no NaN comes through", surface.fast_math),
+)  # fmt: skip
+
+
+def chosen(names: Sequence[str]) -> tuple[str, ...]:
+    """The names, if there are such rows. Raises SssgenError."""
+    known = [row.name for row in ROWS]
+    for name in names:
+        if name not in known:
+            raise failure(f"unknown row '{name}'", did_you_mean(name, known) or f"rows: {', '.join(known)}")
+    return tuple(names)
+
+
+def trials(specimen: Specimen, names: Sequence[str] = ()) -> Iterator[Trial]:
+    """The trials of the rows (of all, if none is named) that concern a technique."""
+    for row in ROWS:
+        if row.trials is not None and (not names or row.name in names):
+            for trial in row.trials(specimen):
+                yield trial._replace(name=row.name)

@@ -1,0 +1,34 @@
+"""Energy: more matter never lets more light through."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...ir.formats import FLOAT32, Format
+from ..evaluate import Inputs
+from .draw import contract, drawn
+from .judge import growing_input
+from .specimen import Specimen
+from .trial import ENERGY, Trial
+
+PAIRS = 4096
+
+
+def trials(specimen: Specimen, seed: int, format: Format = FLOAT32) -> Iterator[Trial]:
+    """Pairs of lanes that differ in the thickness alone; in the second half it is larger, by a little or by much."""
+    name = growing_input(specimen)
+    if not name:
+        return
+    rng = np.random.default_rng([seed, 4])
+    thin = drawn(specimen, PAIRS, rng, format)
+    highest = contract(specimen, name, format).high
+    ordinary = rng.random(PAIRS) < 0.8
+    first = np.where(ordinary, rng.random(PAIRS) * 4.0, thin.values[name])
+    grown = first * (1.0 + np.exp2(-20.0 * rng.random(PAIRS))) + np.where(ordinary, 1e-6, 0.0)
+    values = {
+        key: np.concatenate([value, value], -1) if value.shape[-1] > 1 else value for key, value in thin.values.items()
+    }
+    values[name] = np.minimum(np.concatenate([first, grown]), highest).astype(np.float32)
+    yield Trial(ENERGY, specimen, Inputs(values, thin.textures, 2 * PAIRS), grows=name)

@@ -1,0 +1,124 @@
+"""Rows of the dangerous table about distance fields and marches through them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from ...ir.types import kind_of
+from ...targets.numpy_textures import Texture
+from .draw import TEXELS
+from .given import angles, mixed, plain
+from .specimen import Specimen
+from .trial import Trial
+
+_FIELDS = ("distance_texture", "distance_texture_world")
+
+
+def _bound(specimen: Specimen, *functions: str) -> Specimen | None:
+    """The technique with the first of the functions that fits its slot."""
+    from ... import slots
+
+    for name in specimen.slots:
+        declared = next(slot for slot in _slots(specimen) if slot.name == name)
+        fitting = slots.candidates(declared)
+        for function in functions:
+            if function in fitting:
+                return specimen.rebound(name, function)
+    return None
+
+
+def _slots(specimen: Specimen) -> Any:
+    from ... import library
+
+    return library.load(specimen.technique).slots
+
+
+def _measures(specimen: Specimen) -> bool:
+    """Whether thickness or thinness comes out of a field."""
+    return bool(specimen.slots) and specimen.quantity("result") in ("thickness", "thinness")
+
+
+def not_lipschitz(specimen: Specimen) -> Iterator[Trial]:
+    """A field that is no distance: random texels, a hundred times too steep."""
+    if not _measures(specimen) or (steep := _bound(specimen, *_FIELDS)) is None:
+        return
+    rng = np.random.default_rng(17)
+    texels = Texture(rng.integers(0, 2, (TEXELS,) * 3 + (1,)).astype(np.float16), wrap="clamp")
+    lanes = 2048
+    at = rng.uniform(-1.0, 1.0, (3, lanes))
+    axes = [(0, 0, 1), (0.6, 0, 0.8), (0, -1, 0)]
+    given = {"distance_map": texels, "distance_range": 100.0, "P": at, "P_object": at}
+    turned = mixed(steep, dict.fromkeys(("N", "L", "V_object", "L_object"), axes), lanes).values
+    yield Trial("", steep, plain(steep, lanes, {**turned, **given}))
+
+
+def medial_axis(specimen: Specimen) -> Iterator[Trial]:
+    """Over the face of a box, across its diagonals: no jump. Where the slope has one, the technique says so."""
+    if _measures(specimen) and (boxed := _bound(specimen, "box", "box:box_object")):
+        along = np.linspace(-0.45, 0.45, 2001)
+        at = np.stack([along, np.full_like(along, 0.2), np.full_like(along, 0.5)])
+        yield Trial("", boxed, plain(boxed, len(along), {"P": at, "P_object": at}), path=True, compared=True)
+
+
+def hit_offset(specimen: Specimen) -> Iterator[Trial]:
+    """A hit that lies a little inside, or outside: about what the surface itself reads."""
+    if _measures(specimen) and (boxed := _bound(specimen, "box", "box:box_object")):
+        off = np.linspace(-2e-3, 2e-3, 1001)
+        at = np.stack([np.full_like(off, 0.1), np.full_like(off, 0.2), 0.5 + off])
+        yield Trial("", boxed, plain(boxed, len(off), {"P": at, "P_object": at}), path=True, compared=True)
+
+
+def grazing_march(specimen: Specimen) -> Iterator[Trial]:
+    """A march that starts on the surface of a ball and turns through its tangent."""
+    if _measures(specimen) and (ball := _bound(specimen, "sphere", "sphere:sphere_object")):
+        sine, cosine = angles(-5.0, 5.0)
+        light = np.stack([cosine, 0.0 * sine, sine])
+        given = {"P": (0, 0, 1), "P_object": (0, 0, 1), "L": light, "L_object": light, "V_object": -light}
+        yield Trial("", ball, plain(ball, len(sine), given), path=True, compared=True)
+
+
+def flat_box(specimen: Specimen) -> Iterator[Trial]:
+    """A texture's box that is flat, a point, or all above 0."""
+    if not {"box_min", "box_max"} <= specimen.subject.params.keys():
+        return
+    places = [(0, 0, 0), (0.5, 0.5, 0.5), (2, 2, 2), (-1, 1, 0)]
+    choices: dict[str, list[Any]] = {
+        "box_min": [(0, 0, 0), (-1, -1, 0), (1, 1, 1), (0.5, 0.25, 2)],
+        "box_max": [(0, 0, 0), (1, 1, 0), (1, 1, 1), (2, 2, 2)],
+        "P_object": places, "p": places, "P": places,
+    }  # fmt: skip
+    axes = [(0, 0, 1), (1, 0, 0), (0.6, 0, 0.8), (0, 0, 0)]
+    yield Trial("", specimen, mixed(specimen, {**choices, "V_object": axes, "L_object": axes}, 2048))
+
+
+def concave(specimen: Specimen) -> Iterator[Trial]:
+    """A line through both sides of a ring, radius 1 and 0.25: the sum of two chords of 0.5."""
+    lit = {"L", "L_object"} & specimen.subject.params.keys()
+    if not _measures(specimen) or not lit or specimen.quantity("result") != "thickness":
+        return
+    if ring := _bound(specimen, "torus", "torus:torus_object"):
+        many, few = np.array([128], np.int32), np.array([64], np.int32)
+        given = {
+            "P": (-1.25, 0, 0), "P_object": (-1.25, 0, 0), "L": (1, 0, 0), "L_object": (1, 0, 0),
+            "V_object": (-1, 0, 0), "reach": 4.0, "steps": many, "view_steps": few, "light_steps": few,
+            "box_min": (-1.3, -0.3, -1.3), "box_max": (1.3, 0.3, 1.3),
+        }  # fmt: skip
+        yield Trial("", ring, plain(ring, 4, given), expected={"result": np.ones(1)}, tolerance=0.02)
+
+
+def few_steps(specimen: Specimen) -> Iterator[Trial]:
+    """No step, one, less than none; and one step that is larger than the body."""
+    uniforms = specimen.subject.uniforms
+    kinds = {name: kind_of(one.type) for name, one in uniforms.items() if name not in specimen.settings}
+    counts = {
+        name: {"int": np.int32, "uint": np.uint32}[kind] for name, kind in kinds.items() if kind in ("int", "uint")
+    }
+    for count in (0, 1, -1) if counts else ():
+        given: dict[str, Any] = {}
+        for name, dtype in counts.items():
+            given[name] = np.full(1, max(count, 0) if dtype is np.uint32 else count, dtype)
+        far = {"reach": np.array([0.1, 0.4, 10.0])} if "reach" in uniforms else {}
+        yield Trial("", specimen, plain(specimen, 3, {**given, **far}), counts=count >= 0)

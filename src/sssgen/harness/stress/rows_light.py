@@ -1,0 +1,137 @@
+"""Rows of the dangerous table about light: powers, vectors, lamps, absorption, phase functions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from ...ir.formats import FLOAT16
+from .given import angles, calls, directions, mixed, plain, samplers, scalars
+from .specimen import Specimen
+from .trial import Trial
+
+AXES = [(0, 0, 1), (0, 0, -1), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0.6, 0, 0.8), (-0.6, 0, -0.8)]
+_EPS = 2.0**-21
+
+
+def powers(specimen: Specimen) -> Iterator[Trial]:
+    """Every base and exponent at 0, at the ends, and next to 0."""
+    if calls(specimen, "pow"):
+        choices = scalars(specimen) | dict.fromkeys(directions(specimen), AXES)
+        yield Trial("", specimen, mixed(specimen, choices))
+
+
+def large_powers(specimen: Specimen) -> Iterator[Trial]:
+    """All exponents at their highest, with the lobe from its peak to its end."""
+    if calls(specimen, "pow", "exp2") and directions(specimen):
+        sine, cosine = angles(0.0, 100.0)
+        swept = np.stack([sine, 0.0 * sine, cosine])
+        ends = {
+            name: max(ends) for name, ends in scalars(specimen, FLOAT16).items() if name in specimen.subject.uniforms
+        }
+        yield Trial("", specimen, plain(specimen, len(sine), {**ends, "V": swept, "V_object": swept}))
+
+
+def zero_vectors(specimen: Specimen) -> Iterator[Trial]:
+    """L = -N at every distortion, up to the one at which the half vector is zero; no vectors, and far too long ones."""
+    names = directions(specimen)
+    if not names:
+        return
+    lanes = 2001
+    near = np.linspace(0.99, 1.0, lanes)
+    exact = {name: near for name in specimen.subject.uniforms if "distortion" in name}
+    yield Trial("", specimen, plain(specimen, lanes, exact))
+    lengths = {name: [np.multiply(axis, size) for axis in AXES for size in (0.0, 1e-30, 1e-4, 1.0)] for name in names}
+    full = {name: [0.0, 1.0] for name in exact}
+    yield Trial("", specimen, mixed(specimen, {**lengths, **full}))
+    longer = {name: [np.multiply(axis, size) for axis in AXES for size in (1.0, 2.0, 100.0, 1e4)] for name in names}
+    yield Trial("", specimen, mixed(specimen, {**longer, **full}), ranged=False)
+
+
+def lamp_at_surface(specimen: Specimen) -> Iterator[Trial]:
+    """No direction to the light, and all the light that a format holds."""
+    if {"L", "L_object"} & specimen.subject.params.keys():
+        nearby = [(0, 0, 0), (0, 0, 1e-30), (1e-4, 0, 0), (0, 0, 1), (0, 0, -1)]
+        choices: dict[str, list[Any]] = {
+            "L": nearby,
+            "L_object": nearby,
+            "light_color": [(65504.0,) * 3, (0, 0, 0)],
+            "N": AXES,
+        }
+        yield Trial("", specimen, mixed(specimen, choices, 512))
+
+
+def long_vectors(specimen: Specimen) -> Iterator[Trial]:
+    """Directions whose squares no half holds."""
+    lengths = [np.multiply(axis, size) for axis in AXES for size in (256.0, 1000.0, 1e4)]
+    if names := [name for name in directions(specimen) if name in ("L", "L_object")]:
+        yield Trial("", specimen, mixed(specimen, dict.fromkeys(names, lengths), 512), ranged=False)
+
+
+def wrong_quantities(specimen: Specimen) -> Iterator[Trial]:
+    """Thickness, thinness and transmittance below 0 and above 1."""
+    quantities = ("thickness", "thinness", "transmittance")
+    textures = samplers(specimen)
+    params = specimen.subject.params.items()
+    names = [name for name, param in params if param.quantity in quantities and name not in textures]
+    if names:
+        values = [-1e6, -1.0, -1e-6, -0.0, 0.0, 0.5, 1.0, 1.0 + 1e-6, 2.0, 1e6]
+        inputs = mixed(specimen, dict.fromkeys(names, values), 512)
+        yield Trial("", specimen, inputs, ranged=False)
+        yield Trial("", specimen, inputs, counts=False)  # what comes out is in its range where what went in was
+
+
+def thick_matter(specimen: Specimen) -> Iterator[Trial]:
+    """Matter without end, and attenuation distances of 0: nothing is 1 exactly, and any matter is opaque."""
+    thickness = _thickness(specimen)
+    distance = "attenuation_distance" in specimen.subject.params
+    if not thickness or not (distance or "sigma_t" in specimen.subject.params):
+        return
+    choices: dict[str, list[Any]] = {
+        thickness: [0.0, 1e-30, 1e-6, 1.0, 1e6, 3e38],
+        "attenuation_distance": [0.0, 1e-45, 1e-30, 1e-6, 0.2, 10.0],
+        "attenuation_color": [(0, 0, 0), (1, 1, 1), (0, 0.5, 1), (1e-30, 0.9, 0.4)],
+    }
+    yield Trial("", specimen, mixed(specimen, choices))
+    if not distance:
+        return
+    full = _full(specimen)
+    colors = [(0, 0, 0), (1, 1, 1), (0, 0.5, 1), (1e-30, 0.9, 0.4)]
+    clear = mixed(specimen, {**choices, thickness: [0.0], "attenuation_color": colors, **full}, 512)
+    yield Trial("", specimen, clear, expected={"result": np.ones(1)})
+    opaque = {**choices, thickness: [1e-3, 1.0], "attenuation_distance": [0.0], "attenuation_color": [(0.5, 0.5, 0.5)]}
+    yield Trial("", specimen, mixed(specimen, {**opaque, **full}, 64), expected={"result": np.zeros(1)}, tolerance=1e-6)
+
+
+def black_attenuation(specimen: Specimen) -> Iterator[Trial]:
+    """A colour without one of its components lets all light through where there is no matter."""
+    thickness = _thickness(specimen)
+    if thickness and "attenuation_color" in specimen.subject.params:
+        choices: dict[str, list[Any]] = {
+            thickness: [0.0],
+            "attenuation_color": [(0, 0, 0), (0, 1, 1), (1, 0, 0.5), (0.5, 0.5, 0)],
+            "attenuation_distance": [0.0, 1e-6, 0.2, 10.0],
+        }
+        clear = mixed(specimen, {**choices, **_full(specimen)}, 256)
+        yield Trial("", specimen, clear, expected={"result": np.ones(1)})
+
+
+def _thickness(specimen: Specimen) -> str:
+    """The thickness that comes in, where light goes out."""
+    params = specimen.subject.params.items()
+    lets_through = specimen.role == "translucency" or specimen.quantity("result") == "transmittance"
+    return next((name for name, param in params if param.quantity == "thickness" and lets_through), "")
+
+
+def _full(specimen: Specimen) -> dict[str, list[float]]:
+    """All of the light goes in."""
+    return {name: [1.0] for name in ("weight", "transmission_factor") if name in specimen.subject.params}
+
+
+def extreme_anisotropy(specimen: Specimen) -> Iterator[Trial]:
+    """g at its ends, and beyond them up to 1 itself."""
+    if name := next((name for name in specimen.subject.uniforms if name in ("anisotropy", "g")), ""):
+        values = [-1.0, -1.0 + _EPS, -0.95, 0.0, 1e-30, 0.95, 1.0 - _EPS, 1.0]
+        yield Trial("", specimen, mixed(specimen, {name: values, "V": AXES, "L": AXES}))

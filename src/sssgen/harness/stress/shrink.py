@@ -1,0 +1,184 @@
+"""Reduces a failing input to the simplest that still fails, and prints the `sssgen eval` line that shows it.
+
+Greedy and deterministic: input by input, the candidates from the simplest on, until nothing gets simpler.
+"""
+
+from __future__ import annotations
+
+import json
+import shlex
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from ...ir.types import kind_of, spell
+from ...targets.numpy_textures import Texture
+from ..backends import Array
+from ..evaluate import Inputs, default_texture
+from .draw import contract, fixed, whole_range
+from .specimen import Specimen
+
+Fails = Callable[[Inputs], Array]
+"""Whether inputs fail: (lanes,) bool."""
+
+ROUNDS = 4
+DIGITS = (1, 2, 3, 5)
+_SIMPLE = (0.0, 1.0, 0.5, 2.0, -1.0, 10.0)
+_TEXELS = (0.25, 2.0, -1.0, 65504.0, -65504.0, np.nan, np.inf, -np.inf)
+_AXES = ((0, 0, 1), (0, 0, -1), (0, 0, 0), (1, 0, 0), (0, 1, 0), (-1, 0, 0), (0, -1, 0))
+
+
+def lane(inputs: Inputs, at: int) -> Inputs:
+    """One lane of the inputs, as arrays of one."""
+    values = {name: value[..., at : at + 1] if value.shape[-1] > 1 else value for name, value in inputs.values.items()}
+    return Inputs(values, inputs.textures, 1)
+
+
+def shrunk(specimen: Specimen, failing: Inputs, fails: Fails) -> Inputs:
+    """The simplest inputs found that still fail, one lane; `failing` itself where it does not fail alone."""
+    at = failing
+    if not fails(at).all():
+        return failing
+    at = _plainer_textures(specimen, at, fails)
+    for _ in range(ROUNDS):
+        before = at
+        for name in at.values:
+            at = _simpler(specimen, at, name, fails)
+        if all(np.array_equal(at.values[name], value) for name, value in before.values.items()):
+            break
+    return at
+
+
+def _plainer_textures(specimen: Specimen, at: Inputs, fails: Fails) -> Inputs:
+    for name, uniform in specimen.subject.uniforms.items():
+        if name not in at.textures:
+            continue
+        hints = [hint.removeprefix("default_") for hint, _ in uniform.hints if hint.startswith("default_")]
+        plain = [default_texture(spell(uniform.type), color) for color in (*hints[:1], "white", "black", "gray")]
+        plain += [_one_texel(at.textures[name], value) for value in _TEXELS]
+        for texture in plain:
+            simpler = at._replace(textures={**at.textures, name: texture})
+            if fails(simpler).all():
+                at = simpler
+                break
+    return at
+
+
+def _one_texel(texture: Texture, value: float) -> Texture:
+    size = (*((6,) if texture.dim == "Cube" else ()), *(1,) * {"2D": 2, "3D": 3, "Cube": 2}[texture.dim], 4)
+    return Texture(np.full(size, value, np.float16), dim=texture.dim)
+
+
+def _simpler(specimen: Specimen, at: Inputs, name: str, fails: Fails) -> Inputs:
+    """With one input as simple as it can be while the others stay."""
+    value = at.values[name]
+    if name in specimen.settings:
+        return at
+    candidates = list(_candidates(specimen, name, value))
+    candidates = candidates[: _index(candidates, value)]
+    if _allowed(specimen, name, value):  # what is in the contract stays there
+        candidates = [one for one in candidates if _allowed(specimen, name, one)]
+    if not candidates:
+        return at
+    lanes = np.concatenate(candidates, axis=-1)
+    values = {other: np.broadcast_to(one, (*one.shape[:-1], lanes.shape[-1])) for other, one in at.values.items()}
+    failing = np.flatnonzero(fails(Inputs({**values, name: lanes}, at.textures, lanes.shape[-1])))
+    return at._replace(values={**at.values, name: candidates[int(failing[0])]}) if len(failing) else at
+
+
+def _index(candidates: list[Array], value: Array) -> int:
+    """Where the value itself stands among the candidates; all of them are simpler where it is not there."""
+    same = (i for i, one in enumerate(candidates) if np.array_equal(one, value))
+    return next(same, len(candidates))
+
+
+def _allowed(specimen: Specimen, name: str, value: Array) -> bool:
+    if value.dtype.kind != "f":
+        low, high = whole_range(specimen.subject.params[name], specimen.subject.uniforms.get(name))
+        return bool(((value >= low) & (value <= high)).all())
+    found = contract(specimen, name)
+    within = ((value >= np.float32(found.low)) & (value <= np.float32(found.high))).all()
+    return bool(within) and not float(np.linalg.norm(value.astype(np.float64))) > found.length * (1.0 + 1e-6)
+
+
+def _candidates(specimen: Specimen, name: str, value: Array) -> Iterator[Array]:
+    """Values to try, the simplest first: the default, axes, plain numbers, fewer digits; then by component."""
+    if name in specimen.subject.uniforms:
+        yield fixed(specimen, name)
+    kind = kind_of(specimen.subject.params[name].type)
+    if kind == "bool":
+        yield np.zeros_like(value)
+        return
+    if value.shape[:-1] == (3,) and kind == "float":
+        for axis in _AXES:
+            yield np.array(axis, value.dtype)[:, None]
+    for number in _SIMPLE:
+        if kind == "float" or (number == int(number) and number >= 0):
+            yield np.full_like(value, number)
+    if kind != "float":
+        return
+    for index in np.ndindex(value.shape[:-1] if value.ndim > 1 else (0,)):
+        for number in _SIMPLE[:2]:
+            one = value.copy()
+            one[index] = number
+            yield one
+    for digits in DIGITS:
+        yield np.array([np.float32(f"{one:.{digits - 1}e}") for one in value.ravel()], np.float32).reshape(value.shape)
+
+
+def line(specimen: Specimen, at: Inputs, backend: str) -> str:
+    """The command that evaluates these inputs on a back end."""
+    given = {name: _plain(value) for name, value in at.values.items() if not _is_default(specimen, name, value)}
+    before, unsaid = "", []
+    for name, texture in at.textures.items():
+        texels = texture.levels[0]
+        same = np.array_equal(texels, np.broadcast_to(texels.reshape(-1, 4)[0], texels.shape), equal_nan=True)
+        if _is_plain_default(specimen, name, texture):
+            continue
+        if same and np.isfinite(texels).all():
+            shape = (*(1,) * (texels.ndim - 1), 4)
+            values = [float(one) for one in texels.reshape(-1, 4)[0]]
+            before += f"python -c 'import numpy; numpy.save(\"{name}.npy\", numpy.full({shape}, {values}))' && "
+            given[name] = f"{name}.npy"
+        else:
+            told = f"texels of {texels.flat[0]}, which eval does not take," if same else "random texels"
+            unsaid.append(f"{told} in {name}")
+    command = f"sssgen eval {shlex.quote(specimen.technique)} --inputs /dev/stdin --backend {_backend(backend)}"
+    command += "".join(f" --bind {shlex.quote(f'{slot}={function}')}" for slot, function in specimen.bind.items())
+    note = f"  # and {' and '.join(unsaid)}" if unsaid else ""
+    return f"{before}echo {shlex.quote(json.dumps(given))} | {command}{note}"
+
+
+def _backend(name: str) -> str:
+    """A back end in half precision is named by its plain name and the precision."""
+    plain, _, precision = name.rpartition("-")
+    return f"{plain} --precision {precision}" if precision in ("f16", "f32") else name
+
+
+def _is_default(specimen: Specimen, name: str, value: Array) -> bool:
+    uniform = specimen.subject.uniforms.get(name)
+    plain = specimen._replace(settings={})
+    return uniform is not None and name not in specimen.settings and np.array_equal(fixed(plain, name), value)
+
+
+def _is_plain_default(specimen: Specimen, name: str, texture: Texture) -> bool:
+    uniform = specimen.subject.uniforms[name]
+    hints = [hint.removeprefix("default_") for hint, _ in uniform.hints if hint.startswith("default_")]
+    default = default_texture(spell(uniform.type), hints[0] if hints else "white")
+    return np.array_equal(default.levels[0], texture.levels[0])
+
+
+def _plain(value: Array) -> object:
+    """Numbers for JSON, each as short as it reads back; a matrix in columns."""
+    lanes = np.moveaxis(value, -1, 0)
+    numbers = np.array([json.loads(_number(one)) for one in lanes.ravel()], dtype=object).reshape(lanes.shape)
+    return numbers.tolist()[0] if len(lanes) == 1 else numbers.tolist()
+
+
+def _number(value: object) -> str:
+    if isinstance(value, np.bool_):
+        return "true" if value else "false"
+    if isinstance(value, np.floating):
+        text = str(np.float32(value))
+        return {"inf": "1e999", "-inf": "-1e999", "nan": "null"}.get(text, text)
+    return str(value)
