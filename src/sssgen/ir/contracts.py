@@ -2,7 +2,8 @@
 
 A parameter's range comes from its quantity or its name in the chain, a uniform's from its hints. What gives no word of
 itself is a number of ordinary size. A technique's result keeps to the range of its quantity, so that the next one may
-rely on it: where the range pass cannot prove it, the guard pass clamps it there.
+rely on it: where the range pass cannot prove it, the guard pass clamps it there. Of a function that is called from
+outside nobody has seen to that: its thickness may be any number.
 """
 
 from __future__ import annotations
@@ -39,8 +40,8 @@ COLOR = {FLOAT32.name: 65504.0, "half": 1000.0}
 INTEGERS = {"int": (-(2.0**31), 2.0**31 - 1.0), "uint": (0.0, 2.0**32 - 1.0), "bool": (0.0, 1.0)}
 
 _UNIT = {"thinness", "transmittance"}
-_FRACTIONS = {"alpha", "metallic", "roughness", "occlusion"}
-_COLORS = {"light_color", "albedo", "emission", "color", "translucency"}
+_FRACTIONS = {"alpha", "albedo", "metallic", "roughness", "occlusion"}
+_COLORS = {"light_color", "emission", "color", "translucency"}
 _FRAME = {"N", "V", "L", "T", "B", "normal"}
 
 
@@ -63,6 +64,15 @@ def of_param(param: Param, format: Format = FLOAT32) -> Contract:
     return _around(POSITION[format.name])
 
 
+def from_outside(param: Param, format: Format = FLOAT32) -> Contract:
+    """What a caller that is not ours may pass: a quantity may be any number, as nobody has kept it in its range."""
+    if param.quantity == "thickness":
+        return _around(format.largest)
+    if param.quantity in _UNIT:
+        return _around(POSITION[format.name])
+    return of_param(param, format)
+
+
 def of_quantity(quantity: str, format: Format = FLOAT32) -> Contract | None:
     """The contract of a quantity, None for a plain number."""
     if quantity.endswith("_direction"):
@@ -81,10 +91,10 @@ def of_uniform(uniform: Uniform, format: Format = FLOAT32) -> Contract:
     hints: Mapping[str, tuple[float | str, ...]] = dict(uniform.hints)
     if isinstance(uniform.type, Sampler):
         return Contract(0.0, 1.0, finite="holds" not in hints)
-    if "hint_range" in hints:
-        low, high = hints["hint_range"][:2]
-        return Contract(format.rounded(float(low)), format.rounded(float(high)))
     kind = kind_of(uniform.type)
+    if "hint_range" in hints:
+        low, high = [format.rounded(float(end)) if kind == "float" else float(end) for end in hints["hint_range"][:2]]
+        return Contract(low if kind == "float" else min(low, 0.0), high)  # a count that nobody has set is 0
     if kind != "float":
         return Contract(*INTEGERS.get(kind, (0.0, 0.0)))
     if "source_color" in hints:

@@ -17,6 +17,8 @@ class Format(NamedTuple):
     """Near the smallest normal number: what guards keep arguments from falling below."""
     divisor: float
     """The smallest divisor that guards let through: small against what scenes hold, its inverse far from largest."""
+    square: float
+    """The smallest square of a length whose parts are not lost: normalize's divisor."""
     epsilon: float
     """The distance from 1 to the next number."""
     exponent: float
@@ -33,8 +35,10 @@ class Format(NamedTuple):
 
 def _format(format: Format) -> Format:
     """A format, with its limits as numbers of its own."""
-    return format._replace(tiny=format.rounded(format.tiny), divisor=format.rounded(format.divisor))
+    return format._replace(
+        tiny=format.rounded(format.tiny), divisor=format.rounded(format.divisor), square=format.rounded(format.square)
+    )
 
 
-FLOAT32 = _format(Format("float", "f", 2.0**128 - 2.0**104, 1e-37, 1e-20, 2.0**-23, 126.0))
-FLOAT16 = _format(Format("half", "e", 65504.0, 1e-4, 1e-3, 2.0**-10, 15.0))
+FLOAT32 = _format(Format("float", "f", 2.0**128 - 2.0**104, 1e-37, 1e-20, 1e-30, 2.0**-23, 126.0))
+FLOAT16 = _format(Format("half", "e", 65504.0, 1e-4, 1e-3, 1e-3, 2.0**-10, 15.0))

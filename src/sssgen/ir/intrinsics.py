@@ -51,7 +51,7 @@ class Guard(NamedTuple):
     """What goes wrong otherwise, for people."""
     text: str
     """An expression of the language in x, y, z, or a function's body, with the constants TINY (smallest normal number),
-    DIVISOR, EPSILON, EXPONENT (the largest of exp2), LARGEST and ROOT (its square root). '' means that it is the
+    DIVISOR, SQUARE, EPSILON, EXPONENT (the largest of exp2), LARGEST and ROOT (its square root). '' means that it is the
     polyfill with its own divisions guarded."""
     replaces: str = ""
     """The argument that `text` stands for; `result`: the call's own, x in it; '' means the whole call."""
@@ -62,7 +62,7 @@ class Guard(NamedTuple):
 def constants(format: Format, limits: tuple[float, float]) -> dict[str, float]:
     """The constants of guards' texts, in a format; LOW and HIGH are those of the place."""
     return {
-        "TINY": format.tiny, "DIVISOR": format.divisor, "EPSILON": format.epsilon, "EXPONENT": format.exponent,
+        "TINY": format.tiny, "DIVISOR": format.divisor, "SQUARE": format.square, "EPSILON": format.epsilon, "EXPONENT": format.exponent,
         "LARGEST": format.largest, "ROOT": format.largest**0.5, "LOW": limits[0], "HIGH": limits[1],
     }  # fmt: skip
 
@@ -613,7 +613,7 @@ vec2 unpackHalf2x16(uint x) {
     ),
     Builtin("normalize", ("vecF(vecF)", "float(float)"), "x / length(x).",
         range="whole: unit(x)",
-        guards=(Guard("F.tiny**0.5 < x.low and x.high < F.largest**0.5", "the direction of a zero vector", "x * inversesqrt(max(dot(x, x), TINY))",
+        guards=(Guard("F.square**0.5 < x.low and x.high < F.largest**0.5", "the direction of a zero vector", "x * inversesqrt(max(dot(x, x), SQUARE))",
             doc="The direction of `x`; of a zero vector, 0."),),
         inside="(dot(x, x) < 1e38) & (dot(x, x) > 1e-30)",
         domain="dot(x, x) > 0 and does not overflow", texts={"hlsl/float": "", "wgsl/float": ""},

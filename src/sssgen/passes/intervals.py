@@ -152,7 +152,7 @@ def _value(function: Callable[[float], float], x: float) -> float:
     try:
         return float(function(x))
     except OverflowError:
-        return INF if x > 0.0 else x  # floor and its kind of an infinity are itself
+        return math.copysign(INF, x)
     except ValueError:
         return -INF
 
@@ -199,7 +199,10 @@ def fraction(x: Range) -> Range:
 
 
 def rounded(x: Range, format: Format) -> Range:
-    """A range after correct rounding of its values; what is beyond the largest number is infinite."""
+    """A range after correct rounding of its values; what is beyond the largest number is infinite.
+
+    A compiler may leave the rounding out where a sum takes the result (contraction), so the exact ends stay in it.
+    """
     low, high = format.rounded(x.low), format.rounded(x.high)
     gap = x.gap
     if gap:
@@ -208,7 +211,8 @@ def rounded(x: Range, format: Format) -> Range:
             gap = 0.0
             low = 0.0 if low > 0.0 else low
             high = 0.0 if high < 0.0 else high
-    return Range(low, high, gap)
+    low, high = min(low, x.low) if low else 0.0, max(high, x.high) if high else 0.0
+    return Range(low, high, min(gap, x.gap))
 
 
 def widened(x: Range, relative: float, absolute: float = 0.0) -> Range:

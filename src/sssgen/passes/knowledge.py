@@ -13,6 +13,17 @@ from .intervals import INF, Range, maximum, minimum
 Key = tuple[object, ...]
 Terms = tuple[tuple[int, float], ...]
 """A sum of numbers, each times a factor, in the order of the numbers."""
+_TERMS = 8
+"""The most terms of a sum; a longer one is a term itself."""
+
+
+class Sum(NamedTuple):
+    """What a value is made of by sums and differences."""
+
+    terms: Terms
+    constant: float = 0.0
+    slack: float = 0.0
+    """How far the value may be from that, by rounding."""
 
 
 class Numbers:
@@ -21,6 +32,7 @@ class Numbers:
     def __init__(self) -> None:
         self.known: dict[Key, int] = {}
         self.definitions: list[Key] = []
+        self.sums: dict[int, Sum] = {}
 
     def of(self, *key: object) -> int:
         found = self.known.get(key)
@@ -34,23 +46,29 @@ class Numbers:
         self.definitions.append(("new",))
         return len(self.definitions) - 1
 
-    def sum_of(self, number: int) -> tuple[Terms, float, bool]:
-        """A value as a sum: terms, a constant, and whether it is a single term itself."""
+    def sum(self, op: str, left: int, right: int, kind: str, slack: float) -> int:
+        """The number of a sum or difference, which rounds by `slack` at most (infinite where an integer may wrap)."""
+        found = self.of(op, *(sorted((left, right)) if op == "+" else (left, right)), kind)
+        one, two = self.sum_of(left), self.sum_of(right)
+        sign = 1.0 if op == "+" else -1.0
+        terms = _added(one.terms, two.terms, sign)
+        if len(terms) <= _TERMS:
+            known = self.sums.get(found)
+            most = max(one.slack + two.slack + slack, known.slack if known else 0.0)
+            self.sums[found] = Sum(terms, one.constant + sign * two.constant, most)
+        return found
+
+    def sum_of(self, number: int) -> Sum:
+        """A value as a sum; what is none is its only term."""
         key = self.definitions[number]
         if key[0] == "constant":
-            return (), float(key[1]), True  # type: ignore[arg-type]  # a constant's definition holds its value
-        if key[0] in ("+", "-"):
-            sign = 1.0 if key[0] == "+" else -1.0
-            left, one, _ = self.sum_of(key[1])  # type: ignore[arg-type]  # operands are numbers
-            right, two, _ = self.sum_of(key[2])  # type: ignore[arg-type]  # operands are numbers
-            return _added(left, right, sign), one + sign * two, False
-        return ((number, 1.0),), 0.0, True
+            return Sum((), float(key[1]))  # type: ignore[arg-type]  # a constant's definition holds its value
+        return self.sums.get(number) or Sum(((number, 1.0),))
 
-    def difference(self, left: int, right: int) -> tuple[Terms, float, bool]:
-        """`left - right` as a sum, and whether it is free of rounding."""
-        one, a, single = self.sum_of(left)
-        two, b, also = self.sum_of(right)
-        return _added(one, two, -1.0), a - b, single and also
+    def difference(self, left: int, right: int) -> Sum:
+        """`left - right` as a sum."""
+        one, two = self.sum_of(left), self.sum_of(right)
+        return Sum(_added(one.terms, two.terms, -1.0), one.constant - two.constant, one.slack + two.slack)
 
 
 def _added(one: Terms, two: Terms, sign: float) -> Terms:
@@ -109,8 +127,8 @@ class Facts(NamedTuple):
             step = 1.0 if whole and op == "<" else 0.0
             self.learn(numbers, a, Range(-INF, y.high - step))
             self.learn(numbers, b, Range(x.low + step, INF))
-            terms, constant, _ = numbers.difference(a, b)
-            self.upper[terms] = min(self.upper.get(terms, INF), -constant - step)
+            terms, constant, slack = numbers.difference(a, b)
+            self.upper[terms] = min(self.upper.get(terms, INF), slack - constant - step)
             self.upper[_pair(a, b)] = -step
         elif op == "==":
             both = maximum(minimum(x, y.high), y.low)
@@ -119,15 +137,13 @@ class Facts(NamedTuple):
         elif op == "!=" and y.low == y.high == 0.0 and whole:
             self.learn(numbers, a, Range(-INF, INF, 1.0))
 
-    def bound(self, numbers: Numbers, left: int, right: int, slack: float) -> float:
-        """The most that `left - right` may be; `slack` for the rounding of sums."""
+    def bound(self, numbers: Numbers, left: int, right: int) -> float:
+        """The most that `left - right` may be."""
         known = self.upper.get(_pair(left, right))
         if known is not None:
             return known
-        terms, constant, exact = numbers.difference(left, right)
-        if not terms:
-            return constant + (0.0 if exact else slack)
-        return self.upper.get(terms, INF) + constant + (0.0 if exact else slack)
+        terms, constant, slack = numbers.difference(left, right)
+        return (self.upper.get(terms, INF) if terms else 0.0) + constant + slack
 
 
 def _pair(left: int, right: int) -> Terms:

@@ -114,6 +114,6 @@ class Builtins(Known):
         def ordered(_y: Range, _z: Range) -> bool:
             facts = self.state.facts
             pairs = zip(args[1].numbers, args[2].numbers, strict=False)
-            return all(facts.bound(self.numbers, m, n, 1e-30) <= 0.0 for m, n in pairs)
+            return all(facts.bound(self.numbers, m, n) <= 0.0 for m, n in pairs)
 
         return ordered

@@ -13,8 +13,9 @@ from ..ir.types import BOOL, Array, Matrix, Struct, kind_of
 from . import vectors
 from .intervals import ANY, INF, Range, as_range, clip, hull, square, widened
 from .range_builtins import FETCHES, Builtins
+from .range_state import State
 from .shapes import field_at, hull_of, matrix_product, scalars
-from .sites import DIVISION, ELEMENT, TEXEL, WHOLE_NUMBER
+from .sites import COUNT, DIVISION, ELEMENT, TEXEL, WHOLE_NUMBER
 from .vectors import Value, length_of
 
 
@@ -67,7 +68,7 @@ class Expressions(Builtins):
             self.state = outer.copy()
             self.learn(left.numbers[0], node.op == "&&")
         right = self.expr(node.right)
-        self.state = outer
+        self.state = self.after_either(outer, [self.state])
         a, b = left.parts[0], right.parts[0]
         part = {
             "&&": Range(min(a.low, b.low), min(a.high, b.high)),
@@ -81,9 +82,10 @@ class Expressions(Builtins):
         if node.type == BOOL and op in ("<", ">", "<=", ">=", "==", "!="):
             return self.comparison(node, left, right)
         if op == "*" and (isinstance(node.left.type, Matrix) or isinstance(node.right.type, Matrix)):
-            product = matrix_product(node.left.type, left.parts, node.right.type, right.parts)
+            slack = 8.0 * self.format.epsilon
+            product = matrix_product(node.left.type, left.parts, node.right.type, right.parts, slack)
             if product is not None:
-                return self.computed(node, [widened(p, 1e-6) for p in product], [self.numbers.fresh() for _ in product])
+                return self.computed(node, product, [self.numbers.fresh() for _ in product])
         if op in ("%", "<<", ">>", "&", "|", "^") or (op == "/" and kind != "float"):
             return self.integer(node, left, right)
         if op == "/":
@@ -95,10 +97,13 @@ class Expressions(Builtins):
             b, n = right.parts[index % len(right.parts)], right.numbers[index % len(right.numbers)]
             if op == "*":
                 parts.append(square(a) if m == n else a * b)
-                numbers.append(self.numbers.of("squares", m) if m == n else self.numbers.of("*", *sorted((m, n))))
+                if m == n and kind == "float":
+                    numbers.append(self.numbers.of("squares", m))
+                else:  # an integer's product may wrap, unlike that of the floats with the same numbers
+                    numbers.append(self.numbers.of("*", *sorted((m, n)), kind))
             else:
                 parts.append(self.sum(a, m, b, n, op))
-                numbers.append(self.numbers.of(op, *(sorted((m, n)) if op == "+" else (m, n))))
+                numbers.append(self.numbers.sum(op, m, n, kind, self.slack(a, b, parts[-1], kind)))
         return self.computed(node, parts, numbers, self.length_after(op, left, right))
 
     def sum(self, a: Range, m: int, b: Range, n: int, op: str) -> Range:
@@ -109,33 +114,42 @@ class Expressions(Builtins):
         found = a - b
         facts = self.state.facts
         if facts.upper:
-            slack = 8.0 * self.format.epsilon * (a.size + b.size)
-            high, low = facts.bound(self.numbers, m, n, slack), -facts.bound(self.numbers, n, m, slack)
+            high, low = facts.bound(self.numbers, m, n), -facts.bound(self.numbers, n, m)
             found = found.met(Range(low, high)) if low <= high else found
         return found
+
+    def slack(self, a: Range, b: Range, sum: Range, kind: str) -> float:
+        """How far a sum of a and b may be from the exact one."""
+        limits = self.limits(kind)
+        if sum.low < limits.low or sum.high > limits.high:  # it wraps, or is clamped
+            return INF
+        return self.format.epsilon * (a.size + b.size) if kind == "float" else 0.0
 
     def length_after(self, op: str, left: Value, right: Value) -> Range:
         """The length of a vector's sum or of its product with a number."""
         if len(left.parts) == len(right.parts) and op in "+-":
-            return widened(vectors.total_length(left.length, right.length), 1e-6)
+            slack = 8.0 * self.format.epsilon  # the difference of lengths rounds by a part of their sum
+            return widened(vectors.total_length(left.length, right.length), 0.0, slack * (left.length.high + right.length.high))
         if op == "*" and 1 in (len(left.parts), len(right.parts)) and len(left.parts) != len(right.parts):
             one, vector = (left, right) if len(left.parts) == 1 else (right, left)
             scale = length_of(one.parts)
-            return widened(scale * vector.length, 1e-6) if vector.length.high < INF else ANY
+            return widened(scale * vector.length, 8.0 * self.format.epsilon) if vector.length.high < INF else ANY
         return ANY
 
     def division(self, node: ir.Binary, left: Value, right: Value) -> Value:
         size = max(len(left.parts), len(right.parts))
         least = self.format.tiny
+        counts = _is_count(node.right) and all(b.low >= 0.0 for b in right.parts)
+        smallest = 1.0 if counts else self.format.divisor
         parts, numbers, proven = [], [], True
         for index in range(size):
             a, m = left.parts[index % len(left.parts)], left.numbers[index % len(left.numbers)]
             b, n = right.parts[index % len(right.parts)], right.numbers[index % len(right.numbers)]
-            safe = b.gap >= least and a.size / b.gap <= self.format.largest
+            safe = b.gap >= least
             proven &= safe
             if not safe:  # as the guard makes it
-                gap = max(b.gap, self.format.divisor)
-                b = Range(max(b.low, gap), max(b.high, gap)) if b.low >= 0.0 else Range(b.low, b.high, gap)
+                gap = max(b.gap, smallest)
+                b = Range(gap if b.low >= 0.0 else min(b.low, -gap), max(b.high, gap), gap)
             part = widened(a / b, 3.0 * self.format.epsilon)
             if b.low > 0.0 and (slack := self.ratio(a, m, b, n)) is not None:
                 part = part.met(Range(-INF, slack))
@@ -147,7 +161,7 @@ class Expressions(Builtins):
         dividend = left.parts[0]
         for part in left.parts[1:]:
             dividend = dividend.joined(part)
-        self.note(node, "/", proven, DIVISION, (dividend, divisor))
+        self.note(node, "/", proven, COUNT if counts else DIVISION, (dividend, divisor))
         return self.computed(node, parts, numbers)
 
     def ratio(self, a: Range, m: int, b: Range, n: int) -> float | None:
@@ -155,7 +169,7 @@ class Expressions(Builtins):
         facts = self.state.facts
         if not facts.upper:
             return None
-        over = facts.bound(self.numbers, m, n, 8.0 * self.format.epsilon * (a.size + b.size))
+        over = facts.bound(self.numbers, m, n)
         if over == INF:
             return None
         return (1.0 + over / (b.low if over > 0.0 else b.high)) * (1.0 + 3.0 * self.format.epsilon)
@@ -200,11 +214,18 @@ class Expressions(Builtins):
         for truth, arm in ((True, node.yes), (False, node.no)):
             self.state = outer.copy()
             self.learn(condition.numbers[0], truth)
-            arms.append((self.known(self.expr(arm)), self.state.facts))
-        self.state = outer
+            arms.append((self.known(self.expr(arm)), self.state))
+        self.state = self.after_either(outer, [state for _, state in arms])
         if condition.parts[0].low == 1.0 or condition.parts[0].high == 0.0:
             return arms[0 if condition.parts[0].low == 1.0 else 1][0]
-        return self.joined(arms[0][0], arms[1][0], arms[0][1], arms[1][1])
+        return self.joined(arms[0][0], arms[1][0], arms[0][1].facts, arms[1][1].facts)
+
+    def after_either(self, before: State, after: list[State]) -> State:
+        """The state behind parts of which one or none ran: what their calls wrote."""
+        for state in after:
+            if any(value is not state.env[name] for name, value in before.env.items()):
+                return cast(State, self.join_all([before, *after]))
+        return before
 
     def intrinsic(self, node: ir.Intrinsic) -> Value:
         args = tuple([self.expr(arg) for arg in node.args])
@@ -289,7 +310,9 @@ class Expressions(Builtins):
         else:
             value = self.expr(inner)
         at = ["xyzw".index(letter) for letter in node.components]
-        length = value.length if sorted(at) == list(range(len(value.parts))) else Range(0.0, value.length.high)
+        length = ANY  # of a component twice, what the components say
+        if len(set(at)) == len(at):
+            length = value.length if len(at) == len(value.parts) else Range(0.0, value.length.high)
         return self.value(tuple([value.parts[i] for i in at]), tuple([value.numbers[i] for i in at]), length)
 
     def index(self, node: ir.Index) -> Value:
@@ -302,7 +325,7 @@ class Expressions(Builtins):
                 node, "index", index.low >= 0.0 and index.high <= count - 1.0, ELEMENT, (index,), (0.0, count - 1.0)
             )
         if isinstance(node.value.type, Array):
-            return Value(value.parts, tuple([self.numbers.fresh() for _ in value.parts]))
+            return self.value(value.parts, tuple([self.numbers.fresh() for _ in value.parts]))
         size = scalars(node.type)
         if index.low == index.high and 0 <= index.low < count:
             start = int(index.low) * size
@@ -319,6 +342,11 @@ class Expressions(Builtins):
         value = self.expr(node.value)
         start, count = field_at(cast(Struct, node.value.type), node.field)
         return self.value(value.parts[start : start + count], value.numbers[start : start + count])
+
+
+def _is_count(node: ir.Expr) -> bool:
+    """Whether this is an integer made a float."""
+    return isinstance(node, ir.Construct) and len(node.args) == 1 and kind_of(node.args[0].type) in ("int", "uint")
 
 
 _METHODS: dict[type, Callable[[Any, Any], Value]] = {

@@ -58,7 +58,7 @@ class _Analysis(Loops):
         self.state = State({}, Facts({}, {}))
         args = [
             self.unknown(param.type) if param.direction == "out" else self.given(
-                param.type, contracts.of_param(param, self.format)
+                param.type, contracts.from_outside(param, self.format)
             )
             for param in function.params
         ]  # fmt: skip

@@ -7,7 +7,7 @@ from typing import cast
 from ..ir import nodes as ir
 from ..ir.types import Array, Matrix, Scalar, Struct, Type, components, kind_of
 from ..ir.walk import expressions, subexpressions
-from .intervals import ANY, Range
+from .intervals import ANY, INF, Range, widened
 
 
 def calls_in(stmt: ir.Stmt) -> list[ir.Call]:
@@ -44,8 +44,10 @@ def field_at(type_: Struct, name: str) -> tuple[int, int]:
     raise KeyError(name)
 
 
-def matrix_product(left: Type, a: tuple[Range, ...], right: Type, b: tuple[Range, ...]) -> list[Range] | None:
-    """The components of a matrix product; None for a product with a number."""
+def matrix_product(
+    left: Type, a: tuple[Range, ...], right: Type, b: tuple[Range, ...], slack: float
+) -> list[Range] | None:
+    """The components of a matrix product; None for a product with a number. The sums round by `slack` of their terms."""
     if isinstance(left, Scalar) or isinstance(right, Scalar):
         return None
     size = left.size if isinstance(left, Matrix) else cast(Matrix, right).size
@@ -54,10 +56,10 @@ def matrix_product(left: Type, a: tuple[Range, ...], right: Type, b: tuple[Range
     found = []
     for column in columns:
         for row in rows:
-            total = Range(0.0, 0.0)
+            total, size = Range(0.0, 0.0), 0.0
             for x, y in zip(row, column, strict=True):
-                total = total + x * y
-            found.append(total)
+                total, size = total + x * y, size + (x * y).size
+            found.append(widened(total, 0.0, slack * size) if size < INF else total)
     return found
 
 

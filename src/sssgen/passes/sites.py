@@ -17,6 +17,7 @@ TEXEL = Guard(
 )  # fmt: skip
 BOUNDS = Guard("", "a quantity beyond its range", "clamp(x, LOW, HIGH)", "result")
 DIVISION = Guard("", "a division by 0", NONZERO, "y", "A divisor that is not 0, with the sign of `y`.")
+COUNT = Guard("", "a division by a count of 0", "max(y, 1.0)", "y")
 WHOLE_NUMBER = Guard("", "a float too large for an integer", "clamp(x, LOW, HIGH)", "x")
 ELEMENT = Guard("", "an index beyond the elements", "clamp(y, 0, LAST)", "y")
 
