@@ -73,7 +73,7 @@ def make_library(
 
     `called` are the keys of those that are called from outside; None means all of them. `at` is that of `guard`.
     """
-    module, notes, roots = _plain(module)
+    module, notes, roots = plain_module(module)
     guarded = guard(module, called or roots, guards, guard_source, polyfill, format_of(target), at)
     middle = _Middle(guarded.module, {}, None, {}, {}, _warnings(notes), guarded=guarded)
     return _finish(middle, target, "functions")
@@ -87,11 +87,11 @@ def sites_of(material: Material, target: Target, form: str) -> list[Site]:
 
 def library_sites(module: Module, called: Sequence[str] | None = None, format: Format = FLOAT32) -> list[Site]:
     """Every operation with a domain in a module of plain functions. Raises SssgenError."""
-    module, _, roots = _plain(module)
+    module, _, roots = plain_module(module)
     return analyse(module, called or roots, format).sites
 
 
-def _plain(module: Module) -> tuple[Module, list[Note], list[str]]:
+def plain_module(module: Module) -> tuple[Module, list[Note], list[str]]:
     """A module of plain functions folded, pruned and hoisted, and the keys of all of them."""
     roots = [function.key for function in module.functions if function.body is not None]
     module, notes = hoist(prune(_folded(module, {}), roots), roots)

@@ -93,6 +93,8 @@ class Builtin(NamedTuple):
     """What it costs: alu, transcendental, fetch or derivative."""
     cost: int = 1
     """Operations per component, for the static cost."""
+    once: int = 0
+    """Operations beside these, once a call: the one root of a length."""
     ulp: float = 4.0
     """The float32 error allowed against the float64 oracle, in units in the last place of the result's magnitude."""
     absolute: float = 0.0
@@ -580,7 +582,7 @@ vec2 unpackHalf2x16(uint x) {
     Builtin("length", ("float(genF)",), "Euclidean length.",
         range="whole: length(x)",
         inside="(dot(x, x) < 1e38) & ((dot(x, x) > 1e-30) | (dot(x, x) == 0.0))",
-        domain="dot(x, x) does not overflow: |x| < 1e19", kind="transcendental", cost=6, ulp=8.0,
+        domain="dot(x, x) does not overflow: |x| < 1e19", kind="transcendental", cost=2, once=4, ulp=8.0,
         clause="WGSL, Vulkan: that of sqrt(dot(x, x))",
         vectors=((((3.0, 4.0),), 5.0), (((0.0, 0.0, 0.0),), 0.0), ((-2.0,), 2.0)),
     ),
@@ -588,7 +590,7 @@ vec2 unpackHalf2x16(uint x) {
         range="whole: length(x, y)",
         inside="(dot(x - y, x - y) < 1e38) & ((dot(x - y, x - y) > 1e-30) | (dot(x - y, x - y) == 0.0))",
         domain="|x - y| < 1e19", texts={"hlsl/float,float": ""}, polyfill="float distance(float x, float y) { return abs(x - y); }",
-        kind="transcendental", cost=7, ulp=8.0, clause="WGSL, Vulkan: that of length(x - y)",
+        kind="transcendental", cost=3, once=4, ulp=8.0, clause="WGSL, Vulkan: that of length(x - y)",
         vectors=(
             (((4.0, 6.0), (1.0, 2.0)), 5.0), (((1.0, 2.0, 3.0), (1.0, 2.0, 3.0)), 0.0), ((1.0, -1.5), 2.5),
         ),
@@ -617,7 +619,7 @@ vec2 unpackHalf2x16(uint x) {
             doc="The direction of `x`; of a zero vector, 0."),),
         inside="(dot(x, x) < 1e38) & (dot(x, x) > 1e-30)",
         domain="dot(x, x) > 0 and does not overflow", texts={"hlsl/float": "", "wgsl/float": ""},
-        polyfill="float normalize(float x) { return sign(x); }", kind="transcendental", cost=7, ulp=8.0,
+        polyfill="float normalize(float x) { return sign(x); }", kind="transcendental", cost=3, once=4, ulp=8.0,
         clause="WGSL, Vulkan: that of x / length(x)",
         vectors=(
             (((3.0, 4.0),), (0.6, 0.8)),

@@ -106,7 +106,8 @@ class _Counter:
             if row.kind == "fetch":
                 return Cost(fetches=1)
             size = max([components(expr.type)] + [components(arg.type) for arg in expr.args])
-            return Cost(row.cost * size, size if row.kind == "transcendental" else 0)
+            roots = 1 if row.once else size
+            return Cost(row.cost * size + row.once, roots if row.kind == "transcendental" else 0)
         if isinstance(expr, ir.Binary):
             left, right = expr.left.type, expr.right.type
             if expr.op == "*" and isinstance(left, Matrix) and left != right:
