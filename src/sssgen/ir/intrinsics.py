@@ -270,7 +270,7 @@ BUILTINS: dict[str, Builtin] = _table(
         range="power(maximum(x, F.tiny), y)",
         guards=(
             Guard("(y * rising(math.log2, maximum(x, F.tiny))).high < F.exponent", "a power that overflows", "exp2(min(y * log2(max(x, TINY)), EXPONENT))"),
-            Guard("x.low > 0.0", "a power of 0 or less", "max(x, TINY)", "x"),
+            Guard("x.low > 0.0 or (x.low >= 0.0 and y.low >= 0.25)", "a power of less than 0, or one of 0 near the power 0", "max(x, TINY)", "x"),
         ),
         inside="(x > 0.0) & (abs(y) <= 64.0) & (abs(y * log2(max(x, 1e-38))) < 126.0)",
         domain="x > 0, or x = 0 and y > 0, where WGSL may miss 0; accurate for |y| <= 64", kind="transcendental", cost=9, ulp=600.0,

@@ -23,10 +23,12 @@ from .draw import drawn
 from .judge import non_finite
 from .shrink import lane, line, shrunk
 from .specimen import Specimen
-from .trial import RANDOM, Trial
+from .trial import BEYOND, RANDOM, Trial
 
 SAMPLES = 20_000
 """Random inputs, after the table's and the boundary values."""
+MORE = 64
+"""Inputs of a trial that a witness keeps."""
 
 
 class Witness(NamedTuple):
@@ -34,9 +36,14 @@ class Witness(NamedTuple):
 
     trial: str
     inputs: Inputs
+    """The simplest one found."""
     output: str
     command: str
     """The `sssgen eval` line that computes it without guards."""
+    specimen: Specimen
+    """With the functions that the trial bound to its slots."""
+    more: Inputs
+    """Some of those that the trial had."""
 
 
 def sites(specimen: Specimen) -> list[Site]:
@@ -47,7 +54,7 @@ def sites(specimen: Specimen) -> list[Site]:
 
 def witness(specimen: Specimen, site: Site, seed: int = 0) -> Witness | None:
     """The simplest input found that needs the guard of this operation, on NumPy in float32; None: none was found."""
-    poison = _only(site.what, site.place, "poison")
+    poison = only(site.what, site.place, "poison")
     for trial in _trials(specimen, seed):
         broken = _broken(trial.specimen, trial.inputs, poison)
         for output, lanes in broken.items():
@@ -57,8 +64,15 @@ def witness(specimen: Specimen, site: Site, seed: int = 0) -> Witness | None:
                 command = line(trial.specimen, small, "numpy-f32").replace(
                     "sssgen eval", "sssgen eval --guards none", 1
                 )
-                return Witness(trial.name, small, output, command)
+                return Witness(trial.name, small, output, command, trial.specimen, _some(trial.inputs, lanes))
     return None
+
+
+def _some(inputs: Inputs, lanes: Array) -> Inputs:
+    """The first of the lanes that fail."""
+    at = np.flatnonzero(lanes)[:MORE]
+    values = {name: value if value.shape[-1] == 1 else value[..., at] for name, value in inputs.values.items()}
+    return Inputs(values, inputs.textures, len(at))
 
 
 def _fails(specimen: Specimen, change: Callable[[Site], str], output: str, inputs: Inputs) -> Array:
@@ -66,15 +80,15 @@ def _fails(specimen: Specimen, change: Callable[[Site], str], output: str, input
 
 
 @cache
-def _only(what: str, place: str, change: str) -> Callable[[Site], str]:
+def only(what: str, place: str, change: str) -> Callable[[Site], str]:
     """What becomes of guards: `change` of the one named, `keep` of all others."""
     return lambda site: change if (site.what, site.place) == (what, place) else "keep"
 
 
 def _trials(specimen: Specimen, seed: int) -> Iterator[Trial]:
-    """The table's rows and the boundary values that are in the contract, then random inputs."""
+    """The table's rows and the boundary values, then random inputs."""
     every = [*dangerous.trials(specimen), *boundaries.trials(specimen, seed)]
-    yield from (trial for trial in every if trial.counts)
+    yield from (trial for trial in every if trial.counts or trial.name == BEYOND)
     rng = np.random.default_rng([seed, 4])
     yield Trial(RANDOM, specimen, drawn(specimen, SAMPLES, rng, FLOAT32))
 

@@ -1,0 +1,67 @@
+"""Takes guards out one by one: what then goes wrong, and on which back ends it is seen.
+
+A guard is needed where an input within the contract leaves the operation's domain and changes the result (`witness`).
+Whether that shows depends on the driver: what a language leaves undefined may come out right by chance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+
+from ...diagnostics import SssgenError
+from ...passes.sites import Site
+from ..backends import Array, Backend
+from ..deviation import errors
+from ..evaluate import run as evaluated
+from .judge import non_finite
+from .run import Machines
+from .specimen import Specimen
+from .witness import Witness, only, sites, witness
+
+CHANGED = 1e-3
+"""A result that differs by more than this, relative to the larger of its size and 1, is another one."""
+
+
+class Mutant(NamedTuple):
+    """A technique without one of its guards."""
+
+    specimen: Specimen
+    site: Site
+    witness: Witness | None
+    """None: no input was found that needs the guard."""
+    seen: dict[str, str]
+    """Back end → what came of it: `non-finite`, `another value`, or '' where nothing shows."""
+
+
+def mutants(specimen: Specimen, machines: Machines) -> Iterable[Mutant]:
+    """Each guard of a technique, taken out."""
+    for site in sites(specimen):
+        if not site.proven:
+            found = witness(specimen, site)
+            seen = {name: _seen(found, site, backend) for name, backend in machines.here.items()} if found else {}
+            yield Mutant(specimen, site, found, seen)
+
+
+def _seen(found: Witness, site: Site, backend: Backend) -> str:
+    """What the witness's inputs give without the guard, beside what they give with it."""
+    subject, change = found.specimen.subject, only(site.what, site.place, "drop")
+    try:
+        right = evaluated(subject, found.more, backend, "auto")
+        got = evaluated(subject, found.more, backend, "auto", change)
+    except SssgenError as error:
+        return error.diagnostics[0].message
+    values = [(got[name], right[name]) for name in right if right[name].dtype.kind == "f"]
+    if any(_non_finite(one) for one, _ in values):
+        return "non-finite"
+    return "another value" if any(_apart(one, other) > CHANGED for one, other in values) else ""
+
+
+def _non_finite(value: Array) -> bool:
+    return bool(non_finite(np.ascontiguousarray(value)).any())
+
+
+def _apart(got: Array, right: Array) -> float:
+    return float(errors(np.atleast_1d(got), np.atleast_1d(right)).max())
