@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import os
 from argparse import Namespace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..cli import CHECK_FAILED, OK, print_json
 from ..diagnostics import failure
 
 if TYPE_CHECKING:
     from ..harness.stress.report import Report
+    from ..harness.stress.run import Settings
+    from ..harness.stress.specimen import Specimen
 
 DEFAULT = {None: "numpy-f32,gl,webgpu,browser,hlsl", "f32": "numpy-f32,gl,webgpu,browser,hlsl", "f16": "numpy,webgpu"}
 """The back ends for each precision."""
@@ -31,9 +33,7 @@ def run(arguments: Namespace) -> int:
         raise failure(f"--samples {arguments.samples} is not a number of samples", f"from 1 to {MOST_SAMPLES}")
     if arguments.seed < 0:
         raise failure(f"--seed {arguments.seed} is below 0")
-    suffix = os.path.splitext(arguments.output)[1].lower() if arguments.output else ".md"
-    if suffix not in report.SUFFIXES:
-        raise failure(f"a report is no '{suffix}' file", f"it is one of {', '.join(report.SUFFIXES)}", arguments.output)
+    suffix = _suffix(arguments.output, report.SUFFIXES) if arguments.output else ""
     half = arguments.precision == "f16"
     rows = dangerous.chosen(arguments.row)
     settings = Settings(arguments.samples, arguments.seed, arguments.guards, half, rows)
@@ -67,7 +67,7 @@ def _backends(given: str, half: bool) -> list[str]:
     return list(dict.fromkeys(HALF.get(name, name) for name in names))
 
 
-def _stressed(chosen: list[Any], names: list[str], settings: Any) -> Report:
+def _stressed(chosen: list[Specimen], names: list[str], settings: Settings) -> Report:
     """Everything, with a progress line; a technique at a time on all back ends."""
     from ..harness.stress.progress import Progress
     from ..harness.stress.report import Report
@@ -83,6 +83,18 @@ def _stressed(chosen: list[Any], names: list[str], settings: Any) -> Report:
             rows.append(stress(one, machines, settings, told))
         devices = {name: backend.device() for name, backend in machines.here.items()}
     return Report(settings, devices, machines.missing, rows)
+
+
+def _suffix(path: str, known: tuple[str, ...]) -> str:
+    """The report's kind. What cannot be written is said now, not after minutes. Raises SssgenError."""
+    suffix = os.path.splitext(path)[1].lower()
+    if suffix not in known:
+        raise failure(f"a report is no '{suffix}' file", f"it is one of {', '.join(known)}", path)
+    folder = os.path.dirname(path) or "."
+    there = os.path.exists(folder)
+    if os.path.isdir(path) or (there and not (os.path.isdir(folder) and os.access(folder, os.W_OK))):
+        raise failure("cannot write the report here", "name a file in a folder that you may write to", path)
+    return suffix
 
 
 def _write(path: str, suffix: str, made: Report) -> None:

@@ -129,6 +129,8 @@ def _read_png(path: str, shown: str) -> Array:
         with warnings.catch_warnings():
             warnings.simplefilter("error", pillow.DecompressionBombWarning)
             with pillow.open(path, formats=["PNG"]) as image:
+                image.verify()  # sums that are wrong, and an end that is cut off, which loading passes over
+            with pillow.open(path, formats=["PNG"]) as image:
                 frames = getattr(image, "n_frames", 1)
                 image.load()
     except (pillow.DecompressionBombError, pillow.DecompressionBombWarning, MemoryError):
@@ -179,7 +181,8 @@ def _read_exr(path: str, shown: str) -> Array:
 
 def _read_npy(path: str, shown: str) -> Array:
     try:
-        array = np.load(path, allow_pickle=False)
+        with open(path, "rb") as file:
+            array = np.load(file, allow_pickle=False)
     except Exception as error:  # its header is read by Python's own tokenizer, which raises what it likes
         raise failure(f"this is not a NumPy array: {error}", "write it with numpy.save", shown) from None
     if not isinstance(array, np.ndarray):  # an .npz under another name

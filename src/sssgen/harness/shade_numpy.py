@@ -15,7 +15,7 @@ from ..ir.types import BY_NAME, Matrix, Vector, kind_of
 from ..targets.numpy_values import grid, precision
 from .backends import Array
 from .evaluate import default_texture
-from .shell import Shell
+from .shell import Shell, inverse
 
 BAND = 1 << 16
 """About how many pixels are shaded at once."""
@@ -72,26 +72,28 @@ def _inputs(shell: Shell, size: tuple[int, int], points: Array | None, rows: sli
     if points is None:
         x, y = np.meshgrid(np.arange(width), np.arange(rows.start, rows.stop))
         uv = np.stack([(x.ravel() + 0.5) / width, (y.ravel() + 0.5) / height])
-        far = np.linalg.inv(shell.view_projection) @ np.stack([*(2.0 * uv - 1.0), np.ones(x.size), np.ones(x.size)])
+        far = inverse(shell.view_projection) @ np.stack([*(2.0 * uv - 1.0), np.ones(x.size), np.ones(x.size)])
         found |= {"uv": uv, "ray_origin": np.broadcast_to(eye, (3, x.size)), "P": np.broadcast_to(eye, (3, x.size))}
         found |= {"ray_direction": _unit(far[:3] - eye * far[3])}
     else:
         data = points.reshape(height, width, 12)[rows].reshape(-1, 12).T.astype(np.float64)
-        model, inverse = shell.model, np.linalg.inv(shell.model)
+        model, world_to_object = shell.model, inverse(shell.model)
         place = model[:3, :3] @ data[0:3] + model[:3, 3:]
-        normal, tangent = _unit(inverse[:3, :3].T @ data[3:6]), model[:3, :3] @ data[6:9]
-        tangent /= np.sqrt(np.maximum((tangent * tangent).sum(axis=0), 1e-12))
+        normal, tangent = _unit(world_to_object[:3, :3].T @ data[3:6]), _unit(model[:3, :3] @ data[6:9])
         hand = data[9] * np.sign(np.linalg.det(model[:3, :3]))
         found |= {"uv": data[10:12], "P": place, "V": _unit(eye - place), "N": normal, "T": tangent}
         found |= {"B": np.cross(normal, tangent, axis=0) * hand}
-        found |= {"P_object": data[0:3], "V_object": _unit(inverse[:3, :3] @ found["V"])}
+        found |= {"P_object": data[0:3], "V_object": _unit(world_to_object[:3, :3] @ found["V"])}
         found |= {"N_object": _unit(model[:3, :3].T @ normal)}
     return {name: value.astype(dtype) for name, value in found.items()}
 
 
 def _unit(v: Array) -> Array:
-    found: Array = v / np.sqrt((v * v).sum(axis=0))
-    return found
+    """The shells' unit_vector, in float64: half precision has no square so small."""
+    wide = v.astype(np.float64)
+    square = (wide * wide).sum(axis=0)
+    found: Array = np.where(square > 1e-30, wide / np.sqrt(np.maximum(square, 1e-30)), 0.0)
+    return found.astype(v.dtype)
 
 
 def _light(shell: Shell, number: int, place: Array, dtype: str) -> dict[str, Any]:
@@ -101,8 +103,8 @@ def _light(shell: Shell, number: int, place: Array, dtype: str) -> dict[str, Any
     squared = np.maximum((to_light * to_light).sum(axis=0), np.asarray(1e-4, dtype))
     towards = to_light / np.sqrt(squared)
     falloff = 1.0 + (1.0 / squared - 1.0) * position[3]
-    inverse = np.linalg.inv(shell.model)[:3, :3].astype(dtype)
-    return {"L": towards, "light_color": color[:, None] * falloff, "L_object": _unit(inverse @ towards)}
+    world_to_object = inverse(shell.model)[:3, :3].astype(dtype)
+    return {"L": towards, "light_color": color[:, None] * falloff, "L_object": _unit(world_to_object @ towards)}
 
 
 def _main(

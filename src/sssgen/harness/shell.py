@@ -43,6 +43,15 @@ class Shell:
     """Likewise; those left out are one texel of their default."""
 
 
+def inverse(matrix: Array) -> Array:
+    """The inverse; of a singular matrix 0, which is what a program that sets no inverse leaves there."""
+    try:
+        found: Array = np.linalg.inv(matrix)
+    except np.linalg.LinAlgError:
+        found = np.zeros_like(matrix)
+    return found
+
+
 def drawing(
     compiled: Compiled, shell: Shell, size: tuple[int, int], vertices: Array | None, triangles: Array | None
 ) -> Drawing:
@@ -89,7 +98,6 @@ def _texture_place(binding: Mapping[str, Any]) -> Place:
 
 def _values(shell: Shell) -> dict[str, Array]:
     """Every loose uniform of the GLSL shells."""
-    inverse = np.linalg.inv
     positions, colors = _lights(shell)
     return {
         "model": shell.model.T,

@@ -18,13 +18,15 @@ from ..targets.numpy_textures import Texture
 from . import dice
 from .backends import Array, Bound, Drawing, Place, emitted
 from .backends.unity import UnityHLSL
-from .shell import Shell, textures
+from .shell import Shell, inverse, textures
 
 _BASE = ("UNITY_PASS_FORWARDBASE=1", "DIRECTIONAL=1", "LIGHTPROBE_SH=1")
 _ADD = {0.0: ("UNITY_PASS_FORWARDADD=1", "DIRECTIONAL=1"), 1.0: ("UNITY_PASS_FORWARDADD=1", "POINT=1")}
 """By a light position's w."""
 _FALLOFF = 8192
 """Texels of the table of a point light's falloff."""
+_NEAREST = 0.01
+"""The shortest reach of a light, as of the falloff in our other shells."""
 _LARGEST = 6e4
 """What a texel of float16 can hold."""
 _MOST_LIGHTS = 8
@@ -49,9 +51,9 @@ def _screen(shell: Shell) -> Array:
     """One triangle over the whole picture, in object space, as `dice` has its vertices."""
     corners = np.array([[-1.0, -1.0], [3.0, -1.0], [-1.0, 3.0]])
     clip = np.concatenate([corners, np.full((3, 1), 0.5), np.ones((3, 1))], axis=1)
-    placed = clip @ np.linalg.inv(shell.view_projection @ shell.model).T
+    placed = clip @ inverse(shell.view_projection @ shell.model).T
     vertices = np.zeros((3, 12))
-    vertices[:, :3] = placed[:, :3] / placed[:, 3:]
+    vertices[:, :3] = placed[:, :3] / np.where(placed[:, 3:] == 0.0, 1.0, placed[:, 3:])
     vertices[:, 3:10] = [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0]
     vertices[:, 10:] = 0.5 * corners + 0.5
     return vertices.astype(np.float32)
@@ -92,10 +94,10 @@ def _engine(shell: Shell, size: tuple[int, int]) -> dict[str, Array]:
     screen = np.array([width, height, 1.0 + 1.0 / width, 1.0 + 1.0 / height])
     values = {
         "unity_ObjectToWorld": shell.model.T,
-        "unity_WorldToObject": np.linalg.inv(shell.model).T,
+        "unity_WorldToObject": inverse(shell.model).T,
         "unity_WorldTransformParams": one * np.sign(np.linalg.det(shell.model[:3, :3])),
         "unity_MatrixVP": shell.view_projection.T,
-        "unity_MatrixInvVP": np.linalg.inv(shell.view_projection).T,
+        "unity_MatrixInvVP": inverse(shell.view_projection).T,
         "_WorldSpaceCameraPos": np.array(shell.camera_position),
         "_Time": shell.time * np.array([0.05, 1.0, 2.0, 3.0]),
         "_ProjectionParams": np.array([1.0, 0.1, 100.0, 0.01]),
@@ -131,9 +133,9 @@ def _builtin_light(position: Array, color: Array, reach: float = 1.0) -> dict[st
 
 
 def _reach(shell: Shell, position: Array, points: Array) -> float:
-    """The largest distance of a point from a light."""
+    """The largest distance of a point from a light, which all may stand in."""
     placed = points[:, :3] @ shell.model[:3, :3].T + shell.model[:3, 3]
-    return 1.01 * float(np.linalg.norm(placed - position[:3], axis=1).max())
+    return max(1.01 * float(np.linalg.norm(placed - position[:3], axis=1).max()), _NEAREST)
 
 
 def _falloff() -> Texture:

@@ -28,6 +28,8 @@ class Contract(NamedTuple):
 
 LENGTH = 1.001
 """The greatest length of a direction. Interpolated normals are shorter than 1, missing ones 0."""
+LONG = 300.0
+"""The length up to which a direction that is none may be passed in half precision. In float32 no length matters."""
 ONE = 1.0 + 2.0**-10
 """The most that thinness and transmittance may be: 1, and what functions of few digits add to it."""
 POSITION = {FLOAT32.name: 1e6, "half": 100.0}
@@ -70,7 +72,10 @@ def from_outside(param: Param, format: Format = FLOAT32) -> Contract:
         return _around(format.largest)
     if param.quantity in _UNIT:
         return _around(POSITION[format.name])
-    return of_param(param, format)
+    found = of_param(param, format)
+    if found.length < float("inf") and format.largest < LONG**4:
+        return Contract(-LONG, LONG, LONG)  # its square would overflow
+    return found
 
 
 def of_quantity(quantity: str, format: Format = FLOAT32) -> Contract | None:

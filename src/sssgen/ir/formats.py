@@ -41,4 +41,4 @@ def _format(format: Format) -> Format:
 
 
 FLOAT32 = _format(Format("float", "f", 2.0**128 - 2.0**104, 1e-37, 1e-20, 1e-30, 2.0**-23, 126.0))
-FLOAT16 = _format(Format("half", "e", 65504.0, 1e-4, 1e-3, 1e-3, 2.0**-10, 15.0))
+FLOAT16 = _format(Format("half", "e", 65504.0, 1e-4, 1e-4, 1e-3, 2.0**-10, 15.0))

@@ -27,7 +27,7 @@ class Range:
             gap = max(gap, -high)
         elif gap > 0.0:
             if low > -gap:
-                low = gap
+                low, high = gap, max(high, gap)
             elif high < gap:
                 high = -gap
         self.low, self.high, self.gap = low, high, gap
@@ -216,10 +216,8 @@ def rounded(x: Range, format: Format) -> Range:
 
 
 def widened(x: Range, relative: float, absolute: float = 0.0) -> Range:
-    """A range after a computation with this error. What is exactly 0 at an end keeps its sign without `absolute`."""
-    low = x.low - abs(x.low) * relative - absolute
-    high = x.high + abs(x.high) * relative + absolute
+    """A range after a computation with this error: `relative`, below 1, to what it is, and `absolute`."""
+    low = x.low - _times(abs(x.low), relative) - absolute
+    high = x.high + _times(abs(x.high), relative) + absolute
     gap = max(x.gap * (1.0 - relative) - absolute, 0.0)
-    if x.low > 0.0 >= low:
-        low = 0.0
     return Range(low, high, gap)

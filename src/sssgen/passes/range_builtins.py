@@ -9,7 +9,7 @@ from ..ir.formats import FLOAT32
 from ..ir.intrinsics import BUILTINS
 from ..ir.types import kind_of
 from . import builtin_ranges
-from .intervals import ANY, INF, Range, clip, widened
+from .intervals import ANY, INF, Range, clip, rounded, widened
 from .range_state import Known
 from .shapes import hull_of, scalars
 from .sites import TEXEL
@@ -86,12 +86,19 @@ class Builtins(Known):
         rows = [seen if whole else [arg.parts[at if len(arg.parts) > 1 else 0] for arg in args] for at in lanes]
         ordered = self.ordering(args)
         for guard in row.guards:
-            checks = [builtin_ranges.evaluated(guard.needs, self.format, one, ordered) for one in rows]
+            checks = [
+                builtin_ranges.evaluated(guard.needs, self.format, [self.flushed(part) for part in one], ordered)
+                for one in rows
+            ]
             if not all(checks):
                 needed = guard
                 break
         self.note(node, node.name, needed is None, needed or row.guards[-1], tuple(seen))
         return (args, False) if needed is None else (self.as_guarded(node.name, args), True)
+
+    def flushed(self, part: Range) -> Range:
+        """A range as a GPU may have it, which makes subnormal numbers 0."""
+        return rounded(part, self.format) if 0.0 < part.gap < self.format.tiny else part
 
     def as_guarded(self, name: str, args: tuple[Value, ...]) -> tuple[Value, ...]:
         if name in ("mod", "fmod"):

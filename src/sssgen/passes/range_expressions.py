@@ -172,7 +172,7 @@ class Expressions(Builtins):
         over = facts.bound(self.numbers, m, n)
         if over == INF:
             return None
-        return (1.0 + over / (b.low if over > 0.0 else b.high)) * (1.0 + 3.0 * self.format.epsilon)
+        return widened(as_range(1.0 + over / (b.low if over > 0.0 else b.high)), 3.0 * self.format.epsilon).high
 
     def integer(self, node: ir.Binary, left: Value, right: Value) -> Value:
         """Integer operators without a rule of their own; what languages leave undefined, `legalise` defines."""

@@ -6,14 +6,13 @@ by what is added, times the rounds.
 
 from __future__ import annotations
 
-from typing import Any
-
 from ..ir import nodes as ir
+from ..ir.types import kind_of
 from ..ir.walk import root, statements
-from .intervals import INF, Range, clip, widened
+from .intervals import INF, Range, clip
 from .range_expressions import Expressions
 from .range_state import Loop, State
-from .shapes import calls_in
+from .shapes import calls_in, scalars
 from .vectors import Value, length_of
 
 _ROUNDS = 3
@@ -36,7 +35,7 @@ class Loops(Expressions):
         ways: list[State | None] = []
         # the first round as it is: what it adds keeps sums from being 0; of a short loop, all of them
         for _ in range(int(trips) if trips <= _UNROLLED else 1):
-            frame, after, left = self.round(stmt, state.copy(), 1.0)
+            frame, after, left = self.round(stmt, state.copy(), trips)
             ways += [left, *frame.broken]
             if after is None:
                 return self.join_all(ways)
@@ -51,7 +50,7 @@ class Loops(Expressions):
         inside: State | None = state
         if stmt.condition is not None:
             condition = self.expr(stmt.condition)
-            known = condition.parts[0]
+            state, known = self.state, condition.parts[0]
             if known.low < 1.0:
                 self.state = state.copy()
                 self.learn(condition.numbers[0], False)
@@ -72,19 +71,21 @@ class Loops(Expressions):
     def rounds(self, stmt: ir.For | ir.While, entry: State, trips: float) -> list[State | None]:
         """Any number of rounds from `entry`: the ways out."""
         block = (*stmt.body, *((stmt.step,) if isinstance(stmt, ir.For) and stmt.step is not None else ()))
+        if stmt.condition is not None:  # its calls may write
+            block = (*block, ir.Return(stmt.condition, stmt.span))
         written = self.written(block)
-        summed = {name for name in written if name in entry.env and self.is_sum(name, block)}
+        sums = {name: self.sum_kind(name, block) for name in written if name in entry.env}
         numbers = {name: [self.numbers.fresh() for _ in value.parts] for name, value in entry.env.items()}
         recording, self.recording = self.recording, False
         ranges = {name: entry.env[name].parts for name in written if name in entry.env}
         for attempt in range(24):
             head = self.head(entry, ranges, numbers)
-            loop, after, _ = self.round(stmt, head.copy(), trips)
+            loop, after, _ = self.round(stmt, head.copy(), trips + 1.0)
             if after is None:
                 break
             found = {
-                name: self.grown(entry.env[name].parts, loop.added.get(name, {}), trips)
-                if name in summed
+                name: self.grown(entry.env[name].parts, loop.added.get(name, {}), trips, sums[name])
+                if sums[name]
                 else self.after(after, name, ranges[name])
                 for name in ranges
             }
@@ -100,7 +101,7 @@ class Loops(Expressions):
             kinds = {name: entry.env[name].parts for name in ranges}
             ranges = {name: tuple([self.everything(part) for part in parts]) for name, parts in kinds.items()}
         self.recording = recording
-        loop, _, left = self.round(stmt, self.head(entry, ranges, numbers), trips)
+        loop, _, left = self.round(stmt, self.head(entry, ranges, numbers), trips + 1.0)
         return [left, *loop.broken]
 
     def head(self, entry: State, ranges: dict[str, tuple[Range, ...]], numbers: dict[str, list[int]]) -> State:
@@ -116,23 +117,32 @@ class Loops(Expressions):
         parts = [p.met(facts[n]) if n in facts else p for p, n in zip(value.parts, value.numbers, strict=True)]
         return tuple([part.joined(old) for part, old in zip(parts, before, strict=True)])
 
-    def grown(self, start: tuple[Range, ...], added: dict[int, tuple[list[Range], float]], trips: float) -> Any:
+    def grown(
+        self, start: tuple[Range, ...], added: dict[int, tuple[list[Range], float]], trips: float, kind: str
+    ) -> tuple[Range, ...]:
         """A sum after any number of rounds."""
         found = list(start)
+        grows = [(False, False)] * len(found)
+        total = 0.0
         for parts, times in added.values():
             for index, part in enumerate(parts):
                 low, high = min(part.low, 0.0), max(part.high, 0.0)
                 count = trips * times
-                most = Range(low * count if low else 0.0, high * count if high else 0.0)
-                # each sum rounds
-                found[index] = widened(
-                    found[index] + most, self.format.epsilon * min(count, 1e3) if count > 1.0 else 0.0
-                )
-        return tuple([self.whole(part) for part in found])
+                found[index] += Range(low * count if low else 0.0, high * count if high else 0.0)
+                grows[index] = grows[index][0] or low < 0.0, grows[index][1] or high > 0.0
+            total += trips * times
+        if kind != "float":
+            limits = self.limits(kind)  # beyond them it wraps
+            return tuple([part if part.low >= limits.low and part.high <= limits.high else limits for part in found])
+        # each sum rounds; what grows one way keeps its other end
+        error = min(self.format.epsilon * total, 1.0)
+        for index, (part, (falls, rises)) in enumerate(zip(found, grows, strict=True)):
+            off = error * min(part.size, self.format.largest)
+            found[index] = self.held(Range(part.low - off * falls, part.high + off * rises))
+        return tuple(found)
 
-    def whole(self, part: Range) -> Range:
-        largest = max(self.format.largest, 2.0**32)
-        return clip(part, -largest, largest)
+    def held(self, part: Range) -> Range:
+        return clip(part, -self.format.largest, self.format.largest)
 
     def wider(self, old: Range, new: Range, attempt: int) -> Range:
         """A range for the next attempt: what was found, then more and more."""
@@ -154,6 +164,7 @@ class Loops(Expressions):
     def add(self, name: str, stmt: ir.Assign, value: Value) -> None:
         """Notes what a statement adds to a variable, for every loop around it."""
         parts = [-part for part in value.parts] if stmt.op == "-" else list(value.parts)
+        parts = parts * (scalars(stmt.target.type) // len(parts))
         times = 1.0
         for loop in reversed(self.loops):
             known = loop.added.setdefault(name, {}).get(id(stmt))
@@ -172,38 +183,53 @@ class Loops(Expressions):
                         found.add(variable.name)
         return found
 
-    def is_sum(self, name: str, block: ir.Block) -> bool:
-        """Whether a variable is only added to in a block."""
+    def sum_kind(self, name: str, block: ir.Block) -> str:
+        """The kind of a variable that a block only adds to; '' for any other."""
+        kind = ""
         for stmt in statements(block):
             if isinstance(stmt, ir.Assign):
                 variable = root(stmt.target)
                 plain = stmt.op in ("+", "-") and variable is stmt.target
-                if variable is not None and variable.name == name and not plain:
-                    return False
+                if variable is not None and variable.name == name:
+                    if not plain:
+                        return ""
+                    kind = kind_of(variable.type)
             for call in calls_in(stmt):
                 params = self.functions[call.function].params
                 for param, arg in zip(params, call.args, strict=True):
                     variable = root(arg) if param.direction != "in" else None
                     if variable is not None and variable.name == name:
-                        return False
-        return True
+                        return ""
+        return kind
 
     def trips(self, stmt: ir.For | ir.While) -> float:
         """The most rounds of a loop, as its header says; infinite where it does not."""
         if not isinstance(stmt, ir.For) or not isinstance(stmt.step, ir.Assign) or stmt.step.op not in ("+", "-"):
             return INF
         counter = stmt.step.target
+        step = self.expr(stmt.step.value).parts[0]
+        if stmt.step.op == "-":
+            step = -step
+        most = INF
         conditions = [stmt.condition]
         while conditions:
             condition = conditions.pop()
             if isinstance(condition, ir.Binary) and condition.op == "&&":
                 conditions += [condition.left, condition.right]
             elif isinstance(condition, ir.Binary) and isinstance(counter, ir.Local):
-                for near, far in ((condition.left, condition.right), (condition.right, condition.left)):
+                swapped = condition.op.translate(str.maketrans("<>", "><"))
+                for near, op, far in (
+                    (condition.left, condition.op, condition.right), (condition.right, swapped, condition.left),
+                ):  # fmt: skip
                     if isinstance(near, ir.Local) and near.name == counter.name:
-                        start, end = self.expr(near).parts[0], self.expr(far).parts[0]
-                        step = self.expr(stmt.step.value).parts[0]
-                        if step.gap > 0.0:
-                            way = max(end.high - start.low, start.high - end.low, 0.0)
-                            return float(int(way / step.gap)) + 1.0
-        return INF
+                        most = min(most, self.steps(self.expr(near).parts[0], op, self.expr(far).parts[0], step))
+        return most
+
+    def steps(self, start: Range, op: str, end: Range, step: Range) -> float:
+        """How often `counter op end` may hold where the counter goes on by `step`; infinite where that says nothing."""
+        if step.high < 0.0:
+            start, end, step, op = -start, -end, -step, op.translate(str.maketrans("<>", "><"))
+        if step.low <= 0.0 or op not in ("<", "<=", "!=") or (op == "!=" and end.low < start.high):
+            return INF
+        way = max(end.high - start.low, 0.0)
+        return float(int(way / step.low)) + 1.0

@@ -9,12 +9,23 @@ from ..ir import contracts
 from ..ir import nodes as ir
 from ..ir.contracts import INTEGERS, Contract
 from ..ir.formats import Format
-from ..ir.types import Sampler, Type, kind_of
+from ..ir.intrinsics import FINITE
+from ..ir.types import Matrix, Sampler, Type, kind_of
 from .intervals import ANY, INF, Range, clip, rounded
 from .knowledge import Facts, Numbers
-from .shapes import scalar_kinds, scalars
+from .shapes import innermost, scalar_kinds, scalars
 from .sites import OVERFLOW, Site
 from .vectors import Value, length_of
+
+
+SUMS = OVERFLOW._replace(text=FINITE, doc="A finite number in place of infinity; 0 in place of NaN.")
+"""Of what has products inside whose sum may be infinity less infinity."""
+
+
+def _is_sum(node: ir.Expr) -> bool:
+    if isinstance(node, ir.Intrinsic):
+        return node.name in ("dot", "cross", "reflect", "refract", "mix", "mod", "fmod", "determinant")
+    return isinstance(node, ir.Binary) and node.op == "*" and Matrix in (type(node.left.type), type(node.right.type))
 
 
 class State(NamedTuple):
@@ -60,7 +71,9 @@ class Known:
         self.globals: dict[str, Value] = {}
         self.state = State({}, Facts({}, {}))
         for uniform in module.uniforms:
-            self.globals[uniform.name] = self.given(uniform.type, contracts.of_uniform(uniform, format))
+            inner = innermost(uniform.type)
+            contract = contracts.of_uniform(uniform._replace(type=inner), format)
+            self.globals[uniform.name] = self.given(inner, contract)
         for constant in module.constants:
             self.globals[constant.name] = self.expr(constant.value)
 
@@ -108,7 +121,7 @@ class Known:
         largest = self.format.largest
         over = [part for part in held if part.low < -largest or part.high > largest]
         if over:
-            self.note(node, "overflow", False, OVERFLOW, tuple(over[:1]))
+            self.note(node, "overflow", False, SUMS if _is_sum(node) else OVERFLOW, tuple(over[:1]))
             held = [clip(part, -largest, largest) for part in held]
         return self.value(tuple(held), tuple(numbers), length)
 

@@ -19,11 +19,11 @@ from ..ir import nodes as ir
 from ..ir.formats import FLOAT32, Format
 from ..ir.types import VOID, Array, Struct, kind_of
 from ..ir.walk import root
-from .intervals import INF, clip
+from .intervals import INF, clip, rounded
 from .knowledge import Facts
 from .range_loops import Loops
 from .range_state import Frame, State
-from .shapes import field_at, scalars
+from .shapes import field_at, innermost, scalars
 from .sites import BOUNDS, Site
 from .vectors import Value
 
@@ -57,12 +57,20 @@ class _Analysis(Loops):
             return
         self.state = State({}, Facts({}, {}))
         args = [
-            self.unknown(param.type) if param.direction == "out" else self.given(
-                param.type, contracts.from_outside(param, self.format)
-            )
-            for param in function.params
-        ]  # fmt: skip
+            self.unknown(param.type) if param.direction == "out" else self.outside(param) for param in function.params
+        ]
         self.enter(function, args)
+
+    def outside(self, param: ir.Param) -> Value:
+        """What a caller that is not ours may pass; of a struct, in each of its fields."""
+        inner = innermost(param.type)
+        if not isinstance(inner, Struct):
+            return self.given(inner, contracts.from_outside(param._replace(type=inner), self.format))
+        fields = [
+            self.outside(ir.Param(field.name, field.type, "in", field.quantity, param.span)) for field in inner.fields
+        ]
+        parts = tuple([part for field in fields for part in field.parts])
+        return self.value(parts, tuple([number for field in fields for number in field.numbers]))
 
     def enter(self, function: ir.Function, args: Sequence[Value]) -> tuple[Value | None, list[Value]]:
         """Interprets a function's body; its result, and the parameters' values at its end."""
@@ -94,10 +102,15 @@ class _Analysis(Loops):
             self.unknown(param.type) if param.direction == "out" else self.expr(arg)
             for param, arg in zip(function.params, node.args, strict=True)
         ]
+        # an index among them may be written by the call
+        written = [
+            self.places(arg) if param.direction != "in" else None
+            for param, arg in zip(function.params, node.args, strict=True)
+        ]
         result, ends = self.enter(function, args) if function.body is not None else (None, args)
-        for param, arg, end in zip(function.params, node.args, ends, strict=True):
-            if param.direction != "in":
-                self.store(arg, self.value(end.parts, end.numbers, end.length))
+        for places, arg, end in zip(written, node.args, ends, strict=True):
+            if places is not None:
+                self.store(arg, self.value(end.parts, end.numbers, end.length), places)
         return result if result is not None else (Value((), ()) if node.type == VOID else self.unknown(node.type))
 
     # Statements
@@ -175,7 +188,10 @@ class _Analysis(Loops):
         limits = (contract.low, min(contract.high, 1.0) if contract.high == contracts.ONE else contract.high)
         inside = part.low >= contract.low and part.high <= contract.high
         self.note(expr, quantity, inside, BOUNDS, (part,), limits)
-        return value if inside else value._replace(parts=(clip(part, contract.low, contract.high),))
+        if inside:
+            return value
+        held = rounded(clip(part, contract.low, contract.high), self.format)
+        return self.value((held,), (self.numbers.fresh(),))
 
     def branch(self, stmt: ir.If) -> State | None:
         condition = self.expr(stmt.condition)
@@ -192,8 +208,8 @@ class _Analysis(Loops):
 
     # Stores
 
-    def store(self, target: ir.Expr, value: Value) -> None:
-        """Writes to a variable or a part of one."""
+    def store(self, target: ir.Expr, value: Value, known: tuple[list[int], bool] | None = None) -> None:
+        """Writes to a variable or a part of one; `known` is what `places` has said of it."""
         variable = root(target)
         if variable is None or variable.name not in self.state.env:
             return
@@ -201,7 +217,7 @@ class _Analysis(Loops):
             self.state.env[variable.name] = value
             return
         old = self.state.env[variable.name]
-        places, sure = self.places(target)
+        places, sure = known or self.places(target)
         parts, numbers = list(old.parts), list(old.numbers)
         for index, place in enumerate(places):
             part, number = value.parts[index % len(value.parts)], value.numbers[index % len(value.numbers)]
@@ -213,20 +229,21 @@ class _Analysis(Loops):
         """Which scalars of its variable a target is, and whether it is sure to be these and all of these."""
         if isinstance(target, ir.Local):
             return list(range(scalars(target.type))), True
-        if isinstance(target, ir.Swizzle):
-            inner, sure = self.places(target.value)
-            return [inner["xyzw".index(letter)] for letter in target.components], sure
-        if isinstance(target, ir.Member):
-            inner, sure = self.places(target.value)
-            start, count = field_at(cast(Struct, target.value.type), target.field)
-            return inner[start : start + count], sure
-        assert isinstance(target, ir.Index)
+        assert isinstance(target, ir.Swizzle | ir.Member | ir.Index)
         inner, sure = self.places(target.value)
-        if isinstance(target.value.type, Array):
-            return inner, False
-        size = scalars(target.type)
-        index = self.expr(target.index).parts[0]
-        if index.low == index.high and 0 <= index.low < len(inner) // size:
-            start = int(index.low) * size
-            return inner[start : start + size], sure
-        return inner, False
+        if isinstance(target, ir.Swizzle):
+            chosen = ["xyzw".index(letter) for letter in target.components]
+        elif isinstance(target, ir.Member):
+            start, count = field_at(cast(Struct, target.value.type), target.field)
+            chosen = list(range(start, start + count))
+        else:
+            if isinstance(target.value.type, Array):
+                return inner, False
+            size, count = scalars(target.type), scalars(target.value.type)
+            index = self.expr(target.index).parts[0]
+            if index.low != index.high or not 0 <= index.low < count // size:
+                return inner, False
+            chosen = list(range(int(index.low) * size, (int(index.low) + 1) * size))
+        # of a column that is not sure there are as many as the matrix has
+        width = scalars(target.value.type)
+        return [inner[base + at] for base in range(0, len(inner), width) for at in chosen], sure

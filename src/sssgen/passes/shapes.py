@@ -33,6 +33,13 @@ def scalar_kinds(type_: Type) -> list[str]:
     return [kind_of(type_)] * components(type_)
 
 
+def innermost(type_: Type) -> Type:
+    """The type of an array's elements, of those arrays where they are arrays; any other as it is."""
+    while isinstance(type_, Array):
+        type_ = type_.element
+    return type_
+
+
 def field_at(type_: Struct, name: str) -> tuple[int, int]:
     """Where a field's scalars begin in its struct's, and how many there are."""
     start = 0

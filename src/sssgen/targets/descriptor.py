@@ -124,7 +124,7 @@ def load(name: str) -> Target:
     raise failure(f"unknown target '{name}'", did_you_mean(name, names()) or f"targets: {', '.join(names())}")
 
 
-_INTERNAL = {"wgsl-f16": ".wgsl_half"}
+_INTERNAL = {"wgsl-f16": ".wgsl_half", "numpy-f16": ".numpy_half"}
 """Targets that the harness runs and that no list of targets has: the module whose `target()` gives each."""
 
 

@@ -20,7 +20,7 @@ class Reference(Backend):
 
     def __init__(self, name: str, dtype: str = "float64") -> None:
         self.name, self.dtype = name, dtype
-        self.target = descriptor.load("numpy")
+        self.target = descriptor.load("numpy-f16" if dtype == "float16" else "numpy")
 
     def device(self) -> str:
         return f"NumPy {np.__version__}, {self.dtype}"

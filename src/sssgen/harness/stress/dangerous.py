@@ -5,12 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
+import numpy as np
+
 from ...diagnostics import did_you_mean, failure
+from ...ir.formats import FLOAT32, Format
+from ..backends import Array
 from . import rows_field as field
 from . import rows_light as light
 from . import rows_surface as surface
+from .draw import is_direction, outside
 from .specimen import Specimen
 from .trial import Trial
+
+LONGEST = 100.0
+"""The greatest component of a direction in half precision."""
 
 Makes = Callable[[Specimen], Iterator[Trial]]
 
@@ -25,6 +33,8 @@ class DangerousRow(NamedTuple):
     """None where the row is not about a technique."""
     elsewhere: str = ""
     """What holds it then."""
+    alike: bool = True
+    """Whether the back ends must agree; not where drivers may make levels and blend infinities as they like."""
 
 
 ROWS = (
@@ -72,7 +82,9 @@ ROWS = (
         "tangent-frame", "mirrored, sheared, zero tangent frames", "a true inverse; no tangent, no offset",
         surface.bad_frames,
     ),
-    DangerousRow("seams", "a seam in the texture coordinates, a leap of derivatives", "finite", surface.seams),
+    DangerousRow(
+        "seams", "a seam in the texture coordinates, a leap of derivatives", "finite", surface.seams, alike=False,
+    ),
     DangerousRow("lipschitz", "a field that is no distance", "each tap clamped", field.not_lipschitz),
     DangerousRow(
         "medial-axis", "across the medial axis", "no jump; a leap of the slope is said aloud", field.medial_axis,
@@ -89,7 +101,9 @@ ROWS = (
     DangerousRow("concave", "concave bodies, gaps", "the sum of the intervals inside", field.concave),
     DangerousRow("eight-bits", "an 8-bit distance or thickness", "half a step off at most", surface.eight_bits),
     DangerousRow("few-steps", "steps of 0 and 1, or larger than the body", "at least one step", field.few_steps),
-    DangerousRow("fast-math", "NaN tests under fast-math", "tests of bits: no NaN comes through", surface.fast_math),
+    DangerousRow(
+        "fast-math", "NaN tests under fast-math", "tests of bits: no NaN comes through", surface.fast_math, alike=False,
+    ),
 )  # fmt: skip
 
 
@@ -102,9 +116,35 @@ def chosen(names: Sequence[str]) -> tuple[str, ...]:
     return tuple(names)
 
 
-def trials(specimen: Specimen, names: Sequence[str] = ()) -> Iterator[Trial]:
-    """The trials of the rows (of all, if none is named) that concern a technique."""
+def trials(specimen: Specimen, names: Sequence[str] = (), format: Format = FLOAT32) -> Iterator[Trial]:
+    """The trials of the rows (of all, if none is named) that concern a technique, as a format can hold them."""
     for row in ROWS:
         if row.trials is not None and (not names or row.name in names):
             for trial in row.trials(specimen):
-                yield trial._replace(name=row.name)
+                named = trial._replace(name=row.name, compared=row.alike)
+                yield named if format is FLOAT32 else _in_half(named, format)
+
+
+def _in_half(trial: Trial, half: Format) -> Trial:
+    """A trial in half precision: numbers of the contract, and directions, come into the narrower one."""
+    values = {}
+    for name, value in trial.inputs.values.items():
+        if value.dtype.kind == "f":
+            value = np.clip(value, -half.largest, half.largest)
+            ends = outside(trial.specimen, name, half)
+            if is_direction(name, ends):  # products of such lengths are still numbers
+                value = value if trial.name == "long-vectors" else np.clip(value, -LONGEST, LONGEST)
+            elif not _beyond(trial.specimen, name, value):
+                value = np.clip(value, np.float32(ends.low), np.float32(ends.high))
+            value = value.astype(np.float16).astype(np.float32)
+        values[name] = value
+    expected = {name: value.astype(np.float16).astype(np.float64) for name, value in trial.expected.items()}
+    tolerance = trial.tolerance + 4.0 * half.epsilon if trial.tolerance else 0.0
+    inputs = trial.inputs._replace(values=values)
+    return trial._replace(inputs=inputs, expected=expected, tolerance=tolerance, path=False, compared=False)
+
+
+def _beyond(specimen: Specimen, name: str, value: Array) -> bool:
+    """Whether a row means what no format's contract allows."""
+    ends = outside(specimen, name, FLOAT32)
+    return bool((value < np.float32(ends.low)).any() or (value > np.float32(ends.high)).any())

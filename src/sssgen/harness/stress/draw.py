@@ -53,6 +53,13 @@ def contract(specimen: Specimen, name: str, format: Format = FLOAT32) -> Contrac
     return contracts.of_param(specimen.subject.params[name], format)
 
 
+def outside(specimen: Specimen, name: str, format: Format = FLOAT32) -> Contract:
+    """What a caller may pass that does not keep quantities in their ranges."""
+    if name in specimen.subject.uniforms:
+        return contract(specimen, name, format)
+    return contracts.from_outside(specimen.subject.params[name], format)
+
+
 def fixed(specimen: Specimen, name: str) -> Array:
     """A uniform's value in this material or technique, one lane."""
     uniform = specimen.subject.uniforms[name]
@@ -65,9 +72,10 @@ def whole_range(param: Param, uniform: Uniform | None) -> tuple[int, int]:
     """The whole numbers that make sense for an input."""
     if kind_of(param.type) == "bool":
         return 0, 1
-    hints = dict(uniform.hints) if uniform is not None else {}
-    low, high = hints.get("hint_range", (0, 9))[:2]
-    return int(float(low)), int(float(high))
+    if uniform is None or "hint_range" not in dict(uniform.hints):
+        return 0, 9
+    found = contracts.of_uniform(uniform)
+    return int(found.low), int(found.high)
 
 
 def is_direction(name: str, found: Contract) -> bool:

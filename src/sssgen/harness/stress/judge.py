@@ -70,7 +70,7 @@ def _out_of_range(trial: Trial, output: str, value: Array, _: Mapping[str, Array
         return _none(value)
     low, high, length = bounds(trial.specimen, output)
     slack = trial.specimen.quantity(output) == "" and low == 0.0
-    eps = float(np.finfo(value.dtype).eps) if value.dtype.itemsize < 8 else 2.0**-23
+    eps = trial.epsilon
     with np.errstate(over="ignore", invalid="ignore"):
         bad = _any((value < low - slack * ULPS * eps) | (value > high * (1.0 + ULPS * eps)))
         if slack:

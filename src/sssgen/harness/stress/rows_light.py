@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...ir.formats import FLOAT16
+from .draw import outside
 from .given import angles, calls, directions, mixed, plain, samplers, scalars
 from .specimen import Specimen
 from .trial import Trial
@@ -78,7 +79,8 @@ def wrong_quantities(specimen: Specimen) -> Iterator[Trial]:
     names = [name for name, param in params if param.quantity in quantities and name not in textures]
     if names:
         values = [-1e6, -1.0, -1e-6, -0.0, 0.0, 0.5, 1.0, 1.0 + 1e-6, 2.0, 1e6]
-        inputs = mixed(specimen, dict.fromkeys(names, values), 512)
+        choices = {name: [*values, *(outside(specimen, name)[:2])] for name in names}
+        inputs = mixed(specimen, choices, 512)
         yield Trial("", specimen, inputs, ranged=False)
         yield Trial("", specimen, inputs, counts=False)  # what comes out is in its range where what went in was
 

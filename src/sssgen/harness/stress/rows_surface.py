@@ -26,12 +26,17 @@ def _parallax(specimen: Specimen) -> bool:
     return {"uv", "V", "T", "B", "N"} <= specimen.subject.params.keys() and specimen.role == "coordinates"
 
 
+def _free(specimen: Specimen, wanted: dict[str, float]) -> bool:
+    """Whether a material leaves these uniforms free, or fixes them at these values."""
+    return all(specimen.settings.get(name, (value,)) == (value,) for name, value in wanted.items())
+
+
 def _swept(specimen: Specimen, start: float, end: float, given: dict[str, Any] | None = None) -> Trial:
     """The view from one angle to the normal to another, in degrees: a path."""
     sine, cosine = angles(start, end)
     view = np.stack([sine, 0.0 * sine, cosine])
     inputs = plain(specimen, len(sine), {"V": view, "uv": UV, **(given or {})})
-    return Trial("", specimen, inputs, path=True, compared=True)
+    return Trial("", specimen, inputs, path=True)
 
 
 def _longest(specimen: Specimen) -> float:
@@ -43,8 +48,8 @@ def _longest(specimen: Specimen) -> float:
 
 def grazing(specimen: Specimen) -> Iterator[Trial]:
     """The eye goes down to the surface where nothing refracts: the slide has an end, and is none at 90 degrees."""
-    if _parallax(specimen):
-        still = {"ior": 1.0, "outside_ior": 1.0, "eta": 1.0}
+    still = {"ior": 1.0, "outside_ior": 1.0, "eta": 1.0}
+    if _parallax(specimen) and _free(specimen, still):
         swept = _swept(specimen, -90.0, 90.0, still)
         yield swept._replace(expected={"result": UV}, tolerance=_longest(specimen))
         flat = mixed(specimen, {"V": [(1, 0, 0), (0, 1, 0), (-1, 0, 0), (1, 0, 1e-30)], "uv": [UV]}, 64)
@@ -54,8 +59,9 @@ def grazing(specimen: Specimen) -> Iterator[Trial]:
 
 def past_the_critical_angle(specimen: Specimen) -> Iterator[Trial]:
     """Into a thinner body: a smooth fade to the base texture coordinates, where no ray goes in any more."""
-    if _parallax(specimen) and {"ior", "eta"} & specimen.subject.params.keys():
-        thinner = {"ior": 1.0, "outside_ior": 1.5, "eta": 1.5}
+    thinner = {"ior": 1.0, "outside_ior": 1.5, "eta": 1.5}
+    refracts = {"ior", "eta"} & specimen.subject.params.keys()
+    if _parallax(specimen) and refracts and _free(specimen, thinner):
         yield _swept(specimen, 0.0, 90.0, thinner)
         beyond = _swept(specimen, 42.5, 90.0, thinner)
         yield beyond._replace(expected={"result": UV}, tolerance=1e-6)
@@ -66,7 +72,7 @@ def from_behind(specimen: Specimen) -> Iterator[Trial]:
     if {"V", "N"} <= specimen.subject.params.keys():
         sine, cosine = angles(0.0, 180.0)
         view = np.stack([sine, 0.0 * sine, cosine])
-        yield Trial("", specimen, plain(specimen, len(sine), {"V": view}), path=True, compared=True)
+        yield Trial("", specimen, plain(specimen, len(sine), {"V": view}), path=True)
         yield Trial("", specimen, mixed(specimen, {"V": AXES, "N": AXES, "L": AXES, "uv": [UV]}))
 
 

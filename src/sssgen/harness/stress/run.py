@@ -154,7 +154,7 @@ def stress(specimen: Specimen, machines: Machines, settings: Settings, told: Tol
 
 
 def _trials(specimen: Specimen, settings: Settings) -> Iterator[Trial]:
-    yield from dangerous.trials(specimen, settings.rows)
+    yield from dangerous.trials(specimen, settings.rows, settings.format)
     if settings.rows:
         return
     yield from boundaries.trials(specimen, settings.seed, settings.format)
@@ -222,6 +222,7 @@ class _Gathered:
         """One trial; nothing once the back end has failed."""
         if self.error:
             return
+        trial = trial._replace(epsilon=self.settings.format.epsilon)
         try:
             outputs = self.run(trial.specimen, trial.inputs)
         except SssgenError as error:
@@ -281,8 +282,10 @@ class _Gathered:
             self.error = error.diagnostics[0].message
             return
         if self.jump > JUMP and inputs is not None:
-            key = (STEPS, "jump", name, True)
-            self.faults[key] = Fault(STEPS, "jump", name, True, 1, jumps.LANES, inputs, np.array(self.jump))
+            what = f"a step of {name}"
+            self.faults[STEPS, "jump", what, True] = Fault(
+                STEPS, "jump", what, True, 1, jumps.LANES, inputs, np.array(self.jump)
+            )
 
     def column(self) -> Column:
         """All of it, with the simplest inputs of the worst."""
@@ -312,4 +315,4 @@ class _Gathered:
 
             with contextlib.suppress(SssgenError):  # then it stays as it was found
                 inputs = shrunk(specimen, inputs, fails)
-        return fault._replace(inputs=inputs, command=line(specimen, inputs, self.name))
+        return fault._replace(inputs=inputs, command=line(specimen, inputs, self.name, self.settings.guards))

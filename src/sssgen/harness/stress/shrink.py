@@ -55,7 +55,8 @@ def _plainer_textures(specimen: Specimen, at: Inputs, fails: Fails) -> Inputs:
             continue
         hints = [hint.removeprefix("default_") for hint, _ in uniform.hints if hint.startswith("default_")]
         plain = [default_texture(spell(uniform.type), color) for color in (*hints[:1], "white", "black", "gray")]
-        plain += [_one_texel(at.textures[name], value) for value in _TEXELS]
+        values = (0.25,) if contract(specimen, name).finite else _TEXELS
+        plain += [_one_texel(at.textures[name], value) for value in values]
         for texture in plain:
             simpler = at._replace(textures={**at.textures, name: texture})
             if fails(simpler).all():
@@ -126,7 +127,7 @@ def _candidates(specimen: Specimen, name: str, value: Array) -> Iterator[Array]:
         yield np.array([np.float32(f"{one:.{digits - 1}e}") for one in value.ravel()], np.float32).reshape(value.shape)
 
 
-def line(specimen: Specimen, at: Inputs, backend: str) -> str:
+def line(specimen: Specimen, at: Inputs, backend: str, guards: str = "auto") -> str:
     """The command that evaluates these inputs on a back end."""
     given = {name: _plain(value) for name, value in at.values.items() if not _is_default(specimen, name, value)}
     before, unsaid = "", []
@@ -144,6 +145,7 @@ def line(specimen: Specimen, at: Inputs, backend: str) -> str:
             told = f"texels of {texels.flat[0]}, which eval does not take," if same else "random texels"
             unsaid.append(f"{told} in {name}")
     command = f"sssgen eval {shlex.quote(specimen.technique)} --inputs /dev/stdin --backend {_backend(backend)}"
+    command += f" --guards {guards}" * (guards != "auto")
     command += "".join(f" --bind {shlex.quote(f'{slot}={function}')}" for slot, function in specimen.bind.items())
     note = f"  # and {' and '.join(unsaid)}" if unsaid else ""
     return f"{before}echo {shlex.quote(json.dumps(given))} | {command}{note}"

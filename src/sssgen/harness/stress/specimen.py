@@ -89,8 +89,12 @@ def technique(name: str, bind: Mapping[str, str] | None = None) -> Specimen:
     if name.rpartition(":")[0].endswith((".sss", ".glsl")):
         return Specimen(name, name, made, "distance", {}, bind=bind or {})
     found = library.load(name)
-    baseline = library.folder_of(found.path) == "baselines"
-    return Specimen(name, name, made, found.role, found.doc, baseline, bind or {})
+    return Specimen(name, name, made, found.role, found.doc, _published(found), bind or {})
+
+
+def _published(technique: library.Technique) -> bool:
+    """Whether a technique of the library stands among the sources as published."""
+    return library.folder_of(technique.path) == "baselines"
 
 
 def stages(material: Material) -> list[Specimen]:
@@ -105,7 +109,7 @@ def stages(material: Material) -> list[Specimen]:
         settings = {name: stage.values[name] for name in stage.fixed if name in made.uniforms and name in stage.values}
         name = chosen.name if chosen.name in library.index() else chosen.path
         title = f"{material.name}: {chosen.name}"
-        found.append(Specimen(title, name, made, chosen.role, chosen.doc, chosen.baseline, bind, settings))
+        found.append(Specimen(title, name, made, chosen.role, chosen.doc, _published(chosen), bind, settings))
     return found
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from ...ir.formats import FLOAT32
 from ..backends import Array
 from ..evaluate import Inputs
 from .specimen import Specimen
@@ -35,3 +36,5 @@ class Trial(NamedTuple):
     """Outputs that are known, lanes first."""
     tolerance: float = 0.0
     """How far an output may be from those, relative to the larger of its size and 1."""
+    epsilon: float = FLOAT32.epsilon
+    """The distance from 1 to the next number that the back end computes with."""

@@ -1,0 +1,13 @@
+"""NumPy's text with the guards of half precision, which the harness runs on float16; no target for users."""
+
+from __future__ import annotations
+
+from .descriptor import Target, load
+
+
+def target() -> Target:
+    """The target `numpy`, told that its numbers are halves."""
+    double = load("numpy")
+    return double._replace(
+        name="numpy-f16", title="NumPy in half precision", table={**double.table, "precision": "half"}
+    )
