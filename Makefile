@@ -2,6 +2,7 @@
 # make test   the tests, but the slow ones (make test-long)      make lint   ruff and mypy
 # make gallery  the example scenes' pictures, and docs/gallery.md
 # make stability  what fails in the published techniques and holds in ours: docs/stability.md
+# make fuzz   random programs and files for FUZZ_MINUTES (10)
 # make bench  the benchmarks   make setup  what the others need, done once: .venv, system packages, compilers
 
 PYTHON := $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
@@ -16,7 +17,7 @@ MATERIALS := $(foreach folder,$(wildcard examples/*),$(wildcard $(folder)/$(notd
 
 export PYTHONUTF8 := 1
 .DELETE_ON_ERROR:
-.PHONY: setup demo test test-long lint bench gallery stability clean
+.PHONY: setup demo test test-long fuzz lint bench gallery stability clean
 
 setup: .venv/done build/node/done
 
@@ -32,6 +33,10 @@ test: setup
 test-long: setup
 	$(BIN)/python -m pytest -m slow
 
+FUZZ_MINUTES ?= 10
+fuzz: setup
+	$(BIN)/python tests/fuzz/long.py --minutes $(FUZZ_MINUTES)
+
 lint: setup
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
@@ -45,6 +50,7 @@ gallery: setup
 
 stability: setup
 	$(BIN)/python docs/stability.py
+	$(BIN)/python docs/safety.py
 
 clean:
 	rm -rf .venv build out

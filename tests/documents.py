@@ -6,10 +6,11 @@
     <!-- write: PATH -->           the block is written there, in the reader's folder
     <!-- run -->                   its commands succeed there; `<!-- run: gl -->` where there is an OpenGL driver
     <!-- output: sssgen … -->      the block is what the command prints
+    <!-- findings: sssgen … -->    the same, where the command ends with status 1
     <!-- errors: sssgen … -->      the block is what the command says when it fails with status 2
     <!-- python -->                a session of the interpreter
 
-UPDATE_SNAPSHOTS=1 fills in the blocks that are made: file, emitted, output, errors.
+UPDATE_SNAPSHOTS=1 fills in the blocks that are made: file, emitted, output, findings, errors.
 """
 
 from __future__ import annotations
@@ -113,6 +114,8 @@ class Reader:
             return sssgen.compile(material, target, form).files[file]
         if block.verb == "output":
             return self.run(block.argument)[0]
+        if block.verb == "findings":
+            return self.run(block.argument, status=1)[0]
         assert block.verb == "errors", f"{block}: what is this?"
         return self.run(block.argument, status=2)[1]
 

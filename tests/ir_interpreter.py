@@ -30,7 +30,7 @@ class _Continue(Exception):
     pass
 
 
-class _Return(Exception):
+class Returned(Exception):
     def __init__(self, value: Value) -> None:
         super().__init__()
         self.value = value
@@ -56,7 +56,7 @@ class Interpreter:
         result: tuple[Value, ...] = ()
         try:
             self.block(function.body or ())
-        except _Return as returned:
+        except Returned as returned:
             result = () if returned.value is None else (returned.value,)
         outs = tuple(self.frame[param.name] for param in function.params if param.direction != "in")
         self.frame = outer
@@ -88,7 +88,7 @@ class Interpreter:
         elif isinstance(stmt, ir.While):
             self.loop(stmt.condition, stmt.body, None)
         elif isinstance(stmt, ir.Return):
-            raise _Return(None if stmt.value is None else self.value(stmt.value))
+            raise Returned(None if stmt.value is None else self.value(stmt.value))
         elif isinstance(stmt, ir.Discard):
             raise Discarded
         elif isinstance(stmt, ir.Break):

@@ -54,7 +54,7 @@ class FakeCompiler(types.ModuleType):
     def all_targets(self) -> dict[str, Target]:
         return {"glsl-330": Target("GLSL 3.30"), "wgsl": Target("WGSL")}
 
-    def compile(self, material: Material, target: str, form: str, templates: Path | None) -> Compiled:
+    def compile(self, material: Material, target: str, form: str, templates: Path | None, guards: str) -> Compiled:
         self.asked.append((material.name, target, form, templates))
         if target in self.failing:
             raise self.failing[target]

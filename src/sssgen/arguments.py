@@ -127,7 +127,9 @@ def parser() -> argparse.ArgumentParser:
         '{"N": [[0, 0, 1], [0, 1, 0]], "power": 4.0, "map": "wood.png"}',
     )
     evaluate.add_argument("TECHNIQUE", help="a name of `sssgen list techniques`, a .sss file, or FILE:FUNCTION")
-    evaluate.add_argument("--inputs", "-i", metavar="FILE", help="the inputs, in JSON")
+    evaluate.add_argument(
+        "--inputs", "-i", metavar="FILE", help="the inputs, in JSON; - reads them from the standard input"
+    )
     evaluate.add_argument(
         "--samples", type=int, metavar="N", help="N random inputs, each in its range, for what --inputs does not have"
     )

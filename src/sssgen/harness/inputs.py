@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,7 @@ import numpy as np
 
 from .. import json_source
 from ..diagnostics import failure
-from ..lang.loader import refuse_special
+from ..lang.loader import MAX_BYTES, refuse_special
 from ..targets.numpy_textures import Texture
 from . import images
 from .probes import Subject
@@ -30,15 +31,20 @@ def bindings(given: Sequence[str]) -> dict[str, str]:
 
 
 def read(path: str, subject: Subject) -> dict[str, Any]:
-    """The inputs of a JSON file: name → number, list or, for a texture, a `Texture` from a file beside it.
+    """The inputs of a JSON file, or of the standard input for `-`.
+
+    They are name → number, list or, for a texture, a `Texture` from a file beside it.
 
     A texture is `"wood.png"`, or `{"file": "wood.png", "wrap": "clamp", "filter": "nearest"}`; a .png of colours, which
     the technique calls `source_color`, is decoded. Raises SssgenError with the place of what is wrong.
     """
     file = Path(path)
     try:
-        refuse_special(path, path)
-        text = file.read_text(encoding="utf-8")
+        if path == "-":
+            text = sys.stdin.buffer.read(MAX_BYTES).decode("utf-8")
+        else:
+            refuse_special(path, path)
+            text = file.read_text(encoding="utf-8")
     except UnicodeDecodeError:
         raise failure("the inputs are no UTF-8 text", "numbers by name, in JSON", path) from None
     except OSError as error:

@@ -33,14 +33,16 @@ class Finding(NamedTuple):
     """The command that shows it."""
     guarded: bool = True
     """Whether what is emitted has a guard there."""
+    searched: bool = True
+    """Whether an input was looked for."""
 
     @property
     def message(self) -> str:
         """What may happen."""
         if self.verdict == PROVEN:
             return f"{self.site.what}: proven safe"
-        unseen = " (not proven, and no input found that does it)" if self.verdict == UNKNOWN else ""
-        return f"{self.site.what}: {self.site.guard.says}{unseen}"
+        unseen = "not proven, and no input found that does it" if self.searched else "not proven"
+        return f"{self.site.what}: {self.site.guard.says}{f' ({unseen})' if self.verdict == UNKNOWN else ''}"
 
     @property
     def severity(self) -> str:
@@ -123,7 +125,7 @@ def _found(sites: list[Site], specimens: list[Any], guarded: bool = True) -> lis
             found.append(Finding(site, PROVEN))
             continue
         example = _example(site, specimens)
-        found.append(Finding(site, MAY_FAIL if example else UNKNOWN, example, guarded))
+        found.append(Finding(site, MAY_FAIL if example else UNKNOWN, example, guarded, bool(specimens)))
     return found
 
 

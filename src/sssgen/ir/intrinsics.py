@@ -456,18 +456,18 @@ vec4 mix(vec4 x, vec4 y, bvec4 a) {
         vectors=(((0.0, 2.0, 0.5), 0.15625), ((0.0, 1.0, 0.0), 0.0), ((0.0, 1.0, (0.5, 3.0)), (0.5, 1.0))),
     ),
     Builtin("isnan", ("genB(genF)",),
-        "Whether x is not a number. By its bits in HLSL and WGSL, whose compilers may take it that no NaN occurs.",
+        "Whether x is not a number, by its bits: compilers may take it that no NaN occurs.",
         range="hull(0, 1)",
-        texts={"hlsl": "", "wgsl": ""},
+        texts={"glsl": "", "hlsl": "", "wgsl": ""},
         polyfill="""
 bool isnan(float x) { return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u; }
 vecB isnan(vecF x) { return greaterThan(floatBitsToUint(x) & vecU(0x7fffffffu), vecU(0x7f800000u)); }
 """,
         cost=2, vectors=(((_NAN,), True), ((_INF,), False), ((0.0,), False), (((1.0, _NAN),), (False, True))),
     ),
-    Builtin("isinf", ("genB(genF)",), "Whether x is infinite. By its bits in HLSL and WGSL, as isnan.",
+    Builtin("isinf", ("genB(genF)",), "Whether x is infinite, by its bits, as isnan.",
         range="hull(0, 1)",
-        texts={"hlsl": "", "wgsl": ""},
+        texts={"glsl": "", "hlsl": "", "wgsl": ""},
         polyfill="""
 bool isinf(float x) { return (floatBitsToUint(x) & 0x7fffffffu) == 0x7f800000u; }
 vecB isinf(vecF x) { return equal(floatBitsToUint(x) & vecU(0x7fffffffu), vecU(0x7f800000u)); }

@@ -53,18 +53,18 @@ def result(name: str, args: tuple[Value, ...], size: int, format: Format) -> Who
     for index in range(size):
         at = [arg.parts[index if len(arg.parts) > 1 else 0] for arg in args]
         part = evaluated(text, format, at)
-        parts.append(part if error is None else error(part, format.epsilon, *at))
+        parts.append(part if error is None else error(part, format, *at))
     return parts, ANY
 
 
 # What the ends and rounding add to the componentwise rows that are formulas
 
 
-def _scaled(part: Range, epsilon: float, *_: Range) -> Range:
-    return widened(part, 2.0 * epsilon)
+def _scaled(part: Range, format: Format, *_: Range) -> Range:
+    return widened(part, 2.0 * format.epsilon)
 
 
-def _blended(part: Range, epsilon: float, x: Range, y: Range, z: Range) -> Range:
+def _blended(part: Range, format: Format, x: Range, y: Range, z: Range) -> Range:
     """By x·(1 - z) + y·z, or by x + (y - x)·z as HLSL has it: result and error have their ends at the corners.
 
     Between two numbers of one sign the sign stays, and so does a power of two as the largest of them.
@@ -75,7 +75,7 @@ def _blended(part: Range, epsilon: float, x: Range, y: Range, z: Range) -> Range
     low, high = INF, -INF
     for a, b, c in itertools.product((x.low, x.high), (y.low, y.high), (z.low, z.high)):
         found = a * (1.0 - c) + b * c
-        error = 2.0 * epsilon * (abs((b - a) * c) + abs(a * (1.0 - c)) + abs(b * c))
+        error = 2.0 * format.epsilon * (abs((b - a) * c) + abs(a * (1.0 - c)) + abs(b * c))
         low, high = min(low, found - error), max(high, found + error)
     if z.low < 0.0 or z.high > 1.0:
         return Range(low, high)
@@ -87,21 +87,30 @@ def _blended(part: Range, epsilon: float, x: Range, y: Range, z: Range) -> Range
     return Range(low, high)
 
 
-def _raised(part: Range, _: float, x: Range, __: Range) -> Range:
+def _raised(part: Range, _: Format, x: Range, __: Range) -> Range:
     """0 to a power is 0."""
     return part if x.low > 0.0 else Range(0.0, part.high)
 
 
-def _wrapped(part: Range, epsilon: float, x: Range, y: Range) -> Range:
+def _wrapped(part: Range, format: Format, x: Range, y: Range) -> Range:
     """x/y may round to the next integer, but for a power of two y; and it may overflow."""
     if x.size > 1e30 * y.gap:
         return ANY
     exact = y.low == y.high and abs(math.frexp(y.low)[0]) == 0.5
-    return part if exact else widened(part, 0.0, 4.0 * epsilon * x.size)
+    apart = max(x.high, y.high) > 0.0 > min(x.low, y.low)
+    # a quotient below 0 that is flushed to 0 leaves x as it is
+    flushed = format.tiny * y.size if apart and not (exact and y.size <= 1.0) else 0.0
+    return widened(part, 0.0, (0.0 if exact else 4.0 * format.epsilon * x.size) + flushed)
+
+
+def _near_one(part: Range, format: Format, x: Range) -> Range:
+    """There is a number between 1 - epsilon and 1."""
+    return widened(part, 0.0, 0.35) if x.size > 1.0 - format.epsilon else part
 
 
 _ERRORS: dict[str, Callable[..., Range]] = {
     "radians": _scaled, "degrees": _scaled, "mix": _blended, "mod": _wrapped, "fmod": _wrapped, "pow": _raised,
+    "atanh": _near_one,
 }  # fmt: skip
 
 
@@ -170,9 +179,9 @@ def _reflected(format: Format, x: Value, y: Value) -> Whole:
     factor = vectors.dot(y, x) * 2.0
     parts = [a - factor * b for a, b in zip(x.parts, y.parts, strict=True)]
     slack = 2.0 * _slack(format)
-    whole = x.length.high * (1.0 + 2.0 * y.length.high * y.length.high) if x.length.high and y.length.high < INF else INF
-    if whole == INF:
-        return parts, ANY
+    if INF in (x.length.high, y.length.high):
+        return [ANY for _ in parts], ANY
+    whole = x.length.high * (1.0 + 2.0 * y.length.high * y.length.high)
     most = x.length.high if y.length.high <= 1.0 + slack else whole
     error = slack * whole
     return [widened(part.met(hull(-most, most)), 0.0, error) for part in parts], hull(0.0, most + 2.0 * error)

@@ -37,7 +37,7 @@ class Builtins(Known):
             absolute = 0.0 if exact else min(row.absolute * min(scale, 4.0), 1e-2)
             relative = row.ulp * self.format.epsilon if not exact else 0.0
             parts = [self.kept(widened(part, min(relative, 0.05), absolute), part, node.name) for part in parts]
-        if needed:  # what a guard lets through is finite
+        if needed and node.name not in ("mod", "fmod"):  # what a guard lets through is finite, but for a quotient
             parts = [clip(part, -self.format.largest, self.format.largest) for part in parts]
         return self.computed(node, parts, self.builtin_numbers(node, args, size), length)
 
@@ -77,7 +77,8 @@ class Builtins(Known):
     def guarded(self, node: ir.Intrinsic, args: tuple[Value, ...]) -> tuple[tuple[Value, ...], bool]:
         """Checks a builtin's domain; the arguments as its guard leaves them, and whether it needs one."""
         row = BUILTINS[node.name]
-        if not row.guards or kind_of(node.type) not in ("float", ""):
+        guards = [guard for guard in row.guards if guard.replaces != "y" or len(args) > 1]  # atan may have one
+        if not guards or kind_of(node.type) not in ("float", ""):
             return args, False
         whole = row.range.startswith("whole:")
         seen = [arg.length if whole else hull_of(arg.parts) for arg in args]
@@ -85,7 +86,7 @@ class Builtins(Known):
         lanes = range(1 if whole else max(len(arg.parts) for arg in args))
         rows = [seen if whole else [arg.parts[at if len(arg.parts) > 1 else 0] for arg in args] for at in lanes]
         ordered = self.ordering(args)
-        for guard in row.guards:
+        for guard in guards:
             checks = [
                 builtin_ranges.evaluated(guard.needs, self.format, [self.flushed(part) for part in one], ordered)
                 for one in rows
@@ -93,7 +94,7 @@ class Builtins(Known):
             if not all(checks):
                 needed = guard
                 break
-        self.note(node, node.name, needed is None, needed or row.guards[-1], tuple(seen))
+        self.note(node, node.name, needed is None, needed or guards[-1], tuple(seen))
         return (args, False) if needed is None else (self.as_guarded(node.name, args), True)
 
     def flushed(self, part: Range) -> Range:

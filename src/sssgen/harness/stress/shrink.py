@@ -144,7 +144,7 @@ def line(specimen: Specimen, at: Inputs, backend: str, guards: str = "auto") -> 
         else:
             told = f"texels of {texels.flat[0]}, which eval does not take," if same else "random texels"
             unsaid.append(f"{told} in {name}")
-    command = f"sssgen eval {shlex.quote(specimen.technique)} --inputs /dev/stdin --backend {_backend(backend)}"
+    command = f"sssgen eval {shlex.quote(specimen.technique)} --inputs - --backend {_backend(backend)}"
     command += f" --guards {guards}" * (guards != "auto")
     command += "".join(f" --bind {shlex.quote(f'{slot}={function}')}" for slot, function in specimen.bind.items())
     note = f"  # and {' and '.join(unsaid)}" if unsaid else ""

@@ -6,7 +6,7 @@
 // What a light of colour 1 gives; all directions are unit and in world space.
 float3 standin_standard(float3 N, float3 V, float3 L, float3 albedo, float metallic, float roughness)
 {
-    float3 H = normalize(V + L);
+    float3 H = (V + L) * rsqrt(max(dot(V + L, V + L), 1e-30));
     float NoL = max(dot(N, L), 0.0);
     float NoV = max(dot(N, V), 1.0e-4);
     float NoH = saturate(dot(N, H));

@@ -1,0 +1,101 @@
+"""A batch of random programs through every compiler, and on real back ends against the numpy target in float64."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+
+from sssgen.compiler import transpile
+from sssgen.harness.backends import Array, Backend, get
+from sssgen.harness.compilers import Source
+from sssgen.harness.deviation import errors
+from sssgen.harness.evaluate import DTYPES, Inputs, run
+from sssgen.harness.probes import Probe, Subject
+from sssgen.harness.sources import sources
+from sssgen.ir.nodes import Module
+from sssgen.lang.loader import load_text
+
+LANES = 48
+TOLERANCE = 1e-3
+"""What a program may deviate by, in the measure of `harness.deviation`: it nests builtins that may each be off by 1e-6.
+One that is wrong is further off, in some lane."""
+STEADY = 1e-5
+"""A lane where NumPy's float32 is further from float64 than this is excused: the formulas themselves lose too much."""
+LANGUAGES = ("glsl-330", "glsl-es-300", "hlsl", "wgsl")
+SHOWS = ("_result", "_floats", "_whole")
+
+
+def compiles(module: Module, assert_compiles: Callable[[Source], None]) -> None:
+    """Every compiler takes what every language's target makes of the module."""
+    for language in LANGUAGES:
+        for source in sources(transpile(module, language, "fuzzed").files):
+            assert_compiles(source)
+
+
+def subject_of(text: str) -> Subject:
+    """The functions of `shader_programs.source` that show outputs."""
+    module = load_text(text, "fuzzed.sss")
+    shown = [function for function in module.functions if function.name.endswith(SHOWS)]
+    probes = tuple(Probe(one.name, one.name, one.params, one.result) for one in shown)
+    return Subject("fuzzed", module, probes, {})
+
+
+@cache
+def arguments() -> Inputs:
+    """Arguments for `shader_programs.SHOWN`."""
+    rng = np.random.default_rng(7)
+
+    def eighths() -> Array:
+        return rng.integers(-40, 41, LANES) / 8.0
+
+    def whole(kind: str, *shape: int) -> Array:
+        info = np.iinfo(DTYPES[kind])
+        small = rng.integers(-9 if kind == "int" else 0, 10, (*shape, LANES))
+        any_ = rng.integers(info.min, info.max, (*shape, LANES), endpoint=True)
+        return np.where(rng.random((*shape, LANES)) < 0.8, small, any_).astype(DTYPES[kind])
+
+    def floats(*shape: int) -> Array:
+        return rng.uniform(-3.0, 3.0, (*shape, LANES)).astype(np.float32).astype(np.float64)
+
+    values = {
+        "a": eighths(), "b": eighths(), "d": floats(3), "n": whole("int"), "h": whole("uint"),
+        "f": rng.random(LANES) < 0.5,
+        "g": whole("int", 2), "t": floats(),
+    }  # fmt: skip
+    return Inputs(values, {}, LANES)
+
+
+class Oracle:
+    """What the numpy target makes of a text, and where float32 can be held against it."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+        self.subject = subject_of(text)
+        self.right = run(self.subject, arguments(), get("numpy"))
+        rounded = run(self.subject, arguments(), get("numpy-f32"))
+        self.steady = {name: _apart(rounded[name], right) <= STEADY for name, right in self.right.items()}
+
+    def excused(self) -> float:
+        """The share of lanes that are not compared."""
+        return 1.0 - float(np.mean([*self.steady.values()]))
+
+    def differences(self, backend: Backend) -> list[str]:
+        """Where a back end computes something else, with the arguments."""
+        found = run(self.subject, arguments(), backend)
+        wrong = []
+        for name, right in self.right.items():
+            apart = np.where(self.steady[name], _apart(found[name], right), 0.0)
+            if (apart > TOLERANCE).any():
+                lane = int(np.argmax(apart))
+                given = {key: value[..., lane].tolist() for key, value in arguments().values.items()}
+                got, wanted = np.broadcast_to(found[name].T, right.T.shape).T[lane], right[lane]
+                wrong.append(f"{backend.name}: {name}{given} is {got}, and in float64 {wanted}")
+        return wrong
+
+
+def _apart(got: Array, wanted: Array) -> Array:
+    """The deviation of each lane; results that are the same for all are spread out."""
+    shape = (LANES, *np.shape(wanted)[1:])
+    return errors(np.broadcast_to(got, shape), np.broadcast_to(wanted, shape))

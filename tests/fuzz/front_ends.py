@@ -1,0 +1,233 @@
+"""Everything that reads a file of the user's, each as a function of a path, and files for it to begin with."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import re
+from collections.abc import Callable
+from functools import cache
+from io import BytesIO
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from PIL import Image
+
+from amounts import COUNTED
+from ir_sample import SAMPLE
+from sssgen import data
+from sssgen.compiler import compile, transpile
+from sssgen.diagnostics import Diagnostic, SssgenError
+from sssgen.harness import images, inputs, probes, shader_files
+from sssgen.harness.evaluate import fitted
+from sssgen.harness.scenes import scene
+from sssgen.harness.scenes.mesh import Mesh
+from sssgen.harness.testing import ci
+from sssgen.ir.nodes import Span
+from sssgen.ir.reader import TextError, read_module
+from sssgen.ir.text import print_module
+from sssgen.lang.loader import load_file, load_text, read_text
+from sssgen.library import TECHNIQUES, load_path
+from sssgen.material import load_material
+from watchdog import bounded
+
+NAME = "fuzzed"
+"""What the files are called, before their suffix."""
+
+
+class FrontEnd(NamedTuple):
+    """A reader of files."""
+
+    suffix: str
+    read: Callable[[Path], object]
+    """Raises SssgenError for what it does not take, and nothing else."""
+    seeds: Callable[[], list[bytes]]
+    """Files that it takes."""
+    is_text: bool = True
+
+
+def _source(path: Path) -> None:
+    module = load_file(path, path.name, (TECHNIQUES,))
+    for target in ("wgsl", "numpy"):  # those two are rewritten the most
+        transpile(module, target, "fuzzed")
+
+
+def _material(path: Path) -> None:
+    compile(load_material(path), "glsl-330")
+
+
+def _module(path: Path) -> None:
+    text = read_text(path, path.name)
+    try:
+        read_module(text)
+    except TextError as error:
+        place = Span(path.name, error.line, error.column, error.line, error.column + 1)
+        raise SssgenError([Diagnostic("error", error.message, place)]) from None
+
+
+def _checked(path: Path) -> None:
+    shader_files.read([str(path)], [])
+
+
+def _reflection(path: Path) -> None:
+    """Read as what lies beside a shader."""
+    shader = path.with_name(path.name.removesuffix(".reflection.json"))
+    shader.write_text("vec3 f(vec3 x) { return x; }\n", encoding="utf-8")
+    shader_files.read([str(shader)], [])
+
+
+@cache
+def _subject() -> probes.Subject:
+    return probes.subject("lobe_gdc2011")
+
+
+def _inputs(path: Path) -> None:
+    given = inputs.read(str(path), _subject())
+    with contextlib.suppress(SssgenError):  # which names the input, and knows of no file
+        fitted(_subject(), given)
+
+
+def _ci(path: Path) -> None:
+    """A table of numbers: what is wrong with it is the case's outcome, which names the file."""
+    with ci.Run() as run:
+        ran = run(ci.Case("eval", str(path), ("numpy-f32",)))
+    assert "a fault of sssgen" not in ran.outcome.text, ran.outcome.text
+
+
+def _ci_folder(path: Path) -> None:
+    ci.cases(str(path.parent))
+
+
+def _examples(pattern: str) -> list[bytes]:
+    return [path.read_bytes() for path in sorted(data.folder("examples").glob(pattern))]
+
+
+def _sources() -> list[bytes]:
+    own = sorted(Path(TECHNIQUES).rglob("*.sss"), key=lambda path: (path.stat().st_size, path.name))
+    return [SAMPLE.encode(), *(path.read_bytes() for path in own[::6])]
+
+
+def _techniques() -> list[bytes]:
+    """Techniques by the name of the file that `survives` writes."""
+    own = sorted(Path(TECHNIQUES).glob("[!c]*/*.sss"))
+    return [re.sub(rb"\b%b(?=\()" % path.stem.encode(), NAME.encode(), path.read_bytes()) for path in own[::6]]
+
+
+def _modules() -> list[bytes]:
+    return [print_module(load_text(text.decode(), "seed.sss", (TECHNIQUES,))).encode() for text in _sources()[:4]]
+
+
+def _shaders() -> list[bytes]:
+    return [text.encode() for name, text in compile("jelly_cubes", "glsl-330").files.items() if name.endswith(".frag")]
+
+
+def _reflections() -> list[bytes]:
+    return [list(compile("jelly_cubes", "glsl-330").files.values())[-1].encode()]
+
+
+def _numbers() -> list[bytes]:
+    given = {"V": [0, 0, 1], "N": [[0, 0, 1], [0, 0.6, 0.8]], "L": [0, 0, -1], "through": 0.5, "distortion": 0.2}
+    return [json.dumps(given).encode()]
+
+
+def _tables() -> list[bytes]:
+    table = {"technique": "lobe_gdc2011", "samples": 4, "seed": 1, "tolerance": 1e-5, "inputs": {"through": 0.5}}
+    return [json.dumps(table).encode()]
+
+
+def _picture(mode: str, **options: object) -> bytes:
+    file = BytesIO()
+    Image.new(mode, (5, 3), 1).save(file, "PNG", **options)
+    return file.getvalue()
+
+
+def _pngs() -> list[bytes]:
+    return [*(_picture(mode) for mode in ("1", "L", "LA", "P", "RGB", "RGBA", "I;16")), _picture("P", transparency=0)]
+
+
+def _arrays() -> list[bytes]:
+    found = []
+    for array in (np.zeros((2, 3)), np.ones((2, 2, 3), np.uint8), np.zeros((2, 2, 2, 4), np.float32)):
+        file = BytesIO()
+        np.save(file, array)
+        found.append(file.getvalue())
+    return found
+
+
+@cache
+def _exrs() -> list[bytes]:
+    from tempfile import TemporaryDirectory
+
+    with TemporaryDirectory() as folder:
+        path = Path(folder, "seed.exr")
+        images.write_exr(path, np.linspace(0.0, 1.0, 2 * 3 * 3).reshape(2, 3, 3))
+        return [path.read_bytes()]
+
+
+def _mesh(path: Path) -> None:
+    _ = Mesh(path=str(path)).triangles
+
+
+def _meshes(kind: str) -> Callable[[], list[bytes]]:
+    def made() -> list[bytes]:
+        import trimesh
+
+        exported = trimesh.creation.box().export(file_type=kind)
+        return [exported.encode() if isinstance(exported, str) else exported]
+
+    return made
+
+
+FRONT_ENDS = {
+    "technique": FrontEnd(".sss", lambda path: load_path(str(path)), _techniques),
+    "source": FrontEnd(".glsl", _source, _sources),
+    "material": FrontEnd(".toml", _material, lambda: _examples("*/[!s]*.toml")),
+    "scene": FrontEnd(".toml", lambda path: scene.load(path), lambda: _examples("*/scene*.toml")),
+    "ci table": FrontEnd(".eval.json", _ci, _tables),
+    "ci folder": FrontEnd(".toml", _ci_folder, lambda: _examples("ci/*/*.toml")),
+    "module": FrontEnd(".ir", _module, _modules),
+    "checked shader": FrontEnd(".frag", _checked, _shaders),
+    "reflection": FrontEnd(".glsl.reflection.json", _reflection, _reflections),
+    "inputs": FrontEnd(".json", _inputs, _numbers),
+    "png": FrontEnd(".png", images.read, _pngs, False),
+    "exr": FrontEnd(".exr", images.read, _exrs, False),
+    "npy": FrontEnd(".npy", images.read, _arrays, False),
+    "obj": FrontEnd(".obj", _mesh, _meshes("obj"), False),
+    "ply": FrontEnd(".ply", _mesh, _meshes("ply"), False),
+    "stl": FrontEnd(".stl", _mesh, _meshes("stl"), False),
+    "glb": FrontEnd(".glb", _mesh, _meshes("glb"), False),
+}
+
+
+WHOLE = re.compile(
+    "the file (is too large|is empty|has no function)|the technique .* has no role|unknown role|no such file"
+    "|no file can|this is not a (file|reflection)|cannot read|cannot find the (picture|mesh)|no technique is named"
+    "|nothing to compile|there is nothing to check|the lists are nested|a number has thousands|the inputs are no"
+    "|'.*' is no |'samples' is|unknown key|texture '.*' is given"
+)
+"""The errors of texts that are about the whole file, or about a JSON value, whose place json does not tell."""
+
+
+def survives(front_end: FrontEnd, content: bytes, folder: Path) -> bool:
+    """Whether a file of this content is taken. Fails where it is refused by anything but errors with their places."""
+    path = folder / f"{NAME}{front_end.suffix}"
+    path.write_bytes(content)
+    return taken(front_end, path)
+
+
+def taken(front_end: FrontEnd, path: Path) -> bool:
+    """The same for a path."""
+    COUNTED["files"] += 1
+    try:
+        with bounded(what=f"reading {path.name}"):
+            front_end.read(path)
+    except SssgenError as error:
+        assert error.diagnostics
+        for found in error.diagnostics:
+            assert found.span.file, f"an error without a file: {found}"
+            assert found.span.line or not front_end.is_text or WHOLE.match(found.message), f"without a line: {found}"
+            found.render().encode("utf-8", "replace")
+        assert len(str(error)) < 200_000
+        return False
+    return True

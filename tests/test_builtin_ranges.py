@@ -1,0 +1,331 @@
+"""The `range` and `guards` of the intrinsic table: what the builtins give lies in the range, and guards make it finite."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Callable
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+
+from pass_cases import module_of
+from sssgen.compiler import transpile
+from sssgen.harness.backends import Array, Backend, Call, Text
+from sssgen.harness.parity_inputs import DTYPES, EDGES, INTERVALS, UNIT, evaluated, widened
+from sssgen.ir import nodes as ir
+from sssgen.ir import signatures
+from sssgen.ir.formats import FLOAT32
+from sssgen.ir.intrinsics import BUILTINS, Builtin
+from sssgen.ir.types import Matrix, Scalar, Type, Vector, components, kind_of, spell
+from sssgen.passes import builtin_ranges
+from sssgen.passes.intervals import Range, rounded
+from sssgen.passes.ranges import _Analysis
+from sssgen.passes.vectors import Value
+from sssgen.targets import numpy_runtime as runtime
+
+BOXES, LANES = 40, 48
+COMPUTED = [row for row in BUILTINS.values() if row.kind not in ("fetch", "derivative")]
+LARGEST = FLOAT32.largest
+
+
+def called(name: str, args: tuple[Any, ...]) -> Array:
+    """What NumPy gives in float32."""
+    with runtime.precision("float32"), np.errstate(all="ignore"):
+        found = np.asarray(getattr(runtime, name + "_" * (name == "not"))(*args))
+    return found
+
+
+def overloads(row: Builtin) -> list[tuple[tuple[Type, ...], Type]]:
+    return [(params, result) for params, (result, _) in signatures.overloads(row.name).items()]
+
+
+# Ranges
+
+
+def a_box(rng: np.random.Generator, row: Builtin, index: int, type_: Type) -> list[Range]:
+    """A range for each component of an argument, some of them points."""
+    kind = kind_of(type_)
+    if kind == "bool":
+        low, high = sorted(rng.integers(0, 2, 2))
+        return [Range(float(low), float(high))] * components(type_)
+    if kind in ("int", "uint"):
+        ends = [-(2**31) + 1, 2**31 - 1, -7, 5] if kind == "int" else [0, 2**32 - 1, 7, 5]
+        low, high = sorted(float(rng.choice([*ends, 0, int(rng.integers(0, 99))])) for _ in range(2))
+        return [Range(low, high)] * components(type_)
+    found = INTERVALS.get(row.name, (-1e3, 1e3))
+    least, most = found[index] if isinstance(found[0], tuple) else found
+    boxes = []
+    for _ in range(components(type_)):
+        edges = EDGES[(EDGES >= least) & (EDGES <= most) & (np.abs(EDGES) < 1e12)]
+        drawn = rng.uniform(max(least, -8.0), min(most, 8.0), 2)
+        low, high = sorted(float(np.float32(rng.choice(edges) if rng.random() < 0.5 else end)) for end in drawn)
+        if rng.random() < 0.4:  # narrow: what cancels shows
+            high = float(np.float32(low + abs(low) * 1e-6))
+        boxes.append(Range(low, high))
+    return boxes
+
+
+def drawn(rng: np.random.Generator, box: list[Range], type_: Type) -> Array:
+    """Members of a box, lane last: its corners first, then others, with 0 and 1 where they lie in it."""
+    columns = []
+    for part in box:
+        column = part.low + (part.high - part.low) * rng.random(LANES)
+        column[: LANES // 3] = rng.choice([part.low, part.high], LANES // 3)
+        column[-4:] = np.clip([0.0, 1.0, -1.0, 0.5], part.low, part.high)
+        if kind_of(type_) != "float":
+            column = np.round(column)
+        columns.append(np.clip(column, part.low, part.high))
+    shape = {Scalar: (LANES,), Vector: (-1, LANES)}.get(type(type_), (getattr(type_, "size", 1), -1, LANES))
+    values: Array = np.array(columns).reshape(shape).astype(DTYPES[kind_of(type_)])
+    return values
+
+
+def analysed(row: Builtin, params: tuple[Type, ...], result: Type, boxes: list[list[Range]], same: bool) -> Any:
+    """What the analysis makes of a call: the value, and the places where something may go wrong."""
+    analysis = _Analysis(ir.Module(), FLOAT32)
+    values: list[Value] = []
+    for box in boxes:
+        numbers = values[0].numbers if same and values else tuple(analysis.numbers.fresh() for _ in box)
+        values.append(analysis.value(tuple(rounded(part, FLOAT32) for part in box), numbers))
+    names = [ir.Local(type_, f"x{index}", ir.NOWHERE) for index, type_ in enumerate(params)]
+    node = ir.Intrinsic(result, row.name, tuple(names), ir.NOWHERE)
+    return analysis.builtin(node, tuple(values), False), list(analysis.sites.values())
+
+
+def assert_inside(found: Value, result: Type, made: Array, said: object) -> None:
+    flat = np.broadcast_to(made, (*made.shape[:-1], LANES)).reshape(-1, LANES).astype(np.float64)
+    assert len(flat) == len(found.parts), said
+    for part, lanes in zip(found.parts, flat, strict=True):
+        inside = (lanes >= part.low) & (lanes <= part.high) & (np.abs(lanes) >= part.gap)
+        assert inside.all(), (said, part, lanes[~inside][:3])
+    if isinstance(result, Vector) and result.kind == "float":
+        lengths = np.sqrt((flat**2).sum(axis=0))
+        assert (lengths <= found.length.high * (1.0 + 1e-12)).all(), (said, found.length, lengths.max())
+        assert (lengths >= found.length.low * (1.0 - 1e-12)).all(), (said, found.length, lengths.min())
+
+
+@pytest.mark.parametrize("row", [row for row in COMPUTED if row.range], ids=lambda row: row.name)
+def test_results_lie_in_the_range(row: Builtin) -> None:
+    """For all members of random boxes; and finite where the table says that nothing can go wrong."""
+    rng = np.random.default_rng(zlib.crc32(row.name.encode()))
+    checked = 0
+    for params, result in overloads(row):
+        for number in range(BOXES):
+            boxes = [a_box(rng, row, index, type_) for index, type_ in enumerate(params)]
+            same = number % 4 == 0 and len(set(params)) == 1 and row.name not in UNIT
+            if same:
+                boxes = [boxes[0]] * len(boxes)
+            args = tuple(drawn(rng, box, type_) for box, type_ in zip(boxes, params, strict=True))
+            args = (args[0],) * len(args) if same else args
+            if row.name in UNIT and kind_of(params[0]) == "float" and isinstance(params[0], Vector):
+                args = tuple(_unit(arg) if index in UNIT[row.name] else arg for index, arg in enumerate(args))
+                boxes = [_hull(arg) if index in UNIT[row.name] else box
+                         for index, (arg, box) in enumerate(zip(args, boxes, strict=True))]  # fmt: skip
+            found, sites = analysed(row, params, result, boxes, same)
+            made = called(row.name, args)
+            if row.guards and row.guards[0].needs == "False":  # the guard is always there
+                made = np.nan_to_num(made, nan=0.0)
+            elif not all(site.proven for site in sites):
+                continue
+            assert_inside(found, result, made, (row.name, boxes))
+            checked += 1
+    assert checked > BOXES / 4, "too few boxes are within the domain"
+
+
+def _unit(arg: Array) -> Array:
+    length = np.linalg.norm(arg.astype(np.float64), axis=0)
+    found: Array = np.where(length > 1e-6, arg / np.maximum(length, 1e-6), np.eye(len(arg))[:, :1]).astype(np.float32)
+    return found
+
+
+def _hull(arg: Array) -> list[Range]:
+    return [Range(float(part.min()), float(part.max())) for part in arg]
+
+
+def test_a_narrower_range_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The test above fails for a wrong row."""
+    for name, wrong in (("cos", "hull(0, 1)"), ("mix", "x"), ("exp2", "rising(math.exp, x)"), ("dot", "whole: length(x)")):
+        with monkeypatch.context() as patch:
+            patch.setitem(BUILTINS, name, BUILTINS[name]._replace(range=wrong))
+            with pytest.raises(AssertionError):
+                test_results_lie_in_the_range(BUILTINS[name])
+
+
+# Guards
+
+
+class Guarded(NamedTuple):
+    """One overload of a builtin with guards, as a function of hostile arguments."""
+
+    row: Builtin
+    params: tuple[Type, ...]
+    result: Type
+    args: tuple[Array, ...]
+
+    @property
+    def title(self) -> str:
+        return f"{self.row.name}({', '.join(map(spell, self.params))})"
+
+
+_SIZES = [0.0, 1e-45, 1e-40, 1e-30, 1e-12, 1e-3, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 8.0, 64.0, 87.0, 130.0, 1e4, 1e6]
+HOSTILE = np.array([sign * size for size in _SIZES for sign in (1.0, -1.0)], np.float32)
+"""Within what a parameter may be."""
+BITS = [0, 1, 0x7F800000, 0x7FC00000, 0x7F800001, 0x3F800000, 0x7F7FFFFF, 0x7C007C00, 0x7E01FC00, 0x3C00, 0x007FFFFF]
+
+
+@cache
+def guarded_cases() -> tuple[Guarded, ...]:
+    found = []
+    for row in COMPUTED:
+        for params, result in overloads(row) if row.guards else ():
+            if kind_of(result) == "float":
+                rng = np.random.default_rng(zlib.crc32(row.name.encode()))
+                args = tuple(_hostile(rng, type_) for type_ in params)
+                found.append(Guarded(row, params, result, args))
+    return tuple(found)
+
+
+def _hostile(rng: np.random.Generator, type_: Type) -> Array:
+    """Every pair of the first two arguments comes by chance; 600 lanes."""
+    shape = {Scalar: (600,), Vector: (getattr(type_, "size", 1), 600)}.get(type(type_), (getattr(type_, "size", 1),) * 2 + (600,))
+    kind = kind_of(type_)
+    if kind != "float":
+        choices = np.array([*BITS, *(bits | 0x80000000 for bits in BITS)], np.uint32)
+        return rng.choice(choices.view(DTYPES[kind]), shape)
+    values = rng.choice(HOSTILE, shape)
+    values[..., :100] = values[(0,) * (len(shape) - 1)][:100]  # all components alike
+    values[..., 100:200] = rng.uniform(-4.0, 4.0, (*shape[:-1], 100))
+    return values.astype(np.float32)
+
+
+def run(backend: Backend, mode: str, chosen: tuple[Guarded, ...]) -> list[Array]:
+    """The results, all functions in one program."""
+    lines = []
+    for number, case in enumerate(chosen):
+        params = ", ".join(f"{spell(type_)} {name}" for type_, name in zip(case.params, "abc", strict=False))
+        names = ", ".join("abc"[: len(case.params)])
+        lines.append(f"{spell(case.result)} case_{number}({params}) {{ return {case.row.name}({names}); }}")
+    made = transpile(module_of("\n".join(lines)), backend.target.name, "cases", guards=mode)
+    text = next(text for name, text in made.files.items() if not name.endswith(".json"))
+    names = made.reflection["renames"]
+    calls = [
+        Call(names.get(f"case_{number}", f"case_{number}"), case.params, case.result, case.args)
+        for number, case in enumerate(chosen)
+    ]
+    return backend.run(Text(text), calls)
+
+
+def safe_lanes(case: Guarded) -> Array:
+    """Lanes whose arguments keep to the domain, by the table's `needs`, and where parity is measured."""
+    whole = case.row.range.startswith("whole:")
+    lanes = case.args[0].shape[-1]
+    flat = [arg.reshape(-1, lanes).astype(np.float64) for arg in case.args]
+    count = 1 if whole else max(len(arg) for arg in flat)
+    good = np.ones(lanes, bool)
+    for lane in range(lanes):
+        for at in range(count):
+            points = [_point(arg[:, lane] if whole else arg[at % len(arg), lane : lane + 1]) for arg in flat]
+            good[lane] &= all(builtin_ranges.evaluated(one.needs, FLOAT32, points, _ordered) for one in case.row.guards)
+    if case.row.inside:
+        with np.errstate(all="ignore"):
+            good &= evaluated(case.row.inside, widened(case.args))
+    tiny = [((np.abs(arg) > 0.0) & (np.abs(arg) < 1e-30)).any(axis=0) for arg in flat]
+    return good & ~np.any(tiny, axis=0)
+
+
+def _point(numbers: Array) -> Range:
+    size = float(np.sqrt((numbers**2).sum())) if len(numbers) > 1 else float(numbers[0])
+    return rounded(Range(size, size), FLOAT32)
+
+
+def _ordered(low: Range, high: Range) -> bool:
+    return low.high <= high.low
+
+
+def assert_safe(case: Guarded, got: Array) -> int:
+    """All lanes are finite, those in the domain as the builtin has them; how many of these there are."""
+    finite = np.isfinite(got).reshape(-1, got.shape[-1]).all(axis=0)
+    told = [[arg[..., lane].tolist() for arg in case.args] for lane in np.flatnonzero(~finite)[:3]]
+    assert finite.all(), f"{case.title} at {told}: {got[..., ~finite][..., :3].tolist()}"
+    good = safe_lanes(case)
+    with np.errstate(all="ignore"), runtime.precision("float64"):
+        wanted = np.asarray(getattr(runtime, case.row.name)(*widened(case.args)))[..., good]
+        size = np.abs(wanted)
+        if case.row.size:
+            size = np.maximum(size, evaluated(case.row.size, widened(case.args))[good])
+    inner = tuple(range(wanted.ndim - 1))
+    size = np.broadcast_to(size.max(axis=inner) if inner else size, wanted.shape)
+    allowed = np.maximum(2.0 * max(case.row.ulp, 4.0) * 2.0**-23 * size, max(case.row.absolute, 1e-30))
+    off = np.abs(got[..., good] - wanted) - allowed
+    worst = int(np.argmax(off.reshape(-1, off.shape[-1]).max(axis=0))) if off.size else 0
+    at = [arg[..., good][..., worst].tolist() for arg in case.args] if off.size else []
+    assert not (off > 0.0).any(), f"{case.title} at {at}: {got[..., good][..., worst]} is not {wanted[..., worst]}"
+    return int(good.sum())
+
+
+@pytest.mark.parametrize("mode", ["auto", "all"])
+@pytest.mark.parametrize("name", ["numpy-f32", "gl", "webgpu", "hlsl"])
+def test_guarded_builtins_are_finite_and_the_same_in_the_domain(
+    name: str, mode: str, backend: Callable[[str], Backend]
+) -> None:
+    chosen = guarded_cases()
+    inside: dict[str, int] = {}
+    for case, got in zip(chosen, run(backend(name), mode, chosen), strict=True):
+        inside[case.row.name] = inside.get(case.row.name, 0) + assert_safe(case, got)
+    never = {row.name for row in COMPUTED for guard in row.guards if guard.needs == "False"}
+    few = {name: count for name, count in inside.items() if count < 20 and name not in never}
+    assert not few, few
+
+
+def test_without_guards_they_are_not(backend: Callable[[str], Backend]) -> None:
+    """The arguments are hostile to every one of these builtins but clamp and atan, which NumPy defines."""
+    chosen = guarded_cases()
+    bad = {
+        case.row.name
+        for case, got in zip(chosen, run(backend("numpy-f32"), "none", chosen), strict=True)
+        if not np.isfinite(got).all()
+    }
+    assert {case.row.name for case in chosen} - bad <= {"clamp", "atan", "tan", "tanh", "cosh", "sinh", "asinh"}
+
+
+HUGE = np.array([sign * size for size in [*_SIZES, 1e10, 1e19, 1e20, 1e30, 1e38] for sign in (1.0, -1.0)], np.float32)
+
+
+@pytest.mark.parametrize("name", ["numpy-f32", "gl"])
+def test_guarded_builtins_of_huge_numbers(name: str, backend: Callable[[str], Backend]) -> None:
+    """A thickness from outside may be any finite number; of those whose differences are, too."""
+    rows = [row for row in COMPUTED if row.range and any(set(params) == {Scalar("float")} and result == Scalar("float")
+            for params, result in overloads(row))]  # fmt: skip
+    lines, calls, chosen = [], [], []
+    rng = np.random.default_rng(5)
+    for row in rows:
+        for params, result in overloads(row):
+            if set(params) != {Scalar("float")} or result != Scalar("float"):
+                continue
+            letters = "abc"[: len(params)]
+            given = ", ".join(f"thickness {letter}" for letter in letters)
+            passed = ", ".join(f"float({letter})" for letter in letters)
+            lines.append(f"float case_{len(calls)}({given}) {{ return {row.name}({passed}); }}")
+            calls.append(Call(f"case_{len(calls)}", params, result, tuple(rng.choice(HUGE, 600) for _ in params)))
+            chosen.append(row.name)
+    gpu = backend(name)
+    made = transpile(module_of("\n".join(lines)), gpu.target.name, "cases", guards="auto")
+    text = next(text for file, text in made.files.items() if not file.endswith(".json"))
+    for title, call, got in zip(chosen, calls, gpu.run(Text(text), calls), strict=True):
+        wrong = np.flatnonzero(~np.isfinite(got))
+        assert not len(wrong), (title, [arg[wrong[0]] for arg in call.args], got[wrong[0]])
+
+
+def test_needs_are_true_somewhere_and_false_somewhere() -> None:
+    """Each is Python that knows the ranges; none is always true."""
+    wide, narrow = Range(-LARGEST, LARGEST), Range(1.25, 1.25)
+    for row in COMPUTED:
+        for guard in row.guards:
+            count = max(len(params) for params, _ in overloads(row))
+            at = [builtin_ranges.evaluated(guard.needs, FLOAT32, [part] * count, lambda *_: False) for part in (wide, narrow)]
+            assert not at[0], (row.name, guard.needs)
+            fixed = [Range(0.5, 0.5), Range(1.5, 1.5), Range(2.0, 2.0)][:count]
+            good = builtin_ranges.evaluated(guard.needs, FLOAT32, fixed, lambda *_: False)
+            assert at[1] or good or guard.needs == "False", (row.name, guard.needs)

@@ -1,0 +1,153 @@
+"""`sssgen lint`: what may fail, where, with what, and what is proven not to."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from sssgen.cli import main
+from sssgen.diagnostics import SssgenError
+from sssgen.harness.lint import MAY_FAIL, PROVEN, UNKNOWN, lint
+
+HAZARDS = """\
+uniform float share : hint_range(0.0, 1.0) = 0.5;
+uniform float width : hint_range(0.1, 1.0) = 0.5;
+
+float ratio(float a, float b)
+{
+    return a / b;
+}
+
+vec3 between(vec3 a, vec3 b)
+{
+    return normalize(a + b);
+}
+
+float known(float a)
+{
+    return sqrt(a * a + share) / width;
+}
+"""
+
+
+@pytest.fixture
+def hazards(tmp_path: Path) -> str:
+    path = tmp_path / "hazards.glsl"
+    path.write_text(HAZARDS)
+    return str(path)
+
+
+def test_plain_functions_have_no_guard(hazards: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["lint", hazards]) == 1
+    told = capsys.readouterr().out
+    assert "warning: /: a division by 0\n" in told
+    assert f"{hazards}:6:12" in told
+    assert " 6 |     return a / b;\n   |            ^^^^^" in told
+    assert "found: x in -1e+06..1e+06, y in -1e+06..1e+06" in told
+    assert "write: max(abs(y), 1e-20)" in told
+    assert told.endswith("4 operations with a domain: 2 proven safe, 2 may fail, 0 unknown\n")
+
+
+def test_proven_functions_pass(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "safe.glsl"
+    path.write_text("float root(float a) { return sqrt(a * a + 1.0); }\n")
+    assert main(["lint", str(path)]) == 0
+    assert "1 operations with a domain: 1 proven safe" in capsys.readouterr().out
+    assert main(["lint", "--all", str(path)]) == 0
+    assert "sqrt: proven safe" in capsys.readouterr().out
+
+
+def test_the_example_fails(capsys: pytest.CaptureFixture[str]) -> None:
+    """The line that is printed, run as it stands, gives NaN."""
+    assert main(["lint", "lobe_normalized"]) == 0  # what is emitted is guarded
+    line = next(one for one in capsys.readouterr().out.splitlines() if "example: " in one)
+    command = line.split("example: ")[1].replace("sssgen eval", f"{sys.executable} -m sssgen eval")
+    done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, check=True)
+    assert "nan" in done.stdout
+    guarded = command.replace("--guards none", "--guards auto")
+    done = subprocess.run(["sh", "-c", guarded], capture_output=True, text=True, check=True)
+    assert "nan" not in done.stdout
+
+
+def test_json_for_editors(hazards: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["lint", "--json", hazards]) == 1
+    data = json.loads(capsys.readouterr().out)
+    assert not data["ok"]
+    found = {one["operation"]: one for one in data["results"][0]["findings"] if one["verdict"] == MAY_FAIL}
+    assert found["/"]["line"] == 6
+    assert found["/"]["severity"] == "warning"
+    assert found["normalize"]["example"].startswith("echo")
+    assert "inversesqrt" in found["normalize"]["help"]
+
+
+def test_examples_may_be_left_out(hazards: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["lint", "--no-examples", hazards]) == 1
+    told = capsys.readouterr().out
+    assert "a division by 0 (not proven)" in told
+    assert "example:" not in told
+    assert "2 proven safe, 0 may fail, 2 not proven" in told
+
+
+def test_a_material_is_judged_as_a_whole() -> None:
+    """In a chain a quantity is in its range; alone a function takes any number."""
+    alone = {(one.site.what, one.verdict) for one in lint("thickness_from_thinness")}
+    assert ("thickness", MAY_FAIL) in alone
+    chained = lint("paper_lantern", with_examples=False)
+    assert all(one.guarded for one in chained)
+    assert sum(one.verdict == PROVEN for one in chained) > sum(one.verdict == UNKNOWN for one in chained)
+
+
+def test_fixed_values_prove_more(tmp_path: Path) -> None:
+    path = tmp_path / "glow.toml"
+    text = """
+[material]
+name = "glow"
+
+[[thickness]]
+technique = "transmittance_map"
+
+[translucency]
+technique = "lobe_normalized"
+{fixed}
+"""
+    path.write_text(text.format(fixed=""))
+    assert any(one.site.place.startswith("translucency") for one in lint(str(path), False) if one.verdict != PROVEN)
+    path.write_text(text.format(fixed="distortion = { value = 0.0, fixed = true }"))
+    # the light's direction may still be missing
+    assert [one.site.what for one in lint(str(path), False) if "lobe" in one.site.place and one.verdict != PROVEN] == [
+        "normalize"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("lobe_normalised", "did you mean 'lobe_normalized'?"),
+        ("nothing.glsl", "no such file"),
+        ("nothing.sss", "no such file"),
+        ("nothing.toml", "no such file"),
+    ],
+)
+def test_wrong_names(name: str, said: str) -> None:
+    with pytest.raises(SssgenError, match=re.escape(said)):
+        lint(name)
+
+
+def test_wrong_files(tmp_path: Path) -> None:
+    """What is no shader is told as such, with its place."""
+    for name, data in (("a.glsl", b"float f( {"), ("b.glsl", b"\x00\xff\x01"), ("c.glsl", b"")):
+        path = tmp_path / name
+        path.write_bytes(data)
+        if data:
+            with pytest.raises(SssgenError) as raised:
+                lint(str(path))
+            assert raised.value.diagnostics[0].span.file == str(path)
+        else:
+            assert lint(str(path)) == []
+    with pytest.raises(SssgenError):
+        lint(str(tmp_path))
