@@ -64,11 +64,11 @@ vec3 rays(world_direction ray_direction) {
     return 0.5 + 0.1 * ray_direction;
 }
 """
-FLAT = """
+EMPTY = """
 /** Needs no direction.
 role: lighting
 */
-vec3 flat_color(uv_position uv) {
+vec3 plain(uv_position uv) {
     return vec3(uv, 0.5);
 }
 """
@@ -77,7 +77,8 @@ MATERIALS = {
     '[translucency]\ntechnique = "through.sss"\n',
     "unlit": '[material]\nname = "unlit"\nshading = "unlit"\n[[lighting]]\ntechnique = "unlit.sss"\n',
     "rays": '[material]\nname = "rays"\nshading = "unlit"\n[[lighting]]\ntechnique = "rays.sss"\n',
-    "flat": '[material]\nname = "flat"\nshading = "unlit"\nalpha_mode = "blend"\n[[lighting]]\ntechnique = "flat.sss"\n',
+    "plain": '[material]\nname = "plain"\nshading = "unlit"\nalpha_mode = "blend"\n[[lighting]]\n'
+    'technique = "plain.sss"\n',
 }
 
 FRONT = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.5, 0.5])
@@ -134,7 +135,7 @@ def made(tmp_path: Path) -> Callable[[str, str], Compiled]:
     """Compiles a probe for a target."""
 
     def write(name: str, target: str) -> Compiled:
-        for file, text in (("shown", LIT), ("through", THROUGH), ("unlit", UNLIT), ("rays", RAYS), ("flat", FLAT)):
+        for file, text in (("shown", LIT), ("through", THROUGH), ("unlit", UNLIT), ("rays", RAYS), ("plain", EMPTY)):
             (tmp_path / f"{file}.sss").write_text(text, encoding="utf-8")
         path = tmp_path / f"{name}.toml"
         path.write_text(MATERIALS[name], encoding="utf-8")

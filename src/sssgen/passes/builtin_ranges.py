@@ -130,8 +130,6 @@ def _length(format: Format, x: Value, y: Value | None = None) -> Whole:
         size = _slack(format) * (x.length.high + y.length.high)
         found = widened(length_of(parts).met(vectors.total_length(x.length, y.length)), 0.0, size if size < INF else 0.0)
         found = Range(max(found.low, 0.0), found.high)
-    if len(x.parts) == 1:
-        return [found], ANY
     # the squares in it overflow, or are too small
     low = found.low if found.low > format.tiny**0.5 else 0.0
     high = found.high if found.high < format.largest**0.5 else INF
@@ -146,14 +144,14 @@ def _dot(format: Format, x: Value, y: Value) -> Whole:
     if all(part.low >= 0.0 for part in products) or len(products) == 1:
         return [widened(total, slack)], ANY
     size = min(sum(part.size for part in products), x.length.high * y.length.high if x.length.high else 0.0)
-    return [widened(total, 0.0, slack * size) if size < INF else ANY], ANY
+    return [widened(total, 0.0, slack * size + format.tiny) if size < INF else ANY], ANY
 
 
 def _cross(format: Format, x: Value, y: Value) -> Whole:
     parts, length = vectors.cross(x, y)
     if length.high == INF:
         return parts, length
-    size = _slack(format) * length.high
+    size = _slack(format) * length.high + format.tiny
     return [widened(part, 0.0, size) for part in parts], widened(length, _slack(format))
 
 
@@ -183,7 +181,7 @@ def _reflected(format: Format, x: Value, y: Value) -> Whole:
         return [ANY for _ in parts], ANY
     whole = x.length.high * (1.0 + 2.0 * y.length.high * y.length.high)
     most = x.length.high if y.length.high <= 1.0 + slack else whole
-    error = slack * whole
+    error = slack * whole + format.tiny
     return [widened(part.met(hull(-most, most)), 0.0, error) for part in parts], hull(0.0, most + 2.0 * error)
 
 

@@ -151,7 +151,7 @@ class _Legaliser:
 
     def declare(self, declare: ir.Declare, value: ir.Expr) -> ir.Stmt | None:
         place = ir.Local(declare.type, declare.name, declare.span)
-        if isinstance(value, ir.Select) and not self.can("ternary"):
+        if isinstance(value, ir.Select) and not self.chooses(value):
             value = self.select(value, place)
             if value is place:
                 assert self.prelude is not None
@@ -171,7 +171,7 @@ class _Legaliser:
         if (
             isinstance(assign.value, ir.Select)
             and isinstance(assign.target, ir.Local)
-            and not (op or self.can("ternary"))
+            and not (op or self.chooses(assign.value))
         ):
             value = self.select(assign.value, assign.target)
             return None if value is assign.target else assign._replace(value=value)
@@ -253,7 +253,7 @@ class _Legaliser:
     # Expressions
 
     def expr(self, expr: ir.Expr) -> ir.Expr:
-        if isinstance(expr, ir.Select) and not self.can("ternary"):
+        if isinstance(expr, ir.Select) and not self.chooses(expr):
             return self.select(expr)
         if isinstance(expr, ir.Index) and isinstance(expr.value, ir.Global) and expr.value.name in self.uniforms:
             return blocks.element(expr._replace(index=self.expr(expr.index)), self.can)
@@ -452,9 +452,14 @@ class _Legaliser:
         self.prelude.append(ir.If(condition, then, otherwise, span))
         return place
 
+    def chooses(self, select: ir.Select) -> bool:
+        """Whether the target has an expression for this choice."""
+        whole = isinstance(select.type, Struct | Array)
+        return self.can("ternary") and (not whole or self.can("struct_choices"))
+
     def branches(self, select: ir.Select) -> bool:
         """Whether a choice is for an if: its arms are not plain values, or one of them calls or samples."""
-        if self.can("ternary") or self.prelude is None:
+        if self.chooses(select) or self.prelude is None:
             return False
         plain = isinstance(select.type, Scalar | Vector)
         return not plain or any(_is_costly(part) for arm in (select.yes, select.no) for part in subexpressions(arm))

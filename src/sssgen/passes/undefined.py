@@ -10,7 +10,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import NamedTuple
 
-from ..ir.nodes import Binary, Construct, Expr, Global, Intrinsic, Literal, Local, Module, Span, Swizzle, Unary
+from ..ir.nodes import Assign, Binary, Construct, Expr, Global, Intrinsic, Literal, Local, Module, Span, Swizzle, Unary
 from ..ir.rules import FLOAT_MAX
 from ..ir.types import Scalar, Vector, kind_of
 from ..ir.walk import expressions, operands, statements
@@ -35,6 +35,9 @@ def undefined_constants(module: Module) -> list[Undefined]:
         for stmt in statements(function.body or ()):
             for expr in expressions(stmt):
                 checker.numbers(expr)
+            if isinstance(stmt, Assign) and stmt.op:
+                whole = Binary(stmt.target.type, stmt.op, stmt.target, stmt.value, stmt.span)
+                checker.binary(whole, None, checker.numbers(stmt.value))
     return list(checker.found.values())
 
 
@@ -91,7 +94,8 @@ class _Checker:
 
     def builtin(self, expr: Intrinsic, args: list[Numbers]) -> Numbers | None:
         if args and arithmetic.outside(expr.name, args):
-            return self.wrong(f"{expr.name} of these constants is not a finite number", expr)
+            what = "a finite number" if kind_of(expr.type) == "float" else "defined"
+            return self.wrong(f"{expr.name} of these constants is not {what}", expr)
         return arithmetic.builtin(expr.name, args, [arg.type for arg in expr.args], expr.type)
 
     def wrong(self, message: str, expr: Expr) -> Numbers | None:

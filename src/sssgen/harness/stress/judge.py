@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...ir.contracts import LENGTH, of_quantity
+from ...ir.contracts import of_param
 from ..backends import Array
 from ..deviation import errors
 from ..probes import RESULT
@@ -25,8 +25,6 @@ JUMP = 0.02
 GROWTH = 1e-5
 """How much light rounding may add where there is more matter, relative to the larger of its size and 1."""
 
-_POSITIVE = {"albedo", "emission", "color"}
-_FRACTIONS = {"alpha", "metallic", "roughness"}
 _LIGHTS = {"translucency", "lighting", "output"}
 
 
@@ -82,15 +80,15 @@ def _out_of_range(trial: Trial, output: str, value: Array, _: Mapping[str, Array
 
 def bounds(specimen: Specimen, output: str) -> tuple[float, float, float]:
     """Lowest, highest value and greatest length that an output may have, by its quantity, its name and the role."""
-    quantity = specimen.quantity(output)
-    found = of_quantity(quantity) if not quantity.endswith("_position") else None
-    if found is not None:
-        return (found.low, found.high, np.inf) if not is_direction(output, found) else (-np.inf, np.inf, LENGTH)
-    if output in _FRACTIONS:
-        return 0.0, 1.0, np.inf
-    if output in _POSITIVE or (output == RESULT and specimen.role in _LIGHTS):
-        return 0.0, np.inf, np.inf
-    return -np.inf, np.inf, np.inf
+    made = specimen.output(output)
+    found = of_param(made)
+    if is_direction(output, found):
+        return -np.inf, np.inf, found.length
+    if made.quantity and not made.quantity.endswith("_position"):
+        return found.low, found.high, np.inf
+    if found.low >= 0.0:  # a colour has no highest value, a fraction has
+        return 0.0, 1.0 if found.high <= 1.0 else np.inf, np.inf
+    return (0.0 if output == RESULT and specimen.role in _LIGHTS else -np.inf), np.inf, np.inf
 
 
 def _energy(trial: Trial, _: str, value: Array, __: Mapping[str, Array] | None) -> Array:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from ... import library
 from ...diagnostics import SssgenError, did_you_mean, failure
+from ...ir.nodes import Param
 from ...material import Material, examples, load_material
 from ...passes.link import LinkStage
 from ..probes import RESULT, Subject, of_stages, subject
@@ -42,15 +43,18 @@ class Specimen(NamedTuple):
         bind = {**self.bind, slot: function}
         return self._replace(subject=subject(self.technique, bind), bind=bind)
 
+    def output(self, name: str) -> Param:
+        """An output as a parameter: what it is called, and what it measures."""
+        probe = next(probe for probe in self.subject.probes if probe.output == name)
+        called = probe.function.removesuffix(f"_shows_{name}")
+        function = next(one for one in self.subject.module.functions if one.name == called)
+        written = next((param for param in function.params if param.name == name and param.direction != "in"), None)
+        return written or Param(RESULT, function.result, "out", function.quantity, function.span)
+
     def quantity(self, output: str) -> str:
-        """What an output measures, '' where that is not declared."""
-        for probe in self.subject.probes:
-            name = probe.function.removesuffix(f"_shows_{output}")
-            function = next((one for one in self.subject.module.functions if one.name == name), None)
-            if probe.output == output and function is not None:
-                given = {param.name: param.quantity for param in function.params}
-                return function.quantity if output == RESULT else given.get(output, "")
-        return ""
+        """What an output measures, '' where that is not declared or there is no such output."""
+        known = any(probe.output == output for probe in self.subject.probes)
+        return self.output(output).quantity if known else ""
 
 
 def specimens(names: Sequence[str]) -> list[Specimen]:

@@ -4,8 +4,8 @@
 // Paste it below the #version of your own shader.
 
 struct Cell {
-    float to_edge;
-    vec2 from_edge;
+    vec2 nearest;
+    vec2 second;
     float level;
 };
 
@@ -21,7 +21,18 @@ struct Surface {
 
 const float JITTER = 0.6;
 const float OPAQUE_DISTANCE = 1.0e-6;
+const float ENDLESS = 10000.0;
 const float OPAQUE_DEPTH = 80.0;
+
+// The direction of `x`; of a zero vector, 0.
+vec2 safe_normalize(vec2 x) {
+    return x * inversesqrt(max(dot(x, x), 1.0e-30));
+}
+
+// The direction of `x`; of a zero vector, 0.
+vec3 safe_normalize(vec3 x) {
+    return x * inversesqrt(max(dot(x, x), 1.0e-30));
+}
 
 // Scrambles the bits of `x`; 0 stays 0.
 uint hash_bits(uint x) {
@@ -32,10 +43,10 @@ uint hash_bits(uint x) {
 
 // A number in [0, 1) from 24 bits of the hash of `x`.
 float hash_unit(uint x) {
-    return float(hash_bits(x) >> 8u) / 16777216.0;
+    return float(hash_bits(x) >> 8u) * 5.9604645e-8;
 }
 
-// The cell at `p`: `to_edge` is the distance to the second site less that to the nearest, `from_edge` its gradient.
+// The cell at `p`.
 Cell cell_at(vec2 p, float variation) {
     vec2 nearest = vec2(4.0);
     vec2 second = vec2(4.0);
@@ -60,18 +71,24 @@ Cell cell_at(vec2 p, float variation) {
         }
     }
     float level = 1.0 - variation * hash_unit(owner + 3u);
-    return Cell(length(second) - length(nearest), normalize(nearest) - normalize(second), level);
+    return Cell(nearest, second, level);
+}
+
+// How much further the second site is than the nearest one: 0 on the edges.
+float to_edge(Cell cell) {
+    return length(cell.second) - length(cell.nearest);
 }
 
 // Thickness in Voronoi cells: facets with thin edges between them, as in cracked ice.
 float voronoi_thickness(vec2 uv, float variation, float cell_count, float thickness_factor, float bevel) {
     Cell cell = cell_at(uv * cell_count, variation);
-    return thickness_factor * cell.level * smoothstep(0.0, bevel, cell.to_edge);
+    return thickness_factor * cell.level * smoothstep(0.0, bevel, to_edge(cell));
 }
 
 // `d` in mean free paths, 0 or more.
 float optical_depth(float d, float mean_free_path) {
-    return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+    float path = max(mean_free_path, OPAQUE_DISTANCE);
+    return clamp(d, 0.0, ENDLESS * path) / path;
 }
 
 // Thickness to transmittance: what absorption leaves of the light.
@@ -92,9 +109,14 @@ void pbr_constants(out float metallic, out float roughness, float metalness, flo
     roughness = surface_roughness;
 }
 
+// The gradient of to_edge.
+vec2 from_edge(Cell cell) {
+    return safe_normalize(cell.nearest) - normalize(cell.second);
+}
+
 // Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add.
 vec3 blend_normals(vec3 base, vec3 detail) {
-    return normalize(vec3(base.xy + detail.xy, base.z * detail.z));
+    return safe_normalize(vec3(base.xy + detail.xy, base.z * detail.z));
 }
 
 // The normal of a height field; `slope` is the height gained per unit of length along T and B.
@@ -106,17 +128,17 @@ vec3 normal_of_slope(vec2 slope) {
 void voronoi_normal(vec2 uv, inout vec3 normal, float variation, float cell_count, float bevel, float relief,
     vec2 uv_per_unit) {
     Cell cell = cell_at(uv * cell_count, variation);
-    float x = clamp(cell.to_edge / bevel, 0.0, 1.0);
+    float x = clamp(to_edge(cell) / bevel, 0.0, 1.0);
     // the derivative of the smoothstep
     float steepness = cell.level * 6.0 * x * (1.0 - x) / bevel;
-    vec2 slope = relief * uv_per_unit * cell_count * steepness * cell.from_edge;
+    vec2 slope = relief * uv_per_unit * cell_count * steepness * from_edge(cell);
     normal = blend_normals(normal, normal_of_slope(slope));
 }
 
 // Light comes through the bare ice only.
 void ice_mask(vec2 uv, inout float through, float cover, sampler2D cover_texture) {
     float covered = cover * texture(cover_texture, uv).r;
-    through = through * smoothstep(0.0, 0.1, 1.0 - covered);
+    through = clamp(through * smoothstep(0.0, 0.1, 1.0 - covered), 0.0, 1.0);
 }
 
 // One moving layer: the offset stays within 1, so that it loses no precision in a long session.
@@ -162,14 +184,14 @@ vec3 glow(float lobe, float through, vec3 subsurface_color, float attenuation, f
 // The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
 vec3 lobe_normalized(vec3 V, vec3 N, vec3 L, float through, float distortion, vec3 subsurface_color,
     float attenuation, float scale, float ambient, float power) {
-    vec3 bent = normalize(L + N * distortion);
+    vec3 bent = safe_normalize(L + N * distortion);
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through, subsurface_color, attenuation, scale,
         ambient);
 }
 
 // The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
 vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughness, vec3 light_color) {
-    vec3 H = normalize(V + L);
+    vec3 H = safe_normalize(V + L);
     float NoL = max(dot(N, L), 0.0);
     float NoV = max(dot(N, V), 0.0001);
     float NoH = clamp(dot(N, H), 0.0, 1.0);
@@ -178,9 +200,9 @@ vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughne
     vec3 across = cross(N, H);
     float spread = NoH > 0.0 ? dot(across, across) + NoH * NoH * (a * a) : 1.0;
     // D times pi
-    float facets = a * a / (spread * spread);
+    float facets = a * a / max(spread * spread, 1.0e-20);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)
-    float visible = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a);
+    float visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
     vec3 F0 = mix(vec3(0.04), albedo, metallic);
     vec3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     vec3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);

@@ -4,8 +4,8 @@
 // Entry points: vertex_main and fragment_main. Matrices are column-major (HLSL's default) and multiply columns: mul(M, v).
 
 struct Cell {
-    float to_edge;
-    float2 from_edge;
+    float2 nearest;
+    float2 second;
     float level;
 };
 
@@ -21,6 +21,7 @@ struct Surface {
 
 static const float JITTER = 0.6;
 static const float OPAQUE_DISTANCE = 1.0e-6;
+static const float ENDLESS = 10000.0;
 static const float OPAQUE_DEPTH = 80.0;
 
 cbuffer Material : register(b3) {
@@ -61,6 +62,16 @@ SamplerState packed_texture_sampler : register(s2);
 Texture2D erosion_texture : register(t3);
 SamplerState erosion_texture_sampler : register(s3);
 
+// The direction of `x`; of a zero vector, 0.
+float2 safe_normalize(float2 x) {
+    return x * rsqrt(max(dot(x, x), 1.0e-30));
+}
+
+// The direction of `x`; of a zero vector, 0.
+float3 safe_normalize(float3 x) {
+    return x * rsqrt(max(dot(x, x), 1.0e-30));
+}
+
 // Scrambles the bits of `x`; 0 stays 0.
 uint hash_bits(uint x) {
     x = (x ^ (x >> 16u)) * 2146121005u;
@@ -70,10 +81,10 @@ uint hash_bits(uint x) {
 
 // A number in [0, 1) from 24 bits of the hash of `x`.
 float hash_unit(uint x) {
-    return float(hash_bits(x) >> 8u) / 16777216.0;
+    return float(hash_bits(x) >> 8u) * 5.9604645e-8;
 }
 
-// The cell at `p`: `to_edge` is the distance to the second site less that to the nearest, `from_edge` its gradient.
+// The cell at `p`.
 Cell cell_at(float2 p) {
     float2 nearest = (float2)4.0;
     float2 second = (float2)4.0;
@@ -100,19 +111,25 @@ Cell cell_at(float2 p) {
         }
     }
     float level = 1.0 - variation * hash_unit(owner + 3u);
-    Cell cell = { length(second) - length(nearest), normalize(nearest) - normalize(second), level };
+    Cell cell = { nearest, second, level };
     return cell;
+}
+
+// How much further the second site is than the nearest one: 0 on the edges.
+float to_edge(Cell cell) {
+    return length(cell.second) - length(cell.nearest);
 }
 
 // Thickness in Voronoi cells: facets with thin edges between them, as in cracked ice.
 float voronoi_thickness(float2 uv) {
     Cell cell = cell_at(uv * cell_count);
-    return thickness_factor * cell.level * smoothstep(0.0, bevel, cell.to_edge);
+    return thickness_factor * cell.level * smoothstep(0.0, bevel, to_edge(cell));
 }
 
 // `d` in mean free paths, 0 or more.
 float optical_depth(float d, float mean_free_path) {
-    return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+    float path = max(mean_free_path, OPAQUE_DISTANCE);
+    return clamp(d, 0.0, ENDLESS * path) / path;
 }
 
 // Thickness to transmittance: what absorption leaves of the light.
@@ -133,9 +150,14 @@ void pbr_constants(out float metallic, out float roughness) {
     roughness = surface_roughness;
 }
 
+// The gradient of to_edge.
+float2 from_edge(Cell cell) {
+    return safe_normalize(cell.nearest) - normalize(cell.second);
+}
+
 // Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add.
 float3 blend_normals(float3 base, float3 detail) {
-    return normalize(float3(base.xy + detail.xy, base.z * detail.z));
+    return safe_normalize(float3(base.xy + detail.xy, base.z * detail.z));
 }
 
 // The normal of a height field; `slope` is the height gained per unit of length along T and B.
@@ -146,10 +168,10 @@ float3 normal_of_slope(float2 slope) {
 // The normal of the Voronoi cells, so that reflected light agrees with light that comes through.
 void voronoi_normal(float2 uv, inout float3 normal) {
     Cell cell = cell_at(uv * cell_count);
-    float x = clamp(cell.to_edge / bevel, 0.0, 1.0);
+    float x = clamp(to_edge(cell) / bevel, 0.0, 1.0);
     // the derivative of the smoothstep
     float steepness = cell.level * 6.0 * x * (1.0 - x) / bevel;
-    float2 slope = relief * uv_per_unit * cell_count * steepness * cell.from_edge;
+    float2 slope = relief * uv_per_unit * cell_count * steepness * from_edge(cell);
     normal = blend_normals(normal, normal_of_slope(slope));
 }
 
@@ -196,14 +218,14 @@ float3 glow(float lobe, float through) {
 
 // The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
 float3 lobe_normalized(float3 V, float3 N, float3 L, float through) {
-    float3 bent = normalize(L + N * distortion);
+    float3 bent = safe_normalize(L + N * distortion);
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through);
 }
 
 // The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
 float3 standard(float3 N, float3 V, float3 L, float3 albedo, float metallic, float roughness,
     float3 light_color) {
-    float3 H = normalize(V + L);
+    float3 H = safe_normalize(V + L);
     float NoL = max(dot(N, L), 0.0);
     float NoV = max(dot(N, V), 0.0001);
     float NoH = clamp(dot(N, H), 0.0, 1.0);
@@ -212,9 +234,9 @@ float3 standard(float3 N, float3 V, float3 L, float3 albedo, float metallic, flo
     float3 across = cross(N, H);
     float spread = NoH > 0.0 ? dot(across, across) + NoH * NoH * (a * a) : 1.0;
     // D times pi
-    float facets = a * a / (spread * spread);
+    float facets = a * a / max(spread * spread, 1.0e-20);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)
-    float visible = 0.5 / lerp(2.0 * NoL * NoV, NoL + NoV, a);
+    float visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
     float3 F0 = lerp((float3)0.04, albedo, metallic);
     float3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     float3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);
@@ -298,13 +320,19 @@ Varyings vertex_main(VertexInput input) {
     return output;
 }
 
+// v / |v|; 0 stays 0, of which normalize makes NaN.
+float3 unit_vector(float3 v) {
+    float square = dot(v, v);
+    return square > 1e-30 ? v * rsqrt(square) : float3(0.0, 0.0, 0.0);
+}
+
 float4 fragment_main(Varyings input) : SV_Target {
-    float3 V = normalize(camera_position - input.position);
-    float3 N = normalize(input.normal);
-    float3 T = input.tangent.xyz * rsqrt(max(dot(input.tangent.xyz, input.tangent.xyz), 1e-12));
+    float3 V = unit_vector(camera_position - input.position);
+    float3 N = unit_vector(input.normal);
+    float3 T = unit_vector(input.tangent.xyz);
     float3 B = cross(N, T) * input.tangent.w;
     Surface surface = evaluate_surface(input.uv, time);
-    N = normalize(T * surface.normal.x + B * surface.normal.y + N * surface.normal.z);
+    N = unit_vector(T * surface.normal.x + B * surface.normal.y + N * surface.normal.z);
 
     float3 color = ambient_color * surface.albedo + surface.emission;
     for (int i = 0; i < min(light_count, MAX_LIGHTS); i++) {

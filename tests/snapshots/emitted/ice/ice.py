@@ -4,12 +4,13 @@
 
 from sssgen.targets.numpy_runtime import *  # noqa: F403
 
-# Cell: Record(to_edge, from_edge, level)
+# Cell: Record(nearest, second, level)
 
 # Surface: Record(albedo, alpha, normal, metallic, roughness, emission, transmittance)
 
 JITTER = 0.6
 OPAQUE_DISTANCE = 1e-06
+ENDLESS = 10000.0
 OPAQUE_DEPTH = 80.0
 
 variation = 0.6  # How much the levels of the cells differ: 0 = all the same.
@@ -44,6 +45,14 @@ cover_texture = Texture([[[0.0, 0.0, 0.0, 1.0]]])
 packed_texture = Texture([[[0.0, 0.0, 0.0, 1.0]]])
 erosion_texture = Texture([[[1.0, 1.0, 1.0, 1.0]]])
 
+def safe_normalize_vec2(x):
+    """The direction of `x`; of a zero vector, 0."""
+    return x * inversesqrt(max(dot(x, x), 1.0000000031710769e-30))
+
+def safe_normalize_vec3(x):
+    """The direction of `x`; of a zero vector, 0."""
+    return x * inversesqrt(max(dot(x, x), 1.0000000031710769e-30))
+
 def hash_bits(x):
     """Scrambles the bits of `x`; 0 stays 0."""
     x = (x ^ (x >> 16)) * 2146121005
@@ -52,10 +61,10 @@ def hash_bits(x):
 
 def hash_unit(x):
     """A number in [0, 1) from 24 bits of the hash of `x`."""
-    return to_float(hash_bits(x) >> 8) / 16777216.0
+    return to_float(hash_bits(x) >> 8) * 5.9604645e-08
 
 def cell_at(p):
-    """The cell at `p`: `to_edge` is the distance to the second site less that to the nearest, `from_edge` its gradient."""
+    """The cell at `p`."""
     nearest = splat(2, 4.0)
     second = splat(2, 4.0)
     owner = to_uint(0)
@@ -75,17 +84,21 @@ def cell_at(p):
             owner = select(mask, seed, owner)
             second = select(not_(mask) & (dot(to_site, to_site) < dot(second, second)), to_site, second)
     level = 1.0 - variation * hash_unit(owner + 3)
-    return Record(to_edge=length(second) - length(nearest), from_edge=normalize(nearest) - normalize(second),
-        level=level)
+    return Record(nearest=nearest, second=second, level=level)
+
+def to_edge(cell):
+    """How much further the second site is than the nearest one: 0 on the edges."""
+    return length(cell.second) - length(cell.nearest)
 
 def voronoi_thickness(uv):
     """Thickness in Voronoi cells: facets with thin edges between them, as in cracked ice."""
     cell = cell_at(uv * cell_count)
-    return thickness_factor * cell.level * smoothstep(0.0, bevel, cell.to_edge)
+    return thickness_factor * cell.level * smoothstep(0.0, bevel, to_edge(cell))
 
 def optical_depth(d, mean_free_path):
     """`d` in mean free paths, 0 or more."""
-    return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0)
+    path = max(mean_free_path, OPAQUE_DISTANCE)
+    return clamp(d, 0.0, ENDLESS * path) / path
 
 def beer_lambert(d):
     """Thickness to transmittance: what absorption leaves of the light."""
@@ -104,9 +117,13 @@ def pbr_constants():
     roughness = surface_roughness
     return metallic, roughness
 
+def from_edge(cell):
+    """The gradient of to_edge."""
+    return safe_normalize_vec2(cell.nearest) - normalize(cell.second)
+
 def blend_normals(base, detail):
     """Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add."""
-    return normalize(vec(swizzle(base, "xy") + swizzle(detail, "xy"), base[2] * detail[2]))
+    return safe_normalize_vec3(vec(swizzle(base, "xy") + swizzle(detail, "xy"), base[2] * detail[2]))
 
 def normal_of_slope(slope):
     """The normal of a height field; `slope` is the height gained per unit of length along T and B."""
@@ -115,10 +132,10 @@ def normal_of_slope(slope):
 def voronoi_normal(uv, normal):
     """The normal of the Voronoi cells, so that reflected light agrees with light that comes through."""
     cell = cell_at(uv * cell_count)
-    x = clamp(divide(cell.to_edge, bevel), 0.0, 1.0)
+    x = clamp(to_edge(cell) / bevel, 0.0, 1.0)
     # the derivative of the smoothstep
     steepness = cell.level * 6.0 * x * (1.0 - x) / bevel
-    slope = relief * uv_per_unit * cell_count * steepness * cell.from_edge
+    slope = relief * uv_per_unit * cell_count * steepness * from_edge(cell)
     normal = blend_normals(normal, normal_of_slope(slope))
     return normal
 
@@ -162,12 +179,12 @@ def glow(lobe, through):
 
 def lobe_normalized(V, N, L, through):
     """The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected."""
-    bent = normalize(L + N * distortion)
+    bent = safe_normalize_vec3(L + N * distortion)
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through)
 
 def standard(N, V, L, albedo, metallic, roughness, light_color):
     """The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light."""
-    H = normalize(V + L)
+    H = safe_normalize_vec3(V + L)
     NoL = max(dot(N, L), 0.0)
     NoV = max(dot(N, V), 0.0001)
     NoH = clamp(dot(N, H), 0.0, 1.0)
@@ -176,9 +193,9 @@ def standard(N, V, L, albedo, metallic, roughness, light_color):
     across = cross(N, H)
     spread = select(NoH > 0.0, dot(across, across) + NoH * NoH * (a * a), 1.0)
     # D times pi
-    facets = a * a / (spread * spread)
+    facets = a * a / max(spread * spread, 9.999999682655225e-21)
     # masking and shadowing, over 4 dot(N, L) dot(N, V)
-    visible = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a)
+    visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a)
     F0 = mix(splat(3, 0.04), albedo, metallic)
     F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0)
     diffuse = albedo * (1.0 - metallic) * (1.0 - F)

@@ -76,8 +76,8 @@ Shader "sssgen/Ice" {
         sampler2D _ErosionTexture;
 
         struct Cell {
-            float to_edge;
-            float2 from_edge;
+            float2 nearest;
+            float2 second;
             float level;
         };
 
@@ -93,6 +93,7 @@ Shader "sssgen/Ice" {
 
         static const float JITTER = 0.6;
         static const float OPAQUE_DISTANCE = 1.0e-6;
+        static const float ENDLESS = 10000.0;
         static const float OPAQUE_DEPTH = 80.0;
 
         // Unity's first look at a surface shader understands no more than DX9's HLSL, and needs no bodies.
@@ -100,6 +101,16 @@ Shader "sssgen/Ice" {
         Surface evaluate_surface(float2 uv, float time);
         float3 evaluate_translucency(Surface surface, float3 V, float3 N, float3 L);
         #else
+        // The direction of `x`; of a zero vector, 0.
+        float2 safe_normalize(float2 x) {
+            return x * rsqrt(max(dot(x, x), 1.0e-30));
+        }
+
+        // The direction of `x`; of a zero vector, 0.
+        float3 safe_normalize(float3 x) {
+            return x * rsqrt(max(dot(x, x), 1.0e-30));
+        }
+
         // Scrambles the bits of `x`; 0 stays 0.
         uint hash_bits(uint x) {
             x = (x ^ (x >> 16u)) * 2146121005u;
@@ -109,10 +120,10 @@ Shader "sssgen/Ice" {
 
         // A number in [0, 1) from 24 bits of the hash of `x`.
         float hash_unit(uint x) {
-            return float(hash_bits(x) >> 8u) / 16777216.0;
+            return float(hash_bits(x) >> 8u) * 5.9604645e-8;
         }
 
-        // The cell at `p`: `to_edge` is the distance to the second site less that to the nearest, `from_edge` its gradient.
+        // The cell at `p`.
         Cell cell_at(float2 p) {
             float2 nearest = (float2)4.0;
             float2 second = (float2)4.0;
@@ -139,19 +150,25 @@ Shader "sssgen/Ice" {
                 }
             }
             float level = 1.0 - _Variation * hash_unit(owner + 3u);
-            Cell cell = { length(second) - length(nearest), normalize(nearest) - normalize(second), level };
+            Cell cell = { nearest, second, level };
             return cell;
+        }
+
+        // How much further the second site is than the nearest one: 0 on the edges.
+        float to_edge(Cell cell) {
+            return length(cell.second) - length(cell.nearest);
         }
 
         // Thickness in Voronoi cells: facets with thin edges between them, as in cracked ice.
         float voronoi_thickness(float2 uv) {
             Cell cell = cell_at(uv * _CellCount);
-            return _ThicknessFactor * cell.level * smoothstep(0.0, _Bevel, cell.to_edge);
+            return _ThicknessFactor * cell.level * smoothstep(0.0, _Bevel, to_edge(cell));
         }
 
         // `d` in mean free paths, 0 or more.
         float optical_depth(float d, float mean_free_path) {
-            return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+            float path = max(mean_free_path, OPAQUE_DISTANCE);
+            return clamp(d, 0.0, ENDLESS * path) / path;
         }
 
         // Thickness to transmittance: what absorption leaves of the light.
@@ -172,9 +189,14 @@ Shader "sssgen/Ice" {
             roughness = _SurfaceRoughness;
         }
 
+        // The gradient of to_edge.
+        float2 from_edge(Cell cell) {
+            return safe_normalize(cell.nearest) - normalize(cell.second);
+        }
+
         // Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add.
         float3 blend_normals(float3 base, float3 detail) {
-            return normalize(float3(base.xy + detail.xy, base.z * detail.z));
+            return safe_normalize(float3(base.xy + detail.xy, base.z * detail.z));
         }
 
         // The normal of a height field; `slope` is the height gained per unit of length along T and B.
@@ -185,10 +207,10 @@ Shader "sssgen/Ice" {
         // The normal of the Voronoi cells, so that reflected light agrees with light that comes through.
         void voronoi_normal(float2 uv, inout float3 normal) {
             Cell cell = cell_at(uv * _CellCount);
-            float x = clamp(cell.to_edge / _Bevel, 0.0, 1.0);
+            float x = clamp(to_edge(cell) / _Bevel, 0.0, 1.0);
             // the derivative of the smoothstep
             float steepness = cell.level * 6.0 * x * (1.0 - x) / _Bevel;
-            float2 slope = _Relief * _UvPerUnit * _CellCount * steepness * cell.from_edge;
+            float2 slope = _Relief * _UvPerUnit * _CellCount * steepness * from_edge(cell);
             normal = blend_normals(normal, normal_of_slope(slope));
         }
 
@@ -235,7 +257,7 @@ Shader "sssgen/Ice" {
 
         // The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
         float3 lobe_normalized(float3 V, float3 N, float3 L, float through) {
-            float3 bent = normalize(L + N * _Distortion);
+            float3 bent = safe_normalize(L + N * _Distortion);
             return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), _Power), through);
         }
 
@@ -264,6 +286,12 @@ Shader "sssgen/Ice" {
             return lobe_normalized(V, N, L, surface.transmittance);
         }
         #endif
+
+        // v / |v|; 0 stays 0, of which normalize makes NaN.
+        float3 unit_vector(float3 v) {
+            float square = dot(v, v);
+            return square > 1e-30 ? v * rsqrt(square) : float3(0.0, 0.0, 0.0);
+        }
 
         struct Input {
             float2 texcoord;
@@ -320,7 +348,7 @@ Shader "sssgen/Ice" {
         #else
             float3 light_color = gi.light.color;
         #endif
-            color.rgb += evaluate_translucency(s.surface, viewDir, normalize(s.Normal), gi.light.dir) * light_color;
+            color.rgb += evaluate_translucency(s.surface, viewDir, unit_vector(s.Normal), gi.light.dir) * light_color;
             return color;
         }
 

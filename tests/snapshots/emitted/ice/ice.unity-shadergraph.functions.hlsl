@@ -6,8 +6,8 @@
 #define ICE_UNITY_SHADERGRAPH_INCLUDED
 
 struct Cell {
-    float to_edge;
-    float2 from_edge;
+    float2 nearest;
+    float2 second;
     float level;
 };
 
@@ -23,7 +23,18 @@ struct Surface {
 
 static const float JITTER = 0.6;
 static const float OPAQUE_DISTANCE = 1.0e-6;
+static const float ENDLESS = 10000.0;
 static const float OPAQUE_DEPTH = 80.0;
+
+// The direction of `x`; of a zero vector, 0.
+float2 safe_normalize(float2 x) {
+    return x * rsqrt(max(dot(x, x), 1.0e-30));
+}
+
+// The direction of `x`; of a zero vector, 0.
+float3 safe_normalize(float3 x) {
+    return x * rsqrt(max(dot(x, x), 1.0e-30));
+}
 
 // Scrambles the bits of `x`; 0 stays 0.
 uint hash_bits(uint x) {
@@ -34,10 +45,10 @@ uint hash_bits(uint x) {
 
 // A number in [0, 1) from 24 bits of the hash of `x`.
 float hash_unit(uint x) {
-    return float(hash_bits(x) >> 8u) / 16777216.0;
+    return float(hash_bits(x) >> 8u) * 5.9604645e-8;
 }
 
-// The cell at `p`: `to_edge` is the distance to the second site less that to the nearest, `from_edge` its gradient.
+// The cell at `p`.
 Cell cell_at(float2 p, float variation) {
     float2 nearest = (float2)4.0;
     float2 second = (float2)4.0;
@@ -64,19 +75,25 @@ Cell cell_at(float2 p, float variation) {
         }
     }
     float level = 1.0 - variation * hash_unit(owner + 3u);
-    Cell cell = { length(second) - length(nearest), normalize(nearest) - normalize(second), level };
+    Cell cell = { nearest, second, level };
     return cell;
+}
+
+// How much further the second site is than the nearest one: 0 on the edges.
+float to_edge(Cell cell) {
+    return length(cell.second) - length(cell.nearest);
 }
 
 // Thickness in Voronoi cells: facets with thin edges between them, as in cracked ice.
 float voronoi_thickness(float2 uv, float variation, float cell_count, float thickness_factor, float bevel) {
     Cell cell = cell_at(uv * cell_count, variation);
-    return thickness_factor * cell.level * smoothstep(0.0, bevel, cell.to_edge);
+    return thickness_factor * cell.level * smoothstep(0.0, bevel, to_edge(cell));
 }
 
 // `d` in mean free paths, 0 or more.
 float optical_depth(float d, float mean_free_path) {
-    return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+    float path = max(mean_free_path, OPAQUE_DISTANCE);
+    return clamp(d, 0.0, ENDLESS * path) / path;
 }
 
 // Thickness to transmittance: what absorption leaves of the light.
@@ -98,9 +115,14 @@ void pbr_constants(out float metallic, out float roughness, float metalness, flo
     roughness = surface_roughness;
 }
 
+// The gradient of to_edge.
+float2 from_edge(Cell cell) {
+    return safe_normalize(cell.nearest) - normalize(cell.second);
+}
+
 // Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add.
 float3 blend_normals(float3 base, float3 detail) {
-    return normalize(float3(base.xy + detail.xy, base.z * detail.z));
+    return safe_normalize(float3(base.xy + detail.xy, base.z * detail.z));
 }
 
 // The normal of a height field; `slope` is the height gained per unit of length along T and B.
@@ -112,10 +134,10 @@ float3 normal_of_slope(float2 slope) {
 void voronoi_normal(float2 uv, inout float3 normal, float variation, float cell_count, float bevel,
     float relief, float2 uv_per_unit) {
     Cell cell = cell_at(uv * cell_count, variation);
-    float x = clamp(cell.to_edge / bevel, 0.0, 1.0);
+    float x = clamp(to_edge(cell) / bevel, 0.0, 1.0);
     // the derivative of the smoothstep
     float steepness = cell.level * 6.0 * x * (1.0 - x) / bevel;
-    float2 slope = relief * uv_per_unit * cell_count * steepness * cell.from_edge;
+    float2 slope = relief * uv_per_unit * cell_count * steepness * from_edge(cell);
     normal = blend_normals(normal, normal_of_slope(slope));
 }
 
@@ -123,7 +145,7 @@ void voronoi_normal(float2 uv, inout float3 normal, float variation, float cell_
 void ice_mask(float2 uv, inout float through, float cover, UnityTexture2D cover_texture,
     UnitySamplerState cover_texture_sampler) {
     float covered = cover * SAMPLE_TEXTURE2D(cover_texture, cover_texture_sampler, uv).r;
-    through = through * smoothstep(0.0, 0.1, 1.0 - covered);
+    through = clamp(through * smoothstep(0.0, 0.1, 1.0 - covered), 0.0, 1.0);
 }
 
 // One moving layer: the offset stays within 1, so that it loses no precision in a long session.
@@ -175,7 +197,7 @@ float3 glow(float lobe, float through, float3 subsurface_color, float attenuatio
 // The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
 float3 lobe_normalized(float3 V, float3 N, float3 L, float through, float distortion,
     float3 subsurface_color, float attenuation, float scale, float ambient, float power) {
-    float3 bent = normalize(L + N * distortion);
+    float3 bent = safe_normalize(L + N * distortion);
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through, subsurface_color, attenuation, scale,
         ambient);
 }

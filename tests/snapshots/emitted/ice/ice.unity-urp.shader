@@ -80,8 +80,8 @@ Shader "sssgen/Ice (URP)" {
         TEXTURE2D(_ErosionTexture); SAMPLER(sampler_ErosionTexture);
 
         struct Cell {
-            float to_edge;
-            float2 from_edge;
+            float2 nearest;
+            float2 second;
             float level;
         };
 
@@ -97,7 +97,18 @@ Shader "sssgen/Ice (URP)" {
 
         static const float JITTER = 0.6;
         static const float OPAQUE_DISTANCE = 1.0e-6;
+        static const float ENDLESS = 10000.0;
         static const float OPAQUE_DEPTH = 80.0;
+
+        // The direction of `x`; of a zero vector, 0.
+        float2 safe_normalize(float2 x) {
+            return x * rsqrt(max(dot(x, x), 1.0e-30));
+        }
+
+        // The direction of `x`; of a zero vector, 0.
+        float3 safe_normalize(float3 x) {
+            return x * rsqrt(max(dot(x, x), 1.0e-30));
+        }
 
         // Scrambles the bits of `x`; 0 stays 0.
         uint hash_bits(uint x) {
@@ -108,10 +119,10 @@ Shader "sssgen/Ice (URP)" {
 
         // A number in [0, 1) from 24 bits of the hash of `x`.
         float hash_unit(uint x) {
-            return float(hash_bits(x) >> 8u) / 16777216.0;
+            return float(hash_bits(x) >> 8u) * 5.9604645e-8;
         }
 
-        // The cell at `p`: `to_edge` is the distance to the second site less that to the nearest, `from_edge` its gradient.
+        // The cell at `p`.
         Cell cell_at(float2 p) {
             float2 nearest = (float2)4.0;
             float2 second = (float2)4.0;
@@ -138,19 +149,25 @@ Shader "sssgen/Ice (URP)" {
                 }
             }
             float level = 1.0 - _Variation * hash_unit(owner + 3u);
-            Cell cell = { length(second) - length(nearest), normalize(nearest) - normalize(second), level };
+            Cell cell = { nearest, second, level };
             return cell;
+        }
+
+        // How much further the second site is than the nearest one: 0 on the edges.
+        float to_edge(Cell cell) {
+            return length(cell.second) - length(cell.nearest);
         }
 
         // Thickness in Voronoi cells: facets with thin edges between them, as in cracked ice.
         float voronoi_thickness(float2 uv) {
             Cell cell = cell_at(uv * _CellCount);
-            return _ThicknessFactor * cell.level * smoothstep(0.0, _Bevel, cell.to_edge);
+            return _ThicknessFactor * cell.level * smoothstep(0.0, _Bevel, to_edge(cell));
         }
 
         // `d` in mean free paths, 0 or more.
         float optical_depth(float d, float mean_free_path) {
-            return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+            float path = max(mean_free_path, OPAQUE_DISTANCE);
+            return clamp(d, 0.0, ENDLESS * path) / path;
         }
 
         // Thickness to transmittance: what absorption leaves of the light.
@@ -171,9 +188,14 @@ Shader "sssgen/Ice (URP)" {
             roughness = _SurfaceRoughness;
         }
 
+        // The gradient of to_edge.
+        float2 from_edge(Cell cell) {
+            return safe_normalize(cell.nearest) - normalize(cell.second);
+        }
+
         // Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add.
         float3 blend_normals(float3 base, float3 detail) {
-            return normalize(float3(base.xy + detail.xy, base.z * detail.z));
+            return safe_normalize(float3(base.xy + detail.xy, base.z * detail.z));
         }
 
         // The normal of a height field; `slope` is the height gained per unit of length along T and B.
@@ -184,10 +206,10 @@ Shader "sssgen/Ice (URP)" {
         // The normal of the Voronoi cells, so that reflected light agrees with light that comes through.
         void voronoi_normal(float2 uv, inout float3 normal) {
             Cell cell = cell_at(uv * _CellCount);
-            float x = clamp(cell.to_edge / _Bevel, 0.0, 1.0);
+            float x = clamp(to_edge(cell) / _Bevel, 0.0, 1.0);
             // the derivative of the smoothstep
             float steepness = cell.level * 6.0 * x * (1.0 - x) / _Bevel;
-            float2 slope = _Relief * _UvPerUnit * _CellCount * steepness * cell.from_edge;
+            float2 slope = _Relief * _UvPerUnit * _CellCount * steepness * from_edge(cell);
             normal = blend_normals(normal, normal_of_slope(slope));
         }
 
@@ -235,7 +257,7 @@ Shader "sssgen/Ice (URP)" {
 
         // The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
         float3 lobe_normalized(float3 V, float3 N, float3 L, float through) {
-            float3 bent = normalize(L + N * _Distortion);
+            float3 bent = safe_normalize(L + N * _Distortion);
             return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), _Power), through);
         }
 
@@ -262,6 +284,12 @@ Shader "sssgen/Ice (URP)" {
         // What one light adds from behind, as a factor on its colour.
         float3 evaluate_translucency(Surface surface, float3 V, float3 N, float3 L) {
             return lobe_normalized(V, N, L, surface.transmittance);
+        }
+
+        // v / |v|; 0 stays 0, of which normalize makes NaN.
+        float3 unit_vector(float3 v) {
+            float square = dot(v, v);
+            return square > 1e-30 ? v * rsqrt(square) : float3(0.0, 0.0, 0.0);
         }
 
         struct Attributes {
@@ -298,9 +326,9 @@ Shader "sssgen/Ice (URP)" {
         }
 
         void clip_surface(Varyings input) {
-            float3 V = GetWorldSpaceNormalizeViewDir(input.positionWS);
-            float3 N = normalize(input.normalWS);
-            float3 T = input.tangentWS.xyz * rsqrt(max(dot(input.tangentWS.xyz, input.tangentWS.xyz), 1e-12));
+            float3 V = unit_vector(GetWorldSpaceViewDir(input.positionWS));
+            float3 N = unit_vector(input.normalWS);
+            float3 T = unit_vector(input.tangentWS.xyz);
             float3 B = cross(N, T) * input.tangentWS.w;
             clip(evaluate_surface(input.uv, _Time.y).alpha - 0.5);
         }
@@ -327,12 +355,12 @@ Shader "sssgen/Ice (URP)" {
             float4 frag(Varyings input) : SV_Target {
                 UNITY_SETUP_INSTANCE_ID(input);
                 UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
-                float3 V = GetWorldSpaceNormalizeViewDir(input.positionWS);
-                float3 N = normalize(input.normalWS);
-                float3 T = input.tangentWS.xyz * rsqrt(max(dot(input.tangentWS.xyz, input.tangentWS.xyz), 1e-12));
+                float3 V = unit_vector(GetWorldSpaceViewDir(input.positionWS));
+                float3 N = unit_vector(input.normalWS);
+                float3 T = unit_vector(input.tangentWS.xyz);
                 float3 B = cross(N, T) * input.tangentWS.w;
                 Surface surface = evaluate_surface(input.uv, _Time.y);
-                N = normalize(T * surface.normal.x + B * surface.normal.y + N * surface.normal.z);
+                N = unit_vector(T * surface.normal.x + B * surface.normal.y + N * surface.normal.z);
 
                 InputData inputData = (InputData)0;
                 inputData.positionWS = input.positionWS;
@@ -393,7 +421,7 @@ Shader "sssgen/Ice (URP)" {
             Varyings vert_shadow(Attributes input) {
                 Varyings output = vert(input);
             #if defined(_CASTING_PUNCTUAL_LIGHT_SHADOW)
-                float3 L = normalize(_LightPosition - output.positionWS);
+                float3 L = unit_vector(_LightPosition - output.positionWS);
             #else
                 float3 L = _LightDirection;
             #endif
@@ -451,7 +479,7 @@ Shader "sssgen/Ice (URP)" {
                 UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
                 UNITY_SETUP_INSTANCE_ID(input);
                 clip_surface(input);
-                float3 N = normalize(input.normalWS);
+                float3 N = unit_vector(input.normalWS);
             #if defined(_GBUFFER_NORMALS_OCT)
                 return float4(PackFloat2To888(saturate(0.5 * PackNormalOctQuadEncode(N) + 0.5)), 0.0);
             #else

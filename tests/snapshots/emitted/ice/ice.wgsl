@@ -4,8 +4,8 @@
 // Entry points: vertex_main and fragment_main. Group 0: camera and lights; group 1: the material; group 2: the object.
 
 struct Cell {
-    to_edge: f32,
-    from_edge: vec2f,
+    nearest: vec2f,
+    second: vec2f,
     level: f32,
 }
 
@@ -21,6 +21,7 @@ struct Surface {
 
 const JITTER: f32 = 0.6;
 const OPAQUE_DISTANCE: f32 = 1.0e-6;
+const ENDLESS: f32 = 10000.0;
 const OPAQUE_DEPTH: f32 = 80.0;
 
 struct Material {
@@ -62,6 +63,16 @@ struct Material {
 @group(1) @binding(7) var erosion_texture: texture_2d<f32>;
 @group(1) @binding(8) var erosion_texture_sampler: sampler;
 
+// The direction of `x`; of a zero vector, 0.
+fn safe_normalize_vec2(x: vec2f) -> vec2f {
+    return x * inverseSqrt(max(dot(x, x), 1.0e-30));
+}
+
+// The direction of `x`; of a zero vector, 0.
+fn safe_normalize_vec3(x: vec3f) -> vec3f {
+    return x * inverseSqrt(max(dot(x, x), 1.0e-30));
+}
+
 // Scrambles the bits of `x`; 0 stays 0.
 fn hash_bits(x_in: u32) -> u32 {
     var x = x_in;
@@ -72,10 +83,10 @@ fn hash_bits(x_in: u32) -> u32 {
 
 // A number in [0, 1) from 24 bits of the hash of `x`.
 fn hash_unit(x: u32) -> f32 {
-    return f32(hash_bits(x) >> 8u) / 16777216.0;
+    return f32(hash_bits(x) >> 8u) * 5.9604645e-8;
 }
 
-// The cell at `p`: `to_edge` is the distance to the second site less that to the nearest, `from_edge` its gradient.
+// The cell at `p`.
 fn cell_at(p: vec2f) -> Cell {
     var nearest = vec2f(4.0);
     var second = vec2f(4.0);
@@ -100,18 +111,24 @@ fn cell_at(p: vec2f) -> Cell {
         }
     }
     let level = 1.0 - material.variation * hash_unit(owner + 3u);
-    return Cell(length(second) - length(nearest), normalize(nearest) - normalize(second), level);
+    return Cell(nearest, second, level);
+}
+
+// How much further the second site is than the nearest one: 0 on the edges.
+fn to_edge(cell: Cell) -> f32 {
+    return length(cell.second) - length(cell.nearest);
 }
 
 // Thickness in Voronoi cells: facets with thin edges between them, as in cracked ice.
 fn voronoi_thickness(uv: vec2f) -> f32 {
     let cell = cell_at(uv * material.cell_count);
-    return material.thickness_factor * cell.level * smoothstep(0.0, material.bevel, cell.to_edge);
+    return material.thickness_factor * cell.level * smoothstep(0.0, material.bevel, to_edge(cell));
 }
 
 // `d` in mean free paths, 0 or more.
 fn optical_depth(d: f32, mean_free_path: f32) -> f32 {
-    return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+    let path = max(mean_free_path, OPAQUE_DISTANCE);
+    return clamp(d, 0.0, ENDLESS * path) / path;
 }
 
 // Thickness to transmittance: what absorption leaves of the light.
@@ -132,9 +149,14 @@ fn pbr_constants(metallic: ptr<function, f32>, roughness: ptr<function, f32>) {
     *roughness = material.surface_roughness;
 }
 
+// The gradient of to_edge.
+fn from_edge(cell: Cell) -> vec2f {
+    return safe_normalize_vec2(cell.nearest) - normalize(cell.second);
+}
+
 // Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add.
 fn blend_normals(base: vec3f, detail: vec3f) -> vec3f {
-    return normalize(vec3f(base.xy + detail.xy, base.z * detail.z));
+    return safe_normalize_vec3(vec3f(base.xy + detail.xy, base.z * detail.z));
 }
 
 // The normal of a height field; `slope` is the height gained per unit of length along T and B.
@@ -145,10 +167,10 @@ fn normal_of_slope(slope: vec2f) -> vec3f {
 // The normal of the Voronoi cells, so that reflected light agrees with light that comes through.
 fn voronoi_normal(uv: vec2f, normal: ptr<function, vec3f>) {
     let cell = cell_at(uv * material.cell_count);
-    let x = clamp(cell.to_edge / material.bevel, 0.0, 1.0);
+    let x = clamp(to_edge(cell) / material.bevel, 0.0, 1.0);
     // the derivative of the smoothstep
     let steepness = cell.level * 6.0 * x * (1.0 - x) / material.bevel;
-    let slope = material.relief * material.uv_per_unit * material.cell_count * steepness * cell.from_edge;
+    let slope = material.relief * material.uv_per_unit * material.cell_count * steepness * from_edge(cell);
     *normal = blend_normals(*normal, normal_of_slope(slope));
 }
 
@@ -197,14 +219,14 @@ fn glow(lobe: f32, through: f32) -> vec3f {
 
 // The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
 fn lobe_normalized(V: vec3f, N: vec3f, L: vec3f, through: f32) -> vec3f {
-    let bent = normalize(L + N * material.distortion);
+    let bent = safe_normalize_vec3(L + N * material.distortion);
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), material.power), through);
 }
 
 // The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
 fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughness: f32,
     light_color: vec3f) -> vec3f {
-    let H = normalize(V + L);
+    let H = safe_normalize_vec3(V + L);
     let NoL = max(dot(N, L), 0.0);
     let NoV = max(dot(N, V), 0.0001);
     let NoH = clamp(dot(N, H), 0.0, 1.0);
@@ -213,9 +235,9 @@ fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughnes
     let across = cross(N, H);
     let spread = select(1.0, dot(across, across) + NoH * NoH * (a * a), NoH > 0.0);
     // D times pi
-    let facets = a * a / (spread * spread);
+    let facets = a * a / max(spread * spread, 1.0e-20);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)
-    let visible = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a);
+    let visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
     let F0 = mix(vec3f(0.04), albedo, metallic);
     let F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     let diffuse = albedo * (1.0 - metallic) * (1.0 - F);
@@ -303,14 +325,23 @@ fn vertex_main(input: VertexInput) -> Varyings {
     return output;
 }
 
+// v / |v|; 0 stays 0, of which normalize makes NaN.
+fn unit_vector(v: vec3f) -> vec3f {
+    let square = dot(v, v);
+    if (square > 1e-30) {
+        return v * inverseSqrt(square);
+    }
+    return vec3f(0.0);
+}
+
 @fragment
 fn fragment_main(input: Varyings) -> @location(0) vec4f {
-    let V = normalize(camera.position - input.position);
-    var N = normalize(input.normal);
-    let T = input.tangent.xyz * inverseSqrt(max(dot(input.tangent.xyz, input.tangent.xyz), 1e-12));
+    let V = unit_vector(camera.position - input.position);
+    var N = unit_vector(input.normal);
+    let T = unit_vector(input.tangent.xyz);
     let B = cross(N, T) * input.tangent.w;
     let surface = evaluate_surface(input.uv, camera.time);
-    N = normalize(T * surface.normal.x + B * surface.normal.y + N * surface.normal.z);
+    N = unit_vector(T * surface.normal.x + B * surface.normal.y + N * surface.normal.z);
 
     var color = lights.ambient * surface.albedo + surface.emission;
     for (var i = 0; i < min(lights.count, MAX_LIGHTS); i++) {

@@ -13,7 +13,18 @@ struct Surface {
 
 static const float FLAT_FRAME = 0.01;
 static const float OPAQUE_DISTANCE = 1.0e-6;
+static const float ENDLESS = 10000.0;
 static const float OPAQUE_DEPTH = 80.0;
+
+// A texel within its range; 0 in place of NaN.
+float valid_texel(float x) {
+    return (asuint(x) & 2147483647u) > 2139095040u ? 0.0 : clamp(x, 0.0, 1.0);
+}
+
+// The direction of `x`; of a zero vector, 0.
+float3 safe_normalize(float3 x) {
+    return x * rsqrt(max(dot(x, x), 1.0e-30));
+}
 
 // The components of `v` along unit T, unit B and N. A frame that spans no space gives (0, 0, dot(v, N)).
 float3 tangent_from_world(float3 v, float3 T, float3 B, float3 N) {
@@ -48,12 +59,13 @@ float2 parallax_refracted(float2 uv, float3 V, float3 T, float3 B, float3 N, flo
 // Thickness from a baked map, bright where the body is thick.
 float thickness_map(float2 uv, float thickness_factor, Texture2D thickness_texture,
     SamplerState thickness_texture_sampler) {
-    return thickness_factor * thickness_texture.Sample(thickness_texture_sampler, uv).r;
+    return thickness_factor * valid_texel(thickness_texture.Sample(thickness_texture_sampler, uv).r);
 }
 
 // `d` in mean free paths, 0 or more.
 float optical_depth(float d, float mean_free_path) {
-    return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+    float path = max(mean_free_path, OPAQUE_DISTANCE);
+    return clamp(d, 0.0, ENDLESS * path) / path;
 }
 
 // Thickness to transmittance: what absorption leaves of the light.
@@ -90,7 +102,7 @@ float3 lobe_gdc2011(float3 V, float3 N, float3 L, float through, float distortio
 // The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
 float3 standard(float3 N, float3 V, float3 L, float3 albedo, float metallic, float roughness,
     float3 light_color) {
-    float3 H = normalize(V + L);
+    float3 H = safe_normalize(V + L);
     float NoL = max(dot(N, L), 0.0);
     float NoV = max(dot(N, V), 0.0001);
     float NoH = clamp(dot(N, H), 0.0, 1.0);
@@ -99,9 +111,9 @@ float3 standard(float3 N, float3 V, float3 L, float3 albedo, float metallic, flo
     float3 across = cross(N, H);
     float spread = NoH > 0.0 ? dot(across, across) + NoH * NoH * (a * a) : 1.0;
     // D times pi
-    float facets = a * a / (spread * spread);
+    float facets = a * a / max(spread * spread, 1.0e-20);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)
-    float visible = 0.5 / lerp(2.0 * NoL * NoV, NoL + NoV, a);
+    float visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
     float3 F0 = lerp((float3)0.04, albedo, metallic);
     float3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     float3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);

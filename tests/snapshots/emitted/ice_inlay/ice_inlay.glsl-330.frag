@@ -12,6 +12,7 @@ struct Surface {
 
 const float FLAT_FRAME = 0.01;
 const float OPAQUE_DISTANCE = 1.0e-6;
+const float ENDLESS = 10000.0;
 const float OPAQUE_DEPTH = 80.0;
 
 uniform float ior;  // Refractive index of the body
@@ -30,6 +31,16 @@ uniform float power;  // How tight the glow is around the light: the larger, the
 
 uniform sampler2D thickness_texture;  // White = as thick as thickness_factor, black = nothing
 uniform sampler2D base_color_texture;  // Colour of the surface (an sRGB texture), with its opacity in alpha
+
+// A texel within its range; 0 in place of NaN.
+float valid_texel(float x) {
+    return mix(clamp(x, 0.0, 1.0), 0.0, (floatBitsToUint(x) & 2147483647u) > 2139095040u);
+}
+
+// The direction of `x`; of a zero vector, 0.
+vec3 safe_normalize(vec3 x) {
+    return x * inversesqrt(max(dot(x, x), 1.0e-30));
+}
 
 // The components of `v` along unit T, unit B and N. A frame that spans no space gives (0, 0, dot(v, N)).
 vec3 tangent_from_world(vec3 v, vec3 T, vec3 B, vec3 N) {
@@ -61,12 +72,13 @@ vec2 parallax_refracted(vec2 uv, vec3 V, vec3 T, vec3 B, vec3 N) {
 
 // Thickness from a baked map, bright where the body is thick.
 float thickness_map(vec2 uv) {
-    return thickness_factor * texture(thickness_texture, uv).r;
+    return thickness_factor * valid_texel(texture(thickness_texture, uv).r);
 }
 
 // `d` in mean free paths, 0 or more.
 float optical_depth(float d, float mean_free_path) {
-    return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+    float path = max(mean_free_path, OPAQUE_DISTANCE);
+    return clamp(d, 0.0, ENDLESS * path) / path;
 }
 
 // Thickness to transmittance: what absorption leaves of the light.
@@ -100,7 +112,7 @@ vec3 lobe_gdc2011(vec3 V, vec3 N, vec3 L, float through) {
 
 // The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
 vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughness, vec3 light_color) {
-    vec3 H = normalize(V + L);
+    vec3 H = safe_normalize(V + L);
     float NoL = max(dot(N, L), 0.0);
     float NoV = max(dot(N, V), 0.0001);
     float NoH = clamp(dot(N, H), 0.0, 1.0);
@@ -109,9 +121,9 @@ vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughne
     vec3 across = cross(N, H);
     float spread = NoH > 0.0 ? dot(across, across) + NoH * NoH * (a * a) : 1.0;
     // D times pi
-    float facets = a * a / (spread * spread);
+    float facets = a * a / max(spread * spread, 1.0e-20);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)
-    float visible = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a);
+    float visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
     vec3 F0 = mix(vec3(0.04), albedo, metallic);
     vec3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     vec3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);
@@ -155,10 +167,16 @@ in vec4 v_tangent;
 in vec2 v_uv;
 out vec4 fragment_color;
 
+// v / |v|; 0 stays 0, of which normalize makes NaN.
+vec3 unit_vector(vec3 v) {
+    float square = dot(v, v);
+    return square > 1e-30 ? v * inversesqrt(square) : vec3(0.0);
+}
+
 void main() {
-    vec3 V = normalize(camera_position - v_position);
-    vec3 N = normalize(v_normal);
-    vec3 T = v_tangent.xyz * inversesqrt(max(dot(v_tangent.xyz, v_tangent.xyz), 1e-12));
+    vec3 V = unit_vector(camera_position - v_position);
+    vec3 N = unit_vector(v_normal);
+    vec3 T = unit_vector(v_tangent.xyz);
     vec3 B = cross(N, T) * v_tangent.w;
     Surface surface = evaluate_surface(v_uv, V, T, B, N);
 

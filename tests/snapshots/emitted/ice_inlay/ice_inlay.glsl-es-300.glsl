@@ -14,7 +14,18 @@ struct Surface {
 
 const float FLAT_FRAME = 0.01;
 const float OPAQUE_DISTANCE = 1.0e-6;
+const float ENDLESS = 10000.0;
 const float OPAQUE_DEPTH = 80.0;
+
+// A texel within its range; 0 in place of NaN.
+float valid_texel(float x) {
+    return mix(clamp(x, 0.0, 1.0), 0.0, (floatBitsToUint(x) & 2147483647u) > 2139095040u);
+}
+
+// The direction of `x`; of a zero vector, 0.
+vec3 safe_normalize(vec3 x) {
+    return x * inversesqrt(max(dot(x, x), 1.0e-30));
+}
 
 // The components of `v` along unit T, unit B and N. A frame that spans no space gives (0, 0, dot(v, N)).
 vec3 tangent_from_world(vec3 v, vec3 T, vec3 B, vec3 N) {
@@ -46,12 +57,13 @@ vec2 parallax_refracted(vec2 uv, vec3 V, vec3 T, vec3 B, vec3 N, float ior, floa
 
 // Thickness from a baked map, bright where the body is thick.
 float thickness_map(vec2 uv, float thickness_factor, sampler2D thickness_texture) {
-    return thickness_factor * texture(thickness_texture, uv).r;
+    return thickness_factor * valid_texel(texture(thickness_texture, uv).r);
 }
 
 // `d` in mean free paths, 0 or more.
 float optical_depth(float d, float mean_free_path) {
-    return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+    float path = max(mean_free_path, OPAQUE_DISTANCE);
+    return clamp(d, 0.0, ENDLESS * path) / path;
 }
 
 // Thickness to transmittance: what absorption leaves of the light.
@@ -86,7 +98,7 @@ vec3 lobe_gdc2011(vec3 V, vec3 N, vec3 L, float through, float distortion, vec3 
 
 // The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
 vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughness, vec3 light_color) {
-    vec3 H = normalize(V + L);
+    vec3 H = safe_normalize(V + L);
     float NoL = max(dot(N, L), 0.0);
     float NoV = max(dot(N, V), 0.0001);
     float NoH = clamp(dot(N, H), 0.0, 1.0);
@@ -95,9 +107,9 @@ vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughne
     vec3 across = cross(N, H);
     float spread = NoH > 0.0 ? dot(across, across) + NoH * NoH * (a * a) : 1.0;
     // D times pi
-    float facets = a * a / (spread * spread);
+    float facets = a * a / max(spread * spread, 1.0e-20);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)
-    float visible = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a);
+    float visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
     vec3 F0 = mix(vec3(0.04), albedo, metallic);
     vec3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     vec3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);

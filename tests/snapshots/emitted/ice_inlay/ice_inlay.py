@@ -8,6 +8,7 @@ from sssgen.targets.numpy_runtime import *  # noqa: F403
 
 FLAT_FRAME = 0.01
 OPAQUE_DISTANCE = 1e-06
+ENDLESS = 10000.0
 OPAQUE_DEPTH = 80.0
 
 ior = 1.31  # Refractive index of the body.
@@ -26,6 +27,14 @@ power = 8.0  # How tight the glow is around the light: the larger, the smaller t
 
 thickness_texture = Texture([[[0.0, 0.0, 0.0, 1.0]]])
 base_color_texture = Texture([[[1.0, 1.0, 1.0, 1.0]]])
+
+def valid_texel(x):
+    """A texel within its range; 0 in place of NaN."""
+    return mix(clamp(x, 0.0, 1.0), 0.0, isnan(x))
+
+def safe_normalize(x):
+    """The direction of `x`; of a zero vector, 0."""
+    return x * inversesqrt(max(dot(x, x), 1.0000000031710769e-30))
 
 def tangent_from_world(v, T, B, N):
     """The components of `v` along unit T, unit B and N. A frame that spans no space gives (0, 0, dot(v, N))."""
@@ -51,11 +60,12 @@ def parallax_refracted(uv, V, T, B, N):
 
 def thickness_map(uv):
     """Thickness from a baked map, bright where the body is thick."""
-    return thickness_factor * texture(thickness_texture, uv)[0]
+    return thickness_factor * valid_texel(texture(thickness_texture, uv)[0])
 
 def optical_depth(d, mean_free_path):
     """`d` in mean free paths, 0 or more."""
-    return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0)
+    path = max(mean_free_path, OPAQUE_DISTANCE)
+    return clamp(d, 0.0, ENDLESS * path) / path
 
 def beer_lambert(d):
     """Thickness to transmittance: what absorption leaves of the light."""
@@ -85,7 +95,7 @@ def lobe_gdc2011(V, N, L, through):
 
 def standard(N, V, L, albedo, metallic, roughness, light_color):
     """The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light."""
-    H = normalize(V + L)
+    H = safe_normalize(V + L)
     NoL = max(dot(N, L), 0.0)
     NoV = max(dot(N, V), 0.0001)
     NoH = clamp(dot(N, H), 0.0, 1.0)
@@ -94,9 +104,9 @@ def standard(N, V, L, albedo, metallic, roughness, light_color):
     across = cross(N, H)
     spread = select(NoH > 0.0, dot(across, across) + NoH * NoH * (a * a), 1.0)
     # D times pi
-    facets = a * a / (spread * spread)
+    facets = a * a / max(spread * spread, 9.999999682655225e-21)
     # masking and shadowing, over 4 dot(N, L) dot(N, V)
-    visible = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a)
+    visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a)
     F0 = mix(splat(3, 0.04), albedo, metallic)
     F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0)
     diffuse = albedo * (1.0 - metallic) * (1.0 - F)

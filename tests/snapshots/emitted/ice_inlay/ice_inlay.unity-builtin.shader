@@ -54,7 +54,18 @@ Shader "sssgen/Ice with an inlay" {
 
         static const float FLAT_FRAME = 0.01;
         static const float OPAQUE_DISTANCE = 1.0e-6;
+        static const float ENDLESS = 10000.0;
         static const float OPAQUE_DEPTH = 80.0;
+
+        // Unity's first look at a surface shader understands no more than DX9's HLSL, and needs no bodies.
+        #if defined(SHADER_TARGET_SURFACE_ANALYSIS_MOJOSHADER)
+        Surface evaluate_surface(float2 uv, float3 V, float3 T, float3 B, float3 N);
+        float3 evaluate_translucency(Surface surface, float3 V, float3 N, float3 L);
+        #else
+        // A texel within its range; 0 in place of NaN.
+        float valid_texel(float x) {
+            return (asuint(x) & 2147483647u) > 2139095040u ? 0.0 : clamp(x, 0.0, 1.0);
+        }
 
         // The components of `v` along unit T, unit B and N. A frame that spans no space gives (0, 0, dot(v, N)).
         float3 tangent_from_world(float3 v, float3 T, float3 B, float3 N) {
@@ -87,12 +98,13 @@ Shader "sssgen/Ice with an inlay" {
 
         // Thickness from a baked map, bright where the body is thick.
         float thickness_map(float2 uv) {
-            return _ThicknessFactor * tex2D(_ThicknessTexture, uv).r;
+            return _ThicknessFactor * valid_texel(tex2D(_ThicknessTexture, uv).r);
         }
 
         // `d` in mean free paths, 0 or more.
         float optical_depth(float d, float mean_free_path) {
-            return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+            float path = max(mean_free_path, OPAQUE_DISTANCE);
+            return clamp(d, 0.0, ENDLESS * path) / path;
         }
 
         // Thickness to transmittance: what absorption leaves of the light.
@@ -143,6 +155,13 @@ Shader "sssgen/Ice with an inlay" {
         float3 evaluate_translucency(Surface surface, float3 V, float3 N, float3 L) {
             return lobe_gdc2011(V, N, L, surface.transmittance);
         }
+        #endif
+
+        // v / |v|; 0 stays 0, of which normalize makes NaN.
+        float3 unit_vector(float3 v) {
+            float square = dot(v, v);
+            return square > 1e-30 ? v * rsqrt(square) : float3(0.0, 0.0, 0.0);
+        }
 
         struct Input {
             float2 texcoord;
@@ -169,12 +188,10 @@ Shader "sssgen/Ice with an inlay" {
         }
 
         void surf(Input IN, inout SurfaceOutputSss o) {
-            float3 V = normalize(UnityWorldSpaceViewDir(IN.worldPos));
-            float3 T = WorldNormalVector(IN, float3(1.0, 0.0, 0.0));
-            float3 B = WorldNormalVector(IN, float3(0.0, 1.0, 0.0));
-            T *= rsqrt(max(dot(T, T), 1e-12));
-            B *= rsqrt(max(dot(B, B), 1e-12));
-            float3 N = normalize(WorldNormalVector(IN, float3(0.0, 0.0, 1.0)));
+            float3 V = unit_vector(UnityWorldSpaceViewDir(IN.worldPos));
+            float3 T = unit_vector(WorldNormalVector(IN, float3(1.0, 0.0, 0.0)));
+            float3 B = unit_vector(WorldNormalVector(IN, float3(0.0, 1.0, 0.0)));
+            float3 N = unit_vector(WorldNormalVector(IN, float3(0.0, 0.0, 1.0)));
             Surface surface = evaluate_surface(IN.texcoord, V, T, B, N);
             o.Albedo = surface.albedo;
             o.Normal = float3(0.0, 0.0, 1.0);  // written, it gives Input its tangent frame
@@ -205,7 +222,7 @@ Shader "sssgen/Ice with an inlay" {
         #else
             float3 light_color = gi.light.color;
         #endif
-            color.rgb += evaluate_translucency(s.surface, viewDir, normalize(s.Normal), gi.light.dir) * light_color;
+            color.rgb += evaluate_translucency(s.surface, viewDir, unit_vector(s.Normal), gi.light.dir) * light_color;
             return color;
         }
 

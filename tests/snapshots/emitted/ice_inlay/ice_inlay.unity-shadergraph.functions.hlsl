@@ -14,7 +14,13 @@ struct Surface {
 
 static const float FLAT_FRAME = 0.01;
 static const float OPAQUE_DISTANCE = 1.0e-6;
+static const float ENDLESS = 10000.0;
 static const float OPAQUE_DEPTH = 80.0;
+
+// A texel within its range; 0 in place of NaN.
+float valid_texel(float x) {
+    return (asuint(x) & 2147483647u) > 2139095040u ? 0.0 : clamp(x, 0.0, 1.0);
+}
 
 // The components of `v` along unit T, unit B and N. A frame that spans no space gives (0, 0, dot(v, N)).
 float3 tangent_from_world(float3 v, float3 T, float3 B, float3 N) {
@@ -49,12 +55,14 @@ float2 parallax_refracted(float2 uv, float3 V, float3 T, float3 B, float3 N, flo
 // Thickness from a baked map, bright where the body is thick.
 float thickness_map(float2 uv, float thickness_factor, UnityTexture2D thickness_texture,
     UnitySamplerState thickness_texture_sampler) {
-    return thickness_factor * SAMPLE_TEXTURE2D(thickness_texture, thickness_texture_sampler, uv).r;
+    return thickness_factor
+        * valid_texel(SAMPLE_TEXTURE2D(thickness_texture, thickness_texture_sampler, uv).r);
 }
 
 // `d` in mean free paths, 0 or more.
 float optical_depth(float d, float mean_free_path) {
-    return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+    float path = max(mean_free_path, OPAQUE_DISTANCE);
+    return clamp(d, 0.0, ENDLESS * path) / path;
 }
 
 // Thickness to transmittance: what absorption leaves of the light.

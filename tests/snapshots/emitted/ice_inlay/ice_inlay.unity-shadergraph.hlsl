@@ -21,7 +21,13 @@ struct Surface {
 
 static const float FLAT_FRAME = 0.01;
 static const float OPAQUE_DISTANCE = 1.0e-6;
+static const float ENDLESS = 10000.0;
 static const float OPAQUE_DEPTH = 80.0;
+
+// A texel within its range; 0 in place of NaN.
+float valid_texel(float x) {
+    return (asuint(x) & 2147483647u) > 2139095040u ? 0.0 : clamp(x, 0.0, 1.0);
+}
 
 // The components of `v` along unit T, unit B and N. A frame that spans no space gives (0, 0, dot(v, N)).
 float3 tangent_from_world(float3 v, float3 T, float3 B, float3 N) {
@@ -56,12 +62,14 @@ float2 parallax_refracted(float2 uv, float3 V, float3 T, float3 B, float3 N, flo
 // Thickness from a baked map, bright where the body is thick.
 float thickness_map(float2 uv, float thickness_factor, UnityTexture2D thickness_texture,
     UnitySamplerState thickness_texture_sampler) {
-    return thickness_factor * SAMPLE_TEXTURE2D(thickness_texture, thickness_texture_sampler, uv).r;
+    return thickness_factor
+        * valid_texel(SAMPLE_TEXTURE2D(thickness_texture, thickness_texture_sampler, uv).r);
 }
 
 // `d` in mean free paths, 0 or more.
 float optical_depth(float d, float mean_free_path) {
-    return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+    float path = max(mean_free_path, OPAQUE_DISTANCE);
+    return clamp(d, 0.0, ENDLESS * path) / path;
 }
 
 // Thickness to transmittance: what absorption leaves of the light.
@@ -120,6 +128,12 @@ float3 evaluate_translucency(Surface surface, float3 V, float3 N, float3 L, floa
     return lobe_gdc2011(V, N, L, surface.transmittance, distortion, subsurface_color, scale, ambient, power);
 }
 
+// v / |v|; 0 stays 0, of which normalize makes NaN.
+float3 unit_vector(float3 v) {
+    float square = dot(v, v);
+    return square > 1e-30 ? v * rsqrt(square) : float3(0.0, 0.0, 0.0);
+}
+
 void IceInlay_float(
     float2 uv,
     float3 P,
@@ -151,8 +165,8 @@ void IceInlay_float(
     out float Occlusion,
     out float3 Emission,
     out float Alpha) {
-    V = normalize(V);
-    N = normalize(N);
+    V = unit_vector(V);
+    N = unit_vector(N);
     Surface surface = evaluate_surface(uv, V, T, B, N, ior, depth, uv_per_unit, thickness_factor, thickness_texture, thickness_texture_sampler, attenuation_distance, tint, base_color_texture, base_color_texture_sampler, metalness, surface_roughness);
     BaseColor = surface.albedo;
     NormalTS = float3(0.0, 0.0, 1.0);

@@ -58,7 +58,13 @@ Shader "sssgen/Ice with an inlay (URP)" {
 
         static const float FLAT_FRAME = 0.01;
         static const float OPAQUE_DISTANCE = 1.0e-6;
+        static const float ENDLESS = 10000.0;
         static const float OPAQUE_DEPTH = 80.0;
+
+        // A texel within its range; 0 in place of NaN.
+        float valid_texel(float x) {
+            return (asuint(x) & 2147483647u) > 2139095040u ? 0.0 : clamp(x, 0.0, 1.0);
+        }
 
         // The components of `v` along unit T, unit B and N. A frame that spans no space gives (0, 0, dot(v, N)).
         float3 tangent_from_world(float3 v, float3 T, float3 B, float3 N) {
@@ -91,12 +97,14 @@ Shader "sssgen/Ice with an inlay (URP)" {
 
         // Thickness from a baked map, bright where the body is thick.
         float thickness_map(float2 uv) {
-            return _ThicknessFactor * SAMPLE_TEXTURE2D(_ThicknessTexture, sampler_ThicknessTexture, uv).r;
+            return _ThicknessFactor
+                * valid_texel(SAMPLE_TEXTURE2D(_ThicknessTexture, sampler_ThicknessTexture, uv).r);
         }
 
         // `d` in mean free paths, 0 or more.
         float optical_depth(float d, float mean_free_path) {
-            return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+            float path = max(mean_free_path, OPAQUE_DISTANCE);
+            return clamp(d, 0.0, ENDLESS * path) / path;
         }
 
         // Thickness to transmittance: what absorption leaves of the light.
@@ -146,6 +154,12 @@ Shader "sssgen/Ice with an inlay (URP)" {
         // What one light adds from behind, as a factor on its colour.
         float3 evaluate_translucency(Surface surface, float3 V, float3 N, float3 L) {
             return lobe_gdc2011(V, N, L, surface.transmittance);
+        }
+
+        // v / |v|; 0 stays 0, of which normalize makes NaN.
+        float3 unit_vector(float3 v) {
+            float square = dot(v, v);
+            return square > 1e-30 ? v * rsqrt(square) : float3(0.0, 0.0, 0.0);
         }
 
         struct Attributes {
@@ -203,9 +217,9 @@ Shader "sssgen/Ice with an inlay (URP)" {
             float4 frag(Varyings input) : SV_Target {
                 UNITY_SETUP_INSTANCE_ID(input);
                 UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
-                float3 V = GetWorldSpaceNormalizeViewDir(input.positionWS);
-                float3 N = normalize(input.normalWS);
-                float3 T = input.tangentWS.xyz * rsqrt(max(dot(input.tangentWS.xyz, input.tangentWS.xyz), 1e-12));
+                float3 V = unit_vector(GetWorldSpaceViewDir(input.positionWS));
+                float3 N = unit_vector(input.normalWS);
+                float3 T = unit_vector(input.tangentWS.xyz);
                 float3 B = cross(N, T) * input.tangentWS.w;
                 Surface surface = evaluate_surface(input.uv, V, T, B, N);
 
@@ -266,7 +280,7 @@ Shader "sssgen/Ice with an inlay (URP)" {
             Varyings vert_shadow(Attributes input) {
                 Varyings output = vert(input);
             #if defined(_CASTING_PUNCTUAL_LIGHT_SHADOW)
-                float3 L = normalize(_LightPosition - output.positionWS);
+                float3 L = unit_vector(_LightPosition - output.positionWS);
             #else
                 float3 L = _LightDirection;
             #endif
@@ -318,7 +332,7 @@ Shader "sssgen/Ice with an inlay (URP)" {
 
             float4 frag(Varyings input) : SV_Target {
                 UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
-                float3 N = normalize(input.normalWS);
+                float3 N = unit_vector(input.normalWS);
             #if defined(_GBUFFER_NORMALS_OCT)
                 return float4(PackFloat2To888(saturate(0.5 * PackNormalOctQuadEncode(N) + 0.5)), 0.0);
             #else

@@ -12,6 +12,7 @@ struct Surface {
 
 const FLAT_FRAME: f32 = 0.01;
 const OPAQUE_DISTANCE: f32 = 1.0e-6;
+const ENDLESS: f32 = 10000.0;
 const OPAQUE_DEPTH: f32 = 80.0;
 
 struct Material {
@@ -35,6 +36,16 @@ struct Material {
 @group(1) @binding(2) var thickness_texture_sampler: sampler;
 @group(1) @binding(3) var base_color_texture: texture_2d<f32>;
 @group(1) @binding(4) var base_color_texture_sampler: sampler;
+
+// A texel within its range; 0 in place of NaN.
+fn valid_texel(x: f32) -> f32 {
+    return select(clamp(x, 0.0, 1.0), 0.0, (bitcast<u32>(x) & 2147483647u) > 2139095040u);
+}
+
+// The direction of `x`; of a zero vector, 0.
+fn safe_normalize(x: vec3f) -> vec3f {
+    return x * inverseSqrt(max(dot(x, x), 1.0e-30));
+}
 
 // The components of `v` along unit T, unit B and N. A frame that spans no space gives (0, 0, dot(v, N)).
 fn tangent_from_world(v: vec3f, T: vec3f, B: vec3f, N: vec3f) -> vec3f {
@@ -66,12 +77,14 @@ fn parallax_refracted(uv: vec2f, V: vec3f, T: vec3f, B: vec3f, N: vec3f) -> vec2
 
 // Thickness from a baked map, bright where the body is thick.
 fn thickness_map(uv: vec2f) -> f32 {
-    return material.thickness_factor * textureSample(thickness_texture, thickness_texture_sampler, uv).r;
+    return material.thickness_factor
+        * valid_texel(textureSample(thickness_texture, thickness_texture_sampler, uv).r);
 }
 
 // `d` in mean free paths, 0 or more.
 fn optical_depth(d: f32, mean_free_path: f32) -> f32 {
-    return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+    let path = max(mean_free_path, OPAQUE_DISTANCE);
+    return clamp(d, 0.0, ENDLESS * path) / path;
 }
 
 // Thickness to transmittance: what absorption leaves of the light.
@@ -106,7 +119,7 @@ fn lobe_gdc2011(V: vec3f, N: vec3f, L: vec3f, through: f32) -> vec3f {
 // The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
 fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughness: f32,
     light_color: vec3f) -> vec3f {
-    let H = normalize(V + L);
+    let H = safe_normalize(V + L);
     let NoL = max(dot(N, L), 0.0);
     let NoV = max(dot(N, V), 0.0001);
     let NoH = clamp(dot(N, H), 0.0, 1.0);
@@ -115,9 +128,9 @@ fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughnes
     let across = cross(N, H);
     let spread = select(1.0, dot(across, across) + NoH * NoH * (a * a), NoH > 0.0);
     // D times pi
-    let facets = a * a / (spread * spread);
+    let facets = a * a / max(spread * spread, 1.0e-20);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)
-    let visible = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a);
+    let visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
     let F0 = mix(vec3f(0.04), albedo, metallic);
     let F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     let diffuse = albedo * (1.0 - metallic) * (1.0 - F);
@@ -201,11 +214,20 @@ fn vertex_main(input: VertexInput) -> Varyings {
     return output;
 }
 
+// v / |v|; 0 stays 0, of which normalize makes NaN.
+fn unit_vector(v: vec3f) -> vec3f {
+    let square = dot(v, v);
+    if (square > 1e-30) {
+        return v * inverseSqrt(square);
+    }
+    return vec3f(0.0);
+}
+
 @fragment
 fn fragment_main(input: Varyings) -> @location(0) vec4f {
-    let V = normalize(camera.position - input.position);
-    let N = normalize(input.normal);
-    let T = input.tangent.xyz * inverseSqrt(max(dot(input.tangent.xyz, input.tangent.xyz), 1e-12));
+    let V = unit_vector(camera.position - input.position);
+    let N = unit_vector(input.normal);
+    let T = unit_vector(input.tangent.xyz);
     let B = cross(N, T) * input.tangent.w;
     let surface = evaluate_surface(input.uv, V, T, B, N);
 

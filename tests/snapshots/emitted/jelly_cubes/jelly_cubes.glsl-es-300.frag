@@ -25,13 +25,18 @@ uniform float glow_strength;
 uniform vec3 sky_color;  // Colour of the sky at the horizon; it turns white towards the zenith
 uniform vec3 key_direction;  // Towards the key light; any length
 
+// The direction of `x`; of a zero vector, 0.
+vec3 safe_normalize(vec3 x) {
+    return x * inversesqrt(max(dot(x, x), 1.0e-30));
+}
+
 // The direction in which the camera at `eye` sees the image point `uv` ((0, 0) to (1, 1), v up).
 vec3 camera_ray(vec3 eye, vec2 uv) {
-    vec3 front = normalize(look_at - eye);
-    vec3 right = normalize(cross(front, vec3(0.0, 1.0, 0.0)));
+    vec3 front = safe_normalize(look_at - eye);
+    vec3 right = safe_normalize(cross(front, vec3(0.0, 1.0, 0.0)));
     vec3 up = cross(right, front);
     vec2 image = uv * 2.0 - 1.0;
-    return normalize(right * (image.x * aspect) + up * image.y + front * focal_length);
+    return safe_normalize(right * (image.x * aspect) + up * image.y + front * focal_length);
 }
 
 // A camera that circles the scene, one radian a second.
@@ -72,7 +77,7 @@ vec3 scene_normal(vec3 p) {
     float c = jelly_scene(p + e.yxy);
     float d = jelly_scene(p + e.xxx);
     // nearly equal numbers, whose differences are exact
-    return normalize(vec3(a - b + (d - c), c - a + (d - b), b - a + (d - c)));
+    return safe_normalize(vec3(a - b + (d - c), c - a + (d - b), b - a + (d - c)));
 }
 
 // Sphere tracing: draws a scene given as a distance function; where a ray meets nothing it returns false.
@@ -148,7 +153,7 @@ float soft_shadow(vec3 p, vec3 L) {
 
 // A small studio: key light with soft shadow, sky dome, bounce, light from behind, and what comes through.
 vec3 studio(vec3 P, vec3 N, vec3 albedo, vec3 translucency) {
-    vec3 key = normalize(key_direction);
+    vec3 key = safe_normalize(key_direction);
     vec3 behind = vec3(-key.x, 0.0, -key.z);
     float shadow = soft_shadow(P + N * 0.001, key);
     vec3 light = vec3(0.2) * shadow;

@@ -51,13 +51,18 @@ Shader "sssgen/Jelly cubes" {
                 return x - y * floor(x / y);
             }
 
+            // The direction of `x`; of a zero vector, 0.
+            float3 safe_normalize(float3 x) {
+                return x * rsqrt(max(dot(x, x), 1.0e-30));
+            }
+
             // The direction in which the camera at `eye` sees the image point `uv` ((0, 0) to (1, 1), v up).
             float3 camera_ray(float3 eye, float2 uv) {
-                float3 front = normalize(_LookAt - eye);
-                float3 right = normalize(cross(front, float3(0.0, 1.0, 0.0)));
+                float3 front = safe_normalize(_LookAt - eye);
+                float3 right = safe_normalize(cross(front, float3(0.0, 1.0, 0.0)));
                 float3 up = cross(right, front);
                 float2 image = uv * 2.0 - 1.0;
-                return normalize(right * (image.x * _Aspect) + up * image.y + front * _FocalLength);
+                return safe_normalize(right * (image.x * _Aspect) + up * image.y + front * _FocalLength);
             }
 
             // A camera that circles the scene, one radian a second.
@@ -98,7 +103,7 @@ Shader "sssgen/Jelly cubes" {
                 float c = jelly_scene(p + e.yxy);
                 float d = jelly_scene(p + e.xxx);
                 // nearly equal numbers, whose differences are exact
-                return normalize(float3(a - b + (d - c), c - a + (d - b), b - a + (d - c)));
+                return safe_normalize(float3(a - b + (d - c), c - a + (d - b), b - a + (d - c)));
             }
 
             // Sphere tracing: draws a scene given as a distance function; where a ray meets nothing it returns false.
@@ -177,7 +182,7 @@ Shader "sssgen/Jelly cubes" {
 
             // A small studio: key light with soft shadow, sky dome, bounce, light from behind, and what comes through.
             float3 studio(float3 P, float3 N, float3 albedo, float3 translucency) {
-                float3 key = normalize(_KeyDirection);
+                float3 key = safe_normalize(_KeyDirection);
                 float3 behind = float3(-key.x, 0.0, -key.z);
                 float shadow = soft_shadow(P + N * 0.001, key);
                 float3 light = (float3)0.2 * shadow;

@@ -19,13 +19,18 @@ float3 mod_(float3 x, float y) {
     return x - y * floor(x / y);
 }
 
+// The direction of `x`; of a zero vector, 0.
+float3 safe_normalize(float3 x) {
+    return x * rsqrt(max(dot(x, x), 1.0e-30));
+}
+
 // The direction in which the camera at `eye` sees the image point `uv` ((0, 0) to (1, 1), v up).
 float3 camera_ray(float3 eye, float2 uv, float3 look_at, float aspect, float focal_length) {
-    float3 front = normalize(look_at - eye);
-    float3 right = normalize(cross(front, float3(0.0, 1.0, 0.0)));
+    float3 front = safe_normalize(look_at - eye);
+    float3 right = safe_normalize(cross(front, float3(0.0, 1.0, 0.0)));
     float3 up = cross(right, front);
     float2 image = uv * 2.0 - 1.0;
-    return normalize(right * (image.x * aspect) + up * image.y + front * focal_length);
+    return safe_normalize(right * (image.x * aspect) + up * image.y + front * focal_length);
 }
 
 // A camera that circles the scene, one radian a second.
@@ -67,7 +72,7 @@ float3 scene_normal(float3 p) {
     float c = jelly_scene(p + e.yxy);
     float d = jelly_scene(p + e.xxx);
     // nearly equal numbers, whose differences are exact
-    return normalize(float3(a - b + (d - c), c - a + (d - b), b - a + (d - c)));
+    return safe_normalize(float3(a - b + (d - c), c - a + (d - b), b - a + (d - c)));
 }
 
 // Sphere tracing: draws a scene given as a distance function; where a ray meets nothing it returns false.
@@ -147,7 +152,7 @@ float soft_shadow(float3 p, float3 L) {
 
 // A small studio: key light with soft shadow, sky dome, bounce, light from behind, and what comes through.
 float3 studio(float3 P, float3 N, float3 albedo, float3 translucency, float3 key_direction) {
-    float3 key = normalize(key_direction);
+    float3 key = safe_normalize(key_direction);
     float3 behind = float3(-key.x, 0.0, -key.z);
     float shadow = soft_shadow(P + N * 0.001, key);
     float3 light = (float3)0.2 * shadow;

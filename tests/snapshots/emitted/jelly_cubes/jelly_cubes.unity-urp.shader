@@ -52,13 +52,18 @@ Shader "sssgen/Jelly cubes (URP)" {
             return x - y * floor(x / y);
         }
 
+        // The direction of `x`; of a zero vector, 0.
+        float3 safe_normalize(float3 x) {
+            return x * rsqrt(max(dot(x, x), 1.0e-30));
+        }
+
         // The direction in which the camera at `eye` sees the image point `uv` ((0, 0) to (1, 1), v up).
         float3 camera_ray(float3 eye, float2 uv) {
-            float3 front = normalize(_LookAt - eye);
-            float3 right = normalize(cross(front, float3(0.0, 1.0, 0.0)));
+            float3 front = safe_normalize(_LookAt - eye);
+            float3 right = safe_normalize(cross(front, float3(0.0, 1.0, 0.0)));
             float3 up = cross(right, front);
             float2 image = uv * 2.0 - 1.0;
-            return normalize(right * (image.x * _Aspect) + up * image.y + front * _FocalLength);
+            return safe_normalize(right * (image.x * _Aspect) + up * image.y + front * _FocalLength);
         }
 
         // A camera that circles the scene, one radian a second.
@@ -99,7 +104,7 @@ Shader "sssgen/Jelly cubes (URP)" {
             float c = jelly_scene(p + e.yxy);
             float d = jelly_scene(p + e.xxx);
             // nearly equal numbers, whose differences are exact
-            return normalize(float3(a - b + (d - c), c - a + (d - b), b - a + (d - c)));
+            return safe_normalize(float3(a - b + (d - c), c - a + (d - b), b - a + (d - c)));
         }
 
         // Sphere tracing: draws a scene given as a distance function; where a ray meets nothing it returns false.
@@ -178,7 +183,7 @@ Shader "sssgen/Jelly cubes (URP)" {
 
         // A small studio: key light with soft shadow, sky dome, bounce, light from behind, and what comes through.
         float3 studio(float3 P, float3 N, float3 albedo, float3 translucency) {
-            float3 key = normalize(_KeyDirection);
+            float3 key = safe_normalize(_KeyDirection);
             float3 behind = float3(-key.x, 0.0, -key.z);
             float shadow = soft_shadow(P + N * 0.001, key);
             float3 light = (float3)0.2 * shadow;
@@ -207,6 +212,12 @@ Shader "sssgen/Jelly cubes (URP)" {
                 color = studio(P, N, albedo, translucency);
             }
             return float4(color, 1.0);
+        }
+
+        // v / |v|; 0 stays 0, of which normalize makes NaN.
+        float3 unit_vector(float3 v) {
+            float square = dot(v, v);
+            return square > 1e-30 ? v * rsqrt(square) : float3(0.0, 0.0, 0.0);
         }
 
         struct Attributes {
@@ -293,7 +304,7 @@ Shader "sssgen/Jelly cubes (URP)" {
 
             float4 frag(Varyings input) : SV_Target {
                 UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
-                float3 N = normalize(input.normalWS);
+                float3 N = unit_vector(input.normalWS);
             #if defined(_GBUFFER_NORMALS_OCT)
                 return float4(PackFloat2To888(saturate(0.5 * PackNormalOctQuadEncode(N) + 0.5)), 0.0);
             #else

@@ -29,13 +29,18 @@ fn mod_(x: vec3f, y: f32) -> vec3f {
     return x - y * floor(x / y);
 }
 
+// The direction of `x`; of a zero vector, 0.
+fn safe_normalize(x: vec3f) -> vec3f {
+    return x * inverseSqrt(max(dot(x, x), 1.0e-30));
+}
+
 // The direction in which the camera at `eye` sees the image point `uv` ((0, 0) to (1, 1), v up).
 fn camera_ray(eye: vec3f, uv: vec2f) -> vec3f {
-    let front = normalize(material.look_at - eye);
-    let right = normalize(cross(front, vec3f(0.0, 1.0, 0.0)));
+    let front = safe_normalize(material.look_at - eye);
+    let right = safe_normalize(cross(front, vec3f(0.0, 1.0, 0.0)));
     let up = cross(right, front);
     let image = uv * 2.0 - 1.0;
-    return normalize(right * (image.x * material.aspect) + up * image.y + front * material.focal_length);
+    return safe_normalize(right * (image.x * material.aspect) + up * image.y + front * material.focal_length);
 }
 
 // A camera that circles the scene, one radian a second.
@@ -77,7 +82,7 @@ fn scene_normal(p: vec3f) -> vec3f {
     let c = jelly_scene(p + e.yxy);
     let d = jelly_scene(p + e.xxx);
     // nearly equal numbers, whose differences are exact
-    return normalize(vec3f(a - b + (d - c), c - a + (d - b), b - a + (d - c)));
+    return safe_normalize(vec3f(a - b + (d - c), c - a + (d - b), b - a + (d - c)));
 }
 
 // Sphere tracing: draws a scene given as a distance function; where a ray meets nothing it returns false.
@@ -154,7 +159,7 @@ fn soft_shadow(p: vec3f, L: vec3f) -> f32 {
 
 // A small studio: key light with soft shadow, sky dome, bounce, light from behind, and what comes through.
 fn studio(P: vec3f, N: vec3f, albedo: vec3f, translucency: vec3f) -> vec3f {
-    let key = normalize(material.key_direction);
+    let key = safe_normalize(material.key_direction);
     let behind = vec3f(-key.x, 0.0, -key.z);
     let shadow = soft_shadow(P + N * 0.001, key);
     var light = vec3f(0.2) * shadow;

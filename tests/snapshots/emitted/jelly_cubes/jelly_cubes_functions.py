@@ -11,13 +11,17 @@ COS_45 = 0.70710678
 HALF_SIZE = 0.5
 HIT_TOLERANCE = 0.001
 
+def safe_normalize(x):
+    """The direction of `x`; of a zero vector, 0."""
+    return x * inversesqrt(max(dot(x, x), 1.0000000031710769e-30))
+
 def camera_ray(eye, uv, look_at, aspect, focal_length):
     """The direction in which the camera at `eye` sees the image point `uv` ((0, 0) to (1, 1), v up)."""
-    front = normalize(look_at - eye)
-    right = normalize(cross(front, vec(0.0, 1.0, 0.0)))
+    front = safe_normalize(look_at - eye)
+    right = safe_normalize(cross(front, vec(0.0, 1.0, 0.0)))
     up = cross(right, front)
     image = uv * 2.0 - 1.0
-    return normalize(right * (image[0] * aspect) + up * image[1] + front * focal_length)
+    return safe_normalize(right * (image[0] * aspect) + up * image[1] + front * focal_length)
 
 def camera_orbit(uv, time, orbit_radius, orbit_height, look_at, aspect, focal_length):
     """A camera that circles the scene, one radian a second."""
@@ -53,7 +57,7 @@ def scene_normal(p):
     c = jelly_scene(p + swizzle(e, "yxy"))
     d = jelly_scene(p + swizzle(e, "xxx"))
     # nearly equal numbers, whose differences are exact
-    return normalize(vec(a - b + (d - c), c - a + (d - b), b - a + (d - c)))
+    return safe_normalize(vec(a - b + (d - c), c - a + (d - b), b - a + (d - c)))
 
 def raymarch(ray_origin, ray_direction, max_distance):
     """Sphere tracing: draws a scene given as a distance function; where a ray meets nothing it returns false."""
@@ -123,7 +127,7 @@ def soft_shadow(p, L):
 
 def studio(P, N, albedo, translucency, key_direction):
     """A small studio: key light with soft shadow, sky dome, bounce, light from behind, and what comes through."""
-    key = normalize(key_direction)
+    key = safe_normalize(key_direction)
     behind = vec(-key[0], 0.0, -key[2])
     shadow = soft_shadow(P + N * 0.001, key)
     light = splat(3, 0.20000000298023224) * shadow

@@ -10,9 +10,19 @@ struct Surface {
     transmittance: f32,
 }
 
+// A texel within its range; 0 in place of NaN.
+fn valid_texel(x: f32) -> f32 {
+    return select(clamp(x, 0.0, 1.0), 0.0, (bitcast<u32>(x) & 2147483647u) > 2139095040u);
+}
+
+// The direction of `x`; of a zero vector, 0.
+fn safe_normalize(x: vec3f) -> vec3f {
+    return x * inverseSqrt(max(dot(x, x), 1.0e-30));
+}
+
 // Thickness from a baked map, bright where the body is thick.
 fn thickness_map(uv: vec2f, thickness_texture: texture_2d<f32>, thickness_texture_sampler: sampler) -> f32 {
-    return textureSample(thickness_texture, thickness_texture_sampler, uv).r;
+    return valid_texel(textureSample(thickness_texture, thickness_texture_sampler, uv).r);
 }
 
 // Thickness to thinness, in a straight line.
@@ -30,7 +40,7 @@ fn base_color(uv: vec2f, albedo: ptr<function, vec3f>, alpha: ptr<function, f32>
 
 // Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add.
 fn blend_normals(base: vec3f, detail: vec3f) -> vec3f {
-    return normalize(vec3f(base.xy + detail.xy, base.z * detail.z));
+    return safe_normalize(vec3f(base.xy + detail.xy, base.z * detail.z));
 }
 
 // Detail in the normal, from a texture.
@@ -55,14 +65,14 @@ fn glow(lobe: f32, through: f32, subsurface_color: vec3f, scale: f32) -> vec3f {
 // The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
 fn lobe_normalized(V: vec3f, N: vec3f, L: vec3f, through: f32, distortion: f32, subsurface_color: vec3f,
     scale: f32, power: f32) -> vec3f {
-    let bent = normalize(L + N * distortion);
+    let bent = safe_normalize(L + N * distortion);
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through, subsurface_color, scale);
 }
 
 // The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
 fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughness: f32,
     light_color: vec3f) -> vec3f {
-    let H = normalize(V + L);
+    let H = safe_normalize(V + L);
     let NoL = max(dot(N, L), 0.0);
     let NoV = max(dot(N, V), 0.0001);
     let NoH = clamp(dot(N, H), 0.0, 1.0);
@@ -71,9 +81,9 @@ fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughnes
     let across = cross(N, H);
     let spread = select(1.0, dot(across, across) + NoH * NoH * (a * a), NoH > 0.0);
     // D times pi
-    let facets = a * a / (spread * spread);
+    let facets = a * a / max(spread * spread, 1.0e-20);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)
-    let visible = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a);
+    let visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
     let F0 = mix(vec3f(0.04), albedo, metallic);
     let F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     let diffuse = albedo * (1.0 - metallic) * (1.0 - F);

@@ -13,9 +13,19 @@ struct Surface {
     float transmittance;
 };
 
+// A texel within its range; 0 in place of NaN.
+float valid_texel(float x) {
+    return mix(clamp(x, 0.0, 1.0), 0.0, (floatBitsToUint(x) & 2147483647u) > 2139095040u);
+}
+
+// The direction of `x`; of a zero vector, 0.
+vec3 safe_normalize(vec3 x) {
+    return x * inversesqrt(max(dot(x, x), 1.0e-30));
+}
+
 // Thickness from a baked map, bright where the body is thick.
 float thickness_map(vec2 uv, sampler2D thickness_texture) {
-    return texture(thickness_texture, uv).r;
+    return valid_texel(texture(thickness_texture, uv).r);
 }
 
 // Thickness to thinness, in a straight line.
@@ -32,7 +42,7 @@ void base_color(vec2 uv, out vec3 albedo, out float alpha, vec4 tint, sampler2D 
 
 // Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add.
 vec3 blend_normals(vec3 base, vec3 detail) {
-    return normalize(vec3(base.xy + detail.xy, base.z * detail.z));
+    return safe_normalize(vec3(base.xy + detail.xy, base.z * detail.z));
 }
 
 // Detail in the normal, from a texture.
@@ -55,13 +65,13 @@ vec3 glow(float lobe, float through, vec3 subsurface_color, float scale) {
 // The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
 vec3 lobe_normalized(vec3 V, vec3 N, vec3 L, float through, float distortion, vec3 subsurface_color,
     float scale, float power) {
-    vec3 bent = normalize(L + N * distortion);
+    vec3 bent = safe_normalize(L + N * distortion);
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through, subsurface_color, scale);
 }
 
 // The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
 vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughness, vec3 light_color) {
-    vec3 H = normalize(V + L);
+    vec3 H = safe_normalize(V + L);
     float NoL = max(dot(N, L), 0.0);
     float NoV = max(dot(N, V), 0.0001);
     float NoH = clamp(dot(N, H), 0.0, 1.0);
@@ -70,9 +80,9 @@ vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughne
     vec3 across = cross(N, H);
     float spread = NoH > 0.0 ? dot(across, across) + NoH * NoH * (a * a) : 1.0;
     // D times pi
-    float facets = a * a / (spread * spread);
+    float facets = a * a / max(spread * spread, 1.0e-20);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)
-    float visible = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a);
+    float visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
     vec3 F0 = mix(vec3(0.04), albedo, metallic);
     vec3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     vec3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);

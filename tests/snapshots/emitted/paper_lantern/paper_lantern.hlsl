@@ -29,9 +29,19 @@ SamplerState base_color_texture_sampler : register(s1);
 Texture2D normal_texture : register(t2);
 SamplerState normal_texture_sampler : register(s2);
 
+// A texel within its range; 0 in place of NaN.
+float valid_texel(float x) {
+    return (asuint(x) & 2147483647u) > 2139095040u ? 0.0 : clamp(x, 0.0, 1.0);
+}
+
+// The direction of `x`; of a zero vector, 0.
+float3 safe_normalize(float3 x) {
+    return x * rsqrt(max(dot(x, x), 1.0e-30));
+}
+
 // Thickness from a baked map, bright where the body is thick.
 float thickness_map(float2 uv) {
-    return thickness_texture.Sample(thickness_texture_sampler, uv).r;
+    return valid_texel(thickness_texture.Sample(thickness_texture_sampler, uv).r);
 }
 
 // Thickness to thinness, in a straight line.
@@ -48,7 +58,7 @@ void base_color(float2 uv, out float3 albedo, out float alpha) {
 
 // Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add.
 float3 blend_normals(float3 base, float3 detail) {
-    return normalize(float3(base.xy + detail.xy, base.z * detail.z));
+    return safe_normalize(float3(base.xy + detail.xy, base.z * detail.z));
 }
 
 // Detail in the normal, from a texture.
@@ -70,14 +80,14 @@ float3 glow(float lobe, float through) {
 
 // The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
 float3 lobe_normalized(float3 V, float3 N, float3 L, float through) {
-    float3 bent = normalize(L + N * distortion);
+    float3 bent = safe_normalize(L + N * distortion);
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through);
 }
 
 // The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
 float3 standard(float3 N, float3 V, float3 L, float3 albedo, float metallic, float roughness,
     float3 light_color) {
-    float3 H = normalize(V + L);
+    float3 H = safe_normalize(V + L);
     float NoL = max(dot(N, L), 0.0);
     float NoV = max(dot(N, V), 0.0001);
     float NoH = clamp(dot(N, H), 0.0, 1.0);
@@ -86,9 +96,9 @@ float3 standard(float3 N, float3 V, float3 L, float3 albedo, float metallic, flo
     float3 across = cross(N, H);
     float spread = NoH > 0.0 ? dot(across, across) + NoH * NoH * (a * a) : 1.0;
     // D times pi
-    float facets = a * a / (spread * spread);
+    float facets = a * a / max(spread * spread, 1.0e-20);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)
-    float visible = 0.5 / lerp(2.0 * NoL * NoV, NoL + NoV, a);
+    float visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
     float3 F0 = lerp((float3)0.04, albedo, metallic);
     float3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     float3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);
@@ -169,13 +179,19 @@ Varyings vertex_main(VertexInput input) {
     return output;
 }
 
+// v / |v|; 0 stays 0, of which normalize makes NaN.
+float3 unit_vector(float3 v) {
+    float square = dot(v, v);
+    return square > 1e-30 ? v * rsqrt(square) : float3(0.0, 0.0, 0.0);
+}
+
 float4 fragment_main(Varyings input) : SV_Target {
-    float3 V = normalize(camera_position - input.position);
-    float3 N = normalize(input.normal);
-    float3 T = input.tangent.xyz * rsqrt(max(dot(input.tangent.xyz, input.tangent.xyz), 1e-12));
+    float3 V = unit_vector(camera_position - input.position);
+    float3 N = unit_vector(input.normal);
+    float3 T = unit_vector(input.tangent.xyz);
     float3 B = cross(N, T) * input.tangent.w;
     Surface surface = evaluate_surface(input.uv);
-    N = normalize(T * surface.normal.x + B * surface.normal.y + N * surface.normal.z);
+    N = unit_vector(T * surface.normal.x + B * surface.normal.y + N * surface.normal.z);
 
     float3 color = ambient_color * surface.albedo;
     for (int i = 0; i < min(light_count, MAX_LIGHTS); i++) {

@@ -45,9 +45,24 @@ Shader "sssgen/Paper lantern" {
             float transmittance;
         };
 
+        // Unity's first look at a surface shader understands no more than DX9's HLSL, and needs no bodies.
+        #if defined(SHADER_TARGET_SURFACE_ANALYSIS_MOJOSHADER)
+        Surface evaluate_surface(float2 uv);
+        float3 evaluate_translucency(Surface surface, float3 V, float3 N, float3 L);
+        #else
+        // A texel within its range; 0 in place of NaN.
+        float valid_texel(float x) {
+            return (asuint(x) & 2147483647u) > 2139095040u ? 0.0 : clamp(x, 0.0, 1.0);
+        }
+
+        // The direction of `x`; of a zero vector, 0.
+        float3 safe_normalize(float3 x) {
+            return x * rsqrt(max(dot(x, x), 1.0e-30));
+        }
+
         // Thickness from a baked map, bright where the body is thick.
         float thickness_map(float2 uv) {
-            return tex2D(_ThicknessTexture, uv).r;
+            return valid_texel(tex2D(_ThicknessTexture, uv).r);
         }
 
         // Thickness to thinness, in a straight line.
@@ -64,7 +79,7 @@ Shader "sssgen/Paper lantern" {
 
         // Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add.
         float3 blend_normals(float3 base, float3 detail) {
-            return normalize(float3(base.xy + detail.xy, base.z * detail.z));
+            return safe_normalize(float3(base.xy + detail.xy, base.z * detail.z));
         }
 
         // Detail in the normal, from a texture.
@@ -86,7 +101,7 @@ Shader "sssgen/Paper lantern" {
 
         // The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
         float3 lobe_normalized(float3 V, float3 N, float3 L, float through) {
-            float3 bent = normalize(L + N * _Distortion);
+            float3 bent = safe_normalize(L + N * _Distortion);
             return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), _Power), through);
         }
 
@@ -110,6 +125,13 @@ Shader "sssgen/Paper lantern" {
         // What one light adds from behind, as a factor on its colour.
         float3 evaluate_translucency(Surface surface, float3 V, float3 N, float3 L) {
             return lobe_normalized(V, N, L, surface.transmittance);
+        }
+        #endif
+
+        // v / |v|; 0 stays 0, of which normalize makes NaN.
+        float3 unit_vector(float3 v) {
+            float square = dot(v, v);
+            return square > 1e-30 ? v * rsqrt(square) : float3(0.0, 0.0, 0.0);
         }
 
         struct Input {
@@ -165,7 +187,7 @@ Shader "sssgen/Paper lantern" {
         #else
             float3 light_color = gi.light.color;
         #endif
-            color.rgb += evaluate_translucency(s.surface, viewDir, normalize(s.Normal), gi.light.dir) * light_color;
+            color.rgb += evaluate_translucency(s.surface, viewDir, unit_vector(s.Normal), gi.light.dir) * light_color;
             return color;
         }
 

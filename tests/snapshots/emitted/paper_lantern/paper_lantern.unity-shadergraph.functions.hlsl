@@ -13,10 +13,20 @@ struct Surface {
     float transmittance;
 };
 
+// A texel within its range; 0 in place of NaN.
+float valid_texel(float x) {
+    return (asuint(x) & 2147483647u) > 2139095040u ? 0.0 : clamp(x, 0.0, 1.0);
+}
+
+// The direction of `x`; of a zero vector, 0.
+float3 safe_normalize(float3 x) {
+    return x * rsqrt(max(dot(x, x), 1.0e-30));
+}
+
 // Thickness from a baked map, bright where the body is thick.
 float thickness_map(float2 uv, UnityTexture2D thickness_texture,
     UnitySamplerState thickness_texture_sampler) {
-    return SAMPLE_TEXTURE2D(thickness_texture, thickness_texture_sampler, uv).r;
+    return valid_texel(SAMPLE_TEXTURE2D(thickness_texture, thickness_texture_sampler, uv).r);
 }
 
 // Thickness to thinness, in a straight line.
@@ -34,7 +44,7 @@ void base_color(float2 uv, out float3 albedo, out float alpha, float4 tint,
 
 // Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add.
 float3 blend_normals(float3 base, float3 detail) {
-    return normalize(float3(base.xy + detail.xy, base.z * detail.z));
+    return safe_normalize(float3(base.xy + detail.xy, base.z * detail.z));
 }
 
 // Detail in the normal, from a texture.
@@ -58,7 +68,7 @@ float3 glow(float lobe, float through, float3 subsurface_color, float scale) {
 // The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
 float3 lobe_normalized(float3 V, float3 N, float3 L, float through, float distortion,
     float3 subsurface_color, float scale, float power) {
-    float3 bent = normalize(L + N * distortion);
+    float3 bent = safe_normalize(L + N * distortion);
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through, subsurface_color, scale);
 }
 

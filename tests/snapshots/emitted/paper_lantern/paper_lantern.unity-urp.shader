@@ -49,9 +49,19 @@ Shader "sssgen/Paper lantern (URP)" {
             float transmittance;
         };
 
+        // A texel within its range; 0 in place of NaN.
+        float valid_texel(float x) {
+            return (asuint(x) & 2147483647u) > 2139095040u ? 0.0 : clamp(x, 0.0, 1.0);
+        }
+
+        // The direction of `x`; of a zero vector, 0.
+        float3 safe_normalize(float3 x) {
+            return x * rsqrt(max(dot(x, x), 1.0e-30));
+        }
+
         // Thickness from a baked map, bright where the body is thick.
         float thickness_map(float2 uv) {
-            return SAMPLE_TEXTURE2D(_ThicknessTexture, sampler_ThicknessTexture, uv).r;
+            return valid_texel(SAMPLE_TEXTURE2D(_ThicknessTexture, sampler_ThicknessTexture, uv).r);
         }
 
         // Thickness to thinness, in a straight line.
@@ -68,7 +78,7 @@ Shader "sssgen/Paper lantern (URP)" {
 
         // Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add.
         float3 blend_normals(float3 base, float3 detail) {
-            return normalize(float3(base.xy + detail.xy, base.z * detail.z));
+            return safe_normalize(float3(base.xy + detail.xy, base.z * detail.z));
         }
 
         // Detail in the normal, from a texture.
@@ -90,7 +100,7 @@ Shader "sssgen/Paper lantern (URP)" {
 
         // The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
         float3 lobe_normalized(float3 V, float3 N, float3 L, float through) {
-            float3 bent = normalize(L + N * _Distortion);
+            float3 bent = safe_normalize(L + N * _Distortion);
             return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), _Power), through);
         }
 
@@ -114,6 +124,12 @@ Shader "sssgen/Paper lantern (URP)" {
         // What one light adds from behind, as a factor on its colour.
         float3 evaluate_translucency(Surface surface, float3 V, float3 N, float3 L) {
             return lobe_normalized(V, N, L, surface.transmittance);
+        }
+
+        // v / |v|; 0 stays 0, of which normalize makes NaN.
+        float3 unit_vector(float3 v) {
+            float square = dot(v, v);
+            return square > 1e-30 ? v * rsqrt(square) : float3(0.0, 0.0, 0.0);
         }
 
         struct Attributes {
@@ -171,12 +187,12 @@ Shader "sssgen/Paper lantern (URP)" {
             float4 frag(Varyings input) : SV_Target {
                 UNITY_SETUP_INSTANCE_ID(input);
                 UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
-                float3 V = GetWorldSpaceNormalizeViewDir(input.positionWS);
-                float3 N = normalize(input.normalWS);
-                float3 T = input.tangentWS.xyz * rsqrt(max(dot(input.tangentWS.xyz, input.tangentWS.xyz), 1e-12));
+                float3 V = unit_vector(GetWorldSpaceViewDir(input.positionWS));
+                float3 N = unit_vector(input.normalWS);
+                float3 T = unit_vector(input.tangentWS.xyz);
                 float3 B = cross(N, T) * input.tangentWS.w;
                 Surface surface = evaluate_surface(input.uv);
-                N = normalize(T * surface.normal.x + B * surface.normal.y + N * surface.normal.z);
+                N = unit_vector(T * surface.normal.x + B * surface.normal.y + N * surface.normal.z);
 
                 InputData inputData = (InputData)0;
                 inputData.positionWS = input.positionWS;
@@ -235,7 +251,7 @@ Shader "sssgen/Paper lantern (URP)" {
             Varyings vert_shadow(Attributes input) {
                 Varyings output = vert(input);
             #if defined(_CASTING_PUNCTUAL_LIGHT_SHADOW)
-                float3 L = normalize(_LightPosition - output.positionWS);
+                float3 L = unit_vector(_LightPosition - output.positionWS);
             #else
                 float3 L = _LightDirection;
             #endif
@@ -287,7 +303,7 @@ Shader "sssgen/Paper lantern (URP)" {
 
             float4 frag(Varyings input) : SV_Target {
                 UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
-                float3 N = normalize(input.normalWS);
+                float3 N = unit_vector(input.normalWS);
             #if defined(_GBUFFER_NORMALS_OCT)
                 return float4(PackFloat2To888(saturate(0.5 * PackNormalOctQuadEncode(N) + 0.5)), 0.0);
             #else

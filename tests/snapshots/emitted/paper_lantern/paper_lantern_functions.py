@@ -6,9 +6,17 @@ from sssgen.targets.numpy_runtime import *  # noqa: F403
 
 # Surface: Record(albedo, normal, metallic, roughness, transmittance)
 
+def valid_texel(x):
+    """A texel within its range; 0 in place of NaN."""
+    return mix(clamp(x, 0.0, 1.0), 0.0, isnan(x))
+
+def safe_normalize(x):
+    """The direction of `x`; of a zero vector, 0."""
+    return x * inversesqrt(max(dot(x, x), 1.0000000031710769e-30))
+
 def thickness_map(uv, thickness_texture):
     """Thickness from a baked map, bright where the body is thick."""
-    return texture(thickness_texture, uv)[0]
+    return valid_texel(texture(thickness_texture, uv)[0])
 
 def thinness_from_thickness(d):
     """Thickness to thinness, in a straight line."""
@@ -23,7 +31,7 @@ def base_color(uv, tint, base_color_texture):
 
 def blend_normals(base, detail):
     """Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add."""
-    return normalize(vec(swizzle(base, "xy") + swizzle(detail, "xy"), base[2] * detail[2]))
+    return safe_normalize(vec(swizzle(base, "xy") + swizzle(detail, "xy"), base[2] * detail[2]))
 
 def normal_map(uv, normal, normal_texture, normal_scale):
     """Detail in the normal, from a texture."""
@@ -43,12 +51,12 @@ def glow(lobe, through, subsurface_color, scale):
 
 def lobe_normalized(V, N, L, through, distortion, subsurface_color, scale, power):
     """The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected."""
-    bent = normalize(L + N * distortion)
+    bent = safe_normalize(L + N * distortion)
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through, subsurface_color, scale)
 
 def standard(N, V, L, albedo, metallic, roughness, light_color):
     """The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light."""
-    H = normalize(V + L)
+    H = safe_normalize(V + L)
     NoL = max(dot(N, L), 0.0)
     NoV = max(dot(N, V), 0.0001)
     NoH = clamp(dot(N, H), 0.0, 1.0)
@@ -57,9 +65,9 @@ def standard(N, V, L, albedo, metallic, roughness, light_color):
     across = cross(N, H)
     spread = select(NoH > 0.0, dot(across, across) + NoH * NoH * (a * a), 1.0)
     # D times pi
-    facets = a * a / (spread * spread)
+    facets = a * a / max(spread * spread, 9.999999682655225e-21)
     # masking and shadowing, over 4 dot(N, L) dot(N, V)
-    visible = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a)
+    visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a)
     F0 = mix(splat(3, 0.04), albedo, metallic)
     F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0)
     diffuse = albedo * (1.0 - metallic) * (1.0 - F)

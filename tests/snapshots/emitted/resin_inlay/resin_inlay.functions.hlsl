@@ -12,6 +12,11 @@ struct Surface {
 
 static const float FLAT_FRAME = 0.01;
 
+// The direction of `x`; of a zero vector, 0.
+float3 safe_normalize(float3 x) {
+    return x * rsqrt(max(dot(x, x), 1.0e-30));
+}
+
 // The components of `v` along unit T, unit B and N. A frame that spans no space gives (0, 0, dot(v, N)).
 float3 tangent_from_world(float3 v, float3 T, float3 B, float3 N) {
     float volume = dot(T, cross(B, N));
@@ -59,7 +64,7 @@ void pbr_constants(out float metallic, out float roughness, float metalness, flo
 // The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
 float3 standard(float3 N, float3 V, float3 L, float3 albedo, float metallic, float roughness,
     float3 light_color) {
-    float3 H = normalize(V + L);
+    float3 H = safe_normalize(V + L);
     float NoL = max(dot(N, L), 0.0);
     float NoV = max(dot(N, V), 0.0001);
     float NoH = clamp(dot(N, H), 0.0, 1.0);
@@ -68,9 +73,9 @@ float3 standard(float3 N, float3 V, float3 L, float3 albedo, float metallic, flo
     float3 across = cross(N, H);
     float spread = NoH > 0.0 ? dot(across, across) + NoH * NoH * (a * a) : 1.0;
     // D times pi
-    float facets = a * a / (spread * spread);
+    float facets = a * a / max(spread * spread, 1.0e-20);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)
-    float visible = 0.5 / lerp(2.0 * NoL * NoV, NoL + NoV, a);
+    float visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
     float3 F0 = lerp((float3)0.04, albedo, metallic);
     float3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     float3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);

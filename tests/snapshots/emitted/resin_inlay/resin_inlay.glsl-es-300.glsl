@@ -13,6 +13,11 @@ struct Surface {
 
 const float FLAT_FRAME = 0.01;
 
+// The direction of `x`; of a zero vector, 0.
+vec3 safe_normalize(vec3 x) {
+    return x * inversesqrt(max(dot(x, x), 1.0e-30));
+}
+
 // The components of `v` along unit T, unit B and N. A frame that spans no space gives (0, 0, dot(v, N)).
 vec3 tangent_from_world(vec3 v, vec3 T, vec3 B, vec3 N) {
     float volume = dot(T, cross(B, N));
@@ -56,7 +61,7 @@ void pbr_constants(out float metallic, out float roughness, float metalness, flo
 
 // The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
 vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughness, vec3 light_color) {
-    vec3 H = normalize(V + L);
+    vec3 H = safe_normalize(V + L);
     float NoL = max(dot(N, L), 0.0);
     float NoV = max(dot(N, V), 0.0001);
     float NoH = clamp(dot(N, H), 0.0, 1.0);
@@ -65,9 +70,9 @@ vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughne
     vec3 across = cross(N, H);
     float spread = NoH > 0.0 ? dot(across, across) + NoH * NoH * (a * a) : 1.0;
     // D times pi
-    float facets = a * a / (spread * spread);
+    float facets = a * a / max(spread * spread, 1.0e-20);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)
-    float visible = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a);
+    float visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
     vec3 F0 = mix(vec3(0.04), albedo, metallic);
     vec3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     vec3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);

@@ -91,6 +91,12 @@ Shader "sssgen/Resin inlay" {
             return surface;
         }
 
+        // v / |v|; 0 stays 0, of which normalize makes NaN.
+        float3 unit_vector(float3 v) {
+            float square = dot(v, v);
+            return square > 1e-30 ? v * rsqrt(square) : float3(0.0, 0.0, 0.0);
+        }
+
         struct Input {
             float2 texcoord;
             float3 worldPos;
@@ -104,12 +110,10 @@ Shader "sssgen/Resin inlay" {
         }
 
         void surf(Input IN, inout SurfaceOutputStandard o) {
-            float3 V = normalize(UnityWorldSpaceViewDir(IN.worldPos));
-            float3 T = WorldNormalVector(IN, float3(1.0, 0.0, 0.0));
-            float3 B = WorldNormalVector(IN, float3(0.0, 1.0, 0.0));
-            T *= rsqrt(max(dot(T, T), 1e-12));
-            B *= rsqrt(max(dot(B, B), 1e-12));
-            float3 N = normalize(WorldNormalVector(IN, float3(0.0, 0.0, 1.0)));
+            float3 V = unit_vector(UnityWorldSpaceViewDir(IN.worldPos));
+            float3 T = unit_vector(WorldNormalVector(IN, float3(1.0, 0.0, 0.0)));
+            float3 B = unit_vector(WorldNormalVector(IN, float3(0.0, 1.0, 0.0)));
+            float3 N = unit_vector(WorldNormalVector(IN, float3(0.0, 0.0, 1.0)));
             Surface surface = evaluate_surface(IN.texcoord, V, T, B, N);
             o.Albedo = surface.albedo;
             o.Normal = float3(0.0, 0.0, 1.0);  // written, it gives Input its tangent frame

@@ -78,6 +78,12 @@ Surface evaluate_surface(float2 uv, float3 V, float3 T, float3 B, float3 N, floa
     return surface;
 }
 
+// v / |v|; 0 stays 0, of which normalize makes NaN.
+float3 unit_vector(float3 v) {
+    float square = dot(v, v);
+    return square > 1e-30 ? v * rsqrt(square) : float3(0.0, 0.0, 0.0);
+}
+
 void ResinInlay_float(
     float2 uv,
     float3 N,
@@ -99,8 +105,8 @@ void ResinInlay_float(
     out float Occlusion,
     out float3 Emission,
     out float Alpha) {
-    V = normalize(V);
-    N = normalize(N);
+    V = unit_vector(V);
+    N = unit_vector(N);
     Surface surface = evaluate_surface(uv, V, T, B, N, ior, depth, uv_per_unit, tint, base_color_texture, base_color_texture_sampler, metalness, surface_roughness);
     BaseColor = surface.albedo;
     NormalTS = float3(0.0, 0.0, 1.0);

@@ -96,6 +96,12 @@ Shader "sssgen/Resin inlay (URP)" {
             return surface;
         }
 
+        // v / |v|; 0 stays 0, of which normalize makes NaN.
+        float3 unit_vector(float3 v) {
+            float square = dot(v, v);
+            return square > 1e-30 ? v * rsqrt(square) : float3(0.0, 0.0, 0.0);
+        }
+
         struct Attributes {
             float4 positionOS : POSITION;
             float3 normalOS : NORMAL;
@@ -151,9 +157,9 @@ Shader "sssgen/Resin inlay (URP)" {
             float4 frag(Varyings input) : SV_Target {
                 UNITY_SETUP_INSTANCE_ID(input);
                 UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
-                float3 V = GetWorldSpaceNormalizeViewDir(input.positionWS);
-                float3 N = normalize(input.normalWS);
-                float3 T = input.tangentWS.xyz * rsqrt(max(dot(input.tangentWS.xyz, input.tangentWS.xyz), 1e-12));
+                float3 V = unit_vector(GetWorldSpaceViewDir(input.positionWS));
+                float3 N = unit_vector(input.normalWS);
+                float3 T = unit_vector(input.tangentWS.xyz);
                 float3 B = cross(N, T) * input.tangentWS.w;
                 Surface surface = evaluate_surface(input.uv, V, T, B, N);
 
@@ -201,7 +207,7 @@ Shader "sssgen/Resin inlay (URP)" {
             Varyings vert_shadow(Attributes input) {
                 Varyings output = vert(input);
             #if defined(_CASTING_PUNCTUAL_LIGHT_SHADOW)
-                float3 L = normalize(_LightPosition - output.positionWS);
+                float3 L = unit_vector(_LightPosition - output.positionWS);
             #else
                 float3 L = _LightDirection;
             #endif
@@ -253,7 +259,7 @@ Shader "sssgen/Resin inlay (URP)" {
 
             float4 frag(Varyings input) : SV_Target {
                 UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
-                float3 N = normalize(input.normalWS);
+                float3 N = unit_vector(input.normalWS);
             #if defined(_GBUFFER_NORMALS_OCT)
                 return float4(PackFloat2To888(saturate(0.5 * PackNormalOctQuadEncode(N) + 0.5)), 0.0);
             #else

@@ -8,6 +8,10 @@ from sssgen.targets.numpy_runtime import *  # noqa: F403
 
 FLAT_FRAME = 0.01
 
+def safe_normalize(x):
+    """The direction of `x`; of a zero vector, 0."""
+    return x * inversesqrt(max(dot(x, x), 1.0000000031710769e-30))
+
 def tangent_from_world(v, T, B, N):
     """The components of `v` along unit T, unit B and N. A frame that spans no space gives (0, 0, dot(v, N))."""
     volume = dot(T, cross(B, N))
@@ -45,7 +49,7 @@ def pbr_constants(metalness, surface_roughness):
 
 def standard(N, V, L, albedo, metallic, roughness, light_color):
     """The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light."""
-    H = normalize(V + L)
+    H = safe_normalize(V + L)
     NoL = max(dot(N, L), 0.0)
     NoV = max(dot(N, V), 0.0001)
     NoH = clamp(dot(N, H), 0.0, 1.0)
@@ -54,9 +58,9 @@ def standard(N, V, L, albedo, metallic, roughness, light_color):
     across = cross(N, H)
     spread = select(NoH > 0.0, dot(across, across) + NoH * NoH * (a * a), 1.0)
     # D times pi
-    facets = a * a / (spread * spread)
+    facets = a * a / max(spread * spread, 9.999999682655225e-21)
     # masking and shadowing, over 4 dot(N, L) dot(N, V)
-    visible = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a)
+    visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a)
     F0 = mix(splat(3, 0.04), albedo, metallic)
     F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0)
     diffuse = albedo * (1.0 - metallic) * (1.0 - F)

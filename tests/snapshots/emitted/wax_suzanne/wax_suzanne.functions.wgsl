@@ -7,9 +7,16 @@ struct Surface {
     roughness: f32,
 }
 
+const NEGLIGIBLE: f32 = 1.0e-6;
 const DARKEST: f32 = 0.0001;
 const OPAQUE_DISTANCE: f32 = 1.0e-6;
+const ENDLESS: f32 = 10000.0;
 const OPAQUE_DEPTH: f32 = 80.0;
+
+// The direction of `x`; of a zero vector, 0.
+fn safe_normalize(x: vec3f) -> vec3f {
+    return x * inverseSqrt(max(dot(x, x), 1.0e-30));
+}
 
 // The box's size; a flat box is padded to a thousandth of its diagonal, about its centre.
 fn box_size(box_max: vec3f, box_min: vec3f) -> vec3f {
@@ -24,21 +31,24 @@ fn from_box_center(p: vec3f, box_max: vec3f, box_min: vec3f) -> vec3f {
 // How far it is from `p`, inside the box, along `direction` to the box's side.
 fn box_exit(p: vec3f, direction: vec3f, box_max: vec3f, box_min: vec3f) -> f32 {
     let exits = (0.5 * box_size(box_max, box_min) - from_box_center(p, box_max, box_min)
-        * sign(direction)) / abs(direction);
-    return max(min(exits.x, min(exits.y, exits.z)), 0.0);
+        * sign(direction)) / max(abs(direction), vec3f(1.0e-20));
+    // along a zero direction it would be endless
+    return clamp(min(exits.x, min(exits.y, exits.z)), 0.0, length(box_size(box_max, box_min)));
 }
 
 // The signed distance to a mesh, from a 3-D texture that was baked over a box in object space.
 fn distance_texture(p: vec3f, box_max: vec3f, box_min: vec3f, distance_map: texture_3d<f32>,
     distance_map_sampler: sampler, distance_range: f32) -> f32 {
-    let uvw = clamp(from_box_center(p, box_max, box_min) / box_size(box_max, box_min) + 0.5, vec3f(0.0),
-        vec3f(1.0));
+    let uvw = clamp(from_box_center(p, box_max, box_min) / max(box_size(box_max, box_min), vec3f(1.0e-20))
+        + 0.5, vec3f(0.0), vec3f(1.0));
     return (2.0 * textureSampleLevel(distance_map, distance_map_sampler, uvw, 0.0).r - 1.0) * distance_range;
 }
 
 // The part of a step that is inside the body, where the distance goes from `a` to `b` in a straight line.
 fn inside_part(a: f32, b: f32) -> f32 {
-    return (max(-a, 0.0) + max(-b, 0.0)) / (abs(a) + abs(b));
+    let inside = max(-a, 0.0) + max(-b, 0.0);
+    let whole = abs(a) + abs(b);
+    return inside / max(whole, 1.0e-20);
 }
 
 // The length inside the body from `p` to the box's side, along L.
@@ -84,17 +94,14 @@ fn march_distance_texture(P_object: vec3f, V_object: vec3f, L_object: vec3f, box
         before = after;
         last = t;
     }
-    // a view that only grazes the body sees the light leave where it is
-    var chosen: f32;
-    if (seen > 0.0) {
+    if (seen < NEGLIGIBLE) {
         // a view that only grazes the body sees the light leave where it is
-        chosen = way / seen;
-    } else {
-        // a view that only grazes the body sees the light leave where it is
-        chosen = length_to_light(P_object, L_object, box_max, box_min, distance_map, distance_map_sampler,
+        return object_scale
+            * length_to_light(P_object, L_object, box_max, box_min, distance_map, distance_map_sampler,
             distance_range);
     }
-    return object_scale * chosen;
+    let mean = way / seen;
+    return object_scale * mean;
 }
 
 // Colour and opacity from a texture and a tint.
@@ -114,7 +121,8 @@ fn pbr_constants(metallic: ptr<function, f32>, roughness: ptr<function, f32>, me
 
 // `d` in mean free paths, 0 or more.
 fn optical_depth(d: f32, mean_free_path: f32) -> f32 {
-    return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+    let path = max(mean_free_path, OPAQUE_DISTANCE);
+    return clamp(d, 0.0, ENDLESS * path) / path;
 }
 
 // Light that comes through coloured by what the body absorbs: deeper colours where it is thicker.
@@ -127,7 +135,7 @@ fn absorption_tint(d: f32, attenuation_color: vec3f, attenuation_distance: f32, 
 // The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
 fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughness: f32,
     light_color: vec3f) -> vec3f {
-    let H = normalize(V + L);
+    let H = safe_normalize(V + L);
     let NoL = max(dot(N, L), 0.0);
     let NoV = max(dot(N, V), 0.0001);
     let NoH = clamp(dot(N, H), 0.0, 1.0);
@@ -136,9 +144,9 @@ fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughnes
     let across = cross(N, H);
     let spread = select(1.0, dot(across, across) + NoH * NoH * (a * a), NoH > 0.0);
     // D times pi
-    let facets = a * a / (spread * spread);
+    let facets = a * a / max(spread * spread, 1.0e-20);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)
-    let visible = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a);
+    let visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
     let F0 = mix(vec3f(0.04), albedo, metallic);
     let F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     let diffuse = albedo * (1.0 - metallic) * (1.0 - F);

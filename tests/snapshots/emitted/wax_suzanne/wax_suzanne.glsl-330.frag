@@ -8,8 +8,10 @@ struct Surface {
     float roughness;
 };
 
+const float NEGLIGIBLE = 1.0e-6;
 const float DARKEST = 0.0001;
 const float OPAQUE_DISTANCE = 1.0e-6;
+const float ENDLESS = 10000.0;
 const float OPAQUE_DEPTH = 80.0;
 
 uniform vec3 box_max;  // The box's largest corner
@@ -26,6 +28,11 @@ uniform float weight;  // How much of the light goes in at all
 uniform sampler3D distance_map;  // Signed distance, positive outside: 0.5 + distance / (2 distance_range)
 uniform sampler2D base_color_texture;  // Colour of the surface (an sRGB texture), with its opacity in alpha
 
+// The direction of `x`; of a zero vector, 0.
+vec3 safe_normalize(vec3 x) {
+    return x * inversesqrt(max(dot(x, x), 1.0e-30));
+}
+
 // The box's size; a flat box is padded to a thousandth of its diagonal, about its centre.
 vec3 box_size() {
     return max(box_max - box_min, vec3(0.001 * distance(box_min, box_max)));
@@ -38,19 +45,22 @@ vec3 from_box_center(vec3 p) {
 
 // How far it is from `p`, inside the box, along `direction` to the box's side.
 float box_exit(vec3 p, vec3 direction) {
-    vec3 exits = (0.5 * box_size() - from_box_center(p) * sign(direction)) / abs(direction);
-    return max(min(exits.x, min(exits.y, exits.z)), 0.0);
+    vec3 exits = (0.5 * box_size() - from_box_center(p) * sign(direction)) / max(abs(direction), 1.0e-20);
+    // along a zero direction it would be endless
+    return clamp(min(exits.x, min(exits.y, exits.z)), 0.0, length(box_size()));
 }
 
 // The signed distance to a mesh, from a 3-D texture that was baked over a box in object space.
 float distance_texture(vec3 p) {
-    vec3 uvw = clamp(from_box_center(p) / box_size() + 0.5, 0.0, 1.0);
+    vec3 uvw = clamp(from_box_center(p) / max(box_size(), 1.0e-20) + 0.5, 0.0, 1.0);
     return (2.0 * textureLod(distance_map, uvw, 0.0).r - 1.0) * distance_range;
 }
 
 // The part of a step that is inside the body, where the distance goes from `a` to `b` in a straight line.
 float inside_part(float a, float b) {
-    return (max(-a, 0.0) + max(-b, 0.0)) / (abs(a) + abs(b));
+    float inside = max(-a, 0.0) + max(-b, 0.0);
+    float whole = abs(a) + abs(b);
+    return inside / max(whole, 1.0e-20);
 }
 
 // The length inside the body from `p` to the box's side, along L.
@@ -87,8 +97,12 @@ float march_distance_texture(vec3 P_object, vec3 V_object, vec3 L_object) {
         before = after;
         last = t;
     }
-    // a view that only grazes the body sees the light leave where it is
-    return object_scale * (seen > 0.0 ? way / seen : length_to_light(P_object, L_object));
+    if (seen < NEGLIGIBLE) {
+        // a view that only grazes the body sees the light leave where it is
+        return object_scale * length_to_light(P_object, L_object);
+    }
+    float mean = way / seen;
+    return object_scale * mean;
 }
 
 // Colour and opacity from a texture and a tint.
@@ -106,7 +120,8 @@ void pbr_constants(out float metallic, out float roughness) {
 
 // `d` in mean free paths, 0 or more.
 float optical_depth(float d, float mean_free_path) {
-    return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+    float path = max(mean_free_path, OPAQUE_DISTANCE);
+    return clamp(d, 0.0, ENDLESS * path) / path;
 }
 
 // Light that comes through coloured by what the body absorbs: deeper colours where it is thicker.
@@ -117,7 +132,7 @@ vec3 absorption_tint(float d) {
 
 // The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
 vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughness, vec3 light_color) {
-    vec3 H = normalize(V + L);
+    vec3 H = safe_normalize(V + L);
     float NoL = max(dot(N, L), 0.0);
     float NoV = max(dot(N, V), 0.0001);
     float NoH = clamp(dot(N, H), 0.0, 1.0);
@@ -126,9 +141,9 @@ vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughne
     vec3 across = cross(N, H);
     float spread = NoH > 0.0 ? dot(across, across) + NoH * NoH * (a * a) : 1.0;
     // D times pi
-    float facets = a * a / (spread * spread);
+    float facets = a * a / max(spread * spread, 1.0e-20);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)
-    float visible = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a);
+    float visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
     vec3 F0 = mix(vec3(0.04), albedo, metallic);
     vec3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     vec3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);
@@ -170,9 +185,15 @@ in vec3 v_normal;
 in vec2 v_uv;
 out vec4 fragment_color;
 
+// v / |v|; 0 stays 0, of which normalize makes NaN.
+vec3 unit_vector(vec3 v) {
+    float square = dot(v, v);
+    return square > 1e-30 ? v * inversesqrt(square) : vec3(0.0);
+}
+
 void main() {
-    vec3 V = normalize(camera_position - v_position);
-    vec3 N = normalize(v_normal);
+    vec3 V = unit_vector(camera_position - v_position);
+    vec3 N = unit_vector(v_normal);
     Surface surface = evaluate_surface(v_uv);
 
     vec3 color = ambient_color * surface.albedo;
@@ -182,7 +203,7 @@ void main() {
         vec3 L = to_light * inversesqrt(distance_squared);
         vec3 light_color = light_colors[i] * mix(1.0, 1.0 / distance_squared, light_positions[i].w);
         color += evaluate_lighting(surface, N, V, L, light_color);
-        color += evaluate_translucency(surface, (inverse_model * vec4(v_position, 1.0)).xyz, normalize((inverse_model * vec4(V, 0.0)).xyz), normalize((inverse_model * vec4(L, 0.0)).xyz)) * light_color;
+        color += evaluate_translucency(surface, (inverse_model * vec4(v_position, 1.0)).xyz, unit_vector((inverse_model * vec4(V, 0.0)).xyz), unit_vector((inverse_model * vec4(L, 0.0)).xyz)) * light_color;
     }
     fragment_color = vec4(color, 1.0);
 }

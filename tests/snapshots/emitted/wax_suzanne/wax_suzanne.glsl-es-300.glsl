@@ -11,9 +11,16 @@ struct Surface {
     float roughness;
 };
 
+const float NEGLIGIBLE = 1.0e-6;
 const float DARKEST = 0.0001;
 const float OPAQUE_DISTANCE = 1.0e-6;
+const float ENDLESS = 10000.0;
 const float OPAQUE_DEPTH = 80.0;
+
+// The direction of `x`; of a zero vector, 0.
+vec3 safe_normalize(vec3 x) {
+    return x * inversesqrt(max(dot(x, x), 1.0e-30));
+}
 
 // The box's size; a flat box is padded to a thousandth of its diagonal, about its centre.
 vec3 box_size(vec3 box_max, vec3 box_min) {
@@ -28,19 +35,23 @@ vec3 from_box_center(vec3 p, vec3 box_max, vec3 box_min) {
 // How far it is from `p`, inside the box, along `direction` to the box's side.
 float box_exit(vec3 p, vec3 direction, vec3 box_max, vec3 box_min) {
     vec3 exits = (0.5 * box_size(box_max, box_min) - from_box_center(p, box_max, box_min)
-        * sign(direction)) / abs(direction);
-    return max(min(exits.x, min(exits.y, exits.z)), 0.0);
+        * sign(direction)) / max(abs(direction), 1.0e-20);
+    // along a zero direction it would be endless
+    return clamp(min(exits.x, min(exits.y, exits.z)), 0.0, length(box_size(box_max, box_min)));
 }
 
 // The signed distance to a mesh, from a 3-D texture that was baked over a box in object space.
 float distance_texture(vec3 p, vec3 box_max, vec3 box_min, sampler3D distance_map, float distance_range) {
-    vec3 uvw = clamp(from_box_center(p, box_max, box_min) / box_size(box_max, box_min) + 0.5, 0.0, 1.0);
+    vec3 uvw = clamp(from_box_center(p, box_max, box_min) / max(box_size(box_max, box_min), 1.0e-20) + 0.5,
+        0.0, 1.0);
     return (2.0 * textureLod(distance_map, uvw, 0.0).r - 1.0) * distance_range;
 }
 
 // The part of a step that is inside the body, where the distance goes from `a` to `b` in a straight line.
 float inside_part(float a, float b) {
-    return (max(-a, 0.0) + max(-b, 0.0)) / (abs(a) + abs(b));
+    float inside = max(-a, 0.0) + max(-b, 0.0);
+    float whole = abs(a) + abs(b);
+    return inside / max(whole, 1.0e-20);
 }
 
 // The length inside the body from `p` to the box's side, along L.
@@ -84,10 +95,13 @@ float march_distance_texture(vec3 P_object, vec3 V_object, vec3 L_object, vec3 b
         before = after;
         last = t;
     }
-    // a view that only grazes the body sees the light leave where it is
-    return object_scale
-        * (seen > 0.0 ? way / seen
-        : length_to_light(P_object, L_object, box_max, box_min, distance_map, distance_range));
+    if (seen < NEGLIGIBLE) {
+        // a view that only grazes the body sees the light leave where it is
+        return object_scale
+            * length_to_light(P_object, L_object, box_max, box_min, distance_map, distance_range);
+    }
+    float mean = way / seen;
+    return object_scale * mean;
 }
 
 // Colour and opacity from a texture and a tint.
@@ -105,7 +119,8 @@ void pbr_constants(out float metallic, out float roughness, float metalness, flo
 
 // `d` in mean free paths, 0 or more.
 float optical_depth(float d, float mean_free_path) {
-    return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+    float path = max(mean_free_path, OPAQUE_DISTANCE);
+    return clamp(d, 0.0, ENDLESS * path) / path;
 }
 
 // Light that comes through coloured by what the body absorbs: deeper colours where it is thicker.
@@ -116,7 +131,7 @@ vec3 absorption_tint(float d, vec3 attenuation_color, float attenuation_distance
 
 // The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
 vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughness, vec3 light_color) {
-    vec3 H = normalize(V + L);
+    vec3 H = safe_normalize(V + L);
     float NoL = max(dot(N, L), 0.0);
     float NoV = max(dot(N, V), 0.0001);
     float NoH = clamp(dot(N, H), 0.0, 1.0);
@@ -125,9 +140,9 @@ vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughne
     vec3 across = cross(N, H);
     float spread = NoH > 0.0 ? dot(across, across) + NoH * NoH * (a * a) : 1.0;
     // D times pi
-    float facets = a * a / (spread * spread);
+    float facets = a * a / max(spread * spread, 1.0e-20);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)
-    float visible = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a);
+    float visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
     vec3 F0 = mix(vec3(0.04), albedo, metallic);
     vec3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     vec3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);

@@ -10,8 +10,10 @@ struct Surface {
     float roughness;
 };
 
+static const float NEGLIGIBLE = 1.0e-6;
 static const float DARKEST = 0.0001;
 static const float OPAQUE_DISTANCE = 1.0e-6;
+static const float ENDLESS = 10000.0;
 static const float OPAQUE_DEPTH = 80.0;
 
 // The box's size; a flat box is padded to a thousandth of its diagonal, about its centre.
@@ -27,20 +29,24 @@ float3 from_box_center(float3 p, float3 box_max, float3 box_min) {
 // How far it is from `p`, inside the box, along `direction` to the box's side.
 float box_exit(float3 p, float3 direction, float3 box_max, float3 box_min) {
     float3 exits = (0.5 * box_size(box_max, box_min) - from_box_center(p, box_max, box_min)
-        * float3(sign(direction))) / abs(direction);
-    return max(min(exits.x, min(exits.y, exits.z)), 0.0);
+        * float3(sign(direction))) / max(abs(direction), 1.0e-20);
+    // along a zero direction it would be endless
+    return clamp(min(exits.x, min(exits.y, exits.z)), 0.0, length(box_size(box_max, box_min)));
 }
 
 // The signed distance to a mesh, from a 3-D texture that was baked over a box in object space.
 float distance_texture(float3 p, float3 box_max, float3 box_min, sampler3D distance_map,
     float distance_range) {
-    float3 uvw = clamp(from_box_center(p, box_max, box_min) / box_size(box_max, box_min) + 0.5, 0.0, 1.0);
+    float3 uvw = clamp(from_box_center(p, box_max, box_min) / max(box_size(box_max, box_min), 1.0e-20) + 0.5,
+        0.0, 1.0);
     return (2.0 * tex3Dlod(distance_map, float4(uvw, 0.0)).r - 1.0) * distance_range;
 }
 
 // The part of a step that is inside the body, where the distance goes from `a` to `b` in a straight line.
 float inside_part(float a, float b) {
-    return (max(-a, 0.0) + max(-b, 0.0)) / (abs(a) + abs(b));
+    float inside = max(-a, 0.0) + max(-b, 0.0);
+    float whole = abs(a) + abs(b);
+    return inside / max(whole, 1.0e-20);
 }
 
 // The length inside the body from `p` to the box's side, along L.
@@ -86,10 +92,13 @@ float march_distance_texture(float3 P_object, float3 V_object, float3 L_object, 
         before = after;
         last = t;
     }
-    // a view that only grazes the body sees the light leave where it is
-    return object_scale
-        * (seen > 0.0 ? way / seen
-        : length_to_light(P_object, L_object, box_max, box_min, distance_map, distance_range));
+    if (seen < NEGLIGIBLE) {
+        // a view that only grazes the body sees the light leave where it is
+        return object_scale
+            * length_to_light(P_object, L_object, box_max, box_min, distance_map, distance_range);
+    }
+    float mean = way / seen;
+    return object_scale * mean;
 }
 
 // Colour and opacity from a texture and a tint.
@@ -107,7 +116,8 @@ void pbr_constants(out float metallic, out float roughness, float metalness, flo
 
 // `d` in mean free paths, 0 or more.
 float optical_depth(float d, float mean_free_path) {
-    return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+    float path = max(mean_free_path, OPAQUE_DISTANCE);
+    return clamp(d, 0.0, ENDLESS * path) / path;
 }
 
 // Light that comes through coloured by what the body absorbs: deeper colours where it is thicker.

@@ -44,8 +44,10 @@ Shader "sssgen/Wax Suzanne" {
             float roughness;
         };
 
+        static const float NEGLIGIBLE = 1.0e-6;
         static const float DARKEST = 0.0001;
         static const float OPAQUE_DISTANCE = 1.0e-6;
+        static const float ENDLESS = 10000.0;
         static const float OPAQUE_DEPTH = 80.0;
 
         // The box's size; a flat box is padded to a thousandth of its diagonal, about its centre.
@@ -60,19 +62,23 @@ Shader "sssgen/Wax Suzanne" {
 
         // How far it is from `p`, inside the box, along `direction` to the box's side.
         float box_exit(float3 p, float3 direction) {
-            float3 exits = (0.5 * box_size() - from_box_center(p) * float3(sign(direction))) / abs(direction);
-            return max(min(exits.x, min(exits.y, exits.z)), 0.0);
+            float3 exits = (0.5 * box_size() - from_box_center(p) * float3(sign(direction))) / max(abs(direction),
+                1.0e-20);
+            // along a zero direction it would be endless
+            return clamp(min(exits.x, min(exits.y, exits.z)), 0.0, length(box_size()));
         }
 
         // The signed distance to a mesh, from a 3-D texture that was baked over a box in object space.
         float distance_texture(float3 p) {
-            float3 uvw = clamp(from_box_center(p) / box_size() + 0.5, 0.0, 1.0);
+            float3 uvw = clamp(from_box_center(p) / max(box_size(), 1.0e-20) + 0.5, 0.0, 1.0);
             return (2.0 * tex3Dlod(_DistanceMap, float4(uvw, 0.0)).r - 1.0) * _DistanceRange;
         }
 
         // The part of a step that is inside the body, where the distance goes from `a` to `b` in a straight line.
         float inside_part(float a, float b) {
-            return (max(-a, 0.0) + max(-b, 0.0)) / (abs(a) + abs(b));
+            float inside = max(-a, 0.0) + max(-b, 0.0);
+            float whole = abs(a) + abs(b);
+            return inside / max(whole, 1.0e-20);
         }
 
         // The length inside the body from `p` to the box's side, along L.
@@ -111,8 +117,12 @@ Shader "sssgen/Wax Suzanne" {
                 before = after;
                 last = t;
             }
-            // a view that only grazes the body sees the light leave where it is
-            return _ObjectScale * (seen > 0.0 ? way / seen : length_to_light(P_object, L_object));
+            if (seen < NEGLIGIBLE) {
+                // a view that only grazes the body sees the light leave where it is
+                return _ObjectScale * length_to_light(P_object, L_object);
+            }
+            float mean = way / seen;
+            return _ObjectScale * mean;
         }
 
         // Colour and opacity from a texture and a tint.
@@ -130,7 +140,8 @@ Shader "sssgen/Wax Suzanne" {
 
         // `d` in mean free paths, 0 or more.
         float optical_depth(float d, float mean_free_path) {
-            return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+            float path = max(mean_free_path, OPAQUE_DISTANCE);
+            return clamp(d, 0.0, ENDLESS * path) / path;
         }
 
         // Light that comes through coloured by what the body absorbs: deeper colours where it is thicker.
@@ -155,6 +166,12 @@ Shader "sssgen/Wax Suzanne" {
         float3 evaluate_translucency(Surface surface, float3 P_object, float3 V_object, float3 L_object) {
             float thickness = march_distance_texture(P_object, V_object, L_object);
             return absorption_tint(thickness);
+        }
+
+        // v / |v|; 0 stays 0, of which normalize makes NaN.
+        float3 unit_vector(float3 v) {
+            float square = dot(v, v);
+            return square > 1e-30 ? v * rsqrt(square) : float3(0.0, 0.0, 0.0);
         }
 
         struct Input {
@@ -211,7 +228,7 @@ Shader "sssgen/Wax Suzanne" {
         #else
             float3 light_color = gi.light.color;
         #endif
-            color.rgb += evaluate_translucency(s.surface, mul(unity_WorldToObject, float4(s.position, 1.0)).xyz, normalize(mul(unity_WorldToObject, float4(viewDir, 0.0)).xyz), normalize(mul(unity_WorldToObject, float4(gi.light.dir, 0.0)).xyz)) * light_color;
+            color.rgb += evaluate_translucency(s.surface, mul(unity_WorldToObject, float4(s.position, 1.0)).xyz, unit_vector(mul(unity_WorldToObject, float4(viewDir, 0.0)).xyz), unit_vector(mul(unity_WorldToObject, float4(gi.light.dir, 0.0)).xyz)) * light_color;
             return color;
         }
 

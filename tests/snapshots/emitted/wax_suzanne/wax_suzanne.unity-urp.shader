@@ -48,8 +48,10 @@ Shader "sssgen/Wax Suzanne (URP)" {
             float roughness;
         };
 
+        static const float NEGLIGIBLE = 1.0e-6;
         static const float DARKEST = 0.0001;
         static const float OPAQUE_DISTANCE = 1.0e-6;
+        static const float ENDLESS = 10000.0;
         static const float OPAQUE_DEPTH = 80.0;
 
         // The box's size; a flat box is padded to a thousandth of its diagonal, about its centre.
@@ -64,19 +66,23 @@ Shader "sssgen/Wax Suzanne (URP)" {
 
         // How far it is from `p`, inside the box, along `direction` to the box's side.
         float box_exit(float3 p, float3 direction) {
-            float3 exits = (0.5 * box_size() - from_box_center(p) * float3(sign(direction))) / abs(direction);
-            return max(min(exits.x, min(exits.y, exits.z)), 0.0);
+            float3 exits = (0.5 * box_size() - from_box_center(p) * float3(sign(direction))) / max(abs(direction),
+                1.0e-20);
+            // along a zero direction it would be endless
+            return clamp(min(exits.x, min(exits.y, exits.z)), 0.0, length(box_size()));
         }
 
         // The signed distance to a mesh, from a 3-D texture that was baked over a box in object space.
         float distance_texture(float3 p) {
-            float3 uvw = clamp(from_box_center(p) / box_size() + 0.5, 0.0, 1.0);
+            float3 uvw = clamp(from_box_center(p) / max(box_size(), 1.0e-20) + 0.5, 0.0, 1.0);
             return (2.0 * SAMPLE_TEXTURE3D_LOD(_DistanceMap, sampler_DistanceMap, uvw, 0.0).r - 1.0) * _DistanceRange;
         }
 
         // The part of a step that is inside the body, where the distance goes from `a` to `b` in a straight line.
         float inside_part(float a, float b) {
-            return (max(-a, 0.0) + max(-b, 0.0)) / (abs(a) + abs(b));
+            float inside = max(-a, 0.0) + max(-b, 0.0);
+            float whole = abs(a) + abs(b);
+            return inside / max(whole, 1.0e-20);
         }
 
         // The length inside the body from `p` to the box's side, along L.
@@ -115,8 +121,12 @@ Shader "sssgen/Wax Suzanne (URP)" {
                 before = after;
                 last = t;
             }
-            // a view that only grazes the body sees the light leave where it is
-            return _ObjectScale * (seen > 0.0 ? way / seen : length_to_light(P_object, L_object));
+            if (seen < NEGLIGIBLE) {
+                // a view that only grazes the body sees the light leave where it is
+                return _ObjectScale * length_to_light(P_object, L_object);
+            }
+            float mean = way / seen;
+            return _ObjectScale * mean;
         }
 
         // Colour and opacity from a texture and a tint.
@@ -134,7 +144,8 @@ Shader "sssgen/Wax Suzanne (URP)" {
 
         // `d` in mean free paths, 0 or more.
         float optical_depth(float d, float mean_free_path) {
-            return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0);
+            float path = max(mean_free_path, OPAQUE_DISTANCE);
+            return clamp(d, 0.0, ENDLESS * path) / path;
         }
 
         // Light that comes through coloured by what the body absorbs: deeper colours where it is thicker.
@@ -159,6 +170,12 @@ Shader "sssgen/Wax Suzanne (URP)" {
         float3 evaluate_translucency(Surface surface, float3 P_object, float3 V_object, float3 L_object) {
             float thickness = march_distance_texture(P_object, V_object, L_object);
             return absorption_tint(thickness);
+        }
+
+        // v / |v|; 0 stays 0, of which normalize makes NaN.
+        float3 unit_vector(float3 v) {
+            float square = dot(v, v);
+            return square > 1e-30 ? v * rsqrt(square) : float3(0.0, 0.0, 0.0);
         }
 
         struct Attributes {
@@ -213,8 +230,8 @@ Shader "sssgen/Wax Suzanne (URP)" {
             float4 frag(Varyings input) : SV_Target {
                 UNITY_SETUP_INSTANCE_ID(input);
                 UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
-                float3 V = GetWorldSpaceNormalizeViewDir(input.positionWS);
-                float3 N = normalize(input.normalWS);
+                float3 V = unit_vector(GetWorldSpaceViewDir(input.positionWS));
+                float3 N = unit_vector(input.normalWS);
                 Surface surface = evaluate_surface(input.uv);
 
                 InputData inputData = (InputData)0;
@@ -241,13 +258,13 @@ Shader "sssgen/Wax Suzanne (URP)" {
                 // Without shadow: light that comes through entered on the far side, in the object's own shadow.
                 Light light = GetMainLight();
                 float3 light_color = light.color * light.distanceAttenuation;
-                color.rgb += evaluate_translucency(surface, TransformWorldToObject(input.positionWS), TransformWorldToObjectDir(V), TransformWorldToObjectDir(light.direction)) * light_color;
+                color.rgb += evaluate_translucency(surface, TransformWorldToObject(input.positionWS), unit_vector(mul((float3x3)GetWorldToObjectMatrix(), V)), unit_vector(mul((float3x3)GetWorldToObjectMatrix(), light.direction))) * light_color;
             #if defined(_ADDITIONAL_LIGHTS)
                 uint light_count = GetAdditionalLightsCount();
                 LIGHT_LOOP_BEGIN(light_count)
                     light = GetAdditionalLight(lightIndex, input.positionWS);
                     light_color = light.color * light.distanceAttenuation;
-                    color.rgb += evaluate_translucency(surface, TransformWorldToObject(input.positionWS), TransformWorldToObjectDir(V), TransformWorldToObjectDir(light.direction)) * light_color;
+                    color.rgb += evaluate_translucency(surface, TransformWorldToObject(input.positionWS), unit_vector(mul((float3x3)GetWorldToObjectMatrix(), V)), unit_vector(mul((float3x3)GetWorldToObjectMatrix(), light.direction))) * light_color;
                 LIGHT_LOOP_END
             #endif
                 color.rgb = MixFog(color.rgb, input.fogFactor);
@@ -274,7 +291,7 @@ Shader "sssgen/Wax Suzanne (URP)" {
             Varyings vert_shadow(Attributes input) {
                 Varyings output = vert(input);
             #if defined(_CASTING_PUNCTUAL_LIGHT_SHADOW)
-                float3 L = normalize(_LightPosition - output.positionWS);
+                float3 L = unit_vector(_LightPosition - output.positionWS);
             #else
                 float3 L = _LightDirection;
             #endif
@@ -326,7 +343,7 @@ Shader "sssgen/Wax Suzanne (URP)" {
 
             float4 frag(Varyings input) : SV_Target {
                 UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
-                float3 N = normalize(input.normalWS);
+                float3 N = unit_vector(input.normalWS);
             #if defined(_GBUFFER_NORMALS_OCT)
                 return float4(PackFloat2To888(saturate(0.5 * PackNormalOctQuadEncode(N) + 0.5)), 0.0);
             #else

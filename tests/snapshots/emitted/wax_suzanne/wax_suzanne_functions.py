@@ -5,9 +5,15 @@ from sssgen.targets.numpy_runtime import *  # noqa: F403
 
 # Surface: Record(albedo, metallic, roughness)
 
+NEGLIGIBLE = 1e-06
 DARKEST = 0.0001
 OPAQUE_DISTANCE = 1e-06
+ENDLESS = 10000.0
 OPAQUE_DEPTH = 80.0
+
+def safe_normalize(x):
+    """The direction of `x`; of a zero vector, 0."""
+    return x * inversesqrt(max(dot(x, x), 1.0000000031710769e-30))
 
 def box_size(box_max, box_min):
     """The box's size; a flat box is padded to a thousandth of its diagonal, about its centre."""
@@ -20,17 +26,21 @@ def from_box_center(p, box_max, box_min):
 def box_exit(p, direction, box_max, box_min):
     """How far it is from `p`, inside the box, along `direction` to the box's side."""
     exits = (0.5 * box_size(box_max, box_min) - from_box_center(p, box_max, box_min)
-        * sign(direction)) / abs(direction)
-    return max(min(exits[0], min(exits[1], exits[2])), 0.0)
+        * sign(direction)) / max(abs(direction), 9.999999682655225e-21)
+    # along a zero direction it would be endless
+    return clamp(min(exits[0], min(exits[1], exits[2])), 0.0, length(box_size(box_max, box_min)))
 
 def distance_texture(p, box_max, box_min, distance_map, distance_range):
     """The signed distance to a mesh, from a 3-D texture that was baked over a box in object space."""
-    uvw = clamp(from_box_center(p, box_max, box_min) / box_size(box_max, box_min) + 0.5, 0.0, 1.0)
+    uvw = clamp(from_box_center(p, box_max, box_min) / max(box_size(box_max, box_min), 9.999999682655225e-21)
+        + 0.5, 0.0, 1.0)
     return (2.0 * textureLod(distance_map, uvw, 0.0)[0] - 1.0) * distance_range
 
 def inside_part(a, b):
     """The part of a step that is inside the body, where the distance goes from `a` to `b` in a straight line."""
-    return (max(-a, 0.0) + max(-b, 0.0)) / (abs(a) + abs(b))
+    inside = max(-a, 0.0) + max(-b, 0.0)
+    whole = abs(a) + abs(b)
+    return inside / max(whole, 9.999999682655225e-21)
 
 def length_to_light(p, L, box_max, box_min, distance_map, distance_range):
     """The length inside the body from `p` to the box's side, along L."""
@@ -66,9 +76,10 @@ def march_distance_texture(P_object, V_object, L_object, box_max, box_min, dista
         seen = select(mask, seen + inside, seen)
         before = after
         last = t
-    # a view that only grazes the body sees the light leave where it is
-    return object_scale * select(seen > 0.0, divide(way, seen),
-        length_to_light(P_object, L_object, box_max, box_min, distance_map, distance_range))
+    mean = divide(way, seen)
+    return select(seen < NEGLIGIBLE, object_scale
+        * length_to_light(P_object, L_object, box_max, box_min, distance_map, distance_range), object_scale
+        * mean)
 
 def base_color(uv, tint, base_color_texture):
     """Colour and opacity from a texture and a tint."""
@@ -85,7 +96,8 @@ def pbr_constants(metalness, surface_roughness):
 
 def optical_depth(d, mean_free_path):
     """`d` in mean free paths, 0 or more."""
-    return max(d / max(mean_free_path, OPAQUE_DISTANCE), 0.0)
+    path = max(mean_free_path, OPAQUE_DISTANCE)
+    return clamp(d, 0.0, ENDLESS * path) / path
 
 def absorption_tint(d, attenuation_color, attenuation_distance, weight):
     """Light that comes through coloured by what the body absorbs: deeper colours where it is thicker."""
@@ -94,7 +106,7 @@ def absorption_tint(d, attenuation_color, attenuation_distance, weight):
 
 def standard(N, V, L, albedo, metallic, roughness, light_color):
     """The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light."""
-    H = normalize(V + L)
+    H = safe_normalize(V + L)
     NoL = max(dot(N, L), 0.0)
     NoV = max(dot(N, V), 0.0001)
     NoH = clamp(dot(N, H), 0.0, 1.0)
@@ -103,9 +115,9 @@ def standard(N, V, L, albedo, metallic, roughness, light_color):
     across = cross(N, H)
     spread = select(NoH > 0.0, dot(across, across) + NoH * NoH * (a * a), 1.0)
     # D times pi
-    facets = a * a / (spread * spread)
+    facets = a * a / max(spread * spread, 9.999999682655225e-21)
     # masking and shadowing, over 4 dot(N, L) dot(N, V)
-    visible = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a)
+    visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a)
     F0 = mix(splat(3, 0.04), albedo, metallic)
     F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0)
     diffuse = albedo * (1.0 - metallic) * (1.0 - F)
