@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from sssgen.ir.intrinsics import BUILTINS, Builtin
+from sssgen.ir.formats import FLOAT32
+from sssgen.ir.intrinsics import BUILTINS, Builtin, constants
 
 LANGUAGES = ("glsl", "hlsl", "wgsl")
 DIALECTS = ("glsl-330", "hlsl-dx9", "hlsl-macros")
@@ -25,7 +26,7 @@ def page() -> str:
         "URP and Shader Graph. NumPy has a function of each name.",
         "",
         "Domain: where the result is defined, with x, y, z for the arguments in their order. Limit: the float32 error",
-        "allowed against float64, in units in the last place, where it is more than 4.",
+        "allowed against float64, in units in the last place, where it is more than 4. The [guards](#guards) follow.",
         "",
         "| Builtin | GLSL | HLSL | WGSL | Domain | Limit |",
         "|---|---|---|---|---|---|",
@@ -40,7 +41,31 @@ def page() -> str:
             limit = f"{limit or '4 ulp'} or {row.absolute:.2g}"
         cells += [_escaped(row.domain), f"{limit}: {_escaped(row.clause)}" if row.clause else limit]
         lines.append(f"| {' | '.join(cells)} |")
-    return "\n".join(lines) + "\n"
+    return "\n".join([*lines, *_guards()]) + "\n"
+
+
+def _guards() -> list[str]:
+    """The section on guards."""
+    numbers = constants(FLOAT32, (0.0, 0.0))
+    named = [f"{name} = {number:g}" for name, number in numbers.items() if name not in ("LOW", "HIGH")]
+    lines = [
+        "",
+        "## Guards",
+        "",
+        "What a call needs of the ranges of its arguments (lengths, of vectors that a builtin takes whole), and what",
+        "stands in its place, or in that of one argument, where the range pass cannot prove it",
+        f"([guards.md](guards.md)). In float32: {', '.join(named)}.",
+        "",
+        "| Builtin | Goes wrong | Needs | In place of | Guard |",
+        "|---|---|---|---|---|",
+    ]
+    for row in BUILTINS.values():
+        for guard in row.guards:
+            needs = f"`{_escaped(guard.needs)}`" if guard.needs != "False" else "never proven"
+            place = {"": "the call", "result": "the result, x"}.get(guard.replaces, guard.replaces)
+            text = f"`{_escaped(guard.text)}`" if guard.text else "its polyfill, whose divisions are guarded"
+            lines.append(f"| `{row.name}` | {guard.says} | {needs} | {place} | {text} |")
+    return lines
 
 
 def _signatures(row: Builtin) -> str:

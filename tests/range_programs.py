@@ -25,7 +25,7 @@ from sssgen.passes.intervals import Range, widened
 from sssgen.passes.range_state import SUMS
 from sssgen.passes.ranges import _Analysis
 from sssgen.passes.shapes import scalars
-from sssgen.passes.sites import COUNT
+from sssgen.passes.sites import COUNT, SIGNED_COUNT
 from sssgen.passes.vectors import Value as Known
 from sssgen.targets import numpy_runtime as runtime
 
@@ -175,7 +175,8 @@ class Checker(Interpreter):
             site = self.analysis.sites[id(node), "/"]
             assert not site.proven or all(abs(part) >= FLOAT32.tiny for part in flat(right)), f"{node}: by {right}"
             if not site.proven:
-                right = self.nonzero(right, 1.0 if site.guard is COUNT else FLOAT32.divisor)
+                least = 1.0 if site.guard in (COUNT, SIGNED_COUNT) else FLOAT32.divisor
+                right = self.nonzero(right, least, site.guard is COUNT)
         return rounded(binary(node.op, node.type, node.left.type, node.right.type, left, right))
 
     def direction(self, x: Value) -> Value:
@@ -184,10 +185,10 @@ class Checker(Interpreter):
         scale = single(1.0 / math.sqrt(max(square, FLOAT32.square)))
         return tuple(part * scale for part in x) if isinstance(x, tuple) else x * scale
 
-    def nonzero(self, value: Value, least: float) -> Value:
+    def nonzero(self, value: Value, least: float, positive: bool) -> Value:
         if isinstance(value, tuple):
-            return tuple(self.nonzero(part, least) for part in value)
-        return math.copysign(max(abs(value), least), 1.0 if value >= 0.0 else -1.0)
+            return tuple(self.nonzero(part, least, positive) for part in value)
+        return math.copysign(max(abs(value), least), 1.0 if value >= 0.0 or positive else -1.0)
 
     def intrinsic(self, expr: ir.Intrinsic, args: list[Value]) -> Value:
         row = BUILTINS[expr.name]
@@ -201,15 +202,12 @@ class Checker(Interpreter):
                 assert not site or fits, f"{expr}\n: {args} is outside of the domain, which was proven"
         if expr.name == "normalize" and not site:
             return self.direction(args[0])
-        given = (SAFE[expr.name] if site is False else lambda *args: args)(*[_lane(arg) for arg in args])
         with runtime.precision("float32"), np.errstate(all="ignore"):
+            given = (SAFE[expr.name] if site is False else lambda *args: args)(*[_lane(arg) for arg in args])
             made = getattr(runtime, expr.name + "_" * (expr.name == "not"))(*given)
         made = np.asarray(made)
         over = self.analysis.sites.get((id(expr), "overflow"))
         return _back(np.nan_to_num(made, nan=0.0) if over and over.guard is SUMS else made, expr.type)
-
-
-
 
 
 def _holds(part: Range, number: float) -> bool:
@@ -245,8 +243,7 @@ def _lane(value: Value) -> Any:
     numbers = flat(value)
     kind = type(numbers[0])
     dtype = {float: np.float32, bool: np.bool_}.get(kind, np.int32 if min(numbers) < 0 else np.int64)
-    array = np.array(value, dtype)[..., None]
-    return array
+    return np.array(value, dtype)[..., None]
 
 
 def _back(array: Any, type_: Any) -> Value:
@@ -336,12 +333,12 @@ class RangePrograms(Programs):
         return self.random.choice([
             f"({x} / {y})", f"({x} / {y})", f"sqrt({x})", f"inversesqrt({x})", f"abs({x})", f"({x} - {x})",
             f"clamp({x}, {y}, {z})", f"clamp({x}, 0.0, 1.0)", f"mix({x}, {y}, clamp({z}, 0.0, 1.0))", f"fract({x})",
-            f"mod({x}, {y})", f"pow({x}, {y})", f"exp(-abs({x}))", f"log({x})", f"pow(abs({x}), 0.5)", f"pow(max({x}, 0.0), {y})",
-            f"max(w, {v}).z", f"atan({x}, {y})", f"asin({x})", f"step({x}, {y})", f"sign({x})",
+            f"mod({x}, {y})", f"pow({x}, {y})", f"exp(-abs({x}))", f"log({x})", f"pow(abs({x}), 0.5)",
+            f"pow(max({x}, 0.0), {y})", f"max(w, {v}).z", f"atan({x}, {y})", f"asin({x})", f"step({x}, {y})", f"sign({x})",
             f"smoothstep({x}, {y}, {z})", f"dot({v}, {u})", f"dot({v}, {v})", f"length({v})", f"normalize({v}).x",
             f"distance({v}, {u})", f"{v}.y", f"{v}[{self.whole(1)}]", f"grow(w, k, {x})", f"over({x}, {self.place()})",
-            f"(m * {v}.xy).x", f"({v}.zx * m).y", f"m[{self.whole(1)}].x", "(m * m)[0].y", f"body.size[{self.whole(1)}]",
-            f"sqrt(1.0 - {v}.x * {v}.x)", f"(1.0 / (1.0 + {x} * {x}))", f"floor({x})", f"float(deep({x}))",
+            f"(m * {v}.xy).x", f"({v}.zx * m).y", f"m[{self.whole(1)}].x", "(m * m)[0].y",
+            f"body.size[{self.whole(1)}]", f"sqrt(1.0 - {v}.x * {v}.x)", f"(1.0 / (1.0 + {x} * {x}))", f"floor({x})", f"float(deep({x}))",
             f"(float(deep({x})) >= 0.0 ? sqrt({x}) : {y})", f"max({x}, 0.001)", f"-{x}",
         ])  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""The `range` and `guards` of the intrinsic table: what the builtins give lies in the range, and guards make it finite."""
+"""The `range` and `guards` of the intrinsic table: results lie in the range, and guards make them finite."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from sssgen.ir import nodes as ir
 from sssgen.ir import signatures
 from sssgen.ir.formats import FLOAT32
 from sssgen.ir.intrinsics import BUILTINS, Builtin
-from sssgen.ir.types import Matrix, Scalar, Type, Vector, components, kind_of, spell
+from sssgen.ir.types import Scalar, Type, Vector, components, kind_of, spell
 from sssgen.passes import builtin_ranges
 from sssgen.passes.intervals import Range, rounded
 from sssgen.passes.ranges import _Analysis
@@ -33,8 +33,7 @@ LARGEST = FLOAT32.largest
 def called(name: str, args: tuple[Any, ...]) -> Array:
     """What NumPy gives in float32."""
     with runtime.precision("float32"), np.errstate(all="ignore"):
-        found = np.asarray(getattr(runtime, name + "_" * (name == "not"))(*args))
-    return found
+        return np.asarray(getattr(runtime, name + "_" * (name == "not"))(*args))
 
 
 def overloads(row: Builtin) -> list[tuple[tuple[Type, ...], Type]]:
@@ -58,7 +57,7 @@ def a_box(rng: np.random.Generator, row: Builtin, index: int, type_: Type) -> li
     least, most = found[index] if isinstance(found[0], tuple) else found
     boxes = []
     for _ in range(components(type_)):
-        edges = EDGES[(EDGES >= least) & (EDGES <= most) & (np.abs(EDGES) < 1e12)]
+        edges = np.array([edge for edge in EDGES if least <= edge <= most and abs(edge) < 1e12])
         drawn = rng.uniform(max(least, -8.0), min(most, 8.0), 2)
         low, high = sorted(float(np.float32(rng.choice(edges) if rng.random() < 0.5 else end)) for end in drawn)
         if rng.random() < 0.4:  # narrow: what cancels shows
@@ -146,7 +145,12 @@ def _hull(arg: Array) -> list[Range]:
 
 def test_a_narrower_range_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     """The test above fails for a wrong row."""
-    for name, wrong in (("cos", "hull(0, 1)"), ("mix", "x"), ("exp2", "rising(math.exp, x)"), ("dot", "whole: length(x)")):
+    for name, wrong in (
+        ("cos", "hull(0, 1)"),
+        ("mix", "x"),
+        ("exp2", "rising(math.exp, x)"),
+        ("dot", "whole: length(x)"),
+    ):
         with monkeypatch.context() as patch:
             patch.setitem(BUILTINS, name, BUILTINS[name]._replace(range=wrong))
             with pytest.raises(AssertionError):
@@ -189,7 +193,9 @@ def guarded_cases() -> tuple[Guarded, ...]:
 
 def _hostile(rng: np.random.Generator, type_: Type) -> Array:
     """Every pair of the first two arguments comes by chance; 600 lanes."""
-    shape = {Scalar: (600,), Vector: (getattr(type_, "size", 1), 600)}.get(type(type_), (getattr(type_, "size", 1),) * 2 + (600,))
+    shape = {Scalar: (600,), Vector: (getattr(type_, "size", 1), 600)}.get(
+        type(type_), (getattr(type_, "size", 1),) * 2 + (600,)
+    )
     kind = kind_of(type_)
     if kind != "float":
         choices = np.array([*BITS, *(bits | 0x80000000 for bits in BITS)], np.uint32)
@@ -324,7 +330,10 @@ def test_needs_are_true_somewhere_and_false_somewhere() -> None:
     for row in COMPUTED:
         for guard in row.guards:
             count = max(len(params) for params, _ in overloads(row))
-            at = [builtin_ranges.evaluated(guard.needs, FLOAT32, [part] * count, lambda *_: False) for part in (wide, narrow)]
+            at = [
+                builtin_ranges.evaluated(guard.needs, FLOAT32, [part] * count, lambda *_: False)
+                for part in (wide, narrow)
+            ]
             assert not at[0], (row.name, guard.needs)
             fixed = [Range(0.5, 0.5), Range(1.5, 1.5), Range(2.0, 2.0)][:count]
             good = builtin_ranges.evaluated(guard.needs, FLOAT32, fixed, lambda *_: False)

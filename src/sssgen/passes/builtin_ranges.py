@@ -128,7 +128,9 @@ def _length(format: Format, x: Value, y: Value | None = None) -> Whole:
         parts = tuple([a - b for a, b in zip(x.parts, y.parts, strict=True)])
         # each component of the difference rounds
         size = _slack(format) * (x.length.high + y.length.high)
-        found = widened(length_of(parts).met(vectors.total_length(x.length, y.length)), 0.0, size if size < INF else 0.0)
+        found = widened(
+            length_of(parts).met(vectors.total_length(x.length, y.length)), 0.0, size if size < INF else 0.0
+        )
         found = Range(max(found.low, 0.0), found.high)
     # the squares in it overflow, or are too small
     low = found.low if found.low > format.tiny**0.5 else 0.0
@@ -188,6 +190,8 @@ def _reflected(format: Format, x: Value, y: Value) -> Whole:
 def _refracted(format: Format, x: Value, y: Value, z: Value) -> Whole:
     eta = absolute(z.parts[0]).high
     cosine = absolute(vectors.dot(y, x)).high
+    if not eta * cosine < format.largest**0.5 or x.length.high == INF or y.length.high == INF:
+        return [ANY for _ in x.parts], ANY  # its square overflows
     root = math.sqrt(1.0 + eta * eta * cosine * cosine)
     most = eta * x.length.high + (eta * cosine + root) * y.length.high
     if eta <= 1.0 and x.length.high <= LENGTH and y.length.high <= LENGTH:

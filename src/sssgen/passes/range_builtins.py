@@ -37,7 +37,10 @@ class Builtins(Known):
             absolute = 0.0 if exact else min(row.absolute * min(scale, 4.0), 1e-2)
             relative = row.ulp * self.format.epsilon if not exact else 0.0
             parts = [self.kept(widened(part, min(relative, 0.05), absolute), part, node.name) for part in parts]
-        if needed and node.name not in ("mod", "fmod"):  # what a guard lets through is finite, but for a quotient
+        if needed and node.name == "pow":  # its guard's own limit
+            top = 2.0**self.format.exponent
+            parts = [Range(min(part.low, 0.99 * top), min(part.high, 1.01 * top)) for part in parts]
+        elif needed and node.name not in ("mod", "fmod"):  # what a guard lets through is finite, but for a quotient
             parts = [clip(part, -self.format.largest, self.format.largest) for part in parts]
         return self.computed(node, parts, self.builtin_numbers(node, args, size), length)
 

@@ -15,7 +15,7 @@ from .intervals import ANY, INF, Range, as_range, clip, hull, square, widened
 from .range_builtins import FETCHES, Builtins
 from .range_state import State
 from .shapes import field_at, hull_of, matrix_product, scalars
-from .sites import COUNT, DIVISION, ELEMENT, TEXEL, WHOLE_NUMBER
+from .sites import COUNT, DIVISION, ELEMENT, SIGNED_COUNT, TEXEL, WHOLE_NUMBER
 from .vectors import Value, length_of
 
 
@@ -129,7 +129,9 @@ class Expressions(Builtins):
         """The length of a vector's sum or of its product with a number."""
         if len(left.parts) == len(right.parts) and op in "+-":
             slack = 8.0 * self.format.epsilon  # the difference of lengths rounds by a part of their sum
-            return widened(vectors.total_length(left.length, right.length), 0.0, slack * (left.length.high + right.length.high))
+            return widened(
+                vectors.total_length(left.length, right.length), 0.0, slack * (left.length.high + right.length.high)
+            )
         if op == "*" and 1 in (len(left.parts), len(right.parts)) and len(left.parts) != len(right.parts):
             one, vector = (left, right) if len(left.parts) == 1 else (right, left)
             scale = length_of(one.parts)
@@ -139,7 +141,7 @@ class Expressions(Builtins):
     def division(self, node: ir.Binary, left: Value, right: Value) -> Value:
         size = max(len(left.parts), len(right.parts))
         least = self.format.tiny
-        counts = _is_count(node.right) and all(b.low >= 0.0 for b in right.parts)
+        counts = _is_count(node.right)
         smallest = 1.0 if counts else self.format.divisor
         parts, numbers, proven = [], [], True
         for index in range(size):
@@ -161,7 +163,8 @@ class Expressions(Builtins):
         dividend = left.parts[0]
         for part in left.parts[1:]:
             dividend = dividend.joined(part)
-        self.note(node, "/", proven, COUNT if counts else DIVISION, (dividend, divisor))
+        guard = DIVISION if not counts else COUNT if divisor.low >= 0.0 else SIGNED_COUNT
+        self.note(node, "/", proven, guard, (dividend, divisor))
         return self.computed(node, parts, numbers)
 
     def ratio(self, a: Range, m: int, b: Range, n: int) -> float | None:

@@ -76,13 +76,13 @@ class Loops(Expressions):
         written = self.written(block)
         sums = {name: self.sum_kind(name, block) for name in written if name in entry.env}
         numbers = {name: [self.numbers.fresh() for _ in value.parts] for name, value in entry.env.items()}
-        recording, self.recording = self.recording, False
         ranges = {name: entry.env[name].parts for name in written if name in entry.env}
         for attempt in range(24):
             head = self.head(entry, ranges, numbers)
-            loop, after, _ = self.round(stmt, head.copy(), trips + 1.0)
+            # what a narrower attempt finds, a wider one finds too: all may be noted
+            loop, after, left = self.round(stmt, head, trips + 1.0)
             if after is None:
-                break
+                return [left, *loop.broken]
             found = {
                 name: self.grown(entry.env[name].parts, loop.added.get(name, {}), trips, sums[name])
                 if sums[name]
@@ -90,17 +90,15 @@ class Loops(Expressions):
                 for name in ranges
             }
             if all(a.within(b) for name in ranges for a, b in zip(found[name], ranges[name], strict=True)):
-                break
+                return [left, *loop.broken]
             ranges = {
                 name: tuple([
                     self.wider(old, new, attempt) for old, new in zip(ranges[name], found[name], strict=True)
                 ])
                 for name in ranges
             }  # fmt: skip
-        else:
-            kinds = {name: entry.env[name].parts for name in ranges}
-            ranges = {name: tuple([self.everything(part) for part in parts]) for name, parts in kinds.items()}
-        self.recording = recording
+        kinds = {name: entry.env[name].parts for name in ranges}
+        ranges = {name: tuple([self.everything(part) for part in parts]) for name, parts in kinds.items()}
         loop, _, left = self.round(stmt, self.head(entry, ranges, numbers), trips + 1.0)
         return [left, *loop.broken]
 

@@ -17,7 +17,6 @@ from .shapes import innermost, scalar_kinds, scalars
 from .sites import OVERFLOW, Site
 from .vectors import Value, length_of
 
-
 SUMS = OVERFLOW._replace(text=FINITE, doc="A finite number in place of infinity; 0 in place of NaN.")
 """Of what has products inside whose sum may be infinity less infinity."""
 
@@ -65,7 +64,6 @@ class Known:
         self.numbers = Numbers()
         self.sites: dict[tuple[int, str], Site] = {}
         self.compounds: dict[int, ir.Binary] = {}
-        self.recording = True
         self.frames: list[Frame] = []
         self.loops: list[Loop] = []
         self.globals: dict[str, Value] = {}
@@ -129,8 +127,6 @@ class Known:
         self, node: ir.Expr, what: str, proven: bool, guard: Any, args: tuple[Range, ...],
         limits: tuple[float, float] = (0.0, 0.0),
     ) -> None:  # fmt: skip
-        if not self.recording:
-            return
         site = Site(node, what, self.frames[-1].function.key if self.frames else "", proven, guard, args, limits)
         known = self.sites.get((id(node), what))
         self.sites[id(node), what] = site if known is None else known.joined(site)

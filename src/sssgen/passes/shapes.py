@@ -54,7 +54,7 @@ def field_at(type_: Struct, name: str) -> tuple[int, int]:
 def matrix_product(
     left: Type, a: tuple[Range, ...], right: Type, b: tuple[Range, ...], slack: float
 ) -> list[Range] | None:
-    """The components of a matrix product; None for a product with a number. The sums round by `slack` of their terms."""
+    """The components of a matrix product, whose sums round by `slack` of their terms; None for one with a number."""
     if isinstance(left, Scalar) or isinstance(right, Scalar):
         return None
     size = left.size if isinstance(left, Matrix) else cast(Matrix, right).size
@@ -63,9 +63,10 @@ def matrix_product(
     found = []
     for column in columns:
         for row in rows:
-            total, size = Range(0.0, 0.0), 0.0
-            for x, y in zip(row, column, strict=True):
-                total, size = total + x * y, size + (x * y).size
+            products = [x * y for x, y in zip(row, column, strict=True)]
+            total, size = Range(0.0, 0.0), sum(product.size for product in products)
+            for product in products:
+                total = total + product
             found.append(widened(total, 0.0, slack * size) if size < INF else total)
     return found
 

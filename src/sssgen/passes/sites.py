@@ -18,6 +18,8 @@ TEXEL = Guard(
 BOUNDS = Guard("", "a quantity beyond its range", "clamp(x, LOW, HIGH)", "result")
 DIVISION = Guard("", "a division by 0", NONZERO, "y", "A divisor that is not 0, with the sign of `y`.")
 COUNT = Guard("", "a division by a count of 0", "max(y, 1.0)", "y")
+SIGNED_COUNT = COUNT._replace(text=NONZERO.replace("DIVISOR", "1.0"), doc=DIVISION.doc)
+"""Of a count that may be below 0."""
 WHOLE_NUMBER = Guard("", "a float too large for an integer", "clamp(x, LOW, HIGH)", "x")
 ELEMENT = Guard("", "an index beyond the elements", "clamp(y, 0, LAST)", "y")
 
@@ -44,6 +46,8 @@ class Site(NamedTuple):
             worse = other if self.proven else self
         else:
             worse = min(self, other, key=lambda site: site.guard.replaces != "")
+        if worse.guard is COUNT and args[1].low < 0.0:
+            worse = worse._replace(guard=SIGNED_COUNT)
         return worse._replace(args=args)
 
     @property

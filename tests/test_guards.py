@@ -1,0 +1,219 @@
+"""The guard pass: what it writes, where, and what it leaves alone."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+import pytest
+
+from pass_cases import module_of, text
+from sssgen import library
+from sssgen.compiler import GUARDS, transpile
+from sssgen.harness.backends import Backend, Call, Text
+from sssgen.harness.compilers import Source, errors
+from sssgen.harness.probes import subject
+from sssgen.ir.nodes import Assume, Module
+from sssgen.ir.verify import verify
+from sssgen.ir.walk import all_expressions, statements
+from sssgen.lang.polyfills import guard as guard_source
+from sssgen.lang.polyfills import polyfill
+from sssgen.passes.guards import Guarded, guard
+
+NAMES = sorted(library.index())
+
+
+def guarded(source: str, mode: str = "auto") -> Guarded:
+    """The module of a source; its last function is what is called from outside."""
+    module = module_of(source)
+    found = guard(module, [module.functions[-1].key], mode, guard_source, polyfill)
+    assert verify(found.module) == []
+    return found
+
+
+def lines(source: str, mode: str = "auto", target: str = "glsl-330") -> list[str]:
+    """The emitted lines, without what stands before the first function."""
+    module = module_of(source)
+    made = transpile(module, target, "case", guards=mode, called=[module.functions[-1].key])
+    shown = next(iter(made.files.values())).splitlines()
+    return [line.strip() for line in shown if line.strip() and not line.startswith("//")]
+
+
+def body(source: str, mode: str = "auto") -> str:
+    """The only line of the last function."""
+    return lines(source, mode)[-2]
+
+
+# What is written
+
+
+@pytest.mark.parametrize(
+    ("source", "auto", "everywhere"),
+    [
+        ("float f(float x) { return sqrt(x); }", "return sqrt(max(x, 0.0));", "return sqrt(max(x, 0.0));"),
+        ("float f(float x) { return sqrt(x * x); }", "return sqrt(x * x);", "return sqrt(max(x * x, 0.0));"),
+        ("float f(float x) { return 1.0 / abs(x); }", "return 1.0 / max(abs(x), 1.0e-20);", None),
+        ("float f(float x) { return 1.0 / -abs(x); }", "return 1.0 / min(-abs(x), -1.0e-20);", None),
+        ("float f(float x) { return 1.0 / (2.0 + abs(x)); }", "return 1.0 / (2.0 + abs(x));", None),
+        ("float f(float x, float p) { return pow(clamp(x, 0.0, 1.0), abs(p)); }",
+         "return pow(clamp(x, 1.0e-37, 1.0), abs(p));", None),
+        ("float f(float x) { return 1.0 / max(x, 0.0); }", "return 1.0 / max(x, 1.0e-20);", None),
+        ("float f(float x) { return log(x); }", "return log(max(x, 1.0e-37));", "return log(max(x, 1.0e-37));"),
+        ("float f(float x) { return asin(x); }", "return asin(clamp(x, -1.0, 1.0));", None),
+        ("float f(float x) { return exp(x); }", "return exp(min(x, 0.69 * 126.0));", None),
+        ("float f(float x) { return sqrt(1.0 + sqrt(x)); }", "return sqrt(1.0 + sqrt(max(x, 0.0)));", None),
+        ("float f(float x, int n) { return x / float(max(n, 0)); }", "return x / max(float(max(n, 0)), 1.0);", None),
+        ("float f(vec3 v, int n) { return v[clamp(n, 0, 2)]; }", "return v[clamp(n, 0, 2)];", None),
+        ("vec2 f(vec2 v) { return sqrt(v); }", "return sqrt(max(v, 0.0));", None),
+    ],
+)  # fmt: skip
+def test_lines(source: str, auto: str, everywhere: str | None) -> None:
+    assert body(source) == auto
+    plain = re.search(r"return .*?;", source)
+    assert plain is not None and body(source, "none") == plain.group()
+    if everywhere is not None:
+        assert body(source, "all") == everywhere
+
+
+def test_none_adds_nothing_and_takes_assumptions_out() -> None:
+    source = "float f(float x) { assume(x > 0.0); return sqrt(x) / x + normalize(vec2(x, 1.0)).x; }"
+    assert body(source, "none") == "return sqrt(x) / x + normalize(vec2(x, 1.0)).x;"
+    found = guarded(source, "none")
+    assert not found.guarded and len(found.module.functions) == 1
+
+
+@pytest.mark.parametrize("mode", GUARDS)
+def test_no_assumption_is_left(mode: str) -> None:
+    module = guarded("float f(float x) { if (x > 0.0) { assume(x > 1.0); } return 1.0 / x; }", mode).module
+    assert not [stmt for stmt in statements(module.functions[-1].body or ()) if isinstance(stmt, Assume)]
+
+
+def test_only_what_is_not_proven_is_guarded() -> None:
+    source = "float f(float x) { return sqrt(x) + sqrt(x * x) + sqrt(abs(x)) + sqrt(exp(min(x, 1.0))); }"
+    assert [site.proven for site in guarded(source).sites if site.what == "sqrt"].count(False) == 1
+    assert body(source).count("max(") == 1 and "\n".join(lines(source, "all")).count("max(") == 4
+
+
+def test_compound_assignments() -> None:
+    shown = lines("float f(float x, float y) { x /= y; x *= 2.0; return x; }")
+    assert shown[1:3] == ["x = x / (max(abs(y), 1.0e-20) * (2.0 * step(0.0, y) - 1.0));", "x *= 2.0;"]
+    assert lines("float f(float x) { x /= 2.0; return x; }")[1] == "x /= 2.0;"
+
+
+def test_in_headers_conditions_and_nested_calls() -> None:
+    source = """
+float inner(float v) { return sqrt(v); }
+float f(float x, int n) {
+    float t = 0.0;
+    for (int i = 0; i < 8 && sqrt(x) > 0.5; i++) { t += inner(1.0 - sqrt(x)); }
+    if (log(x) > 1.0) { return inner(inner(x)); }
+    return t;
+}
+"""
+    shown = "\n".join(lines(source))
+    assert "sqrt(max(v, 0.0))" in shown and "&& sqrt(max(x, 0.0)) > 0.5" in shown
+    assert "inner(1.0 - sqrt(max(x, 0.0)))" in shown and "if (log(max(x, 1.0e-37)) > 1.0)" in shown
+
+
+def test_long_guards_become_functions_with_names_of_their_own() -> None:
+    source = "vec3 safe_normalize(vec3 v) { return v + 1.0; }\n"
+    source += "vec3 f(vec3 a, vec3 b) { return normalize(a - b) + safe_normalize(a); }"
+    shown = "\n".join(lines(source))
+    assert shown.count("vec3 safe_normalize(vec3") == 1 and shown.count("vec3 safe_normalize_2(vec3") == 1
+    assert "return safe_normalize_2(a - b) + safe_normalize(a);" in shown
+    once = "vec3 f(vec3 a, vec3 b) { return normalize(a - b) + normalize(b - a * 2.0); }"
+    assert "\n".join(lines(once)).count("vec3 safe_normalize(vec3") == 1, "one function for both"
+    both = "float f(vec3 a, vec2 b) { return normalize(a + 1.0).x + normalize(b + 1.0).y; }"
+    assert len(re.findall(r"vec[23] safe_normalize\(vec[23]", "\n".join(lines(both)))) == 2
+
+
+def test_quantities_are_clamped_on_the_side_that_needs_it() -> None:
+    assert body("thickness f(float x) { return thickness(x * x * x); }") == "return clamp(x * x * x, 0.0, 1.0e12);"
+    assert body("thickness f(float x) { return thickness(x); }") == "return max(x, 0.0);"
+    assert body("thickness f(float x) { return thickness(abs(x * x * x)); }") == "return min(abs(x * x * x), 1.0e12);"
+    assert body("thickness f(float x) { return thickness(abs(x)); }") == "return abs(x);"
+    assert body("thinness f(float x) { return thinness(abs(x)); }") == "return min(abs(x), 1.0);"
+    assert body("thinness f(float x) { return thinness(min(x, 1.0)); }") == "return max(min(x, 1.0), 0.0);"
+    assert body("thinness f(float x) { return thinness(clamp(x, 0.0, 1.0)); }") == "return clamp(x, 0.0, 1.0);"
+
+
+def test_atan_of_one_argument_has_no_guard() -> None:
+    """Only the angle of (0, 0) is undefined."""
+    for mode in GUARDS:
+        assert body("float f(float x) { return atan(x); }", mode) == "return atan(x);"
+
+
+def test_every_guard_leads_to_the_source() -> None:
+    source = "float f(float x,\n float y) {\n float a = sqrt(x);\n return normalize(vec2(a, y)).x\n / y;\n}"
+    found = guarded(source)
+    function = found.module.functions[-1]
+    spans = {expr.span for expr in all_expressions(function.body or ())}
+    assert spans and all(span.file == "test.sss" and span.line >= 1 for span in spans), spans
+    made = transpile(module_of(source), "glsl-330", "case", guards="auto")
+    shown = next(iter(made.files.values())).splitlines()
+    (places,) = made.reflection["source_map"].values()
+    at = {
+        line.strip(): places[str(number)].rsplit(":", 1)[0]
+        for number, line in enumerate(shown, 1)
+        if str(number) in places
+    }
+    assert at["float a = sqrt(max(x, 0.0));"] == "test.sss:3"
+    assert next(place for line, place in at.items() if "step(" in line) in ("test.sss:4", "test.sss:5")
+
+
+def test_guards_of_a_proven_module_change_nothing() -> None:
+    source = "float f(float x) { float a = abs(x) + 1.0; return sqrt(a) / a; }"
+    assert text(guarded(source).module) == text(module_of(source))
+
+
+def test_at_drops_and_poisons_single_guards(backend: Callable[[str], Backend]) -> None:
+    import numpy as np
+
+    source = "float f(float x, float y) { return sqrt(x) + sqrt(y); }"
+    module = module_of(source)
+    first = guarded(source).guarded[0].place
+    made = transpile(
+        module, "glsl-330", "case", guards="auto", at=lambda site: "drop" if site.place == first else "keep"
+    )
+    assert "return sqrt(x) + sqrt(max(y, 0.0));" in next(iter(made.files.values()))
+    poisoned = transpile(module, "numpy", "case", guards="auto", at=lambda site: "poison")
+    shown = next(name for name in poisoned.files if not name.endswith(".json"))
+    x = np.array([1.0, -1.0, 4.0], np.float32)
+    types = tuple(param.type for param in module.functions[-1].params)
+    (found,) = backend("numpy-f32").run(
+        Text(poisoned.files[shown]), [Call("f", types, module.functions[-1].result, (x, abs(x)))]
+    )
+    assert np.isnan(found).tolist() == [False, True, False], "NaN where the guard would have changed anything"
+
+
+# The library
+
+
+def library_module(name: str) -> tuple[Module, list[str]]:
+    chosen = subject(name)
+    return chosen.module, chosen.called
+
+
+@pytest.mark.parametrize("mode", GUARDS)
+def test_every_technique_is_valid_with_guards(mode: str) -> None:
+    for name in NAMES:
+        module, called = library_module(name)
+        found = guard(module, called, mode, guard_source, polyfill)
+        assert verify(found.module, linked=True) == [], name
+        assert mode != "none" or not found.guarded
+        assert mode != "all" or len(found.guarded) == len(found.sites)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("target", ["glsl-330", "hlsl", "wgsl"])
+def test_the_guarded_library_compiles(target: str, assert_compiles: Callable[[Source], None]) -> None:
+    """Each technique as functions, with guards everywhere."""
+    from sssgen.harness.sources import sources
+
+    count = 0
+    for name in NAMES:
+        module, called = library_module(name)
+        for source in sources(transpile(module, target, "guarded", "all", called).files):
+            assert_compiles(source)
+            count += 1
+    assert count >= len(NAMES) and errors([]) == []
