@@ -45,7 +45,8 @@ class Shot(NamedTuple):
         """The picture, of the scene's size where none is given."""
         folder = FOLDER / self.scene
         scene = dataclasses.replace(load(folder / "scene.toml"), material=str(folder / f"{self.material}.toml"))
-        return render(scene, backends.get("gl"), size).encoded
+        guards = "none" if self.material == "published" else "auto"
+        return render(scene, backends.get("gl"), size, guards=guards).encoded
 
 
 class Picture(NamedTuple):

@@ -179,6 +179,7 @@ def parser() -> argparse.ArgumentParser:
     render.add_argument(
         "--backend", "-b", metavar="NAME", default="gl", help="gl (default), webgpu, browser, hlsl, numpy, …"
     )
+    render.add_argument("--guards", choices=GUARDS, default="auto", help=GUARDS_HELP)
     render.add_argument("--size", metavar="WxH", help="in pixels, instead of the scene's own")
     render.add_argument("--time", type=float, metavar="T", help="in seconds, instead of the scene's own")
     render.add_argument("--compare", nargs=2, metavar=("A", "B"), help="FLIP, relMSE, p99 and max of A against B")

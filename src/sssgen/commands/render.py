@@ -41,7 +41,7 @@ def _render(arguments: Namespace) -> int:
         raise failure("a picture is written as .png or .exr", "", output)
     backend = backends.needed(name)
     start = perf_counter()
-    made = render(scene, backend, size, arguments.time)
+    made = render(scene, backend, size, arguments.time, arguments.guards)
     seconds = perf_counter() - start
     write = {
         ".png": lambda: images.write_png(output, made.encoded),

@@ -49,14 +49,16 @@ class Rendered(NamedTuple):
         return encode_srgb(self.linear)
 
 
-def render(scene: Scene, backend: Backend, size: tuple[int, int] | None = None, time: float | None = None) -> Rendered:
-    """The picture of a scene. `size` and `time` go before the scene's own.
+def render(
+    scene: Scene, backend: Backend, size: tuple[int, int] | None = None, time: float | None = None, guards: str = "auto"
+) -> Rendered:
+    """The picture of a scene. `size` and `time` go before the scene's own; `guards` as in `compile`.
 
     Raises SssgenError for a scene that does not fit its material, a picture too large, and a back end that refuses.
     """
     scene = dataclasses.replace(scene, size=size or scene.size, time=scene.time if time is None else time)
     material = load_material(scene.material)
-    compiled = compile(material, backend.target.name)
+    compiled = compile(material, backend.target.name, guards=guards)
     reflection = compiled.reflection
     width, height = (side * scene.samples for side in scene.size)
     if max(width, height) + 2 * dice.BORDER > LARGEST or width * height > MAX_COUNT:

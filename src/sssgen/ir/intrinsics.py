@@ -55,6 +55,8 @@ class Guard(NamedTuple):
     polyfill with its own divisions guarded."""
     replaces: str = ""
     """The argument that `text` stands for; `result`: the call's own, x in it; '' means the whole call."""
+    scalar: str = ""
+    """The text for a single number, where that reads better."""
     doc: str = ""
     """The comment of the function that it becomes where it is too long to stand in the text."""
 

@@ -10,7 +10,7 @@ from ..ir.formats import Format
 from ..ir.intrinsics import BUILTINS, Guard, constants
 from ..ir.nodes import Module
 from ..ir.signatures import instantiate, overload
-from ..ir.types import Matrix, Type, components, spell
+from ..ir.types import Matrix, Scalar, Type, components, spell
 
 _GENERIC = re.compile(r"\b(?:(?:gen|vec)[FIUB]|mat)\b")
 
@@ -53,7 +53,7 @@ def guard(
     letters = "x" if found.replaces == "result" else "xyz"[: len(types)]
     known = {"x": result} if found.replaces == "result" else dict(zip(letters, types, strict=True))
     given = known.get(found.replaces, result)
-    text = found.text
+    text = found.scalar if found.scalar and isinstance(given, Scalar) else found.text
     used = "".join(letter for letter in letters if re.search(rf"\b{letter}\b", text))
     for constant, number in constants(format, limits).items():
         text = re.sub(rf"\b{constant}\b", repr(float(number)), text)

@@ -12,11 +12,17 @@ from .intervals import Range
 OVERFLOW = Guard("", "a number too large for its format", "clamp(x, -LARGEST, LARGEST)", "result")
 """Beside the table's: what any sum or product may do."""
 TEXEL = Guard(
-    "", "a texel of a float texture that is no number", "mix(clamp(x, LOW, HIGH), genF(0.0), isnan(x))", "result",
-    "A texel within its range; 0 in place of NaN.",
-)  # fmt: skip
+    "",
+    "a texel of a float texture that is no number",
+    "mix(clamp(x, LOW, HIGH), genF(0.0), isnan(x))",
+    "result",
+    scalar="isnan(x) ? 0.0 : clamp(x, LOW, HIGH)",
+    doc="A texel within its range; 0 in place of NaN.",
+)
 BOUNDS = Guard("", "a quantity beyond its range", "clamp(x, LOW, HIGH)", "result")
-DIVISION = Guard("", "a division by 0", NONZERO, "y", "A divisor that is not 0, with the sign of `y`.")
+DIVISION = Guard(
+    "", "a division by 0", NONZERO, "y", doc="A divisor that is not 0, with the sign of `y`."
+)
 COUNT = Guard("", "a division by a count of 0", "max(y, 1.0)", "y")
 SIGNED_COUNT = COUNT._replace(text=NONZERO.replace("DIVISOR", "1.0"), doc=DIVISION.doc)
 """Of a count that may be below 0."""
