@@ -10,9 +10,7 @@ from collections import Counter
 from pathlib import Path
 from textwrap import wrap
 
-from sssgen import library
 from sssgen.compiler import guarded_sites
-from sssgen.harness.probes import subject
 from sssgen.harness.safety import Safety, safety
 from sssgen.harness.stress import dangerous
 from sssgen.harness.stress.mutants import Mutant, mutants
@@ -135,7 +133,7 @@ def main() -> None:
     chosen = specimens(())
     with Machines(BACKENDS) as machines:
         found = [one for specimen in chosen for one in mutants(specimen, machines)]
-        rows = [safety(subject(name)) for name, path in library.index().items() if library.folder_of(path) != "baselines"]
+        rows = [safety(one.subject) for one in chosen]
         lines = [*introduction(), *counts(rows), *guards(found), *dangers(chosen, machines)]
         lines += ["## Measured on", "", *(f"- `{name}`: {one.device()}" for name, one in machines.here.items())]
     PAGE.write_text("\n".join(lines).rstrip("\n") + "\n", encoding="utf-8")

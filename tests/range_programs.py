@@ -41,8 +41,6 @@ class Recorder(_Analysis):
         super().__init__(module, FLOAT32)
 
     def record(self, node: object, known: Known) -> None:
-        if not self.recording:
-            return
         old = self.found.get(id(node))
         self.found[id(node)] = (
             known.parts if old is None else tuple([a.joined(b) for a, b in zip(old, known.parts, strict=True)])
@@ -334,11 +332,13 @@ class RangePrograms(Programs):
             f"({x} / {y})", f"({x} / {y})", f"sqrt({x})", f"inversesqrt({x})", f"abs({x})", f"({x} - {x})",
             f"clamp({x}, {y}, {z})", f"clamp({x}, 0.0, 1.0)", f"mix({x}, {y}, clamp({z}, 0.0, 1.0))", f"fract({x})",
             f"mod({x}, {y})", f"pow({x}, {y})", f"exp(-abs({x}))", f"log({x})", f"pow(abs({x}), 0.5)",
-            f"pow(max({x}, 0.0), {y})", f"max(w, {v}).z", f"atan({x}, {y})", f"asin({x})", f"step({x}, {y})", f"sign({x})",
+            f"pow(max({x}, 0.0), {y})", f"max(w, {v}).z", f"atan({x}, {y})", f"asin({x})", f"step({x}, {y})",
+            f"sign({x})",
             f"smoothstep({x}, {y}, {z})", f"dot({v}, {u})", f"dot({v}, {v})", f"length({v})", f"normalize({v}).x",
             f"distance({v}, {u})", f"{v}.y", f"{v}[{self.whole(1)}]", f"grow(w, k, {x})", f"over({x}, {self.place()})",
             f"(m * {v}.xy).x", f"({v}.zx * m).y", f"m[{self.whole(1)}].x", "(m * m)[0].y",
-            f"body.size[{self.whole(1)}]", f"sqrt(1.0 - {v}.x * {v}.x)", f"(1.0 / (1.0 + {x} * {x}))", f"floor({x})", f"float(deep({x}))",
+            f"body.size[{self.whole(1)}]",
+            f"sqrt(1.0 - {v}.x * {v}.x)", f"(1.0 / (1.0 + {x} * {x}))", f"floor({x})", f"float(deep({x}))",
             f"(float(deep({x})) >= 0.0 ? sqrt({x}) : {y})", f"max({x}, 0.001)", f"-{x}",
         ])  # fmt: skip
 
@@ -355,6 +355,8 @@ class RangePrograms(Programs):
 
     def statement(self, indent: int, size: int) -> str:
         pad = "    " * indent
+        if indent < 4 and self.chance(8):  # loops in loops
+            return self.counting_for(pad, indent, 3)
         if self.chance(25):
             x = self.number(1)
             return self.random.choice([

@@ -64,10 +64,10 @@ def matrix_product(
     for column in columns:
         for row in rows:
             products = [x * y for x, y in zip(row, column, strict=True)]
-            total, size = Range(0.0, 0.0), sum(product.size for product in products)
+            total, terms = Range(0.0, 0.0), 0.0
             for product in products:
-                total = total + product
-            found.append(widened(total, 0.0, slack * size) if size < INF else total)
+                total, terms = total + product, terms + product.size
+            found.append(widened(total, 0.0, slack * terms) if terms < INF else total)
     return found
 
 
