@@ -113,6 +113,7 @@ void pbr_constants(out float metallic, out float roughness, float metalness, flo
 
 // The gradient of to_edge.
 vec2 from_edge(Cell cell) {
+    // the nearest site may be just here, the second one never: they are at least 0.4 apart
     return safe_normalize(cell.nearest) - normalize(cell.second);
 }
 
@@ -198,11 +199,11 @@ vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughne
     float NoV = max(dot(N, V), 0.0001);
     float NoH = clamp(dot(N, H), 0.0, 1.0);
     float a = max(roughness, 0.045) * max(roughness, 0.045);
-    // (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak
+    // (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak; never below a^2
     vec3 across = cross(N, H);
-    float spread = NoH > 0.0 ? dot(across, across) + NoH * NoH * (a * a) : 1.0;
+    float spread = NoH > 0.0 ? max(dot(across, across) + NoH * NoH * (a * a), a * a) : 1.0;
     // D times pi
-    float facets = a * a / max(spread * spread, 1.0e-20);
+    float facets = a * a / (spread * spread);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)
     float visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
     vec3 F0 = mix(vec3(0.04), albedo, metallic);

@@ -117,6 +117,7 @@ void pbr_constants(out float metallic, out float roughness, float metalness, flo
 
 // The gradient of to_edge.
 float2 from_edge(Cell cell) {
+    // the nearest site may be just here, the second one never: they are at least 0.4 apart
     return safe_normalize(cell.nearest) - normalize(cell.second);
 }
 

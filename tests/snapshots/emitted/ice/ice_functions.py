@@ -29,7 +29,7 @@ def hash_bits(x):
 
 def hash_unit(x):
     """A number in [0, 1) from 24 bits of the hash of `x`."""
-    return to_float(hash_bits(x) >> 8) * 5.9604645e-08
+    return to_float(hash_bits(x) >> 8) * 5.960464477539063e-08
 
 def cell_at(p, variation):
     """The cell at `p`."""
@@ -87,6 +87,7 @@ def pbr_constants(metalness, surface_roughness):
 
 def from_edge(cell):
     """The gradient of to_edge."""
+    # the nearest site may be just here, the second one never: they are at least 0.4 apart
     return safe_normalize_vec2(cell.nearest) - normalize(cell.second)
 
 def blend_normals(base, detail):
@@ -160,11 +161,11 @@ def standard(N, V, L, albedo, metallic, roughness, light_color):
     NoV = max(dot(N, V), 0.0001)
     NoH = clamp(dot(N, H), 0.0, 1.0)
     a = max(roughness, 0.045) * max(roughness, 0.045)
-    # (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak
+    # (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak; never below a^2
     across = cross(N, H)
-    spread = select(NoH > 0.0, dot(across, across) + NoH * NoH * (a * a), 1.0)
+    spread = select(NoH > 0.0, max(dot(across, across) + NoH * NoH * (a * a), a * a), 1.0)
     # D times pi
-    facets = a * a / max(spread * spread, 9.999999682655225e-21)
+    facets = a * a / (spread * spread)
     # masking and shadowing, over 4 dot(N, L) dot(N, V)
     visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a)
     F0 = mix(splat(3, 0.04), albedo, metallic)

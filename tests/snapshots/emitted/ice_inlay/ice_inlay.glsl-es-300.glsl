@@ -19,7 +19,7 @@ const float OPAQUE_DEPTH = 80.0;
 
 // A texel within its range; 0 in place of NaN.
 float valid_texel(float x) {
-    return mix(clamp(x, 0.0, 1.0), 0.0, (floatBitsToUint(x) & 2147483647u) > 2139095040u);
+    return (floatBitsToUint(x) & 2147483647u) > 2139095040u ? 0.0 : clamp(x, 0.0, 1.0);
 }
 
 // The direction of `x`; of a zero vector, 0.
@@ -40,7 +40,8 @@ vec3 tangent_from_world(vec3 v, vec3 T, vec3 B, vec3 N) {
 // The texture coordinates where `ray`, going in, meets the inner layer.
 vec2 slide(vec2 uv, vec3 ray, vec3 T, vec3 B, vec3 N, float depth, vec2 uv_per_unit) {
     vec3 r = tangent_from_world(ray, T, B, N);
-    float cosine = -r.z;
+    // to the surface itself, which a sheared frame does not lie in
+    float cosine = -dot(ray, N);
     // 1 / cosine, but smoothly down to 0 where a grazing ray would slide without end
     float x = clamp(cosine / 0.2, 0.0, 1.0);
     float reciprocal = x * x * (4.0 - 3.0 * x) / max(cosine, 0.2);
@@ -103,11 +104,11 @@ vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughne
     float NoV = max(dot(N, V), 0.0001);
     float NoH = clamp(dot(N, H), 0.0, 1.0);
     float a = max(roughness, 0.045) * max(roughness, 0.045);
-    // (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak
+    // (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak; never below a^2
     vec3 across = cross(N, H);
-    float spread = NoH > 0.0 ? dot(across, across) + NoH * NoH * (a * a) : 1.0;
+    float spread = NoH > 0.0 ? max(dot(across, across) + NoH * NoH * (a * a), a * a) : 1.0;
     // D times pi
-    float facets = a * a / max(spread * spread, 1.0e-20);
+    float facets = a * a / (spread * spread);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)
     float visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
     vec3 F0 = mix(vec3(0.04), albedo, metallic);

@@ -78,11 +78,11 @@ float3 standard(float3 N, float3 V, float3 L, float3 albedo, float metallic, flo
     float NoV = max(dot(N, V), 0.0001);
     float NoH = clamp(dot(N, H), 0.0, 1.0);
     float a = max(roughness, 0.045) * max(roughness, 0.045);
-    // (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak
+    // (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak; never below a^2
     float3 across = cross(N, H);
-    float spread = NoH > 0.0 ? dot(across, across) + NoH * NoH * (a * a) : 1.0;
+    float spread = NoH > 0.0 ? max(dot(across, across) + NoH * NoH * (a * a), a * a) : 1.0;
     // D times pi
-    float facets = a * a / max(spread * spread, 1.0e-20);
+    float facets = a * a / (spread * spread);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)
     float visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
     float3 F0 = lerp((float3)0.04, albedo, metallic);

@@ -30,7 +30,7 @@ uniform sampler2D normal_texture;  // Tangent-space normals, y up (OpenGL's way)
 
 // A texel within its range; 0 in place of NaN.
 float valid_texel(float x) {
-    return mix(clamp(x, 0.0, 1.0), 0.0, (floatBitsToUint(x) & 2147483647u) > 2139095040u);
+    return (floatBitsToUint(x) & 2147483647u) > 2139095040u ? 0.0 : clamp(x, 0.0, 1.0);
 }
 
 // The direction of `x`; of a zero vector, 0.
@@ -90,11 +90,11 @@ vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughne
     float NoV = max(dot(N, V), 0.0001);
     float NoH = clamp(dot(N, H), 0.0, 1.0);
     float a = max(roughness, 0.045) * max(roughness, 0.045);
-    // (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak
+    // (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak; never below a^2
     vec3 across = cross(N, H);
-    float spread = NoH > 0.0 ? dot(across, across) + NoH * NoH * (a * a) : 1.0;
+    float spread = NoH > 0.0 ? max(dot(across, across) + NoH * NoH * (a * a), a * a) : 1.0;
     // D times pi
-    float facets = a * a / max(spread * spread, 1.0e-20);
+    float facets = a * a / (spread * spread);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)
     float visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
     vec3 F0 = mix(vec3(0.04), albedo, metallic);

@@ -42,7 +42,8 @@ float3 tangent_from_world(float3 v, float3 T, float3 B, float3 N) {
 // The texture coordinates where `ray`, going in, meets the inner layer.
 float2 slide(float2 uv, float3 ray, float3 T, float3 B, float3 N) {
     float3 r = tangent_from_world(ray, T, B, N);
-    float cosine = -r.z;
+    // to the surface itself, which a sheared frame does not lie in
+    float cosine = -dot(ray, N);
     // 1 / cosine, but smoothly down to 0 where a grazing ray would slide without end
     float x = clamp(cosine / 0.2, 0.0, 1.0);
     float reciprocal = x * x * (4.0 - 3.0 * x) / max(cosine, 0.2);
@@ -78,11 +79,11 @@ float3 standard(float3 N, float3 V, float3 L, float3 albedo, float metallic, flo
     float NoV = max(dot(N, V), 0.0001);
     float NoH = clamp(dot(N, H), 0.0, 1.0);
     float a = max(roughness, 0.045) * max(roughness, 0.045);
-    // (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak
+    // (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak; never below a^2
     float3 across = cross(N, H);
-    float spread = NoH > 0.0 ? dot(across, across) + NoH * NoH * (a * a) : 1.0;
+    float spread = NoH > 0.0 ? max(dot(across, across) + NoH * NoH * (a * a), a * a) : 1.0;
     // D times pi
-    float facets = a * a / max(spread * spread, 1.0e-20);
+    float facets = a * a / (spread * spread);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)
     float visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
     float3 F0 = lerp((float3)0.04, albedo, metallic);

@@ -50,7 +50,8 @@ Shader "sssgen/Resin inlay" {
         // The texture coordinates where `ray`, going in, meets the inner layer.
         float2 slide(float2 uv, float3 ray, float3 T, float3 B, float3 N) {
             float3 r = tangent_from_world(ray, T, B, N);
-            float cosine = -r.z;
+            // to the surface itself, which a sheared frame does not lie in
+            float cosine = -dot(ray, N);
             // 1 / cosine, but smoothly down to 0 where a grazing ray would slide without end
             float x = clamp(cosine / 0.2, 0.0, 1.0);
             float reciprocal = x * x * (4.0 - 3.0 * x) / max(cosine, 0.2);

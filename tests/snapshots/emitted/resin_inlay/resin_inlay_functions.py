@@ -21,7 +21,8 @@ def tangent_from_world(v, T, B, N):
 def slide(uv, ray, T, B, N, depth, uv_per_unit):
     """The texture coordinates where `ray`, going in, meets the inner layer."""
     r = tangent_from_world(ray, T, B, N)
-    cosine = -r[2]
+    # to the surface itself, which a sheared frame does not lie in
+    cosine = -dot(ray, N)
     # 1 / cosine, but smoothly down to 0 where a grazing ray would slide without end
     x = clamp(cosine / 0.2, 0.0, 1.0)
     reciprocal = x * x * (4.0 - 3.0 * x) / max(cosine, 0.2)
@@ -54,11 +55,11 @@ def standard(N, V, L, albedo, metallic, roughness, light_color):
     NoV = max(dot(N, V), 0.0001)
     NoH = clamp(dot(N, H), 0.0, 1.0)
     a = max(roughness, 0.045) * max(roughness, 0.045)
-    # (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak
+    # (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak; never below a^2
     across = cross(N, H)
-    spread = select(NoH > 0.0, dot(across, across) + NoH * NoH * (a * a), 1.0)
+    spread = select(NoH > 0.0, max(dot(across, across) + NoH * NoH * (a * a), a * a), 1.0)
     # D times pi
-    facets = a * a / max(spread * spread, 9.999999682655225e-21)
+    facets = a * a / (spread * spread)
     # masking and shadowing, over 4 dot(N, L) dot(N, V)
     visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a)
     F0 = mix(splat(3, 0.04), albedo, metallic)

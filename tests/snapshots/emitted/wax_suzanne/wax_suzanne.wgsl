@@ -147,11 +147,11 @@ fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughnes
     let NoV = max(dot(N, V), 0.0001);
     let NoH = clamp(dot(N, H), 0.0, 1.0);
     let a = max(roughness, 0.045) * max(roughness, 0.045);
-    // (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak
+    // (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak; never below a^2
     let across = cross(N, H);
-    let spread = select(1.0, dot(across, across) + NoH * NoH * (a * a), NoH > 0.0);
+    let spread = select(1.0, max(dot(across, across) + NoH * NoH * (a * a), a * a), NoH > 0.0);
     // D times pi
-    let facets = a * a / max(spread * spread, 1.0e-20);
+    let facets = a * a / (spread * spread);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)
     let visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
     let F0 = mix(vec3f(0.04), albedo, metallic);
