@@ -109,7 +109,7 @@ TWICE = "bool up(inout int k) { k += 1; return k > 1; } float deep(float x, out 
     [
         (NESTED, "float x", "", [100.0]),
         ("vec3 v = vec3(0.0); for (int i = 0; i < 20; i++) { v += 1.0; } return v.z;", "float x", "", [20.0]),
-        ("int k = 0; for (int i = 0; i < 20; i++) { k += 1 << 30; } return float(k);", "float x", "", [-(2.0**31)]),
+        ("int k = 0; for (int i = 0; i < 20; i++) { k += 1073741824; } return float(k);", "float x", "", [-(2.0**31)]),
         ("float t = 0.0; for (int i = 0; i < 10 && i > -1; i++) { t += 1.0; } return t;", "float x", "", [10.0]),
         ("int k = 0; for (int i = 0; i < 20 && !up(k); i++) { } return float(k);", "int n", TWICE, [2.0]),
         ("int k = 0; bool b = n > 3 && up(k); return float(k);", "int n", TWICE, [0.0, 1.0]),

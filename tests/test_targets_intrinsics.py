@@ -121,24 +121,24 @@ CASES = {
         "wgsl": "smoothstep(vec3f(x), vec3f(y), z3)",
     },
     "isnan(x)": {
-        "glsl": "isnan(x)",
-        "hlsl": "(asuint(x) & 2147483647u) > 2139095040u",
-        "wgsl": "(bitcast<u32>(x) & 2147483647u) > 2139095040u",
+        "glsl": "(floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u",
+        "hlsl": "(asuint(x) & 0x7fffffffu) > 0x7f800000u",
+        "wgsl": "(bitcast<u32>(x) & 0x7fffffffu) > 0x7f800000u",
     },
     "isnan(x3)": {
-        "glsl": "isnan(x3)",
-        "hlsl": "(asuint(x3) & (uint3)2147483647u) > (uint3)2139095040u",
-        "wgsl": "(bitcast<vec3u>(x3) & vec3u(2147483647u)) > vec3u(2139095040u)",
+        "glsl": "greaterThan(floatBitsToUint(x3) & uvec3(0x7fffffffu), uvec3(0x7f800000u))",
+        "hlsl": "(asuint(x3) & (uint3)0x7fffffffu) > (uint3)0x7f800000u",
+        "wgsl": "(bitcast<vec3u>(x3) & vec3u(0x7fffffffu)) > vec3u(0x7f800000u)",
     },
     "isinf(x)": {
-        "glsl": "isinf(x)",
-        "hlsl": "(asuint(x) & 2147483647u) == 2139095040u",
-        "wgsl": "(bitcast<u32>(x) & 2147483647u) == 2139095040u",
+        "glsl": "(floatBitsToUint(x) & 0x7fffffffu) == 0x7f800000u",
+        "hlsl": "(asuint(x) & 0x7fffffffu) == 0x7f800000u",
+        "wgsl": "(bitcast<u32>(x) & 0x7fffffffu) == 0x7f800000u",
     },
     "isinf(x3)": {
-        "glsl": "isinf(x3)",
-        "hlsl": "(asuint(x3) & (uint3)2147483647u) == (uint3)2139095040u",
-        "wgsl": "(bitcast<vec3u>(x3) & vec3u(2147483647u)) == vec3u(2139095040u)",
+        "glsl": "equal(floatBitsToUint(x3) & uvec3(0x7fffffffu), uvec3(0x7f800000u))",
+        "hlsl": "(asuint(x3) & (uint3)0x7fffffffu) == (uint3)0x7f800000u",
+        "wgsl": "(bitcast<vec3u>(x3) & vec3u(0x7fffffffu)) == vec3u(0x7f800000u)",
     },
     "floatBitsToInt(x)": {"glsl": "floatBitsToInt(x)", "hlsl": "asint(x)", "wgsl": "bitcast<i32>(x)"},
     "floatBitsToInt(x3)": {"glsl": "floatBitsToInt(x3)", "hlsl": "asint(x3)", "wgsl": "bitcast<vec3i>(x3)"},
@@ -204,24 +204,24 @@ CASES = {
         "glsl": """
             uint packHalf2x16_(vec2 x) {
                 uvec2 bits = floatBitsToUint(abs(x));
-                uvec2 normal = (bits - 939520001u + ((bits >> 13u) & 1u)) >> 13u;
+                uvec2 normal = (bits - 0x37fff001u + ((bits >> 13u) & 1u)) >> 13u;
                 uvec2 tiny = uvec2(roundEven(abs(x) * 16777216.0));
-                uvec2 halves = uvec2(bits.x < 947912704u ? tiny.x : normal.x, bits.y < 947912704u ? tiny.y : normal.y);
+                uvec2 halves = uvec2(bits.x < 0x38800000u ? tiny.x : normal.x, bits.y < 0x38800000u ? tiny.y : normal.y);
                 halves |= (floatBitsToUint(x) >> 16u) & 32768u;
                 return halves.x | (halves.y << 16u);
             }
 
             return packHalf2x16_(x2);
         """,
-        "hlsl": "dot(f32tof16(x2), uint2(1u, 65536u))",
+        "hlsl": "dot(f32tof16(x2), uint2(1u, 0x10000u))",
         "wgsl": "pack2x16float(x2)",
         "glsl-es": "packHalf2x16(x2)",
         "dx9": """
             uint packHalf2x16_(float2 x) {
                 uint2 bits = asuint(abs(x));
-                uint2 normal = (bits - 939520001u + ((bits >> 13u) & 1u)) >> 13u;
+                uint2 normal = (bits - 0x37fff001u + ((bits >> 13u) & 1u)) >> 13u;
                 uint2 tiny = (uint2)round(abs(x) * 16777216.0);
-                uint2 halves = uint2(bits.x < 947912704u ? tiny.x : normal.x, bits.y < 947912704u ? tiny.y : normal.y);
+                uint2 halves = uint2(bits.x < 0x38800000u ? tiny.x : normal.x, bits.y < 0x38800000u ? tiny.y : normal.y);
                 halves |= (asuint(x) >> 16u) & 32768u;
                 return halves.x | (halves.y << 16u);
             }
@@ -246,7 +246,7 @@ CASES = {
             vec2 unpackHalf2x16_(uint x) {
                 uvec2 halves = uvec2(x & 65535u, x >> 16u);
                 uvec2 bits = halves & 32767u;
-                vec2 normal = uintBitsToFloat((bits << 13u) + 939524096u);
+                vec2 normal = uintBitsToFloat((bits << 13u) + 0x38000000u);
                 vec2 tiny = vec2(bits) / 16777216.0;
                 vec2 size = vec2(bits.x < 1024u ? tiny.x : normal.x, bits.y < 1024u ? tiny.y : normal.y);
                 return uintBitsToFloat(floatBitsToUint(size) | ((halves & 32768u) << 16u));
@@ -261,7 +261,7 @@ CASES = {
             float2 unpackHalf2x16_(uint x) {
                 uint2 halves = uint2(x & 65535u, x >> 16u);
                 uint2 bits = halves & 32767u;
-                float2 normal = asfloat((bits << 13u) + 939524096u);
+                float2 normal = asfloat((bits << 13u) + 0x38000000u);
                 float2 tiny = (float2)bits / 16777216.0;
                 float2 size = float2(bits.x < 1024u ? tiny.x : normal.x, bits.y < 1024u ? tiny.y : normal.y);
                 return asfloat(asuint(size) | ((halves & 32768u) << 16u));

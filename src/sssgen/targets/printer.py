@@ -82,7 +82,8 @@ class Printer:
         if literal.type == INT:
             return str(literal.value) if literal.value != -2147483648 else "(-2147483647 - 1)"
         if literal.type == UINT:
-            return f"{literal.value}u"
+            # large ones are bits, not counts
+            return f"{literal.value:#x}u" if literal.value >= 1 << 16 else f"{literal.value}u"
         return "true" if literal.value else "false"
 
     # Expressions

@@ -112,8 +112,8 @@ Shader "sssgen/Ice (URP)" {
 
         // Scrambles the bits of `x`; 0 stays 0.
         uint hash_bits(uint x) {
-            x = (x ^ (x >> 16u)) * 2146121005u;
-            x = (x ^ (x >> 15u)) * 2221713035u;
+            x = (x ^ (x >> 16u)) * 0x7feb352du;
+            x = (x ^ (x >> 15u)) * 0x846ca68bu;
             return x ^ (x >> 16u);
         }
 

@@ -76,8 +76,8 @@ fn safe_normalize_vec3(x: vec3f) -> vec3f {
 // Scrambles the bits of `x`; 0 stays 0.
 fn hash_bits(x_in: u32) -> u32 {
     var x = x_in;
-    x = (x ^ (x >> 16u)) * 2146121005u;
-    x = (x ^ (x >> 15u)) * 2221713035u;
+    x = (x ^ (x >> 16u)) * 0x7feb352du;
+    x = (x ^ (x >> 15u)) * 0x846ca68bu;
     return x ^ (x >> 16u);
 }
 

@@ -19,7 +19,7 @@ static const float OPAQUE_DEPTH = 80.0;
 
 // A texel within its range; 0 in place of NaN.
 float valid_texel(float x) {
-    return (asuint(x) & 2147483647u) > 2139095040u ? 0.0 : clamp(x, 0.0, 1.0);
+    return (asuint(x) & 0x7fffffffu) > 0x7f800000u ? 0.0 : clamp(x, 0.0, 1.0);
 }
 
 // The components of `v` along unit T, unit B and N. A frame that spans no space gives (0, 0, dot(v, N)).

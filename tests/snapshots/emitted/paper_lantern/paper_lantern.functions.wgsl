@@ -12,7 +12,7 @@ struct Surface {
 
 // A texel within its range; 0 in place of NaN.
 fn valid_texel(x: f32) -> f32 {
-    return select(clamp(x, 0.0, 1.0), 0.0, (bitcast<u32>(x) & 2147483647u) > 2139095040u);
+    return select(clamp(x, 0.0, 1.0), 0.0, (bitcast<u32>(x) & 0x7fffffffu) > 0x7f800000u);
 }
 
 // The direction of `x`; of a zero vector, 0.

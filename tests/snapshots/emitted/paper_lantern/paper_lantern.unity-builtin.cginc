@@ -15,7 +15,7 @@ struct Surface {
 
 // A texel within its range; 0 in place of NaN.
 float valid_texel(float x) {
-    return (asuint(x) & 2147483647u) > 2139095040u ? 0.0 : clamp(x, 0.0, 1.0);
+    return (asuint(x) & 0x7fffffffu) > 0x7f800000u ? 0.0 : clamp(x, 0.0, 1.0);
 }
 
 // The direction of `x`; of a zero vector, 0.
