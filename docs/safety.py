@@ -80,8 +80,7 @@ def guards(found: list[Mutant]) -> list[str]:
         *_paragraph(
             f"Of {len(found)} guards {sum(one.witness is not None for one in found)} have an input that needs them: "
             "with NaN for what the language leaves undefined there, the result is NaN. Without the guard the drivers "
-            f"here show it for {seen}"
-            + (f"; for {len(letter)} it is the language's letter alone." if letter else ".")
+            f"here show it for {seen}" + (f"; for {len(letter)} it is the language's letter alone." if letter else ".")
         ),
         f"| Operation | In | Because | Input | {' | '.join(BACKENDS)} |",
         "|---" * (4 + len(BACKENDS)) + "|",

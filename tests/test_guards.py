@@ -60,7 +60,7 @@ def body(source: str, mode: str = "auto") -> str:
         ("float f(float x) { return 1.0 / max(x, 0.0); }", "return 1.0 / max(x, 1.0e-20);", None),
         ("float f(float x) { return log(x); }", "return log(max(x, 1.0e-37));", "return log(max(x, 1.0e-37));"),
         ("float f(float x) { return asin(x); }", "return asin(clamp(x, -1.0, 1.0));", None),
-        ("float f(float x) { return exp(x); }", "return exp(min(x, 0.69 * 126.0));", None),
+        ("float f(float x) { return exp(x); }", "return exp(min(x, 86.94));", None),
         ("float f(float x) { return sqrt(1.0 + sqrt(x)); }", "return sqrt(1.0 + sqrt(max(x, 0.0)));", None),
         ("float f(float x, int n) { return x / float(max(n, 0)); }", "return x / max(float(max(n, 0)), 1.0);", None),
         ("float f(vec3 v, int n) { return v[clamp(n, 0, 2)]; }", "return v[clamp(n, 0, 2)];", None),

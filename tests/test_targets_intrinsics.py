@@ -202,31 +202,31 @@ CASES = {
     },
     "packHalf2x16(x2)": {
         "glsl": """
-            uint packHalf2x16_(vec2 x) {
-                uvec2 bits = floatBitsToUint(abs(x));
-                uvec2 normal = (bits - 0x37fff001u + ((bits >> 13u) & 1u)) >> 13u;
-                uvec2 tiny = uvec2(roundEven(abs(x) * 16777216.0));
-                uvec2 halves = uvec2(bits.x < 0x38800000u ? tiny.x : normal.x, bits.y < 0x38800000u ? tiny.y : normal.y);
-                halves |= (floatBitsToUint(x) >> 16u) & 32768u;
-                return halves.x | (halves.y << 16u);
-            }
+        uint packHalf2x16_(vec2 x) {
+            uvec2 bits = floatBitsToUint(abs(x));
+            uvec2 normal = (bits - 0x37fff001u + ((bits >> 13u) & 1u)) >> 13u;
+            uvec2 tiny = uvec2(roundEven(abs(x) * 16777216.0));
+            uvec2 halves = uvec2(bits.x < 0x38800000u ? tiny.x : normal.x, bits.y < 0x38800000u ? tiny.y : normal.y);
+            halves |= (floatBitsToUint(x) >> 16u) & 32768u;
+            return halves.x | (halves.y << 16u);
+        }
 
-            return packHalf2x16_(x2);
+        return packHalf2x16_(x2);
         """,
-        "hlsl": "dot(f32tof16(x2), uint2(1u, 0x10000u))",
+        "hlsl": "dot(f32tof16(x2), uint2(1u, 65536u))",
         "wgsl": "pack2x16float(x2)",
         "glsl-es": "packHalf2x16(x2)",
         "dx9": """
-            uint packHalf2x16_(float2 x) {
-                uint2 bits = asuint(abs(x));
-                uint2 normal = (bits - 0x37fff001u + ((bits >> 13u) & 1u)) >> 13u;
-                uint2 tiny = (uint2)round(abs(x) * 16777216.0);
-                uint2 halves = uint2(bits.x < 0x38800000u ? tiny.x : normal.x, bits.y < 0x38800000u ? tiny.y : normal.y);
-                halves |= (asuint(x) >> 16u) & 32768u;
-                return halves.x | (halves.y << 16u);
-            }
+        uint packHalf2x16_(float2 x) {
+            uint2 bits = asuint(abs(x));
+            uint2 normal = (bits - 0x37fff001u + ((bits >> 13u) & 1u)) >> 13u;
+            uint2 tiny = (uint2)round(abs(x) * 16777216.0);
+            uint2 halves = uint2(bits.x < 0x38800000u ? tiny.x : normal.x, bits.y < 0x38800000u ? tiny.y : normal.y);
+            halves |= (asuint(x) >> 16u) & 32768u;
+            return halves.x | (halves.y << 16u);
+        }
 
-            return packHalf2x16_(x2);
+        return packHalf2x16_(x2);
         """,
     },
     "unpackSnorm2x16(u)": {

@@ -34,9 +34,7 @@ def recall(materials: Sequence[str], target: str, form: str, guards: str) -> Mad
     return Made(*made) if _state(state) == state else None
 
 
-def remember(
-    materials: Sequence[str], target: str, form: str, guards: str, made: Made, files: Iterable[str]
-) -> None:
+def remember(materials: Sequence[str], target: str, form: str, guards: str, made: Made, files: Iterable[str]) -> None:
     """Keeps what a command made, unless a plug-in may have had a part in it, whose files are not known here."""
     from .targets import descriptor
 

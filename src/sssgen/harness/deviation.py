@@ -112,9 +112,7 @@ def deviation(
     return worst._replace(excused=count, furthest=furthest)
 
 
-def blur(
-    subject: Subject, inputs: Inputs, oracle: Mapping[str, Array], guards: str = "auto"
-) -> dict[str, Array]:
+def blur(subject: Subject, inputs: Inputs, oracle: Mapping[str, Array], guards: str = "auto") -> dict[str, Array]:
     """How far rounding alone takes each lane of each output from the oracle, (lanes,), measured as `errors` does."""
     rounded, exact = get("numpy-f32"), get("numpy")
     found = {name: _apart(value, oracle[name]) for name, value in run(subject, inputs, rounded, guards).items()}

@@ -34,7 +34,8 @@ more than 4 ulp, WGSL means its section "Accuracy of Concrete Floating Point Exp
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -61,12 +62,22 @@ class Guard(NamedTuple):
     """The comment of the function that it becomes where it is too long to stand in the text."""
 
 
-def constants(format: Format, limits: tuple[float, float]) -> dict[str, float]:
-    """The constants of guards' texts, in a format; LOW and HIGH are those of the place."""
-    return {
-        "TINY": format.tiny, "DIVISOR": format.divisor, "SQUARE": format.square, "EPSILON": format.epsilon, "EXPONENT": format.exponent,
-        "LARGEST": format.largest, "ROOT": format.largest**0.5, "LOW": limits[0], "HIGH": limits[1],
+def with_constants(text: str, format: Format, limits: tuple[float, float], shown: Callable[[float], str] = repr) -> str:
+    """A guard's text with the format's numbers for its constants, times the factor that stands before one.
+
+    LOW and HIGH are the `limits` of the place, LAST the upper one as an int.
+    """
+    numbers = {
+        "TINY": format.tiny, "DIVISOR": format.divisor, "SQUARE": format.square, "EPSILON": format.epsilon,
+        "EXPONENT": format.exponent, "LARGEST": format.largest, "ROOT": format.largest**0.5,
+        "LOW": limits[0], "HIGH": limits[1],
     }  # fmt: skip
+
+    def number(found: re.Match[str]) -> str:
+        factor, name = found.groups()
+        return str(int(limits[1])) if name == "LAST" else shown(float(factor or 1.0) * numbers[name])
+
+    return re.sub(rf"(?:([\d.]+) \* )?\b({'|'.join(numbers)}|LAST)\b", number, text)
 
 
 class Builtin(NamedTuple):
@@ -259,7 +270,7 @@ BUILTINS: dict[str, Builtin] = _table(
         vectors=(((1.0,), 0.0), ((1.5,), 0.9624236501192069), ((2.0,), 1.3169578969248168)),
     ),
     Builtin("atanh", _F1, "Inverse hyperbolic tangent.",
-        range="rising(math.atanh, clip(x, -1.0 + F.epsilon, 1.0 - F.epsilon))",
+        range="rising(math.atanh, clip(x, -1.0 + 0.5 * F.epsilon, 1.0 - 0.5 * F.epsilon))",
         guards=(Guard("-1.0 < x.low and x.high < 1.0", "at or beyond -1 and 1", "clamp(x, EPSILON - 1.0, 1.0 - EPSILON)", "x"),),
         inside="abs(x) < 1.0",
         domain="-1 < x < 1", texts={"hlsl": ""},
@@ -450,7 +461,7 @@ vec4 mix(vec4 x, vec4 y, bvec4 a) {
     Builtin("smoothstep", ("genF(genF, genF, genF)", "genF(float, float, genF)"),
         "Cubic step t·t·(3 - 2·t) with t = clamp((z - x)/(y - x), 0, 1).",
         range="hull(0, 1)",
-        guards=(Guard("(y - x).low > 0.0", "edges in the wrong order, or one", "{ genF t = clamp((z - x) / max(y - x, DIVISOR), 0.0, 1.0); return t * t * (3.0 - 2.0 * t); }",
+        guards=(Guard("(y - x).low > 0.0 and (y - x).high <= F.largest", "edges in the wrong order, or one", "{ genF t = clamp((z - x) / clamp(y - x, DIVISOR, LARGEST), 0.0, 1.0); return t * t * (3.0 - 2.0 * t); }",
             doc="smoothstep; with edges in the wrong order or one, a step."),),
         inside="(x < y) & (y - x < 1e30)",
         domain="x < y", cost=8, ulp=16.0,

@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 
 from ..ir.formats import Format
-from ..ir.intrinsics import BUILTINS, Guard, constants
+from ..ir.intrinsics import BUILTINS, Guard, with_constants
 from ..ir.nodes import Module
 from ..ir.signatures import instantiate, overload
 from ..ir.types import Matrix, Scalar, Type, components, spell
@@ -55,9 +55,7 @@ def guard(
     given = known.get(found.replaces, result)
     text = found.scalar if found.scalar and isinstance(given, Scalar) else found.text
     used = "".join(letter for letter in letters if re.search(rf"\b{letter}\b", text))
-    for constant, number in constants(format, limits).items():
-        text = re.sub(rf"\b{constant}\b", repr(float(number)), text)
-    text = text.replace("LAST", str(int(limits[1]))).replace("genF", spell(given))
+    text = with_constants(text, format, limits).replace("genF", spell(given))
     params = ", ".join(f"{spell(known[letter])} {letter}" for letter in used)
     body = text if text.startswith("{") else f"{{ return {text}; }}"
     doc = f"/// {found.doc}\n" if found.doc else ""

@@ -8,13 +8,12 @@ code.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
 from ..ir import nodes as ir
 from ..ir.formats import FLOAT32, Format
-from ..ir.intrinsics import BUILTINS, Guard, constants
+from ..ir.intrinsics import BUILTINS, Guard, with_constants
 from ..ir.types import BOOL, FLOAT, UINT, Type, components, kind_of, spell, vector_of
 from ..ir.walk import operands, rewrite_function, rewrite_module, with_operands
 from .ranges import Findings, analyse
@@ -225,9 +224,7 @@ def remedy(site: Site, format: Format) -> str:
     """What stands in for the argument, the result or the call, for people."""
     found = guard_of(site)
     text = found.text or found.doc
-    for name, number in constants(format, site.limits).items():
-        text = re.sub(rf"\b{name}\b", f"{number:g}", text)
-    text = text.replace("genF", spell(site.node.type))
+    text = with_constants(text, format, site.limits, "{:g}".format).replace("genF", spell(site.node.type))
     if found.replaces == "result":
         return f"{text}, x its result"
     return f"{text} in place of {found.replaces or 'the call'}"

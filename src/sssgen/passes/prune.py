@@ -193,6 +193,7 @@ class _FunctionCleaner:
         self.jumps: list[_Unit] | None = None
         self.essential: list[_Unit] = []
         self.assumptions: list[_Unit] = []
+        self.units: list[_Unit] = []
         self.discards = function.body is None
 
     def run(self) -> _Cleaned:
@@ -201,9 +202,11 @@ class _FunctionCleaner:
             self.number(param.name, param.direction != "in")
         units, _ = self.block(function.body or (), None)
         self.keep(self.essential)
+        read = {need.name for unit in self.units if unit.kept for need in unit.needs if isinstance(need, Global)}
         for unit in self.assumptions:  # they keep nothing alive
-            if all(self.live[number] for number in unit.variables) and (unit.parent is None or unit.parent.kept):
-                unit.kept = True
+            known = all(need.name in read for need in unit.needs if isinstance(need, Global))
+            live = all(self.live[number] for number in unit.variables)
+            unit.kept = known and live and (unit.parent is None or unit.parent.kept)
         needs = _Needs({}, set(), set())
         _note_types(needs, function.result, function.params)
         body = self.rebuild(units, function.body or (), needs)
@@ -225,6 +228,7 @@ class _FunctionCleaner:
         for stmt in block:
             unit = _Unit(stmt, parent)
             units.append(unit)
+            self.units.append(unit)
             if self.statement(stmt, unit):
                 return units, True
         return units, False

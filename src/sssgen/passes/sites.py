@@ -20,9 +20,7 @@ TEXEL = Guard(
     doc="A texel within its range; 0 in place of NaN.",
 )
 BOUNDS = Guard("", "a quantity beyond its range", "clamp(x, LOW, HIGH)", "result")
-DIVISION = Guard(
-    "", "a division by 0", NONZERO, "y", doc="A divisor that is not 0, with the sign of `y`."
-)
+DIVISION = Guard("", "a division by 0", NONZERO, "y", doc="A divisor that is not 0, with the sign of `y`.")
 COUNT = Guard("", "a division by a count of 0", "max(y, 1.0)", "y")
 SIGNED_COUNT = COUNT._replace(text=NONZERO.replace("DIVISOR", "1.0"), doc=DIVISION.doc)
 """Of a count that may be below 0."""
