@@ -100,6 +100,7 @@ ROWS = (
     ),
     DangerousRow("concave", "concave bodies, gaps", "the sum of the intervals inside", field.concave),
     DangerousRow("eight-bits", "an 8-bit distance or thickness", "half a step off at most", surface.eight_bits),
+    DangerousRow("coinciding", "two points in one place: an axis' ends, a cell's site", "finite", field.coinciding),
     DangerousRow("few-steps", "steps of 0 and 1, or larger than the body", "at least one step", field.few_steps),
     DangerousRow(
         "fast-math", "NaN tests under fast-math", "tests of bits: no NaN comes through", surface.fast_math, alike=False,

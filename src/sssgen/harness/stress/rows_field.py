@@ -9,6 +9,7 @@ import numpy as np
 
 from ...ir.types import kind_of
 from ...targets.numpy_textures import Texture
+from ..backends import Array
 from .draw import TEXELS
 from .given import angles, mixed, plain
 from .specimen import Specimen
@@ -122,3 +123,33 @@ def few_steps(specimen: Specimen) -> Iterator[Trial]:
             given[name] = np.full(1, max(count, 0) if dtype is np.uint32 else count, dtype)
         far = {"reach": np.array([0.1, 0.4, 10.0])} if "reach" in uniforms else {}
         yield Trial("", specimen, plain(specimen, 3, {**given, **far}), counts=count >= 0)
+
+
+def coinciding(specimen: Specimen) -> Iterator[Trial]:
+    """Two points in one place: the ends of an axis, and a place that is just a Voronoi cell's site."""
+    params = specimen.subject.params
+    if "start" in params and "end" in params:
+        point = np.array([[0.3], [-0.2], [0.1]])
+        yield Trial("", specimen, plain(specimen, 1, {"start": point, "end": point}))
+        yield Trial("", specimen, plain(specimen, 1, {"start": point, "end": point, "p": point}))
+    if "cell_count" in params and "uv" in params:
+        site = _site().astype(np.float32)
+        steps = np.array([[x, y] for x in (-1, 0, 1) for y in (-1, 0, 1)], np.float32).T
+        near = site[:, None] + steps * np.spacing(site)[:, None]
+        given = {"uv": near, "cell_count": np.ones(1), "relief": np.ones(1)}
+        yield Trial("", specimen, plain(specimen, near.shape[1], given))
+
+
+def _site() -> Array:
+    """The site in the cell at the origin, by the formula of common/voronoi.sss."""
+    seed = _hashed(_hashed(1))
+    shift = np.array([_hashed(seed + 1) >> 8, _hashed(seed + 2) >> 8], np.float32) / np.float32(2**24) - np.float32(0.5)
+    return (np.float32(0.5) + np.float32(0.6) * shift).astype(np.float64)
+
+
+def _hashed(x: int) -> int:
+    """common/hash.sss, on 32 bits."""
+    x &= 0xFFFFFFFF
+    x = ((x ^ (x >> 16)) * 0x7FEB352D) & 0xFFFFFFFF
+    x = ((x ^ (x >> 15)) * 0x846CA68B) & 0xFFFFFFFF
+    return x ^ (x >> 16)

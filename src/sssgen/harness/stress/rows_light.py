@@ -79,7 +79,8 @@ def wrong_quantities(specimen: Specimen) -> Iterator[Trial]:
     names = [name for name, param in params if param.quantity in quantities and name not in textures]
     if names:
         values = [-1e6, -1.0, -1e-6, -0.0, 0.0, 0.5, 1.0, 1.0 + 1e-6, 2.0, 1e6]
-        choices = {name: [*values, *(outside(specimen, name)[:2])] for name in names}
+        choices: dict[str, list[Any]] = {**scalars(specimen)}
+        choices |= {name: [*values, *(outside(specimen, name)[:2])] for name in names}
         inputs = mixed(specimen, choices, 512)
         yield Trial("", specimen, inputs, ranged=False)
         yield Trial("", specimen, inputs, counts=False)  # what comes out is in its range where what went in was
