@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from sssgen.ir.formats import FLOAT32
-from sssgen.ir.intrinsics import BUILTINS, Builtin, constants
+from sssgen.ir.intrinsics import BUILTINS, Builtin, with_constants
 
 LANGUAGES = ("glsl", "hlsl", "wgsl")
 DIALECTS = ("glsl-330", "hlsl-dx9", "hlsl-macros")
@@ -46,8 +46,8 @@ def page() -> str:
 
 def _guards() -> list[str]:
     """The section on guards."""
-    numbers = constants(FLOAT32, (0.0, 0.0))
-    named = [f"{name} = {number:g}" for name, number in numbers.items() if name not in ("LOW", "HIGH")]
+    names = ("TINY", "DIVISOR", "SQUARE", "EPSILON", "EXPONENT", "LARGEST", "ROOT")
+    named = [f"{name} = {with_constants(name, FLOAT32, (0.0, 0.0), '{:g}'.format)}" for name in names]
     lines = [
         "",
         "## Guards",
