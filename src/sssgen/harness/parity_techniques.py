@@ -109,13 +109,6 @@ KNOWN = (
         largest=2e-3,
         share=0.05,
     ),
-    Known(
-        ("seed1_lobe", "three_js_port"),
-        "Baselines with a power below 1, where SwiftShader's `pow(0, power)` is 2^(-127 power) and not 0; WGSL leaves "
-        "`log2(0)` open.",
-        ("browser",),
-        largest=20.0,
-    ),
 )  # fmt: skip
 
 

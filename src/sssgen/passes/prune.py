@@ -172,6 +172,13 @@ class _Cleaner:
             found = self.done[key] = _FunctionCleaner(self, function).run()
         return found
 
+    def reads(self, key: str) -> set[str]:
+        """The uniforms, textures and constants that a function reads, itself or through what it calls."""
+        if key not in self.functions:
+            return set()
+        needs = self.cleaned(key).needs
+        return needs.globals.union(*(self.reads(callee) for callee in needs.calls))
+
     def discards(self, key: str) -> bool:
         """Whether a call may drop the fragment; so may what is not known."""
         return key not in self.functions or self.cleaned(key).discards
@@ -202,17 +209,24 @@ class _FunctionCleaner:
             self.number(param.name, param.direction != "in")
         units, _ = self.block(function.body or (), None)
         self.keep(self.essential)
-        read = {need.name for unit in self.units if unit.kept for need in unit.needs if isinstance(need, Global)}
-        for unit in self.assumptions:  # they keep nothing alive
-            known = all(need.name in read for need in unit.needs if isinstance(need, Global))
-            live = all(self.live[number] for number in unit.variables)
-            unit.kept = known and live and (unit.parent is None or unit.parent.kept)
+        if self.assumptions:
+            self.keep_assumptions()
         needs = _Needs({}, set(), set())
         _note_types(needs, function.result, function.params)
         body = self.rebuild(units, function.body or (), needs)
         if function.body is not None and body is not function.body:
             function = function._replace(body=body)
         return _Cleaned(function, needs, self.discards)
+
+    def keep_assumptions(self) -> None:
+        """Keeps those that speak of what is there anyway: they keep nothing alive."""
+        kept = [need for unit in self.units if unit.kept for need in unit.needs]
+        read = {need.name for need in kept if isinstance(need, Global)}
+        read.update(*(self.cleaner.reads(need.function) for need in kept if isinstance(need, Call)))
+        for unit in self.assumptions:
+            known = all(need.name in read for need in unit.needs if isinstance(need, Global))
+            live = all(self.live[number] for number in unit.variables)
+            unit.kept = known and live and (unit.parent is None or unit.parent.kept)
 
     def number(self, name: str, live: bool = False) -> int:
         self.numbers[name] = len(self.stores)

@@ -105,7 +105,7 @@ float march_distance_texture(float3 P_object, float3 V_object, float3 L_object, 
             distance_range);
     }
     float mean = way / seen;
-    return min(object_scale * mean, 1.0e12);
+    return object_scale * mean;
 }
 
 // Colour and opacity from a texture and a tint.

@@ -101,7 +101,7 @@ fn march_distance_texture(P_object: vec3f, V_object: vec3f, L_object: vec3f, box
             distance_range);
     }
     let mean = way / seen;
-    return min(object_scale * mean, 1.0e12);
+    return object_scale * mean;
 }
 
 // Colour and opacity from a texture and a tint.

@@ -107,7 +107,7 @@ float march_distance_texture(vec3 P_object, vec3 V_object, vec3 L_object) {
         return object_scale * length_to_light(P_object, L_object);
     }
     float mean = way / seen;
-    return min(object_scale * mean, 1.0e12);
+    return object_scale * mean;
 }
 
 // Colour and opacity from a texture and a tint.

@@ -87,8 +87,7 @@ def march_distance_texture(P_object, V_object, L_object):
         before = after
         last = t
     mean = divide(way, seen)
-    return select(seen < NEGLIGIBLE, object_scale * length_to_light(P_object, L_object),
-        min(object_scale * mean, 1000000000000.0))
+    return select(seen < NEGLIGIBLE, object_scale * length_to_light(P_object, L_object), object_scale * mean)
 
 def base_color(uv):
     """Colour and opacity from a texture and a tint."""

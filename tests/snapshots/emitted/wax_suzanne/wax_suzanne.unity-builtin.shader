@@ -122,7 +122,7 @@ Shader "sssgen/Wax Suzanne" {
                 return _ObjectScale * length_to_light(P_object, L_object);
             }
             float mean = way / seen;
-            return min(_ObjectScale * mean, 1.0e12);
+            return _ObjectScale * mean;
         }
 
         // Colour and opacity from a texture and a tint.

@@ -110,7 +110,7 @@ fn march_distance_texture(P_object: vec3f, V_object: vec3f, L_object: vec3f) -> 
         return material.object_scale * length_to_light(P_object, L_object);
     }
     let mean = way / seen;
-    return min(material.object_scale * mean, 1.0e12);
+    return material.object_scale * mean;
 }
 
 // Colour and opacity from a texture and a tint.

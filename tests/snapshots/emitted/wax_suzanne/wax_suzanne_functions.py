@@ -78,8 +78,8 @@ def march_distance_texture(P_object, V_object, L_object, box_max, box_min, dista
         last = t
     mean = divide(way, seen)
     return select(seen < NEGLIGIBLE, object_scale
-        * length_to_light(P_object, L_object, box_max, box_min, distance_map, distance_range),
-        min(object_scale * mean, 1000000000000.0))
+        * length_to_light(P_object, L_object, box_max, box_min, distance_map, distance_range), object_scale
+        * mean)
 
 def base_color(uv, tint, base_color_texture):
     """Colour and opacity from a texture and a tint."""
