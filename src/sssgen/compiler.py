@@ -106,18 +106,19 @@ def _copy(made: Compiled) -> Compiled:
 
 def transpile(
     module: Module, target: str, name: str, guards: str = "none", called: Sequence[str] | None = None,
-    at: Callable[[Site], str] | None = None,
+    at: Callable[[Site], str] | None = None, chained: bool = False,
 ) -> Compiled:  # fmt: skip
     """The functions form of a module of plain functions (no chain): what `sssgen transpile` writes.
 
     `called` are the keys of the functions that are called from outside, with any argument that they allow; None: all.
-    `at` is that of `passes.guards.guard`.
+    `chained`: they are techniques, whose parameters have the meaning of their names. `at` is that of
+    `passes.guards.guard`.
     """
     from .programs import make_library
 
     _check_guards(guards)
     chosen = descriptor.load(target)
-    program = make_library(module, chosen, guards, called, at)._replace(about=About(name, name))
+    program = make_library(module, chosen, guards, called, at, chained)._replace(about=About(name, name))
     return _finish(program, chosen, "functions", None)
 
 

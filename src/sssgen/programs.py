@@ -67,14 +67,16 @@ def make(material: Material, structure: str, target: Target, form: str, guards: 
 
 
 def make_library(
-    module: Module, target: Target, guards: str, called: Sequence[str] | None, at: Callable[[Site], str] | None = None
-) -> Program:
+    module: Module, target: Target, guards: str, called: Sequence[str] | None,
+    at: Callable[[Site], str] | None = None, chained: bool = False,
+) -> Program:  # fmt: skip
     """The program of a module of plain functions. Raises SssgenError.
 
-    `called` are the keys of those that are called from outside; None means all of them. `at` is that of `guard`.
+    `called` are the keys of those that are called from outside; None means all of them. `at` and `chained` are
+    those of `guard`.
     """
     module, notes, roots = plain_module(module)
-    guarded = guard(module, called or roots, guards, guard_source, polyfill, format_of(target), at)
+    guarded = guard(module, called or roots, guards, guard_source, polyfill, format_of(target), at, chained)
     middle = _Middle(guarded.module, {}, None, {}, {}, _warnings(notes), guarded=guarded)
     return _finish(middle, target, "functions")
 
@@ -85,10 +87,10 @@ def sites_of(material: Material, target: Target, form: str) -> list[Site]:
     return guarded.sites if guarded is not None else []
 
 
-def library_sites(module: Module, called: Sequence[str] | None = None, format: Format = FLOAT32) -> list[Site]:
+def library_sites(module: Module, called: Sequence[str] | None = None, chained: bool = False) -> list[Site]:
     """Every operation with a domain in a module of plain functions. Raises SssgenError."""
     module, _, roots = plain_module(module)
-    return analyse(module, called or roots, format).sites
+    return analyse(module, called or roots, FLOAT32, chained).sites
 
 
 def plain_module(module: Module) -> tuple[Module, list[Note], list[str]]:

@@ -85,7 +85,7 @@ def _emitted(
     key = (id(subject.module), target, guards, at)
     kept = _texts.get(key)
     if kept is None or kept[0].module is not subject.module:
-        made = transpile(subject.module, target, "evaluated", guards, subject.called, at)
+        made = transpile(subject.module, target, "evaluated", guards, subject.called, at, subject.chained)
         file, reflection = next(name for name in made.files if not name.endswith(".json")), made.reflection
         if len(_texts) >= 256:
             _texts.clear()

@@ -13,6 +13,8 @@ from .. import library
 from ..compiler import guarded_sites
 from ..diagnostics import Diagnostic, did_you_mean, failure
 from ..ir.formats import FLOAT32
+from ..ir.nodes import Function, Module
+from ..ir.types import Matrix, Scalar, Vector, Void
 from ..lang.loader import load_file, source_line
 from ..material import examples, load_material
 from ..passes.guards import remedy
@@ -87,7 +89,8 @@ def lint(name: str, with_examples: bool = True) -> list[Finding]:
         return _found(guarded_sites(load_material(name)), _stages(name) if with_examples else [])
     if name.endswith(".sss") or name in library.index():
         made = _technique(name)
-        return _found(library_sites(made.subject.module, made.subject.called), [made] if with_examples else [])
+        sites = library_sites(made.subject.module, made.subject.called, made.subject.chained)
+        return _found(sites, [made] if with_examples else [])
     if name.endswith((".glsl", ".frag", ".vert", ".inc")) or os.path.isfile(name):
         return _plain(name, with_examples)
     known = [*library.index(), *examples()]
@@ -102,8 +105,15 @@ def _plain(path: str, with_examples: bool) -> list[Finding]:
     module = load_file(path, path, (library.TECHNIQUES,))
     specimens = []
     if with_examples:
-        specimens = [_technique(f"{path}:{one.name}") for one in module.functions if one.body is not None]
+        specimens = [_technique(f"{path}:{one.name}") for one in module.functions if _evaluable(module, one)]
     return _found(library_sites(module), specimens, guarded=False)
+
+
+def _evaluable(module: Module, function: Function) -> bool:
+    """Whether inputs can be drawn for a function: numbers, vectors and matrices."""
+    types = [param.type for param in function.params] + [uniform.type for uniform in module.uniforms]
+    plain = all(isinstance(type_, Scalar | Vector | Matrix) for type_ in types)
+    return function.body is not None and plain and isinstance(function.result, Scalar | Vector | Matrix | Void)
 
 
 def _technique(name: str) -> Any:

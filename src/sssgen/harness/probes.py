@@ -43,6 +43,8 @@ class Subject(NamedTuple):
     module: Module
     probes: tuple[Probe, ...]
     uniforms: Mapping[str, Uniform]
+    chained: bool = True
+    """Whether it is a technique, whose parameters have the meaning of their names."""
 
     @property
     def called(self) -> list[str]:
@@ -64,7 +66,8 @@ def subject(name: str, bind: Mapping[str, str] | None = None) -> Subject:
     """
     module, function, role = _technique(name)
     bound = _bound(name, module, function, bind or {})
-    return of_stages(name, [LinkStage(function.name, role, module, function, bound, {}, frozenset())])
+    made = of_stages(name, [LinkStage(function.name, role, module, function, bound, {}, frozenset())])
+    return made._replace(chained=not _is_function(name))
 
 
 def of_stages(name: str, stages: Sequence[LinkStage]) -> Subject:
@@ -84,9 +87,15 @@ def of_stages(name: str, stages: Sequence[LinkStage]) -> Subject:
     return Subject(name, module, probes, {uniform.name: uniform for uniform in module.uniforms})
 
 
+def _is_function(name: str) -> bool:
+    """Whether a name is FILE:FUNCTION."""
+    file, colon, _ = name.rpartition(":")
+    return bool(colon) and file.endswith((".sss", ".glsl"))
+
+
 def _technique(name: str) -> tuple[Module, Function, str]:
-    file, colon, inner = name.rpartition(":")
-    if not colon or not file.endswith((".sss", ".glsl")):
+    file, _, inner = name.rpartition(":")
+    if not _is_function(name):
         found = library.load(name)
         return found.module, found.function, found.role
     module = load_file(file, library.shown_name(file), (library.TECHNIQUES,))

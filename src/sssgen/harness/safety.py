@@ -30,7 +30,9 @@ class Safety(NamedTuple):
 def safety(subject: Subject) -> Safety:
     """The counts and the static costs of a technique's functions, one call of each."""
     module, _, _ = plain_module(subject.module)
-    made = {mode: guard(module, subject.called, mode, guard_source, polyfill) for mode in GUARDS}
+    made = {
+        mode: guard(module, subject.called, mode, guard_source, polyfill, chained=subject.chained) for mode in GUARDS
+    }
     costs = {}
     for mode, one in made.items():
         total = Cost()

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from .formats import FLOAT32, Format
 from .nodes import Param, Uniform
-from .types import Matrix, Sampler, kind_of
+from .types import FLOAT, VEC3, VEC4, Matrix, Sampler, kind_of
 
 
 class Contract(NamedTuple):
@@ -39,40 +39,57 @@ THICKNESS = {FLOAT32.name: 1e12, "half": 1e4}
 MATRIX = {FLOAT32.name: 1e3, "half": 10.0}
 UV = {FLOAT32.name: 1e4, "half": 100.0}
 COLOR = {FLOAT32.name: 65504.0, "half": 1000.0}
+LIGHT = {FLOAT32.name: 1e9, "half": 1000.0}
+"""The brightest light: a lamp's colour over its least squared distance, 1e-4 in the shells."""
 INTEGERS = {"int": (-(2.0**31), 2.0**31 - 1.0), "uint": (0.0, 2.0**32 - 1.0), "bool": (0.0, 1.0)}
 
 _UNIT = {"thinness", "transmittance"}
-_FRACTIONS = {"alpha", "albedo", "metallic", "roughness", "occlusion"}
-_COLORS = {"light_color", "emission", "color", "translucency"}
+_FRACTIONS = {"alpha", "metallic", "roughness", "occlusion"}
+_COLORS = {"albedo", "light_color", "emission", "color", "translucency"}
 _FRAME = {"N", "V", "L", "T", "B", "normal"}
 
 
-def of_param(param: Param, format: Format = FLOAT32) -> Contract:
-    """The contract of a technique's parameter."""
+def of_param(param: Param, format: Format = FLOAT32, chained: bool = True) -> Contract:
+    """The contract of a technique's parameter; of a plain function's, where names mean nothing, if not `chained`."""
     kind = kind_of(param.type)
     if kind != "float":
         return Contract(*INTEGERS.get(kind, (0.0, 0.0)))
     found = of_quantity(param.quantity, format)
+    if found is None and chained:
+        found = of_name(param, format)
     if found is not None:
         return found
-    if isinstance(param.type, Matrix):
-        return _around(MATRIX[format.name])
-    if param.name in _FRAME:
+    return _around((MATRIX if isinstance(param.type, Matrix) else POSITION)[format.name])
+
+
+def of_name(param: Param, format: Format = FLOAT32) -> Contract | None:
+    """The contract of a value of the chain by its name; None for any other name."""
+    if param.name in _FRAME and param.type == VEC3:
         return Contract(-LENGTH, LENGTH, LENGTH)
-    if param.name in _FRACTIONS:
+    if param.name in _FRACTIONS and param.type == FLOAT:
         return Contract(0.0, 1.0)
-    if param.name in _COLORS:
-        return Contract(0.0, COLOR[format.name])
-    return _around(POSITION[format.name])
+    if param.name in _COLORS and param.type == VEC3:
+        return Contract(0.0, LIGHT[format.name] if param.name == "light_color" else COLOR[format.name])
+    return None
 
 
-def from_outside(param: Param, format: Format = FLOAT32) -> Contract:
+def made(quantity: str, param: Param | None, format: Format = FLOAT32) -> Contract | None:
+    """What a result or an out parameter is kept to where it is made, as others rely on it; None for nothing."""
+    found = of_quantity(quantity, format)
+    if found is None and param is not None:
+        found = of_name(param, format)
+    if found is None or found.length < float("inf") or quantity.endswith("_position"):
+        return None
+    return found
+
+
+def from_outside(param: Param, format: Format = FLOAT32, chained: bool = True) -> Contract:
     """What a caller that is not ours may pass: a quantity may be any number, as nobody has kept it in its range."""
     if param.quantity == "thickness":
         return _around(format.largest)
     if param.quantity in _UNIT:
         return _around(POSITION[format.name])
-    found = of_param(param, format)
+    found = of_param(param, format, chained)
     if found.length < float("inf") and format.largest < LONG**4:
         return Contract(-LONG, LONG, LONG)  # its square would overflow
     return found
@@ -103,8 +120,14 @@ def of_uniform(uniform: Uniform, format: Format = FLOAT32) -> Contract:
     if kind != "float":
         return Contract(*INTEGERS.get(kind, (0.0, 0.0)))
     if "source_color" in hints:
-        return Contract(0.0, 1.0)
-    return _around((MATRIX if isinstance(uniform.type, Matrix) else POSITION)[format.name])
+        return Contract(0.0, COLOR[format.name])  # it may be brighter than white
+    found = _around((MATRIX if isinstance(uniform.type, Matrix) else POSITION)[format.name])
+    return Contract(min([found.low, *uniform.default]), max([found.high, *uniform.default]))
+
+
+def alpha_at(uniform: Uniform) -> int | None:
+    """Which component of a uniform is an opacity, 0 to 1."""
+    return 3 if uniform.type == VEC4 and any(name == "source_color" for name, _ in uniform.hints) else None
 
 
 def _around(size: float) -> Contract:

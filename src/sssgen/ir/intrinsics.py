@@ -802,7 +802,7 @@ mat4 inverse(mat4 x) {
     ),
     Builtin("textureSize", ("ivec2(sampler2D, int)", "ivec3(sampler3D, int)", "ivec2(samplerCube, int)"),
         "Size in texels of level y. HLSL has it only as a statement, so it is refused there.",
-        domain="the level exists", texts={"hlsl": "", "wgsl": "{type}(textureDimensions({texture}, {1}))"},
+        range="hull(0, 65536)", domain="the level exists", texts={"hlsl": "", "wgsl": "{type}(textureDimensions({texture}, {1}))"},
         splat=(), kind="fetch",
     ),
     Builtin("texture", (*(f"{read})" for read in _SAMPLE), *(f"{read}, float)" for read in _SAMPLE)),

@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 from ..ir import nodes as ir
 from ..ir.formats import FLOAT32, Format
-from ..ir.intrinsics import BUILTINS, Guard, with_constants
-from ..ir.types import BOOL, FLOAT, UINT, Type, components, kind_of, spell, vector_of
+from ..ir.intrinsics import Guard, with_constants
+from ..ir.types import BOOL, FLOAT, UINT, Matrix, Type, components, kind_of, spell, vector_of
 from ..ir.walk import operands, rewrite_function, rewrite_module, with_operands
 from .ranges import Findings, analyse
 from .sites import BOUNDS, DIVISION, Site
@@ -37,7 +37,7 @@ class Guarded(NamedTuple):
 
 def guard(
     module: ir.Module, roots: Iterable[str], mode: str, source: Source, polyfill: Polyfill, format: Format = FLOAT32,
-    at: Callable[[Site], str] | None = None,
+    at: Callable[[Site], str] | None = None, chained: bool = True,
 ) -> Guarded:  # fmt: skip
     """The module with guards where `mode` wants them: `auto` those that are needed, `all` everywhere, `none`.
 
@@ -46,13 +46,13 @@ def guard(
     """
     if mode == "none":
         return Guarded(_without_assumptions(module), [], [])
-    found = analyse(module, roots, format)
+    found = analyse(module, roots, format, chained)
     chosen = [site for site in found.sites if mode == "all" or not site.proven]
     poisoned = [site for site in chosen if at is not None and at(site) == "poison"]
     chosen = [site for site in chosen if at is None or at(site) != "drop"]
     if not chosen:
         return Guarded(_without_assumptions(module), found.sites, [])
-    guarder = _Guarder(module, found, chosen, mode == "all", source, polyfill, format)
+    guarder = _Guarder(module, found, chosen, source, polyfill, format)
     guarder.poisoned = {id(site) for site in poisoned}
     return Guarded(guarder.run(), found.sites, chosen)
 
@@ -66,11 +66,11 @@ def _without_assumptions(module: ir.Module) -> ir.Module:
 
 class _Guarder:
     def __init__(
-        self, module: ir.Module, found: Findings, chosen: list[Site], strongest: bool, source: Source,
+        self, module: ir.Module, found: Findings, chosen: list[Site], source: Source,
         polyfill: Polyfill, format: Format,
     ) -> None:  # fmt: skip
         self.module, self.found, self.format = module, found, format
-        self.strongest, self.source, self.polyfill = strongest, source, polyfill
+        self.source, self.polyfill = source, polyfill
         self.sites: dict[int, list[Site]] = {}
         for site in chosen:
             self.sites.setdefault(id(site.node), []).append(site)
@@ -140,13 +140,13 @@ class _Guarder:
 
     def guarded(self, node: ir.Expr, sites: list[Site]) -> ir.Expr:
         """A node with its guards: those of its arguments, then those of its result."""
-        for site in sorted(sites, key=lambda site: guard_of(site, self.strongest).replaces == "result"):
+        for site in sorted(sites, key=lambda site: guard_of(site).replaces == "result"):
             safe = self.apply(node, site)
-            node = poisoned(node, safe, guard_of(site, self.strongest)) if id(site) in self.poisoned else safe
+            node = poisoned(node, safe, guard_of(site)) if id(site) in self.poisoned else safe
         return node
 
     def apply(self, node: ir.Expr, site: Site) -> ir.Expr:
-        chosen = guard_of(site, self.strongest)
+        chosen = guard_of(site)
         if not chosen.text:
             return self.with_safe_divisions(node)
         args = operands(node)
@@ -186,10 +186,7 @@ class _Guarder:
             if not isinstance(part, ir.Binary) or part.op != "/":
                 return part
             site = Site(part, "/", "", False, DIVISION, ())
-            self.strongest, before = True, self.strongest
-            made = self.apply(part, site)
-            self.strongest = before
-            return made
+            return self.apply(part, site)
 
         made = self.safe.get(function.key)
         if made is None:
@@ -198,14 +195,10 @@ class _Guarder:
         return ir.Call(made.result, made.key, node.args, node.span)
 
 
-def guard_of(site: Site, strongest: bool = False) -> Guard:
-    """The guard of a site: the least that its ranges ask for, or the one that asks for nothing."""
-    if strongest and site.what in BUILTINS:
-        return BUILTINS[site.what].guards[0]
+def guard_of(site: Site) -> Guard:
+    """The guard of a site: the least that its ranges ask for."""
     found = site.guard
-    if strongest:
-        return found
-    if found is DIVISION:
+    if found is DIVISION and site.args:
         divisor = site.args[1]
         if divisor.low >= 0.0:
             return found._replace(text="max(y, DIVISOR)")
@@ -231,8 +224,8 @@ def remedy(site: Site, format: Format) -> str:
 
 
 def poisoned(plain: ir.Expr, safe: ir.Expr, guard: Guard) -> ir.Expr:
-    """`plain` where its guard changes nothing, else NaN, by component; integers: the plain value."""
-    if kind_of(plain.type) != "float":
+    """`plain` where its guard changes nothing, else NaN, by component; integers and matrices: the plain value."""
+    if kind_of(plain.type) != "float" or isinstance(plain.type, Matrix):
         return plain
     span, size = plain.span, components(plain.type)
     before, after = plain, safe

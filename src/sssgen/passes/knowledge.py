@@ -29,7 +29,9 @@ class Sum(NamedTuple):
 class Numbers:
     """Value numbers: each definition has one."""
 
-    def __init__(self) -> None:
+    def __init__(self, tiny: float) -> None:
+        self.tiny = tiny
+        """Squares below this may be 0."""
         self.known: dict[Key, int] = {}
         self.definitions: list[Key] = []
         self.sums: dict[int, Sum] = {}
@@ -113,7 +115,7 @@ class Facts(NamedTuple):
                 self.learn(numbers, _number(operand), Range(range.low, INF))
         elif key[0] == "squares":
             # a little more and less, for the rounding of the sum
-            low, high = max(range.low, 0.0) ** 0.5 * 0.999, max(range.high, 0.0) ** 0.5 * 1.001
+            low, high = max(range.low, 0.0) ** 0.5 * 0.999, max(range.high, numbers.tiny) ** 0.5 * 1.001
             self.learn(numbers, numbers.of("length", *key[1:]), Range(low, high))
 
     def compare(

@@ -72,8 +72,11 @@ class Builtins(Known):
         if whole:
             flat = tuple([n for arg in args for n in arg.numbers])
             return [self.numbers.of(node.name, part, *flat) for part in range(size)]
+        kind = kind_of(node.args[0].type)
+        # what facts say of min and max holds for integers too; the others may wrap
+        name = node.name if kind == "float" or node.name in ("min", "max") else f"{node.name} of {kind}"
         return [
-            self.numbers.of(node.name, *[arg.numbers[index if len(arg.numbers) > 1 else 0] for arg in args])
+            self.numbers.of(name, *[arg.numbers[index if len(arg.numbers) > 1 else 0] for arg in args])
             for index in range(size)
         ]
 

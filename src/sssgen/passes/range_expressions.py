@@ -49,7 +49,9 @@ class Expressions(Builtins):
             return self.computed(node, parts, [self.numbers.of("!", n) for n in value.numbers])
         if node.op == "~":
             return self.unknown(node.type)
-        numbers = [self.negated(n) for n in value.numbers]
+        kind = kind_of(node.type)
+        # the negative of an integer may wrap
+        numbers = [self.negated(n) if kind == "float" else self.numbers.of("negated", kind, n) for n in value.numbers]
         return self.computed(node, [-part for part in value.parts], numbers, value.length)
 
     def negated(self, number: int) -> int:
@@ -96,7 +98,7 @@ class Expressions(Builtins):
             a, m = left.parts[index % len(left.parts)], left.numbers[index % len(left.numbers)]
             b, n = right.parts[index % len(right.parts)], right.numbers[index % len(right.numbers)]
             if op == "*":
-                parts.append(square(a) if m == n else a * b)
+                parts.append(self.product(a, m, b, n) if kind == "float" else square(a) if m == n else a * b)
                 if m == n and kind == "float":
                     numbers.append(self.numbers.of("squares", m))
                 else:  # an integer's product may wrap, unlike that of the floats with the same numbers
@@ -106,15 +108,24 @@ class Expressions(Builtins):
                 numbers.append(self.numbers.sum(op, m, n, kind, self.slack(a, b, parts[-1], kind)))
         return self.computed(node, parts, numbers, self.length_after(op, left, right))
 
+    def product(self, a: Range, m: int, b: Range, n: int) -> Range:
+        """A product of floats: of a number with itself, with its negative, with another."""
+        if m == n:
+            return square(a)
+        return -square(a) if self.negated(m) == n or self.negated(n) == m else a * b
+
     def sum(self, a: Range, m: int, b: Range, n: int, op: str) -> Range:
         if op == "+":
             return a + b
+        # a compiler may fuse a product with the sum, and then it is not the rounded one that was compared
+        products = any(self.numbers.definitions[one][0] in ("*", "squares") for one in (m, n))
+        fused = self.format.epsilon * (a.size + b.size) if products else 0.0
         if m == n:
-            return Range(0.0, 0.0)
+            return Range(-fused, fused)
         found = a - b
         facts = self.state.facts
         if facts.upper:
-            high, low = facts.bound(self.numbers, m, n), -facts.bound(self.numbers, n, m)
+            high, low = facts.bound(self.numbers, m, n) + fused, -facts.bound(self.numbers, n, m) - fused
             found = found.met(Range(low, high)) if low <= high else found
         return found
 
@@ -190,8 +201,8 @@ class Expressions(Builtins):
                 part = Range(0.0, min(a.high, b.high - 1.0))
             elif node.op == ">>" and b.low == b.high and 0.0 <= b.low < 32.0 and a.low >= 0.0:
                 part = Range(float(int(a.low) >> int(b.low)), float(int(a.high) >> int(b.low)))
-            elif node.op == "&" and min(a.low, b.low) >= 0.0:
-                part = Range(0.0, min(a.high, b.high))
+            elif node.op == "&" and max(a.low, b.low) >= 0.0:  # one of them masks the sign
+                part = Range(0.0, min(one.high for one in (a, b) if one.low >= 0.0))
             parts.append(part)
             numbers.append(self.numbers.fresh())
         return self.computed(node, parts, numbers)

@@ -58,10 +58,12 @@ class Loop:
 class Known:
     """The state of an analysis."""
 
-    def __init__(self, module: ir.Module, format: Format) -> None:
+    def __init__(self, module: ir.Module, format: Format, chained: bool) -> None:
         self.functions = {function.key: function for function in module.functions}
         self.format = format
-        self.numbers = Numbers()
+        self.chained = chained
+        """Whether names of parameters have the chain's meaning."""
+        self.numbers = Numbers(format.tiny)
         self.sites: dict[tuple[int, str], Site] = {}
         self.compounds: dict[int, ir.Binary] = {}
         self.frames: list[Frame] = []
@@ -71,7 +73,10 @@ class Known:
         for uniform in module.uniforms:
             inner = innermost(uniform.type)
             contract = contracts.of_uniform(uniform._replace(type=inner), format)
-            self.globals[uniform.name] = self.given(inner, contract)
+            value = self.given(inner, contract)
+            if (at := contracts.alpha_at(uniform)) is not None:
+                value = value._replace(parts=(*value.parts[:at], Range(0.0, 1.0)))
+            self.globals[uniform.name] = value
         for constant in module.constants:
             self.globals[constant.name] = self.expr(constant.value)
 

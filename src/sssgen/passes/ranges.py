@@ -16,14 +16,15 @@ from typing import NamedTuple, cast
 
 from ..ir import contracts
 from ..ir import nodes as ir
+from ..ir.contracts import Contract
 from ..ir.formats import FLOAT32, Format
 from ..ir.types import VOID, Array, Struct, kind_of
 from ..ir.walk import root
-from .intervals import INF, clip, rounded
+from .intervals import clip, rounded
 from .knowledge import Facts
 from .range_loops import Loops
 from .range_state import Frame, State
-from .shapes import field_at, innermost, scalars
+from .shapes import field_at, hull_of, innermost, scalars
 from .sites import BOUNDS, Site
 from .vectors import Value
 
@@ -37,9 +38,9 @@ class Findings(NamedTuple):
     """The operations of compound assignments, by the identity of the statement."""
 
 
-def analyse(module: ir.Module, roots: Iterable[str], format: Format = FLOAT32) -> Findings:
+def analyse(module: ir.Module, roots: Iterable[str], format: Format = FLOAT32, chained: bool = True) -> Findings:
     """Interprets the functions with the keys `roots`, their parameters within their contracts."""
-    analysis = _Analysis(module, format)
+    analysis = _Analysis(module, format, chained)
     for key in roots:
         analysis.root(key)
     return Findings(list(analysis.sites.values()), analysis.compounds)
@@ -65,7 +66,7 @@ class _Analysis(Loops):
         """What a caller that is not ours may pass; of a struct, in each of its fields."""
         inner = innermost(param.type)
         if not isinstance(inner, Struct):
-            return self.given(inner, contracts.from_outside(param._replace(type=inner), self.format))
+            return self.given(inner, contracts.from_outside(param._replace(type=inner), self.format, self.chained))
         fields = [
             self.outside(ir.Param(field.name, field.type, "in", field.quantity, param.span)) for field in inner.fields
         ]
@@ -135,7 +136,7 @@ class _Analysis(Loops):
         elif isinstance(stmt, ir.Assume):
             self.learn(self.expr(stmt.condition).numbers[0], True)
         elif isinstance(stmt, ir.Return):
-            found = self.bounded(stmt.value, self.frames[-1].function.quantity) if stmt.value is not None else None
+            found = self.returned(stmt.value) if stmt.value is not None else None
             self.frames[-1].returned.append((self.state, found))
             return None
         elif isinstance(stmt, ir.If):
@@ -152,15 +153,38 @@ class _Analysis(Loops):
             return None
         return self.state
 
+    def returned(self, expr: ir.Expr) -> Value:
+        """What a function gives: a quantity in its range."""
+        value = self.expr(expr)
+        quantity = self.frames[-1].function.quantity
+        contract = contracts.made(quantity, None, self.format) if kind_of(expr.type) == "float" else None
+        return value if contract is None else self.bounded(expr, value, quantity, contract)
+
     def assign(self, stmt: ir.Assign) -> None:
-        value = self.bounded(stmt.value, self.quantity_of(stmt.target))
+        value = self.expr(stmt.value)
+        node: ir.Expr = stmt.value
         variable = root(stmt.target)
         if stmt.op:
             if stmt.op in ("+", "-") and variable is stmt.target and self.loops:
                 self.add(stmt.target.name, stmt, value)
-            before = self.expr(stmt.target)
-            value = self.operation(self.compound_of(stmt), before, value)
+            node = self.compound_of(stmt)
+            value = self.operation(node, self.expr(stmt.target), value)
+        param = self.out_param(variable) if kind_of(node.type) == "float" else None
+        contract = self.made(param) if param is not None else None
+        if param is not None and contract is not None:
+            value = self.bounded(node, value, param.quantity or param.name, contract)
         self.store(stmt.target, value)
+
+    def out_param(self, variable: ir.Local | None) -> ir.Param | None:
+        """The out parameter that is assigned to."""
+        if variable is None or not self.frames:
+            return None
+        params = self.frames[-1].function.params
+        return next((param for param in params if param.name == variable.name and param.direction != "in"), None)
+
+    def made(self, param: ir.Param) -> Contract | None:
+        """What an out parameter is kept to."""
+        return contracts.made(param.quantity, param if self.chained else None, self.format)
 
     def compound_of(self, stmt: ir.Assign) -> ir.Binary:
         """The operation of `target op= value`, one and the same each time."""
@@ -170,28 +194,15 @@ class _Analysis(Loops):
             self.compounds[id(stmt)] = known
         return known
 
-    def quantity_of(self, target: ir.Expr) -> str:
-        """The quantity of an out parameter that is assigned to."""
-        if not isinstance(target, ir.Local) or not self.frames:
-            return ""
-        return next(
-            (p.quantity for p in self.frames[-1].function.params if p.name == target.name and p.direction != "in"), ""
-        )
-
-    def bounded(self, expr: ir.Expr, quantity: str) -> Value:
-        """A value that becomes a result of this quantity: within its contract."""
-        value = self.expr(expr)
-        contract = contracts.of_quantity(quantity, self.format) if kind_of(expr.type) == "float" else None
-        if contract is None or contract.length < INF or quantity.endswith("_position"):
-            return value
-        (part,) = value.parts
+    def bounded(self, node: ir.Expr, value: Value, what: str, contract: Contract) -> Value:
+        """A value that others rely on: within its contract."""
         limits = (contract.low, min(contract.high, 1.0) if contract.high == contracts.ONE else contract.high)
-        inside = part.low >= contract.low and part.high <= contract.high
-        self.note(expr, quantity, inside, BOUNDS, (part,), limits)
+        inside = all(part.low >= contract.low and part.high <= contract.high for part in value.parts)
+        self.note(node, what, inside, BOUNDS, (hull_of(value.parts),), limits)
         if inside:
             return value
-        held = rounded(clip(part, contract.low, contract.high), self.format)
-        return self.value((held,), (self.numbers.fresh(),))
+        held = tuple([rounded(clip(part, contract.low, contract.high), self.format) for part in value.parts])
+        return self.value(held, tuple([self.numbers.fresh() for _ in held]))
 
     def branch(self, stmt: ir.If) -> State | None:
         condition = self.expr(stmt.condition)

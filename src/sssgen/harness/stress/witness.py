@@ -48,7 +48,7 @@ class Witness(NamedTuple):
 
 def sites(specimen: Specimen) -> list[Site]:
     """The operations with a domain of a technique, in the order of the source."""
-    found = library_sites(specimen.subject.module, specimen.subject.called)
+    found = library_sites(specimen.subject.module, specimen.subject.called, specimen.subject.chained)
     return sorted(found, key=lambda site: site.node.span)
 
 
