@@ -48,8 +48,8 @@ def test_plain_functions_have_no_guard(hazards: str, capsys: pytest.CaptureFixtu
     assert "warning: /: a division by 0\n" in told
     assert f"{hazards}:6:12" in told
     assert " 6 |     return a / b;\n   |            ^^^^^" in told
-    assert "found: x in -1e+06..1e+06, y in -1e+06..1e+06" in told
-    assert "write: max(abs(y), 1e-20)" in told
+    assert "found: a in -1e+06..1e+06, b in -1e+06..1e+06" in told
+    assert "write: max(abs(b), 1e-20)" in told
     assert told.endswith("4 operations with a domain: 2 proven safe, 2 may fail, 0 unknown\n")
 
 
@@ -151,3 +151,19 @@ def test_wrong_files(tmp_path: Path) -> None:
             assert lint(str(path)) == []
     with pytest.raises(SssgenError):
         lint(str(tmp_path))
+
+
+def test_names_mean_nothing_in_plain_functions(tmp_path: Path) -> None:
+    """`roughness` is a number of its caller's there; in a technique it is kept in its range by who makes it."""
+    path = tmp_path / "names.glsl"
+    path.write_text("float f(float roughness, float L) { return sqrt(1.0 - roughness) + sqrt(2.0 - L); }\n")
+    assert [one.verdict for one in lint(str(path))] == [MAY_FAIL, MAY_FAIL]
+
+
+def test_what_cannot_be_drawn_has_no_example(tmp_path: Path) -> None:
+    path = tmp_path / "types.glsl"
+    path.write_text(
+        "struct S { float a; };\nfloat f(S s) { return sqrt(s.a); }\nfloat g(float a[3]) { return 1.0 / a[1]; }\n"
+        "float h(sampler2D t) { return sqrt(texture(t, vec2(0.5)).x - 2.0); }\nmat2 i(mat2 m) { return inverse(m); }\n"
+    )
+    assert {one.verdict for one in lint(str(path))} <= {MAY_FAIL, UNKNOWN}

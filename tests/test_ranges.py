@@ -256,6 +256,26 @@ def test_not_proven(what: str, body: str, params: str, head: str) -> None:
     assert found[what] is False, found
 
 
+@pytest.mark.parametrize(
+    ("body", "params"),
+    [
+        # the least int is its own negative
+        ("if (abs(i) < 4) { return 1.0 / (float(i) + 2147483648.0); } return 0.0;", "int i"),
+        ("if (i < 4 && -i < 4) { return 1.0 / (float(i) + 2147483648.0); } return 0.0;", "int i"),
+        ("uint u = k & 3u; if (-float(u) < -0.5) { uint w = -u; return 1.0 / float(4294967295u - w); } return 0.0;",
+         "uint k"),
+        # a square that is too small for its format
+        ("if (x * x <= 0.0) { return 1.0 / (1.0e-19 - abs(x)); } return 0.0;", "float x"),
+        # a product that is fused with the difference
+        ("if (x * x >= y) { return sqrt(x * x - y); } return 0.0;", "float x, float y"),
+        ("return sqrt(x * y - x * y);", "float x, float y"),
+    ],
+)  # fmt: skip
+def test_what_was_taken_for_proven(body: str, params: str) -> None:
+    found = verdicts(body, params, "")
+    assert not found.get("/", found.get("sqrt")), found
+
+
 def test_ranges_of_results() -> None:
     assert range_of("return x * x;", "float x").low == 0.0
     unit = range_of("return length(normalize(vec3(x, y, 1.0)));")

@@ -6,6 +6,7 @@ import math
 import re
 from typing import Any
 
+from .ir.contracts import of_uniform
 from .ir.nodes import Uniform
 from .ir.types import Array, Matrix, Sampler, Type, components, kind_of, spell
 
@@ -139,6 +140,13 @@ def _number(uniform: Uniform, raw: Any, index: int | None) -> float:
                 f"it goes from {args[0]:g} to {args[1]:g}; the default is {default}",
                 index,
             )
+    contract = of_uniform(uniform)
+    if kind == "float" and not contract.low <= raw <= contract.high:
+        raise WrongValue(
+            f"{raw:g} is more than '{name}' is safe with",
+            f"without a hint_range it goes from {contract.low:g} to {contract.high:g}: give it one in the technique",
+            index,
+        )
     return float(raw)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from argparse import Namespace
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ..cli import CHECK_FAILED, OK, print_json
@@ -38,7 +39,9 @@ def run(arguments: Namespace) -> int:
     rows = dangerous.chosen(arguments.row)
     settings = Settings(arguments.samples, arguments.seed, arguments.guards, half, rows)
     names = _backends(arguments.backend or DEFAULT[arguments.precision], half)
-    made = _stressed(specimens(arguments.NAME), names, settings)
+    named = specimens(arguments.NAME)
+    _check_rows(rows, named)
+    made = _stressed(named, names, settings)
     if arguments.output:
         _write(arguments.output, suffix, made)
     if arguments.json:
@@ -46,6 +49,16 @@ def run(arguments: Namespace) -> int:
     else:
         _print(made, arguments.output)
     return OK if made.ok and not (in_ci() and made.missing) else CHECK_FAILED
+
+
+def _check_rows(rows: Sequence[str], named: Sequence[Specimen]) -> None:
+    """Raises SssgenError for a row that concerns none of what is named: it would pass unseen."""
+    from ..harness.stress import dangerous
+
+    told = {row.name: row.elsewhere for row in dangerous.ROWS}
+    for row in rows:
+        if not any(True for one in named for _ in dangerous.trials(one, (row,))):
+            raise failure(f"the row '{row}' concerns none of these", told[row] or "leave --row out for all that do")
 
 
 def _backends(given: str, half: bool) -> list[str]:
@@ -113,6 +126,7 @@ def _write(path: str, suffix: str, made: Report) -> None:
 
 def _print(made: Report, written: str | None) -> None:
     from ..harness.stress import report
+    from ..harness.testing.outcome import in_ci
 
     for line in report.summary(made):
         print(line)
@@ -126,3 +140,5 @@ def _print(made: Report, written: str | None) -> None:
         print(f"wrote {written}")
     if not made.devices:
         print("nothing was run: none of these back ends is here")
+    elif made.missing and in_ci():
+        print(f"with CI set a missing back end is a failure: {', '.join(made.missing)}")

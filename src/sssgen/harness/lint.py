@@ -7,6 +7,7 @@ for finding in lint("lobe_gdc2011"):
 from __future__ import annotations
 
 import os
+import re
 from typing import Any, NamedTuple
 
 from .. import library
@@ -15,6 +16,7 @@ from ..diagnostics import Diagnostic, did_you_mean, failure
 from ..ir.formats import FLOAT32
 from ..ir.nodes import Function, Module
 from ..ir.types import Matrix, Scalar, Vector, Void
+from ..ir.walk import operands
 from ..lang.loader import load_file, source_line
 from ..material import examples, load_material
 from ..passes.guards import remedy
@@ -22,6 +24,8 @@ from ..passes.sites import Site
 from ..programs import library_sites
 from ..targets import descriptor
 
+LONGEST = 40
+"""Characters of an operand that are shown in place of its letter."""
 PROVEN, MAY_FAIL, UNKNOWN = "proven", "may fail", "unknown"
 
 
@@ -60,20 +64,34 @@ class Finding(NamedTuple):
         """For a terminal: the place, the ranges found, an example, the remedy."""
         lines = [self.diagnostic().render()]
         if self.site.found:
-            lines.append(f"  found: {self.site.found}")
+            lines.append(f"  found: {self.told(self.site.found)}")
         if self.example:
             lines.append(f"  example: {self.example}")
         if self.verdict != PROVEN:
-            lines.append(f"  {'emitted' if self.guarded else 'write'}: {remedy(self.site, FLOAT32)}")
+            lines.append(f"  {'emitted' if self.guarded else 'write'}: {self.told(remedy(self.site, FLOAT32))}")
         return "\n".join(lines)
+
+    def told(self, text: str) -> str:
+        """A text with the operands' names in their letters' places, or, where they are no names, behind it."""
+        if self.site.guard.replaces == "result":
+            return text
+        written = {}
+        for letter, arg in zip("xyz", operands(self.site.node), strict=False):
+            span, line = arg.span, source_line(arg.span)
+            one = line[span.column - 1 : span.end_column - 1].strip()
+            if span.line == span.end_line and 0 < len(one) <= LONGEST and re.search(rf"\b{letter}\b", text):
+                written[letter] = one
+        if all(re.fullmatch(r"[\w.]+", one) for one in written.values()):
+            return re.sub(r"\b[xyz]\b", lambda found: written.get(found[0], found[0]), text)
+        return f"{text}; {', '.join(f'{letter} is {one}' for letter, one in written.items())}"
 
     def as_json(self) -> dict[str, Any]:
         """For editors."""
         site = self.site
-        return self.diagnostic(remedy(self.site, FLOAT32) if self.verdict != PROVEN else "").as_json() | {
+        return self.diagnostic(self.told(remedy(self.site, FLOAT32)) if self.verdict != PROVEN else "").as_json() | {
             "verdict": self.verdict,
             "operation": site.what,
-            "found": site.found,
+            "found": self.told(site.found),
             "example": self.example or None,
             "guarded": self.guarded and self.verdict != PROVEN,
         }

@@ -278,6 +278,14 @@ class _Legaliser:
             return self.construct(expr)
         if isinstance(expr, ir.Binary):
             return self.binary(expr)
+        if (
+            isinstance(expr, ir.Unary)
+            and expr.op == "-"
+            and kind_of(expr.type) == "uint"
+            and not self.can("uint_minus")
+        ):
+            zero = _widened(ir.Literal(UINT, 0, expr.span), components(expr.type))
+            return ir.Binary(expr.type, "-", zero, expr.operand, expr.span)
         if isinstance(expr, ir.Global) and expr.name in self.uniforms:
             value = blocks.read(expr, self.can)
             return value if value is expr or not isinstance(value, ir.Construct) else self.construct(value)

@@ -58,7 +58,7 @@ class Loop:
 class Known:
     """The state of an analysis."""
 
-    def __init__(self, module: ir.Module, format: Format, chained: bool) -> None:
+    def __init__(self, module: ir.Module, format: Format, chained: bool = True) -> None:
         self.functions = {function.key: function for function in module.functions}
         self.format = format
         self.chained = chained

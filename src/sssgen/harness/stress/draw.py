@@ -50,14 +50,14 @@ def contract(specimen: Specimen, name: str, format: Format = FLOAT32) -> Contrac
     uniform = specimen.subject.uniforms.get(name)
     if uniform is not None:
         return contracts.of_uniform(uniform, format)
-    return contracts.of_param(specimen.subject.params[name], format)
+    return contracts.of_param(specimen.subject.params[name], format, specimen.subject.chained)
 
 
 def outside(specimen: Specimen, name: str, format: Format = FLOAT32) -> Contract:
     """What a caller may pass that does not keep quantities in their ranges."""
     if name in specimen.subject.uniforms:
         return contract(specimen, name, format)
-    return contracts.from_outside(specimen.subject.params[name], format)
+    return contracts.from_outside(specimen.subject.params[name], format, specimen.subject.chained)
 
 
 def fixed(specimen: Specimen, name: str) -> Array:

@@ -42,7 +42,9 @@ def plain(specimen: Specimen, lanes: int, given: dict[str, Any] | None = None) -
         elif name in specimen.subject.uniforms:
             values[name] = fixed(specimen, name)
         else:
-            value = np.asarray(_PLAIN.get(name, _OF_QUANTITY.get(param.quantity, 0.5)))
+            value = np.asarray(_PLAIN.get(name, 0.5))
+            if value.shape != shape_of(param.type) or name not in _PLAIN:
+                value = np.asarray(_OF_QUANTITY.get(param.quantity, 0.5))
             if isinstance(param.type, Matrix):
                 value = np.eye(param.type.size)
             dtype = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.bool_}[kind_of(param.type)]

@@ -87,7 +87,8 @@ def only(what: str, place: str, change: str) -> Callable[[Site], str]:
 
 def _trials(specimen: Specimen, seed: int) -> Iterator[Trial]:
     """The table's rows and the boundary values, then random inputs."""
-    every = [*dangerous.trials(specimen), *boundaries.trials(specimen, seed)]
+    rows = dangerous.trials(specimen) if specimen.subject.chained else ()
+    every = [*rows, *boundaries.trials(specimen, seed)]
     yield from (trial for trial in every if trial.counts or trial.name == BEYOND)
     rng = np.random.default_rng([seed, 4])
     yield Trial(RANDOM, specimen, drawn(specimen, SAMPLES, rng, FLOAT32))

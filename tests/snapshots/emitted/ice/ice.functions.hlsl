@@ -161,7 +161,7 @@ void packed_scroll(float2 uv, float time, inout float3 emission, Texture2D packe
     float veins = layer(uv, red_speed, time, packed_texture, packed_texture_sampler).x
         * layer(uv, green_speed, time, packed_texture, packed_texture_sampler).y;
     float sparks = layer(uv, blue_speed, time, packed_texture, packed_texture_sampler).z;
-    emission += vein_color * veins + spark_color * sparks;
+    emission = min(emission + (vein_color * veins + spark_color * sparks), 65504.0);
 }
 
 // What is left at `uv`: 1 = whole, 0 = gone.
@@ -216,7 +216,8 @@ float3 standard(float3 N, float3 V, float3 L, float3 albedo, float metallic, flo
     float facets = a * a / (spread * spread);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)
     float visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
-    float3 F0 = lerp((float3)0.04, albedo, metallic);
+    // nothing reflects more than all
+    float3 F0 = lerp((float3)0.04, min(albedo, 1.0), metallic);
     float3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     float3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);
     return (diffuse + facets * visible * F) * NoL * light_color;

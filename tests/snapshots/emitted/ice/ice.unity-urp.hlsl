@@ -161,7 +161,7 @@ void packed_scroll(float2 uv, float time, inout float3 emission,
     float veins = layer(uv, red_speed, time, packed_texture, samplerpacked_texture).x
         * layer(uv, green_speed, time, packed_texture, samplerpacked_texture).y;
     float sparks = layer(uv, blue_speed, time, packed_texture, samplerpacked_texture).z;
-    emission += vein_color * veins + spark_color * sparks;
+    emission = min(emission + (vein_color * veins + spark_color * sparks), 65504.0);
 }
 
 // What is left at `uv`: 1 = whole, 0 = gone.

@@ -229,7 +229,7 @@ Shader "sssgen/Ice (URP)" {
         void packed_scroll(float2 uv, float time, inout float3 emission) {
             float veins = layer(uv, _RedSpeed, time).x * layer(uv, _GreenSpeed, time).y;
             float sparks = layer(uv, _BlueSpeed, time).z;
-            emission += _VeinColor * veins + _SparkColor * sparks;
+            emission = min(emission + (_VeinColor * veins + _SparkColor * sparks), 65504.0);
         }
 
         // What is left at `uv`: 1 = whole, 0 = gone.

@@ -190,7 +190,8 @@ fn layer(uv: vec2f, speed: vec2f, time: f32) -> vec4f {
 fn packed_scroll(uv: vec2f, time: f32, emission: ptr<function, vec3f>) {
     let veins = layer(uv, material.red_speed, time).x * layer(uv, material.green_speed, time).y;
     let sparks = layer(uv, material.blue_speed, time).z;
-    *emission += material.vein_color * veins + material.spark_color * sparks;
+    *emission = min(*emission + (material.vein_color * veins + material.spark_color * sparks),
+        vec3f(65504.0));
 }
 
 // What is left at `uv`: 1 = whole, 0 = gone.
@@ -239,7 +240,8 @@ fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughnes
     let facets = a * a / (spread * spread);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)
     let visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
-    let F0 = mix(vec3f(0.04), albedo, metallic);
+    // nothing reflects more than all
+    let F0 = mix(vec3f(0.04), min(albedo, vec3f(1.0)), metallic);
     let F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     let diffuse = albedo * (1.0 - metallic) * (1.0 - F);
     return (diffuse + facets * visible * F) * NoL * light_color;

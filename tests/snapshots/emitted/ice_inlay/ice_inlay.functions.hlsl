@@ -115,7 +115,8 @@ float3 standard(float3 N, float3 V, float3 L, float3 albedo, float metallic, flo
     float facets = a * a / (spread * spread);
     // masking and shadowing, over 4 dot(N, L) dot(N, V)
     float visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
-    float3 F0 = lerp((float3)0.04, albedo, metallic);
+    // nothing reflects more than all
+    float3 F0 = lerp((float3)0.04, min(albedo, 1.0), metallic);
     float3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     float3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);
     return (diffuse + facets * visible * F) * NoL * light_color;

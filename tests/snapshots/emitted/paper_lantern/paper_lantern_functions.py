@@ -68,7 +68,8 @@ def standard(N, V, L, albedo, metallic, roughness, light_color):
     facets = a * a / (spread * spread)
     # masking and shadowing, over 4 dot(N, L) dot(N, V)
     visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a)
-    F0 = mix(splat(3, 0.04), albedo, metallic)
+    # nothing reflects more than all
+    F0 = mix(splat(3, 0.04), min(albedo, 1.0), metallic)
     F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0)
     diffuse = albedo * (1.0 - metallic) * (1.0 - F)
     return (diffuse + facets * visible * F) * NoL * light_color
