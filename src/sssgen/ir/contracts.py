@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from .formats import FLOAT32, Format
 from .nodes import Param, Uniform
-from .types import FLOAT, VEC3, VEC4, Matrix, Sampler, kind_of
+from .types import FLOAT, VEC3, VEC4, Array, Matrix, Sampler, kind_of
 
 
 class Contract(NamedTuple):
@@ -110,10 +110,11 @@ def of_quantity(quantity: str, format: Format = FLOAT32) -> Contract | None:
 
 def of_uniform(uniform: Uniform, format: Format = FLOAT32) -> Contract:
     """The contract of a uniform's components, or of a texture's texels."""
+    type_ = uniform.type.element if isinstance(uniform.type, Array) else uniform.type
     hints: Mapping[str, tuple[float | str, ...]] = dict(uniform.hints)
-    if isinstance(uniform.type, Sampler):
+    if isinstance(type_, Sampler):
         return Contract(0.0, 1.0, finite="holds" not in hints)
-    kind = kind_of(uniform.type)
+    kind = kind_of(type_)
     if "hint_range" in hints:
         low, high = [format.rounded(float(end)) if kind == "float" else float(end) for end in hints["hint_range"][:2]]
         return Contract(low if kind == "float" else min(low, 0.0), high)  # a count that nobody has set is 0
@@ -121,7 +122,7 @@ def of_uniform(uniform: Uniform, format: Format = FLOAT32) -> Contract:
         return Contract(*INTEGERS.get(kind, (0.0, 0.0)))
     if "source_color" in hints:
         return Contract(0.0, COLOR[format.name])  # it may be brighter than white
-    found = _around((MATRIX if isinstance(uniform.type, Matrix) else POSITION)[format.name])
+    found = _around((MATRIX if isinstance(type_, Matrix) else POSITION)[format.name])
     return Contract(min([found.low, *uniform.default]), max([found.high, *uniform.default]))
 
 

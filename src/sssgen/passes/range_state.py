@@ -72,7 +72,7 @@ class Known:
         self.state = State({}, Facts({}, {}))
         for uniform in module.uniforms:
             inner = innermost(uniform.type)
-            contract = contracts.of_uniform(uniform._replace(type=inner), format)
+            contract = contracts.of_uniform(uniform, format)
             value = self.given(inner, contract)
             if (at := contracts.alpha_at(uniform)) is not None:
                 value = value._replace(parts=(*value.parts[:at], Range(0.0, 1.0)))
