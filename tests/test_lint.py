@@ -57,7 +57,7 @@ def test_proven_functions_pass(tmp_path: Path, capsys: pytest.CaptureFixture[str
     path = tmp_path / "safe.glsl"
     path.write_text("float root(float a) { return sqrt(a * a + 1.0); }\n")
     assert main(["lint", str(path)]) == 0
-    assert "1 operations with a domain: 1 proven safe" in capsys.readouterr().out
+    assert "1 operation with a domain: 1 proven safe" in capsys.readouterr().out
     assert main(["lint", "--all", str(path)]) == 0
     assert "sqrt: proven safe" in capsys.readouterr().out
 

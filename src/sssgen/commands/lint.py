@@ -34,7 +34,7 @@ def run(arguments: Namespace) -> int:
         counts = Counter(one.verdict for one in found)
         unseen = "not proven" if arguments.no_examples else UNKNOWN
         print(
-            f"{name}: {len(found)} operations with a domain: {counts[PROVEN]} proven safe, "
+            f"{name}: {len(found)} operation{'s' * (len(found) != 1)} with a domain: {counts[PROVEN]} proven safe, "
             f"{counts[MAY_FAIL]} may fail, {counts[UNKNOWN]} {unseen}"
         )
     return CHECK_FAILED if bare else OK

@@ -165,9 +165,11 @@ def total(report: Report) -> str:
     failed = sum(not row.ok for row in report.rows)
     beyond = sum(fault.lanes for column in columns for fault in column.faults if not fault.counts)
     rate = f", {count / seconds / 1e6:.1f} million a second" if seconds else ""
+    techniques = f"{len(report.rows)} technique{'s' * (len(report.rows) != 1)}"
     return (
-        f"{len(report.rows)} techniques, {failed} failed; {count:,} evaluations in {seconds:.1f} s{rate}; "
-        f"{beyond:,} faults that do not count; seed {report.settings.seed}, {report.settings.samples:,} random inputs"
+        f"{techniques}, {failed} failed; {count:,} evaluations in {seconds:.1f} s{rate}; "
+        f"{beyond:,} faults beyond the contract; "
+        f"seed {report.settings.seed}, {report.settings.samples:,} random inputs"
     )
 
 
