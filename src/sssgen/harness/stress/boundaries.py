@@ -13,7 +13,7 @@ from ...ir.types import Matrix, Sampler, kind_of
 from ...targets.numpy_textures import Texture
 from ..backends import Array
 from ..evaluate import Inputs, shape_of
-from .draw import contract, drawn, fixed, is_direction, texture, whole_range
+from .draw import contract, drawn, fixed, is_direction, opaque, texture, whole_range
 from .specimen import Specimen
 from .trial import BEYOND, BOUNDARY, Trial
 
@@ -52,7 +52,9 @@ def values(specimen: Specimen, name: str, beyond: bool = False, format: Format =
         return np.concatenate([axes * np.float32(length) for length in lengths], axis=1)
     if isinstance(param.type, Matrix):
         return _matrices(shape[0], found.high * (10.0 if beyond else 1.0))
-    return _splat(np.array(_beyond(found.low, found.high) if beyond else _within(found.low, found.high)), shape)
+    if beyond:
+        return _splat(np.array(_beyond(found.low, found.high)), shape)
+    return opaque(uniform, _splat(np.array(_within(found.low, found.high)), shape))
 
 
 def _within(low: float, high: float) -> list[float]:

@@ -93,7 +93,15 @@ def _floats(
         moved = near + rng.uniform(-1.0, 1.0, size).astype(np.float32)
         kept: Array = np.where(rng.random(size[-1]) < 0.5, moved, numbers(size, found, rng))
         return kept
-    return numbers(size, found, rng)
+    return opaque(uniform, numbers(size, found, rng))
+
+
+def opaque(uniform: Uniform | None, values: Array) -> Array:
+    """Values of a colour, its opacity kept to 0 and 1."""
+    at = contracts.alpha_at(uniform) if uniform is not None else None
+    if at is not None:
+        values[at] = np.clip(values[at], 0.0, 1.0)
+    return values
 
 
 def numbers(size: tuple[int, ...], found: Contract, rng: np.random.Generator) -> Array:

@@ -15,7 +15,7 @@ from ...ir.types import kind_of, spell
 from ...targets.numpy_textures import Texture
 from ..backends import Array
 from ..evaluate import Inputs, default_texture
-from .draw import contract, fixed, whole_range
+from .draw import contract, fixed, opaque, whole_range
 from .specimen import Specimen
 
 Fails = Callable[[Inputs], Array]
@@ -99,6 +99,8 @@ def _allowed(specimen: Specimen, name: str, value: Array) -> bool:
         return bool(((value >= low) & (value <= high)).all())
     found = contract(specimen, name)
     within = ((value >= np.float32(found.low)) & (value <= np.float32(found.high))).all()
+    if not np.array_equal(opaque(specimen.subject.uniforms.get(name), value.copy()), value):
+        return False
     return bool(within) and not float(np.linalg.norm(value.astype(np.float64))) > found.length * (1.0 + 1e-6)
 
 
