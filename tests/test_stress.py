@@ -377,13 +377,23 @@ def test_a_missing_back_end_is_said() -> None:
         assert done.returncode == 1
 
 
+def _interruptible() -> None:
+    """A process of a shell in the background ignores interrupts, and so would its own."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")
 def test_an_interrupted_run_leaves_no_report(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "sssgen", "stress", "beer_lambert", "--samples", "900000000", "-b", "numpy-f32"]
-    with subprocess.Popen([*command, "-o", str(tmp_path / "report.md")], stderr=subprocess.PIPE) as process:
-        time.sleep(3.0)
+    process = subprocess.Popen(
+        [*command, "-o", str(tmp_path / "report.md")], stderr=subprocess.PIPE, preexec_fn=_interruptible
+    )
+    try:
+        time.sleep(4.0)
         process.send_signal(signal.SIGINT)
         _, said = process.communicate(timeout=30)
+    finally:
+        process.kill()
     assert process.returncode == 130 and b"interrupted" in said
     assert not list(tmp_path.iterdir())
 
