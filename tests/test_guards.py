@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
+import sssgen
 from pass_cases import module_of, text
 from sssgen import library
 from sssgen.compiler import GUARDS, transpile
@@ -217,3 +219,24 @@ def test_the_guarded_library_compiles(target: str, assert_compiles: Callable[[So
             assert_compiles(source)
             count += 1
     assert count >= len(NAMES) and errors([]) == []
+
+
+def test_what_the_lighting_relies_on_is_kept_where_it_is_made(tmp_path: Path) -> None:
+    """A surface technique may give any roughness; the lighting takes it to be 0 to 1."""
+    (tmp_path / "rough.sss").write_text(
+        "/**\n * A rough surface.\n * role: surface\n */\n"
+        "void rough(uv_position uv, out vec3 albedo, out float roughness)\n"
+        "{\n    albedo = vec3(1.0);\n    roughness = 2.0 * uv.x;\n}\n"
+    )
+    (tmp_path / "shade.sss").write_text(
+        "/**\n * Light.\n * role: lighting\n */\n"
+        "vec3 shade(world_direction N, world_direction L, vec3 albedo, float roughness, vec3 light_color)\n"
+        "{\n    return albedo * sqrt(1.0 - roughness) * max(dot(N, L), 0.0) * light_color;\n}\n"
+    )
+    path = tmp_path / "nat.toml"
+    path.write_text(
+        '[material]\nname = "nat"\n\n[surface]\ntechnique = "rough.sss"\n\n[lighting]\ntechnique = "shade.sss"\n'
+    )
+    text = sssgen.compile(path, "glsl-330").files["nat.glsl-330.frag"]
+    assert "roughness = clamp(2.0 * uv.x, 0.0, 1.0);" in text
+    assert "sqrt(1.0 - roughness)" in text
