@@ -48,12 +48,11 @@ def guard(
         return Guarded(_without_assumptions(module), [], [])
     found = analyse(module, roots, format, chained)
     chosen = [site for site in found.sites if mode == "all" or not site.proven]
-    poisoned = [site for site in chosen if at is not None and at(site) == "poison"]
+    poisoned = {id(site) for site in chosen if at is not None and at(site) == "poison"}
     chosen = [site for site in chosen if at is None or at(site) != "drop"]
     if not chosen:
         return Guarded(_without_assumptions(module), found.sites, [])
-    guarder = _Guarder(module, found, chosen, source, polyfill, format)
-    guarder.poisoned = {id(site) for site in poisoned}
+    guarder = _Guarder(module, found, chosen, poisoned, source, polyfill, format)
     return Guarded(guarder.run(), found.sites, chosen)
 
 
@@ -66,11 +65,11 @@ def _without_assumptions(module: ir.Module) -> ir.Module:
 
 class _Guarder:
     def __init__(
-        self, module: ir.Module, found: Findings, chosen: list[Site], source: Source,
+        self, module: ir.Module, found: Findings, chosen: list[Site], poisoned: set[int], source: Source,
         polyfill: Polyfill, format: Format,
     ) -> None:  # fmt: skip
         self.module, self.found, self.format = module, found, format
-        self.source, self.polyfill = source, polyfill
+        self.poisoned, self.source, self.polyfill = poisoned, source, polyfill
         self.sites: dict[int, list[Site]] = {}
         for site in chosen:
             self.sites.setdefault(id(site.node), []).append(site)
@@ -78,7 +77,6 @@ class _Guarder:
         self.helpers: dict[str, ir.Function] = {}
         self.safe: dict[str, ir.Function] = {}
         """A polyfill's key → the function with its divisions guarded."""
-        self.poisoned: set[int] = set()
 
     def run(self) -> ir.Module:
         functions = [
@@ -185,7 +183,7 @@ class _Guarder:
         def change(part: ir.Expr) -> ir.Expr:
             if not isinstance(part, ir.Binary) or part.op != "/":
                 return part
-            site = Site(part, "/", "", False, DIVISION, ())
+            site = Site(part, "/", False, DIVISION, ())
             return self.apply(part, site)
 
         made = self.safe.get(function.key)

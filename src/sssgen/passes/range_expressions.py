@@ -168,12 +168,7 @@ class Expressions(Builtins):
                 part = part.met(Range(-INF, slack))
             parts.append(part)
             numbers.append(self.numbers.of("/", m, n))
-        divisor = right.parts[0]
-        for part in right.parts[1:]:
-            divisor = divisor.joined(part)
-        dividend = left.parts[0]
-        for part in left.parts[1:]:
-            dividend = dividend.joined(part)
+        dividend, divisor = hull_of(left.parts), hull_of(right.parts)
         guard = DIVISION if not counts else COUNT if divisor.low >= 0.0 else SIGNED_COUNT
         self.note(node, "/", proven, guard, (dividend, divisor))
         return self.computed(node, parts, numbers)

@@ -26,10 +26,9 @@ class Loops(Expressions):
     """The loops' part of the analysis."""
 
     def loop(self, stmt: ir.For | ir.While) -> State | None:
-        is_for = isinstance(stmt, ir.For)
         state: State | None = self.state
-        if is_for and stmt.init is not None:  # type: ignore[union-attr]  # it is a For
-            state = self.block((stmt.init,), state)  # type: ignore[union-attr]  # it is a For
+        if isinstance(stmt, ir.For) and stmt.init is not None:
+            state = self.block((stmt.init,), state)
         assert state is not None
         trips = self.trips(stmt)
         ways: list[State | None] = []
@@ -97,8 +96,8 @@ class Loops(Expressions):
                 ])
                 for name in ranges
             }  # fmt: skip
-        kinds = {name: entry.env[name].parts for name in ranges}
-        ranges = {name: tuple([self.everything(part) for part in parts]) for name, parts in kinds.items()}
+        anything = Range(-self.format.largest, self.format.largest)
+        ranges = {name: (anything,) * len(parts) for name, parts in ranges.items()}
         loop, _, left = self.round(stmt, self.head(entry, ranges, numbers), trips + 1.0)
         return [left, *loop.broken]
 
@@ -155,10 +154,6 @@ class Loops(Expressions):
         gap = old.gap if new.gap >= old.gap and low != 0.0 and high != 0.0 else 0.0
         return Range(low, high, gap)
 
-    def everything(self, part: Range) -> Range:
-        del part
-        return Range(-self.format.largest, self.format.largest)
-
     def add(self, name: str, stmt: ir.Assign, value: Value) -> None:
         """Notes what a statement adds to a variable, for every loop around it."""
         parts = [-part for part in value.parts] if stmt.op == "-" else list(value.parts)
@@ -171,15 +166,21 @@ class Loops(Expressions):
             times *= loop.trips
 
     def written(self, block: ir.Block) -> set[str]:
-        found = {v.name for s in statements(block) if isinstance(s, ir.Assign) and (v := root(s.target)) is not None}
+        found: set[str] = set()
         for stmt in statements(block):
-            for expr in calls_in(stmt):
-                params = self.functions[expr.function].params
-                for param, arg in zip(params, expr.args, strict=True):
-                    variable = root(arg) if param.direction != "in" else None
-                    if variable is not None:
-                        found.add(variable.name)
+            if isinstance(stmt, ir.Assign) and (variable := root(stmt.target)) is not None:
+                found.add(variable.name)
+            found |= self.written_by_calls(stmt)
         return found
+
+    def written_by_calls(self, stmt: ir.Stmt) -> set[str]:
+        """The variables that a statement's calls write through out parameters."""
+        return {
+            variable.name
+            for call in calls_in(stmt)
+            for param, arg in zip(self.functions[call.function].params, call.args, strict=True)
+            if param.direction != "in" and (variable := root(arg)) is not None
+        }
 
     def sum_kind(self, name: str, block: ir.Block) -> str:
         """The kind of a variable that a block only adds to; '' for any other."""
@@ -192,12 +193,8 @@ class Loops(Expressions):
                     if not plain:
                         return ""
                     kind = kind_of(variable.type)
-            for call in calls_in(stmt):
-                params = self.functions[call.function].params
-                for param, arg in zip(params, call.args, strict=True):
-                    variable = root(arg) if param.direction != "in" else None
-                    if variable is not None and variable.name == name:
-                        return ""
+            if name in self.written_by_calls(stmt):
+                return ""
         return kind
 
     def trips(self, stmt: ir.For | ir.While) -> float:

@@ -132,7 +132,7 @@ class Known:
         self, node: ir.Expr, what: str, proven: bool, guard: Any, args: tuple[Range, ...],
         limits: tuple[float, float] = (0.0, 0.0),
     ) -> None:  # fmt: skip
-        site = Site(node, what, self.frames[-1].function.key if self.frames else "", proven, guard, args, limits)
+        site = Site(node, what, proven, guard, args, limits)
         known = self.sites.get((id(node), what))
         self.sites[id(node), what] = site if known is None else known.joined(site)
 
@@ -189,7 +189,8 @@ class Known:
                 op = {"<": ">=", ">": "<=", "<=": ">", ">=": "<", "==": "!=", "!=": "=="}[op]
             facts.compare(self.numbers, (left, x), op, (right, y), whole)
 
-    # What the others bring
+    # What the others bring: `expr` is Expressions', `call` and `block` are the whole analysis's. They call each other,
+    # and these say so to the type checker.
 
     def expr(self, node: ir.Expr) -> Value:
         """The value of an expression."""

@@ -34,8 +34,6 @@ class Site(NamedTuple):
     node: ir.Expr
     what: str
     """The operator or builtin, or `overflow`, `texel`, a quantity's name, `int`, `index`."""
-    function: str
-    """The key of the function that it stands in."""
     proven: bool
     guard: Guard
     args: tuple[Range, ...]
