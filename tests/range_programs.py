@@ -246,7 +246,7 @@ def _lane(value: Value) -> Any:
 
 def _back(array: Any, type_: Any) -> Value:
     if isinstance(type_, Matrix | Array):
-        raise NotImplementedError
+        raise NotImplementedError  # the drawn programs hand no matrix and no array to a function of the runtime
     kind: Callable[[Any], Value] = {"float": float, "bool": bool}.get(kind_of(type_), int)
     numbers = np.asarray(array).reshape(-1)
     found = [kind(number) for number in numbers]

@@ -228,7 +228,7 @@ def test_an_adapter_without_halves_is_said(backend: Get, monkeypatch: pytest.Mon
     class Without:
         def __init__(self, gpu: object) -> None:
             self.features: set[str] = set()
-            self.limits = gpu.limits  # type: ignore[attr-defined]
+            self.limits = gpu.limits  # type: ignore[attr-defined]  # an adapter; wgpu is not imported here
 
     gpu = backends.get("webgpu")
     assert isinstance(gpu, WebGPU)

@@ -107,8 +107,9 @@ def test_the_table_is_whole() -> None:
 
 def test_dangerous_row_meshes(tmp_path: Path) -> None:
     """An open box: below 0 inside, above 0 outside. What holds no triangle is refused by name."""
-    pytest.importorskip("igl")
-    trimesh = pytest.importorskip("trimesh")
+    reason = "a mesh's distance needs libigl and trimesh: pip install 'sssgen[render]'"
+    pytest.importorskip("igl", reason=reason)
+    trimesh = pytest.importorskip("trimesh", reason=reason)
     from sssgen.diagnostics import SssgenError
     from sssgen.harness.scenes.mesh import Mesh
 

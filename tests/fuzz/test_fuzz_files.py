@@ -91,7 +91,7 @@ def test_many_times_the_same(tmp_path: Path) -> None:
 def test_cycles(name: str, tmp_path: Path) -> None:
     if "loop" in name:
         if os.name != "posix":
-            pytest.skip("links need rights here")
+            pytest.skip("a symbolic link needs an administrator's rights on Windows")
         (tmp_path / "loop").symlink_to(tmp_path)
     (tmp_path / "a.sss").write_text(f'#include "{name}"\n', encoding="utf-8")
     (tmp_path / "b.sss").write_text('#include "a.sss"\n', encoding="utf-8")

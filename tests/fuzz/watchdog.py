@@ -11,7 +11,7 @@ from types import FrameType
 try:
     import resource
 except ImportError:  # Windows
-    resource = None  # type: ignore[assignment]
+    resource = None  # type: ignore[assignment]  # a module's name holds None
 
 SECONDS = 10
 """How long one input may take: ten times what the slowest takes on a machine that does nothing else."""
