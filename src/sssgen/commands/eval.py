@@ -49,29 +49,19 @@ def _sampled(chosen: Any, count: int, seed: int) -> dict[str, Any]:
 
 def _backends(given: str, precision: str | None) -> list[str]:
     """The back ends that are meant; the oracle comes first."""
-    from ..harness.backends import HALF, NAMES, chosen
+    from ..harness.backends import HALF, NAMES, chosen, in_half
 
     names = list(NAMES) if given == "all" else chosen(given)
     if precision is None:
         return names
     if precision == "f16":
-        return list(HALF.values()) if given == "all" else _in_half(names)
+        return list(HALF.values()) if given == "all" else in_half(names)
     wanted = {"f64": "numpy", "f32": "numpy-f32"}[precision]
     if "numpy" in names:
         return [wanted if name == "numpy" else name for name in names if name not in ("numpy-f32", *HALF.values())]
     if precision == "f64" or not set(HALF.values()).isdisjoint(names):
         raise failure(f"{names[0]} computes in its own precision, not in {precision}", "--backend numpy")
     return names
-
-
-def _in_half(names: list[str]) -> list[str]:
-    """What those back ends are called in half precision. Raises SssgenError for one that has none."""
-    from ..harness.backends import HALF
-
-    for name in names:
-        if name not in HALF and name not in HALF.values():
-            raise failure(f"{name} does not compute in half precision", f"--backend {' or '.join(HALF)}")
-    return list(dict.fromkeys(HALF.get(name, name) for name in names))
 
 
 def _one(subject: Any, fit: Any, name: str, as_json: bool, guards: str) -> int:

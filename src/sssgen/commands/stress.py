@@ -63,7 +63,7 @@ def _check_rows(rows: Sequence[str], named: Sequence[Specimen]) -> None:
 
 def _backends(given: str, half: bool) -> list[str]:
     """The back ends that are meant. Raises SssgenError for unknown ones, and ones of the other precision."""
-    from ..harness.backends import HALF, NAMES, chosen
+    from ..harness.backends import HALF, NAMES, chosen, in_half
 
     halves = set(HALF.values())
     names = [name for name in NAMES if name != "numpy" and name not in halves] if given == "all" else chosen(given)
@@ -72,12 +72,7 @@ def _backends(given: str, half: bool) -> list[str]:
         if wrong:
             raise failure(f"{wrong[0]} computes in half precision", "--precision f16 --backend numpy,webgpu")
         return names
-    if given == "all":
-        return list(HALF.values())
-    for name in names:
-        if name not in HALF and name not in halves:
-            raise failure(f"{name} does not compute in half precision", f"--backend {' or '.join(HALF)}")
-    return list(dict.fromkeys(HALF.get(name, name) for name in names))
+    return list(HALF.values()) if given == "all" else in_half(names)
 
 
 def _stressed(chosen: list[Specimen], names: list[str], settings: Settings) -> Report:

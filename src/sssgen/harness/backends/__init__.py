@@ -17,7 +17,7 @@ from .drawing import DrawingBackend
 
 __all__ = [
     "HALF", "NAMES", "Array", "Backend", "Block", "Bound", "Call", "CompilerMissing", "Drawing", "DrawingBackend",
-    "Place", "Stage", "Text", "available", "chosen", "emitted", "get", "missing", "needed",
+    "Place", "Stage", "Text", "available", "chosen", "emitted", "get", "in_half", "missing", "needed",
 ]  # fmt: skip
 
 NAMES = {
@@ -55,6 +55,14 @@ def chosen(text: str) -> list[str]:
         if name not in NAMES:
             raise failure(f"unknown back end '{name}'", did_you_mean(name, NAMES) or f"choose from: {', '.join(NAMES)}")
     return names
+
+
+def in_half(names: list[str]) -> list[str]:
+    """What those back ends are called in half precision. Raises SssgenError for one that has none."""
+    for name in names:
+        if name not in HALF and name not in HALF.values():
+            raise failure(f"{name} does not compute in half precision", f"--backend {' or '.join(HALF)}")
+    return list(dict.fromkeys(HALF.get(name, name) for name in names))
 
 
 def needed(name: str) -> Backend:
