@@ -9,6 +9,7 @@ One thread a worker: a driver's context belongs to the thread that made it.
 from __future__ import annotations
 
 import contextlib
+import logging
 from collections.abc import Generator, Iterator
 from typing import Any
 
@@ -28,7 +29,7 @@ def on_cluster(tasks: list[Task], address: str) -> Generator[Ended]:
     distributed = need("distributed", extra="cluster")
     with _client(distributed, address) as client:
         futures = {client.submit(execute, one, key=f"sssgen-{one.key}"): one for one in tasks}
-        ended = distributed.as_completed(list(futures), with_results=True, raise_errors=False)
+        ended = distributed.as_completed(list(futures), loop=client.loop, with_results=True, raise_errors=False)
         for future, result in ended:
             one = futures.pop(future)
             if future.status == "cancelled":
@@ -46,6 +47,18 @@ def _told(error: Any) -> str:
 
 @contextlib.contextmanager
 def _client(distributed: Any, address: str) -> Iterator[Any]:
+    log = logging.getLogger("distributed")
+    level = log.level
+    log.setLevel(logging.CRITICAL)  # what it says of lost workers is not for those who wait for a chart
+    try:
+        with _connected(distributed, address) as client:
+            yield client
+    finally:
+        log.setLevel(level)
+
+
+@contextlib.contextmanager
+def _connected(distributed: Any, address: str) -> Iterator[Any]:
     try:
         client = distributed.Client(address, timeout=SECONDS, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:
