@@ -47,14 +47,16 @@ def _told(error: Any) -> str:
 
 @contextlib.contextmanager
 def _client(distributed: Any, address: str) -> Iterator[Any]:
-    log = logging.getLogger("distributed")
-    level = log.level
-    log.setLevel(logging.CRITICAL)  # what it says of lost workers is not for those who wait for a chart
+    logs = [logging.getLogger(name) for name in ("distributed", "distributed.client")]
+    levels = [log.level for log in logs]
+    for log in logs:
+        log.setLevel(logging.CRITICAL)  # what it says of lost workers is not for those who wait for a chart
     try:
         with _connected(distributed, address) as client:
             yield client
     finally:
-        log.setLevel(level)
+        for log, level in zip(logs, levels, strict=True):
+            log.setLevel(level)
 
 
 @contextlib.contextmanager
