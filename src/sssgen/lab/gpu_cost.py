@@ -216,7 +216,7 @@ class _Stage:
             linked = self._keep(self.context.program(vertex_shader=_SCREEN, fragment_shader=text))
         except Exception as error:
             raise refused(f"gl: {program.name}", Text(text), messages(str(error))) from None
-        textures = []
+        textures: list[Any] = []
         for name in (name for name in linked if is_loose(linked[name])):
             if name in program.textures:
                 linked[name].value = len(textures)

@@ -11,7 +11,7 @@ little to be seen beside the reading, each pixel has several, at places moved a 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -22,12 +22,13 @@ from ..diagnostics import failure
 from ..harness import probes, render, samples
 from ..harness.backends import Array
 from ..harness.scenes.camera import Camera
-from ..harness.scenes.geometry import Ball
+from ..harness.scenes.geometry import Ball, Geometry
 from ..harness.scenes.scene import Scene
 from ..harness.shell import drawing
 from ..ir.types import Sampler
 from ..material import Material, load_material
-from .gpu_cost import Program
+from ..targets.numpy_textures import Texture
+from .gpu_cost import ROUNDS, SIZE, Measured, Program, measure
 
 EYE, LIGHT = (0.0, 0.0, 1.8), (2.5, 1.0, 0.3)
 """Where the eye and the light of a single technique are: half of what is seen of a ball at the origin is lit."""
@@ -111,11 +112,11 @@ def _rays(camera: Camera, size: tuple[int, int]) -> Points:
     return _points(rays, np.zeros((height, width, 3)), np.zeros((height, width, 4)), np.stack([u, v], axis=-1))
 
 
-def _seen(geometry: object, camera: Camera, size: tuple[int, int]) -> Points | None:
+def _seen(geometry: Geometry, camera: Camera, size: tuple[int, int]) -> Points | None:
     """The rows of what is hit, one after the other, each drawn out to the whole width."""
     width, height = size
     origin, directions = camera.rays(*size)
-    hits = geometry.hits(origin, directions)  # type: ignore[attr-defined]  # every geometry has it
+    hits = geometry.hits(origin, directions)
     hit = hits.hit.reshape(height, width)
     rows = np.flatnonzero(hit.any(axis=1))
     if not len(rows):
@@ -129,7 +130,7 @@ def _seen(geometry: object, camera: Camera, size: tuple[int, int]) -> Points | N
 
 
 def _points(place: Array, normal: Array, tangent: Array, uv: Array) -> Points:
-    parts = np.concatenate([place, uv[..., :1]], axis=-1), np.concatenate([normal, uv[..., 1:]], axis=-1), tangent
+    parts = np.dstack([place, uv[..., :1]]), np.dstack([normal, uv[..., 1:]]), tangent
     return Points(*(np.ascontiguousarray(part, np.float32) for part in parts))
 
 
@@ -173,85 +174,110 @@ def of_technique(
     that is timed instead: `text` declares the uniforms that it reads. Raises SssgenError.
     """
     subject = probes.subject(name, bind)
-    title = subject.probes[0].function.partition("_shows_")[0]
-    label = title
+    label = function = subject.probes[0].function.partition("_shows_")[0]
+    renamed: dict[str, str] = {}
     if text:
-        label = f"{title} by hand"
+        label = f"{function} by hand"
     else:
         compiled = transpile(subject.module, "glsl-330", "timed", guards, subject.called, chained=subject.chained)
-        text = next(iter(compiled.files.values()))
-    uniforms = {key: one for key, one in subject.uniforms.items() if not isinstance(one.type, Sampler)}
-    declarations, calls, varyings = [], [], set[str]()
-    inputs: list[tuple[str, str, str]] = []
-    outputs = []
-    result, params = _signature(text, title)
-    for direction, type_, param in params:
-        if param in subject.uniforms:
-            whole = type_ in ("int", "uint")
-            value = f" = {type_}({uniforms[param].default[0]})" if whole else ""
-            declarations.append(f"{'const' if whole else 'uniform'} {type_} timing_{param}{value};")
-            calls.append(f"timing_{param}")
-            continue
-        given, read = _given(param, type_)
-        varyings |= set(read)
-        inputs.append((type_, param, "" if direction == "out" else f" = {given}"))
-        calls.append(param)
-        if direction != "in":
-            outputs.append((type_, param))
-    shown = [varying for varying in _VARYINGS if varying in varyings]
-    prologue = "".join(f"    {type_} {param}{given};\n" for type_, param, given in inputs)
-    call = f"{title}({', '.join(calls)})"
-    if result == "void":
-        prologue_and_call = f"{prologue}    {call};\n"
-    else:
-        prologue_and_call, outputs = f"{prologue}    {result} timing_result = {call};\n", [
-            (result, "timing_result"), *outputs,
-        ]  # fmt: skip
-    shared = "uniform vec3 timing_eye;\nuniform vec3 timing_light;\nuniform float timing_time;\n" + _declared(shown)
-    body = "\n".join([*declarations, f"{shared}void shade() {{\n{prologue_and_call}"])
-    body += f"    fragment_color = {_sum(outputs)};\n}}\n"
-    read_only = _sum((type_, param) for type_, param, given in inputs if given)
-    floor = f"{shared}void shade() {{\n{prologue}    fragment_color = {read_only};\n}}\n"
-    values = {key: np.array(one.default, np.float64) for key, one in uniforms.items()}
-    values |= {f"timing_{key}": value for key, value in values.items()}
-    values |= {"timing_eye": EYE, "timing_light": LIGHT, "timing_time": 1.5, "timing_evaluations": evaluations}
-    main, head = _main(shown), "#version 330 core\n"
-    textures = _textures(subject)
-    return Program(
-        label, f"{head}{text}{body}{main}", values, {**textures, **_bound(points)}, f"{head}{floor}{main}", evaluations
+        text, renamed = next(iter(compiled.files.values())), compiled.reflection["renames"]
+    inner = _signature(text, function, renamed)
+    shade = _shade(inner, subject)
+    values = {"timing_eye": EYE, "timing_light": LIGHT, "timing_time": 1.5, "timing_evaluations": evaluations}
+    for key, one in subject.uniforms.items():
+        if not isinstance(one.type, Sampler):
+            values |= {key: one.default, f"value_{key}": one.default}
+    head, main = "#version 330 core\n", _main(shade.varyings)
+    fragment, floor = f"{head}{text}\n{shade.text}{main}", f"{head}{shade.floor}{main}"
+    return Program(label, fragment, values, {**_textures(subject), **_bound(points)}, floor, evaluations)
+
+
+class _Input(NamedTuple):
+    """A parameter of a function: in GLSL's words, and what the technique calls it."""
+
+    direction: str
+    type: str
+    name: str
+
+
+class _Signature(NamedTuple):
+    result: str
+    function: str
+    params: list[_Input]
+
+
+class _Shade(NamedTuple):
+    """The function that shades a pixel with a technique, and the one that only reads its inputs."""
+
+    text: str
+    floor: str
+    varyings: list[str]
+
+
+def _signature(text: str, function: str, renamed: Mapping[str, str]) -> _Signature:
+    """How a function of a text is declared; `renamed` as in a reflection."""
+    shown = renamed.get(function, function)
+    match = re.search(rf"^(\w+) {shown}\(([^)]*)\)\s*\{{", text, re.MULTILINE)
+    if match is None:
+        raise failure(f"the text has no function '{function}'", "give it the technique's name")
+    known = {new: old.removeprefix(f"{function}.") for old, new in renamed.items() if old.startswith(f"{function}.")}
+    words = [param.split() for param in match[2].split(",") if param.strip()]
+    params = [_Input(word[0] if len(word) == 3 else "in", word[-2], known.get(word[-1], word[-1])) for word in words]
+    return _Signature(match[1], shown, params)
+
+
+def _shade(called: _Signature, subject: probes.Subject) -> _Shade:
+    """A call with the values of a pixel and the technique's uniforms."""
+    declared = [_declaration(one, subject) for one in called.params if one.name in subject.uniforms]
+    own = [one for one in called.params if one.name not in subject.uniforms]
+    read = {varying for one in own if one.direction != "out" for varying in _given(one)[1]}
+    varyings = [varying for varying in _VARYINGS if varying in read]
+    prologue = "".join(
+        f"    {one.type} given_{one.name}{'' if one.direction == 'out' else f' = {_given(one)[0]}'};\n" for one in own
+    )
+    args = [("value_" if one.name in subject.uniforms else "given_") + one.name for one in called.params]
+    call = f"{called.function}({', '.join(args)})"
+    outputs = [(one.type, f"given_{one.name}") for one in own if one.direction != "in"]
+    if called.result != "void":
+        call, outputs = f"{called.result} given_result = {call}", [(called.result, "given_result"), *outputs]
+    inputs = [(one.type, f"given_{one.name}") for one in own if one.direction != "out"]
+    shared = "uniform vec3 timing_eye;\nuniform vec3 timing_light;\nuniform float timing_time;\n" + _declared(varyings)
+    text = f"{''.join(declared)}{shared}void shade() {{\n{prologue}    {call};\n"
+    return _Shade(
+        f"{text}    fragment_color = {_sum(outputs)};\n}}\n",
+        f"{shared}void shade() {{\n{prologue}    fragment_color = {_sum(inputs)};\n}}\n",
+        varyings,
     )
 
 
-def _textures(subject: probes.Subject) -> dict[str, Array]:
-    found = {}
+def _declaration(one: _Input, subject: probes.Subject) -> str:
+    """A technique's uniform; a count is a constant."""
+    if one.type in ("int", "uint"):
+        return f"const {one.type} value_{one.name} = {one.type}({subject.uniforms[one.name].default[0]});\n"
+    return f"uniform {one.type} value_{one.name};\n"
+
+
+def _textures(subject: probes.Subject) -> dict[str, Texture]:
+    found: dict[str, Texture] = {}
     for key, one in subject.uniforms.items():
         if isinstance(one.type, Sampler):
             made = samples.texture(one.type.dim, np.random.default_rng(1))
-            found |= {key: made, f"timing_{key}": made}
+            found |= {key: made, f"value_{key}": made}
     return found
 
 
-def _signature(text: str, function: str) -> tuple[str, list[tuple[str, str, str]]]:
-    """What a function of a text returns, and its parameters: direction, type, name."""
-    match = re.search(rf"^(\w+) {function}\(([^)]*)\)\s*\{{", text, re.MULTILINE)
-    if match is None:
-        raise failure(f"the text has no function '{function}'", "give it the technique's name")
-    words = [param.split() for param in match[2].split(",") if param.strip()]
-    return match[1], [(word[0] if len(word) == 3 else "in", word[-2], word[-1]) for word in words]
-
-
-def _given(param: str, type_: str) -> tuple[str, Sequence[str]]:
-    name = param.removesuffix("_object")
+def _given(one: _Input) -> tuple[str, Sequence[str]]:
+    """What an input is at a pixel, and the varyings that it is made of."""
+    name = one.name.removesuffix("_object")
     if name in _GIVEN:
         return _GIVEN[name]
-    if type_ not in _AMOUNTS:
-        raise failure(f"an input of type {type_} has no values to be timed with: '{param}'")
-    return _AMOUNTS[type_], ("v_uv",)
+    if one.type not in _AMOUNTS:
+        raise failure(f"an input of type {one.type} has no values to be timed with: '{one.name}'")
+    return _AMOUNTS[one.type], ("v_uv",)
 
 
-def _sum(values: object) -> str:
-    terms = [_AS_VEC4[type_].format(name) for type_, name in values]  # type: ignore[attr-defined]
-    return " + ".join(terms) or "vec4(0.0)"
+def _sum(values: Iterable[tuple[str, str]]) -> str:
+    return " + ".join(_AS_VEC4[type_].format(name) for type_, name in values) or "vec4(0.0)"
 
 
 def _declared(varyings: Sequence[str]) -> str:
@@ -286,3 +312,29 @@ void main() {{
 
 def _bound(points: Points) -> dict[str, Array]:
     return dict(zip(_SOURCES.values(), points, strict=True))
+
+
+class Point(NamedTuple):
+    """A chain of techniques to be timed."""
+
+    name: str
+    material: Material | str
+    """A checked material, a path, or an example's name."""
+    scene: Scene
+    """Where it is shaded: its geometry, camera, lights, parameters and textures."""
+
+
+def costs(
+    points: Sequence[Point], size: tuple[int, int] = SIZE, rounds: int = ROUNDS, evaluations: int = 1
+) -> Measured:
+    """What whole materials cost: `costs(...).net(name).median` is ms of shading at every pixel of a picture.
+
+    All lights of the scene, the standard light among what is timed; reading the surface's points is not. Raises
+    SssgenError where there is no OpenGL, and for a material that does not fit its scene.
+    """
+    surfaces = {id(point.scene): surface_points(point.scene, size) for point in points}
+    return measure(
+        [of_material(one.name, one.material, one.scene, surfaces[id(one.scene)], evaluations) for one in points],
+        size,
+        rounds,
+    )

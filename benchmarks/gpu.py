@@ -1,0 +1,172 @@
+"""What emitted shaders cost on a GPU, beside the same written by hand: make bench-gpu, or python benchmarks/gpu.py.
+
+    python benchmarks/gpu.py --size 320x180 --rounds 5 --json out.json --markdown out.md
+
+First seed 0's scene as published against jelly_cubes with the same camera and glow, and how far apart their pictures
+are. Then each technique with its defaults against its formula in benchmarks/by_hand. Last the examples' materials in
+their scenes. Emitted and written by hand take turns in the same run; below 1 the emitted one is the faster.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import sssgen
+from sssgen import library
+from sssgen.harness.compare import compare
+from sssgen.harness.scenes import scene
+from sssgen.lab import gpu_cost, gpu_programs
+from sssgen.lab.gpu_cost import Measured, Program, Spread
+from sssgen.material import examples
+from sssgen.slots import needs
+
+BY_HAND = Path(__file__).parent / "by_hand"
+TIME = 1.2
+"""Where both cubes and the shadow are seen."""
+BODY = {"body_distance": "sphere", "scene_distance": "sphere", "distance_at": "distance_texture"}
+"""What the techniques' slots are bound to; by_hand has the same."""
+EVALUATIONS = 32
+"""Of a technique at each pixel: one alone is hidden behind the reading of its inputs."""
+
+
+class Table(NamedTuple):
+    title: str
+    head: list[str]
+    rows: list[list[str]]
+
+
+def published(aspect: float) -> Program:
+    """Seed 0's scene, by hand."""
+    return Program("s0 published", (BY_HAND / "s0_published.glsl").read_text(), {"time": TIME, "aspect": aspect})
+
+
+def emitted(aspect: float) -> Program:
+    """The same, as emitted: only its image is made as wide as the other."""
+    made = sssgen.compile("jelly_cubes", "glsl-330")
+    values = {one["name"]: one["default"] for one in made.reflection["uniforms"]}
+    # 0.9 of a mean that was never more than 0.38667
+    values |= {"time": [TIME], "aspect": [aspect], "glow_strength": [0.9 * 0.38667]}
+    return Program("s0 emitted", made.files["jelly_cubes.glsl-330.frag"], values)
+
+
+def hand_written() -> dict[str, str]:
+    """Technique → the text that has it by hand."""
+    texts = [path.read_text() for path in sorted(BY_HAND.glob("*.glsl"))]
+    found = {name: text for text in texts for name in re.findall(r"^\w+ (\w+)\(", text, re.MULTILINE)}
+    return {name: text for name, text in found.items() if name in library.index()}
+
+
+def techniques(points: gpu_programs.Points, evaluations: int) -> list[tuple[Program, Program]]:
+    """Each technique, as emitted and by hand."""
+    pairs = []
+    for name, text in hand_written().items():
+        technique = library.load(name)
+        bind = {slot.name: BODY[slot.name] for slot in needs(technique.module, technique.function)[1]}
+        made = [gpu_programs.of_technique(name, points, bind, evaluations, text=one) for one in ("", text)]
+        pairs.append((made[0], made[1]))
+    return pairs
+
+
+def frame(spread: Spread, software: bool) -> str:
+    """Milliseconds; a software rasteriser's are not shown."""
+    return "–" if software else f"{spread.median:.4g} ({spread.low:.4g}–{spread.high:.4g})"
+
+
+def times(spread: Spread) -> str:
+    return f"{spread.median:.2f} ({spread.low:.2f}–{spread.high:.2f})"
+
+
+def s0(size: tuple[int, int], rounds: int) -> tuple[Table, Measured, dict[str, Any]]:
+    """Seed 0's scene."""
+    pair = published(size[0] / size[1]), emitted(size[0] / size[1])
+    pictures = [gpu_cost.picture(one, size)[::-1, :, :3] for one in pair]
+    flip = compare(pictures[1], pictures[0]).flip
+    found = gpu_cost.measure(pair, size, rounds)
+    rows = [
+        [one.name, frame(found.raw(one.name), found.device.software), times(found.ratio(one.name, pair[0].name))]
+        for one in pair
+    ]
+    title = f"Seed 0's scene; FLIP between the two pictures {flip:.4f}"
+    return Table(title, ["", "ms a frame", "× published"], rows), found, {"flip": flip}
+
+
+def by_technique(size: tuple[int, int], rounds: int, evaluations: int) -> tuple[Table, Measured, dict[str, Any]]:
+    """Each technique, and the ratio to its hand-written twin."""
+    pairs = techniques(gpu_programs.ball_points(size), evaluations)
+    found = gpu_cost.measure([one for pair in pairs for one in pair], size, rounds)
+    rows, ratios = [], {}
+    for one, other in pairs:
+        ratio = found.ratio(one.name, other.name)
+        ratios[one.name] = [round(value, 4) for value in ratio]
+        cells = [frame(found.net(name), found.device.software) for name in (one.name, other.name)]
+        rows.append([one.name, *cells, times(ratio)])
+    title = (
+        f"Each technique, {evaluations} evaluations a pixel; ms of one at every pixel, less the reading of its inputs"
+    )
+    return Table(title, ["", "emitted", "by hand", "emitted / by hand"], rows), found, {"ratios": ratios}
+
+
+def by_example(size: tuple[int, int], rounds: int) -> tuple[Table, Measured, dict[str, Any]]:
+    """The examples' materials in their scenes."""
+    scenes = {name: scene.load(name) for name in examples()}
+    chosen = [gpu_programs.Point(name, one.material, one) for name, one in scenes.items()]
+    found = gpu_programs.costs(chosen, size, rounds)
+    rows = [
+        [one.name, frame(found.net(one.name), found.device.software), times(found.ratio(one.name, chosen[0].name))]
+        for one in chosen
+    ]
+    return Table("The examples' materials", ["", "ms a frame", f"× {chosen[0].name}"], rows), found, {}
+
+
+def as_markdown(table: Table) -> str:
+    lines = [f"### {table.title}", "", "| " + " | ".join(table.head) + " |", "|---|" + "---:|" * (len(table.head) - 1)]
+    return "\n".join([*lines, *("| " + " | ".join(row) + " |" for row in table.rows), ""])
+
+
+def as_text(table: Table) -> str:
+    widths = [max(len(row[at]) for row in [table.head, *table.rows]) for at in range(len(table.head))]
+    lines = [
+        "  ".join(
+            cell.rjust(width) if at else cell.ljust(width)
+            for at, (cell, width) in enumerate(zip(row, widths, strict=True))
+        )
+        for row in [table.head, *table.rows]
+    ]
+    return "\n".join([table.title, *lines, ""])
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--size", default="1920x1080", help="width and height in pixels")
+    parser.add_argument("--rounds", type=int, default=gpu_cost.ROUNDS)
+    parser.add_argument("--evaluations", type=int, default=EVALUATIONS, help="of a technique at each pixel")
+    parser.add_argument("--json", help="a file for all numbers")
+    parser.add_argument("--markdown", help="a file for the tables")
+    given = parser.parse_args()
+    width, height = (int(side) for side in given.size.split("x"))
+    size = width, height
+
+    tables, record = [], {}
+    for name, (table, found, more) in {
+        "s0": s0(size, given.rounds),
+        "techniques": by_technique(size, given.rounds, given.evaluations),
+        "examples": by_example(size, given.rounds),
+    }.items():
+        tables.append(table)
+        record[name] = {**found.record(), **more}
+        print(as_text(table), flush=True)
+    device = f"{found.device.renderer}, {found.device.version}; {width} × {height}, medians of {given.rounds} rounds"
+    told = f"{device}, with what 8 of 10 rounds lie between."
+    print(told + (" Software: ratios only." if found.device.software else ""))
+    if given.json:
+        Path(given.json).write_text(json.dumps(record, indent=1) + "\n")
+    if given.markdown:
+        Path(given.markdown).write_text("\n".join([*map(as_markdown, tables), told, ""]))
+
+
+if __name__ == "__main__":
+    main()
