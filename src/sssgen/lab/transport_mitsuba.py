@@ -7,6 +7,7 @@ the depth of paths.
 from __future__ import annotations
 
 import importlib
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,8 +24,13 @@ Array = npt.NDArray[np.float64]
 _BLOCK = 32
 """The side of a render block in pixels. It is set as Mitsuba's own choice, and so the noise, follows the threads."""
 
-_ROULETTE_DEPTH = 64
-"""From where on paths end by chance. Unbiased at any depth; late, so that few long paths weigh much."""
+_FAINT = 1e-3
+"""From which weight on paths end by chance: so late that few of those that go on weigh much."""
+
+_ROULETTE_ALBEDO = 0.95
+"""Up to which albedo. Mitsuba lets at most 95 of 100 go on, so above, those that do would grow heavier without end."""
+
+_NEVER = 2**30
 
 _FAR = 1000.0
 """How many of the body's radii a light of some width is away."""
@@ -126,7 +132,7 @@ class Renderer:
                 "integrator": {
                     "type": "volpath",
                     "max_depth": 1 + scatterings if scatterings else -1,
-                    "rr_depth": _ROULETTE_DEPTH,
+                    "rr_depth": _roulette_depth(channel.albedo),
                     "block_size": _BLOCK,
                 },
                 "sensor": {"type": "batch", "film": film, "sampler": {"type": "independent", "seed": base}, **sensors},
@@ -174,6 +180,13 @@ class Renderer:
         radiance = float(1.0 / (np.pi * np.sin(np.radians(light.radius)) ** 2))
         emitter = {"type": "area", "radiance": radiance}
         return {"type": "disk", "to_world": turn @ mi.ScalarTransform4f().scale(float(wide)), "emitter": emitter}
+
+
+def _roulette_depth(albedo: float) -> int:
+    """After how many encounters a path's weight is faint; never where roulette would do harm."""
+    if albedo > _ROULETTE_ALBEDO:
+        return _NEVER
+    return 1 + (math.ceil(math.log(_FAINT) / math.log(albedo)) if albedo > 0.0 else 0)
 
 
 def _across(direction: Array) -> Array:
