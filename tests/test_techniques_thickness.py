@@ -113,7 +113,7 @@ def test_taps_along_the_normal(name: str) -> None:
         close(technique(name, body_distance="torus")(P=p, N=n, **case), expected, atol=1e-12)
 
 
-@pytest.mark.parametrize("name", [*TAPS, "thinness_hemisphere"])
+@pytest.mark.parametrize("name", [*TAPS, "thinness_hemisphere", "thinness_traced"])
 @pytest.mark.parametrize(("body", "expected"), [(HALF_SPACE, 0.0), (VOID, 1.0), (FULL, 0.0)])
 def test_thinness_is_0_in_deep_matter_and_1_in_none(name: str, body: str, expected: float) -> None:
     """Also for fields that are no distances: each tap is bounded."""
@@ -197,6 +197,9 @@ def test_march_sums_what_is_inside() -> None:
     slanted = np.array([0.6, 0.8, 0.0])
     close(slabs(P=ORIGIN, L=slanted, steps=80), 0.8 / 0.8, atol=1e-12)
     close(slabs(P=UP * 1.2, L=-UP, steps=50), 0.8, atol=1e-12)
+    traced = technique("march_light_traced", body_distance=TWO_SLABS)
+    close(traced(P=ORIGIN, L=UP), 0.8, atol=1e-12)
+    close(traced(P=ORIGIN, L=slanted, steps=32), 0.8 / 0.8, atol=1e-2)
 
 
 WIDE = {"box_min": (-2.0, -1.0, -2.0), "box_max": (2.0, 1.0, 2.0), "half_size": (1.9, 0.3, 1.9)}
