@@ -25,6 +25,11 @@ class Cost(NamedTuple):
     fetches: int = 0
     distance_evaluations: int = 0
 
+    @property
+    def weight(self) -> int:
+        """One number: operations, with a transcendental as 8 more and a texture fetch as 16."""
+        return self.operations + 8 * self.transcendentals + 16 * self.fetches
+
     def plus(self, other: Cost, times: int = 1) -> Cost:
         return Cost(*(mine + times * theirs for mine, theirs in zip(self, other, strict=True)))
 
@@ -65,7 +70,7 @@ class _Counter:
         if isinstance(stmt, ir.Assign) and stmt.op:
             total = total.plus(Cost(components(stmt.target.type)))
         if isinstance(stmt, ir.If):
-            return total.plus(max(self.block(stmt.then), self.block(stmt.otherwise), key=_weight))
+            return total.plus(max(self.block(stmt.then), self.block(stmt.otherwise), key=lambda cost: cost.weight))
         if isinstance(stmt, ir.For):
             inner = self.block(stmt.body).plus(total)
             if stmt.step is not None:
@@ -119,6 +124,3 @@ class _Counter:
             return Cost(components(expr.type))
         return Cost()
 
-
-def _weight(cost: Cost) -> int:
-    return cost.operations + 8 * cost.transcendentals + 16 * cost.fetches

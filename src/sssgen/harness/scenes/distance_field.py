@@ -61,6 +61,8 @@ class Distance(Geometry):
 
     def distance(self, points: Array) -> Array:
         """Raises SssgenError for a function that is missing, faulty, or none of a position's distance."""
+        if not len(points):  # the emitted functions take a point or more
+            return np.zeros(0)
         found: Array = np.broadcast_to(np.asarray(self.function(points.T), np.float64), len(points))
         return found
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, field
-from typing import NamedTuple, TypeAlias
+from dataclasses import dataclass, field, fields
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -38,6 +38,10 @@ class Geometry(ABC):
     """Degrees about the world's x, then its y, then its z; counter-clockwise for who looks against the axis."""
     scale: float = field(default=1.0, kw_only=True)
     """World units in one unit of object space; above 0."""
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What a shape is, without what has been made of it: a mesh's tree and a function's code stay behind."""
+        return {one.name: getattr(self, one.name) for one in fields(self)}
 
     def to_world(self) -> Array:
         """Object space to world space, (4, 4), for column vectors."""

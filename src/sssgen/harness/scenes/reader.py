@@ -15,13 +15,16 @@ from .. import images
 from . import mesh
 from .camera import Camera
 from .distance_field import PROJECTIONS
-from .geometry import Ball, Box, Distance, Geometry, Mesh, Slab, Torus
+from .geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
 from .scene import DistanceTexture, Light, Picture, Scene
 from .table import ANY, NOT_NEGATIVE, POSITIVE, Table
 
+MEASURED = ("title", "medium", "inlay")
+"""What says of a scene what is physically there: for measuring materials, not for drawing one."""
+
 _KEYS = (
     "material", "size", "samples", "time", "background", "ambient", "exposure",
-    "geometry", "camera", "light", "parameters", "textures",
+    "geometry", "camera", "light", "parameters", "textures", *MEASURED,
 )  # fmt: skip
 _PLACE = ("position", "rotation", "scale")
 _SHAPES = {
@@ -29,10 +32,13 @@ _SHAPES = {
     "box": ("size",),
     "slab": ("width", "height", "thickness"),
     "torus": ("major", "minor"),
+    "capsule": ("radius", "length"),
+    "union": ("part", "projection"),
     "mesh": ("file",),
     "distance": ("technique", "parameters", "reach", "projection"),
 }
 MAX_LIGHTS = 4
+MAX_PARTS = 64
 MAX_SIDE = 8192
 MAX_COUNT = 2**24
 """Samples of a picture: what is known of each takes a few hundred bytes."""
@@ -74,9 +80,13 @@ class _Reader:
             self.parameters(top.content.get("parameters", {})),
             self.textures(top.content.get("textures", {}), "geometry" in top.content),
             self.document,
+            top.text("title", ""),
+            {key: top.content[key] for key in ("medium", "inlay") if key in top.content},
         )
 
     def material(self, top: Table) -> str:
+        if "material" not in top.content and ("medium" in top.content or "inlay" in top.content):
+            return ""
         if "material" not in top.content:
             self.document.error(self.document.place().key, "the scene has no material", 'add: material = "…"')
             return ""
@@ -144,17 +154,17 @@ class _Reader:
 
     # Geometry
 
-    def geometry(self, content: Any) -> Geometry | None:
+    def geometry(self, content: Any, path: Path = ("geometry",)) -> Geometry | None:
         if content is None:
             return None
         kind = content.get("kind") if isinstance(content, dict) else None
         own = _SHAPES.get(kind, ()) if isinstance(kind, str) else ()
         known = ("kind", *_PLACE, *(own or {key for keys in _SHAPES.values() for key in keys}))
-        table = Table(self.document, ("geometry",), content, known)
+        table = Table(self.document, path, content, known)
         if not isinstance(content, dict):
             return None
         if kind is None:
-            span = self.document.place("geometry").value
+            span = self.document.place(*path).value
             self.document.error(span, "the geometry has no kind", f"write kind = one of: {', '.join(_SHAPES)}")
             return None
         place: dict[str, Any] = {
@@ -177,9 +187,22 @@ class _Reader:
             if torus.minor >= torus.major:
                 table.error("minor", "'minor' must be less than 'major'", f"major is {torus.major:g}")
             return torus
+        if kind == "capsule":
+            return Capsule(table.number("radius", 0.25, POSITIVE), table.number("length", 1.0, NOT_NEGATIVE), **place)
+        if kind == "union":
+            return self.union(table, place)
         if kind == "mesh":
             return self.mesh(table, place)
         return self.distance(table, place) if kind == "distance" else None
+
+    def union(self, table: Table, place: dict[str, Any]) -> Union | None:
+        content = table.content.get("part")
+        if not isinstance(content, list) or not 1 <= len(content) <= MAX_PARTS:
+            table.error("part", f"a union has from 1 to {MAX_PARTS} parts", "write [[geometry.part]], once for each")
+            return None
+        parts = [self.geometry(one, (*table.path, "part", at)) for at, one in enumerate(content)]
+        projection = table.text("projection", "parts", ("parts", "planar"))
+        return Union(tuple(part for part in parts if part is not None), projection, **place)
 
     def mesh(self, table: Table, place: dict[str, Any]) -> Mesh | None:
         name = table.text("file", "")
@@ -189,9 +212,9 @@ class _Reader:
         try:
             mesh.check_suffix(name)
         except SssgenError as wrong:
-            self.pass_on(wrong, ("geometry", "file"))
+            self.pass_on(wrong, (*table.path, "file"))
             return None
-        return Mesh(path=self.file(("geometry", "file"), name), **place)
+        return Mesh(path=self.file((*table.path, "file"), name), **place)
 
     def distance(self, table: Table, place: dict[str, Any]) -> Distance:
         parameters = table.content.get("parameters", {})
@@ -212,7 +235,7 @@ class _Reader:
             _ = shape.function  # it is compiled here, so that its errors come with the scene's
         except SssgenError as wrong:
             named = next((key for key in parameters if f"'{key}'" in wrong.diagnostics[0].message), "")
-            self.pass_on(wrong, ("geometry", "parameters", named) if named else ("geometry", "technique"))
+            self.pass_on(wrong, (*table.path, "parameters", named) if named else (*table.path, "technique"))
         return shape
 
     # What the material takes

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import TypeAlias
+from dataclasses import dataclass, field
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -81,7 +81,7 @@ class Scene:
     """A scene, checked in itself; whether the material has these parameters and textures is not known here."""
 
     material: str
-    """An example's name, or the path of a material file"""
+    """An example's name, or the path of a material file; "" where the scene only says what is measured"""
     size: tuple[int, int]
     """Width and height in pixels"""
     samples: int
@@ -102,6 +102,9 @@ class Scene:
     document: Document
     """The text with its places, for the errors of who knows the material: note them with `document.error`, at
     `document.place("parameters", "power").value`, then raise them with `document.reporter.check()`"""
+    title: str = ""
+    measured: Mapping[str, Any] = field(default_factory=dict)
+    """What is physically there, as the tables stand in the file: `medium` and `inlay`; the lab reads them"""
 
     @property
     def places(self) -> dict[str, Span]:

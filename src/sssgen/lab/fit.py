@@ -1,0 +1,205 @@
+"""The same fair fit for every technique and baseline: its free parameters, and always a scale, by least squares.
+
+What is minimised is the charts' own error. The scale has a closed form for each choice of the others (variable
+projection: Golub and Pereyra, 1973), so only the parameters that shape the result are searched.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..harness.backends import Array
+from ..harness.extras import need
+from ..ir.types import BY_NAME, components, kind_of
+from .chain import Chain
+from .metrics import EPSILON
+from .problem import Problem
+
+LANES = 700
+"""Lanes of a training problem that are fitted to."""
+EVALUATIONS = 80
+"""The most evaluations of one search."""
+COLORS = (0.0, 1.0)
+"""Where a colour's components are searched."""
+
+
+class Free(NamedTuple):
+    """A parameter that is searched."""
+
+    name: str
+    low: float
+    high: float
+    start: tuple[float, ...]
+    logarithmic: bool
+
+    def value(self, x: Array) -> Array:
+        """The parameter's components from the search's, each 0..1."""
+        if self.logarithmic:
+            return self.low * (self.high / self.low) ** x
+        return self.low + (self.high - self.low) * x
+
+    def place(self, value: float) -> float:
+        """Where in the search, 0..1, a component stands."""
+        if self.logarithmic:
+            return float(np.log(max(value, self.low) / self.low) / np.log(self.high / self.low))
+        return (value - self.low) / (self.high - self.low)
+
+
+class Fitted(NamedTuple):
+    """A chain's parameters for a medium."""
+
+    parameters: dict[str, tuple[float, ...]]
+    """By the techniques' own names"""
+    scale: tuple[float, ...]
+    """What the chain's values are multiplied by, a channel each"""
+    matte: tuple[float, ...]
+    """What Lambert's light is multiplied by, a channel each: the albedo that goes with the chain"""
+    error: float
+    """The relative error on what was fitted to"""
+
+    def apply(self, values: Array, problem: Problem) -> Array:
+        """The picture: scaled values, and the light from the front."""
+        whole: Array = np.array(self.scale)[:, None] * values + np.array(self.matte)[:, None] * problem.lambert
+        return whole
+
+
+def fit(chains: Sequence[Chain | None], problems: Sequence[Problem]) -> Fitted:
+    """The best parameters over all problems, each with its own body's chain; without one, of the light from the front.
+
+    Raises SssgenError without SciPy. Where values are not finite they count as 1e3, so that the search leaves them.
+    """
+    thinned = [problem.thinned(LANES) for problem in problems]
+    present = [chain for chain in chains if chain is not None]
+    if not present:
+        return _solved({}, [np.zeros_like(problem.target) for problem in thinned], thinned)
+    given = {name for problem in thinned for part in problem.parts for name in part.values}
+    free = free_parameters(present[0], given, thinned[0])
+    best: Fitted | None = None
+    for start in _starts(free):
+        found = _searched(present, thinned, free, start)
+        if best is None or found.error < best.error:
+            best = found
+    assert best is not None
+    return best
+
+
+def _searched(chains: Sequence[Chain], problems: Sequence[Problem], free: Sequence[Free], start: Array) -> Fitted:
+    optimize = need("scipy.optimize", "scipy", "chart")
+
+    def residual(x: Array) -> Array:
+        named = _named(free, x)
+        values = [_finite(one.values(chain, named)) for chain, one in zip(chains, problems, strict=True)]
+        fitted = _solved({}, values, problems)
+        apart = [_apart(fitted, one, problem) for one, problem in zip(values, problems, strict=True)]
+        return np.concatenate([one.ravel() for one in apart])
+
+    x = start
+    if len(start):
+        x = optimize.least_squares(
+            residual, start, bounds=(0.0, 1.0), diff_step=1e-3, max_nfev=max(EVALUATIONS // (len(start) + 1), 8)
+        ).x
+    parameters = {
+        name: tuple(float(np.float32(one)) for one in np.atleast_1d(value)) for name, value in _named(free, x).items()
+    }
+    exact = {name: np.array(value) if len(value) > 1 else value[0] for name, value in parameters.items()}
+    values = [_finite(one.values(chain, exact)) for chain, one in zip(chains, problems, strict=True)]
+    return _solved(parameters, values, problems)
+
+
+def _apart(fitted: Fitted, values: Array, problem: Problem) -> Array:
+    """The relative error of each lane, so weighted that each problem counts alike."""
+    apart: Array = (fitted.apply(values, problem) - problem.target) / np.sqrt(problem.target**2 + EPSILON)
+    weighted: Array = apart / np.sqrt(problem.target.size)
+    return weighted
+
+
+def _solved(parameters: dict[str, tuple[float, ...]], values: Sequence[Array], problems: Sequence[Problem]) -> Fitted:
+    """The best scale of the values and of the light from the front, neither below 0: in each channel by itself."""
+    channels = len(problems[0].target)
+    together = problems[0].role == "coordinates"  # u and v have one scale
+    scale, matte, square = np.zeros(channels), np.zeros(channels), 0.0
+    for group in [range(channels)] if together else [[channel] for channel in range(channels)]:
+        columns, rights = [], []
+        for value, problem in zip(values, problems, strict=True):
+            for channel in group:
+                weight = 1.0 / np.sqrt((problem.target[channel] ** 2 + EPSILON) * problem.target.size)
+                columns.append(np.stack([value[channel] * weight, problem.lambert[channel] * weight]))
+                rights.append(problem.target[channel] * weight)
+        basis, right = np.concatenate(columns, axis=1), np.concatenate(rights)
+        best = _not_negative(basis, right)
+        for channel in group:
+            scale[channel], matte[channel] = best
+        square += float(((best @ basis - right) ** 2).sum())
+    return Fitted(parameters, tuple(map(float, scale)), tuple(map(float, matte)), np.sqrt(square / len(problems)))
+
+
+def _not_negative(basis: Array, right: Array) -> Array:
+    """The two numbers of 0 or more whose sum of basis (2, n) is nearest to right (n,)."""
+    gram, wanted = basis @ basis.T, basis @ right
+    both = np.linalg.lstsq(gram, wanted, rcond=1e-12)[0]
+    if (both >= 0.0).all():
+        return np.asarray(both)
+    alone = [wanted[k] / gram[k, k] if gram[k, k] > 0.0 else 0.0 for k in (0, 1)]
+    options = [np.array([max(alone[0], 0.0), 0.0]), np.array([0.0, max(alone[1], 0.0)])]
+    return min(options, key=lambda one: float(((one @ basis - right) ** 2).sum()))
+
+
+def _finite(values: Array) -> Array:
+    return np.where(np.isfinite(values), values, 1e3)
+
+
+def free_parameters(chain: Chain, given: set[str], problem: Problem) -> list[Free]:
+    """The parameters that shape what the chain gives: numbers that the scene does not, and that are no mere factor."""
+    found: dict[str, Free] = {}
+    for uniform in chain.uniforms:
+        name, type_ = uniform["technique_name"], BY_NAME.get(uniform["type"])
+        if name in given or f"{uniform['technique']}.{name}" in given or type_ is None or name in found:
+            continue
+        if kind_of(type_) != "float" or not (uniform["range"] or uniform["color"]):
+            continue
+        low, high = uniform["range"] or COLORS
+        default = tuple(uniform["default"])
+        if len(default) != components(type_) or is_factor(chain, uniform, problem):
+            continue
+        logarithmic = low > 0.0 and high >= 50.0 * low
+        if low == 0.0 and high >= 4.0 and uniform["unit"] in ("m", "1/m"):
+            low, logarithmic = 1e-3 * high, True  # a length of 0 is a limit, not a place to search
+        found[name] = Free(name, float(low), float(high), default, logarithmic)
+    return list(found.values())
+
+
+def is_factor(chain: Chain, uniform: Mapping[str, Any], problem: Problem) -> bool:
+    """Whether twice the parameter gives just twice the light: then it is what the scale stands for."""
+    name, default = uniform["technique_name"], np.array(uniform["default"])
+    few = problem.thinned(40)
+    with np.errstate(all="ignore"):
+        one = few.values(chain, {name: _component(0.4 * default)})
+        two = few.values(chain, {name: _component(0.8 * default)})
+        few.values(chain, {name: _component(default)})
+    same = bool(np.isfinite(one).all()) and bool(np.abs(one).max(initial=0.0) > 0.0)
+    return bool(same) and bool(np.allclose(two, 2.0 * one, rtol=1e-6, atol=1e-12))
+
+
+def _component(value: Array) -> Any:
+    return value if len(value) > 1 else value[0]
+
+
+def _named(free: Sequence[Free], x: Array) -> dict[str, Any]:
+    found, at = {}, 0
+    for one in free:
+        size = len(one.start)
+        found[one.name] = _component(one.value(x[at : at + size]))
+        at += size
+    return found
+
+
+def _starts(free: Sequence[Free]) -> list[Array]:
+    """Where searches begin: the defaults, and the middle of every range."""
+    if not free:
+        return [np.zeros(0)]
+    usual = [np.clip(one.place(value), 0.02, 0.98) for one in free for value in one.start]
+    middle = [0.5 if one.logarithmic else 0.3 for one in free for _ in one.start]
+    return [np.array(usual), np.array(middle)]

@@ -1,0 +1,216 @@
+"""How much of a line lies inside a body: exact thickness in a direction, the target of every thickness technique.
+
+Solids have closed forms, meshes exact ray casting, distance functions the roots of their sign. A concave body, or one
+with gaps, has several intervals; thickness is the sum of their lengths.
+"""
+
+from __future__ import annotations
+
+from functools import singledispatch
+from typing import Any
+
+import numpy as np
+
+from ..harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
+from ..harness.scenes.placed import Array
+
+ROOTS = 80
+"""Halvings of a bracket: past the last bit."""
+
+
+def thickness(geometry: Geometry, origins: Array, directions: Array) -> Array:
+    """The length inside the body from `origins` on along unit `directions`, (n, 3) each, in world space: (n,).
+
+    What lies behind the origin does not count. Raises SssgenError for a mesh that cannot be read.
+    """
+    starts, ways = _to_object(geometry, origins, directions)
+    parts = np.maximum(intervals(geometry, starts, ways), 0.0)
+    length: Array = geometry.scale * (parts[..., 1] - parts[..., 0]).sum(axis=1)
+    return length
+
+
+def _to_object(geometry: Geometry, origins: Array, directions: Array) -> tuple[Array, Array]:
+    inwards = geometry.to_object()
+    return origins @ inwards[:3, :3].T + inwards[:3, 3], directions @ inwards[:3, :3].T * geometry.scale
+
+
+@singledispatch
+def intervals(geometry: Geometry, origins: Array, directions: Array) -> Array:
+    """Where lines are inside the body, in object space: (n, k, 2), from and to, apart and in order.
+
+    The whole line counts, before its origin too, but for meshes and distance functions: there from the origin on. Where
+    a line has fewer than k intervals the others are empty.
+    """
+    raise NotImplementedError(type(geometry).__name__)
+
+
+def _one(enters: Array, leaves: Array) -> Array:
+    """Lines with one interval each; none where they leave before they enter."""
+    hit = enters < leaves
+    return np.stack([np.where(hit, enters, 0.0), np.where(hit, leaves, 0.0)], axis=1)[:, None]
+
+
+@intervals.register
+def _(geometry: Ball, origins: Array, directions: Array) -> Array:
+    middle = -np.einsum("nc,nc->n", origins, directions)
+    closest = origins + middle[:, None] * directions
+    half = np.sqrt(np.maximum(geometry.radius**2 - np.einsum("nc,nc->n", closest, closest), 0.0))
+    return _one(middle - half, middle + half)
+
+
+def _box(size: Array, origins: Array, directions: Array) -> Array:
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ends = (np.array([[-0.5], [0.5]])[:, None] * size - origins) / directions
+    between = np.where(np.abs(origins) <= 0.5 * size, np.inf, -np.inf)
+    along = directions == 0.0  # between a pair of faces always, or never
+    enters = np.where(along, -between, ends.min(axis=0)).max(axis=1)
+    leaves = np.where(along, between, ends.max(axis=0)).min(axis=1)
+    return _one(enters, leaves)
+
+
+@intervals.register
+def _(geometry: Box, origins: Array, directions: Array) -> Array:
+    return _box(np.array(geometry.size), origins, directions)
+
+
+@intervals.register
+def _(geometry: Slab, origins: Array, directions: Array) -> Array:
+    return _box(np.array([geometry.width, geometry.height, geometry.thickness]), origins, directions)
+
+
+@intervals.register
+def _(geometry: Capsule, origins: Array, directions: Array) -> Array:
+    return _one(*geometry.interval(origins, directions))
+
+
+@intervals.register
+def _(geometry: Torus, origins: Array, directions: Array) -> Array:
+    """Between the roots of a quartic (the eigenvalues of its companion matrix), where the middle is inside."""
+    middle = -np.einsum("nc,nc->n", origins, directions)
+    closest = origins + middle[:, None] * directions
+    y, slope = closest[:, 1], directions[:, 1]
+    square = np.einsum("nc,nc->n", closest, closest)
+    k = square + geometry.major**2 - geometry.minor**2
+    # t^4 + a t^2 + b t + c, with t from the point nearest to the centre
+    a = 2.0 * k - 4.0 * geometry.major**2 * (1.0 - slope**2)
+    b = 8.0 * geometry.major**2 * y * slope
+    c = k * k - 4.0 * geometry.major**2 * (square - y * y)
+    companion = np.zeros((len(a), 4, 4))
+    companion[:, 1, 0] = companion[:, 2, 1] = companion[:, 3, 2] = 1.0
+    companion[:, 0, 3], companion[:, 1, 3], companion[:, 2, 3] = -c, -b, -a
+    roots = np.sort(np.linalg.eigvals(companion).real, axis=1)
+    for _ in range(3):  # Newton: the real roots to the last bits; what is no root does not matter, see below
+        value = ((roots**2 + a[:, None]) * roots + b[:, None]) * roots + c[:, None]
+        slopes = (4.0 * roots**2 + 2.0 * a[:, None]) * roots + b[:, None]
+        step = np.divide(value, slopes, out=np.zeros_like(value), where=np.abs(slopes) > 1e-9)
+        roots = roots - np.clip(step, -1e-3, 1e-3)
+    roots = np.sort(roots, axis=1)
+    centres = 0.5 * (roots[:, 1:] + roots[:, :-1])
+    points = closest[:, None] + centres[..., None] * directions[:, None]
+    inside = geometry.distance(points.reshape(-1, 3)).reshape(centres.shape) < 0.0
+    ends = np.stack([roots[:, :-1], roots[:, 1:]], axis=-1) + middle[:, None, None]
+    return np.where(inside[..., None], ends, 0.0)
+
+
+@intervals.register
+def _(geometry: Union, origins: Array, directions: Array) -> Array:
+    found = []
+    for part in geometry.parts:
+        found.append(part.scale * intervals(part, *_to_object(part, origins, directions)))
+    return merged(np.concatenate(found, axis=1))
+
+
+def merged(parts: Array) -> Array:
+    """Intervals (n, k, 2) that may overlap, as intervals that do not."""
+    order = np.argsort(parts[..., 0], axis=1, kind="stable")
+    parts = np.take_along_axis(parts, order[..., None], axis=1)
+    result = np.zeros_like(parts)
+    reached = np.full(len(parts), -np.inf)
+    for k in range(parts.shape[1]):
+        low, high = np.maximum(parts[:, k, 0], reached), parts[:, k, 1]
+        more = (low < high) & (parts[:, k, 0] < parts[:, k, 1])
+        result[:, k] = np.where(more[:, None], np.stack([low, high], axis=1), 0.0)
+        reached = np.where(more, high, reached)
+    return result
+
+
+@intervals.register
+def _(geometry: Mesh, origins: Array, directions: Array) -> Array:
+    """The triangles that a ray passes: it leaves where it goes along a face's normal, and enters against it."""
+    mesh = geometry.triangles
+    size = float(np.linalg.norm(mesh.places.max(axis=0) - mesh.places.min(axis=0)))
+    found, rays, faces = mesh.rays.intersects_location(origins, directions, multiple_hits=True)
+    t = np.einsum("nc,nc->n", found - origins[rays], directions[rays])
+    side = np.sign(np.einsum("nc,nc->n", mesh.flat[faces], directions[rays]))
+    keep = (t > 1e-5 * size) & (side != 0.0)  # the surface that a ray starts from is none that it passes
+    order = np.lexsort((t[keep], rays[keep]))
+    t, rays, side = t[keep][order], rays[keep][order], side[keep][order]
+    # an edge is passed once, though both of its triangles tell of it
+    again = np.r_[False, (np.diff(rays) == 0) & (np.diff(t) < 1e-7 * size) & (side[1:] == side[:-1])]
+    t, rays, side = t[~again], rays[~again], side[~again]
+    first = np.searchsorted(rays, np.arange(len(origins)))
+    most = int(np.bincount(rays, minlength=1).max(initial=0)) + 1
+    result = np.zeros((len(origins), most, 2))
+    leaves = side > 0.0
+    before = np.r_[0.0, t[:-1]]
+    starts = np.r_[True, rays[1:] != rays[:-1]]
+    # a ray that leaves first has been inside from its origin on
+    begins = np.where(starts, 0.0, before)
+    entered = np.r_[False, side[:-1] < 0.0] | starts
+    rank = np.arange(len(rays)) - first[rays]
+    use = leaves & entered
+    result[rays[use], rank[use]] = np.stack([begins[use], t[use]], axis=1)
+    return result
+
+
+@intervals.register
+def _(geometry: Distance, origins: Array, directions: Array) -> Array:
+    """By the function's changes of sign, as `Distance` itself finds the first: bracketed by sphere tracing."""
+    shortest = 1e-4 * geometry.reach
+    nearest = -np.einsum("nc,nc->n", origins, directions)
+    closest = origins + nearest[:, None] * directions
+    half = np.sqrt(np.maximum(geometry.reach**2 - np.einsum("nc,nc->n", closest, closest), 0.0))
+    end = np.maximum(nearest + half, 0.0)
+    t = np.full(len(origins), 2.0 * shortest)  # past the surface that the ray starts from
+    value = geometry.distance(origins + t[:, None] * directions).copy()
+    crossings: list[tuple[Any, Array, Array]] = []
+    opened = np.where(value < 0.0, 0.0, np.nan)
+    going = t < end
+    while going.any():
+        rays = np.flatnonzero(going)
+        step = np.maximum(np.abs(value[rays]), shortest)
+        after = np.minimum(t[rays] + step, end[rays])
+        new = geometry.distance(origins[rays] + after[:, None] * directions[rays])
+        crossed = (new < 0.0) != (value[rays] < 0.0)
+        at = np.zeros(len(origins))
+        at[rays[crossed]] = _bisected(geometry, origins, directions, t, after[crossed], rays[crossed])
+        leaving = rays[crossed & (new >= 0.0)]
+        crossings.append((leaving, opened[leaving], at[leaving]))
+        opened[rays[crossed]] = np.where(new[crossed] < 0.0, at[rays[crossed]], np.nan)
+        t[rays], value[rays] = after, new
+        going[rays] = after < end[rays]
+    still = np.flatnonzero(np.isfinite(opened))
+    crossings.append((still, opened[still], end[still]))
+    return _gathered(crossings, len(origins))
+
+
+def _bisected(geometry: Geometry, origins: Array, directions: Array, low: Array, high: Array, rays: Array) -> Array:
+    """Where the distance changes its sign between low[rays] and high."""
+    low = low[rays].copy()
+    negative = geometry.distance(origins[rays] + low[:, None] * directions[rays]) < 0.0
+    for _ in range(ROOTS):
+        middle = 0.5 * (low + high)
+        same = (geometry.distance(origins[rays] + middle[:, None] * directions[rays]) < 0.0) == negative
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    return high
+
+
+def _gathered(crossings: list[tuple[Any, Array, Array]], count: int) -> Array:
+    rays = np.concatenate([ray for ray, _, _ in crossings]).astype(np.int64)
+    ends = np.concatenate([np.stack([low, high], axis=1) for _, low, high in crossings])
+    order = np.lexsort((ends[:, 0], rays))
+    rays, ends = rays[order], ends[order]
+    rank = np.arange(len(rays)) - np.searchsorted(rays, rays)
+    result = np.zeros((count, int(rank.max(initial=0)) + 1, 2))
+    result[rays, rank] = ends
+    return result

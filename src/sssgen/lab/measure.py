@@ -1,0 +1,138 @@
+"""One point of a chart: a candidate's parameters fitted, its error on a scene's views, and its static cost."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..compiler import compile
+from ..diagnostics import SssgenError
+from ..harness.backends import Array
+from ..passes.cost import Cost
+from . import fit, metrics, problem
+from .body import Body, body
+from .candidates import Candidate
+from .chain import Chain, material_of
+from .fit import Fitted
+from .points import points
+from .problem import Problem, Seen
+from .situation import Situation
+
+COST_TARGET = "glsl-330"
+"""The target whose text static cost is counted on."""
+
+
+class View(NamedTuple):
+    """A situation with its references, and what the chart calls it."""
+
+    name: str
+    situation: Situation
+    seen: tuple[Seen, ...] = ()
+
+
+def problem_of(role: str, view: View, summed: bool = True) -> Problem | None:
+    """What a role is asked for on a view; None where the view does not ask."""
+    if role == "coordinates":
+        return problem.of_coordinates(view.situation)
+    if role == "thickness":
+        return problem.of_thickness(view.situation)
+    if role == "translucency":
+        return problem.of_light(view.situation, view.seen)
+    return problem.of_material(view.situation, view.seen, summed)
+
+
+def fitted(candidate: Candidate, training: Sequence[View]) -> Fitted:
+    """The candidate's parameters over the training views, light by light. Raises SssgenError."""
+    asked = [found for view in training if (found := problem_of(candidate.role, view, summed=False)) is not None]
+    chains: list[Chain | None] = []
+    with tempfile.TemporaryDirectory() as folder:
+        for view in training:
+            chains.append(chain_of(candidate, body(view.situation.geometry), folder))
+    return fit.fit(chains, asked)
+
+
+def chain_of(candidate: Candidate, of: Body, folder: str) -> Chain | None:
+    """The candidate's chain for a body, compiled; None where nothing is left of it. Raises SssgenError."""
+    if not candidate.techniques:
+        return None
+    for name, text in of.files.items():
+        with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
+            file.write(text)
+    return Chain(material_of(candidate.stages(of), folder))
+
+
+def measured(candidate: Candidate, found: Fitted, views: Sequence[View]) -> dict[str, Any]:
+    """The candidate's error over views of one scene, with the parameters fitted, as a point of a chart's record.
+
+    A chain that gives NaN or infinity anywhere has `failed`, and no error. Raises SssgenError.
+    """
+    asked = [(view, one) for view in views if (one := problem_of(candidate.role, view)) is not None]
+    with tempfile.TemporaryDirectory() as folder:
+        chain = chain_of(candidate, body(views[0].situation.geometry), folder)
+        given = [_values(chain, found, one) for _, one in asked]
+        cost = static_cost(chain)
+    bad = sum(int((~np.isfinite(values)).any(axis=0).sum()) for values in given)
+    lanes = sum(values.shape[1] for values in given)
+    pictures = [found.apply(np.nan_to_num(values), one) for values, (_, one) in zip(given, asked, strict=True)]
+    error = metrics.compare(
+        np.concatenate(pictures, axis=1),
+        np.concatenate([one.target for _, one in asked], axis=1),
+        np.concatenate([one.noise for _, one in asked], axis=1),
+    )
+    each = {
+        view.name: metrics.compare(picture, one.target, one.noise)
+        for picture, (view, one) in zip(pictures, asked, strict=True)
+    }
+    if candidate.role == "material":
+        flips = [
+            metrics.flip(points(view.situation).picture(picture), points(view.situation).picture(one.target))
+            for picture, (view, one) in zip(pictures, asked, strict=True)
+        ]
+        error["flip"] = float(np.mean(flips))
+    return {
+        "role": candidate.role, "name": candidate.name, "label": candidate.label, "baseline": candidate.baseline,
+        "settings": dict(candidate.settings), "chain": list(candidate.techniques),
+        "parameters": {name: list(value) for name, value in found.parameters.items()},
+        "scale": list(found.scale), "matte": list(found.matte), "training_error": found.error,
+        "cost": {"value": float(cost.weight), **cost._asdict(), "gpu_ms": None},
+        "error": error, "views": {name: {key: one[key] for key in ("value", "low", "high")} for name, one in each.items()},
+        "failed": f"{bad} of {lanes} points are not finite" if bad else "",
+    }  # fmt: skip
+
+
+def _values(chain: Chain | None, found: Fitted, asked: Problem) -> Array:
+    if chain is None:
+        return np.zeros_like(asked.target)
+    return asked.values(chain, exact(found.parameters))
+
+
+def exact(parameters: Mapping[str, Sequence[float]]) -> dict[str, Any]:
+    """Parameters as a chain takes them: numbers, and components."""
+    return {name: np.array(value) if len(value) > 1 else value[0] for name, value in parameters.items()}
+
+
+def static_cost(chain: Chain | None) -> Cost:
+    """What one evaluation of a chain does for one light, over what the empty chain does."""
+    if chain is None:
+        return Cost()
+    entries = compile(chain.material, COST_TARGET, "functions").reflection["entries"]
+    total = Cost()
+    for kind in ("surface", "translucency"):
+        if kind in entries:
+            total = total.plus(Cost(**entries[kind]["cost"]))
+    return total
+
+
+@contextmanager
+def told(what: str) -> Iterator[None]:
+    """Errors say which candidate they are of."""
+    try:
+        yield
+    except SssgenError as error:
+        for one in error.diagnostics:
+            raise SssgenError([one._replace(message=f"{what}: {one.message}")]) from None
