@@ -3,7 +3,8 @@
 # make gallery  the example scenes' pictures, and docs/gallery.md
 # make stability  what fails in the published techniques and holds in ours: docs/stability.md
 # make fuzz   random programs and files for FUZZ_MINUTES (10)
-# make bench  the benchmarks   make setup  what the others need, done once: .venv, system packages, compilers
+# make bench  the benchmarks   make bench-gpu  what shaders cost on this GPU, emitted and by hand
+# make setup  what the others need, done once: .venv, system packages, compilers
 
 PYTHON := $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
@@ -17,7 +18,7 @@ MATERIALS := $(foreach folder,$(wildcard examples/*),$(wildcard $(folder)/$(notd
 
 export PYTHONUTF8 := 1
 .DELETE_ON_ERROR:
-.PHONY: setup demo test test-long fuzz lint bench gallery stability clean
+.PHONY: setup demo test test-long fuzz lint bench bench-gpu gallery stability clean
 
 setup: .venv/done build/node/done
 
@@ -44,6 +45,9 @@ lint: setup
 
 bench: setup
 	for file in $(wildcard benchmarks/bench_*.py); do $(BIN)/python $$file || exit 1; done
+
+bench-gpu: setup
+	$(BIN)/python benchmarks/gpu.py
 
 gallery: setup
 	$(BIN)/python docs/gallery.py

@@ -22,10 +22,12 @@ uniform float distance_range;
 uniform float object_scale;
 
 const int TAPS = 29;
+const int TRACED_TAPS = 4;
 const int HASHED_TAPS = 6;
 const int RAYS = 24;
 const int RAY_STEPS = 16;
 const int LIGHT_MARCH = 32;
+const int TRACED_STEPS = 16;
 const int VIEW_STEPS = 8;
 const int LIGHT_STEPS = 8;
 
@@ -80,6 +82,22 @@ float thinness_attenuated(vec3 P, vec3 N) {
         weight *= decay;
     }
     return total / most;
+}
+
+float thinness_traced(vec3 P, vec3 N) {
+    float d = reach;
+    float f = clamp(d + body(P - N * d), 0.0, 2.0 * d);
+    float way = 0.5 * f;
+    float area = 0.0;
+    for (int i = 1; i < TRACED_TAPS && f > 0.004 * reach && f < 2.0 * d; i++) {
+        float h = i + 1 < TRACED_TAPS ? 0.5 * way : way;
+        float next = clamp(d - h + body(P - N * (d - h)), 0.0, min(f, 2.0 * (d - h)));
+        d -= h;
+        area += h * (f + next);
+        way = min(h * next / max(f - next, 1.0e-6), d);
+        f = next;
+    }
+    return 0.5 * (area + way * f) / (reach * reach);
 }
 
 uint scrambled(uint x) {
@@ -144,6 +162,28 @@ float march_light(vec3 P, vec3 L) {
         before = after;
     }
     return inside * h;
+}
+
+float march_light_traced(vec3 P, vec3 L) {
+    float t = 0.0;
+    float inside = 0.0;
+    float before = body(P);
+    for (int i = 0; i < TRACED_STEPS && t + max(before, 0.0) < reach; i++) {
+        float left = reach - t;
+        float least = left * float(2 * i + 1) / float((TRACED_STEPS + i) * (TRACED_STEPS - i));
+        float h = min(max(abs(before), least), left);
+        float after = body(P + L * (t + h));
+        if (before * after < 0.0) {
+            float first = clamp(0.5 * (h + abs(before) - abs(after)), 0.0, h);
+            float between = body(P + L * (t + first));
+            inside += first * inside_part(before, between) + (h - first) * inside_part(between, after);
+        } else {
+            inside += h * inside_part(before, after);
+        }
+        t += h;
+        before = after;
+    }
+    return inside;
 }
 
 // Everything in the box's own coordinates, 0 to 1.

@@ -10,6 +10,7 @@ little to be seen beside the reading, each pixel has several, at places moved a 
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
@@ -32,6 +33,9 @@ from .gpu_cost import ROUNDS, SIZE, Measured, Program, measure
 
 EYE, LIGHT = (0.0, 0.0, 1.8), (2.5, 1.0, 0.3)
 """Where the eye and the light of a single technique are: half of what is seen of a ball at the origin is lit."""
+
+MOST_RAYS = 500_000
+"""Cast on the CPU for one picture."""
 
 
 class Points(NamedTuple):
@@ -95,7 +99,8 @@ def ball_points(size: tuple[int, int]) -> Points:
 def surface_points(scene: Scene, size: tuple[int, int]) -> Points:
     """The points of a scene's surface, those that its camera sees stretched until they fill the picture.
 
-    Of a scene without geometry, the rays. Raises SssgenError where the camera sees nothing.
+    A large picture has several smaller ones side by side, so that the CPU need not cast millions of rays. Of a scene
+    without geometry, the rays. Raises SssgenError where the camera sees nothing.
     """
     if scene.geometry is None:
         return _rays(scene.camera, size)
@@ -109,13 +114,14 @@ def _rays(camera: Camera, size: tuple[int, int]) -> Points:
     width, height = size
     v, u = (np.mgrid[0:height, 0:width] + 0.5) / np.array([height, width])[:, None, None]
     rays = camera.rays(*size)[1].reshape(height, width, 3)
-    return _points(rays, np.zeros((height, width, 3)), np.zeros((height, width, 4)), np.stack([u, v], axis=-1))
+    return _points(rays, np.zeros((height, width, 3)), np.zeros((height, width, 4)), np.dstack([u, v]))
 
 
 def _seen(geometry: Geometry, camera: Camera, size: tuple[int, int]) -> Points | None:
     """The rows of what is hit, one after the other, each drawn out to the whole width."""
-    width, height = size
-    origin, directions = camera.rays(*size)
+    tiles = math.ceil(math.sqrt(size[0] * size[1] / MOST_RAYS))
+    width, height = (math.ceil(side / tiles) for side in size)
+    origin, directions = camera.rays(width, height)
     hits = geometry.hits(origin, directions)
     hit = hits.hit.reshape(height, width)
     rows = np.flatnonzero(hit.any(axis=1))
@@ -126,6 +132,7 @@ def _seen(geometry: Geometry, camera: Camera, size: tuple[int, int]) -> Points |
         row = rows[y * len(rows) // height]
         columns = np.flatnonzero(hit[row])
         index[y] = row * width + columns[np.arange(width) * len(columns) // width]
+    index = np.tile(index, (tiles, tiles))[: size[1], : size[0]]
     return _points(hits.position[index], hits.normal[index], hits.tangent[index], hits.uv[index])
 
 
