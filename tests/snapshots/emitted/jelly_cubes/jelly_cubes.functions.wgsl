@@ -3,11 +3,13 @@
 // Made by sssgen for WGSL (WebGPU). Change the material and emit it again rather than this file.
 
 const MAX_STEPS: i32 = 200;
-const CUBE_HEIGHT: f32 = 0.48;
 const CUBE_SPACING: f32 = 1.45;
 const COS_45: f32 = 0.70710677;
 const HALF_SIZE: f32 = 0.5;
+const CUBE_HEIGHT: f32 = 0.48;
 const HIT_TOLERANCE: f32 = 0.001;
+const NOTHING: f32 = 0.004;
+const LEVEL: f32 = 1.0e-6;
 
 fn mod_(x: vec3f, y: f32) -> vec3f {
     return x - y * floor(x / y);
@@ -43,9 +45,9 @@ fn turned_cube(p: vec3f) -> f32 {
 
 // The two jelly cubes of seed 0, without the floor: the body that light shines through.
 fn jelly_cubes(p: vec3f) -> f32 {
-    let left = p - vec3f(0.0, CUBE_HEIGHT, 0.0);
-    let right = p - vec3f(CUBE_SPACING, CUBE_HEIGHT, 0.0);
-    return min(turned_cube(left), turned_cube(right));
+    // each is the other's mirror image in the plane between them, so the nearer one is all there is to ask
+    let middle = 0.5 * CUBE_SPACING;
+    return turned_cube(vec3f(abs(p.x - middle) - middle, p.y - CUBE_HEIGHT, p.z));
 }
 
 // The signed distance to the ground, y = 0.
@@ -91,16 +93,24 @@ fn raymarch(ray_origin: vec3f, ray_direction: vec3f, P: ptr<function, vec3f>, N:
     return hit;
 }
 
-// Thinness from a distance field: how soon a line along -N comes out on the other side.
-fn thinness_uniform(P: vec3f, N: vec3f, reach: f32) -> f32 {
-    var total = 0.0;
-    var most = 0.0;
-    for (var i = 1; i <= 29; i++) {
-        let d = reach * f32(i) / 30.0;
-        total += clamp(d + jelly_cubes(P - N * d), 0.0, 2.0 * d);
-        most += 2.0 * d;
+// thinness_uniform in full, from a few taps: from the deepest one up, each halfway to where the sum would end.
+fn thinness_traced(P: vec3f, N: vec3f, reach: f32) -> f32 {
+    var depth = reach;
+    var here = clamp(depth + jelly_cubes(P - N * depth), 0.0, 2.0 * depth);
+    // how much farther up it would be 0 if it went on in a straight line
+    var way = 0.5 * here;
+    var area = 0.0;
+    // with nothing there, or nothing but emptiness, what lies farther up is known
+    for (var i = 1; i < 4 && here > NOTHING * reach && here < 2.0 * depth; i++) {
+        let stride = select(way, 0.5 * way, i + 1 < 4);
+        let next = depth - stride;
+        let there = max(min(next + jelly_cubes(P - N * next), min(here, 2.0 * next)), 0.0);
+        area += stride * (here + there);
+        depth = next;
+        way = min(there / max(here - there, LEVEL) * stride, depth);
+        here = there;
     }
-    return total / most;
+    return clamp(0.5 * (area + way * here) / (reach * reach), 0.0, 1.0);
 }
 
 // The colours of seed 0's scene: jelly cubes on a faint checker floor, through which no light comes.
@@ -133,7 +143,7 @@ fn sky_background(ray_direction: vec3f, sky_color: vec3f) -> vec3f {
 fn soft_shadow(p: vec3f, L: vec3f) -> f32 {
     var t = 0.001;
     var free = 1.0;
-    for (var i = 0; i < 25 && free > 0.0; i++) {
+    for (var i = 0; i < 25 && free > 0.0 && t < 4.0; i++) {
         let gap = jelly_scene(p + L * t);
         free = min(free, 20.0 * gap / t);
         t += clamp(gap, 0.001, 2.0);
@@ -173,7 +183,7 @@ fn evaluate_color(uv: vec2f, time: f32, orbit_radius: f32, orbit_height: f32, lo
     let hit = raymarch(ray_origin, ray_direction, &P, &N, &V, max_distance);
     var color = sky_background(ray_direction, sky_color);
     if (hit) {
-        var thinness = thinness_uniform(P, N, reach);
+        var thinness = thinness_traced(P, N, reach);
         var albedo: vec3f;
         jelly_surface(P, &albedo, &thinness, jelly_color);
         let translucency = sky_glow(V, thinness, glow_strength, sky_color);

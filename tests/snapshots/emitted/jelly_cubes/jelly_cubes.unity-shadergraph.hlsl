@@ -9,11 +9,13 @@
 #define JELLY_CUBES_UNITY_SHADERGRAPH_INCLUDED
 
 static const int MAX_STEPS = 200;
-static const float CUBE_HEIGHT = 0.48;
 static const float CUBE_SPACING = 1.45;
 static const float COS_45 = 0.70710677;
 static const float HALF_SIZE = 0.5;
+static const float CUBE_HEIGHT = 0.48;
 static const float HIT_TOLERANCE = 0.001;
+static const float NOTHING = 0.004;
+static const float LEVEL = 1.0e-6;
 
 float3 mod_(float3 x, float y) {
     return x - y * floor(x / y);
@@ -49,9 +51,9 @@ float turned_cube(float3 p) {
 
 // The two jelly cubes of seed 0, without the floor: the body that light shines through.
 float jelly_cubes(float3 p) {
-    float3 left = p - float3(0.0, CUBE_HEIGHT, 0.0);
-    float3 right = p - float3(CUBE_SPACING, CUBE_HEIGHT, 0.0);
-    return min(turned_cube(left), turned_cube(right));
+    // each is the other's mirror image in the plane between them, so the nearer one is all there is to ask
+    float middle = 0.5 * CUBE_SPACING;
+    return turned_cube(float3(abs(p.x - middle) - middle, p.y - CUBE_HEIGHT, p.z));
 }
 
 // The signed distance to the ground, y = 0.
@@ -98,17 +100,25 @@ bool raymarch(float3 ray_origin, float3 ray_direction, out float3 P, out float3 
     return hit;
 }
 
-// Thinness from a distance field: how soon a line along -N comes out on the other side.
-float thinness_uniform(float3 P, float3 N, float reach) {
-    float total = 0.0;
-    float most = 0.0;
+// thinness_uniform in full, from a few taps: from the deepest one up, each halfway to where the sum would end.
+float thinness_traced(float3 P, float3 N, float reach) {
+    float depth = reach;
+    float here = clamp(depth + jelly_cubes(P - N * depth), 0.0, 2.0 * depth);
+    // how much farther up it would be 0 if it went on in a straight line
+    float way = 0.5 * here;
+    float area = 0.0;
+    // with nothing there, or nothing but emptiness, what lies farther up is known
     [loop]
-    for (int i = 1; i <= 29; i++) {
-        float d = reach * float(i) / 30.0;
-        total += clamp(d + jelly_cubes(P - N * d), 0.0, 2.0 * d);
-        most += 2.0 * d;
+    for (int i = 1; i < 4 && here > NOTHING * reach && here < 2.0 * depth; i++) {
+        float stride = i + 1 < 4 ? 0.5 * way : way;
+        float next = depth - stride;
+        float there = max(min(next + jelly_cubes(P - N * next), min(here, 2.0 * next)), 0.0);
+        area += stride * (here + there);
+        depth = next;
+        way = min(there / max(here - there, LEVEL) * stride, depth);
+        here = there;
     }
-    return total / most;
+    return clamp(0.5 * (area + way * here) / (reach * reach), 0.0, 1.0);
 }
 
 // The colours of seed 0's scene: jelly cubes on a faint checker floor, through which no light comes.
@@ -142,7 +152,7 @@ float soft_shadow(float3 p, float3 L) {
     float t = 0.001;
     float free = 1.0;
     [loop]
-    for (int i = 0; i < 25 && free > 0.0; i++) {
+    for (int i = 0; i < 25 && free > 0.0 && t < 4.0; i++) {
         float gap = jelly_scene(p + L * t);
         free = min(free, 20.0 * gap / t);
         t += clamp(gap, 0.001, 2.0);
@@ -177,7 +187,7 @@ float4 evaluate_color(float2 uv, float time, float orbit_radius, float orbit_hei
     bool hit = raymarch(ray_origin, ray_direction, P, N, V, max_distance);
     float3 color = sky_background(ray_direction, sky_color);
     if (hit) {
-        float thinness = thinness_uniform(P, N, reach);
+        float thinness = thinness_traced(P, N, reach);
         float3 albedo;
         jelly_surface(P, albedo, thinness, jelly_color);
         float3 translucency = sky_glow(V, thinness, glow_strength, sky_color);

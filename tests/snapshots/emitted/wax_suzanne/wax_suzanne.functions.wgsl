@@ -57,7 +57,8 @@ fn length_to_light(p: vec3f, L: vec3f, box_max: vec3f, box_min: vec3f, distance_
     let h = box_exit(p, L, box_max, box_min) / 8.0;
     var inside = 0.0;
     var before = distance_texture(p, box_max, box_min, distance_map, distance_map_sampler, distance_range);
-    for (var i = 1; i <= 8; i++) {
+    // it ends where the body is farther away than the box's side
+    for (var i = 1; i <= 8 && before < h * f32(9 - i); i++) {
         let after = distance_texture(p + L * (h * f32(i)), box_max, box_min, distance_map,
             distance_map_sampler, distance_range);
         inside += inside_part(before, after);
@@ -76,7 +77,7 @@ fn march_distance_texture(P_object: vec3f, V_object: vec3f, L_object: vec3f, box
     var last = 0.0;
     var before = distance_texture(P_object, box_max, box_min, distance_map, distance_map_sampler,
         distance_range);
-    for (var i = 1; i <= 8; i++) {
+    for (var i = 1; i <= 8 && before < length_of_view - last; i++) {
         let x = f32(i) / 8.0;
         let t = length_of_view * x * x;
         let after = distance_texture(P_object - V_object * t, box_max, box_min, distance_map,

@@ -73,7 +73,8 @@ float length_to_light(vec3 p, vec3 L) {
     float h = box_exit(p, L) / 8.0;
     float inside = 0.0;
     float before = distance_texture(p);
-    for (int i = 1; i <= 8; i++) {
+    // it ends where the body is farther away than the box's side
+    for (int i = 1; i <= 8 && before < h * float(9 - i); i++) {
         float after = distance_texture(p + L * (h * float(i)));
         inside += inside_part(before, after);
         before = after;
@@ -88,7 +89,7 @@ float march_distance_texture(vec3 P_object, vec3 V_object, vec3 L_object) {
     float way = 0.0;
     float last = 0.0;
     float before = distance_texture(P_object);
-    for (int i = 1; i <= 8; i++) {
+    for (int i = 1; i <= 8 && before < length_of_view - last; i++) {
         float x = float(i) / 8.0;
         float t = length_of_view * x * x;
         float after = distance_texture(P_object - V_object * t);

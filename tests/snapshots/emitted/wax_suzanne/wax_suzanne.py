@@ -60,10 +60,15 @@ def length_to_light(p, L):
     h = box_exit(p, L) / 8.0
     inside = 0.0
     before = distance_texture(p)
-    for i in range(1, 9):
+    # it ends where the body is farther away than the box's side
+    i = 1
+    running = (i <= 8) & (before < h * to_float(9 - i))
+    while any(running):
         after = distance_texture(p + L * (h * to_float(i)))
-        inside = inside + inside_part(before, after)
-        before = after
+        inside = select(running, inside + inside_part(before, after), inside)
+        before = select(running, after, before)
+        i = i + 1
+        running = running & ((i <= 8) & (before < h * to_float(9 - i)))
     return inside * h
 
 def march_distance_texture(P_object, V_object, L_object):
@@ -73,19 +78,23 @@ def march_distance_texture(P_object, V_object, L_object):
     way = 0.0
     last = 0.0
     before = distance_texture(P_object)
-    for i in range(1, 9):
+    i = 1
+    running = (i <= 8) & (before < length_of_view - last)
+    while any(running):
         x = to_float(i) / 8.0
         t = length_of_view * x * x
         after = distance_texture(P_object - V_object * t)
         inside = (t - last) * inside_part(before, after)
-        mask = inside > 0.0
+        mask = running & (inside > 0.0)
         # the light scatters in the middle of what is inside
         middle = select(before < after, last + 0.5 * inside, t - 0.5 * inside)
         way = select(mask, way + inside
             * (seen + 0.5 * inside + length_to_light(P_object - V_object * middle, L_object)), way)
         seen = select(mask, seen + inside, seen)
-        before = after
-        last = t
+        before = select(running, after, before)
+        last = select(running, t, last)
+        i = i + 1
+        running = running & ((i <= 8) & (before < length_of_view - last))
     mean = divide(way, seen)
     return select(seen < NEGLIGIBLE, object_scale * length_to_light(P_object, L_object), object_scale * mean)
 

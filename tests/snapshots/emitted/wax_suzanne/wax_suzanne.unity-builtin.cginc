@@ -55,8 +55,9 @@ float length_to_light(float3 p, float3 L, float3 box_max, float3 box_min, sample
     float h = box_exit(p, L, box_max, box_min) / 8.0;
     float inside = 0.0;
     float before = distance_texture(p, box_max, box_min, distance_map, distance_range);
-    [unroll]
-    for (int i = 1; i <= 8; i++) {
+    // it ends where the body is farther away than the box's side
+    [loop]
+    for (int i = 1; i <= 8 && before < h * float(9 - i); i++) {
         float after = distance_texture(p + L * (h * float(i)), box_max, box_min, distance_map,
             distance_range);
         inside += inside_part(before, after);
@@ -73,8 +74,8 @@ float march_distance_texture(float3 P_object, float3 V_object, float3 L_object, 
     float way = 0.0;
     float last = 0.0;
     float before = distance_texture(P_object, box_max, box_min, distance_map, distance_range);
-    [unroll]
-    for (int i = 1; i <= 8; i++) {
+    [loop]
+    for (int i = 1; i <= 8 && before < length_of_view - last; i++) {
         float x = float(i) / 8.0;
         float t = length_of_view * x * x;
         float after = distance_texture(P_object - V_object * t, box_max, box_min, distance_map,

@@ -86,8 +86,9 @@ Shader "sssgen/Wax Suzanne" {
             float h = box_exit(p, L) / 8.0;
             float inside = 0.0;
             float before = distance_texture(p);
-            [unroll]
-            for (int i = 1; i <= 8; i++) {
+            // it ends where the body is farther away than the box's side
+            [loop]
+            for (int i = 1; i <= 8 && before < h * float(9 - i); i++) {
                 float after = distance_texture(p + L * (h * float(i)));
                 inside += inside_part(before, after);
                 before = after;
@@ -102,8 +103,8 @@ Shader "sssgen/Wax Suzanne" {
             float way = 0.0;
             float last = 0.0;
             float before = distance_texture(P_object);
-            [unroll]
-            for (int i = 1; i <= 8; i++) {
+            [loop]
+            for (int i = 1; i <= 8 && before < length_of_view - last; i++) {
                 float x = float(i) / 8.0;
                 float t = length_of_view * x * x;
                 float after = distance_texture(P_object - V_object * t);

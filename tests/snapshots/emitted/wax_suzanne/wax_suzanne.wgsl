@@ -76,7 +76,8 @@ fn length_to_light(p: vec3f, L: vec3f) -> f32 {
     let h = box_exit(p, L) / 8.0;
     var inside = 0.0;
     var before = distance_texture(p);
-    for (var i = 1; i <= 8; i++) {
+    // it ends where the body is farther away than the box's side
+    for (var i = 1; i <= 8 && before < h * f32(9 - i); i++) {
         let after = distance_texture(p + L * (h * f32(i)));
         inside += inside_part(before, after);
         before = after;
@@ -91,7 +92,7 @@ fn march_distance_texture(P_object: vec3f, V_object: vec3f, L_object: vec3f) -> 
     var way = 0.0;
     var last = 0.0;
     var before = distance_texture(P_object);
-    for (var i = 1; i <= 8; i++) {
+    for (var i = 1; i <= 8 && before < length_of_view - last; i++) {
         let x = f32(i) / 8.0;
         let t = length_of_view * x * x;
         let after = distance_texture(P_object - V_object * t);
