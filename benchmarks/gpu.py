@@ -29,6 +29,8 @@ TIME = 1.2
 """Where both cubes and the shadow are seen."""
 BODY = {"body_distance": "sphere", "scene_distance": "sphere", "distance_at": "distance_texture"}
 """What the techniques' slots are bound to; by_hand has the same."""
+REACH = 1.5
+"""Of thinness: on the far side of the ball the taps come out again."""
 EVALUATIONS = 32
 """Of a technique at each pixel: one alone is hidden behind the reading of its inputs."""
 
@@ -66,7 +68,10 @@ def techniques(points: gpu_programs.Points, evaluations: int) -> list[tuple[Prog
     for name, text in hand_written().items():
         technique = library.load(name)
         bind = {slot.name: BODY[slot.name] for slot in needs(technique.module, technique.function)[1]}
-        made = [gpu_programs.of_technique(name, points, bind, evaluations, text=one) for one in ("", text)]
+        values = {"reach": REACH} if bind and name.startswith("thinness_") else {}
+        made = [
+            gpu_programs.of_technique(name, points, bind, evaluations, text=one, values=values) for one in ("", text)
+        ]
         pairs.append((made[0], made[1]))
     return pairs
 

@@ -120,6 +120,17 @@ def test_a_technique_is_computed() -> None:
     np.testing.assert_allclose(shown, expected["result"][:, 0], atol=2e-4)
 
 
+def test_values_of_a_technique() -> None:
+    points = gpu_programs.ball_points(SIZE)
+    ball = {"body_distance": "sphere"}
+    # a ball reads (1 - diameter / (2 reach))^2, and 0 while the taps stay in its nearer half
+    for reach, expected in ((0.9, 0.0), (2.0, 0.25)):
+        program = gpu_programs.of_technique("thinness_uniform", points, ball, values={"reach": reach, "taps": 60})
+        np.testing.assert_allclose(gpu_cost.picture(program, SIZE)[..., 0], expected, atol=0.01)
+    with pytest.raises(SssgenError, match="has no parameter 'reech'"):
+        gpu_programs.of_technique("thinness_uniform", points, ball, values={"reech": 1.0})
+
+
 def test_evaluations_add_up() -> None:
     points = gpu_programs.ball_points(SIZE)
     programs = [gpu_programs.of_technique("wrap_lighting", points, evaluations=count) for count in (1, 8)]

@@ -14,12 +14,12 @@ import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..compiler import compile, transpile
-from ..diagnostics import failure
+from ..diagnostics import did_you_mean, failure
 from ..harness import probes, render, samples
 from ..harness.backends import Array
 from ..harness.scenes.camera import Camera
@@ -173,12 +173,13 @@ def of_technique(
     evaluations: int = 1,
     guards: str = "auto",
     text: str = "",
+    values: Mapping[str, Any] | None = None,
 ) -> Program:
     """One technique (as `sssgen eval` takes it, with functions bound to its slots) at points of a surface.
 
-    Its uniforms have their defaults; whole numbers among them, which are counts, are constants, as materials fix them.
-    Textures are those of `samples`. With `text`, GLSL that has a function of the technique's name with its inputs,
-    that is timed instead: `text` declares the uniforms that it reads. Raises SssgenError.
+    Its uniforms have their defaults, or what `values` says; whole numbers among them, which are counts, are constants,
+    as materials fix them. Textures are those of `samples`. With `text`, GLSL that has a function of the technique's
+    name with its inputs, that is timed instead: `text` declares the uniforms that it reads. Raises SssgenError.
     """
     subject = probes.subject(name, bind)
     label = function = subject.probes[0].function.partition("_shows_")[0]
@@ -188,15 +189,19 @@ def of_technique(
     else:
         compiled = transpile(subject.module, "glsl-330", "timed", guards, subject.called, chained=subject.chained)
         text, renamed = next(iter(compiled.files.values())), compiled.reflection["renames"]
-    inner = _signature(text, function, renamed)
-    shade = _shade(inner, subject)
-    values = {"timing_eye": EYE, "timing_light": LIGHT, "timing_time": 1.5, "timing_evaluations": evaluations}
-    for key, one in subject.uniforms.items():
-        if not isinstance(one.type, Sampler):
-            values |= {key: one.default, f"value_{key}": one.default}
+    known = {key: one.default for key, one in subject.uniforms.items() if not isinstance(one.type, Sampler)}
+    for key in values or {}:
+        if key not in known:
+            raise failure(
+                f"{function} has no parameter '{key}'", did_you_mean(key, known) or f"it has: {', '.join(known)}"
+            )
+    numbers: dict[str, Any] = {**known, **(values or {})}
+    shade = _shade(_signature(text, function, renamed), subject, numbers)
+    bound = {**numbers, **{f"value_{key}": value for key, value in numbers.items()}}
+    bound |= {"timing_eye": EYE, "timing_light": LIGHT, "timing_time": 1.5, "timing_evaluations": evaluations}
     head, main = "#version 330 core\n", _main(shade.varyings)
     fragment, floor = f"{head}{text}\n{shade.text}{main}", f"{head}{shade.floor}{main}"
-    return Program(label, fragment, values, {**_textures(subject), **_bound(points)}, floor, evaluations)
+    return Program(label, fragment, bound, {**_textures(subject), **_bound(points)}, floor, evaluations)
 
 
 class _Input(NamedTuple):
@@ -233,9 +238,9 @@ def _signature(text: str, function: str, renamed: Mapping[str, str]) -> _Signatu
     return _Signature(match[1], shown, params)
 
 
-def _shade(called: _Signature, subject: probes.Subject) -> _Shade:
+def _shade(called: _Signature, subject: probes.Subject, numbers: Mapping[str, Any]) -> _Shade:
     """A call with the values of a pixel and the technique's uniforms."""
-    declared = [_declaration(one, subject) for one in called.params if one.name in subject.uniforms]
+    declared = [_declaration(one, numbers) for one in called.params if one.name in subject.uniforms]
     own = [one for one in called.params if one.name not in subject.uniforms]
     read = {varying for one in own if one.direction != "out" for varying in _given(one)[1]}
     varyings = [varying for varying in _VARYINGS if varying in read]
@@ -257,10 +262,10 @@ def _shade(called: _Signature, subject: probes.Subject) -> _Shade:
     )
 
 
-def _declaration(one: _Input, subject: probes.Subject) -> str:
+def _declaration(one: _Input, numbers: Mapping[str, Any]) -> str:
     """A technique's uniform; a count is a constant."""
     if one.type in ("int", "uint"):
-        return f"const {one.type} value_{one.name} = {one.type}({subject.uniforms[one.name].default[0]});\n"
+        return f"const {one.type} value_{one.name} = {one.type}({np.ravel(numbers[one.name])[0]});\n"
     return f"uniform {one.type} value_{one.name};\n"
 
 
