@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -15,11 +17,16 @@ import numpy as np
 import pytest
 
 from executor_items import runs
+from sssgen import cli
 from sssgen.diagnostics import SssgenError
+from sssgen.harness.stress.report import Report, as_json
+from sssgen.harness.stress.run import Machines, Settings, stress
+from sssgen.harness.stress.specimen import specimens
 from sssgen.lab import cluster
 from sssgen.lab.executor import Failure, Item, failures, run
 from sssgen.lab.progress import Bar
 from sssgen.lab.store import Store, decoded, encoded
+from sssgen.lab.stressing import spread
 from sssgen.lab.work import task
 
 
@@ -249,6 +256,28 @@ def test_what_kills_every_dask_worker_is_named(tmp_path: Path, dask: Any) -> Non
 
 
 @pytest.mark.filterwarnings("default")
+@pytest.mark.parametrize("where", ["processes", "dask"])
+def test_stress_is_the_same_when_it_is_shared_out(
+    where: str, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scheduler = request.getfixturevalue("dask").scheduler_address if where == "dask" else ""
+    missing = ["browser"] if where == "processes" else []
+    monkeypatch.setenv("SSSGEN_CHROMIUM", "/nowhere/chromium")
+    chosen, names = specimens(["resin_inlay", "seed3_lobe"]), ["numpy-f32", *missing]
+    settings = Settings(samples=500)
+    with Machines(names) as machines:
+        rows = [stress(one, machines, settings) for one in chosen]
+        alone = Report(settings, {"numpy-f32": machines.here["numpy-f32"].device()}, machines.missing, rows)
+    shared = spread(chosen, names, settings, scheduler, None if scheduler else 2)
+    assert without_times(shared) == without_times(alone)
+    assert len(shared.rows) == len(chosen) > 2 and [*shared.missing] == missing
+
+
+def without_times(report: Report) -> str:
+    return re.sub(r'"seconds": [0-9.e-]+', "", json.dumps(as_json(report)))
+
+
+@pytest.mark.filterwarnings("default")
 def test_no_scheduler(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed")
     monkeypatch.setattr(cluster, "SECONDS", 0.5)
@@ -258,3 +287,14 @@ def test_no_scheduler(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(SssgenError, match=r"sssgen\[cluster\]"):
         run([Item("executor_items:echo", (1,))], "tcp://127.0.0.1:9", store=Store(""))
+
+
+def test_the_command_shares_out(capsys: pytest.CaptureFixture[str]) -> None:
+    command = ["stress", "lobe_normalized", "--backend", "numpy-f32", "--samples", "100"]
+    assert cli.main(command) == 0
+    alone = capsys.readouterr().out
+    assert cli.main([*command, "--processes", "2"]) == 0
+    times = re.compile(r"in [0-9.]+ s, [0-9.]+ million a second")
+    assert times.sub("", capsys.readouterr().out) == times.sub("", alone)
+    assert cli.main([*command, "--processes", "0"]) == 2
+    assert "'0' is not a number of processes" in capsys.readouterr().err

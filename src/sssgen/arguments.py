@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import re
+from collections.abc import Callable
 from typing import NoReturn
 
 from .diagnostics import did_you_mean, failure
@@ -165,6 +166,7 @@ def parser() -> argparse.ArgumentParser:
     stress.add_argument("--precision", choices=("f32", "f16"), help="f16: numpy and webgpu, in half (default: f32)")
     stress.add_argument("--guards", choices=GUARDS, default="auto", help=GUARDS_HELP)
     stress.add_argument("-o", "--output", metavar="REPORT", help="a .md or .json file to write the report to")
+    add_where(stress)
 
     render = command(
         "render",
@@ -202,9 +204,58 @@ def parser() -> argparse.ArgumentParser:
     ci.add_argument("--flip", type=float, metavar="X", help="the largest mean of FLIP that passes (default: 0.005)")
     ci.add_argument("--junit", metavar="FILE", help="write a report in JUnit's XML")
 
+    _measuring(command)
+
     new = command("new", "new", "write a commented material to start from")
     new.add_argument("MATERIAL", help="its name, or a .toml file; an old one is never overwritten")
     return top
+
+
+def _measuring(command: Callable[..., argparse.ArgumentParser]) -> None:
+    """The commands that measure error and cost."""
+    chart = command(
+        "chart",
+        "chart",
+        "chart error against cost: every technique and every published baseline, on scenes",
+        "examples:\n"
+        "  sssgen chart cube torus -o charts\n"
+        "  sssgen chart my/scene.toml --role thickness --json\n"
+        "A scene says in [medium] what its body is made of. Without one: our own scenes (examples/lab).",
+    )
+    chart.add_argument("SCENE", nargs="*", help="a scene's .toml file, or one of ours")
+    chart.add_argument("-o", "--output", metavar="DIR", help="the folder for PNG, SVG, HTML, CSV and JSON")
+    chart.add_argument("--role", metavar="R,R", help="coordinates, thickness, translucency, material (default: all)")
+    chart.add_argument(
+        "--cost", choices=("static", "gpu"), default="static", help="operations counted (default), or time on the GPU"
+    )
+
+    pick = command(
+        "pick",
+        "pick",
+        "pick the cheapest chain of techniques that a scene can do with",
+        "examples:\n"
+        "  sssgen pick cube --max-error 0.5\n"
+        "  sssgen pick my/scene.toml --max-cost 300 --emit out --target wgsl\n"
+        "From a chart of the scene in the cache it answers at once; else it measures first.",
+    )
+    pick.add_argument("SCENE", help="a scene's .toml file, or one of ours")
+    limits = pick.add_mutually_exclusive_group(required=True)
+    limits.add_argument("--max-error", type=float, metavar="E", help="the largest relative error, as 0.3")
+    limits.add_argument("--max-cost", type=float, metavar="C", help="the largest static cost, in operations")
+    pick.add_argument("--emit", metavar="DIR", help="write the material there, and its shaders")
+    pick.add_argument("--target", "-t", metavar="T,T|all", default="glsl-330", help="of --emit (default: glsl-330)")
+
+    fit = command(
+        "fit", "fit", "fit a material's parameters to a scene's medium", "example:\n  sssgen fit cube lobe_exp2"
+    )
+    fit.add_argument("SCENE", help="a scene's .toml file, or one of ours")
+    fit.add_argument("TECHNIQUE", nargs="*", help="translucency techniques; all without one")
+    for one in (chart, pick, fit):
+        one.add_argument(
+            "--samples", type=int, default=512, metavar="N", help="of the reference, a pixel (default: 512)"
+        )
+        one.add_argument("--seed", type=int, default=0, metavar="N", help="of the reference's chance (default: 0)")
+        add_where(one)
 
 
 class _Version(argparse.Action):
@@ -215,3 +266,17 @@ class _Version(argparse.Action):
 
         print(f"sssgen {VERSION}")
         raise SystemExit(0)
+
+
+def add_where(command: argparse.ArgumentParser) -> None:
+    """The options that say where a command's work items run."""
+    command.add_argument("--processes", type=_processes, metavar="N", help="share the work out to so many processes")
+    command.add_argument(
+        "--scheduler", default="", metavar="ADDRESS", help="share it out to a Dask cluster's workers: tcp://HOST:8786"
+    )
+
+
+def _processes(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number of processes")
+    return int(text)

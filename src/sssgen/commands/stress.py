@@ -41,7 +41,12 @@ def run(arguments: Namespace) -> int:
     names = _backends(arguments.backend or DEFAULT[arguments.precision], half)
     named = specimens(arguments.NAME)
     _check_rows(rows, named)
-    made = _stressed(named, names, settings)
+    if arguments.scheduler or arguments.processes is not None:
+        from ..lab.stressing import spread
+
+        made = spread(named, names, settings, arguments.scheduler, arguments.processes)
+    else:
+        made = _stressed(named, names, settings)
     if arguments.output:
         _write(arguments.output, suffix, made)
     if arguments.json:

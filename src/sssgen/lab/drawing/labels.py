@@ -166,8 +166,8 @@ def _among(one: _Choice, others: Sequence[_Choice]) -> float:
     bad = 0.0
     for other in others:
         bad += 100.0 * one.box.overlap(other.box)
-        bad += 60.0 * sum(other.box.has(*place) for place in one.leader)
-        bad += 60.0 * sum(one.box.has(*place) for place in other.leader)
+        bad += 150.0 * sum(other.box.has(*place) for place in one.leader)
+        bad += 150.0 * sum(one.box.has(*place) for place in other.leader)
         if one.leader and other.leader and _cross(one.label, other.label):
             bad += 200.0
     return bad
