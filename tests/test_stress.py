@@ -270,7 +270,7 @@ def test_what_is_held_to_energy() -> None:
 
 def test_materials_are_stressed_stage_by_stage() -> None:
     found = {one.title: one for one in specimens(["jelly_cubes"])}
-    assert found["jelly_cubes: thinness_uniform"].bind == {"body_distance": "jelly_cubes"}
+    assert found["jelly_cubes: thinness_traced"].bind == {"body_distance": "jelly_cubes"}
     fixed = found["jelly_cubes: gamma"]
     assert fixed.settings["display_gamma"] == pytest.approx((2.2,))
     trial = next(boundaries.trials(fixed, 0))

@@ -50,6 +50,9 @@ fn hash_unit(x: u32) -> f32 {
 fn cell_at(p: vec2f, variation: f32) -> Cell {
     var nearest = vec2f(4.0);
     var second = vec2f(4.0);
+    // their squared lengths
+    var first_square = 32.0;
+    var second_square = 32.0;
     var owner = 0u;
     // from the corner of its own cell, so that far cells are as exact as near ones
     let home = floor(p);
@@ -61,12 +64,16 @@ fn cell_at(p: vec2f, variation: f32) -> Cell {
             let seed = hash_bits(u32(i32(corner.x)) + hash_bits(u32(i32(corner.y)) + 1u));
             let shift = vec2f(hash_unit(seed + 1u), hash_unit(seed + 2u)) - 0.5;
             let to_site = offset + 0.5 + JITTER * shift - within;
-            if (dot(to_site, to_site) < dot(nearest, nearest)) {
+            let square = dot(to_site, to_site);
+            if (square < first_square) {
                 second = nearest;
+                second_square = first_square;
                 nearest = to_site;
+                first_square = square;
                 owner = seed;
-            } else if (dot(to_site, to_site) < dot(second, second)) {
+            } else if (square < second_square) {
                 second = to_site;
+                second_square = square;
             }
         }
     }

@@ -50,6 +50,9 @@ float hash_unit(uint x) {
 Cell cell_at(vec2 p, float variation) {
     vec2 nearest = vec2(4.0);
     vec2 second = vec2(4.0);
+    // their squared lengths
+    float first_square = 32.0;
+    float second_square = 32.0;
     uint owner = 0u;
     // from the corner of its own cell, so that far cells are as exact as near ones
     vec2 home = floor(p);
@@ -61,12 +64,16 @@ Cell cell_at(vec2 p, float variation) {
             uint seed = hash_bits(uint(int(corner.x)) + hash_bits(uint(int(corner.y)) + 1u));
             vec2 shift = vec2(hash_unit(seed + 1u), hash_unit(seed + 2u)) - 0.5;
             vec2 to_site = offset + 0.5 + JITTER * shift - within;
-            if (dot(to_site, to_site) < dot(nearest, nearest)) {
+            float square = dot(to_site, to_site);
+            if (square < first_square) {
                 second = nearest;
+                second_square = first_square;
                 nearest = to_site;
+                first_square = square;
                 owner = seed;
-            } else if (dot(to_site, to_site) < dot(second, second)) {
+            } else if (square < second_square) {
                 second = to_site;
+                second_square = square;
             }
         }
     }

@@ -127,6 +127,9 @@ Shader "sssgen/Ice" {
         Cell cell_at(float2 p) {
             float2 nearest = (float2)4.0;
             float2 second = (float2)4.0;
+            // their squared lengths
+            float first_square = 32.0;
+            float second_square = 32.0;
             uint owner = 0u;
             // from the corner of its own cell, so that far cells are as exact as near ones
             float2 home = floor(p);
@@ -140,12 +143,16 @@ Shader "sssgen/Ice" {
                     uint seed = hash_bits(uint(int(corner.x)) + hash_bits(uint(int(corner.y)) + 1u));
                     float2 shift = float2(hash_unit(seed + 1u), hash_unit(seed + 2u)) - 0.5;
                     float2 to_site = offset + 0.5 + JITTER * shift - within;
-                    if (dot(to_site, to_site) < dot(nearest, nearest)) {
+                    float square = dot(to_site, to_site);
+                    if (square < first_square) {
                         second = nearest;
+                        second_square = first_square;
                         nearest = to_site;
+                        first_square = square;
                         owner = seed;
-                    } else if (dot(to_site, to_site) < dot(second, second)) {
+                    } else if (square < second_square) {
                         second = to_site;
+                        second_square = square;
                     }
                 }
             }

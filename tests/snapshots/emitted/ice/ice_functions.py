@@ -35,6 +35,9 @@ def cell_at(p, variation):
     """The cell at `p`."""
     nearest = splat(2, 4.0)
     second = splat(2, 4.0)
+    # their squared lengths
+    first_square = 32.0
+    second_square = 32.0
     owner = to_uint(0)
     # from the corner of its own cell, so that far cells are as exact as near ones
     home = floor(p)
@@ -46,11 +49,16 @@ def cell_at(p, variation):
             seed = hash_bits(to_uint(to_int(corner[0])) + hash_bits(to_uint(to_int(corner[1])) + 1))
             shift = vec(hash_unit(seed + 1), hash_unit(seed + 2)) - 0.5
             to_site = offset + 0.5 + JITTER * shift - within
-            mask = dot(to_site, to_site) < dot(nearest, nearest)
+            square = dot(to_site, to_site)
+            mask = square < first_square
             second = select(mask, nearest, second)
+            second_square = select(mask, first_square, second_square)
             nearest = select(mask, to_site, nearest)
+            first_square = select(mask, square, first_square)
             owner = select(mask, seed, owner)
-            second = select(not_(mask) & (dot(to_site, to_site) < dot(second, second)), to_site, second)
+            mask_2 = not_(mask) & (square < second_square)
+            second = select(mask_2, to_site, second)
+            second_square = select(mask_2, square, second_square)
     level = 1.0 - variation * hash_unit(owner + 3)
     return Record(nearest=nearest, second=second, level=level)
 

@@ -8,9 +8,10 @@ precision highp int;
 
 const int MAX_STEPS = 200;
 const float CUBE_SPACING = 1.45;
+const float CUBE_HEIGHT = 0.48;
+const vec3 CUBES_HALF = vec3(1.4322, 0.5, 0.7072);
 const float COS_45 = 0.70710677;
 const float HALF_SIZE = 0.5;
-const float CUBE_HEIGHT = 0.48;
 const float HIT_TOLERANCE = 0.001;
 const float NOTHING = 0.004;
 const float LEVEL = 1.0e-6;
@@ -47,6 +48,11 @@ void camera_orbit(vec2 uv, float time, out vec3 ray_origin, out vec3 ray_directi
     ray_direction = camera_ray(ray_origin, uv);
 }
 
+// The signed distance to the ground, y = 0.
+float ground_plane(vec3 p) {
+    return p.y;
+}
+
 // A cube about the origin, turned by 45 degrees about the y axis.
 float turned_cube(vec3 p) {
     vec3 turned = vec3((p.x - p.z) * COS_45, p.y, (p.x + p.z) * COS_45);
@@ -61,14 +67,15 @@ float jelly_cubes(vec3 p) {
     return turned_cube(vec3(abs(p.x - middle) - middle, p.y - CUBE_HEIGHT, p.z));
 }
 
-// The signed distance to the ground, y = 0.
-float ground_plane(vec3 p) {
-    return p.y;
-}
-
 // The scene of seed 0: two jelly cubes on the ground.
 float jelly_scene(vec3 p) {
-    return min(jelly_cubes(p), ground_plane(p));
+    float ground = ground_plane(p);
+    // where the ground is nearer than their box, the cubes need no look
+    vec3 q = abs(p - vec3(0.5 * CUBE_SPACING, CUBE_HEIGHT, 0.0)) - CUBES_HALF;
+    if (max(q.x, max(q.y, q.z)) > ground) {
+        return ground;
+    }
+    return min(jelly_cubes(p), ground);
 }
 
 // The gradient of the scene at `p`, from the four corners of a tetrahedron about it.
@@ -120,7 +127,7 @@ float thinness_traced(vec3 P, vec3 N) {
         way = min(there / max(here - there, LEVEL) * stride, depth);
         here = there;
     }
-    return clamp(0.5 * (area + way * here) / (reach * reach), 0.0, 1.0);
+    return min(0.5 * (area + way * here) / (reach * reach), 1.0);
 }
 
 // The colours of seed 0's scene: jelly cubes on a faint checker floor, through which no light comes.
@@ -153,7 +160,8 @@ vec3 sky_background(vec3 ray_direction) {
 float soft_shadow(vec3 p, vec3 L) {
     float t = 0.001;
     float free = 1.0;
-    for (int i = 0; i < 25 && free > 0.0 && t < 4.0; i++) {
+    // it only falls: below 0 there is no need to stop
+    for (int i = 0; i < 25 && t < 4.0; i++) {
         float gap = jelly_scene(p + L * t);
         free = min(free, 20.0 * gap / t);
         t += clamp(gap, 0.001, 2.0);

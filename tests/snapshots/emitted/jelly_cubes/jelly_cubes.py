@@ -6,9 +6,9 @@ from sssgen.targets.numpy_runtime import *  # noqa: F403
 
 MAX_STEPS = 200
 CUBE_SPACING = 1.45
+CUBE_HEIGHT = 0.48
 COS_45 = 0.70710678
 HALF_SIZE = 0.5
-CUBE_HEIGHT = 0.48
 HIT_TOLERANCE = 0.001
 NOTHING = 0.004
 LEVEL = 1e-06
@@ -43,6 +43,10 @@ def camera_orbit(uv, time):
     ray_direction = camera_ray(ray_origin, uv)
     return ray_origin, ray_direction
 
+def ground_plane(p):
+    """The signed distance to the ground, y = 0."""
+    return p[1]
+
 def turned_cube(p):
     """A cube about the origin, turned by 45 degrees about the y axis."""
     turned = vec((p[0] - p[2]) * COS_45, p[1], (p[0] + p[2]) * COS_45)
@@ -55,13 +59,13 @@ def jelly_cubes(p):
     middle = 0.5 * CUBE_SPACING
     return turned_cube(vec(abs(p[0] - middle) - middle, p[1] - CUBE_HEIGHT, p[2]))
 
-def ground_plane(p):
-    """The signed distance to the ground, y = 0."""
-    return p[1]
-
 def jelly_scene(p):
     """The scene of seed 0: two jelly cubes on the ground."""
-    return min(jelly_cubes(p), ground_plane(p))
+    CUBES_HALF = vec(1.4322, 0.5, 0.7072)
+    ground = ground_plane(p)
+    # where the ground is nearer than their box, the cubes need no look
+    q = abs(p - vec(0.5 * CUBE_SPACING, CUBE_HEIGHT, 0.0)) - CUBES_HALF
+    return select(max(q[0], max(q[1], q[2])) > ground, ground, min(jelly_cubes(p), ground))
 
 def scene_normal(p):
     """The gradient of the scene at `p`, from the four corners of a tetrahedron about it."""
@@ -113,7 +117,7 @@ def thinness_traced(P, N):
         here = select(running, there, here)
         i = i + 1
         running = running & ((i < 4) & (here > NOTHING * reach) & (here < 2.0 * depth))
-    return clamp(0.5 * (area + way * here) / (reach * reach), 0.0, 1.0)
+    return min(0.5 * (area + way * here) / (reach * reach), 1.0)
 
 def jelly_surface(P, th):
     """The colours of seed 0's scene: jelly cubes on a faint checker floor, through which no light comes."""
@@ -141,14 +145,15 @@ def soft_shadow(p, L):
     """How much of the key light reaches `p`: the narrower the gap that it passes, the less."""
     t = 0.001
     free = 1.0
+    # it only falls: below 0 there is no need to stop
     i = 0
-    running = (i < 25) & (free > 0.0) & (t < 4.0)
+    running = (i < 25) & (t < 4.0)
     while any(running):
         gap = jelly_scene(p + L * t)
         free = select(running, min(free, 20.0 * gap / t), free)
         t = select(running, t + clamp(gap, 0.001, 2.0), t)
         i = i + 1
-        running = running & ((i < 25) & (free > 0.0) & (t < 4.0))
+        running = running & ((i < 25) & (t < 4.0))
     return clamp(free, 0.0, 1.0)
 
 def studio(P, N, albedo, translucency):

@@ -10,9 +10,10 @@
 
 static const int MAX_STEPS = 200;
 static const float CUBE_SPACING = 1.45;
+static const float CUBE_HEIGHT = 0.48;
+static const float3 CUBES_HALF = float3(1.4322, 0.5, 0.7072);
 static const float COS_45 = 0.70710677;
 static const float HALF_SIZE = 0.5;
-static const float CUBE_HEIGHT = 0.48;
 static const float HIT_TOLERANCE = 0.001;
 static const float NOTHING = 0.004;
 static const float LEVEL = 1.0e-6;
@@ -42,6 +43,11 @@ void camera_orbit(float2 uv, float time, out float3 ray_origin, out float3 ray_d
     ray_direction = camera_ray(ray_origin, uv, look_at, aspect, focal_length);
 }
 
+// The signed distance to the ground, y = 0.
+float ground_plane(float3 p) {
+    return p.y;
+}
+
 // A cube about the origin, turned by 45 degrees about the y axis.
 float turned_cube(float3 p) {
     float3 turned = float3((p.x - p.z) * COS_45, p.y, (p.x + p.z) * COS_45);
@@ -56,14 +62,15 @@ float jelly_cubes(float3 p) {
     return turned_cube(float3(abs(p.x - middle) - middle, p.y - CUBE_HEIGHT, p.z));
 }
 
-// The signed distance to the ground, y = 0.
-float ground_plane(float3 p) {
-    return p.y;
-}
-
 // The scene of seed 0: two jelly cubes on the ground.
 float jelly_scene(float3 p) {
-    return min(jelly_cubes(p), ground_plane(p));
+    float ground = ground_plane(p);
+    // where the ground is nearer than their box, the cubes need no look
+    float3 q = abs(p - float3(0.5 * CUBE_SPACING, CUBE_HEIGHT, 0.0)) - CUBES_HALF;
+    if (max(q.x, max(q.y, q.z)) > ground) {
+        return ground;
+    }
+    return min(jelly_cubes(p), ground);
 }
 
 // The gradient of the scene at `p`, from the four corners of a tetrahedron about it.
@@ -118,7 +125,7 @@ float thinness_traced(float3 P, float3 N, float reach) {
         way = min(there / max(here - there, LEVEL) * stride, depth);
         here = there;
     }
-    return clamp(0.5 * (area + way * here) / (reach * reach), 0.0, 1.0);
+    return min(0.5 * (area + way * here) / (reach * reach), 1.0);
 }
 
 // The colours of seed 0's scene: jelly cubes on a faint checker floor, through which no light comes.
@@ -151,8 +158,9 @@ float3 sky_background(float3 ray_direction, float3 sky_color) {
 float soft_shadow(float3 p, float3 L) {
     float t = 0.001;
     float free = 1.0;
+    // it only falls: below 0 there is no need to stop
     [loop]
-    for (int i = 0; i < 25 && free > 0.0 && t < 4.0; i++) {
+    for (int i = 0; i < 25 && t < 4.0; i++) {
         float gap = jelly_scene(p + L * t);
         free = min(free, 20.0 * gap / t);
         t += clamp(gap, 0.001, 2.0);

@@ -5,9 +5,10 @@
 
 const MAX_STEPS: i32 = 200;
 const CUBE_SPACING: f32 = 1.45;
+const CUBE_HEIGHT: f32 = 0.48;
+const CUBES_HALF: vec3f = vec3f(1.4322, 0.5, 0.7072);
 const COS_45: f32 = 0.70710677;
 const HALF_SIZE: f32 = 0.5;
-const CUBE_HEIGHT: f32 = 0.48;
 const HIT_TOLERANCE: f32 = 0.001;
 const NOTHING: f32 = 0.004;
 const LEVEL: f32 = 1.0e-6;
@@ -52,6 +53,11 @@ fn camera_orbit(uv: vec2f, time: f32, ray_origin: ptr<function, vec3f>, ray_dire
     *ray_direction = camera_ray(*ray_origin, uv);
 }
 
+// The signed distance to the ground, y = 0.
+fn ground_plane(p: vec3f) -> f32 {
+    return p.y;
+}
+
 // A cube about the origin, turned by 45 degrees about the y axis.
 fn turned_cube(p: vec3f) -> f32 {
     let turned = vec3f((p.x - p.z) * COS_45, p.y, (p.x + p.z) * COS_45);
@@ -66,14 +72,15 @@ fn jelly_cubes(p: vec3f) -> f32 {
     return turned_cube(vec3f(abs(p.x - middle) - middle, p.y - CUBE_HEIGHT, p.z));
 }
 
-// The signed distance to the ground, y = 0.
-fn ground_plane(p: vec3f) -> f32 {
-    return p.y;
-}
-
 // The scene of seed 0: two jelly cubes on the ground.
 fn jelly_scene(p: vec3f) -> f32 {
-    return min(jelly_cubes(p), ground_plane(p));
+    let ground = ground_plane(p);
+    // where the ground is nearer than their box, the cubes need no look
+    let q = abs(p - vec3f(0.5 * CUBE_SPACING, CUBE_HEIGHT, 0.0)) - CUBES_HALF;
+    if (max(q.x, max(q.y, q.z)) > ground) {
+        return ground;
+    }
+    return min(jelly_cubes(p), ground);
 }
 
 // The gradient of the scene at `p`, from the four corners of a tetrahedron about it.
@@ -126,7 +133,7 @@ fn thinness_traced(P: vec3f, N: vec3f) -> f32 {
         way = min(there / max(here - there, LEVEL) * stride, depth);
         here = there;
     }
-    return clamp(0.5 * (area + way * here) / (material.reach * material.reach), 0.0, 1.0);
+    return min(0.5 * (area + way * here) / (material.reach * material.reach), 1.0);
 }
 
 // The colours of seed 0's scene: jelly cubes on a faint checker floor, through which no light comes.
@@ -159,7 +166,8 @@ fn sky_background(ray_direction: vec3f) -> vec3f {
 fn soft_shadow(p: vec3f, L: vec3f) -> f32 {
     var t = 0.001;
     var free = 1.0;
-    for (var i = 0; i < 25 && free > 0.0 && t < 4.0; i++) {
+    // it only falls: below 0 there is no need to stop
+    for (var i = 0; i < 25 && t < 4.0; i++) {
         let gap = jelly_scene(p + L * t);
         free = min(free, 20.0 * gap / t);
         t += clamp(gap, 0.001, 2.0);
