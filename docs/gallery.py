@@ -1,4 +1,4 @@
-"""Draws the example scenes into docs/gallery/ and writes docs/gallery.md: python docs/gallery.py
+"""Draws the example scenes into docs/gallery/ and writes docs/gallery.md: python docs/gallery.py [--processes N]
 
 The pictures are drawn by the GLSL that `sssgen` emits. The page says of each what it shows, which techniques make it,
 and what they cost; and, from smaller pictures, how far the back ends are apart.
@@ -6,25 +6,23 @@ and what they cost; and, from smaller pictures, how far the back ends are apart.
 
 from __future__ import annotations
 
-import dataclasses
-import io
+import argparse
 from collections.abc import Iterator
 from pathlib import Path
 from textwrap import wrap
 from typing import Any
 
-import numpy as np
-from PIL import Image
-
 import sssgen
+from sssgen.arguments import add_where
 from sssgen.harness import backends
 from sssgen.harness.backends import Backend
-from sssgen.harness.render import render
-from sssgen.harness.scenes.scene import Scene, load
+from sssgen.lab.executor import Item, failures, run
+from sssgen.lab.progress import Bar
+from sssgen.lab.rendering import Apart
+from sssgen.lab.store import Store
 from sssgen.material import Material, load_material
 from sssgen.output import write_files
 
-ROOT = Path(__file__).parents[1]
 PAGE = Path(__file__).with_name("gallery.md")
 PICTURES = Path(__file__).with_name("gallery")
 
@@ -63,29 +61,17 @@ SHOWN = {
 """The same for those who do not see it."""
 
 
-def scene_of(name: str) -> Path:
-    """An example's scene file."""
-    return ROOT / "examples" / name / "scene.toml"
+def items() -> list[Item]:
+    """Of each scene its picture; then the differences of its small pictures; then of large ones, one sample a pixel."""
+    drawn = [Item("sssgen.lab.rendering:picture", (name,), name) for name in CAPTIONS]
+    for what, size, samples in (("small", SMALL, None), ("one sample", None, 1)):
+        drawn += [
+            Item("sssgen.lab.rendering:apart", (name, BACKENDS, size, samples), f"{name}, {what}") for name in CAPTIONS
+        ]
+    return drawn
 
 
-def draw(backend: Backend) -> dict[str, bytes]:
-    """File name → PNG of every scene."""
-    files = {}
-    for name in CAPTIONS:
-        color = render(load(scene_of(name)), backend).encoded
-        buffer = io.BytesIO()
-        Image.fromarray(np.rint(255.0 * color).astype(np.uint8)).save(buffer, "PNG", optimize=True)
-        files[f"{name}.png"] = buffer.getvalue()
-    return files
-
-
-def differences(scene: Scene, present: list[Backend]) -> list[Any]:
-    """For each back end how far each pixel's worst channel is from NumPy in float64: (height, width), in 1/255."""
-    wanted = render(scene, backends.get("numpy")).encoded
-    return [255.0 * np.abs(render(scene, one).encoded - wanted).max(axis=2) for one in present]
-
-
-def page(present: list[Backend]) -> str:
+def page(present: list[Backend], small: dict[str, list[Apart]], large: dict[str, list[Apart]]) -> str:
     """The page's text, with the figures of this machine."""
     lines = [
         "# Gallery",
@@ -109,9 +95,7 @@ def page(present: list[Backend]) -> str:
         f"| Scene | {' | '.join(f'`{backend.name}`' for backend in present)} |",
         f"|---|{'---|' * len(present)}",
     ]
-    for name in CAPTIONS:
-        small = dataclasses.replace(load(scene_of(name)), size=SMALL)
-        lines.append(_row(name, [f"{far.max():.3f}" for far in differences(small, present)]))
+    lines += [_row(name, [f"{one.worst:.3f}" for one in far]) for name, far in small.items()]
     lines += [
         "",
         *_paragraph(
@@ -122,9 +106,7 @@ def page(present: list[Backend]) -> str:
         f"| Scene | {' | '.join(f'`{backend.name}`' for backend in present)} |",
         f"|---|{'---|' * len(present)}",
     ]
-    for name in CAPTIONS:
-        large = dataclasses.replace(load(scene_of(name)), samples=1)
-        lines.append(_row(name, [f"{(far > 1.0).sum()}" for far in differences(large, present)]))
+    lines += [_row(name, [f"{one.beyond}" for one in far]) for name, far in large.items()]
     lines += ["", *(f"- `{one.name}`: {backends.NAMES[one.name]}; {one.device()}" for one in present)]
     return "\n".join(lines) + "\n"
 
@@ -188,9 +170,21 @@ def _item(text: str) -> list[str]:
 
 def main() -> None:
     """Draws, measures and writes."""
-    files = draw(backends.get("gl"))
+    parser = argparse.ArgumentParser(description="draws the gallery")
+    add_where(parser)
+    where = parser.parse_args()
+    processes = where.processes if where.scheduler or where.processes else 0
+    with Bar() as told:
+        results = run(items(), where.scheduler, processes, Store(""), told)
+    if failed := failures(results):
+        raise SystemExit("\n".join(f"{one.name}: {one.message}" for one in failed))
+    count = len(CAPTIONS)
+    pictures, small, large = (
+        dict(zip(CAPTIONS, results[at : at + count], strict=True)) for at in range(0, 3 * count, count)
+    )
+    files = {f"{name}.png": data for name, data in pictures.items()}
     write_files(str(PICTURES), files)
-    PAGE.write_text(page([backends.get(name) for name in BACKENDS]), encoding="utf-8")
+    PAGE.write_text(page([backends.get(name) for name in BACKENDS], small, large), encoding="utf-8")
     print(f"wrote {PAGE.name} and {len(files)} pictures, {sum(map(len, files.values())) / 1000:.0f} kB")
 
 

@@ -23,7 +23,7 @@ from sssgen.diagnostics import SssgenError
 from sssgen.harness.backends.browser_page import find
 from sssgen.lab import drawing
 from sssgen.lab.drawing import figure
-from sssgen.lab.drawing.layout import Chart, chart, styles
+from sssgen.lab.drawing.layout import LONGEST_NOTE, NOTE, Chart, chart, styles
 from sssgen.lab.drawing.record import checked, front, hypervolume, measures, to_csv, to_json
 from sssgen.lab.drawing.scale import number, scale, tick
 from sssgen.lab.drawing.summary import medians
@@ -338,3 +338,16 @@ def test_without_points_or_matplotlib(tmp_path: Path, monkeypatch: pytest.Monkey
     with pytest.raises(SssgenError, match=r"sssgen\[chart\]"):
         drawing.write(record(), tmp_path)
     assert not list(tmp_path.iterdir())
+
+
+def test_long_units_and_devices_go_into_the_notes() -> None:
+    made = record(scenes=("slab", "ball"))
+    made |= {"cost": "gpu", "cost_unit": "ms at 1920 × 1080, the median of 50 runs of 20 frames each"}
+    made["record"] |= {"device": "A GPU with a name that is quite long", "driver": "1.2.3", "software": True}
+    found = chart(checked(made), "thickness")
+    assert found.x_title == "cost" and made["cost_unit"] in found.notes[1]
+    assert "a driver in software" in " ".join(found.notes) and len(found.notes) == 3
+    assert all(len(note) <= LONGEST_NOTE for note in found.notes)
+    shorter = chart(checked(record(scenes=("slab", "ball"))), "thickness")
+    assert shorter.x_title == "cost, operations (weighted)"
+    assert found.panels[0].plot.top - shorter.panels[0].plot.top == NOTE * (3 - len(shorter.notes))

@@ -298,3 +298,10 @@ def test_the_command_shares_out(capsys: pytest.CaptureFixture[str]) -> None:
     assert times.sub("", capsys.readouterr().out) == times.sub("", alone)
     assert cli.main([*command, "--processes", "0"]) == 2
     assert "'0' is not a number of processes" in capsys.readouterr().err
+
+
+def test_pictures_apart_are_the_same_when_they_are_shared_out() -> None:
+    work = [Item("sssgen.lab.rendering:apart", ("resin_inlay", ("numpy-f32", "numpy"), (32, 24), 1))]
+    [[single, same]] = here = run(work, processes=0, store=Store(""))
+    assert 0.0 < single.worst < 1.0 and single.beyond == 0 and same == (0.0, 0)
+    assert as_bytes(run(work, processes=1, store=Store(""))) == as_bytes(here)

@@ -70,7 +70,7 @@ def execute(one: Task) -> bytes:
     try:
         module, _, name = one.function.partition(":")
         if code_stamp(module) != one.stamp:
-            return encoded(Failure(one.name, "this worker runs another state of sssgen: start it anew"))
+            return encoded(Failure(one.name, "this worker has another state of sssgen: start it, or the run, anew"))
         function = getattr(importlib.import_module(module), name)
         return encoded(function(*decoded(one.arguments)))
     except SssgenError as error:

@@ -7,7 +7,7 @@ from typing import Any
 
 from ...harness.extras import need
 from .labels import SIZE
-from .layout import Chart, Dot, Panel, Style
+from .layout import NOTE, Chart, Dot, Panel, Style
 
 COLORS = ("#00539C", "#C84E00", "#00805E", "#A8408F", "#946300", "#2F8FD0", "#505050")
 """After Okabe and Ito, "Color universal design" (2008): colour-blind people tell them apart. Darker, for text."""
@@ -45,7 +45,7 @@ def drawn(chart: Chart) -> dict[str, bytes]:
 def _draw(axes: Any, chart: Chart) -> None:
     _text(axes, 20.0, 24.0, chart.title, size=17.0, weight="bold")
     for at, note in enumerate(chart.notes):
-        _text(axes, 20.0, 46.0 + 16.0 * at, note, size=10.5, color=PALE)
+        _text(axes, 20.0, 46.0 + NOTE * at, note, size=10.5, color=PALE)
     for panel in chart.panels:
         _panel(axes, panel, chart)
     for (x, y), style in chart.key:

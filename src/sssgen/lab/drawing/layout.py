@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from textwrap import wrap
 from typing import NamedTuple
 
 from .labels import SIZE, Box, Label, Place, placed
@@ -17,7 +18,10 @@ from .summary import medians
 
 WIDTH = 900.0
 """Of a chart, as wide as a README is shown."""
-HEADER = 74.0
+HEADER, NOTE = 42.0, 16.0
+"""How high the title is, and each of the notes below it."""
+LONGEST_NOTE, LONGEST_UNIT = 125, 22
+"""In letters: longer notes go on in another line; a longer unit stands in the notes alone."""
 LARGE, SMALL = 400.0, 310.0
 """How high a panel across the chart is, and one of two beside each other."""
 LEFT, RIGHT, TOP, BOTTOM = 68.0, 14.0, 34.0, 44.0
@@ -107,7 +111,8 @@ def chart(record: Record, role: str) -> Chart:
     x = scale((measures(point)[0] for point in everything), 0.10, 0.06)
     y = scale(ends, 0.14, 0.04)
 
-    panels, top = [], HEADER
+    notes = _notes(record)
+    panels, top = [], HEADER + NOTE * len(notes)
     if len(scenes) != 1:
         box = Box(0.0, top, WIDTH, top + LARGE)
         panels.append(_panel(f"All {len(scenes)} scenes", "medians over the scenes", box, everywhere, looks, x, y))
@@ -124,7 +129,9 @@ def chart(record: Record, role: str) -> Chart:
     key = _key(list(looks.values()), top + 18.0)
     height = key[-1][0][1] + 18.0 if key else top
     title = f"{role.capitalize()}: error against cost"
-    return Chart(role, title, _notes(record), WIDTH, height, f"cost, {record['cost_unit']}", "error", panels, key)
+    unit = str(record["cost_unit"])
+    x_title = f"cost, {unit}" if len(unit) <= LONGEST_UNIT else "cost"
+    return Chart(role, title, notes, WIDTH, height, x_title, "error", panels, key)
 
 
 def styles(points: Sequence[Point]) -> dict[str, Style]:
@@ -216,9 +223,10 @@ def _key(looks: list[Style], top: float) -> list[tuple[Place, Style]]:
 def _notes(record: Record) -> list[str]:
     """What is under the title: how to read it, and what it was measured with."""
     facts = record["record"]
-    told = [f"commit {str(facts['commit'])[:10]}"] if facts.get("commit") else []
+    told = [f"cost: {record['cost_unit']}"]
+    told += [f"commit {str(facts['commit'])[:10]}"] if facts.get("commit") else []
     told += [f"{name} {facts[name]}" for name in ("seed", "samples") if facts.get(name) is not None]
     if record["cost"] == "gpu":
         told += [str(facts[name]) for name in ("device", "driver") if facts.get(name)]
         told += ["a driver in software: its times tell nothing of GPUs"] if facts.get("software") else []
-    return [READING, " · ".join(told)]
+    return [READING, *wrap(" · ".join(told), LONGEST_NOTE)]

@@ -7,7 +7,7 @@ import os
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from .layout import HEADER, Chart, Style
+from .layout import TOP, Chart, Style
 from .record import COSTS, ERRORS, Point, Record, measures
 from .scale import number
 
@@ -59,10 +59,10 @@ def written(record: Record, charts: Sequence[Chart]) -> str:
     names = [*COLUMNS, *(name for name in rows[0].cells if name not in COLUMNS)]
     return _environment().get_template("page.html").render(
         charts=charts,
-        above=HEADER + 6.0,
         number_of=lambda dot: numbers[id(dot.point)],
         told=lambda dot: _told(dot.point, titles),
         path=_path,
+        title_room=TOP - 6.0,
         marker=_marker,
         columns=[name for name in names if any(row.cells[name].text not in ("", "–") for row in rows)],
         rows=rows,
