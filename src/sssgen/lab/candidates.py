@@ -18,6 +18,9 @@ from ..library import Technique
 from .body import Body
 from .chain import Stage
 
+ROLES = ("coordinates", "thickness", "translucency", "material")
+"""The roles that have a reference. A surface's look (masks, waves, colours) is the artist's own: nothing is wrong."""
+
 COUNTS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32)
 """What a technique's counts are set to, up to its default and one more."""
 
@@ -26,6 +29,18 @@ NOT_CHARTED = {
     "sky_glow": "the sky's light, and none of a lamp: there is no reference for it",
 }
 """Techniques of charted roles that are left out, and why."""
+
+NEEDS = {
+    "thickness_map": "a baked thickness map", "thinness_map": "a baked thinness map",
+    "transmittance_map": "a baked transmittance map", "depth_map_thickness": "the light's depth map",
+    "march_distance_texture": "the body as a distance texture",
+    **dict.fromkeys(
+        ("march_light", "march_light_traced", "thinness_uniform", "thinness_attenuated", "thinness_hemisphere",
+         "thinness_traced", "thinness_xt95"),
+        "the body as a distance function",
+    ),
+}  # fmt: skip
+"""What a thickness technique reads, which whoever uses it must have."""
 
 PROBES = os.path.join(os.path.dirname(__file__), "probes")
 

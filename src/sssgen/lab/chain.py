@@ -80,7 +80,8 @@ class Chain:
     def set(self, values: Mapping[str, Any], textures: Mapping[str, Texture]) -> None:
         """Gives parameters and textures by the names that techniques have for them; others keep their values.
 
-        `depth` is every technique's, `seed4_parallax.depth` that one's alone. A parameter is a number, its components, or these with lanes last; a matrix goes column by column.
+        `depth` is every technique's, `seed4_parallax.depth` that one's alone. A parameter is a number, its components,
+        or these with lanes last; a matrix goes column by column.
         """
         for uniform in self.uniforms:
             own = uniform["technique_name"]

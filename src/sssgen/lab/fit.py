@@ -48,6 +48,16 @@ class Free(NamedTuple):
         return (value - self.low) / (self.high - self.low)
 
 
+class Factor(NamedTuple):
+    """The parameter that the scale goes into when a chain is emitted."""
+
+    name: str
+    components: int
+    most: float
+    """The largest scale that it can take"""
+    default: tuple[float, ...]
+
+
 class Fitted(NamedTuple):
     """A chain's parameters for a medium."""
 
@@ -59,6 +69,8 @@ class Fitted(NamedTuple):
     """What Lambert's light is multiplied by, a channel each: the albedo that goes with the chain"""
     error: float
     """The relative error on what was fitted to"""
+    factor: str = ""
+    """The parameter that can take the scale, by its technique's own name; '' where none can"""
 
     def apply(self, values: Array, problem: Problem) -> Array:
         """The picture: scaled values, and the light from the front."""
@@ -74,39 +86,36 @@ def fit(chains: Sequence[Chain | None], problems: Sequence[Problem]) -> Fitted:
     thinned = [problem.thinned(LANES) for problem in problems]
     present = [chain for chain in chains if chain is not None]
     if not present:
-        return _solved({}, [np.zeros_like(problem.target) for problem in thinned], thinned)
+        return _solved({}, [np.zeros_like(problem.target) for problem in thinned], thinned, None)
     given = {name for problem in thinned for part in problem.parts for name in part.values}
-    free = free_parameters(present[0], given, thinned[0])
-    best: Fitted | None = None
-    for start in _starts(free):
-        found = _searched(present, thinned, free, start)
-        if best is None or found.error < best.error:
-            best = found
-    assert best is not None
-    return best
+    free, factor = free_parameters(present[0], given, thinned[0])
+    found = [_searched(present, thinned, free, start, factor) for start in _starts(free)]
+    return min(found, key=lambda one: one.error)
 
 
-def _searched(chains: Sequence[Chain], problems: Sequence[Problem], free: Sequence[Free], start: Array) -> Fitted:
+def _searched(
+    chains: Sequence[Chain], problems: Sequence[Problem], free: Sequence[Free], start: Array, factor: Factor | None
+) -> Fitted:
     optimize = need("scipy.optimize", "scipy", "chart")
 
+    def values_of(parameters: Mapping[str, Any]) -> list[Array]:
+        return [_finite(one.values(chain, parameters)) for chain, one in zip(chains, problems, strict=True)]
+
     def residual(x: Array) -> Array:
-        named = _named(free, x)
-        values = [_finite(one.values(chain, named)) for chain, one in zip(chains, problems, strict=True)]
-        fitted = _solved({}, values, problems)
+        values = values_of(_named(free, x))
+        fitted = _solved({}, values, problems, factor)
         apart = [_apart(fitted, one, problem) for one, problem in zip(values, problems, strict=True)]
         return np.concatenate([one.ravel() for one in apart])
 
     x = start
     if len(start):
-        x = optimize.least_squares(
-            residual, start, bounds=(0.0, 1.0), diff_step=1e-3, max_nfev=max(EVALUATIONS // (len(start) + 1), 8)
-        ).x
+        most = max(EVALUATIONS // (len(start) + 1), 8)
+        x = optimize.least_squares(residual, start, bounds=(0.0, 1.0), diff_step=1e-3, max_nfev=most).x
     parameters = {
         name: tuple(float(np.float32(one)) for one in np.atleast_1d(value)) for name, value in _named(free, x).items()
     }
     exact = {name: np.array(value) if len(value) > 1 else value[0] for name, value in parameters.items()}
-    values = [_finite(one.values(chain, exact)) for chain, one in zip(chains, problems, strict=True)]
-    return _solved(parameters, values, problems)
+    return _solved(parameters, values_of(exact), problems, factor)
 
 
 def _apart(fitted: Fitted, values: Array, problem: Problem) -> Array:
@@ -116,44 +125,53 @@ def _apart(fitted: Fitted, values: Array, problem: Problem) -> Array:
     return weighted
 
 
-def _solved(parameters: dict[str, tuple[float, ...]], values: Sequence[Array], problems: Sequence[Problem]) -> Fitted:
-    """The best scale of the values and of the light from the front, neither below 0: in each channel by itself."""
+def _solved(
+    parameters: dict[str, tuple[float, ...]],
+    values: Sequence[Array],
+    problems: Sequence[Problem],
+    factor: Factor | None,
+) -> Fitted:
+    """The best scale of the values, and of the light from the front; none is below 0.
+
+    A channel has a scale of its own where a colour of the technique's is one; else all have the same, which is what an
+    artist can set.
+    """
+    nnls = need("scipy.optimize", "scipy", "chart").nnls
     channels = len(problems[0].target)
-    together = problems[0].role == "coordinates"  # u and v have one scale
-    scale, matte, square = np.zeros(channels), np.zeros(channels), 0.0
-    for group in [range(channels)] if together else [[channel] for channel in range(channels)]:
-        columns, rights = [], []
-        for value, problem in zip(values, problems, strict=True):
-            for channel in group:
-                weight = 1.0 / np.sqrt((problem.target[channel] ** 2 + EPSILON) * problem.target.size)
-                columns.append(np.stack([value[channel] * weight, problem.lambert[channel] * weight]))
-                rights.append(problem.target[channel] * weight)
-        basis, right = np.concatenate(columns, axis=1), np.concatenate(rights)
-        best = _not_negative(basis, right)
-        for channel in group:
-            scale[channel], matte[channel] = best
-        square += float(((best @ basis - right) ** 2).sum())
-    return Fitted(parameters, tuple(map(float, scale)), tuple(map(float, matte)), np.sqrt(square / len(problems)))
-
-
-def _not_negative(basis: Array, right: Array) -> Array:
-    """The two numbers of 0 or more whose sum of basis (2, n) is nearest to right (n,)."""
-    gram, wanted = basis @ basis.T, basis @ right
-    both = np.linalg.lstsq(gram, wanted, rcond=1e-12)[0]
-    if (both >= 0.0).all():
-        return np.asarray(both)
-    alone = [wanted[k] / gram[k, k] if gram[k, k] > 0.0 else 0.0 for k in (0, 1)]
-    options = [np.array([max(alone[0], 0.0), 0.0]), np.array([0.0, max(alone[1], 0.0)])]
-    return min(options, key=lambda one: float(((one @ basis - right) ** 2).sum()))
+    each = factor is not None and factor.components == 3 and problems[0].role != "coordinates"
+    columns: list[list[Array]] = [[] for _ in range((channels if each else 1) + channels)]
+    rights = []
+    for value, problem in zip(values, problems, strict=True):
+        for channel in range(channels):
+            weight = 1.0 / np.sqrt((problem.target[channel] ** 2 + EPSILON) * problem.target.size)
+            nothing = np.zeros_like(weight)
+            scaled, matte = value[channel] * weight, problem.lambert[channel] * weight
+            for at, column in enumerate(columns[:-channels]):
+                column.append(scaled if not each or at == channel else nothing)
+            for at, column in enumerate(columns[-channels:]):
+                column.append(matte if at == channel else nothing)
+            rights.append(problem.target[channel] * weight)
+    basis, right = np.stack([np.concatenate(column) for column in columns], axis=1), np.concatenate(rights)
+    best = nnls(basis.T @ basis, basis.T @ right)[0]
+    if factor is not None and (best[:-channels] > factor.most).any():
+        best[:-channels] = np.minimum(best[:-channels], factor.most)
+        rest = right - basis[:, :-channels] @ best[:-channels]
+        best[-channels:] = nnls(basis[:, -channels:].T @ basis[:, -channels:], basis[:, -channels:].T @ rest)[0]
+    square = float(((basis @ best - right) ** 2).sum())
+    scale = best[:-channels] if each else np.repeat(best[:1], channels)
+    matte_of = tuple(map(float, best[-channels:]))
+    error, name = float(np.sqrt(square / len(problems))), factor.name if factor else ""
+    return Fitted(parameters, tuple(map(float, scale)), matte_of, error, name)
 
 
 def _finite(values: Array) -> Array:
     return np.where(np.isfinite(values), values, 1e3)
 
 
-def free_parameters(chain: Chain, given: set[str], problem: Problem) -> list[Free]:
-    """The parameters that shape what the chain gives: numbers that the scene does not, and that are no mere factor."""
+def free_parameters(chain: Chain, given: set[str], problem: Problem) -> tuple[list[Free], Factor | None]:
+    """The parameters that shape what the chain gives, and that the scene does not; and the factor, if it has one."""
     found: dict[str, Free] = {}
+    factors: list[Factor] = []
     for uniform in chain.uniforms:
         name, type_ = uniform["technique_name"], BY_NAME.get(uniform["type"])
         if name in given or f"{uniform['technique']}.{name}" in given or type_ is None or name in found:
@@ -162,18 +180,24 @@ def free_parameters(chain: Chain, given: set[str], problem: Problem) -> list[Fre
             continue
         low, high = uniform["range"] or COLORS
         default = tuple(uniform["default"])
-        if len(default) != components(type_) or is_factor(chain, uniform, problem):
+        if len(default) != components(type_):
+            continue
+        if is_factor(chain, uniform, problem):
+            most = np.inf if uniform["color"] else high / default[0]
+            factors.append(Factor(name, len(default), float(most), default))
             continue
         logarithmic = low > 0.0 and high >= 50.0 * low
         if low == 0.0 and high >= 4.0 and uniform["unit"] in ("m", "1/m"):
             low, logarithmic = 1e-3 * high, True  # a length of 0 is a limit, not a place to search
         found[name] = Free(name, float(low), float(high), default, logarithmic)
-    return list(found.values())
+    return list(found.values()), max(factors, key=lambda one: (one.components, one.most), default=None)
 
 
 def is_factor(chain: Chain, uniform: Mapping[str, Any], problem: Problem) -> bool:
     """Whether twice the parameter gives just twice the light: then it is what the scale stands for."""
     name, default = uniform["technique_name"], np.array(uniform["default"])
+    if not (default > 0.0).all():
+        return False
     few = problem.thinned(40)
     with np.errstate(all="ignore"):
         one = few.values(chain, {name: _component(0.4 * default)})

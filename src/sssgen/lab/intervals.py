@@ -114,9 +114,7 @@ def _(geometry: Torus, origins: Array, directions: Array) -> Array:
 
 @intervals.register
 def _(geometry: Union, origins: Array, directions: Array) -> Array:
-    found = []
-    for part in geometry.parts:
-        found.append(part.scale * intervals(part, *_to_object(part, origins, directions)))
+    found = [part.scale * intervals(part, *_to_object(part, origins, directions)) for part in geometry.parts]
     return merged(np.concatenate(found, axis=1))
 
 

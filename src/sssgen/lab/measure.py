@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..compiler import compile
-from ..diagnostics import SssgenError
 from ..harness.backends import Array
-from ..passes.cost import Cost
+from ..passes.cost import Cost, cost_of
 from . import fit, metrics, problem
 from .body import Body, body
-from .candidates import Candidate
+from .candidates import PROBES, Candidate, load
 from .chain import Chain, material_of
 from .fit import Fitted
 from .points import points
@@ -33,10 +32,25 @@ class View(NamedTuple):
     name: str
     situation: Situation
     seen: tuple[Seen, ...] = ()
+    reference: str = ""
+    """What the references were made with: samples and seed"""
+
+
+_problems: dict[tuple[str, str, str, bool], Problem | None] = {}
+_KEPT = 48
 
 
 def problem_of(role: str, view: View, summed: bool = True) -> Problem | None:
-    """What a role is asked for on a view; None where the view does not ask."""
+    """What a role is asked for on a view; None where the view does not ask. Kept for the next candidate."""
+    key = (role, view.situation.key, view.reference, summed)
+    if key not in _problems:
+        if len(_problems) >= _KEPT:
+            _problems.clear()
+        _problems[key] = _problem_of(role, view, summed)
+    return _problems[key]
+
+
+def _problem_of(role: str, view: View, summed: bool) -> Problem | None:
     if role == "coordinates":
         return problem.of_coordinates(view.situation)
     if role == "thickness":
@@ -49,10 +63,8 @@ def problem_of(role: str, view: View, summed: bool = True) -> Problem | None:
 def fitted(candidate: Candidate, training: Sequence[View]) -> Fitted:
     """The candidate's parameters over the training views, light by light. Raises SssgenError."""
     asked = [found for view in training if (found := problem_of(candidate.role, view, summed=False)) is not None]
-    chains: list[Chain | None] = []
     with tempfile.TemporaryDirectory() as folder:
-        for view in training:
-            chains.append(chain_of(candidate, body(view.situation.geometry), folder))
+        chains = [chain_of(candidate, body(view.situation.geometry), folder) for view in training]
     return fit.fit(chains, asked)
 
 
@@ -84,10 +96,10 @@ def measured(candidate: Candidate, found: Fitted, views: Sequence[View]) -> dict
         np.concatenate([one.target for _, one in asked], axis=1),
         np.concatenate([one.noise for _, one in asked], axis=1),
     )
-    each = {
-        view.name: metrics.compare(picture, one.target, one.noise)
-        for picture, (view, one) in zip(pictures, asked, strict=True)
-    }
+    each = {}
+    for picture, (view, one) in zip(pictures, asked, strict=True):
+        of_view = metrics.compare(picture, one.target, one.noise)
+        each[view.name] = {key: of_view[key] for key in ("value", "low", "high")}
     if candidate.role == "material":
         flips = [
             metrics.flip(points(view.situation).picture(picture), points(view.situation).picture(one.target))
@@ -98,9 +110,10 @@ def measured(candidate: Candidate, found: Fitted, views: Sequence[View]) -> dict
         "role": candidate.role, "name": candidate.name, "label": candidate.label, "baseline": candidate.baseline,
         "settings": dict(candidate.settings), "chain": list(candidate.techniques),
         "parameters": {name: list(value) for name, value in found.parameters.items()},
-        "scale": list(found.scale), "matte": list(found.matte), "training_error": found.error,
-        "cost": {"value": float(cost.weight), **cost._asdict(), "gpu_ms": None},
-        "error": error, "views": {name: {key: one[key] for key in ("value", "low", "high")} for name, one in each.items()},
+        "scale": list(found.scale), "matte": list(found.matte), "factor": found.factor,
+        "training_error": found.error,
+        "cost": {"value": float(max(cost.weight, 1)), **cost._asdict(), "gpu_ms": None},
+        "error": error, "views": each,
         "failed": f"{bad} of {lanes} points are not finite" if bad else "",
     }  # fmt: skip
 
@@ -117,7 +130,7 @@ def exact(parameters: Mapping[str, Sequence[float]]) -> dict[str, Any]:
 
 
 def static_cost(chain: Chain | None) -> Cost:
-    """What one evaluation of a chain does for one light, over what the empty chain does."""
+    """What one evaluation of a chain does for one light; a probe is none of the chain's work."""
     if chain is None:
         return Cost()
     entries = compile(chain.material, COST_TARGET, "functions").reflection["entries"]
@@ -125,14 +138,14 @@ def static_cost(chain: Chain | None) -> Cost:
     for kind in ("surface", "translucency"):
         if kind in entries:
             total = total.plus(Cost(**entries[kind]["cost"]))
-    return total
+    probes = [
+        stage.technique.name for stage in chain.material.stages if os.path.dirname(stage.technique.path) == PROBES
+    ]
+    return total.plus(_of_probe(probes[-1]), -1) if probes else total
 
 
-@contextmanager
-def told(what: str) -> Iterator[None]:
-    """Errors say which candidate they are of."""
-    try:
-        yield
-    except SssgenError as error:
-        for one in error.diagnostics:
-            raise SssgenError([one._replace(message=f"{what}: {one.message}")]) from None
+@cache
+def _of_probe(name: str) -> Cost:
+    """What a probe alone costs."""
+    module, function = load(name).module, load(name).function
+    return cost_of(module, function.key)

@@ -59,7 +59,7 @@ class Points:
         return np.unique(np.linspace(0, self.count - 1, min(most, self.count)).astype(int))
 
 
-@lru_cache(32)
+@lru_cache(64)
 def points(situation: Situation) -> Points:
     """The places of a situation. Raises SssgenError for geometry that cannot be read."""
     width, height = situation.size

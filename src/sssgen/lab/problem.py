@@ -1,4 +1,4 @@
-"""What is asked of a chain on a scene: its inputs light by light, and the reference that its values are held against."""
+"""What is asked of a chain on a scene: its inputs light by light, and the reference to hold its values against."""
 
 from __future__ import annotations
 
@@ -199,4 +199,3 @@ def _visible(situation: Situation, at: Points, direction: tuple[float, float, fl
 
 def _directions(situation: Situation) -> list[tuple[float, float, float]]:
     return [light.direction for light in situation.lights if light.direction is not None]
-

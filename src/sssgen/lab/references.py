@@ -61,18 +61,19 @@ def by_situation(situations: Sequence[Situation], results: Sequence[Seen]) -> di
 
 
 def training(situation: Situation) -> list[Situation]:
-    """What a scene's chains are fitted to: a ball and a slab of its medium, about as large as its body.
+    """What a scene's chains are fitted to: balls and slabs of its medium, large and small beside its body.
 
     Sizes go in steps of two, so that scenes of one medium share them.
     """
     assert situation.medium is not None
     corners = body.placed_corners(situation.geometry)
     size = 2.0 ** round(float(np.log2(max(np.ptp(corners, axis=0).max(), 1e-6))))
-    return [
-        _lit("ball", Ball(0.5 * size), situation.medium, (0.0, 0.4 * size, 3.2 * size), BALL_LIGHTS),
-        _lit("slab", Slab(1.4 * size, 1.4 * size, 0.3 * size), situation.medium, (0.9 * size, 0.7 * size, 3.0 * size),
-             SLAB_LIGHTS),
-    ]  # fmt: skip
+    found = []
+    for part in (size, 0.4 * size):
+        ball, slab = Ball(0.5 * part), Slab(1.4 * part, 1.4 * part, 0.3 * part)
+        found.append(_lit("ball", ball, situation.medium, (0.0, 0.4 * part, 3.2 * part), BALL_LIGHTS))
+        found.append(_lit("slab", slab, situation.medium, (0.9 * part, 0.7 * part, 3.0 * part), SLAB_LIGHTS))
+    return found
 
 
 def _lit(

@@ -1,8 +1,8 @@
 """Closed triangle meshes of geometry, for renderers that know nothing else.
 
-A box and a slab are exact, and so is a mesh. Triangles have their corners on a torus, and on the zero level of a
-distance function, and lie inside them by at most c² / 8r, for edges of length c and a radius of curvature r; what is
-thinner than a cell of the grid may be missed.
+A box and a slab are exact, and so is a mesh, and the union of such. Triangles have their corners on a torus, and on
+the zero level of a distance function, and lie inside them by at most c² / 8r, for edges of length c and a radius of
+curvature r; what is thinner than a cell of the grid may be missed.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from sssgen.diagnostics import failure
 from sssgen.harness.extras import need
-from sssgen.harness.scenes.geometry import Ball, Box, Distance, Geometry, Mesh, Slab, Torus
+from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
 
 Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
@@ -37,6 +37,8 @@ def mesh_of(geometry: Geometry, resolution: int = RESOLUTION) -> tuple[Array, In
         vertices, faces = _ring(geometry.major, geometry.minor, 2 * resolution)
     elif isinstance(geometry, Box | Slab):
         vertices, faces = _box(np.array(box_size(geometry)))
+    elif isinstance(geometry, Union):
+        vertices, faces = _united([mesh_of(part, resolution) for part in geometry.parts])
     else:
         reach = geometry.reach if isinstance(geometry, Distance) else _radius(geometry)
         vertices, faces = _level(geometry.distance, reach, resolution)
@@ -54,6 +56,8 @@ def box_size(box: Box | Slab) -> tuple[float, float, float]:
 def _radius(geometry: Geometry) -> float:
     if isinstance(geometry, Ball):
         return geometry.radius
+    if isinstance(geometry, Capsule):
+        return 1.01 * (geometry.radius + 0.5 * geometry.length)
     raise failure(f"there is no mesh of a {type(geometry).__name__}")
 
 
@@ -72,6 +76,17 @@ def _ring(major: float, minor: float, steps: int) -> tuple[Array, Indices]:
     right, up = np.roll(at, -1, axis=1), np.roll(at, -1, axis=0)
     quads = np.stack([at, right, np.roll(right, -1, axis=0), up], axis=-1).reshape(-1, 4)
     return vertices, _halves(quads)
+
+
+def _united(parts: list[tuple[Array, Indices]]) -> tuple[Array, Indices]:
+    """The surface of closed meshes together, without what lies inside one of them."""
+    manifold = need("manifold3d", "manifold3d", "reference")
+    solids = [
+        manifold.Manifold(manifold.Mesh64(np.ascontiguousarray(vertices), np.ascontiguousarray(faces, np.uint64)))
+        for vertices, faces in parts
+    ]
+    whole = manifold.Manifold.batch_boolean(solids, manifold.OpType.Add).to_mesh64()
+    return np.asarray(whole.vert_properties, np.float64)[:, :3], np.asarray(whole.tri_verts, np.int64)
 
 
 def _halves(quads: Indices) -> Indices:

@@ -34,7 +34,7 @@ class Supply:
     inputs: dict[str, Array] = field(default_factory=dict)
 
 
-@lru_cache(16)
+@lru_cache(48)
 def of_scene(situation: Situation) -> Supply:
     """What does not depend on a light."""
     geometry, at = situation.geometry, points(situation)
@@ -61,7 +61,7 @@ def of_scene(situation: Situation) -> Supply:
     return Supply(values, textures, {"uv": np.stack([texels, np.full(at.count, 0.5)])})
 
 
-@lru_cache(64)
+@lru_cache(192)
 def of_light(situation: Situation, direction: tuple[float, float, float]) -> Supply:
     """What depends on a light from afar: the exact thickness towards it, and its depth map."""
     geometry, at = situation.geometry, points(situation)

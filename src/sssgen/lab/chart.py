@@ -1,0 +1,257 @@
+"""Charts: every candidate on every scene, fitted, measured, and set beside the others, as a record to draw or to pick
+from.
+
+    record = charted([situation.load("cube")], Settings())
+
+The points of a scene are kept in the cache folder; what an interrupted run has measured is not measured again.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from .. import cache
+from ..diagnostics import SssgenError, failure
+from ..version import VERSION
+from . import candidates, references
+from .candidates import Candidate
+from .drawing.record import FORMAT, front, hypervolume
+from .executor import Failure, Item, Progress, run
+from .fit import Fitted
+from .measure import View
+from .situation import Situation
+from .work import code_stamp
+
+PAYS = 0.9
+"""A dearer setting of a thickness technique goes into whole chains where its error in the fit is this much less."""
+
+DEFAULTS = ("cube", "torus", "bracket", "capsule", "mouse", "inlay_plate", "inlay_ball")
+"""The scenes of a chart that names none."""
+
+
+class Settings(NamedTuple):
+    """How to measure."""
+
+    samples: int = references.SAMPLES
+    """Of each ray and channel of a scene's reference; those of what is fitted to have half as many"""
+    seed: int = 0
+    roles: tuple[str, ...] = candidates.ROLES
+    scheduler: str = ""
+    processes: int | None = None
+    shown: Callable[[], AbstractContextManager[Progress]] = lambda: nullcontext(lambda *_: None)
+    """Makes a progress bar for each stage of the work"""
+
+    def kept(self, one: Situation) -> str:
+        """Where the points of a scene lie in the cache."""
+        said = repr((one.key, self.samples, self.seed, self.roles, code_stamp(__name__)))
+        return f"chart-{cache.digest(said)}.json"
+
+
+def charted(situations: Sequence[Situation], settings: Settings) -> dict[str, Any]:
+    """The record of a chart: all points of these scenes, those of each from the cache where it has them.
+
+    Raises SssgenError for scenes that cannot be measured, and for packages that are missing.
+    """
+    known = {one.key: kept(one, settings) for one in situations}
+    new = [one for one in {one.key: one for one in situations}.values() if known[one.key] is None]
+    if new:
+        for one, made in zip(new, _measured(new, settings), strict=True):
+            known[one.key] = made
+            cache.write(settings.kept(one), json.dumps(made).encode())
+    each = [known[one.key] for one in situations]
+    points = _on_fronts([point for made in each if made for point in made["points"]])
+    return {
+        "format": FORMAT, "record": about(settings), "cost": "static",
+        "cost_unit": "weighted operations",
+        "scenes": [made["scene"] for made in each if made],
+        "points": points, "hypervolume": hypervolumes(points),
+    }  # fmt: skip
+
+
+def kept(one: Situation, settings: Settings) -> dict[str, Any] | None:
+    """The scene's points from the cache; None where it has none."""
+    try:
+        found: dict[str, Any] = json.loads(cache.read(settings.kept(one)) or b"null")
+    except ValueError:
+        return None
+    return found
+
+
+def _measured(situations: Sequence[Situation], settings: Settings) -> list[dict[str, Any]]:
+    """The points of scenes, measured."""
+    views = _views(situations, settings)
+    found: dict[str, list[dict[str, Any]]] = {one.key: [] for one in situations}
+    for role in settings.roles:
+        if role == "material":
+            continue
+        jobs = [(one, candidate) for one in situations for candidate in _asked(role, one)]
+        for one, point in _points(jobs, views, settings):
+            found[one.key].append(point)
+    if "material" in settings.roles:
+        jobs = []
+        for one in situations:
+            if one.medium is not None:
+                lengths = paying([point for point in found[one.key] if point["role"] == "thickness"])
+                jobs += [(one, candidate) for candidate in candidates.materials(lengths)]
+        for one, point in _points(jobs, views, settings):
+            found[one.key].append(point)
+    return [{"scene": _scene(one, views[one.key]), "points": found[one.key]} for one in situations]
+
+
+def _asked(role: str, one: Situation) -> list[Candidate]:
+    """The candidates of a role that a scene asks for."""
+    if role == "coordinates":
+        return candidates.coordinates() if one.inlay is not None else []
+    if one.medium is None:
+        return []
+    return candidates.thickness() if role == "thickness" else candidates.translucency()
+
+
+class _Views(NamedTuple):
+    own: tuple[View, ...]
+    training: tuple[View, ...]
+
+
+def _views(situations: Sequence[Situation], settings: Settings) -> dict[str, _Views]:
+    """Each scene's views and what it is fitted to, with their references."""
+    own = {one.key: (one, one.held_out()) for one in situations}
+    training = {one.key: references.training(one) if one.medium is not None else [] for one in situations}
+    dear = list({view.key: view for views in own.values() for view in views}.values())
+    cheap = list({view.key: view for views in training.values() for view in views}.values())
+    items = references.items(dear, settings.samples, settings.seed)
+    items += references.items(cheap, settings.samples // 2, settings.seed)
+    seen = references.by_situation([*dear, *cheap], _all(items, settings))
+
+    def view(name: str, one: Situation, samples: int) -> View:
+        return View(name, one, tuple(seen.get(one.key, ())), f"{samples} {settings.seed}")
+
+    found = {}
+    for one in situations:
+        shown = [
+            view(name, side, settings.samples) for name, side in zip(("own", "held out"), own[one.key], strict=True)
+        ]
+        fitted_to = [view(each.name, each, settings.samples // 2) for each in training[one.key]]
+        if one.inlay is not None:
+            fitted_to.append(View("plate", references.plate(one)))
+        found[one.key] = _Views(tuple(shown), tuple(fitted_to))
+    return found
+
+
+def _points(
+    jobs: Sequence[tuple[Situation, Candidate]], views: dict[str, _Views], settings: Settings
+) -> Iterable[tuple[Situation, dict[str, Any]]]:
+    """The jobs' points: parameters are fitted once for all scenes that are fitted to the same."""
+    fits = [
+        Item("sssgen.lab.measure:fitted", (candidate, _training(candidate, views[one.key])), f"fit {candidate.label}")
+        for one, candidate in jobs
+    ]
+    fitted: list[Fitted] = _all(fits, settings)
+    measures = [
+        Item("sssgen.lab.measure:measured", (candidate, found, views[one.key].own), f"{candidate.label} on {one.name}")
+        for (one, candidate), found in zip(jobs, fitted, strict=True)
+    ]
+    points: list[dict[str, Any]] = _all(measures, settings)
+    for (one, _), point in zip(jobs, points, strict=True):
+        yield one, {"scene": one.name, **point}
+
+
+def _training(candidate: Candidate, views: _Views) -> tuple[View, ...]:
+    on_plate = candidate.role == "coordinates"
+    return tuple(view for view in views.training if (view.name == "plate") == on_plate)
+
+
+def _all(items: Sequence[Item], settings: Settings) -> list[Any]:
+    """The items' results. Raises SssgenError with those that failed."""
+    with settings.shown() as progress:
+        results = run(items, settings.scheduler, settings.processes, progress=progress)
+    failed = {result.name: result for result in results if isinstance(result, Failure)}
+    if failed:
+        raise SssgenError([failure(f"{one.name}: {one.message}").diagnostics[0] for one in failed.values()])
+    return results
+
+
+def paying(points: Sequence[dict[str, Any]]) -> list[Candidate]:
+    """The thickness candidates for whole chains: of each technique the cheapest setting, and those that pay.
+
+    What was fitted to decides, and not the scene.
+    """
+    by_label = {candidate.label: candidate for candidate in candidates.thickness()}
+    chains: dict[tuple[str, ...], list[dict[str, Any]]] = {}
+    for point in points:
+        chains.setdefault(tuple(point["chain"]), []).append(point)
+    found = []
+    for of_chain in chains.values():
+        best = float("inf")
+        for point in sorted(of_chain, key=lambda one: float(one["cost"]["value"])):
+            if point["training_error"] < PAYS * best:
+                best = point["training_error"]
+                found.append(by_label[point["label"]])
+    return found
+
+
+def _scene(one: Situation, views: _Views) -> dict[str, Any]:
+    """What a record says of a scene."""
+    found: dict[str, Any] = {"name": one.name, "title": one.title, "key": one.key}
+    if one.medium is not None:
+        found["medium"] = {"name": one.medium.name, "albedo": list(one.medium.albedo)}
+        found["medium"]["extinction"] = list(one.medium.extinction)
+        found["fitted_to"] = [view.name for view in views.training]
+    return found
+
+
+def _on_fronts(points: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The points, each with whether it stands on the front of its scene and role."""
+    groups: dict[tuple[str, str], list[dict[str, Any]]] = {}
+    for point in points:
+        groups.setdefault((point["scene"], point["role"]), []).append(point)
+    best = {id(point) for group in groups.values() for point in front(group)}
+    return [{**point, "front": id(point) in best} for point in points]
+
+
+def hypervolumes(points: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Of each scene and role: how much our points dominate, and how much all baselines together do."""
+    found = []
+    for scene, role in dict.fromkeys((point["scene"], point["role"]) for point in points):
+        of_it = [point for point in points if (point["scene"], point["role"]) == (scene, role)]
+        worst = [1.1 * max(float(point["cost"]["value"]) for point in of_it), 1.0]
+        ours = [point for point in of_it if not point["baseline"]]
+        theirs = [point for point in of_it if point["baseline"] or point["name"] == "none"]
+        found.append({
+            "scene": scene, "role": role, "reference_point": worst,
+            "ours": hypervolume(ours, worst), "baselines": hypervolume(theirs, worst),
+        })  # fmt: skip
+    return found
+
+
+def about(settings: Settings) -> dict[str, Any]:
+    """What is needed to measure the same again."""
+    packages = ("numpy", "scipy", "mitsuba", "embreex", "libigl", "flip-evaluator")
+    return {
+        "sssgen": VERSION, "commit": _commit(), "versions": {name: _version(name) for name in packages},
+        "seed": settings.seed, "samples": settings.samples, "device": "", "driver": "", "software": False,
+    }  # fmt: skip
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return ""
+
+
+def _commit() -> str:
+    """The commit of a checkout, '' elsewhere."""
+    here = Path(__file__).parent
+    try:
+        found = subprocess.run(
+            ["git", "rev-parse", "HEAD"], cwd=here, capture_output=True, text=True, timeout=10, check=False
+        )
+    except (OSError, subprocess.SubprocessError):
+        return ""
+    return found.stdout.strip() if found.returncode == 0 else ""

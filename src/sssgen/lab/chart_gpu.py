@@ -1,0 +1,165 @@
+"""A chart's second cost: milliseconds on the GPU that is here, of each chain's emitted shader on its scene's points.
+
+The whole emitted shader is timed, for the scene's lights, in turns with the others; what the same shader takes without
+the chain is taken off.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..harness.scenes.scene import DistanceTexture, Scene
+from ..harness.scenes.scene import load as load_scene
+from ..material import Material
+from ..material_values import WrongValue, read_value
+from . import body, gpu_cost, gpu_programs
+from .chain import Stage, material_of
+from .emission import stages_of
+from .gpu_cost import Measured
+from .situation import Situation, names
+
+AT_ONCE = 40
+"""Programs that take turns: many take too long for a clock to stay the same."""
+EVALUATIONS = 8
+"""Of a chain at each pixel: a single one hides behind the reading of the points."""
+LEAST = 1e-4
+"""Milliseconds below which a chain costs nothing that a timer can tell."""
+EMPTY = "without"
+
+Told = Callable[[int, int, str], None]
+
+
+def with_gpu_cost(
+    record: Mapping[str, Any],
+    situations: Sequence[Situation],
+    size: tuple[int, int] = gpu_cost.SIZE,
+    rounds: int = gpu_cost.ROUNDS,
+    told: Told = lambda *_: None,
+) -> dict[str, Any]:
+    """The record with each point's time as its cost, the static cost's rank correlation with it, and the device.
+
+    Points that have failed are not timed. Raises SssgenError where there is no OpenGL.
+    """
+    points = [dict(point) for point in record["points"]]
+    about = dict(record["record"])
+    done = 0
+    for one in situations:
+        own = [point for point in points if point["scene"] == one.name and not point["failed"]]
+        for start in range(0, len(own), AT_ONCE):
+            some = own[start : start + AT_ONCE]
+            found = _timed(one, some, size, rounds)
+            for number, point in enumerate(some):
+                taken = found.net_times[str(number)] - found.net_times[EMPTY]
+                low, median, high = (float(value) for value in np.percentile(taken, [10.0, 50.0, 90.0]))
+                point["cost"] = {**point["cost"], "gpu_ms": max(median, LEAST), "gpu_ms_low": low, "gpu_ms_high": high}
+            done += len(some)
+            told(done, len(points), one.name)
+            about |= {"device": found.device.renderer, "driver": found.device.version}
+            about |= {"software": found.device.software, "size": list(size), "rounds": rounds}
+    about["rank_correlation"] = correlations(points)
+    return {**record, "record": about, "points": points}
+
+
+def by_gpu(record: Mapping[str, Any]) -> dict[str, Any]:
+    """The record with its GPU times as the costs that are drawn and picked by; points without one are left out."""
+    points = [
+        {**point, "cost": {**point["cost"], "static": point["cost"]["value"], "value": point["cost"]["gpu_ms"]}}
+        for point in record["points"]
+        if point["cost"].get("gpu_ms") is not None
+    ]
+    unit = "ratio of CPU time" if record["record"].get("software") else "ms at 1080p"
+    return {**record, "points": points, "cost": "gpu", "cost_unit": unit}
+
+
+def _timed(one: Situation, points: Sequence[Mapping[str, Any]], size: tuple[int, int], rounds: int) -> Measured:
+    scene = _scene(one)
+    at = gpu_programs.surface_points(scene, size)
+    of = body.body(one.geometry)
+    programs = []
+    with tempfile.TemporaryDirectory() as folder:
+        for name, text in of.files.items():
+            with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
+                file.write(text)
+        chains: list[tuple[str, Sequence[Stage]]] = [(EMPTY, ())]
+        chains += [(str(number), stages_of(point, of)) for number, point in enumerate(points)]
+        for name, stages in chains:
+            surface = [] if any(stage.section == "surface" for stage in stages) else [Stage("surface", "base_color")]
+            material = material_of([*stages, *surface], folder)
+            fitting = _fitting(scene, one, material)
+            programs.append(gpu_programs.of_material(name, material, fitting, at, EVALUATIONS))
+    return gpu_cost.measure(programs, size, rounds)
+
+
+def _scene(one: Situation) -> Scene:
+    """The situation as a scene to draw."""
+    scene = load_scene(names().get(one.name, one.name))
+    return dataclasses.replace(scene, geometry=one.geometry, camera=one.camera, lights=one.lights)
+
+
+def _fitting(scene: Scene, one: Situation, material: Material) -> Scene:
+    """The scene with the parameters and textures of the body that a material has."""
+    low, high = body.bounds(one.geometry)
+    margin = 0.05 * float((high - low).max())
+    low, high, reach = low - margin, high + margin, 0.5 * float((high - low).max()) + margin
+    given: dict[str, Any] = {"box_min": [*low], "box_max": [*high], "distance_range": reach}
+    given |= {"object_scale": one.geometry.scale, "world_to_object": [*one.geometry.to_object().T.ravel()]}
+    if one.inlay is not None:
+        given |= {"depth": one.inlay.depth, "ior": one.inlay.ior, "outside_ior": one.inlay.outside_ior}
+    modules = [module for stage in material.stages for module in (stage.technique.module, *(
+        binding.module for binding in stage.bindings.values()))]  # fmt: skip
+    uniforms = {uniform.name: uniform for module in modules for uniform in module.uniforms}
+    fixed = {name for stage in material.stages for name in stage.fixed}
+    parameters = {}
+    for name, value in given.items():
+        if name in uniforms and name not in fixed:
+            try:
+                read_value(uniforms[name], value)
+            except WrongValue:
+                continue
+            parameters[name] = value
+    textures = {}
+    if "distance_map" in uniforms:
+        side = tuple(max(4, round(64 * float(part))) for part in (high - low) / (high - low).max())
+        textures["distance_map"] = DistanceTexture(side, tuple(low), tuple(high), reach)  # type: ignore[arg-type]
+    kept = dataclasses.replace(scene, parameters={}, textures=textures)
+    return _with_parameters(kept, parameters, material)
+
+
+def _with_parameters(scene: Scene, parameters: Mapping[str, Any], material: Material) -> Scene:
+    """The scene with those of the parameters that the emitted shader reads."""
+    from ..compiler import compile
+
+    reflection = compile(material, "glsl-330").reflection
+    read = {uniform["source_name"] for uniform in reflection["uniforms"]}
+    textures = {texture["source_name"] for texture in reflection["textures"]}
+    return dataclasses.replace(
+        scene,
+        parameters={name: value for name, value in parameters.items() if name in read},
+        textures={name: value for name, value in scene.textures.items() if name in textures},
+    )
+
+
+def correlations(points: Sequence[Mapping[str, Any]]) -> dict[str, float]:
+    """Spearman's rank correlation of static and measured cost, over all scenes, by role."""
+    found = {}
+    for role in dict.fromkeys(point["role"] for point in points):
+        timed = [point["cost"] for point in points if point["role"] == role and point["cost"].get("gpu_ms") is not None]
+        if len(timed) > 1:
+            static = ranks([float(cost.get("static", cost["value"])) for cost in timed])
+            measured = ranks([float(cost["gpu_ms"]) for cost in timed])
+            if np.ptp(static) > 0.0 and np.ptp(measured) > 0.0:
+                found[role] = float(np.corrcoef(static, measured)[0, 1])
+    return found
+
+
+def ranks(values: Sequence[float]) -> np.ndarray:
+    """The values' ranks; equal ones share the mean of theirs."""
+    _, inverse, counts = np.unique(np.array(values), return_inverse=True, return_counts=True)
+    last = np.cumsum(counts)
+    return (last - 0.5 * (counts - 1))[inverse]
