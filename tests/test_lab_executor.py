@@ -22,12 +22,27 @@ from sssgen.diagnostics import SssgenError
 from sssgen.harness.stress.report import Report, as_json
 from sssgen.harness.stress.run import Machines, Settings, stress
 from sssgen.harness.stress.specimen import specimens
-from sssgen.lab import cluster
+from sssgen.lab import cluster, work
 from sssgen.lab.executor import Failure, Item, failures, run
 from sssgen.lab.progress import Bar
 from sssgen.lab.store import Store, decoded, encoded
 from sssgen.lab.stressing import spread
-from sssgen.lab.work import task
+from sssgen.lab.work import execute, task
+
+
+@pytest.fixture(autouse=True)
+def stamped_anew() -> None:
+    """Somebody may edit sssgen while its tests run; then only the test of that moment fails."""
+    work.code_stamp.cache_clear()
+    work._own.cache_clear()
+
+
+def test_a_worker_with_other_code_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    one = task(Item("executor_items:echo", (1,), "the item"))
+    assert decoded(execute(one)) == (1, 1)
+    monkeypatch.setattr(work, "code_stamp", lambda module: "another")
+    refused = decoded(execute(one))
+    assert isinstance(refused, Failure) and "another state of sssgen" in refused.message
 
 
 def items(folder: Path, count: int, seconds: float = 0.0, name: str = "measure") -> list[Item]:
@@ -48,10 +63,10 @@ def wait_until(true: Callable[[], Any], seconds: float = 20.0) -> None:
 
 
 def test_same_bytes_in_processes_as_here(tmp_path: Path) -> None:
-    work = items(tmp_path, 6)
-    here = run(work, processes=0, store=Store(""))
+    todo = items(tmp_path, 6)
+    here = run(todo, processes=0, store=Store(""))
     assert [result.name for result in here] == [f"item {number}" for number in range(6)]
-    assert as_bytes(run(work, processes=2, store=Store(""))) == as_bytes(here)
+    assert as_bytes(run(todo, processes=2, store=Store(""))) == as_bytes(here)
     assert runs(tmp_path) == sorted([*range(6)] * 2)
 
 
@@ -79,8 +94,8 @@ def test_keys() -> None:
 
 
 def test_duplicates_run_once(tmp_path: Path) -> None:
-    work = items(tmp_path, 3)
-    results = run([*work, *work], processes=2, store=Store(""))
+    todo = items(tmp_path, 3)
+    results = run([*todo, *todo], processes=2, store=Store(""))
     assert runs(tmp_path) == [0, 1, 2]
     assert as_bytes(results[:3]) == as_bytes(results[3:])
 
@@ -116,11 +131,11 @@ def test_no_cache_folder_is_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize("processes", [0, 2])
 def test_a_failure_stands_for_its_item_alone(processes: int) -> None:
-    work = [Item("executor_items:fail", (how,), how) for how in ("said", "raised", "exit")]
-    work += [Item("executor_items:missing", (), "missing"), Item("no_such_module:name", (), "module")]
-    work += [Item("executor_items:echo", (1,), "good")]
+    todo = [Item("executor_items:fail", (how,), how) for how in ("said", "raised", "exit")]
+    todo += [Item("executor_items:missing", (), "missing"), Item("no_such_module:name", (), "module")]
+    todo += [Item("executor_items:echo", (1,), "good")]
     store = Store("")
-    *failed, good = run(work, processes=processes, store=store)
+    *failed, good = run(todo, processes=processes, store=store)
     assert good == (1, 1)
     assert [one.name for one in failed] == ["said", "raised", "exit", "missing", "module"]
     assert failed[0].message == "the scene has no light"
@@ -130,8 +145,8 @@ def test_a_failure_stands_for_its_item_alone(processes: int) -> None:
 
 
 def test_a_killed_process_costs_nothing(tmp_path: Path) -> None:
-    work = [*items(tmp_path, 3, name="die_first"), *items(tmp_path, 6)[3:]]
-    results = run(work, processes=2, store=Store(""))
+    todo = [*items(tmp_path, 3, name="die_first"), *items(tmp_path, 6)[3:]]
+    results = run(todo, processes=2, store=Store(""))
     assert results[:3] == [0, 1, 2] and not failures(results)
     assert runs(tmp_path) == [0, 0, 1, 1, 2, 2, 3, 4, 5]
 
@@ -179,10 +194,10 @@ def test_an_interrupted_run_goes_on(tmp_path: Path, how: int) -> None:
     assert 3 <= done <= 5 and started <= done + 2  # no more than its two workers had in their hands
     time.sleep(0.4)
     assert len(runs(noted)) == started  # nobody goes on without it
-    work = items(noted, 10, 0.15)
-    results = run(work, processes=2, store=Store(str(folder)))
+    todo = items(noted, 10, 0.15)
+    results = run(todo, processes=2, store=Store(str(folder)))
     assert len(runs(noted)) == started + 10 - done
-    assert as_bytes(results) == as_bytes(run(work, processes=0, store=Store(str(folder))))
+    assert as_bytes(results) == as_bytes(run(todo, processes=0, store=Store(str(folder))))
 
 
 def test_bar_is_silent_where_there_is_no_terminal(capfd: pytest.CaptureFixture[str]) -> None:
@@ -231,7 +246,7 @@ def test_same_bytes_on_dask_though_a_worker_dies(tmp_path: Path, dask: Any) -> N
     ]
     assert runs(local) == sorted([*range(4)] * 2)
 
-    work = [*items(remote, 12, 0.1), Item("executor_items:fail", ("said",), "said")]
+    todo = [*items(remote, 12, 0.1), Item("executor_items:fail", ("said",), "said")]
     store, killed = Store(str(tmp_path / "store")), []
 
     def kill(done: int, total: int, name: str) -> None:
@@ -239,11 +254,11 @@ def test_same_bytes_on_dask_though_a_worker_dies(tmp_path: Path, dask: Any) -> N
             killed.append(next(iter(dask.workers.values())).pid)
             os.kill(killed[0], signal.SIGKILL)
 
-    *results, failed = run(work, dask.scheduler_address, store=store, progress=kill)
+    *results, failed = run(todo, dask.scheduler_address, store=store, progress=kill)
     assert killed and failed == Failure("said", "the scene has no light")
     assert [result.name for result in results] == [f"item {number}" for number in range(12)]
     assert set(runs(remote)) == set(range(12))
-    assert as_bytes(results) == as_bytes(run(work[:-1], processes=0, store=Store("")))
+    assert as_bytes(results) == as_bytes(run(todo[:-1], processes=0, store=Store("")))
     assert len([path for path in (tmp_path / "store").rglob("*") if path.is_file()]) == 12
 
 
@@ -301,7 +316,7 @@ def test_the_command_shares_out(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_pictures_apart_are_the_same_when_they_are_shared_out() -> None:
-    work = [Item("sssgen.lab.rendering:apart", ("resin_inlay", ("numpy-f32", "numpy"), (32, 24), 1))]
-    [[single, same]] = here = run(work, processes=0, store=Store(""))
+    todo = [Item("sssgen.lab.rendering:apart", ("resin_inlay", ("numpy-f32", "numpy"), (32, 24), 1))]
+    [[single, same]] = here = run(todo, processes=0, store=Store(""))
     assert 0.0 < single.worst < 1.0 and single.beyond == 0 and same == (0.0, 0)
-    assert as_bytes(run(work, processes=1, store=Store(""))) == as_bytes(here)
+    assert as_bytes(run(todo, processes=1, store=Store(""))) == as_bytes(here)
