@@ -93,6 +93,10 @@ class Chain:
             if given is not None:
                 self.names[texture["name"]] = given
 
+    def reads(self, texture: str) -> bool:
+        """Whether the chain reads a texture, by its technique's name for it."""
+        return any(one["technique_name"] == texture for one in self.reflection["textures"])
+
     def run(self, inputs: Mapping[str, Array], lights: Iterable[Mapping[str, Array]]) -> list[Array]:
         """For each light what comes through, as a factor on its colour: (3, n) in linear light.
 

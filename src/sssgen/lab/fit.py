@@ -18,7 +18,7 @@ from .chain import Chain
 from .metrics import EPSILON
 from .problem import Problem
 
-LANES = 700
+LANES = 400
 """Lanes of a training problem that are fitted to."""
 EVALUATIONS = 80
 """The most evaluations of one search."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,6 +22,8 @@ UV_RANGE = 32.0
 """What the probe shown_uv divides texture coordinates by, which are lengths in depths here."""
 
 
+DEPTH_MAP = "light_depth_map"
+"""The texture that each light has its own of."""
 WHITE = 0.8
 """Where exposure puts a reference's brightest parts."""
 
@@ -61,16 +64,42 @@ class Problem:
 
     def values(self, chain: Chain, parameters: Mapping[str, Any]) -> Array:
         """What the chain gives: (channels, lanes)."""
+        together = not chain.reads(DEPTH_MAP)
         found = []
-        for part in self.parts:
+        for part in [self._together] if together else self.parts:
             chain.set({**part.values, **parameters}, part.textures)
             if self.role == "coordinates":
                 found.append(UV_RANGE * (chain.surface(part.inputs, "albedo")[:2] - 0.5))
             else:
                 found.append(chain.run(part.inputs, [part.light])[0] * part.color)
-        whole = np.sum(found, axis=0) if self.summed else np.concatenate(found, axis=1)
+        whole = np.concatenate(found, axis=1)
+        if self.summed:
+            whole = whole.reshape(len(whole), len(self.parts), -1).sum(axis=1)
         read = whole[:1] if self.role == "thickness" else whole
         return read[:, self.keep] * self.gain
+
+    @cached_property
+    def _together(self) -> Part:
+        """All parts as one, side by side: one run of a chain costs as much as its lanes, and as much again."""
+        if len(self.parts) == 1:
+            return self.parts[0]
+        counts = [part.inputs["P"].shape[1] for part in self.parts]
+
+        def beside(each: Sequence[Mapping[str, Any]], names: Collection[str]) -> dict[str, Any]:
+            return {name: _beside([one[name] for one in each], counts) for name in names}
+
+        first = self.parts[0]
+        shared = {name for name in first.values if all(one.values[name] is first.values[name] for one in self.parts)}
+        values = beside([part.values for part in self.parts], first.values.keys() - shared)
+        return Part(
+            beside([part.inputs for part in self.parts], first.inputs.keys()),
+            beside([part.light for part in self.parts], first.light.keys()),
+            {**{name: first.values[name] for name in shared}, **values},
+            first.textures,
+            np.concatenate(
+                [np.broadcast_to(part.color, (3, n)) for part, n in zip(self.parts, counts, strict=True)], 1
+            ),
+        )
 
     def thinned(self, most: int) -> Problem:
         """The same on at most so many of its lanes, spread evenly: to fit with."""
@@ -94,6 +123,12 @@ def _selected(problem: Problem, chosen: Array) -> Problem:
         problem.role, tuple(parts), False, problem.target[:, chosen], problem.noise[:, chosen],
         problem.lambert[:, chosen], np.arange(len(chosen)), problem.gain,
     )  # fmt: skip
+
+
+def _beside(values: Sequence[Any], counts: Sequence[int]) -> Any:
+    """Values of several parts with their lanes one after the other."""
+    wide = [np.broadcast_to(value, (*np.shape(value)[:-1], count)) for value, count in zip(values, counts, strict=True)]
+    return np.concatenate(wide, axis=-1)
 
 
 def _lanes(part: Part, own: Array, count: int) -> Part:

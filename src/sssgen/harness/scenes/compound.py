@@ -11,7 +11,7 @@ from .placed import Array, Geometry, Hits, planar, spherical, spread, tangent_of
 
 @dataclass(frozen=True)
 class Capsule(Geometry):
-    """All that is within `radius` of a piece of the y axis, `length` long, about the origin; uv as the ball has them."""
+    """All that is within `radius` of a piece of the y axis, `length` long, about the origin; uv as on a ball."""
 
     radius: float = 0.25
     length: float = 1.0
