@@ -224,6 +224,14 @@ def _within(uniform: Uniform, count: int) -> bool:
     return limits is None or float(limits[0]) <= count <= float(limits[1])
 
 
+def most_counts(candidate: Candidate) -> tuple[tuple[str, int], ...]:
+    """The candidate's counts so large that its setting may be taken as converged: 64, and of two counts 20 each."""
+    uniforms = {one.name: one for name in candidate.techniques for one in load(name).uniforms}
+    limits = {name: dict(uniforms[name].hints).get("hint_range", (1, 64)) for name, _ in candidate.settings}
+    many = 64 if len(limits) == 1 else 20
+    return tuple((name, min(many, int(float(limits[name][1])))) for name, _ in candidate.settings)
+
+
 def label(name: str, given: Sequence[tuple[str, int]]) -> str:
     """What a chart calls a technique at a setting: `march_light, 8 steps`."""
     if not given:

@@ -67,13 +67,14 @@ def _value(value: Any) -> str:
 class Chain:
     """A material whose emitted functions are run on points."""
 
-    def __init__(self, material: Material, guards: str = "auto") -> None:
-        self.material = material
-        self.compiled: Compiled = compile(material, "numpy", guards=guards)
+    def __init__(self, material: Material, dtype: Any = np.float64) -> None:
+        """In float64 it is the oracle; in float32 what a GPU computes."""
+        self.material, self.dtype = material, dtype
+        self.compiled: Compiled = compile(material, "numpy")
         self.reflection = self.compiled.reflection
         (text,) = [text for name, text in self.compiled.files.items() if name.endswith(".py")]
         self.names: dict[str, Any] = {}
-        with precision(np.float64):
+        with precision(dtype):
             exec(text, self.names)
         self.uniforms = self.reflection["uniforms"]
 
@@ -87,7 +88,7 @@ class Chain:
             own = uniform["technique_name"]
             given = values.get(f"{uniform['technique']}.{own}", values.get(own))
             if given is not None:
-                self.names[uniform["name"]] = _shaped(uniform["type"], given)
+                self.names[uniform["name"]] = _shaped(uniform["type"], given, self.dtype)
         for texture in self.reflection["textures"]:
             given = textures.get(texture["technique_name"])
             if given is not None:
@@ -104,8 +105,9 @@ class Chain:
         """
         entries = self.reflection["entries"]
         count = inputs["P"].shape[-1]
+        inputs = self._cast(inputs)
         found = []
-        with precision(np.float64), grid(1, count), np.errstate(all="ignore"):
+        with precision(self.dtype), grid(1, count), np.errstate(all="ignore"):
 
             def call(kind: str, given: Mapping[str, Array], *first: Any) -> Any:
                 return self.names[entries[kind]["function"]](*first, *(given[name] for name in entries[kind]["inputs"]))
@@ -114,25 +116,31 @@ class Chain:
             given_off = vars(surface).get("emission", 0.0) if surface is not None else 0.0
             for number, light in enumerate(lights):
                 first = [surface] if surface is not None else []
-                through = call("translucency", {**inputs, **light}, *first) if "translucency" in entries else 0.0
+                through = (
+                    call("translucency", {**inputs, **self._cast(light)}, *first) if "translucency" in entries else 0.0
+                )
                 value = through + given_off if number == 0 else through
                 found.append(np.array(np.broadcast_to(value, (3, count)), np.float64))
         return found
+
+    def _cast(self, values: Mapping[str, Array]) -> dict[str, Array]:
+        return {name: np.asarray(value, self.dtype) for name, value in values.items()}
 
     def surface(self, inputs: Mapping[str, Array], field: str) -> Array:
         """A field of the surface, (k, n)."""
         entry = self.reflection["entries"]["surface"]
         count = inputs["P"].shape[-1]
-        with precision(np.float64), grid(1, count), np.errstate(all="ignore"):
+        inputs = self._cast(inputs)
+        with precision(self.dtype), grid(1, count), np.errstate(all="ignore"):
             made = self.names[entry["function"]](*(inputs[name] for name in entry["inputs"]))
             value = np.asarray(getattr(made, field), np.float64)
         return np.array(np.broadcast_to(value, (len(np.atleast_2d(value)), count)))
 
 
-def _shaped(type_name: str, given: Any) -> Any:
+def _shaped(type_name: str, given: Any, dtype: Any) -> Any:
     """A value as the emitted module wants it: components first, lanes last."""
     type_ = BY_NAME[type_name.partition("[")[0]]
-    kind = np.float64 if kind_of(type_) == "float" else np.int64
+    kind = dtype if kind_of(type_) == "float" else np.int32
     value = np.asarray(given, kind)
     if isinstance(type_, Matrix):
         return value.reshape(type_.size, type_.size, -1)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 import subprocess
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -30,6 +30,9 @@ from .work import code_stamp
 
 PAYS = 0.9
 """A dearer setting of a thickness technique goes into whole chains where its error in the fit is this much less."""
+
+VIEWS = ("own", "held out")
+"""What the two views of a scene are called."""
 
 DEFAULTS = ("cube", "torus", "bracket", "capsule", "mouse", "inlay_plate", "inlay_ball")
 """The scenes of a chart that names none."""
@@ -133,9 +136,7 @@ def _views(situations: Sequence[Situation], settings: Settings) -> dict[str, _Vi
 
     found = {}
     for one in situations:
-        shown = [
-            view(name, side, settings.samples) for name, side in zip(("own", "held out"), own[one.key], strict=True)
-        ]
+        shown = [view(name, side, settings.samples) for name, side in zip(VIEWS, own[one.key], strict=True)]
         fitted_to = [view(each.name, each, settings.samples // 2) for each in training[one.key]]
         if one.inlay is not None:
             fitted_to.append(View("plate", references.plate(one)))
@@ -159,6 +160,49 @@ def _points(
     points: list[dict[str, Any]] = _all(measures, settings)
     for (one, _), point in zip(jobs, points, strict=True):
         yield one, {"scene": one.name, **point}
+
+
+def remeasured(
+    record: Mapping[str, Any], situations: Sequence[Situation], settings: Settings
+) -> dict[tuple[str, str], float]:
+    """The materials' errors against another reference, as `settings` have it, with the parameters that were fitted.
+
+    (scene, label) → the worst of the views; infinite where a chain fails.
+    """
+    own = {one.name: (one, one.held_out()) for one in situations}
+    sides = [side for pair in own.values() for side in pair]
+    seen = references.by_situation(sides, _all(references.items(sides, settings.samples, settings.seed), settings))
+    stamp = f"{settings.samples} {settings.seed}"
+    views = {
+        name: tuple(View(view, side, tuple(seen[side.key]), stamp) for view, side in zip(VIEWS, pair, strict=True))
+        for name, pair in own.items()
+    }
+    points = [point for point in record["points"] if point["role"] == "material" and point["scene"] in own]
+    items = [
+        Item(
+            "sssgen.lab.measure:measured",
+            (candidate_of(point), fitted_of(point), views[point["scene"]]),
+            f"{point['label']} on {point['scene']}, again",
+        )
+        for point in points
+    ]
+    found = {}
+    for point, again in zip(points, _all(items, settings), strict=True):
+        worst = max(float(view["value"]) for view in again["views"].values())
+        found[point["scene"], point["label"]] = float("inf") if again["failed"] else worst
+    return found
+
+
+def candidate_of(point: Mapping[str, Any]) -> Candidate:
+    """The candidate that a point was measured of."""
+    settings, chain = tuple(point["settings"].items()), tuple(point["chain"])
+    return Candidate(point["role"], point["name"], point["label"], settings, chain, point["baseline"])
+
+
+def fitted_of(point: Mapping[str, Any]) -> Fitted:
+    """What was fitted for a point."""
+    parameters = {name: tuple(value) for name, value in point["parameters"].items()}
+    return Fitted(parameters, tuple(point["scale"]), tuple(point["matte"]), point["training_error"], point["factor"])
 
 
 def _training(candidate: Candidate, views: _Views) -> tuple[View, ...]:

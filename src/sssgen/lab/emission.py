@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -11,12 +11,11 @@ from ..ir.nodes import Uniform
 from ..ir.types import components, kind_of
 from ..slots import needs
 from .body import Body, body
-from .candidates import Candidate, load
+from .candidates import load
 from .chain import Stage, material_text
+from .chart import candidate_of
 from .pick import Pick
 from .situation import Situation
-
-__all__ = ["material_files", "stages_of"]
 
 
 def material_files(one: Situation, picked: Pick, name: str) -> dict[str, str]:
@@ -40,14 +39,9 @@ def material_files(one: Situation, picked: Pick, name: str) -> dict[str, str]:
 
 def stages_of(point: Mapping[str, Any], of: Body) -> list[Stage]:
     """The stages of a point, with what was fitted; its counts are fixed, the rest is the artist's to change."""
-    candidate = Candidate(
-        point["role"], point["name"], point["label"], tuple(point["settings"].items()), tuple(point["chain"])
-    )
-    return [_with(stage, _given(load(name), point)) for name, stage in _named(candidate, of)]
-
-
-def _named(candidate: Candidate, of: Body) -> Sequence[tuple[str, Stage]]:
-    return list(zip(candidate.techniques, candidate.stages(of), strict=True))
+    candidate = candidate_of(point)
+    stages = zip(candidate.techniques, candidate.stages(of), strict=True)
+    return [_with(stage, _given(load(name), point)) for name, stage in stages]
 
 
 def _slide(one: Situation, point: Mapping[str, Any], of: Body) -> list[Stage]:

@@ -144,20 +144,23 @@ def _(geometry: Mesh, origins: Array, directions: Array) -> Array:
     order = np.lexsort((t[keep], rays[keep]))
     t, rays, side = t[keep][order], rays[keep][order], side[keep][order]
     # an edge is passed once, though both of its triangles tell of it
-    again = np.r_[False, (np.diff(rays) == 0) & (np.diff(t) < 1e-7 * size) & (side[1:] == side[:-1])]
+    again = (
+        (np.diff(rays, prepend=-1) == 0) & (np.diff(t, prepend=0.0) < 1e-7 * size) & (np.diff(side, prepend=0.0) == 0.0)
+    )
     t, rays, side = t[~again], rays[~again], side[~again]
     first = np.searchsorted(rays, np.arange(len(origins)))
     most = int(np.bincount(rays, minlength=1).max(initial=0)) + 1
     result = np.zeros((len(origins), most, 2))
-    leaves = side > 0.0
-    before = np.r_[0.0, t[:-1]]
-    starts = np.r_[True, rays[1:] != rays[:-1]]
-    # a ray that leaves first has been inside from its origin on
-    begins = np.where(starts, 0.0, before)
-    entered = np.r_[False, side[:-1] < 0.0] | starts
+    starts = np.diff(rays, prepend=-1) != 0
+    left = np.cumsum(side)
+    left -= np.repeat((left - side)[starts], np.diff(np.flatnonzero(starts), append=len(rays)))
+    # parts may lie within another, and a ray is in one from its origin on where it leaves more than it enters
+    deep = np.zeros(len(origins))
+    np.maximum.at(deep, rays, left)
+    inside = deep[rays] - left + side > 0.0
     rank = np.arange(len(rays)) - first[rays]
-    use = leaves & entered
-    result[rays[use], rank[use]] = np.stack([begins[use], t[use]], axis=1)
+    begins = np.where(starts, 0.0, np.roll(t, 1))
+    result[rays[inside], rank[inside]] = np.stack([begins, t], axis=1)[inside]
     return result
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -15,7 +15,7 @@ from ..harness.backends import Array
 from ..passes.cost import Cost, cost_of
 from . import fit, metrics, problem
 from .body import Body, body
-from .candidates import PROBES, Candidate, load
+from .candidates import PROBES, Candidate, load, most_counts
 from .chain import Chain, material_of
 from .fit import Fitted
 from .points import points
@@ -68,14 +68,14 @@ def fitted(candidate: Candidate, training: Sequence[View]) -> Fitted:
     return fit.fit(chains, asked)
 
 
-def chain_of(candidate: Candidate, of: Body, folder: str) -> Chain | None:
+def chain_of(candidate: Candidate, of: Body, folder: str, dtype: Any = np.float64) -> Chain | None:
     """The candidate's chain for a body, compiled; None where nothing is left of it. Raises SssgenError."""
     if not candidate.techniques:
         return None
     for name, text in of.files.items():
         with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
             file.write(text)
-    return Chain(material_of(candidate.stages(of), folder))
+    return Chain(material_of(candidate.stages(of), folder), dtype)
 
 
 def measured(candidate: Candidate, found: Fitted, views: Sequence[View]) -> dict[str, Any]:
@@ -88,6 +88,11 @@ def measured(candidate: Candidate, found: Fitted, views: Sequence[View]) -> dict
         chain = chain_of(candidate, body(views[0].situation.geometry), folder)
         given = [_values(chain, found, one) for _, one in asked]
         cost = static_cost(chain)
+        own = asked[0][1]
+        implementation = {
+            kind: apart(_values(other, found, own), given[0])
+            for kind, other in _others(candidate, body(views[0].situation.geometry), folder)
+        }
     bad = sum(int((~np.isfinite(values)).any(axis=0).sum()) for values in given)
     lanes = sum(values.shape[1] for values in given)
     pictures = [found.apply(np.nan_to_num(values), one) for values, (_, one) in zip(given, asked, strict=True)]
@@ -113,9 +118,24 @@ def measured(candidate: Candidate, found: Fitted, views: Sequence[View]) -> dict
         "scale": list(found.scale), "matte": list(found.matte), "factor": found.factor,
         "training_error": found.error,
         "cost": {"value": float(max(cost.weight, 1)), **cost._asdict(), "gpu_ms": None},
-        "error": error, "views": each,
+        "error": error, "views": each, "implementation": implementation,
         "failed": f"{bad} of {lanes} points are not finite" if bad else "",
     }  # fmt: skip
+
+
+def _others(candidate: Candidate, of: Body, folder: str) -> Iterator[tuple[str, Chain | None]]:
+    """The chain as rounding and its counts leave it: in float32, and with as many steps as it may have."""
+    if candidate.techniques:
+        yield "float32", chain_of(candidate, of, folder, np.float32)
+    if candidate.settings and candidate.role == "thickness":
+        yield "counts", chain_of(candidate._replace(settings=most_counts(candidate)), of, folder)
+
+
+def apart(values: Array, others: Array) -> float:
+    """How far values are from others of the same chain: the root mean square of the difference, over that of both."""
+    both = np.isfinite(values) & np.isfinite(others)
+    level = float(np.sqrt((others[both] ** 2).mean())) if both.any() else 0.0
+    return float(np.sqrt(((values - others)[both] ** 2).mean())) / level if level > 0.0 else 0.0
 
 
 def _values(chain: Chain | None, found: Fitted, asked: Problem) -> Array:

@@ -1,7 +1,7 @@
 """Picking no more than a scene needs: the cheapest chain within an error, or the most accurate within a cost.
 
-A chain's error on a scene is the worst of its views, at the upper end of its bar, and a margin more, so that it holds
-on views that were not measured, too.
+A chain's error on a scene is the worst of its views, at the upper end of its bar: two standard errors above what was
+measured, so that the true error is below it.
 """
 
 from __future__ import annotations
@@ -12,9 +12,6 @@ from typing import Any, NamedTuple
 from ..diagnostics import failure
 from .candidates import NEEDS, is_published, load
 from .drawing.record import front
-
-MARGIN = 1.05
-"""What a measured error is multiplied by before it is held against a limit."""
 
 Point = Mapping[str, Any]
 
@@ -47,8 +44,7 @@ class Pick(NamedTuple):
 def limit_of(point: Point) -> float:
     """What a point's error stays within: see the module."""
     views = point["views"].values()
-    worst = max((float(view["high"]) for view in views), default=float(point["error"]["high"]))
-    return MARGIN * worst
+    return max((float(view["high"]) for view in views), default=float(point["error"]["high"]))
 
 
 def cost_of(point: Point) -> float:

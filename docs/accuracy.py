@@ -1,0 +1,251 @@
+"""Draws docs/accuracy/ and writes docs/accuracy.md: python docs/accuracy.py [--scheduler ADDRESS] [--processes N]
+
+Every figure of the page is measured here, but those of the GPU, which benchmarks/gpu.py and `--gpu` write into
+docs/accuracy/*.json on a machine that has one. What is interrupted goes on where it stood.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import pick_trial
+
+from sssgen.lab import chart, chart_gpu, drawing, situation
+from sssgen.lab.chart import Settings
+from sssgen.lab.progress import Bar
+from sssgen.output import write_files
+
+HERE = Path(__file__).parent
+FOLDER = HERE / "accuracy"
+PAGE = HERE / "accuracy.md"
+SPOT = FOLDER / "spot.toml"
+MESHES = HERE.parent.parent / "shared" / "data" / "meshes"
+
+ROLES = {
+    "material": "Whole materials",
+    "translucency": "Translucency, after the exact thickness",
+    "thickness": "Thickness in the light's direction",
+    "coordinates": "Parallax",
+}
+Record = Mapping[str, Any]
+Point = Mapping[str, Any]
+
+
+def main() -> int:
+    """Measures, draws and writes; with --gpu times the kept chart's chains instead."""
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("--gpu", action="store_true", help="time the chains of docs/accuracy/chart.json on this GPU")
+    options.add_argument("--scheduler", default="")
+    options.add_argument("--processes", type=int)
+    given = options.parse_args()
+    if given.gpu:
+        return timed()
+    settings = Settings(scheduler=given.scheduler, processes=given.processes, shown=Bar)
+    record = chart.charted([situation.load(name) for name in scenes()], settings)
+    trial = pick_trial.tried(settings)
+    page(record, trial)
+    return 0
+
+
+def scenes() -> list[str]:
+    """The scenes of the page: ours, and Spot where its mesh is there."""
+    return [*chart.DEFAULTS, *([str(SPOT)] if (MESHES / "spot.obj").is_file() else [])]
+
+
+def page(record: Record, trial: Sequence[Mapping[str, Any]]) -> None:
+    """Writes the pictures and the page."""
+    drawn = drawing.drawn(record)
+    kept = {name: data for name, data in drawn.items() if name.endswith((".png", ".csv", ".json"))}
+    write_files(str(FOLDER), kept)
+    text = (FOLDER / "page.md.in").read_text(encoding="utf-8")
+    parts: dict[str, Callable[[], str]] = {
+        "scenes": lambda: scene_table(record), "fronts": lambda: fronts(record), "volumes": lambda: volumes(record),
+        "known": lambda: known_answers(record), "losses": lambda: losses(record),
+        "implementation": lambda: implementation(record), "gpu": gpu, "pick": lambda: pick_trial.table(trial),
+    }  # fmt: skip
+    for name, part in parts.items():
+        mark = f"<!-- {name} -->"
+        assert text.count(mark) == 1, name
+        text = text.replace(mark, part())
+    PAGE.write_text(text, encoding="utf-8")
+    print(f"wrote {PAGE}")
+
+
+def timed() -> int:
+    """Times what the kept chart has on its fronts, and the baselines, on the GPU of this machine."""
+    record = json.loads((FOLDER / "chart.json").read_text(encoding="utf-8"))
+    points = [point for point in record["points"] if point["front"] or point["baseline"] or point["role"] != "material"]
+    wanted = [scene["name"] for scene in record["scenes"] if scene["name"] in chart.DEFAULTS]
+    some = {**record, "points": [point for point in points if point["scene"] in wanted]}
+
+    def told(done: int, of: int, name: str) -> None:
+        print(f"{done} of {of}: {name}", file=sys.stderr, flush=True)
+
+    found = chart_gpu.with_gpu_cost(some, [situation.load(name) for name in wanted], told=told)
+    (FOLDER / "gpu_chart.json").write_text(drawing.record.to_json(found), encoding="utf-8")
+    write_files(str(FOLDER), {
+        name: data for name, data in drawing.drawn(chart_gpu.by_gpu(found), "gpu").items() if name.endswith(".png")
+    })  # fmt: skip
+    print(found["record"]["device"], found["record"]["rank_correlation"])
+    return 0
+
+
+def scene_table(record: Record) -> str:
+    """What is measured on."""
+    rows = ["| scene | medium | σt per unit (r, g, b) | albedo (r, g, b) |", "|---|---|---|---|"]
+    for scene in record["scenes"]:
+        medium = scene.get("medium")
+        told = [medium["name"], *(", ".join(f"{x:.4g}" for x in medium[key]) for key in ("extinction", "albedo"))] \
+            if medium else ["clear, with an inlay", "", ""]  # fmt: skip
+        rows.append(f"| `{scene['name']}`: {scene['title']} | {' | '.join(told)} |")
+    return "\n".join(rows)
+
+
+def of(record: Record, scene: str, role: str) -> list[Point]:
+    """The points of a scene and role, by cost."""
+    found = [point for point in record["points"] if point["scene"] == scene and point["role"] == role]
+    return sorted(found, key=lambda point: float(point["cost"]["value"]))
+
+
+def fronts(record: Record) -> str:
+    """What stands on the fronts of whole materials."""
+    rows = ["| scene | cost | relative error | FLIP | chain |", "|---|---:|---|---:|---|"]
+    for scene in record["scenes"]:
+        for point in of(record, scene["name"], "material"):
+            if point["front"]:
+                published = " (published)" if point["baseline"] else ""
+                rows.append(
+                    f"| {scene['name']} | {point['cost']['value']:.0f} | {error(point)} | "
+                    f"{point['error']['flip']:.3f} | {point['label']}{published} |"
+                )
+    return "\n".join(rows)
+
+
+def error(point: Point) -> str:
+    """An error with its bar."""
+    found = point["error"]
+    return f"{found['value']:.3f} ({found['low']:.3f}–{found['high']:.3f})"
+
+
+def volumes(record: Record) -> str:
+    """The hypervolumes."""
+    rows = ["| scene | role | ours | all baselines together |", "|---|---|---:|---:|"]
+    rows += [
+        f"| {one['scene']} | {one['role']} | {one['ours']:.3f} | {one['baselines']:.3f} |"
+        for one in record["hypervolume"]
+    ]
+    return "\n".join(rows)
+
+
+def known_answers(record: Record) -> str:
+    """What must come out, and what does."""
+    rows = ["| answer known before | measured |", "|---|---|"]
+    for scene in (one["name"] for one in record["scenes"] if "medium" in one):
+        by_label = {point["label"]: point for point in of(record, scene, "material")}
+        seed3, gdc = by_label["seed 3"], by_label["GDC 2011"]
+        rows.append(
+            f"| seed 3's lobe adds nothing to its ambient light: its fit leaves power, scale and distortion alone "
+            f"({scene}) | {untouched(seed3)}; error {error(seed3)}, with a lobe that works {error(gdc)} |"
+        )
+        thickness = {point["label"]: point for point in of(record, scene, "thickness")}
+        seed0 = min((one for one in thickness.values() if one["name"] == "seed0_thinness"), key=value)
+        best = min(thickness.values(), key=value)
+        rows.append(
+            f"| seed 0 measures no thickness towards the light ({scene}) | {value(seed0):.3f}, "
+            f"where {best['label']} errs by {value(best):.4f} |"
+        )
+    for scene in (one["name"] for one in record["scenes"] if "medium" not in one):
+        named = {point["name"]: point for point in of(record, scene, "coordinates")}
+        rows.append(
+            f"| corrected seed 4 is exact on a plane ({scene}) | {value(named['parallax_refracted']):.2g}; "
+            f"without refraction {value(named['parallax_straight']):.3g} |"
+        )
+    return "\n".join(rows)
+
+
+def value(point: Point) -> float:
+    """A point's error."""
+    return float(point["error"]["value"])
+
+
+def untouched(point: Point) -> str:
+    """Which of the lobe's parameters a fit has moved from where it began."""
+    return ", ".join(f"{name} {point['parameters'][name][0]:.3g}" for name in ("power", "scale", "distortion"))
+
+
+def losses(record: Record) -> str:
+    """Where a baseline stands on the front of whole materials or of a role, and what of ours comes nearest."""
+    rows = [
+        "| scene | role | baseline | cost | error | ours at no more error | cost |",
+        "|---|---|---|---:|---:|---|---:|",
+    ]
+    for scene in record["scenes"]:
+        for role in ROLES:
+            points = of(record, scene["name"], role)
+            for point in points:
+                if not point["front"] or not point["baseline"]:
+                    continue
+                as_good = [
+                    one
+                    for one in points
+                    if not one["baseline"] and not one["failed"] and value(one) <= 1.001 * max(value(point), 1e-6)
+                ]
+                ours = min(as_good, key=lambda one: float(one["cost"]["value"]), default=None)
+                nearest = f"{ours['label']} | {ours['cost']['value']:.0f}" if ours else "none | "
+                rows.append(
+                    f"| {scene['name']} | {role} | {point['label']} | {point['cost']['value']:.0f} | "
+                    f"{value(point):.3f} | {nearest} |"
+                )
+    return "\n".join(rows)
+
+
+def implementation(record: Record) -> str:
+    """What float32 and the counts do, apart from the model."""
+    found: dict[str, dict[str, list[float]]] = {}
+    for point in record["points"]:
+        if point["role"] in ("thickness", "translucency", "coordinates") and not point["failed"]:
+            for kind, apart in point.get("implementation", {}).items():
+                if apart is not None:
+                    found.setdefault(point["label"], {}).setdefault(kind, []).append(float(apart))
+    rows = ["| technique | float32 | counts |", "|---|---:|---:|"]
+    for label, kinds in sorted(found.items()):
+        shown = [f"{max(kinds[kind]):.1e}" if kind in kinds else "" for kind in ("float32", "counts")]
+        rows.append(f"| {label} | {' | '.join(shown)} |")
+    return "\n".join(rows)
+
+
+def gpu() -> str:
+    """The GPU's record, where there is one."""
+    file = FOLDER / "gpu_chart.json"
+    if not file.is_file():
+        return (
+            "Not measured: `python docs/accuracy.py --gpu` on a machine with a GPU writes docs/accuracy/gpu_chart.json."
+        )
+    record = json.loads(file.read_text(encoding="utf-8"))
+    about = record["record"]
+    rows = [
+        f"{about['device']}, {about['driver']}, {about['size'][0]} × {about['size'][1]}, {about['rounds']} rounds.",
+        "", "| role | rank correlation of static cost and ms |", "|---|---:|",
+        *(f"| {role} | {rank:.3f} |" for role, rank in about["rank_correlation"].items()),
+        "", "| technique | static cost | ms (10th to 90th percentile) |", "|---|---:|---|",
+    ]  # fmt: skip
+    shown = {}
+    for point in record["points"]:
+        if point["scene"] == "cube" and point["cost"].get("gpu_ms") is not None and not point["failed"]:
+            shown[point["role"], point["label"]] = point
+    for (_, label), point in shown.items():
+        cost = point["cost"]
+        if math.isfinite(cost["gpu_ms"]):
+            low, high = cost["gpu_ms_low"], cost["gpu_ms_high"]
+            rows.append(f"| {label} | {cost['value']:.0f} | {cost['gpu_ms']:.4f} ({low:.4f}–{high:.4f}) |")
+    return "\n".join(rows)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

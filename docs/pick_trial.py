@@ -1,0 +1,109 @@
+"""Puts `sssgen pick` to the test: on scenes drawn by lot, against all that it could have picked, measured anew.
+
+The truth is another reference: of other chance, with four times the samples. Nothing is tuned on these scenes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from sssgen.harness.scenes.camera import Camera
+from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Geometry, Torus, Union
+from sssgen.harness.scenes.scene import Light
+from sssgen.lab import chart, media
+from sssgen.lab.chart import Settings
+from sssgen.lab.pick import allowed, chosen, cost_of
+from sssgen.lab.situation import Situation
+
+SCENES = 8
+LIMITS = 8
+"""Limits a scene, from the best error there to what it has without any translucency."""
+MEDIA = ("apple", "chicken1", "ketchup", "skin2", "wholemilk", "spectralon", "jade", "wax")
+"""None of those that the charts show."""
+CLOSE = 1.10
+"""How much dearer than the best a pick may be."""
+TRUE_SEED, TIMES = 1001, 4
+
+Row = Mapping[str, Any]
+
+
+def drawn(number: int) -> Situation:
+    """A scene drawn by lot."""
+    rng = np.random.default_rng([20, number])
+    turn = tuple(float(angle) for angle in rng.uniform(-60.0, 60.0, 3))
+    shape = shapes(rng, turn)[number % 5]
+    medium = media.preset(MEDIA[number % len(MEDIA)], float(np.exp(rng.uniform(np.log(2.0), np.log(8.0))))).matched()
+    lights = []
+    for back in (True, False)[: 1 + number % 2]:
+        x, y = rng.uniform(-0.9, 0.9, 2)
+        direction = np.array([x, y, -1.0 if back else 0.8])
+        direction /= np.linalg.norm(direction)
+        red, green, blue = (float(part) for part in rng.uniform(0.3, 1.0, 3) * (1.0 if back else 0.4))
+        lights.append(Light(None, tuple(float(part) for part in direction), (red, green, blue)))  # type: ignore[arg-type]
+    camera = Camera((0.0, float(rng.uniform(-0.5, 1.2)), 3.4), (0.0, 0.0, 0.0), 28.0)
+    name = f"lot {number + 1}"
+    title = f"{type(shape).__name__.lower()} of {medium.name}"
+    return Situation(name, title, shape, camera, tuple(lights), medium, None)
+
+
+def shapes(rng: np.random.Generator, turn: Any) -> list[Geometry]:
+    """One of each kind."""
+    a, b, c = (float(side) for side in rng.uniform(0.3, 1.1, 3))
+    tube = float(rng.uniform(0.12, 0.25))
+    offset = float(rng.uniform(0.3, 0.5))
+    parts = (Ball(0.35, position=(-offset, 0.0, 0.0)), Box(size=(0.4, a, 0.5), position=(offset, 0.0, 0.0)))
+    return [
+        Box(size=(a, b, c), rotation=turn), Torus(0.45, tube, rotation=turn), Capsule(0.5 * b, a, rotation=turn),
+        Union(parts, rotation=turn), Ball(0.3 + 0.3 * a),
+    ]  # fmt: skip
+
+
+def tried(settings: Settings) -> list[Row]:
+    """A row for each scene and limit."""
+    situations = [drawn(number) for number in range(SCENES)]
+    record = chart.charted(situations, settings._replace(roles=("thickness", "material")))
+    truth = settings._replace(samples=TIMES * settings.samples, seed=TRUE_SEED)
+    true = chart.remeasured(record, situations, truth)
+    rows: list[Row] = []
+    for one in situations:
+        points = [point for point in record["points"] if point["scene"] == one.name and point["role"] == "material"]
+        mine = [point for point in points if allowed(point)]
+        errors = [true[one.name, point["label"]] for point in mine]
+        without = next(true[one.name, point["label"]] for point in mine if point["name"] == "none")
+        for limit in np.geomspace(1.02 * min(errors), 0.98 * without, LIMITS):
+            picked, _ = chosen(mine, float(limit), None)
+            assert picked is not None
+            within = [cost_of(point) for point, error in zip(mine, errors, strict=True) if error <= limit]
+            rows.append({
+                "scene": one.name, "title": one.title, "limit": float(limit), "picked": picked["label"],
+                "error": true[one.name, picked["label"]], "cost": cost_of(picked),
+                "best": min(within, default=math.nan),
+            })  # fmt: skip
+    return rows
+
+
+def table(rows: Sequence[Row]) -> str:
+    """The rows, and what they come to."""
+    kept = [row["error"] <= row["limit"] for row in rows]
+    ratios = np.array([row["cost"] / row["best"] for row in rows])
+    close = ratios <= CLOSE
+    both = np.array(kept) & close
+    lines = [
+        f"{len(rows)} cases, {SCENES} scenes: the true error is within the limit in {100.0 * np.mean(kept):.1f} %, the "
+        f"cost within {CLOSE:.2f} × of the cheapest that truly is in {100.0 * np.mean(close):.1f} % (median ratio "
+        f"{np.median(ratios):.3f}, mean {np.mean(ratios):.3f}), both in {100.0 * np.mean(both):.1f} %.",
+        "",
+        "| scene | limit | picked | true error | cost | cheapest within the limit |",
+        "|---|---:|---|---:|---:|---:|",
+    ]  # fmt: skip
+    for row, good in zip(rows, both, strict=True):
+        mark = "" if good else " (!)"
+        lines.append(
+            f"| {row['scene']}: {row['title']} | {row['limit']:.3f} | {row['picked']}{mark} | {row['error']:.3f} | "
+            f"{row['cost']:.0f} | {row['best']:.0f} |"
+        )
+    return "\n".join(lines)
