@@ -10,11 +10,13 @@ import pytest
 
 from sssgen.diagnostics import SssgenError
 from sssgen.harness.scenes.camera import Camera
-from sssgen.harness.scenes.geometry import Ball, Box, Distance, Geometry, Mesh, Slab, Torus
+from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
 
 MESHES = Path(__file__).parents[2] / "shared" / "data" / "meshes"
 
 CAMERA = Camera((0.7, 1.9, 3.1), (0.0, 0.0, 0.0), 45.0)
+
+PARTS = (Ball(0.8, position=(-0.5, 0.0, 0.0)), Capsule(0.3, 1.6, rotation=(0.0, 0.0, 60.0)))
 
 SOLIDS: list[Geometry] = [
     Ball(1.2),
@@ -26,7 +28,15 @@ SOLIDS: list[Geometry] = [
     Ball(0.5, position=(0.2, -0.1, 0.4), scale=1.7, rotation=(20.0, 30.0, 40.0)),
     Box(size=(1.0, 1.4, 0.7), rotation=(10.0, 20.0, 30.0), position=(0.1, 0.2, -0.3)),
     Torus(1.0, 0.3, rotation=(70.0, -20.0, 15.0), position=(-0.2, 0.1, 0.3), scale=0.8),
-]
+    Capsule(0.4, 1.2),
+    Capsule(0.7, 0.0),
+    Capsule(0.3, 0.9, rotation=(15.0, 25.0, 70.0), position=(0.1, -0.2, 0.2), scale=1.3),
+    Union(PARTS),
+    Union(
+        (Torus(0.8, 0.25, scale=1.1), Union((Ball(0.4, position=(0.0, 0.6, 0.0)),), rotation=(0.0, 0.0, 50.0))),
+        rotation=(70.0, -20.0, 15.0), position=(-0.2, 0.1, 0.3), scale=0.9,
+    ),
+]  # fmt: skip
 
 
 def found(shape: Geometry, width: int = 80, height: int = 60) -> tuple[Any, ...]:
@@ -100,7 +110,9 @@ def test_normals_are_the_gradient_of_the_distance(shape: Geometry) -> None:
     assert np.abs(turned - normal).max() < 1e-5
 
 
-@pytest.mark.parametrize("shape", [*SOLIDS, Distance("torus"), Distance("sphere", projection="planar")])
+@pytest.mark.parametrize(
+    "shape", [*SOLIDS, Distance("torus"), Distance("sphere", projection="planar"), Union(PARTS, "planar")]
+)
 def test_frames_are_orthonormal_and_follow_uv(shape: Geometry) -> None:
     _, world, directions, normal, tangent, w, uv = found(shape)
     assert np.abs(np.linalg.norm(normal, axis=1) - 1.0).max() < 1e-12
@@ -128,6 +140,55 @@ def test_box_faces_have_upright_uv() -> None:
     hits = Box(size=(2.0, 4.0, 2.0)).hits((0.5, 1.0, 9.0), [[0.0, 0.0, -1.0]])
     assert hits.uv[0] == pytest.approx([0.75, 0.75])
     assert hits.tangent[0].tolist() == [1.0, 0.0, 0.0, 1.0]
+
+
+def test_a_ray_and_a_capsule_in_closed_form() -> None:
+    capsule = Capsule(0.5, 2.0)
+    side = capsule.hits((0.3, 0.5, 5.0), [[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]])
+    assert side.hit.tolist() == [True, False]
+    assert side.position[0] == pytest.approx([0.3, 0.5, 0.4], abs=1e-12)
+    assert side.normal[0] == pytest.approx([0.6, 0.0, 0.8])
+    cap = capsule.hits((0.3, 5.0, 0.0), [[0.0, -1.0, 0.0]])  # along its axis, where its side is never met
+    assert cap.position[0] == pytest.approx([0.3, 1.4, 0.0], abs=1e-12)
+    assert cap.normal[0] == pytest.approx([0.6, 0.8, 0.0])
+    inside = capsule.hits((0.0, 0.0, 0.0), [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
+    assert inside.position == pytest.approx(np.array([[0.0, 1.5, 0.0], [0.5, 0.0, 0.0]]))
+    # a capsule without length is a ball, uv and all
+    origin, directions = CAMERA.rays(40, 30)
+    for one, other in zip(Capsule(0.8, 0.0).hits(origin, directions), Ball(0.8).hits(origin, directions), strict=True):
+        assert one == pytest.approx(other, abs=1e-7)
+
+
+def test_a_union_shows_of_each_ray_the_nearest_part_with_that_part_s_own_uv() -> None:
+    origin, directions = CAMERA.rays(60, 45)
+    parts = (
+        Ball(0.6, position=(-0.4, 0.0, 0.0)),
+        Box(size=(0.8, 0.8, 0.8), rotation=(0.0, 30.0, 0.0)),
+        Torus(1.2, 0.2),
+    )
+    whole = Union(parts).hits(origin, directions)
+    alone = [part.hits(origin, directions) for part in parts]
+    seen = [0, 0, 0]
+    for ray in range(len(directions)):
+        ways = [np.linalg.norm(one.position[ray] - origin) if one.hit[ray] else np.inf for one in alone]
+        nearest = int(np.argmin(ways))
+        assert whole.hit[ray] == np.isfinite(ways[nearest])
+        for mine, its in zip(whole, alone[nearest], strict=True):
+            assert (mine[ray] == its[ray]).all()
+        seen[nearest] += bool(whole.hit[ray])
+    assert min(seen) > 50  # every part shows
+    planar = Union(parts, "planar").hits(origin, directions)
+    assert (planar.position == whole.position).all()
+    assert planar.uv[planar.hit] == pytest.approx(planar.position[planar.hit][:, :2] + 0.5)
+
+
+def test_the_distance_of_a_union_is_right_outside_and_no_more_than_the_depth_inside() -> None:
+    union = Union((Ball(0.6), Ball(0.5, position=(0.5, 0.0, 0.0), scale=1.2)))
+    at = np.array([[-1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.25, 2.0, 0.0], [0.3, 0.0, 0.0]])
+    two = np.minimum(np.linalg.norm(at, axis=1) - 0.6, np.linalg.norm(at - [0.5, 0.0, 0.0], axis=1) - 0.6)
+    assert union.distance(at) == pytest.approx(two)
+    # the two balls are equally large: their rim lies in the plane between them
+    assert -union.distance(at[3:]) < np.hypot(0.3 - 0.25, np.sqrt(0.6**2 - 0.25**2))
 
 
 def test_rotation_goes_about_x_then_y_then_z() -> None:

@@ -56,6 +56,8 @@ def render(
 
     Raises SssgenError for a scene that does not fit its material, a picture too large, and a back end that refuses.
     """
+    if not scene.material:
+        raise failure("the scene names no material", 'add: material = "…"', scene.document.reporter.file)
     scene = dataclasses.replace(scene, size=size or scene.size, time=scene.time if time is None else time)
     material = load_material(scene.material)
     compiled = compile(material, backend.target.name, guards=guards)
