@@ -1,0 +1,91 @@
+"""Errors against a noisy reference: their definition, that noise adds nothing on average, that bars cover the truth."""
+
+from __future__ import annotations
+
+from math import isnan, sqrt
+
+import numpy as np
+import pytest
+
+from sssgen.lab.metrics import EPSILON, compare, flip
+
+
+def test_by_hand() -> None:
+    reference = np.array([[1.0, 0.5], [0.0, 0.1]])
+    values = np.array([[1.1, 0.5], [0.05, 0.0]])
+    told = compare(values, reference)
+    relmse = (0.1**2 / (1.0 + EPSILON) + 0.05**2 / EPSILON + 0.1**2 / (0.01 + EPSILON)) / 4.0
+    assert told["relmse"] == pytest.approx(relmse)
+    assert told["value"] == told["low"] == told["high"] == pytest.approx(sqrt(relmse))
+    assert told["bias"] == pytest.approx((0.1 + 0.05 - 0.1) / 4.0 / 0.4)
+    assert told["max"] == pytest.approx(0.1 / 0.4)
+    assert told["p99"] == pytest.approx(np.percentile([0.1, 0.0, 0.05, 0.1], 99.0) / 0.4)
+
+
+def test_equal_values_have_no_error() -> None:
+    reference = np.random.default_rng(1).random((3, 50))
+    told = compare(reference, reference)
+    assert set(told.values()) == {0.0}
+
+
+def test_percentile_is_not_the_maximum() -> None:
+    values = np.ones((1, 1000))
+    values[0, 0] = 11.0
+    told = compare(values, np.ones((1, 1000)))
+    assert (told["max"], told["p99"], told["bias"]) == (10.0, 0.0, pytest.approx(0.01))
+
+
+def trials(apart: float, noise: float, count: int = 1500, lanes: int = 400) -> tuple[float, np.ndarray]:
+    """The true relMSE of values that are off by so much, and what is found against that many noisy references."""
+    generator = np.random.default_rng(8)
+    truth = generator.uniform(0.4, 1.0, (3, lanes))
+    values = truth * (1.0 + apart * generator.normal(size=truth.shape))
+    sigma = noise * generator.uniform(0.5, 1.5, truth.shape)
+    right = compare(values, truth)["relmse"]
+    found = []
+    for _ in range(count):
+        noisy = truth + sigma * generator.normal(size=truth.shape)
+        found.append({**compare(values, noisy, sigma), "plain": compare(values, noisy)["relmse"]})
+    return right, np.array([[one[name] for name in ("relmse", "low", "high", "value", "plain")] for one in found])
+
+
+@pytest.mark.parametrize(("apart", "noise"), [(0.1, 0.02), (0.1, 0.05), (0.3, 0.02), (0.03, 0.02)])
+def test_noise_adds_nothing_on_average_and_the_bars_hold_the_truth(apart: float, noise: float) -> None:
+    right, found = trials(apart, noise)
+    relmse, low, high, value, plain = found.T
+    # the weight has the noisy reference in it: a bias of second order is left, a small part of what is corrected
+    assert plain.mean() > 1.005 * right
+    assert abs(relmse.mean() - right) < 0.15 * (plain.mean() - right)
+    covered = ((low <= sqrt(right)) & (sqrt(right) <= high)).mean()
+    assert 0.90 <= covered <= 0.99
+    assert ((low <= value) & (value <= high)).all()
+    # and they are no wider than they must be: a quarter as wide would not do
+    narrow = value + 0.25 * np.stack([low - value, high - value])
+    assert ((narrow[0] <= sqrt(right)) & (sqrt(right) <= narrow[1])).mean() < 0.6
+
+
+def test_an_error_that_noise_hides_may_be_nought_but_not_less() -> None:
+    _, found = trials(0.0, 0.05, 200)
+    relmse, low, high, value, _ = found.T
+    assert (relmse == 0.0).any() and (relmse >= 0.0).all()
+    assert ((low == 0.0) & (value >= 0.0)).mean() > 0.9
+    assert (high > 0.0).mean() > 0.9
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_what_is_not_finite_gives_no_error_that_looks_like_one(bad: float) -> None:
+    values = np.ones((3, 20))
+    values[1, 7] = bad
+    told = compare(values, np.ones((3, 20)), np.full((3, 20), 0.01))
+    assert isnan(told["value"]) and isnan(told["low"]) and isnan(told["high"])
+    assert not np.isfinite(told["relmse"])
+
+
+def test_flip_of_equal_pictures_is_nought_and_grows_with_what_is_seen() -> None:
+    pytest.importorskip("flip_evaluator")
+    reference = np.random.default_rng(3).uniform(0.2, 0.6, (32, 40, 3))
+    errors = [flip(reference + more, reference) for more in (0.0, 0.01, 0.05, 0.2)]
+    assert errors[0] == 0.0
+    assert errors == sorted(errors) and errors[1] < errors[2] < errors[3] <= 1.0
+    # what is brighter than a screen can show is cut in both
+    assert flip(np.full((16, 16, 3), 3.0), np.full((16, 16, 3), 2.0)) == 0.0
