@@ -94,15 +94,17 @@ def _measured(situations: Sequence[Situation], settings: Settings) -> list[dict[
         if role == "material":
             continue
         jobs = [(one, candidate) for one in situations for candidate in _asked(role, one)]
-        for one, point in _points(jobs, views, settings):
+        for one, point in _points(jobs, views, settings, {}):
             found[one.key].append(point)
     if "material" in settings.roles:
         jobs = []
+        before: dict[tuple[str, tuple[str, ...], Any], Mapping[str, tuple[float, ...]]] = {}
         for one in situations:
             if one.medium is not None:
                 lengths = paying([point for point in found[one.key] if point["role"] == "thickness"])
                 jobs += [(one, candidate) for candidate in candidates.materials(lengths)]
-        for one, point in _points(jobs, views, settings):
+                before |= {(one.key, *first): given for first, given in dear(found[one.key]).items()}
+        for one, point in _points(jobs, views, settings, before):
             found[one.key].append(point)
     return [{"scene": _scene(one, views[one.key]), "points": found[one.key]} for one in situations]
 
@@ -114,6 +116,10 @@ def _asked(role: str, one: Situation) -> list[Candidate]:
     if one.medium is None:
         return []
     return candidates.thickness() if role == "thickness" else candidates.translucency()
+
+
+Before = Mapping[tuple[str, tuple[str, ...], Any], Mapping[str, tuple[float, ...]]]
+"""A scene's key, a technique, its settings → its parameters"""
 
 
 class _Views(NamedTuple):
@@ -145,11 +151,22 @@ def _views(situations: Sequence[Situation], settings: Settings) -> dict[str, _Vi
 
 
 def _points(
-    jobs: Sequence[tuple[Situation, Candidate]], views: dict[str, _Views], settings: Settings
+    jobs: Sequence[tuple[Situation, Candidate]], views: dict[str, _Views], settings: Settings, before: Before
 ) -> Iterable[tuple[Situation, dict[str, Any]]]:
-    """The jobs' points: parameters are fitted once for all scenes that are fitted to the same."""
+    """The jobs' points: parameters are fitted once for all scenes that are fitted to the same.
+
+    `before` has those of first techniques that are fitted already.
+    """
     fits = [
-        Item("sssgen.lab.measure:fitted", (candidate, _training(candidate, views[one.key])), f"fit {candidate.label}")
+        Item(
+            "sssgen.lab.measure:fitted",
+            (
+                candidate,
+                _training(candidate, views[one.key]),
+                before.get((one.key, candidate.techniques[:1], candidate.settings)),
+            ),
+            f"fit {candidate.label}",
+        )
         for one, candidate in jobs
     ]
     fitted: list[Fitted] = _all(fits, settings)
@@ -218,6 +235,24 @@ def _all(items: Sequence[Item], settings: Settings) -> list[Any]:
     if failed:
         raise SssgenError([failure(f"{one.name}: {one.message}").diagnostics[0] for one in failed.values()])
     return results
+
+
+def dear(points: Sequence[dict[str, Any]]) -> dict[tuple[tuple[str, ...], Any], dict[str, tuple[float, ...]]]:
+    """The parameters of the thickness techniques that evaluate a distance: (technique, settings) → as fitted.
+
+    Whole chains keep them, as to fit them anew in each would take hours.
+    """
+    found: dict[tuple[tuple[str, ...], Any], dict[str, tuple[float, ...]]] = {}
+    best: dict[tuple[tuple[str, ...], Any], float] = {}
+    for point in points:
+        technique = candidates.load(point["chain"][0]) if point["role"] == "thickness" else None
+        if technique is None or not technique.slots:
+            continue
+        key = (technique.name,), tuple(point["settings"].items())
+        if point["training_error"] < best.get(key, float("inf")):
+            best[key] = point["training_error"]
+            found[key] = {name: tuple(value) for name, value in point["parameters"].items()}
+    return found
 
 
 def paying(points: Sequence[dict[str, Any]]) -> list[Candidate]:

@@ -26,6 +26,10 @@ COST_TARGET = "glsl-330"
 """The target whose text static cost is counted on."""
 
 
+Parameters = Mapping[str, tuple[float, ...]]
+"""By the techniques' own names"""
+
+
 class View(NamedTuple):
     """A situation with its references, and what the chart calls it."""
 
@@ -60,12 +64,33 @@ def _problem_of(role: str, view: View, summed: bool) -> Problem | None:
     return problem.of_material(view.situation, view.seen, summed)
 
 
-def fitted(candidate: Candidate, training: Sequence[View]) -> Fitted:
-    """The candidate's parameters over the training views, light by light. Raises SssgenError."""
-    asked = [found for view in training if (found := problem_of(candidate.role, view, summed=False)) is not None]
+def fitted(candidate: Candidate, training: Sequence[View], before: Parameters | None = None) -> Fitted:
+    """The candidate's parameters over the training views, light by light. Raises SssgenError.
+
+    `before` are those of its first technique, where that is fitted already: then it is measured once, and the rest is
+    fitted to what it gives.
+    """
+    asked = [(view, one) for view in training if (one := problem_of(candidate.role, view, summed=False)) is not None]
+    problems = [one.thinned(fit.LANES) for _, one in asked]
+    bodies = [body(view.situation.geometry) for view, _ in asked]
+    rest = candidate
     with tempfile.TemporaryDirectory() as folder:
-        chains = [chain_of(candidate, body(view.situation.geometry), folder) for view in training]
-    return fit.fit(chains, asked)
+        if before is not None:
+            rest, first = split(candidate)
+            name = f"measured_{load(candidate.techniques[0]).function.quantity}"
+            for at, (of, one) in enumerate(zip(bodies, problems, strict=True)):
+                chain = chain_of(first, of, folder)
+                assert chain is not None
+                problems[at] = one.given(name, chain, exact(before))
+        found = fit.fit([chain_of(rest, of, folder) for of in bodies], problems)
+    return found._replace(parameters={**(before or {}), **found.parameters})
+
+
+def split(candidate: Candidate) -> tuple[Candidate, Candidate]:
+    """A chain without its first technique, which is given, and that technique alone, which is shown."""
+    quantity = load(candidate.techniques[0]).function.quantity
+    rest = candidate._replace(techniques=(f"given_{quantity}", *candidate.techniques[1:]))
+    return rest, candidate._replace(techniques=(candidate.techniques[0], f"shown_{quantity}"))
 
 
 def chain_of(candidate: Candidate, of: Body, folder: str, dtype: Any = np.float64) -> Chain | None:

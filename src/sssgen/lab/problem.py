@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -77,6 +77,16 @@ class Problem:
             whole = whole.reshape(len(whole), len(self.parts), -1).sum(axis=1)
         read = whole[:1] if self.role == "thickness" else whole
         return read[:, self.keep] * self.gain
+
+    def given(self, name: str, chain: Chain, parameters: Mapping[str, Any]) -> Problem:
+        """The same, with what a chain shows in its first channel as the parameter `name` of each part."""
+        parts = []
+        for part in self.parts:
+            chain.set({**part.values, **parameters}, part.textures)
+            shown = chain.run(part.inputs, [part.light])[0][0]
+            # what follows may have parameters of the same name: they mean the same
+            parts.append(part._replace(values={**part.values, **parameters, name: shown}))
+        return replace(self, parts=tuple(parts))
 
     @cached_property
     def _together(self) -> Part:
