@@ -27,7 +27,7 @@ fn thickness_map(uv: vec2f, thickness_texture: texture_2d<f32>, thickness_textur
 
 // Thickness to thinness, in a straight line.
 fn thinness_from_thickness(d: f32) -> f32 {
-    return max(1.0 - clamp(d, 0.0, 1.0), 0.0);
+    return clamp(1.0 - d, 0.0, 1.0);
 }
 
 // Colour and opacity from a texture and a tint.

@@ -41,7 +41,7 @@ float thickness_map(vec2 uv) {
 
 // Thickness to thinness, in a straight line.
 float thinness_from_thickness(float d) {
-    return max(1.0 - clamp(d, 0.0, 1.0), 0.0);
+    return clamp(1.0 - d, 0.0, 1.0);
 }
 
 // Colour and opacity from a texture and a tint.

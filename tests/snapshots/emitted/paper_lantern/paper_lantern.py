@@ -33,7 +33,7 @@ def thickness_map(uv):
 
 def thinness_from_thickness(d):
     """Thickness to thinness, in a straight line."""
-    return max(1.0 - clamp(d, 0.0, 1.0), 0.0)
+    return clamp(1.0 - d, 0.0, 1.0)
 
 def base_color(uv):
     """Colour and opacity from a texture and a tint."""

@@ -67,7 +67,7 @@ Shader "sssgen/Paper lantern" {
 
         // Thickness to thinness, in a straight line.
         float thinness_from_thickness(float d) {
-            return max(1.0 - clamp(d, 0.0, 1.0), 0.0);
+            return clamp(1.0 - d, 0.0, 1.0);
         }
 
         // Colour and opacity from a texture and a tint.

@@ -47,7 +47,7 @@ fn thickness_map(uv: vec2f) -> f32 {
 
 // Thickness to thinness, in a straight line.
 fn thinness_from_thickness(d: f32) -> f32 {
-    return max(1.0 - clamp(d, 0.0, 1.0), 0.0);
+    return clamp(1.0 - d, 0.0, 1.0);
 }
 
 // Colour and opacity from a texture and a tint.

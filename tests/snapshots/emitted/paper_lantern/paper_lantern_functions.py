@@ -20,7 +20,7 @@ def thickness_map(uv, thickness_texture):
 
 def thinness_from_thickness(d):
     """Thickness to thinness, in a straight line."""
-    return max(1.0 - clamp(d, 0.0, 1.0), 0.0)
+    return clamp(1.0 - d, 0.0, 1.0)
 
 def base_color(uv, tint, base_color_texture):
     """Colour and opacity from a texture and a tint."""
