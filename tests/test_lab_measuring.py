@@ -1,0 +1,526 @@
+"""What is measured is what is emitted: chains, what is asked of them, the fit, errors, and answers known beforehand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from sssgen import cache
+from sssgen.compiler import all_targets, compile
+from sssgen.diagnostics import SssgenError
+from sssgen.harness.scenes.camera import Camera
+from sssgen.harness.scenes.geometry import Ball, Box, Union
+from sssgen.harness.scenes.scene import Light
+from sssgen.lab import candidates, fit, measure, problem, references, situation, supply
+from sssgen.lab.body import body
+from sssgen.lab.candidates import Candidate
+from sssgen.lab.chain import Chain, Stage, material_of, material_text
+from sssgen.lab.emission import material_files, stages_of
+from sssgen.lab.fit import Fitted
+from sssgen.lab.intervals import thickness
+from sssgen.lab.measure import View
+from sssgen.lab.media import Medium
+from sssgen.lab.pick import Pick
+from sssgen.lab.points import points
+from sssgen.lab.problem import Problem, Seen
+from sssgen.lab.situation import Situation
+from sssgen.material import parse_material
+
+pytest.importorskip("scipy")
+pytest.importorskip("flip_evaluator")
+
+Array = npt.NDArray[np.float64]
+SIZE = (12, 12)
+
+
+@pytest.fixture(autouse=True, scope="module")
+def no_cache() -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cache, "_known", False)
+        patch.setenv("SSSGEN_CACHE", "")
+        yield
+    cache._known = False
+
+
+def small(name: str) -> Situation:
+    return replace(situation.load(name), size=SIZE)
+
+
+def made_up(one: Situation, name: str = "own") -> View:
+    """A view with a made-up reference: light that falls off with the thickness, more from the front, and noise."""
+    at = points(one)
+    seen: list[Seen] = []
+    for light in one.lights:
+        assert light.direction is not None
+        towards = np.tile(light.direction, (at.count, 1))
+        length = thickness(one.geometry, np.ascontiguousarray(at.inputs["P"].T), towards)
+        front = np.maximum(at.inputs["N"].T @ light.direction, 0.0)
+        colors = np.array([0.9, 0.5, 0.3])[:, None]
+        mean = colors * (0.4 * np.exp(-length / colors) + 0.5 * front)
+        seen.append((mean, np.full_like(mean, 1e-3)))
+    return View(name, one, tuple(seen), "made up")
+
+
+@pytest.fixture(scope="module")
+def cube() -> View:
+    return made_up(small("cube"))
+
+
+@pytest.fixture(scope="module")
+def training() -> tuple[View, ...]:
+    return tuple(made_up(replace(one, size=SIZE), one.name) for one in references.training(situation.load("cube")))
+
+
+def candidate(*chain: str, role: str = "material", settings: tuple[tuple[str, int], ...] = ()) -> Candidate:
+    return Candidate(role, chain[-1], " → ".join(chain), settings, chain)
+
+
+def chain(one: Candidate, view: View, folder: Path) -> Chain:
+    found = measure.chain_of(one, body(view.situation.geometry), str(folder))
+    assert found is not None
+    return found
+
+
+# --- chains ---
+
+
+def test_a_chain_computes_its_formula_with_what_it_was_given(tmp_path: Path) -> None:
+    names = (("thickness", "constant_thickness"), ("thickness", "beer_lambert"), ("translucency", "lobe_gdc2011"))
+    made = Chain(material_of([Stage(*one) for one in names], str(tmp_path)))
+    at = points(small("torus"))
+    light = at.light((0.6, 0.0, -0.8))
+    color = np.array([0.9, 0.5, 0.2])
+    made.set(
+        {
+            "thickness_factor": 0.3, "attenuation_distance": 0.7, "distortion": 0.25, "power": 3.0,
+            "lobe_gdc2011.scale": 1.5, "scale": 99.0, "ambient": 0.1, "subsurface_color": color, "unknown": 1.0,
+        },
+        {},
+    )  # fmt: skip
+    (found,) = made.run(at.inputs, [light])
+    bent = light["L"] + 0.25 * at.inputs["N"]
+    lobe = np.clip(-(at.inputs["V"] * bent).sum(axis=0), 0.0, 1.0) ** 3.0
+    assert found == pytest.approx(color[:, None] * (1.5 * lobe + 0.1) * np.exp(-0.3 / 0.7), rel=1e-9)
+    # a parameter may have a value for each point, and what is not given stays
+    lengths = np.linspace(0.1, 1.0, at.count)
+    made.set({"thickness_factor": lengths}, {})
+    (found,) = made.run(at.inputs, [light])
+    assert found == pytest.approx(color[:, None] * (1.5 * lobe + 0.1) * np.exp(-lengths / 0.7), rel=1e-9)
+
+
+def test_lights_one_by_one_and_what_shines_by_itself_once(tmp_path: Path) -> None:
+    text = "/** Shines.\nrole: surface\n*/\nvoid lamp(out vec3 emission)\n{\n    emission = vec3(0.25, 0.0, 0.0);\n}\n"
+    (tmp_path / "lamp.sss").write_text(text, encoding="utf-8")
+    made = Chain(material_of([Stage("surface", "lamp.sss"), Stage("translucency", "wrap_lighting")], str(tmp_path)))
+    at = points(small("torus"))
+    lights = [at.light((0.0, 0.0, 1.0)), at.light((0.0, 0.6, -0.8))]
+    first, second = made.run(at.inputs, lights)
+    assert made.run(at.inputs, lights[:1])[0] == pytest.approx(first)
+    assert made.run(at.inputs, lights[1:])[0] == pytest.approx(second + np.array([[0.25], [0.0], [0.0]]))
+    for light, found, more in ((lights[0], first, 0.25), (lights[1], second, 0.0)):
+        facing = (at.inputs["N"] * light["L"]).sum(axis=0)
+        wrapped = np.maximum(np.maximum((facing + 0.5) / 1.5, 0.0) - np.maximum(facing, 0.0), 0.0)
+        assert found[0] == pytest.approx(wrapped + more, abs=1e-12)
+
+
+def test_the_text_of_a_chain_says_what_its_stages_do() -> None:
+    stages = [
+        Stage("thickness", "march_light", (("steps", 5), ("reach", 1e-5)), ("steps",), (("sdf", "a.sss:b"),)),
+        Stage("surface", "base_color", (("tint", [1.0, 0.5, 1e7, np.float64(1.0)]), ("on", True), ("a", 'b"\n'))),
+    ]
+    assert material_text("mine", stages, 'A "title"', "doc").splitlines() == [
+        "[material]",
+        'name = "mine"',
+        'title = "A \\"title\\""',
+        'doc = "doc"',
+        "",
+        "[[thickness]]",
+        'technique = "march_light"',
+        'bind = { sdf = "a.sss:b" }',
+        "steps = { value = 5, fixed = true }",
+        "reach = 1e-05",
+        "",
+        "[[surface]]",
+        'technique = "base_color"',
+        "tint = [1.0, 0.5, 1e+07, 1.0]",
+        "on = true",
+        'a = "b\\" "',
+    ]
+
+
+# --- what a scene gives ---
+
+
+def test_the_mean_chord_of_a_ball_is_four_thirds_of_its_radius() -> None:
+    one = replace(small("cube"), geometry=Ball(0.6, scale=1.5))
+    assert supply.mean_chord(one) == pytest.approx(np.full(points(one).count, 4.0 / 3.0 * 0.9), rel=2e-3)
+
+
+def test_each_point_reads_its_own_texel() -> None:
+    one = small("bracket")
+    given, chord = supply.of_scene(one), supply.mean_chord(one)
+    uv = given.inputs["uv"]
+    read = {name: given.textures[name].sample(uv)[0] for name in given.textures if name.endswith("_texture")}
+    assert read["thickness_texture"] == pytest.approx(chord / chord.max())
+    assert read["thinness_texture"] == pytest.approx(1.0 - chord / chord.max())
+    assert read["transmittance_texture"] == pytest.approx(np.exp(-chord / np.median(chord)))
+
+
+def thickness_error(one: Situation, *names: str, **settings: int) -> float:
+    """The error of a thickness technique on a scene, with its own parameters as they are."""
+    asked = candidate(*names, "shown_thickness", role="thickness", settings=tuple(settings.items()))
+    point = measure.measured(asked, Fitted({}, (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), 0.0), [View("own", one)])
+    return float(point["error"]["value"])
+
+
+def test_given_the_exact_length_the_error_is_nought() -> None:
+    for name in ("cube", "bracket", "torus"):
+        assert thickness_error(small(name), "exact_thickness") < 1e-9
+
+
+def test_a_depth_map_measures_convex_bodies_and_takes_gaps_for_matter() -> None:
+    # its own bias is a hundredth, and its texels are a two-hundredth of the body
+    assert thickness_error(small("cube"), "depth_map_thickness") < 0.1
+    assert thickness_error(small("bracket"), "depth_map_thickness") > 0.25
+
+
+def test_light_that_meets_no_matter_asks_for_no_thickness() -> None:
+    one = small("inlay_plate")
+    lit = replace(one, medium=Medium("m", (1.0,) * 3, (1.0,) * 3), lights=(Light(None, (0.0, 0.0, 1.0), (1.0,) * 3),))
+    with pytest.raises(SssgenError, match="no light passes through the body of 'inlay_plate'"):
+        problem.of_thickness(lit)
+
+
+def test_lights_side_by_side_give_what_each_gives_alone(cube: View, tmp_path: Path) -> None:
+    one = small("capsule")
+    asked = problem.of_light(one, made_up(one).seen)
+    assert asked is not None and len(asked.parts) == 2
+    made = chain(candidate("exact_thickness", "beer_lambert", "lobe_gdc2011"), View("own", one), tmp_path)
+    together = asked.values(made, {"power": 2.0})
+    alone = []
+    for part in asked.parts:
+        made.set({**part.values, "power": 2.0}, part.textures)
+        alone.append(made.run(part.inputs, [part.light])[0])
+    assert together == pytest.approx(np.concatenate(alone, axis=1)[:, asked.keep] * asked.gain)
+    # thinned: the same lanes' values, fewer of them
+    few = asked.thinned(10)
+    assert few.target.shape == (3, 10)
+    chosen = [int(np.flatnonzero((asked.target == lane[:, None]).all(axis=0))[0]) for lane in few.target.T]
+    assert few.values(made, {"power": 2.0}) == pytest.approx(together[:, chosen])
+
+
+def test_of_all_lights_together_the_colours_are_added() -> None:
+    one = small("capsule")
+    view = made_up(one)
+    each, whole = (problem.of_material(one, view.seen, summed) for summed in (False, True))
+    count = points(one).count
+    by_light = (each.target / each.gain).reshape(3, 2, count)
+    colors = np.array([light.color for light in one.lights]).T[..., None]
+    assert whole.target / whole.gain == pytest.approx((by_light * colors).sum(axis=1))
+    assert np.percentile(whole.target.max(axis=0), 99.0) == pytest.approx(problem.WHITE)
+    assert whole.noise / whole.gain == pytest.approx(1e-3 * np.sqrt((colors**2).sum(axis=1)) * np.ones((3, count)))
+
+
+def test_what_stands_in_its_own_shadow_gets_no_light_from_the_front() -> None:
+    body_of = Union((Box(size=(2.0, 0.2, 2.0)), Ball(0.4, position=(0.0, 0.9, 0.0))))  # a ball over a board
+    one = replace(small("bracket"), geometry=body_of, lights=(Light(None, (0.0, 1.0, 0.0), (1.0, 1.0, 1.0)),))
+    one = replace(one, camera=Camera((0.0, 2.5, 3.0), (0.0, 0.0, 0.0), 40.0), size=(24, 24))
+    seen = made_up(one).seen
+    asked = problem.of_material(one, seen, False)
+    at = points(one)
+    direction = np.array(one.lights[0].direction)
+    facing = at.inputs["N"].T @ direction > 0.05
+    shaded = asked.lambert[0] == 0.0
+    beyond = thickness(one.geometry, (at.inputs["P"] + 1e-3 * at.inputs["N"]).T, np.tile(direction, (at.count, 1)))
+    assert (facing & shaded).any() and (facing & ~shaded).any()
+    assert (beyond[facing & shaded] > 1e-3).all() and (beyond[facing & ~shaded] < 1e-3).all()
+    x, y, z = at.inputs["P"]
+    board = np.isclose(y, 0.1)
+    assert (shaded[board] == (np.hypot(x, z)[board] < 0.4)).all()
+
+
+# --- the fit ---
+
+
+def synthetic(view: View, made: Chain, given: Mapping[str, Any], scale: Array) -> Problem:
+    """The light that a chain gives itself with these parameters."""
+    asked = measure.problem_of("translucency", view, summed=False)
+    assert asked is not None
+    return replace(asked, target=scale[:, None] * asked.values(made, given), noise=np.zeros_like(asked.target))
+
+
+@pytest.mark.parametrize(
+    ("names", "given", "scale"),
+    [
+        (("lobe_gdc2011",), {"distortion": 0.35, "power": 3.0, "scale": 4.0, "ambient": 0.2}, [0.8, 0.5, 0.3]),
+        (("lobe_exp2",), {"distortion": 0.1, "power": 9.0}, [2.0, 1.0, 0.5]),
+        (("lobe_henyey_greenstein",), {"anisotropy": -0.3}, [0.4, 0.9, 1.4]),
+    ],
+)
+def test_it_finds_the_parameters_that_made_the_light(
+    names: tuple[str, ...], given: dict[str, float], scale: list[float], training: tuple[View, ...], tmp_path: Path
+) -> None:
+    one = candidate("exact_thickness", "beer_lambert", *names, role="translucency")
+    given = {**given, "attenuation_distance": 0.6}
+    chains = [chain(one, view, tmp_path) for view in training[:2]]
+    asked = [synthetic(view, made, given, np.array(scale)) for view, made in zip(training, chains, strict=False)]
+    found = fit.fit(chains, asked)
+    assert found.error < 1e-4
+    assert found.factor == "subsurface_color"
+    for name in {"distortion", "power", "anisotropy", "attenuation_distance"} & set(given):
+        assert found.parameters[name] == pytest.approx((given[name],), rel=2e-3)
+    if "scale" in given:  # strength and ambient light share the colour's factor: their ratio is what shows
+        ratio = found.parameters["ambient"][0] / found.parameters["scale"][0]
+        assert ratio == pytest.approx(given["ambient"] / given["scale"], rel=2e-3)
+    channels = np.array(found.scale)
+    assert channels / channels[0] == pytest.approx(np.array(scale) / scale[0], rel=2e-3)
+
+
+def test_the_same_twice_is_the_same(training: tuple[View, ...]) -> None:
+    one = candidate("exact_thickness", "beer_lambert", "lobe_normalized", role="translucency")
+    assert measure.fitted(one, training) == measure.fitted(one, training)
+
+
+def test_neither_scale_nor_matte_is_below_nought(training: tuple[View, ...], tmp_path: Path) -> None:
+    # light that the lobe would have to take away: the best there is, is none of it
+    view = training[0]
+    one = candidate("exact_thickness", "beer_lambert", "lobe_gdc2011")
+    made = chain(one, view, tmp_path)
+    asked = measure.problem_of("material", view, summed=False)
+    assert asked is not None
+    lambert = np.maximum(asked.lambert, 1e-3)
+    both = [
+        replace(asked, target=np.maximum(0.8 * lambert - 0.2 * asked.values(made, {}), 0.0), lambert=lambert),
+        replace(asked, target=0.3 * asked.values(made, {"scale": 3.0}) - 0.01 * lambert, lambert=lambert),
+    ]
+    less_lobe, less_matte = (fit.fit([made], [wanted]) for wanted in both)
+    for found in (less_lobe, less_matte):
+        assert min(*found.scale, *found.matte) >= 0.0
+        assert np.isfinite(found.error)
+    assert max(less_matte.matte) == 0.0 and min(less_matte.scale) > 0.0
+    assert min(less_lobe.matte) > 0.3
+
+
+def test_scale_and_matte_are_least_squares(training: tuple[View, ...], tmp_path: Path) -> None:
+    # without a colour to set, all channels have one scale; wrap lighting has none of its own
+    view = training[1]
+    made = chain(candidate("exact_thickness", "absorption_tint"), view, tmp_path)
+    asked = measure.problem_of("material", view, summed=False)
+    assert asked is not None
+    asked = asked.thinned(300)  # fewer than are left out of a fit
+    found = fit.fit([made], [asked])
+    values = asked.values(made, measure.exact(found.parameters))
+
+    def error(scale: Array, matte: Array) -> float:
+        apart = found._replace(scale=tuple(scale), matte=tuple(matte)).apply(values, asked) - asked.target
+        return float(np.sqrt((apart**2 / (asked.target**2 + fit.EPSILON)).mean()))
+
+    scale, matte = np.array(found.scale), np.array(found.matte)
+    assert np.ptp(scale) == 0.0
+    assert error(scale, matte) == pytest.approx(found.error, rel=1e-6)
+    for more in (0.97, 1.03):
+        if more < 1.0 or scale[0] * more <= 1.0 / 0.5:  # `weight` takes the scale, and goes to 1
+            assert error(more * scale, matte) > found.error
+        for channel in range(3):
+            assert error(scale, matte * np.where(np.arange(3) == channel, more, 1.0)) >= found.error
+
+
+def test_a_chain_that_is_left_out_is_fitted_by_what_the_front_reflects(training: tuple[View, ...]) -> None:
+    found = measure.fitted(Candidate("material", "none", "none", (), ()), training)
+    assert found.parameters == {} and found.scale == (0.0, 0.0, 0.0)
+    assert [round(matte, 1) for matte in found.matte] != [0.0, 0.0, 0.0]
+
+
+# --- the emitted material is the point that was measured ---
+
+CHAINS = {
+    "a colour takes the scale": ("exact_thickness", "beer_lambert", "lobe_gdc2011"),
+    "a number takes it": ("exact_thickness", "absorption_tint"),
+    "a march": ("march_light", "beer_lambert", "lobe_exp2"),
+    "thinness": ("thinness_uniform", "transmittance_from_thinness", "gltf_diffuse_transmission"),
+    "a map": ("transmittance_map", "lobe_normalized"),
+    "no thickness": ("wrap_lighting",),
+    "a distance texture": ("march_distance_texture", "beer_lambert", "lobe_henyey_greenstein"),
+}
+
+
+def picked(one: Situation, point: Mapping[str, Any]) -> Pick:
+    return Pick(one.name, point, None, (), None, None, True)
+
+
+@pytest.mark.parametrize("names", CHAINS.values(), ids=CHAINS)
+def test_the_emitted_material_gives_the_light_that_was_measured(
+    names: tuple[str, ...], cube: View, training: tuple[View, ...], tmp_path: Path
+) -> None:
+    settings = (("steps", 3),) if names[0] == "march_light" else ()
+    if names[0] == "march_distance_texture":
+        settings = candidates.settings(candidates.load(names[0]))[1]
+    one = candidate(*names, settings=settings)
+    found = measure.fitted(one, training[:2])
+    assert found.factor and max(found.scale) > 0.0
+    point = measure.measured(one, found, [cube])
+    asked = measure.problem_of("material", cube)
+    assert asked is not None
+    shown = found.apply(asked.values(chain(one, cube, tmp_path), measure.exact(found.parameters)), asked)
+
+    files = material_files(cube.situation, picked(cube.situation, point), "mine")
+    for name, text in files.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    emitted = Chain(parse_material(files["mine.toml"], str(tmp_path / "mine.toml")))
+    albedo = emitted.surface(asked.parts[0].inputs, "albedo")
+    # its parameters are in its text; only what the scene's body gives is set
+    light = asked.values(emitted, {}) + albedo * asked.lambert
+    assert light == pytest.approx(shown, rel=1e-4, abs=1e-6)
+    assert albedo[:, 0] == pytest.approx(found.matte, rel=1e-5)
+
+
+@pytest.mark.parametrize("names", [CHAINS["a march"], CHAINS["a map"]])
+def test_the_emitted_material_compiles_for_every_target(
+    names: tuple[str, ...], cube: View, training: tuple[View, ...], tmp_path: Path
+) -> None:
+    one = candidate(*names)
+    point = measure.measured(one, measure.fitted(one, training[:1]), [cube])
+    files = material_files(cube.situation, picked(cube.situation, point), "mine")
+    assert ("body.sss" in files) == (names[0] == "march_light")
+    for name, text in files.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    material = parse_material(files["mine.toml"], str(tmp_path / "mine.toml"))
+    targets = all_targets()
+    assert len(targets) > 5
+    for target in targets:
+        assert compile(material, target).files, target
+
+
+def test_every_technique_of_light_has_a_parameter_that_takes_the_scale(
+    training: tuple[View, ...], tmp_path: Path
+) -> None:
+    # else what is emitted could not be as bright as what was measured
+    for one in candidates.translucency():
+        if one.techniques and not candidates.is_published(candidates.load(one.name)):
+            asked = measure.problem_of("translucency", training[0], summed=False)
+            assert asked is not None
+            made = chain(one, training[0], tmp_path)
+            names = {name for part in asked.parts for name in part.values}
+            assert fit.free_parameters(made, names, asked)[1] is not None, one.label
+
+
+def test_of_an_inlay_the_slide_has_the_scenes_numbers(tmp_path: Path) -> None:
+    one = small("inlay_plate")
+    asked = [each for each in candidates.coordinates() if each.name == "parallax_refracted"]
+    plate = View("plate", replace(references.plate(one), size=SIZE))
+    point = measure.measured(asked[0], measure.fitted(asked[0], [plate]), [View("own", one)])
+    files = material_files(one, Pick(one.name, None, point, (), None, None, True), "mine")
+    made = Chain(parse_material(files["mine.toml"], str(tmp_path / "mine.toml")))
+    values = {uniform["technique_name"]: uniform["default"] for uniform in made.uniforms}
+    assert (values["depth"], values["ior"]) == ([0.1], [1.5])
+    assert [stage.section for stage in stages_of(point, body(one.geometry))] == ["coordinates", "surface"]
+
+
+# --- errors, and what is known beforehand ---
+
+
+def test_a_chain_that_gives_no_number_has_failed(cube: View, monkeypatch: pytest.MonkeyPatch) -> None:
+    one = candidate("wrap_lighting")
+    values = Problem.values
+
+    def broken(self: Problem, made: Chain, given: Mapping[str, Any]) -> Array:
+        found = values(self, made, given)
+        found[1, :4] = np.nan
+        return found
+
+    monkeypatch.setattr(Problem, "values", broken)
+    point = measure.measured(one, Fitted({}, (1.0,) * 3, (0.0,) * 3, 0.0), [cube])
+    assert point["failed"] == f"4 of {points(cube.situation).count} points are not finite"
+
+
+def test_seed_3_as_published_is_ambient_light_times_transmittance(
+    cube: View, training: tuple[View, ...], tmp_path: Path
+) -> None:
+    (one,) = (each for each in candidates.materials([]) if each.name == "seed 3")
+    made = chain(one, cube, tmp_path)
+    asked = measure.problem_of("material", cube)
+    assert asked is not None
+    given = {"distortion": 0.3, "power": 2.0, "ambient": 0.2, "attenuation": 0.7}
+    loud, silent = (asked.values(made, {**given, "scale": scale}) for scale in (20.0, 0.0))
+    assert (loud == silent).all() and (silent > 0.0).any()
+    part = asked.parts[0]
+    through = part.textures["transmittance_texture"].sample(part.inputs["uv"])[0]
+    # each light's colour, added up: there is one
+    assert silent == pytest.approx(asked.gain * part.color * (0.2 * 0.7 * through), rel=1e-6)
+    # and so is its point on the chart
+    found = measure.fitted(one, training)
+    mute = found._replace(parameters={**found.parameters, "scale": (0.0,)})
+    with_lobe, without = (measure.measured(one, each, [cube]) for each in (found, mute))
+    assert with_lobe["error"] == without["error"]
+    # the source that it follows has a lobe there
+    other = chain(candidate("transmittance_map", "lobe_gdc2011"), cube, tmp_path)
+    assert np.abs(asked.values(other, {**given, "scale": 20.0}) - silent).max() > 0.1
+
+
+def test_seed_0_mistakes_a_cube_and_a_march_to_the_light_does_not() -> None:
+    # each is fitted to balls and slabs alone
+    cube = small("cube")
+    fitted_to = [View(one.name, replace(one, size=SIZE)) for one in references.training(cube)]
+    error: dict[str, float] = {}
+    for one in candidates.thickness():
+        if one.name == "seed0_thinness" or one.label == "march_light, 16 steps":
+            found = measure.measured(one, measure.fitted(one, fitted_to), [View("own", cube)])["error"]["value"]
+            error[one.name] = min(error.get(one.name, np.inf), found)
+    assert error["march_light"] < 0.2
+    assert error["seed0_thinness"] > 0.6
+
+
+def slides(name: str) -> dict[str, float]:
+    """The errors on a scene with an inlay, by technique, in depths."""
+    one = small(name)
+    plate = View("plate", replace(references.plate(one), size=SIZE))
+    found = {}
+    for each in candidates.coordinates():
+        point = measure.measured(each, measure.fitted(each, [plate]), [View("own", one)])
+        found[each.name] = point["error"]["max"]
+    return found
+
+
+def test_seed_4_corrected_is_exact_on_a_plane_and_nearly_on_a_ball() -> None:
+    plane, ball = slides("inlay_plate"), slides("inlay_ball")
+    assert plane["parallax_refracted"] < 1e-6
+    assert plane["parallax_straight"] > 0.05
+    assert plane["none"] > 1.0
+    assert 1e-3 < ball["parallax_refracted"] < ball["none"]
+
+
+@pytest.mark.slow
+def test_light_transport_ranks_the_techniques_as_it_must() -> None:
+    # real references: the exact thickness with a lobe comes nearer than nothing, and than seed 3
+    pytest.importorskip("mitsuba")
+    cube = small("cube")
+
+    def view(one: Situation) -> View:
+        one = replace(one, size=SIZE)
+        return View(one.name, one, tuple(references.transport(one, n, 64, 0) for n in range(len(one.lights))), "64 0")
+
+    fitted_to, own = [view(one) for one in references.training(cube)], [view(cube)]
+    listed = [each for each in candidates.materials([]) if each.name in ("none", "seed 3")]
+    listed.append(candidate("exact_thickness", "absorption_tint"))
+    error = {one.name: measure.measured(one, measure.fitted(one, fitted_to), own)["error"]["value"] for one in listed}
+    assert error["absorption_tint"] < 0.8 * min(error["none"], error["seed 3"])
+
+
+def test_a_view_keeps_the_size_and_the_lanes_of_its_pixels() -> None:
+    one = replace(small("torus"), size=(20, 10), camera=Camera((0.0, 0.0, 3.4), (0.0, 0.0, 0.0), 26.0))
+    at = points(one)
+    picture = at.picture(at.inputs["P"], -9.0)
+    assert picture.shape == (10, 20, 3)
+    assert (picture != -9.0).all(axis=2).sum() == at.count
+    shown = picture[::-1][at.valid].T
+    assert (shown == at.inputs["P"]).all()
+    heights = [row[row[:, 1] != -9.0, 1].mean() for row in picture if (row[:, 1] != -9.0).any()]
+    assert len(heights) > 4 and heights == sorted(heights, reverse=True)  # row 0 is on top
+    away = np.array([[0.0], [0.0], [3.4]]) - at.inputs["P"]
+    assert at.inputs["V"] == pytest.approx(away / np.linalg.norm(away, axis=0))
