@@ -20,7 +20,7 @@ from .problem import Problem
 
 LANES = 400
 """Lanes of a training problem that are fitted to."""
-EVALUATIONS = 80
+EVALUATIONS = 30
 """The most evaluations of one search."""
 COLORS = (0.0, 1.0)
 """Where a colour's components are searched."""
