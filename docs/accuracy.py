@@ -24,6 +24,7 @@ from sssgen.output import write_files
 HERE = Path(__file__).parent
 FOLDER = HERE / "accuracy"
 PAGE = HERE / "accuracy.md"
+GPU_CHART = "gpu_chart.json"
 SPOT = FOLDER / "spot.toml"
 MESHES = HERE.parent.parent / "shared" / "data" / "meshes"
 
@@ -62,6 +63,11 @@ def page(record: Record, trial: Sequence[Mapping[str, Any]]) -> None:
     """Writes the pictures and the page."""
     drawn = drawing.drawn(record)
     kept = {name: data for name, data in drawn.items() if name.endswith((".png", ".csv", ".json"))}
+    if (FOLDER / GPU_CHART).is_file():
+        timed_there = chart_gpu.by_gpu(json.loads((FOLDER / GPU_CHART).read_text(encoding="utf-8")))
+        kept |= {
+            name: data for name, data in drawing.drawn(timed_there, "gpu").items() if name.endswith("material.png")
+        }
     write_files(str(FOLDER), kept)
     text = (FOLDER / "page.md.in").read_text(encoding="utf-8")
     parts: dict[str, Callable[[], str]] = {
@@ -88,10 +94,7 @@ def timed() -> int:
         print(f"{done} of {of}: {name}", file=sys.stderr, flush=True)
 
     found = chart_gpu.with_gpu_cost(some, [situation.load(name) for name in wanted], told=told)
-    (FOLDER / "gpu_chart.json").write_text(drawing.record.to_json(found), encoding="utf-8")
-    write_files(str(FOLDER), {
-        name: data for name, data in drawing.drawn(chart_gpu.by_gpu(found), "gpu").items() if name.endswith(".png")
-    })  # fmt: skip
+    write_files(str(FOLDER), {GPU_CHART: drawing.record.to_json(found)})
     print(found["record"]["device"], found["record"]["rank_correlation"])
     return 0
 
@@ -222,7 +225,7 @@ def implementation(record: Record) -> str:
 
 def gpu() -> str:
     """The GPU's record, where there is one."""
-    file = FOLDER / "gpu_chart.json"
+    file = FOLDER / GPU_CHART
     if not file.is_file():
         return (
             "Not measured: `python docs/accuracy.py --gpu` on a machine with a GPU writes docs/accuracy/gpu_chart.json."

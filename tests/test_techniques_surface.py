@@ -39,6 +39,24 @@ def test_refracted_parallax_slides_as_the_table_says(ior: float) -> None:
     close(technique("parallax_refracted")(uv=(0.3, 0.4), V=slanted(DEGREES), depth=0.1, **in_water, **FLAT), ours)
 
 
+@pytest.mark.parametrize("ior", OFFSETS)
+@pytest.mark.parametrize("side", [1.0, -1.0], ids=["front", "back"])
+def test_in_an_orthonormal_frame_the_cheap_form_is_the_refracted_one(ior: float, side: float) -> None:
+    views = unit(rng().normal(size=(200, 3)) + [0.0, 0.0, side])
+    views = views[views[:, 2] * side > 0.2]  # nearer to grazing the other one fades
+    given = {"uv": (0.3, 0.4), "V": views, "depth": 0.1, "uv_per_unit": (2.0, 0.5)}
+    ours = technique("parallax_orthonormal")(relative_ior=ior, T=X, B=Y, **given)
+    close(ours, technique("parallax_refracted")(ior=ior, **FLAT, **given), atol=1e-12)
+
+
+def test_the_cheap_form_slides_no_further_than_five_depths() -> None:
+    views = slanted(np.linspace(0.0, 90.0, 400))
+    for ior in (1.0, 1.02, 1.5):
+        slide = np.abs(technique("parallax_orthonormal")(uv=(0.0, 0.0), V=views, depth=0.1, relative_ior=ior, T=X, B=Y))
+        assert slide.max() <= 0.5 * (1.0 + 1e-12)
+        assert np.abs(np.diff(slide[:, 0])).max() < 0.06
+
+
 FRAMES = {  # how the position moves with u and with v, and the normal
     "orthonormal": (X, Y, Z),
     "turned": (np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0]), X),

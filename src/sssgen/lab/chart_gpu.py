@@ -110,7 +110,7 @@ def _fitting(scene: Scene, one: Situation, material: Material) -> Scene:
     given: dict[str, Any] = {"box_min": [*low], "box_max": [*high], "distance_range": reach}
     given |= {"object_scale": one.geometry.scale, "world_to_object": [*one.geometry.to_object().T.ravel()]}
     if one.inlay is not None:
-        given |= {"depth": one.inlay.depth, "ior": one.inlay.ior, "outside_ior": one.inlay.outside_ior}
+        given |= one.inlay.parameters
     modules = [module for stage in material.stages for module in (stage.technique.module, *(
         binding.module for binding in stage.bindings.values()))]  # fmt: skip
     uniforms = {uniform.name: uniform for module in modules for uniform in module.uniforms}

@@ -49,8 +49,8 @@ def _slide(one: Situation, point: Mapping[str, Any], of: Body) -> list[Stage]:
     stages = []
     for stage in stages_of(point, of)[:1]:
         known = {uniform.name for uniform in load(point["chain"][0]).uniforms}
-        scene = {"depth": one.inlay.depth, "ior": one.inlay.ior, "outside_ior": one.inlay.outside_ior}
-        stages.append(_with(stage, {key: value for key, value in scene.items() if key in known}))
+        scene = {key: value for key, value in one.inlay.parameters.items() if key in known}
+        stages.append(_with(stage, scene))
     return stages
 
 

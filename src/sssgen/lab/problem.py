@@ -215,11 +215,10 @@ def of_coordinates(situation: Situation) -> Problem:
     keep = np.flatnonzero(found.hit)
     inputs = {**at.inputs, "uv": np.zeros_like(at.inputs["uv"])}
     assert situation.inlay is not None
-    ior, outside = situation.inlay.ior, situation.inlay.outside_ior
     # with uv 0 at each point and one uv a depth, what comes out is the way in depths
     values = {
-        "uv_per_unit": np.full(2, 1.0 / found.depth), "depth": found.depth, "ior": ior, "outside_ior": outside,
-        "seed4_parallax.depth": 1.0, "seed4_parallax.eta": outside / ior,
+        **situation.inlay.parameters, "uv_per_unit": np.full(2, 1.0 / found.depth),
+        "seed4_parallax.depth": 1.0, "seed4_parallax.eta": situation.inlay.outside_ior / situation.inlay.ior,
     }  # fmt: skip
     part = Part(inputs, {}, values, {}, np.ones((3, 1)))
     target = found.offset[:, keep] / found.depth

@@ -42,6 +42,12 @@ class Inlay:
     ior: float = 1.5
     outside_ior: float = 1.0
 
+    @property
+    def parameters(self) -> dict[str, float]:
+        """What parallax techniques call these."""
+        indices = {"ior": self.ior, "outside_ior": self.outside_ior, "relative_ior": self.ior / self.outside_ior}
+        return {"depth": self.depth, **indices}
+
 
 @dataclass(frozen=True, eq=False)
 class Situation:

@@ -117,13 +117,13 @@ def measures(point: Point) -> tuple[float, float]:
 def front(points: Iterable[Point]) -> list[Point]:
     """The points that no other beats: none is as good in both and better in one. By cost; without failed ones.
 
-    Errors below LEAST are alike: they are rounding.
+    Errors below LEAST are alike, and those that differ by a millionth: that is rounding.
     """
     ordered = sorted((point for point in points if math.isfinite(measures(point)[1])), key=measures)
     best, found = (math.inf, math.inf), []
     for point in ordered:
         cost, error = measures(point)[0], max(measures(point)[1], LEAST)
-        if error < best[1] or (cost, error) == best:
+        if error < best[1] * (1.0 - LEAST) or (cost, error) == best:
             best = (cost, error)
             found.append(point)
     return found
