@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..compiler import compile
+from ..diagnostics import failure
 from ..harness.backends import Array
 from ..passes.cost import Cost, cost_of
 from . import fit, metrics, problem
@@ -71,6 +72,8 @@ def fitted(candidate: Candidate, training: Sequence[View], before: Parameters | 
     fitted to what it gives.
     """
     asked = [(view, one) for view in training if (one := problem_of(candidate.role, view, summed=False)) is not None]
+    if not asked:
+        raise failure("no light comes through what is fitted to", "the medium scatters nothing, or absorbs all")
     problems = [one.thinned(fit.LANES) for _, one in asked]
     bodies = [body(view.situation.geometry) for view, _ in asked]
     rest = candidate
@@ -109,6 +112,9 @@ def measured(candidate: Candidate, found: Fitted, views: Sequence[View]) -> dict
     A chain that gives NaN or infinity anywhere has `failed`, and no error. Raises SssgenError.
     """
     asked = [(view, one) for view in views if (one := problem_of(candidate.role, view)) is not None]
+    if not asked:
+        scene = views[0].situation.name
+        raise failure(f"no light comes through the body of '{scene}'", "light it from behind, too")
     with tempfile.TemporaryDirectory() as folder:
         chain = chain_of(candidate, body(views[0].situation.geometry), folder)
         given = [_values(chain, found, one) for _, one in asked]

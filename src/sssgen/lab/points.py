@@ -10,6 +10,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from ..diagnostics import failure
 from ..harness.backends import Array
 from ..harness.scenes.placed import Bools
 from .situation import Situation
@@ -61,11 +62,13 @@ class Points:
 
 @lru_cache(64)
 def points(situation: Situation) -> Points:
-    """The places of a situation. Raises SssgenError for geometry that cannot be read."""
+    """The places of a situation. Raises SssgenError for geometry that cannot be read, or seen."""
     width, height = situation.size
     origin, directions = situation.camera.rays(width, height)
     hits = situation.geometry.hits(origin, directions)
     keep = hits.hit & (np.abs(np.einsum("nc,nc->n", hits.normal, directions)) > GRAZING)
+    if not keep.any():
+        raise failure(f"the camera of '{situation.name}' sees nothing of its body", "turn it: [camera] target = […]")
     place, normal, ray = hits.position[keep].T, hits.normal[keep].T, directions[keep].T
     tangent, uv = hits.tangent[keep].T, hits.uv[keep].T
     model = situation.geometry.to_world()

@@ -213,6 +213,8 @@ def of_coordinates(situation: Situation) -> Problem:
     at = points(situation)
     found = refraction.seen(situation, at)
     keep = np.flatnonzero(found.hit)
+    if not len(keep):
+        raise failure(f"no ray meets the inlay of '{situation.name}'", "it lies deeper than the body is thick")
     inputs = {**at.inputs, "uv": np.zeros_like(at.inputs["uv"])}
     assert situation.inlay is not None
     # with uv 0 at each point and one uv a depth, what comes out is the way in depths

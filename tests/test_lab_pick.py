@@ -1,0 +1,246 @@
+"""Picking from a chart's record: the cheapest within an error, the most accurate within a cost, and why."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from sssgen.cli import main
+from sssgen.diagnostics import SssgenError
+from sssgen.lab import candidates, chart, executor, situation
+from sssgen.lab.chart import Settings
+from sssgen.lab.pick import Pick, allowed, chosen, limit_of, pick
+
+
+def point(chain: Sequence[str], cost: float, error: float, role: str = "material", **more: Any) -> dict[str, Any]:
+    """A point whose error may be as much as a tenth more, and a fifth more from the side."""
+    name = " → ".join(chain) or "none"
+    views = {"own": {"value": error, "low": 0.9 * error, "high": 1.1 * error},
+             "held out": {"value": error, "low": 0.9 * error, "high": 1.2 * error}}  # fmt: skip
+    found = {
+        "scene": "cube", "role": role, "name": name, "label": name, "chain": list(chain), "failed": "",
+        "cost": {"value": cost}, "error": views["own"], "views": views,
+    }  # fmt: skip
+    return found | more
+
+
+NONE = point((), 1.0, 0.9)
+WRAP = point(("wrap_lighting",), 20.0, 0.7)
+PLAIN = point(("constant_thickness", "beer_lambert", "lobe_exp2"), 50.0, 0.5)
+MAP = point(("thickness_map", "beer_lambert", "lobe_exp2"), 60.0, 0.3)
+MARCH = point(("march_light", "beer_lambert", "lobe_gdc2011"), 400.0, 0.1)
+DEAR = point(("march_light", "beer_lambert", "lobe_normalized"), 500.0, 0.2)
+PUBLISHED = point(("transmittance_map", "seed3_lobe"), 5.0, 0.01)
+BROKEN = point(("thinness_map", "lobe_exp2"), 6.0, 0.01, failed="4 of 72 points are not finite")
+ELSEWHERE = point(("wrap_lighting",), 2.0, 0.001, scene="torus")
+RECORD = {"points": [DEAR, PUBLISHED, MARCH, BROKEN, NONE, ELSEWHERE, MAP, WRAP, PLAIN]}
+
+
+def picked(max_error: float | None = None, max_cost: float | None = None) -> Pick:
+    return pick(RECORD, "cube", max_error, max_cost)
+
+
+@pytest.mark.parametrize(
+    ("max_error", "expected"),
+    [(2.0, NONE), (0.9, WRAP), (0.85, WRAP), (0.8, PLAIN), (0.61, PLAIN), (0.5, MAP), (0.35, MARCH), (0.13, MARCH)],
+)
+def test_the_cheapest_within_an_error_at_its_worst_view_s_upper_end(max_error: float, expected: Any) -> None:
+    found = picked(max_error)
+    assert found.chain is expected and found.met
+    assert limit_of(expected) == pytest.approx(1.2 * expected["error"]["value"])
+
+
+@pytest.mark.parametrize(
+    ("max_cost", "expected"), [(1.0, NONE), (49.9, WRAP), (50.0, PLAIN), (399.0, MAP), (400.0, MARCH), (1e6, MARCH)]
+)
+def test_the_most_accurate_within_a_cost(max_cost: float, expected: Any) -> None:
+    found = picked(None, max_cost)
+    assert found.chain is expected and found.met
+
+
+def test_where_nothing_keeps_the_limit_the_nearest_is_picked() -> None:
+    assert (picked(0.05).chain, picked(0.05).met) == (MARCH, False)
+    assert (picked(None, 0.5).chain, picked(None, 0.5).met) == (NONE, False)
+
+
+def test_what_is_next() -> None:
+    found = picked(0.5)
+    assert (found.chain, found.cheaper, found.better) == (MAP, PLAIN, MARCH)  # DEAR is on no front
+    assert (picked(2.0).cheaper, picked(2.0).better) == (None, WRAP)
+    assert (picked(0.2).cheaper, picked(0.2).better) == (MAP, None)
+
+
+def test_published_forms_and_failed_points_are_never_picked() -> None:
+    assert [one for one in RECORD["points"] if not allowed(one)] == [PUBLISHED, BROKEN]
+    for limit in (0.001, 0.02, 0.3, 0.7, 2.0):
+        for found in (picked(limit), picked(None, 100.0 * limit)):
+            assert PUBLISHED not in found and BROKEN not in found and ELSEWHERE not in found
+    # which of the library's are
+    kept = {technique.name for technique in candidates.of_role("translucency") if candidates.is_published(technique)}
+    assert {"seed1_lobe", "seed3_lobe", "gltf_volume", "three_js_port"} <= kept and "lobe_gdc2011" not in kept
+
+
+def test_equally_good_the_cheaper_and_equally_dear_the_better() -> None:
+    assert chosen([MAP, {**MAP, "cost": {"value": 40.0}}], 0.5, None)[0]["cost"]["value"] == 40.0  # type: ignore[index]
+    twin = point(MAP["chain"], 60.0, 0.25)
+    assert chosen([MAP, twin], 0.5, None)[0] is twin
+    assert chosen([], 0.5, None) == (None, True)
+
+
+def why(found: Pick) -> dict[str, tuple[str, str]]:
+    return {role.role: (role.technique, role.why) for role in found.roles}
+
+
+def test_roles_are_left_out_by_numbers() -> None:
+    said = why(picked(2.0))
+    assert said["translucency"][0] == said["thickness"][0] == ""
+    assert "the error without it is 1.08" in said["translucency"][1]
+    assert "nothing lies below" in said["coordinates"][1]
+    said = why(picked(0.85))
+    assert said["translucency"] == ("wrap_lighting", "without light that comes through the error is 1.08")
+    assert said["thickness"][0] == "" and "the best chain that has one errs by 0.12" in said["thickness"][1]
+    said = why(picked(0.61))
+    assert said["thickness"][0] == "constant_thickness" and "the error would be 0.12" in said["thickness"][1]
+    said = why(picked(0.5))
+    assert said["thickness"][0] == "thickness_map"
+    assert "with the same thickness everywhere the error is 0.6;" in said["thickness"][1]
+    assert "needs a baked thickness map" in said["thickness"][1]
+    assert said["translucency"][0] == "lobe_exp2"
+
+
+def test_coordinates_are_picked_by_the_same_limit() -> None:
+    none, slide = (
+        point((), 1.0, 0.9, "coordinates"),
+        point(("parallax_refracted", "shown_uv"), 40.0, 0.01, "coordinates"),
+    )
+    slide["name"] = "parallax_refracted"
+    found = pick({"points": [slide, none]}, "cube", 0.1, None)
+    assert (found.chain, found.coordinates, found.better, found.cheaper) == (None, slide, None, none)
+    assert why(found)["coordinates"] == (
+        "parallax_refracted",
+        "the picture is off by 0.012 of the way; without it by 1.08",
+    )
+    assert why(pick({"points": [slide, none]}, "cube", 2.0, None))["coordinates"][0] == ""
+    both = pick({"points": [slide, none, NONE]}, "cube", 0.1, None)
+    assert both.coordinates is slide and both.chain is NONE and not both.met  # the one keeps it, the other does not
+
+
+def test_a_scene_without_points() -> None:
+    with pytest.raises(SssgenError, match="no point of the scene 'ball'"):
+        pick(RECORD, "ball", 0.5, None)
+
+
+# --- the command ---
+
+
+@pytest.fixture
+def charted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    """A small chart of a plate in a cache of its own; the cache's folder."""
+    from sssgen import cache
+
+    folder = tmp_path / "cache"
+    monkeypatch.setenv("SSSGEN_CACHE", str(folder))
+    monkeypatch.setattr(cache, "_known", False)
+    monkeypatch.setattr(situation, "SIDE", 12)
+    chart.charted([situation.load("inlay_plate")], Settings(8, processes=0))
+    return str(folder)
+
+
+@pytest.fixture(autouse=True)
+def known_anew() -> Any:
+    from sssgen import cache
+
+    yield
+    cache._known = False
+
+
+def run(*arguments: str) -> int:
+    return main(["pick", "inlay_plate", "--samples", "8", *arguments])
+
+
+def test_from_a_chart_in_the_cache_nothing_is_measured(
+    charted: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(chart, "run", lambda *_, **__: pytest.fail("it measures"))
+    assert run("--max-error", "0.01", "--json") == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["ok"] and told["coordinates"]["name"].startswith("parallax") and told["chain"] is None
+    assert told["cheaper"]["name"] == "none"
+    assert [role["role"] for role in told["roles"]] == ["coordinates"]
+    assert run("--max-cost", "5") == 0
+    said = capsys.readouterr().out
+    assert "next better" in said and "a cost of at most 5" in said
+    # no chain keeps this: the nearest is shown, and the exit status says so
+    assert run("--max-error", "1e-30") == 1
+    assert "which nothing keeps; this is the nearest" in capsys.readouterr().out
+    assert run("--max-error", "1e-30", "--json") == 1
+    assert json.loads(capsys.readouterr().out)["ok"] is False
+
+
+def test_another_number_of_samples_is_another_chart(charted: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    calls = []
+    real = executor.run
+    monkeypatch.setattr(
+        chart, "run", lambda items, *rest, **more: calls.append(len(items)) or real(items, *rest, **more)
+    )
+    assert run("--max-error", "0.01", "--seed", "3", "--processes", "1") == 0
+    assert calls
+
+
+def test_it_emits_what_was_picked(charted: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out"
+    assert run("--max-error", "0.01", "--emit", str(out), "--target", "wgsl,glsl-330") == 0
+    names = sorted(path.name for path in out.iterdir())
+    assert (
+        "inlay_plate.toml" in names and any("wgsl" in name for name in names) and any("330" in name for name in names)
+    )
+    said = capsys.readouterr().out
+    assert all(f"wrote {out / name}" in said for name in names)
+    assert main(["emit", str(out / "inlay_plate.toml"), "--target", "glsl-330", "-o", str(tmp_path / "again")]) == 0
+    again = next((tmp_path / "again").glob("*330*.frag")).read_text(encoding="utf-8")
+    assert again == next(out.glob("*330*.frag")).read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--max-error", "0"], "--max-error 0 is no limit"),
+        (["--max-error", "nan"], "--max-error nan is no limit"),
+        (["--max-cost", "-3"], "--max-cost -3 is no limit"),
+        (["--max-cost", "inf"], "--max-cost inf is no limit"),
+        ([], "required"),
+        (["--max-cost", "3", "--max-error", "1"], "not allowed"),
+        (["--max-cost", "3", "--samples", "1"], "--samples 1 is not a number of samples"),
+        (["--max-cost", "99", "--emit", "out", "--target", "wgls"], "did you mean 'wgsl'"),
+    ],
+)
+def test_wrong_arguments(
+    charted: str, arguments: list[str], message: str, tmp_path: Path,
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    assert run(*arguments) == 2
+    assert message in capsys.readouterr().err
+    assert not Path("out").exists()
+
+
+def test_a_process_of_its_own_answers_from_the_cache(charted: str) -> None:
+    code = "from sssgen import cli; from sssgen.lab import situation; situation.SIDE = 12; raise SystemExit(cli.main())"
+    wanted = ["pick", "inlay_plate", "--samples", "8", "--max-error", "0.01"]
+    environment = {**os.environ, "SSSGEN_CACHE": charted}
+    made = subprocess.run(
+        [sys.executable, "-X", "importtime", "-c", code, *wanted],
+        capture_output=True, text=True, check=False, timeout=120, env=environment,
+    )  # fmt: skip
+    assert made.returncode == 0, made.stderr
+    # what measures is not even loaded
+    assert "sssgen.lab.pick" in made.stderr
+    for heavy in ("scipy", "mitsuba", "embreex", "flip_evaluator"):
+        assert f" {heavy}\n" not in made.stderr, heavy
