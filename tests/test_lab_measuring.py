@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -524,3 +525,40 @@ def test_a_view_keeps_the_size_and_the_lanes_of_its_pixels() -> None:
     assert len(heights) > 4 and heights == sorted(heights, reverse=True)  # row 0 is on top
     away = np.array([[0.0], [0.0], [3.4]]) - at.inputs["P"]
     assert at.inputs["V"] == pytest.approx(away / np.linalg.norm(away, axis=0))
+
+
+# --- what cannot be measured is said ---
+
+
+def test_a_camera_that_looks_away_an_inlay_too_deep_and_light_that_never_comes_through() -> None:
+    plate = small("inlay_plate")
+    with pytest.raises(SssgenError, match="the camera of 'inlay_plate' sees nothing of its body"):
+        points(replace(plate, camera=Camera((0.0, 0.0, 3.0), (0.0, 0.0, 6.0), 30.0)))
+    assert plate.inlay is not None
+    deep = replace(small("inlay_ball"), geometry=Ball(0.2), inlay=replace(plate.inlay, depth=0.5))
+    with pytest.raises(SssgenError, match="no ray meets the inlay of 'inlay_ball'"):
+        problem.of_coordinates(deep)
+    cube = small("cube")
+    dark = View("own", cube, tuple((np.zeros((3, points(cube).count)),) * 2 for _ in cube.lights), "dark")
+    through = candidate("wrap_lighting", role="translucency")
+    with pytest.raises(SssgenError, match="no light comes through what is fitted to"):
+        measure.fitted(through, [dark])
+    with pytest.raises(SssgenError, match="no light comes through the body of 'cube'"):
+        measure.measured(through, Fitted({}, (1.0,) * 3, (0.0,) * 3, 0.0), [dark])
+
+
+def test_a_rest_fitted_after_its_first_technique_errs_as_the_whole_chain_does(training: tuple[View, ...]) -> None:
+    whole = candidate("march_light", "beer_lambert", "lobe_exp2", settings=(("steps", 4),))
+    before = {"reach": (0.8,)}
+    found = measure.fitted(whole, training[:2], before)
+    assert found.parameters["reach"] == (0.8,) and set(found.parameters) > {"attenuation_distance", "power"}
+    squares = []
+    for view in training[:2]:
+        asked = measure.problem_of("material", view, summed=False)
+        assert asked is not None
+        asked = asked.thinned(fit.LANES)
+        with tempfile.TemporaryDirectory() as folder:
+            values = asked.values(chain(whole, view, Path(folder)), measure.exact(found.parameters))
+        apart = found.apply(values, asked) - asked.target
+        squares.append((apart**2 / (asked.target**2 + fit.EPSILON)).mean())
+    assert np.sqrt(np.mean(squares)) == pytest.approx(found.error, rel=1e-6)
