@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from .. import library
 from ..ir.nodes import Uniform
@@ -165,7 +165,10 @@ def materials(lengths: Sequence[Candidate]) -> list[Candidate]:
                 chain = (first.name, *route, light.name)
                 shown = " → ".join((label(first.name, length.settings), *route, light.name))
                 found.append(Candidate("material", " → ".join(chain), shown, length.settings, chain))
-    return list({(one.techniques, one.settings): one for one in found}.values())
+    kept: dict[tuple[tuple[str, ...], Any], Candidate] = {}
+    for one in found:  # a published chain that is also one of ours stays the published one
+        kept.setdefault((one.techniques, one.settings), one)
+    return list(kept.values())
 
 
 def _onwards(quantity: str, to_length: tuple[str, ...], wanted: str) -> Iterator[tuple[str, ...]]:

@@ -14,15 +14,14 @@ from typing import Any
 
 import numpy as np
 
-from ..harness.scenes.scene import DistanceTexture, Scene
-from ..harness.scenes.scene import load as load_scene
+from ..harness.scenes.scene import DistanceTexture, Scene, parse_scene
 from ..material import Material
 from ..material_values import WrongValue, read_value
 from . import body, gpu_cost, gpu_programs
 from .chain import Stage, material_of
 from .emission import stages_of
 from .gpu_cost import Measured
-from .situation import Situation, names
+from .situation import Situation
 
 AT_ONCE = 40
 """Programs that take turns: many take too long for a clock to stay the same."""
@@ -98,7 +97,7 @@ def _timed(one: Situation, points: Sequence[Mapping[str, Any]], size: tuple[int,
 
 def _scene(one: Situation) -> Scene:
     """The situation as a scene to draw."""
-    scene = load_scene(names().get(one.name, one.name))
+    scene = parse_scene("[medium]", f"{one.name}.toml")  # all else is as a scene has it that does not say
     return dataclasses.replace(scene, geometry=one.geometry, camera=one.camera, lights=one.lights)
 
 

@@ -1,0 +1,335 @@
+"""Charts: measured once, the same wherever the work runs, a sound record, and errors for people."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from sssgen import cache
+from sssgen.cli import main
+from sssgen.commands.chart import summary
+from sssgen.diagnostics import SssgenError
+from sssgen.harness.backends import Backend
+from sssgen.lab import candidates, chart, chart_gpu, executor, measure, references, situation, work
+from sssgen.lab.chart import Settings
+from sssgen.lab.drawing.record import checked, hypervolume, to_csv, to_json
+from sssgen.lab.executor import Failure
+from sssgen.lab.situation import Situation
+
+pytest.importorskip("scipy")
+pytest.importorskip("mitsuba")
+pytest.importorskip("flip_evaluator")
+
+SAMPLES = 8
+
+
+@pytest.fixture(autouse=True)
+def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    work.code_stamp.cache_clear()  # somebody may edit sssgen while its tests run
+    work._own.cache_clear()
+    in_cache(tmp_path / "cache", monkeypatch)
+    yield
+    cache._known = False
+
+
+def in_cache(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SSSGEN_CACHE", str(folder))
+    monkeypatch.setattr(cache, "_known", False)
+
+
+@pytest.fixture(autouse=True)
+def few(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Small pictures, two thickness techniques, and of the materials those that follow from them."""
+    monkeypatch.setattr(references, "TRAINING_SIDE", 8)
+    monkeypatch.setattr(situation, "SIDE", 8)
+    lengths, lights, whole = candidates.thickness, candidates.translucency, candidates.materials
+    some = ("constant_thickness", "march_light, 4 steps", "march_light, 6 steps")
+    kept = ("none", "seed 3", "wrap_lighting", "march_light → absorption_tint", "constant_thickness → absorption_tint")
+    monkeypatch.setattr(candidates, "thickness", lambda: [one for one in lengths() if one.label in some])
+    monkeypatch.setattr(candidates, "translucency", lambda: [one for one in lights() if one.name in kept])
+    monkeypatch.setattr(candidates, "materials", lambda given: [one for one in whole(given) if one.name in kept])
+
+
+def settings(**more: Any) -> Settings:
+    return Settings(SAMPLES, **{"processes": 0, **more})
+
+
+def cube() -> Situation:
+    return situation.load("cube")
+
+
+def counted(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The titles of the items that are computed from now on, in this process."""
+    ran: list[str] = []
+    real = executor.execute
+
+    def execute(one: Any) -> bytes:
+        ran.append(one.name)
+        return real(one)
+
+    monkeypatch.setattr(executor, "execute", execute)
+    return ran
+
+
+def test_what_is_measured_is_not_measured_again(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    ran = counted(monkeypatch)
+    one = cube()
+    first = chart.charted([one], settings())
+    assert len(ran) > 20
+    del ran[:]
+    assert to_json(chart.charted([one], settings())) == to_json(first)
+    assert not ran
+    # without the scene's file the items' results make it again
+    (kept,) = (tmp_path / "cache").glob("chart-*.json")
+    kept.unlink()
+    assert to_json(chart.charted([one], settings())) == to_json(first)
+    assert not ran
+    # and a damaged one is no harm
+    kept.write_bytes(b"{")
+    assert to_json(chart.charted([one], settings())) == to_json(first)
+    assert not ran
+    # an interrupted run goes on where it stood
+    kept.unlink()
+    lost = sorted((tmp_path / "cache" / "lab" / "results").glob("*/*"))[::5]
+    for path in lost:
+        path.unlink()
+    assert to_json(chart.charted([one], settings())) == to_json(first)
+    assert 0 < len(ran) <= len(lost)
+    # another seed is another chart
+    chart.charted([one], settings(seed=1))
+    assert len(ran) > 20
+
+
+def test_the_same_bytes_in_processes_as_here(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    scenes, roles = [cube(), situation.load("inlay_ball")], ("coordinates", "translucency")
+    here = to_json(chart.charted(scenes, settings(roles=roles)))
+    in_cache(tmp_path / "other", monkeypatch)
+    measure._problems.clear()
+    assert to_json(chart.charted(scenes, settings(roles=roles, processes=2))) == here
+    assert json.loads(here)["points"]
+
+
+def test_a_record_is_sound_and_says_what_was_done() -> None:
+    scenes = [cube(), situation.load("inlay_plate")]
+    record = chart.charted(scenes, settings())
+    assert checked(record) == record == json.loads(to_json(record))
+    assert [scene["name"] for scene in record["scenes"]] == ["cube", "inlay_plate"]
+    assert record["scenes"][0]["medium"]["name"] == "marble" and "medium" not in record["scenes"][1]
+    assert record["scenes"][0]["fitted_to"] == ["ball", "slab", "ball", "slab"]
+    assert (record["record"]["samples"], record["record"]["seed"]) == (SAMPLES, 0)
+    assert record["record"]["versions"]["mitsuba"]
+    roles = {(point["scene"], point["role"]) for point in record["points"]}
+    assert roles == {
+        ("cube", "thickness"),
+        ("cube", "translucency"),
+        ("cube", "material"),
+        ("inlay_plate", "coordinates"),
+    }
+    for point in record["points"]:
+        assert not point["failed"] and point["error"]["low"] <= point["error"]["value"] <= point["error"]["high"]
+        assert set(point["views"]) == {"own", "held out"}
+        assert ("flip" in point["error"]) == (point["role"] == "material")
+    assert len(to_csv(record).splitlines()) == 1 + len(record["points"])
+    # fronts, by asking of each point whether another beats it
+    for point in record["points"]:
+        rivals = [one for one in record["points"] if (one["scene"], one["role"]) == (point["scene"], point["role"])]
+        cost, error = point["cost"]["value"], point["error"]["value"]
+        beaten = any(
+            one["cost"]["value"] <= cost and one["error"]["value"] <= error
+            and (one["cost"]["value"], one["error"]["value"]) != (cost, error)
+            for one in rivals
+        )  # fmt: skip
+        assert point["front"] == (not beaten), point["label"]
+    # known answers: without a chain it costs least; steps buy accuracy; the wrong slide is off, none is off by more
+    error = {(one["role"], one["label"]): one["error"]["value"] for one in record["points"]}
+    assert error["thickness", "march_light, 6 steps"] < error["thickness", "constant_thickness"]
+    assert error["coordinates", "parallax_refracted"] < 1e-6
+    assert error["coordinates", "parallax_straight"] > 0.01
+    said = summary(record)
+    assert "cube, material:" in said and "inlay_plate, coordinates:" in said
+
+
+def test_hypervolumes_are_of_ours_and_of_the_baselines() -> None:
+    def point(cost: float, error: float, baseline: bool, name: str = "a") -> dict[str, Any]:
+        return {"scene": "s", "role": "material", "name": name, "cost": {"value": cost}, "error": {"value": error},
+                "baseline": baseline, "failed": ""}  # fmt: skip
+
+    points = [
+        point(10.0, 0.5, True),
+        point(10.0, 0.1, False),
+        point(1.0, 0.9, False, "none"),
+        point(100.0, 0.05, False),
+    ]
+    (found,) = chart.hypervolumes(points)
+    assert found["reference_point"] == pytest.approx([110.0, 1.0])
+    assert found["ours"] == pytest.approx(hypervolume(points[1:], [110.0, 1.0]))
+    assert found["baselines"] == pytest.approx(hypervolume([points[0], points[2]], [110.0, 1.0]))
+    assert found["ours"] > found["baselines"] > 0.0
+
+
+def test_dearer_settings_go_on_only_where_they_pay(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.undo()  # the library's own list
+    chains = {one.label: list(one.techniques) for one in candidates.thickness()}
+    errors = {"march_light, 1 steps": 0.5, "march_light, 2 steps": 0.46, "march_light, 4 steps": 0.3,
+              "march_light, 8 steps": 0.31, "march_light, 16 steps": 0.2, "constant_thickness": 0.9}  # fmt: skip
+    points = [
+        {"label": label, "chain": chains[label], "training_error": error, "cost": {"value": cost}}
+        for cost, (label, error) in enumerate(errors.items())
+    ]
+    labels = [one.label for one in chart.paying(points)]
+    assert labels == ["march_light, 1 steps", "march_light, 4 steps", "march_light, 16 steps", "constant_thickness"]
+
+
+def test_what_fails_is_named() -> None:
+    with pytest.raises(SssgenError) as caught:
+        chart._all([executor.Item("executor_items:fail", ("said",), "fit this")], settings())
+    assert "fit this: the scene has no light" in str(caught.value)
+    assert isinstance(executor.run([executor.Item("executor_items:fail", ("x",), "that")], processes=0)[0], Failure)
+
+
+def test_two_scenes_that_say_the_same_are_measured_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    ran = counted(monkeypatch)
+    plate = situation.load("inlay_plate")
+    chart.charted([plate, replace(plate)], settings())
+    assert ran and len(set(ran)) == len(ran)
+
+
+# --- all candidates ---
+
+
+def test_every_technique_that_has_a_reference_is_charted(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.undo()
+    lengths = candidates.thickness()
+    whole = candidates.materials([one for one in lengths if not one.settings or one.settings[0][1] == 4])
+    for role, found in (("thickness", lengths), ("translucency", candidates.translucency()),
+                        ("coordinates", candidates.coordinates())):  # fmt: skip
+        assert {one.name for one in found} - {"none"} == {technique.name for technique in candidates.of_role(role)}
+        assert len({(one.techniques, one.settings) for one in found}) == len(found)
+        assert len({one.label for one in found}) == len(found)
+        for one in found:
+            assert one.baseline == any(candidates.load(name).baseline for name in one.techniques)
+    assert {one.name for one in whole if one.baseline} == set(candidates.PUBLISHED)
+    assert len({one.label for one in whole}) == len(whole)
+    for one in whole:
+        # each stage takes what the one before gives
+        given = ""
+        for name in one.techniques:
+            technique = candidates.load(name)
+            assert candidates.quantity_taken(technique) in ("", given), one.label
+            given = technique.function.quantity or given
+
+
+# --- costs on a GPU, from times that are given ---
+
+
+def test_ranks_and_their_correlation() -> None:
+    from scipy.stats import rankdata, spearmanr
+
+    values = [3.0, 1.0, 4.0, 1.0, 5.0, 9.0, 2.0, 6.0, 5.0, 3.0]
+    times = [1.0, 3.0, 2.0, 2.0, 7.0, 1.0, 8.0, 2.0, 8.0, 9.0]
+    assert chart_gpu.ranks(values).tolist() == rankdata(values).tolist()
+    points = [{"role": "material", "cost": {"value": a, "gpu_ms": b}} for a, b in zip(values, times, strict=True)]
+    points += [{"role": "thickness", "cost": {"value": 1.0, "gpu_ms": None}}] * 3
+    assert chart_gpu.correlations(points) == {"material": pytest.approx(spearmanr(values, times).statistic)}
+
+
+def test_by_gpu_times_are_the_costs() -> None:
+    points = [{"cost": {"value": 10.0, "gpu_ms": 0.5}}, {"cost": {"value": 20.0, "gpu_ms": None}}]
+    found = chart_gpu.by_gpu({"points": points, "record": {"software": False}})
+    assert found["points"] == [{"cost": {"value": 0.5, "gpu_ms": 0.5, "static": 10.0}}]
+    assert (found["cost"], found["cost_unit"]) == ("gpu", "ms at 1080p")
+
+
+def test_a_scene_of_ones_own_is_timed(tmp_path: Path, backend: Callable[[str], Backend]) -> None:
+    backend("gl")
+    text = '[inlay]\ndepth = 0.1\n[geometry]\nkind = "box"\n[camera]\nposition = [0.5, 1.0, 3.0]\n'
+    (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
+    one = situation.load(str(tmp_path / "mine.toml"))
+    record = chart.charted([one], settings())
+    timed = chart_gpu.with_gpu_cost(record, [one], (32, 32), 2)
+    assert timed["record"]["device"] and timed["record"]["size"] == [32, 32]
+    for before, after in zip(record["points"], timed["points"], strict=True):
+        cost = after["cost"]
+        assert cost["value"] == before["cost"]["value"]
+        assert cost["gpu_ms"] >= chart_gpu.LEAST and cost["gpu_ms_low"] <= cost["gpu_ms_high"]
+    assert checked(chart_gpu.by_gpu(timed))["cost"] == "gpu"
+
+
+# --- the commands ---
+
+
+def test_the_chart_command_writes_its_files_and_says_which(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("matplotlib")
+    wanted = ["chart", "inlay_plate", "--samples", "8", "--processes", "1", "-o", str(tmp_path / "out")]
+    assert main([*wanted, "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["ok"] and {point["scene"] for point in told["points"]} == {"inlay_plate"}
+    files = {Path(file).name for file in told["files"]}
+    assert files == {path.name for path in (tmp_path / "out").iterdir()} and len(files) > 3
+    assert main(wanted) == 0
+    assert all(f"{name}" in capsys.readouterr().out for name in ["inlay_plate, coordinates"])
+
+
+def test_the_fit_command_shows_parameters(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["fit", "cube", "wrap_lighting", "--samples", "8", "--processes", "1"]) == 0
+    said = capsys.readouterr().out
+    assert "Marble cube, lit from behind: fitted" in said
+    (line,) = (line for line in said.splitlines() if "wrap_lighting" in line)
+    assert "wrap 0." in line or "wrap 1" in line
+    assert "subsurface_color ×" in line and "none" not in said
+    assert main(["fit", "cube", "wrap_lighting", "--samples", "8", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert [point["name"] for point in told["points"]] == ["wrap_lighting"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["chart", "cueb"], "did you mean 'cube'"),
+        (["chart", "none.toml"], "none.toml"),
+        (["chart", "cube", "--samples", "1"], "--samples 1 is not a number of samples"),
+        (["chart", "cube", "--samples", "1000000"], "is not a number of samples"),
+        (["chart", "cube", "--samples", "many"], "many"),
+        (["chart", "cube", "--seed", "-1"], "--seed -1 is below 0"),
+        (["chart", "cube", "--role", "thicknes"], "did you mean 'thickness'"),
+        (["chart", "cube", "--role", "colour"], "roles: coordinates, thickness, translucency, material"),
+        (["chart", "cube", "cube"], "two scenes are called 'cube'"),
+        (["chart", "ice.toml"], "does not say what its body is made of"),
+        (["fit", "cube", "wrap_lightning"], "did you mean 'wrap_lighting'"),
+        (["fit", "cueb"], "did you mean 'cube'"),
+    ],
+)
+def test_errors_are_said_to_people(
+    arguments: list[str],
+    message: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("ice.toml").write_text('material = "ice"\n[geometry]\nkind = "ball"\n', encoding="utf-8")
+    monkeypatch.setattr(chart, "run", lambda *_, **__: pytest.fail("it measures"))
+    assert main(arguments) == 2
+    said = capsys.readouterr().err
+    assert message in said and "Traceback" not in said
+
+
+def test_materials_bring_the_thickness_that_they_are_made_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Settings] = []
+
+    def charted(_: Any, given: Settings) -> dict[str, Any]:
+        asked.append(given)
+        return {"points": [], "hypervolume": []}
+
+    monkeypatch.setattr(chart, "charted", charted)
+    for role in ("material", "coordinates,material", "translucency"):
+        assert main(["chart", "cube", "--role", role]) == 0
+    assert [given.roles for given in asked] == [
+        ("thickness", "material"), ("thickness", "coordinates", "material"), ("translucency",),
+    ]  # fmt: skip
+    assert [given.samples for given in asked] == [512] * 3
