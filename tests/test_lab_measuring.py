@@ -562,3 +562,18 @@ def test_a_rest_fitted_after_its_first_technique_errs_as_the_whole_chain_does(tr
         apart = found.apply(values, asked) - asked.target
         squares.append((apart**2 / (asked.target**2 + fit.EPSILON)).mean())
     assert np.sqrt(np.mean(squares)) == pytest.approx(found.error, rel=1e-6)
+
+
+def test_what_only_shows_a_value_costs_nothing_and_steps_cost_what_they_are(tmp_path: Path) -> None:
+    one = View("own", small("cube"))
+
+    def cost(*names: str, **counts: int) -> float:
+        made = chain(candidate(*names, role="thickness", settings=tuple(counts.items())), one, tmp_path)
+        return float(measure.static_cost(made).weight)
+
+    few, some, more = (cost("march_light", "shown_thickness", steps=steps) for steps in (4, 8, 12))
+    assert 0.0 <= cost("exact_thickness", "shown_thickness") < 0.2 * few
+    assert more - some == some - few > 0.0
+    assert measure.static_cost(None).weight == 0.0
+    given = chain(candidate("march_light", "shown_thickness", settings=(("steps", 8),)), one, tmp_path)
+    assert 8 <= measure.static_cost(given).distance_evaluations <= 12
