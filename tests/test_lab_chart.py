@@ -105,6 +105,15 @@ def test_what_is_measured_is_not_measured_again(monkeypatch: pytest.MonkeyPatch,
     assert len(ran) > 20
 
 
+def test_no_light_is_followed_for_roles_that_need_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    ran = counted(monkeypatch)
+    alone = chart.charted([cube()], settings(roles=("thickness",)))["points"]
+    assert ran and not any("reference" in title for title in ran)
+    chart.charted([cube()], settings(roles=("thickness", "translucency")))
+    assert sum("reference" in title for title in ran) == 2 + 14  # own views, and what is fitted to: a light each
+    assert [point["label"] for point in alone] == [one.label for one in candidates.thickness()]
+
+
 def test_the_same_bytes_in_processes_as_here(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     scenes, roles = [cube(), situation.load("inlay_ball")], ("coordinates", "translucency")
     here = to_json(chart.charted(scenes, settings(roles=roles)))
@@ -189,6 +198,13 @@ def test_what_fails_is_named() -> None:
     with pytest.raises(SssgenError) as caught:
         chart._all([executor.Item("executor_items:fail", ("said",), "fit this")], settings())
     assert "fit this: the scene has no light" in str(caught.value)
+    names = ("one", "two", "two", "three")
+    again = [executor.Item("executor_items:fail", ("said",), name) for name in names]
+    with pytest.raises(SssgenError) as caught:
+        chart._all([*again, executor.Item("executor_items:fail", ("x",), "that")], settings())
+    told = [one.message for one in caught.value.diagnostics]
+    assert len(told) == 2 and told[0].startswith("one and 2 more: the scene has no light")
+    assert told[1].startswith("that: ValueError: no such thing")
     assert isinstance(executor.run([executor.Item("executor_items:fail", ("x",), "that")], processes=0)[0], Failure)
 
 

@@ -34,6 +34,9 @@ PAYS = 0.9
 VIEWS = ("own", "held out")
 """What the two views of a scene are called."""
 
+LIT = frozenset(("translucency", "material"))
+"""The roles that are held against light transport."""
+
 DEFAULTS = ("cube", "torus", "bracket", "capsule", "mouse", "inlay_plate", "inlay_ball")
 """The scenes of a chart that names none."""
 
@@ -131,8 +134,9 @@ def _views(situations: Sequence[Situation], settings: Settings) -> dict[str, _Vi
     """Each scene's views and what it is fitted to, with their references."""
     own = {one.key: (one, one.held_out()) for one in situations}
     training = {one.key: references.training(one) if one.medium is not None else [] for one in situations}
-    dear = list({view.key: view for views in own.values() for view in views}.values())
-    cheap = list({view.key: view for views in training.values() for view in views}.values())
+    lit = LIT.intersection(settings.roles)
+    dear = list({view.key: view for views in own.values() for view in views if lit}.values())
+    cheap = list({view.key: view for views in training.values() for view in views if lit}.values())
     items = references.items(dear, settings.samples, settings.seed)
     items += references.items(cheap, settings.samples // 2, settings.seed)
     seen = references.by_situation([*dear, *cheap], _all(items, settings))
@@ -231,9 +235,16 @@ def _all(items: Sequence[Item], settings: Settings) -> list[Any]:
     """The items' results. Raises SssgenError with those that failed."""
     with settings.shown() as progress:
         results = run(items, settings.scheduler, settings.processes, progress=progress)
-    failed = {result.name: result for result in results if isinstance(result, Failure)}
+    failed: dict[str, dict[str, None]] = {}
+    for result in results:
+        if isinstance(result, Failure):
+            failed.setdefault(result.message, {})[result.name] = None
     if failed:
-        raise SssgenError([failure(f"{one.name}: {one.message}").diagnostics[0] for one in failed.values()])
+        told = []
+        for message, names in failed.items():  # what is wrong with a scene is wrong with each of its items
+            first, more = next(iter(names)), f" and {len(names) - 1} more" if len(names) > 1 else ""
+            told.append(failure(f"{first}{more}: {message}").diagnostics[0])
+        raise SssgenError(told)
     return results
 
 
