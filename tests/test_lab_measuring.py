@@ -332,6 +332,17 @@ def test_scale_and_matte_are_least_squares(training: tuple[View, ...], tmp_path:
             assert error(scale, matte * np.where(np.arange(3) == channel, more, 1.0)) >= found.error
 
 
+def test_the_scale_is_no_more_than_its_parameter_can_be(training: tuple[View, ...], tmp_path: Path) -> None:
+    # `weight` is 0.5 by default and goes to 1: light that is brighter cannot be reached
+    made = chain(candidate("exact_thickness", "absorption_tint"), training[0], tmp_path)
+    asked = measure.problem_of("translucency", training[0], summed=False)
+    assert asked is not None
+    bright = replace(asked, target=np.full_like(asked.target, 20.0 * asked.gain))
+    found = fit.fit([made], [bright])
+    assert found.factor == "weight"
+    assert found.scale == pytest.approx((2.0, 2.0, 2.0))
+
+
 def test_a_chain_that_is_left_out_is_fitted_by_what_the_front_reflects(training: tuple[View, ...]) -> None:
     found = measure.fitted(Candidate("material", "none", "none", (), ()), training)
     assert found.parameters == {} and found.scale == (0.0, 0.0, 0.0)
@@ -492,6 +503,7 @@ def test_seed_4_corrected_is_exact_on_a_plane_and_nearly_on_a_ball() -> None:
     plane, ball = slides("inlay_plate"), slides("inlay_ball")
     assert plane["parallax_refracted"] < 1e-6
     assert plane["parallax_straight"] > 0.05
+    assert plane["seed4_parallax"] < 1e-6  # with the right index of refraction, which its source never says
     assert plane["none"] > 1.0
     assert 1e-3 < ball["parallax_refracted"] < ball["none"]
 
