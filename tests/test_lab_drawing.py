@@ -220,7 +220,8 @@ def test_everything_has_its_place(which: int) -> None:
         assert len(panel.labels) >= 0.8 * len(best) > 0
         for label, style in panel.labels:
             assert plot.has(*label.box[:2]) and plot.has(*label.box[2:])
-            assert label.text.startswith(style.name) or "taps" in label.text
+            of_it = [str(dot.point["label"]) for dot in best if dot.style == style]
+            assert any(shown.endswith(label.text) for shown in of_it)
             assert not any(label.box.has(dot.x, dot.y) for dot in best)
         for (one, _), (other, _) in itertools.combinations(panel.labels, 2):
             assert not one.box.overlap(other.box)

@@ -30,6 +30,8 @@ BAND = 22.0
 """How high the band at a plot's top is, where what failed stands."""
 KEY_COLUMNS, KEY_LINE, KEY_MARK = 4, 19.0, 28.0
 """Columns of the key at most; how high its lines are, and how wide a marker with what is around it."""
+MOST_LINES = 60
+"""Chains whose settings are joined by lines: more would hide the points."""
 
 READING = (
     "filled: ours · hollow: published baselines · stepped line: none here is better · faint: beaten · × not finite"
@@ -134,9 +136,16 @@ def chart(record: Record, role: str) -> Chart:
     return Chart(role, title, notes, WIDTH, height, x_title, "error", panels, key)
 
 
+def series(point: Point) -> str:
+    """What a point shares its look with: its technique; of whole chains, how light comes through in them."""
+    chain = list(point.get("chain", ()))
+    whole = point["role"] == "material" and not point.get("baseline")
+    return str(chain[-1] if chain and whole else point["name"])
+
+
 def styles(points: Sequence[Point]) -> dict[str, Style]:
     """How each technique looks: ours first, by name, then the baselines."""
-    hollow = {point["name"]: bool(point.get("baseline")) for point in points}
+    hollow = {series(point): bool(point.get("baseline")) for point in points}
     names = sorted(hollow, key=lambda name: (hollow[name], name))
     return {name: Style(name, at % COLORS, at % MARKERS, hollow[name]) for at, name in enumerate(names)}
 
@@ -152,15 +161,18 @@ def _panel(
 ) -> Panel:
     plot = Box(box.left + LEFT, box.top + TOP, box.right - RIGHT, box.bottom - BOTTOM)
     x, y = x.within(plot.left, plot.right), y.within(plot.bottom, plot.top + BAND)
-    dots = [_dot(point, looks[point["name"]], plot, x, y) for point in points]
+    dots = [_dot(point, looks[series(point)], plot, x, y) for point in points]
     dots.sort(key=lambda dot: (not dot.faint, dot.x, dot.y))
     best = [dot for dot in dots if not dot.faint and not dot.failed]
     steps = _steps([(dot.x, dot.y) for dot in best], plot)
     lines = []
-    for style in looks.values():
-        way = sorted((dot.x, dot.y) for dot in dots if dot.style == style and not dot.failed)
-        if len(way) > 1:
-            lines.append((style, way))
+    settings: dict[tuple[Style, tuple[str, ...]], list[Place]] = {}
+    for dot in dots:
+        if not dot.failed:
+            settings.setdefault((dot.style, tuple(dot.point.get("chain", ()))), []).append((dot.x, dot.y))
+    for (style, _), way in settings.items():
+        if len(way) > 1 and len(settings) <= MOST_LINES:
+            lines.append((style, sorted(way)))
     inside = Box(plot.left + 2.0, plot.top + BAND, plot.right - 2.0, plot.bottom - 2.0)
     wanted = [(text, (dot.x, dot.y)) for text, dot in zip(_texts(best), best, strict=True)]
     found = placed(
