@@ -23,7 +23,7 @@ from sssgen.diagnostics import SssgenError
 from sssgen.harness.backends.browser_page import find
 from sssgen.lab import drawing
 from sssgen.lab.drawing import figure
-from sssgen.lab.drawing.layout import LONGEST_NOTE, NOTE, Chart, chart, styles
+from sssgen.lab.drawing.layout import LONGEST_NOTE, NOTE, Chart, chart, series, styles
 from sssgen.lab.drawing.record import checked, front, hypervolume, measures, to_csv, to_json
 from sssgen.lab.drawing.scale import number, scale, tick
 from sssgen.lab.drawing.summary import medians
@@ -228,7 +228,7 @@ def test_everything_has_its_place(which: int) -> None:
         for dot in panel.dots:  # nothing lies below the front's line
             assert dot.failed or any(dot.x >= x - 1e-9 and dot.y <= y + 1e-9 for x, y in panel.front)
     names = [style.name for _, style in made.key]
-    assert sorted(names) == sorted([*OURS, *BASELINES])
+    assert sorted(names) == sorted({series(dot.point) for panel in made.panels for dot in panel.dots})
 
 
 def test_techniques_look_different() -> None:

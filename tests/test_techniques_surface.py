@@ -42,7 +42,7 @@ def test_refracted_parallax_slides_as_the_table_says(ior: float) -> None:
 @pytest.mark.parametrize("ior", OFFSETS)
 @pytest.mark.parametrize("side", [1.0, -1.0], ids=["front", "back"])
 def test_in_an_orthonormal_frame_the_cheap_form_is_the_refracted_one(ior: float, side: float) -> None:
-    views = unit(rng().normal(size=(200, 3)) + [0.0, 0.0, side])
+    views = unit(rng().normal((0.0, 0.0, side), 1.0, (200, 3)))
     views = views[views[:, 2] * side > 0.2]  # nearer to grazing the other one fades
     given = {"uv": (0.3, 0.4), "V": views, "depth": 0.1, "uv_per_unit": (2.0, 0.5)}
     ours = technique("parallax_orthonormal")(relative_ior=ior, T=X, B=Y, **given)

@@ -27,9 +27,9 @@ def run(arguments: Namespace) -> int:
             raise failure(f"two scenes are called '{name}'", "a scene is called as its file: rename one")
     record = chart.charted(situations, settings)
     if arguments.cost == "gpu":
-        from ..lab.chart_gpu import with_gpu_cost
+        from ..lab.chart_gpu import by_gpu, with_gpu_cost
 
-        record = with_gpu_cost(record, situations)
+        record = by_gpu(with_gpu_cost(record, situations))
     files = drawing.write(record, arguments.output) if arguments.output else []
     if arguments.json:
         print_json({"ok": True, "files": files, **record})
@@ -70,7 +70,7 @@ def summary(record: Mapping[str, Any]) -> str:
         failed = sum(bool(point["failed"]) for point in of_it)
         lines += ["", f"{scene}, {role}: {len(of_it)} points" + (f", {failed} failed" if failed else "")]
         lines += [
-            f"  {point['error']['value']:8.4f}  {point['cost']['value']:8.0f}  {point['label']}"
+            f"  {point['error']['value']:8.4f}  {point['cost']['value']:8.4g}  {point['label']}"
             + ("  (published)" if point["baseline"] else "")
             for point in best
         ]

@@ -56,7 +56,7 @@ def with_gpu_cost(
             for number, point in enumerate(some):
                 taken = found.net_times[str(number)] - found.net_times[EMPTY]
                 low, median, high = (float(value) for value in np.percentile(taken, [10.0, 50.0, 90.0]))
-                point["cost"] = {**point["cost"], "gpu_ms": max(median, LEAST), "gpu_ms_low": low, "gpu_ms_high": high}
+                point["cost"] = {**point["cost"], **_cost(low, median, high, found)}
             done += len(some)
             told(done, len(points), one.name)
             about |= {"device": found.device.renderer, "driver": found.device.version}
@@ -65,14 +65,25 @@ def with_gpu_cost(
     return {**record, "record": about, "points": points}
 
 
+def _cost(low: float, median: float, high: float, found: Measured) -> dict[str, Any]:
+    """Times as a cost; on a software rasteriser only as ratios to the shader without the chain."""
+    without = max(float(np.median(found.net_times[EMPTY])), LEAST)
+    ratio = {"gpu_ratio": max(median, LEAST) / without}
+    if found.device.software:
+        return ratio
+    return {**ratio, "gpu_ms": max(median, LEAST), "gpu_ms_low": low, "gpu_ms_high": high}
+
+
 def by_gpu(record: Mapping[str, Any]) -> dict[str, Any]:
     """The record with its GPU times as the costs that are drawn and picked by; points without one are left out."""
+    software = bool(record["record"].get("software"))
+    kind = "gpu_ratio" if software else "gpu_ms"
     points = [
-        {**point, "cost": {**point["cost"], "static": point["cost"]["value"], "value": point["cost"]["gpu_ms"]}}
+        {**point, "cost": {**point["cost"], "static": point["cost"]["value"], "value": point["cost"][kind]}}
         for point in record["points"]
-        if point["cost"].get("gpu_ms") is not None
+        if point["cost"].get(kind) is not None
     ]
-    unit = "ratio of CPU time" if record["record"].get("software") else "ms at 1080p"
+    unit = "× the bare shader" if software else "ms at 1080p"
     return {**record, "points": points, "cost": "gpu", "cost_unit": unit}
 
 
@@ -148,10 +159,10 @@ def correlations(points: Sequence[Mapping[str, Any]]) -> dict[str, float]:
     """Spearman's rank correlation of static and measured cost, over all scenes, by role."""
     found = {}
     for role in dict.fromkeys(point["role"] for point in points):
-        timed = [point["cost"] for point in points if point["role"] == role and point["cost"].get("gpu_ms") is not None]
+        timed = [point["cost"] for point in points if point["role"] == role and "gpu_ratio" in point["cost"]]
         if len(timed) > 1:
             static = ranks([float(cost.get("static", cost["value"])) for cost in timed])
-            measured = ranks([float(cost["gpu_ms"]) for cost in timed])
+            measured = ranks([float(cost["gpu_ratio"]) for cost in timed])
             if np.ptp(static) > 0.0 and np.ptp(measured) > 0.0:
                 found[role] = float(np.corrcoef(static, measured)[0, 1])
     return found
