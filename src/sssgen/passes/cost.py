@@ -123,4 +123,3 @@ class _Counter:
         if isinstance(expr, ir.Unary | ir.Select):
             return Cost(components(expr.type))
         return Cost()
-
