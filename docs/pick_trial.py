@@ -19,7 +19,7 @@ from sssgen.lab.chart import Settings
 from sssgen.lab.pick import allowed, chosen, cost_of
 from sssgen.lab.situation import Situation
 
-SCENES = 6
+SCENES = 5
 LIMITS = 8
 """Limits a scene, from the best error there to what it has without any translucency."""
 MEDIA = ("apple", "chicken1", "ketchup", "skin2", "wholemilk", "spectralon", "jade", "wax")

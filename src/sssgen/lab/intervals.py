@@ -174,8 +174,8 @@ def _(geometry: Distance, origins: Array, directions: Array) -> Array:
     end = np.maximum(nearest + half, 0.0)
     t = np.full(len(origins), 2.0 * shortest)  # past the surface that the ray starts from
     value = geometry.distance(origins + t[:, None] * directions).copy()
-    crossings: list[tuple[Any, Array, Array]] = []
-    opened = np.where(value < 0.0, 0.0, np.nan)
+    starts_inside = np.flatnonzero(value < 0.0)
+    brackets: list[tuple[Any, Array, Array]] = []
     going = t < end
     while going.any():
         rays = np.flatnonzero(going)
@@ -183,34 +183,32 @@ def _(geometry: Distance, origins: Array, directions: Array) -> Array:
         after = np.minimum(t[rays] + step, end[rays])
         new = geometry.distance(origins[rays] + after[:, None] * directions[rays])
         crossed = (new < 0.0) != (value[rays] < 0.0)
-        at = np.zeros(len(origins))
-        at[rays[crossed]] = _bisected(geometry, origins, directions, t, after[crossed], rays[crossed])
-        leaving = rays[crossed & (new >= 0.0)]
-        crossings.append((leaving, opened[leaving], at[leaving]))
-        opened[rays[crossed]] = np.where(new[crossed] < 0.0, at[rays[crossed]], np.nan)
+        brackets.append((rays[crossed], t[rays[crossed]], after[crossed]))
         t[rays], value[rays] = after, new
         going[rays] = after < end[rays]
-    still = np.flatnonzero(np.isfinite(opened))
-    crossings.append((still, opened[still], end[still]))
-    return _gathered(crossings, len(origins))
+    rays, low, high = (np.concatenate(parts) for parts in zip(*brackets, strict=True)) if brackets else (t[:0],) * 3
+    rays = rays.astype(np.int64)
+    at = _bisected(geometry, origins[rays], directions[rays], low, high)
+    ends_inside = np.flatnonzero(value < 0.0)
+    # a ray enters and leaves in turns: inside from its origin on, and inside at its end, are a turn each
+    rays = np.concatenate([starts_inside, rays, ends_inside])
+    at = np.concatenate([np.zeros(len(starts_inside)), at, end[ends_inside]])
+    order = np.lexsort((at, rays))
+    return _gathered(rays[order][::2], at[order].reshape(-1, 2), len(origins))
 
 
-def _bisected(geometry: Geometry, origins: Array, directions: Array, low: Array, high: Array, rays: Array) -> Array:
-    """Where the distance changes its sign between low[rays] and high."""
-    low = low[rays].copy()
-    negative = geometry.distance(origins[rays] + low[:, None] * directions[rays]) < 0.0
+def _bisected(geometry: Geometry, origins: Array, directions: Array, low: Array, high: Array) -> Array:
+    """Where the distance changes its sign between low and high, along each ray."""
+    negative = geometry.distance(origins + low[:, None] * directions) < 0.0
     for _ in range(ROOTS):
         middle = 0.5 * (low + high)
-        same = (geometry.distance(origins[rays] + middle[:, None] * directions[rays]) < 0.0) == negative
+        same = (geometry.distance(origins + middle[:, None] * directions) < 0.0) == negative
         low, high = np.where(same, middle, low), np.where(same, high, middle)
     return high
 
 
-def _gathered(crossings: list[tuple[Any, Array, Array]], count: int) -> Array:
-    rays = np.concatenate([ray for ray, _, _ in crossings]).astype(np.int64)
-    ends = np.concatenate([np.stack([low, high], axis=1) for _, low, high in crossings])
-    order = np.lexsort((ends[:, 0], rays))
-    rays, ends = rays[order], ends[order]
+def _gathered(rays: Any, ends: Array, count: int) -> Array:
+    """Intervals (m, 2) of rays, in order, side by side: (count, k, 2)."""
     rank = np.arange(len(rays)) - np.searchsorted(rays, rays)
     result = np.zeros((count, int(rank.max(initial=0)) + 1, 2))
     result[rays, rank] = ends

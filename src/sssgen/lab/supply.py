@@ -74,16 +74,15 @@ def of_light(situation: Situation, direction: tuple[float, float, float]) -> Sup
 def mean_chord(situation: Situation) -> Array:
     """The mean length inside the body over inward directions, weighted by their cosine to −N: (n,)."""
     at = points(situation)
-    total = np.zeros(at.count)
-    place = np.ascontiguousarray(at.inputs["P"].T)
     frame = np.stack([at.inputs["T"], np.cross(at.inputs["N"].T, at.inputs["T"].T).T, -at.inputs["N"]])
-    for number in range(RAYS):
-        # a Fibonacci spiral on the disc, raised to the hemisphere: density follows the cosine
-        radius = np.sqrt((number + 0.5) / RAYS)
-        angle = number * np.pi * (3.0 - np.sqrt(5.0))
-        way = np.array([radius * np.cos(angle), radius * np.sin(angle), np.sqrt(1.0 - radius**2)])
-        total += thickness(situation.geometry, place, np.einsum("k,kcn->nc", way, frame))
-    return total / RAYS
+    # a Fibonacci spiral on the disc, raised to the hemisphere: density follows the cosine
+    number = np.arange(RAYS)
+    radius, angle = np.sqrt((number + 0.5) / RAYS), number * np.pi * (3.0 - np.sqrt(5.0))
+    ways = np.stack([radius * np.cos(angle), radius * np.sin(angle), np.sqrt(1.0 - radius**2)])
+    directions = np.einsum("kr,kcn->rnc", ways, frame).reshape(-1, 3)
+    places = np.tile(at.inputs["P"].T, (RAYS, 1))
+    mean: Array = thickness(situation.geometry, places, np.ascontiguousarray(directions)).reshape(RAYS, -1).mean(axis=0)
+    return mean
 
 
 def _depth_map(situation: Situation, towards: Array) -> tuple[dict[str, Any], dict[str, Texture]]:
