@@ -27,6 +27,7 @@ from sssgen.harness.testing import ci
 from sssgen.ir.nodes import Span
 from sssgen.ir.reader import TextError, read_module
 from sssgen.ir.text import print_module
+from sssgen.lab import situation
 from sssgen.lang.loader import load_file, load_text, read_text
 from sssgen.library import TECHNIQUES, load_path
 from sssgen.material import load_material
@@ -99,8 +100,9 @@ def _ci_folder(path: Path) -> None:
     ci.cases(str(path.parent))
 
 
-def _examples(pattern: str) -> list[bytes]:
-    return [path.read_bytes() for path in sorted(data.folder("examples").glob(pattern))]
+def _examples(pattern: str, but: str = "") -> list[bytes]:
+    found = sorted(data.folder("examples").glob(pattern))
+    return [path.read_bytes() for path in found if path.parent.name != but]
 
 
 def _sources() -> list[bytes]:
@@ -182,8 +184,9 @@ def _meshes(kind: str) -> Callable[[], list[bytes]]:
 FRONT_ENDS = {
     "technique": FrontEnd(".sss", lambda path: load_path(str(path)), _techniques),
     "source": FrontEnd(".glsl", _source, _sources),
-    "material": FrontEnd(".toml", _material, lambda: _examples("*/[!s]*.toml")),
+    "material": FrontEnd(".toml", _material, lambda: _examples("*/[!s]*.toml", but="lab")),
     "scene": FrontEnd(".toml", lambda path: scene.load(path), lambda: _examples("*/scene*.toml")),
+    "measured scene": FrontEnd(".toml", lambda path: situation.load(str(path)), lambda: _examples("lab/*.toml")),
     "ci table": FrontEnd(".eval.json", _ci, _tables),
     "ci folder": FrontEnd(".toml", _ci_folder, lambda: _examples("ci/*/*.toml")),
     "module": FrontEnd(".ir", _module, _modules),
