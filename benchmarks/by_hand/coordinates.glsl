@@ -26,3 +26,11 @@ vec2 parallax_refracted(vec2 uv, vec3 V, vec3 T, vec3 B, vec3 N) {
     vec3 facing = faceforward(N, -V, N);
     return slide(uv, refract(-V, facing, outside_ior / ior), T, B, facing);
 }
+
+uniform float relative_ior;
+
+vec2 parallax_orthonormal(vec2 uv, vec3 V, vec3 T, vec3 B) {
+    vec2 across = vec2(dot(V, T), dot(V, B));
+    float reciprocal = min(inversesqrt(max(relative_ior * relative_ior - dot(across, across), 1.0e-6)), 5.0);
+    return uv - uv_per_unit * across * (depth * reciprocal);
+}
