@@ -173,8 +173,8 @@ float march_light_traced(vec3 P, vec3 L) {
         float least = left * float(2 * i + 1) / float((TRACED_STEPS + i) * (TRACED_STEPS - i));
         float h = min(max(abs(before), least), left);
         float after = body(P + L * (t + h));
-        if (before * after < 0.0) {
-            float first = clamp(0.5 * (h + abs(before) - abs(after)), 0.0, h);
+        if (before * after < 0.0 && abs(before) + abs(after) < 0.9 * h) {
+            float first = 0.5 * (h + abs(before) - abs(after));
             float between = body(P + L * (t + first));
             inside += first * inside_part(before, between) + (h - first) * inside_part(between, after);
         } else {
