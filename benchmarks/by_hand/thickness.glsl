@@ -27,7 +27,7 @@ const int HASHED_TAPS = 6;
 const int RAYS = 24;
 const int RAY_STEPS = 16;
 const int LIGHT_MARCH = 32;
-const int TRACED_STEPS = 16;
+const int TRACED_STEPS = 12;
 const int VIEW_STEPS = 8;
 const int LIGHT_STEPS = 8;
 
