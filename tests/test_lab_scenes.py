@@ -111,6 +111,7 @@ def test_the_held_out_view_is_turned_about_the_vertical_through_the_target() -> 
         ('[medium]\npreset = "marble"\nabsorption = [1, 1, 1]\n' + BALL + LIT, "a preset has its own absorption", 3),
         ('[medium]\npreset = "marble"\nanisotropy = 0.1\n' + BALL + LIT, "a preset has its own anisotropy", 3),
         ("[medium]\nunit_mm = 3\n" + BALL + LIT, "given per world unit", 2),
+        ("[medium]\nscattering = [0.0, 0.0, 0.0]\n" + BALL + LIT, "nothing scatters in this medium", 2),
         ("[medium]\nscattering = [1, 1]\n" + BALL + LIT, "'scattering' takes 3 numbers", 2),
         ("[medium]\nscattering = [1, 1, -1]\n" + BALL + LIT, "'scattering' cannot be -1", 2),
         ("[medium]\nanisotropy = 1\n" + BALL + LIT, "'anisotropy' cannot be 1", 2),

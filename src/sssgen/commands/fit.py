@@ -23,7 +23,7 @@ def run(arguments: Namespace) -> int:
         hint = did_you_mean(name, known) or f"techniques: {', '.join(sorted(known))}"
         raise failure(f"no technique of light that comes through is called '{name}'", hint)
     points = chart.charted([one], settings)["points"]
-    points = [point for point in points if point["chain"] and (not wanted or point["name"] in wanted)]
+    points = [point for point in points if point["name"] != "none" and (not wanted or point["name"] in wanted)]
     if arguments.json:
         print_json({"ok": True, "scene": one.name, "points": points})
         return OK

@@ -159,6 +159,8 @@ def _medium(scene: Scene) -> Medium | None:
     absorption: Any = table.vector("absorption", (0.0, 0.0, 0.0), NOT_NEGATIVE)
     scattering: Any = table.vector("scattering", (5.0, 5.0, 5.0), NOT_NEGATIVE)
     anisotropy = table.number("anisotropy", 0.0, (-0.95, 0.95))
+    if not any(scattering):
+        table.error("scattering", "nothing scatters in this medium", "no light would come through but straight on")
     if "unit_mm" in table.content:
         table.error("unit_mm", "coefficients are given per world unit", "leave unit_mm out, or name a preset")
     return Medium("custom", absorption, scattering, anisotropy, 1.0, "the scene")
