@@ -167,12 +167,14 @@ def test_interrupt_here_keeps_what_is_done() -> None:
     assert len(store.memory) == 2
 
 
+# a process of a shell in the background ignores interrupts, and so would its own
 LONG_RUN = """
-import sys
+import signal, sys
 from pathlib import Path
 from sssgen.lab.executor import run
 from sssgen.lab.store import Store
 from test_lab_executor import items
+signal.signal(signal.SIGINT, signal.default_int_handler)
 run(items(Path(sys.argv[1]), 10, 0.15), processes=2, store=Store(sys.argv[2]))
 """
 
