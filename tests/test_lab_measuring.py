@@ -316,7 +316,7 @@ def test_scale_and_matte_are_least_squares(training: tuple[View, ...], tmp_path:
     assert asked is not None
     asked = asked.thinned(300)  # fewer than are left out of a fit
     found = fit.fit([made], [asked])
-    values = asked.values(made, measure.exact(found.parameters))
+    values = asked.values(made, fit.exact(found.parameters))
 
     def error(scale: Array, matte: Array) -> float:
         apart = found._replace(scale=tuple(scale), matte=tuple(matte)).apply(values, asked) - asked.target
@@ -379,7 +379,7 @@ def test_the_emitted_material_gives_the_light_that_was_measured(
     point = measure.measured(one, found, [cube])
     asked = measure.problem_of("material", cube)
     assert asked is not None
-    shown = found.apply(asked.values(chain(one, cube, tmp_path), measure.exact(found.parameters)), asked)
+    shown = found.apply(asked.values(chain(one, cube, tmp_path), fit.exact(found.parameters)), asked)
 
     files = material_files(cube.situation, picked(cube.situation, point), "mine")
     for name, text in files.items():
@@ -570,7 +570,7 @@ def test_a_rest_fitted_after_its_first_technique_errs_as_the_whole_chain_does(tr
         assert asked is not None
         asked = asked.thinned(fit.LANES)
         with tempfile.TemporaryDirectory() as folder:
-            values = asked.values(chain(whole, view, Path(folder)), measure.exact(found.parameters))
+            values = asked.values(chain(whole, view, Path(folder)), fit.exact(found.parameters))
         apart = found.apply(values, asked) - asked.target
         squares.append((apart**2 / (asked.target**2 + fit.EPSILON)).mean())
     assert np.sqrt(np.mean(squares)) == pytest.approx(found.error, rel=1e-6)

@@ -12,11 +12,13 @@ import pytest
 
 from sssgen.cli import main
 from sssgen.diagnostics import SssgenError
+from sssgen.harness.evaluate import half
 from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
 from sssgen.harness.scenes.scene import parse_scene
 from sssgen.lab import body, media, references, situation
 from sssgen.lab.points import points
 from sssgen.lab.situation import Inlay, Situation
+from sssgen.targets.numpy_textures import Texture
 
 BALL = '[geometry]\nkind = "ball"\n'
 LIT = "[[light]]\ndirection = [0, 0, -2]\n"
@@ -204,7 +206,9 @@ def test_bounds_hold_the_body_and_its_texture_reads_the_distance(shape: Geometry
     assert inside.sum() > 20
     cell = 0.05 if isinstance(shape, Distance) else 1e-9  # a distance function is looked for on a grid
     assert ((low - cell <= at[inside]) & (at[inside] <= high + cell)).all()
-    texture, box_min, box_max, reach = body.distance_texture(shape)
+    made = body.distance_texture(shape)
+    texture, reach = half(Texture(made.values(shape), wrap="clamp")), made.range
+    box_min, box_max = np.array(made.box_min), np.array(made.box_max)
     within = ((box_min < at) & (at < box_max)).all(axis=1)
     read = texture.sample(((at[within] - box_min) / (box_max - box_min)).T)[0]
     exact = np.clip(shape.distance(at[within]), -reach, reach)

@@ -57,7 +57,7 @@ def settings_of(arguments: Namespace) -> Settings:
             raise failure(f"no chart has the role '{role}'", hint)
     if "material" in roles and "thickness" not in roles:
         roles = ("thickness", *roles)
-    return Settings(arguments.samples, arguments.seed, roles, arguments.scheduler or "", arguments.processes, Bar)
+    return Settings(arguments.samples, arguments.seed, roles, arguments.scheduler, arguments.processes, Bar)
 
 
 def summary(record: Mapping[str, Any]) -> str:

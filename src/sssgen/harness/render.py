@@ -73,7 +73,7 @@ def render(
         raise failure(
             f"{material.name} needs a surface to be on", "add [geometry] to the scene", scene.document.reporter.file
         )
-    shell = _shell(scene, material, reflection)
+    shell = shell_of(scene, material, reflection)
     if raymarched:
         shell = dataclasses.replace(shell, view_projection=_matrix(scene, backend, width / height))
         samples, hit = shade(compiled, shell, backend, (width, height), None), np.ones((height, width), bool)
@@ -143,7 +143,7 @@ def _averaged(samples: Array, n: int) -> Array:
     return found
 
 
-def _shell(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> Shell:
+def shell_of(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> Shell:
     """What the scene gives to the shell. Raises SssgenError at the scene's own lines."""
     positions = [
         [*light.position, 1.0] if light.position else [*(light.direction or ()), 0.0] for light in scene.lights

@@ -14,11 +14,9 @@ from typing import Any
 import numpy as np
 
 from ..diagnostics import failure
-from ..harness.evaluate import half
 from ..harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
-from ..harness.scenes.placed import Array
+from ..harness.scenes.placed import Array, Vector
 from ..harness.scenes.scene import DistanceTexture
-from ..targets.numpy_textures import Texture
 
 TEXELS = 64
 """Along the longest side of a distance texture."""
@@ -164,13 +162,24 @@ def placed_corners(geometry: Geometry) -> Array:
     return placed
 
 
-def distance_texture(geometry: Geometry) -> tuple[Texture, Array, Array, float]:
-    """A distance texture of the shape in its object space: texture, smallest and largest corner, and range."""
+def distance_texture(geometry: Geometry) -> DistanceTexture:
+    """The distance texture of a shape in its object space: its box with a margin, in texels that are about cubes."""
     low, high = bounds(geometry)
     margin = 0.05 * float((high - low).max())
     low, high = low - margin, high + margin
     size = high - low
-    reach = 0.5 * float(size.max())
-    texels = np.maximum(np.ceil(TEXELS * size / size.max()), 4).astype(int)
-    made = DistanceTexture((int(texels[0]), int(texels[1]), int(texels[2])), tuple(low), tuple(high), reach)
-    return half(Texture(made.values(geometry), wrap="clamp")), low, high, reach
+    x, y, z = (max(int(side), 4) for side in np.ceil(TEXELS * size / size.max()))
+    return DistanceTexture((x, y, z), _vector_of(low), _vector_of(high), 0.5 * float(size.max()))
+
+
+def _vector_of(corner: Array) -> Vector:
+    x, y, z = map(float, corner)
+    return x, y, z
+
+
+def given(geometry: Geometry, texture: DistanceTexture) -> dict[str, object]:
+    """The numbers that go with a shape's distance texture by the names of techniques, as TOML has them."""
+    return {
+        "box_min": [*texture.box_min], "box_max": [*texture.box_max], "distance_range": texture.range,
+        "world_to_object": [*geometry.to_object().T.ravel()], "object_scale": geometry.scale,
+    }  # fmt: skip

@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from ..harness.scenes.scene import DistanceTexture, Scene, parse_scene
+from ..compiler import compile
+from ..harness.scenes.scene import Scene, parse_scene
 from ..material import Material
-from ..material_values import WrongValue, read_value
 from . import body, gpu_cost, gpu_programs
 from .chain import Stage, material_of
 from .emission import stages_of
@@ -113,45 +113,16 @@ def _scene(one: Situation) -> Scene:
 
 
 def _fitting(scene: Scene, one: Situation, material: Material) -> Scene:
-    """The scene with the parameters and textures of the body that a material has."""
-    low, high = body.bounds(one.geometry)
-    margin = 0.05 * float((high - low).max())
-    low, high, reach = low - margin, high + margin, 0.5 * float((high - low).max()) + margin
-    given: dict[str, Any] = {"box_min": [*low], "box_max": [*high], "distance_range": reach}
-    given |= {"object_scale": one.geometry.scale, "world_to_object": [*one.geometry.to_object().T.ravel()]}
-    if one.inlay is not None:
-        given |= one.inlay.parameters
-    modules = [module for stage in material.stages for module in (stage.technique.module, *(
-        binding.module for binding in stage.bindings.values()))]  # fmt: skip
-    uniforms = {uniform.name: uniform for module in modules for uniform in module.uniforms}
-    fixed = {name for stage in material.stages for name in stage.fixed}
-    parameters = {}
-    for name, value in given.items():
-        if name in uniforms and name not in fixed:
-            try:
-                read_value(uniforms[name], value)
-            except WrongValue:
-                continue
-            parameters[name] = value
-    textures = {}
-    if "distance_map" in uniforms:
-        side = tuple(max(4, round(64 * float(part))) for part in (high - low) / (high - low).max())
-        textures["distance_map"] = DistanceTexture(side, tuple(low), tuple(high), reach)  # type: ignore[arg-type]
-    kept = dataclasses.replace(scene, parameters={}, textures=textures)
-    return _with_parameters(kept, parameters, material)
-
-
-def _with_parameters(scene: Scene, parameters: Mapping[str, Any], material: Material) -> Scene:
-    """The scene with those of the parameters that the emitted shader reads."""
-    from ..compiler import compile
-
-    reflection = compile(material, "glsl-330").reflection
+    """The scene with those parameters and textures of the body that the material's shader reads."""
+    reflection = compile(material, gpu_programs.TARGET).reflection
+    texture = body.distance_texture(one.geometry)
+    given = {**body.given(one.geometry, texture), **(one.inlay.parameters if one.inlay is not None else {})}
     read = {uniform["source_name"] for uniform in reflection["uniforms"]}
-    textures = {texture["source_name"] for texture in reflection["textures"]}
+    textures = {each["source_name"] for each in reflection["textures"]}
     return dataclasses.replace(
         scene,
-        parameters={name: value for name, value in parameters.items() if name in read},
-        textures={name: value for name, value in scene.textures.items() if name in textures},
+        parameters={name: value for name, value in given.items() if name in read},
+        textures={"distance_map": texture} if "distance_map" in textures else {},
     )
 
 

@@ -12,10 +12,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..harness.backends import Array
+from ..harness.compare import EPSILON
 from ..harness.extras import need
 from ..ir.types import BY_NAME, components, kind_of
 from .chain import Chain
-from .metrics import EPSILON
 from .problem import Problem
 
 LANES = 400
@@ -114,8 +114,12 @@ def _searched(
     parameters = {
         name: tuple(float(np.float32(one)) for one in np.atleast_1d(value)) for name, value in _named(free, x).items()
     }
-    exact = {name: np.array(value) if len(value) > 1 else value[0] for name, value in parameters.items()}
-    return _solved(parameters, values_of(exact), problems, factor)
+    return _solved(parameters, values_of(exact(parameters)), problems, factor)
+
+
+def exact(parameters: Mapping[str, Sequence[float]]) -> dict[str, Any]:
+    """Parameters as a chain takes them: numbers, and components."""
+    return {name: _component(np.array(value)) for name, value in parameters.items()}
 
 
 def _apart(fitted: Fitted, values: Array, problem: Problem) -> Array:

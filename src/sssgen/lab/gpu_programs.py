@@ -49,6 +49,9 @@ class Points(NamedTuple):
     """Tangent with its handedness."""
 
 
+TARGET = "glsl-330"
+"""The target whose text is timed."""
+
 _VARYINGS = {
     "v_position": ("vec3", "timing_place.xyz + moved"),
     "v_ray": ("vec3", "timing_place.xyz + moved"),
@@ -150,9 +153,9 @@ def of_material(
     with the scene's values. Raises SssgenError for a scene that does not fit the material.
     """
     material = material if isinstance(material, Material) else load_material(material)
-    compiled = compile(material, "glsl-330", guards=guards)
+    compiled = compile(material, TARGET, guards=guards)
     height, width = points.place.shape[:2]
-    drawn = drawing(compiled, render._shell(scene, material, compiled.reflection), (width, height), None, None)
+    drawn = drawing(compiled, render.shell_of(scene, material, compiled.reflection), (width, height), None, None)
     text = drawn.fragment.text.text
     varyings = [varying for varying in _VARYINGS if re.search(rf"^in \w+ {varying};$", text, re.MULTILINE)]
     text = re.sub(r"^(?:in|out) (\w+ (?:v_\w+|fragment_color);)$", r"\1", text, flags=re.MULTILINE)
@@ -187,7 +190,7 @@ def of_technique(
     if text:
         label = f"{function} by hand"
     else:
-        compiled = transpile(subject.module, "glsl-330", "timed", guards, subject.called, chained=subject.chained)
+        compiled = transpile(subject.module, TARGET, "timed", guards, subject.called, chained=subject.chained)
         text, renamed = next(iter(compiled.files.values())), compiled.reflection["renames"]
     known = {key: one.default for key, one in subject.uniforms.items() if not isinstance(one.type, Sampler)}
     for key in values or {}:

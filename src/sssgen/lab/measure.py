@@ -84,7 +84,7 @@ def fitted(candidate: Candidate, training: Sequence[View], before: Parameters | 
             for at, (of, one) in enumerate(zip(bodies, problems, strict=True)):
                 chain = chain_of(first, of, folder)
                 assert chain is not None
-                problems[at] = one.given(name, chain, exact(before))
+                problems[at] = one.given(name, chain, fit.exact(before))
         found = fit.fit([chain_of(rest, of, folder) for of in bodies], problems)
     return found._replace(parameters={**(before or {}), **found.parameters})
 
@@ -172,12 +172,7 @@ def apart(values: Array, others: Array) -> float:
 def _values(chain: Chain | None, found: Fitted, asked: Problem) -> Array:
     if chain is None:
         return np.zeros_like(asked.target)
-    return asked.values(chain, exact(found.parameters))
-
-
-def exact(parameters: Mapping[str, Sequence[float]]) -> dict[str, Any]:
-    """Parameters as a chain takes them: numbers, and components."""
-    return {name: np.array(value) if len(value) > 1 else value[0] for name, value in parameters.items()}
+    return asked.values(chain, fit.exact(found.parameters))
 
 
 def static_cost(chain: Chain | None) -> Cost:

@@ -1,17 +1,14 @@
-"""How far values are from a reference that has noise of its own."""
+"""How far values are from a reference of about 1 that has noise of its own."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import numpy as np
 
 from ..harness.backends import Array
-from ..harness.extras import need
+from ..harness.compare import EPSILON
+from ..harness.compare import compare as differ
 from ..harness.images import encode_srgb
 
-EPSILON = 1e-2
-"""What relMSE adds to the reference's square, for references of about 1: black counts no more than dark."""
 BARS = 2.0
 """Standard errors to either side of an error that its bar shows."""
 
@@ -48,10 +45,5 @@ def _root(square: float) -> float:
 
 
 def flip(values: Array, reference: Array) -> float:
-    """The mean of FLIP's map between two pictures (height, width, 3) in linear light, exposed alike, 0 to 1.
-
-    Viewed at FLIP's usual 67 pixels a degree; both are cut to 0..1 and encoded as sRGB.
-    """
-    evaluator: Any = need("flip_evaluator", "flip-evaluator")
-    pictures = [np.clip(encode_srgb(one), 0.0, 1.0).astype(np.float32) for one in (reference, values)]
-    return float(evaluator.evaluate(pictures[0], pictures[1], "LDR")[1])
+    """The mean of FLIP's map between two pictures (height, width, 3) in linear light, exposed alike, 0 to 1."""
+    return differ(encode_srgb(values), encode_srgb(reference)).flip

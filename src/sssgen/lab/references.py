@@ -21,7 +21,6 @@ from .transport_mitsuba import Light as Beam
 
 SAMPLES = 512
 """Of each ray and channel."""
-TRAINING_SAMPLES = 256
 TRAINING_SIDE = 40
 
 BALL_LIGHTS = ((0.0, 0.15, -1.0), (0.75, 0.2, -0.65), (-0.95, 0.3, 0.1), (0.35, 0.5, 0.8))

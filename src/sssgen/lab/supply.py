@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..harness.backends import Array
+from ..harness.evaluate import half
 from ..targets.numpy_textures import Texture
 from . import body
 from .intervals import intervals, thickness
@@ -38,7 +39,7 @@ class Supply:
 def of_scene(situation: Situation) -> Supply:
     """What does not depend on a light."""
     geometry, at = situation.geometry, points(situation)
-    texture, low, high, reach = body.distance_texture(geometry)
+    distances = body.distance_texture(geometry)
     chord = mean_chord(situation)
     # a texel for each point, and no filter: what a faultless bake has there
     texels = (np.arange(at.count) + 0.5) / at.count
@@ -48,12 +49,11 @@ def of_scene(situation: Situation) -> Supply:
     def ideal(values: Array) -> Texture:
         return Texture(values[None, :, None], "nearest", "clamp")
 
-    values: dict[str, Any] = {
-        "box_min": low, "box_max": high, "distance_range": reach, "stored_range": reach,
-        "world_to_object": geometry.to_object().T[..., None], "object_scale": geometry.scale,
-    }  # fmt: skip
+    # one lane for all points, so that a vector of three is not taken for three points
+    given = body.given(geometry, distances) | {"stored_range": distances.range}
+    values = {name: np.array(value)[:, None] if isinstance(value, list) else value for name, value in given.items()}
     textures = {
-        "distance_map": texture,
+        "distance_map": half(Texture(distances.values(geometry), wrap="clamp")),
         "thickness_texture": ideal(chord / longest),
         "thinness_texture": ideal(1.0 - chord / longest),
         "transmittance_texture": ideal(np.exp(-chord / typical)),
