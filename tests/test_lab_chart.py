@@ -229,7 +229,7 @@ def test_every_technique_that_has_a_reference_is_charted(monkeypatch: pytest.Mon
         assert len({one.label for one in found}) == len(found)
         for one in found:
             assert one.baseline == any(candidates.load(name).baseline for name in one.techniques)
-    assert {one.name for one in whole if one.baseline} == set(candidates.PUBLISHED)
+    assert {one.name for one in whole if one.baseline} == set(candidates.published())
     assert len({one.label for one in whole}) == len(whole)
     for one in whole:
         # each stage takes what the one before gives

@@ -100,7 +100,7 @@ def test_a_chain_computes_its_formula_with_what_it_was_given(tmp_path: Path) -> 
     made.set(
         {
             "thickness_factor": 0.3, "attenuation_distance": 0.7, "distortion": 0.25, "power": 3.0,
-            "lobe_gdc2011.scale": 1.5, "scale": 99.0, "ambient": 0.1, "subsurface_color": color, "unknown": 1.0,
+            "scale 1": 1.5, "scale": 99.0, "ambient": 0.1, "subsurface_color": color, "unknown": 1.0,
         },
         {},
     )  # fmt: skip

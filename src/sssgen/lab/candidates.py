@@ -7,12 +7,14 @@ its other parameters are fitted. A new technique is charted as soon as its file 
 from __future__ import annotations
 
 import os
+import tomllib
 from collections.abc import Iterator, Sequence
+from functools import cache
 from typing import Any, NamedTuple
 
 from .. import library
 from ..ir.nodes import Uniform
-from ..ir.types import kind_of
+from ..ir.types import Sampler, kind_of
 from ..lang.quantities import SCALARS
 from ..library import Technique
 from .body import Body
@@ -24,44 +26,10 @@ ROLES = ("coordinates", "thickness", "translucency", "material")
 COUNTS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32)
 """What a technique's counts are set to, up to its default and one more."""
 
-NOT_CHARTED = {
-    "voronoi_thickness": "a pattern in the surface, which measures no body",
-    "sky_glow": "the sky's light, and none of a lamp: there is no reference for it",
-}
-"""Techniques of charted roles that are left out, and why."""
-
-NEEDS = {
-    "thickness_map": "a baked thickness map", "thinness_map": "a baked thinness map",
-    "transmittance_map": "a baked transmittance map", "depth_map_thickness": "the light's depth map",
-    "march_distance_texture": "the body as a distance texture",
-    **dict.fromkeys(
-        ("march_light", "march_light_traced", "thinness_uniform", "thinness_attenuated", "thinness_hemisphere",
-         "thinness_traced", "thinness_xt95"),
-        "the body as a distance function",
-    ),
-}  # fmt: skip
-"""What a thickness technique reads, which whoever uses it must have."""
-
 PROBES = os.path.join(os.path.dirname(__file__), "probes")
 
-PUBLISHED: dict[str, tuple[str, ...]] = {
-    "seed 0": ("seed0_thinness", "transmittance_from_thinness", "lobe_gdc2011"),
-    "seed 0, attenuated": ("seed0_attenuated", "transmittance_from_thinness", "lobe_gdc2011"),
-    "seed 1": ("thickness_map", "seed1_lobe"),
-    "seed 2": ("seed2_march", "gltf_volume"),
-    "seed 3": ("transmittance_map", "seed3_lobe"),
-    "GDC 2011": ("transmittance_map", "lobe_gdc2011"),
-    "GDC 2012, exp2": ("transmittance_map", "lobe_exp2"),
-    "XT95": ("xt95_thickness", "gltf_volume"),
-    "three.js port": ("transmittance_map", "three_js_port"),
-    "glTF volume": ("constant_thickness", "gltf_volume"),
-    "glTF volume, map": ("thickness_map", "gltf_volume"),
-    "glTF diffuse transmission": ("constant_thickness", "beer_lambert", "gltf_diffuse_transmission"),
-    "wrap lighting": ("wrap_lighting",),
-    "GPU Gems 16": ("depth_map_absorption",),
-}
-"""The published baselines as whole chains. Seed 0 and seed 2 leave open how light follows from their numbers: they
-get GDC 2011's lobe and glTF's transfer."""
+PUBLISHED = os.path.join(os.path.dirname(__file__), "published.toml")
+"""The published baselines as whole chains."""
 
 
 class Candidate(NamedTuple):
@@ -138,16 +106,15 @@ def translucency() -> list[Candidate]:
         wanted = quantity_taken(technique)
         for route in routes("thickness", wanted) if wanted else [()]:
             before = ("exact_thickness", *route) if wanted else ()
-            shown = technique.name + (", as thinness" if "transmittance_from_thinness" in route else "")
-            baseline = technique.baseline
-            found.append(Candidate("translucency", technique.name, shown, (), (*before, technique.name), baseline))
+            chain, baseline = (*before, technique.name), technique.baseline
+            found.append(Candidate("translucency", technique.name, technique.name, (), chain, baseline))
     return found
 
 
 def materials(lengths: Sequence[Candidate]) -> list[Candidate]:
     """Whole chains: each thickness candidate given, with each translucency technique; the published ones; and none."""
     found = [Candidate("material", "none", "no translucency", (), ())]
-    for name, chain in PUBLISHED.items():
+    for name, chain in published().items():
         found.append(Candidate("material", name, name, (), chain, True))
     for light in of_role("translucency"):
         if is_published(light):
@@ -171,15 +138,21 @@ def materials(lengths: Sequence[Candidate]) -> list[Candidate]:
     return list(kept.values())
 
 
+@cache
+def published() -> dict[str, tuple[str, ...]]:
+    """The published baselines: name → techniques."""
+    with open(PUBLISHED, "rb") as file:
+        return {one["name"]: tuple(one["techniques"]) for one in tomllib.load(file)["chain"]}
+
+
 def _onwards(quantity: str, to_length: tuple[str, ...], wanted: str) -> Iterator[tuple[str, ...]]:
-    """The ways from a technique's quantity to the one wanted, by its length or, from thinness, as it is."""
+    """The ways from a technique's quantity to the one wanted: by its length, or straight."""
     if wanted == quantity:
         yield ()
         return
     for route in routes("thickness", wanted):
         yield (*to_length, *route)
-    if quantity == "thinness" and wanted == "transmittance":
-        yield ("transmittance_from_thinness",)
+    yield from routes(quantity, wanted)
 
 
 def routes(quantity: str, wanted: str) -> list[tuple[str, ...]]:
@@ -194,6 +167,24 @@ def routes(quantity: str, wanted: str) -> list[tuple[str, ...]]:
     return found
 
 
+def needs(technique: Technique) -> str:
+    """What whoever uses a technique must have beside its parameters, in words; '' where that is nothing."""
+    found = []
+    for slot in technique.slots:
+        texture = slot.params[0].quantity != "world_position"
+        found.append("the body as a distance texture" if texture else "the body as a distance function")
+    for uniform in technique.uniforms:
+        if isinstance(uniform.type, Sampler) and not technique.slots:
+            holds = dict(uniform.hints).get("holds")
+            found.append(f"a baked {holds[0]} map" if holds else f"the {uniform.name.replace('_', ' ')}")
+    return " and ".join(found)
+
+
+def is_constant(technique: Technique) -> bool:
+    """Whether a thickness technique knows nothing of the place: it gives the same everywhere."""
+    return technique.role == "thickness" and not technique.function.params and not needs(technique)
+
+
 def quantity_taken(technique: Technique) -> str:
     """The scalar quantity that a technique reads, or ''."""
     return next((param.quantity for param in technique.function.params if param.quantity in SCALARS), "")
@@ -201,8 +192,8 @@ def quantity_taken(technique: Technique) -> str:
 
 def of_role(role: str) -> list[Technique]:
     """The library's techniques of a role that are charted, the published ones last."""
-    loaded = [library.load(name) for name in library.index() if name not in NOT_CHARTED]
-    of_it = [technique for technique in loaded if technique.role == role]
+    loaded = [library.load(name) for name in library.index()]
+    of_it = [technique for technique in loaded if technique.role == role and "uncharted" not in technique.doc]
     return sorted(of_it, key=lambda technique: is_published(technique))
 
 

@@ -81,12 +81,12 @@ class Chain:
     def set(self, values: Mapping[str, Any], textures: Mapping[str, Texture]) -> None:
         """Gives parameters and textures by the names that techniques have for them; others keep their values.
 
-        `depth` is every technique's, `seed4_parallax.depth` that one's alone. A parameter is a number, its components,
-        or these with lanes last; a matrix goes column by column.
+        `depth 1` is a depth whose unit is "1", that is in texture coordinates; `depth` is every other. A parameter is a
+        number, its components, or these with lanes last; a matrix goes column by column.
         """
         for uniform in self.uniforms:
             own = uniform["technique_name"]
-            given = values.get(f"{uniform['technique']}.{own}", values.get(own))
+            given = values.get(f"{own} {uniform['unit']}", values.get(own))
             if given is not None:
                 self.names[uniform["name"]] = _shaped(uniform["type"], given, self.dtype)
         for texture in self.reflection["textures"]:

@@ -178,7 +178,7 @@ def free_parameters(chain: Chain, given: set[str], problem: Problem) -> tuple[li
     factors: list[Factor] = []
     for uniform in chain.uniforms:
         name, type_ = uniform["technique_name"], BY_NAME.get(uniform["type"])
-        if name in given or f"{uniform['technique']}.{name}" in given or type_ is None or name in found:
+        if name in given or type_ is None or name in found:
             continue
         if kind_of(type_) != "float" or not (uniform["range"] or uniform["color"]):
             continue

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from ..diagnostics import failure
-from .candidates import NEEDS, is_published, load
+from .candidates import is_constant, is_published, load, needs
 from .drawing.record import front
 
 Point = Mapping[str, Any]
@@ -127,9 +127,9 @@ def _light(chain: Point | None, materials: Sequence[Point]) -> list[Role]:
         best = min(materials, key=limit_of)
         why = f"left out: {light} reads none; the best chain that has one errs by {limit_of(best):.3g}"
         return [Role("thickness", "", why), *told]
-    plain = [point for point in materials if "constant_thickness" in point["chain"]]
-    why = NEEDS.get(first, "")
-    if first == "constant_thickness":
+    plain = [point for point in materials if any(is_constant(load(name)) for name in point["chain"])]
+    why = needs(load(first))
+    if is_constant(load(first)):
         measured = [point for point in materials if point["chain"] and point not in plain]
         closest = min((limit_of(point) for point in measured), default=float("nan"))
         why = f"one number for all of the body: measured where light passes the error would be {closest:.3g}"

@@ -220,7 +220,7 @@ def of_coordinates(situation: Situation) -> Problem:
     # with uv 0 at each point and one uv a depth, what comes out is the way in depths
     values = {
         **situation.inlay.parameters, "uv_per_unit": np.full((2, 1), 1.0 / found.depth),
-        "seed4_parallax.depth": 1.0, "seed4_parallax.eta": situation.inlay.outside_ior / situation.inlay.ior,
+        "depth 1": 1.0, "eta": situation.inlay.outside_ior / situation.inlay.ior,
     }  # fmt: skip
     part = Part(inputs, {}, values, {}, np.ones((3, 1)))
     target = found.offset[:, keep] / found.depth
