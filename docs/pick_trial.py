@@ -43,7 +43,7 @@ def drawn(number: int) -> Situation:
         direction = np.array([x, y, -1.0 if back else 0.8])
         direction /= np.linalg.norm(direction)
         red, green, blue = (float(part) for part in rng.uniform(0.3, 1.0, 3) * (1.0 if back else 0.4))
-        lights.append(Light(None, tuple(float(part) for part in direction), (red, green, blue)))  # type: ignore[arg-type]
+        lights.append(Light(None, (float(direction[0]), float(direction[1]), float(direction[2])), (red, green, blue)))
     camera = Camera((0.0, float(rng.uniform(-0.5, 1.2)), 3.4), (0.0, 0.0, 0.0), 28.0)
     name = f"lot {number + 1}"
     title = f"{type(shape).__name__.lower()} of {medium.name}"

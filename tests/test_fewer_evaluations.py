@@ -86,7 +86,8 @@ def integral(name: str) -> Array:
     """Of what the taps are clamped to, over the reach, by 4000 midpoints; 1 where nothing is."""
     body, (p, n, _) = SHAPES[name].body, points(name)
     depths = REACH * (np.arange(4000) + 0.5) / 4000
-    return sum(np.clip(d + body.distance(p - n * d), 0.0, 2.0 * d) for d in depths) / 4000 / REACH  # type: ignore[no-any-return]
+    found: Array = sum(np.clip(d + body.distance(p - n * d), 0.0, 2.0 * d) for d in depths) / 4000 / REACH
+    return found
 
 
 def marched(name: str, method: str, steps: int) -> Array:

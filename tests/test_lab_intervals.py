@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +16,7 @@ from sssgen.lab.intervals import intervals, merged, thickness
 Array = npt.NDArray[np.float64]
 
 SPOT = Path(__file__).parents[2] / "shared" / "data" / "meshes" / "spot.obj"
-ASKEW = {"position": (0.3, -0.2, 0.5), "rotation": (20.0, -30.0, 65.0), "scale": 1.7}
+ASKEW: dict[str, Any] = {"position": (0.3, -0.2, 0.5), "rotation": (20.0, -30.0, 65.0), "scale": 1.7}
 Z = (0.0, 0.0, 1.0)
 
 PARTS = (
@@ -175,7 +176,7 @@ def test_merged_intervals_are_apart_in_order_and_cover_the_same() -> None:
 @pytest.mark.parametrize("shape", BODIES, ids=repr)
 def test_turned_scaled_and_moved_it_is_the_same_times_the_scale(shape: Geometry) -> None:
     origins, ways = rays(400, 1.0)
-    placed = replace(shape, **ASKEW)  # type: ignore[arg-type]
+    placed = replace(shape, **ASKEW)
     matrix = placed.to_world()
     there = thickness(placed, origins @ matrix[:3, :3].T + matrix[:3, 3], ways @ matrix[:3, :3].T / 1.7)
     here = thickness(shape, origins, ways)
@@ -183,7 +184,7 @@ def test_turned_scaled_and_moved_it_is_the_same_times_the_scale(shape: Geometry)
     assert there == pytest.approx(1.7 * here, abs=1e-6)
 
 
-@pytest.mark.parametrize("shape", [*BODIES, *(replace(body, **ASKEW) for body in BODIES)], ids=repr)  # type: ignore[arg-type]
+@pytest.mark.parametrize("shape", [*BODIES, *(replace(body, **ASKEW) for body in BODIES)], ids=repr)
 def test_as_much_as_samples_of_the_distance_find(shape: Geometry) -> None:
     origins, ways = through(shape, 150)
     reach = 8.0 * shape.scale
@@ -223,7 +224,7 @@ def test_another_part_never_makes_a_union_thinner() -> None:
 @pytest.mark.parametrize("placed", [False, True])
 def test_a_distance_function_has_the_thickness_of_the_solid(function: Distance, solid: Geometry, placed: bool) -> None:
     if placed:
-        function, solid = replace(function, **ASKEW), replace(solid, **ASKEW)  # type: ignore[arg-type]
+        function, solid = replace(function, **ASKEW), replace(solid, **ASKEW)
     origins, ways = through(solid, 400)
     exact = thickness(solid, origins, ways)
     found = thickness(function, origins, ways)
@@ -260,7 +261,7 @@ def test_a_mesh_of_a_box_is_the_box(tmp_path: Path) -> None:
     pytest.importorskip("embreex")
     box = mesh(tmp_path / "box.ply", trimesh.creation.box((1.0, 1.4, 0.7)))
     exact = Box(size=(1.0, 1.4, 0.7))
-    for placed, solid in ((box, exact), (replace(box, **ASKEW), replace(exact, **ASKEW))):  # type: ignore[arg-type]
+    for placed, solid in ((box, exact), (replace(box, **ASKEW), replace(exact, **ASKEW))):
         origins, ways = through(solid, 2000)
         expected = thickness(solid, origins, ways)
         assert thickness(placed, origins, ways) == pytest.approx(expected, abs=2e-4)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -154,7 +155,7 @@ def test_a_scene_without_a_material_is_not_drawn(tmp_path: Path, capsys: pytest.
 
 # --- the body as a material has it ---
 
-ASKEW = {"position": (0.3, -0.2, 0.5), "rotation": (20.0, -30.0, 65.0), "scale": 1.7}
+ASKEW: dict[str, Any] = {"position": (0.3, -0.2, 0.5), "rotation": (20.0, -30.0, 65.0), "scale": 1.7}
 SOLIDS: list[Geometry] = [
     Ball(0.9),
     Box(size=(1.0, 1.4, 0.7)),
@@ -162,7 +163,7 @@ SOLIDS: list[Geometry] = [
     Torus(0.8, 0.3),
     Capsule(0.3, 0.7),
     Union((Ball(0.5, position=(0.4, 0.0, 0.0)), Box(size=(1.0, 0.2, 0.3), rotation=(0.0, 30.0, 10.0)))),
-    Union((Union((Torus(0.6, 0.2, **ASKEW),), scale=0.6), Capsule(0.25, 0.9, rotation=(0.0, 0.0, 90.0)))),  # type: ignore[arg-type]
+    Union((Union((Torus(0.6, 0.2, **ASKEW),), scale=0.6), Capsule(0.25, 0.9, rotation=(0.0, 0.0, 90.0)))),
 ]
 
 
@@ -172,7 +173,7 @@ def evaluated(text: str, folder: Path) -> Callable[[npt.NDArray[np.float64]], np
     return Distance(f"{body.FILE}:body", folder=str(folder)).distance
 
 
-@pytest.mark.parametrize("shape", [*SOLIDS, *(replace(one, **ASKEW) for one in SOLIDS)], ids=repr)  # type: ignore[arg-type]
+@pytest.mark.parametrize("shape", [*SOLIDS, *(replace(one, **ASKEW) for one in SOLIDS)], ids=repr)
 def test_the_text_of_a_body_computes_its_distance(shape: Geometry, tmp_path: Path) -> None:
     at = np.random.default_rng(4).uniform(-3.0, 3.0, (400, 3))
     inwards = shape.to_object()
@@ -218,7 +219,7 @@ def test_bounds_hold_the_body_and_its_texture_reads_the_distance(shape: Geometry
 
 def test_placed_corners_hold_the_body() -> None:
     for shape in SOLIDS:
-        placed = replace(shape, **ASKEW)  # type: ignore[arg-type]
+        placed = replace(shape, **ASKEW)
         corners = body.placed_corners(placed)
         at = np.random.default_rng(4).uniform(-3.0, 3.0, (3000, 3))
         inwards = placed.to_object()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -26,7 +27,7 @@ iadpython = pytest.importorskip("iadpython")
 Array = npt.NDArray[np.float64]
 
 SKY = Light(None)
-ASKEW = {"position": (0.2, -0.1, 0.3), "rotation": (20.0, 30.0, 40.0)}
+ASKEW: dict[str, Any] = {"position": (0.2, -0.1, 0.3), "rotation": (20.0, 30.0, 40.0)}
 CAMERA = Camera(position=(1.5, 1.2, 4.0), target=(0.3, 0.2, 0.1), field_of_view=35.0)
 
 
@@ -206,11 +207,11 @@ def test_little_scattering_is_nearly_once() -> None:
 
 
 SHAPES = [
-    Ball(radius=0.7, **ASKEW),  # type: ignore[arg-type]
-    Box(size=(1.0, 0.6, 1.4), scale=1.1, **ASKEW),  # type: ignore[arg-type]
-    Slab(1.5, 1.0, 0.3, **ASKEW),  # type: ignore[arg-type]
-    Torus(0.7, 0.25, **ASKEW),  # type: ignore[arg-type]
-    Distance(technique="box", reach=1.5, **ASKEW),  # type: ignore[arg-type]
+    Ball(radius=0.7, **ASKEW),
+    Box(size=(1.0, 0.6, 1.4), scale=1.1, **ASKEW),
+    Slab(1.5, 1.0, 0.3, **ASKEW),
+    Torus(0.7, 0.25, **ASKEW),
+    Distance(technique="box", reach=1.5, **ASKEW),
 ]
 
 
@@ -426,7 +427,7 @@ def test_a_damaged_entry_is_made_again(folder: Path) -> None:
 def test_each_input_has_an_entry_of_its_own(folder: Path) -> None:
     render(128)
     render(128, seed=1)
-    radiance(Ball(radius=0.71, **ASKEW), grey(0.9, 3.0), (0.0, 0.6, -0.8), CAMERA, (12, 9), 128)  # type: ignore[arg-type]
+    radiance(Ball(radius=0.71, **ASKEW), grey(0.9, 3.0), (0.0, 0.6, -0.8), CAMERA, (12, 9), 128)
     radiance(SHAPES[0], grey(0.8, 3.0), (0.0, 0.6, -0.8), CAMERA, (12, 9), 128)
     radiance(SHAPES[0], grey(0.9, 3.0), (0.0, 0.8, -0.6), CAMERA, (12, 9), 128)
     radiance(SHAPES[3], grey(0.9, 3.0), (0.0, 0.6, -0.8), CAMERA, (12, 9), 128, resolution=16)

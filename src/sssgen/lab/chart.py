@@ -132,26 +132,33 @@ class _Views(NamedTuple):
 
 def _views(situations: Sequence[Situation], settings: Settings) -> dict[str, _Views]:
     """Each scene's views and what it is fitted to, with their references."""
-    own = {one.key: (one, one.held_out()) for one in situations}
+    lit = bool(LIT.intersection(settings.roles))
+    own = seen_views({one.key: sides(one) for one in situations}, settings, lit)
     training = {one.key: references.training(one) if one.medium is not None else [] for one in situations}
-    lit = LIT.intersection(settings.roles)
-    dear = list({view.key: view for views in own.values() for view in views if lit}.values())
-    cheap = list({view.key: view for views in training.values() for view in views if lit}.values())
-    items = references.items(dear, settings.samples, settings.seed)
-    items += references.items(cheap, settings.samples // 2, settings.seed)
-    seen = references.by_situation([*dear, *cheap], _all(items, settings))
+    cheap = settings._replace(samples=settings.samples // 2)
+    fitted_to = seen_views({key: [(one.name, one) for one in ones] for key, ones in training.items()}, cheap, lit)
+    plates = {one.key: (View("plate", references.plate(one)),) for one in situations if one.inlay is not None}
+    return {one.key: _Views(own[one.key], fitted_to[one.key] + plates.get(one.key, ())) for one in situations}
 
-    def view(name: str, one: Situation, samples: int) -> View:
-        return View(name, one, tuple(seen.get(one.key, ())), f"{samples} {settings.seed}")
 
-    found = {}
-    for one in situations:
-        shown = [view(name, side, settings.samples) for name, side in zip(VIEWS, own[one.key], strict=True)]
-        fitted_to = [view(each.name, each, settings.samples // 2) for each in training[one.key]]
-        if one.inlay is not None:
-            fitted_to.append(View("plate", references.plate(one)))
-        found[one.key] = _Views(tuple(shown), tuple(fitted_to))
-    return found
+def sides(one: Situation) -> list[tuple[str, Situation]]:
+    """A scene's two views, and what they are called."""
+    return list(zip(VIEWS, (one, one.held_out()), strict=True))
+
+
+def seen_views(
+    named: Mapping[str, Sequence[tuple[str, Situation]]], settings: Settings, lit: bool = True
+) -> dict[str, tuple[View, ...]]:
+    """Views by what they belong to: with their references of light transport where these are asked for (`lit`)."""
+    each = {one.key: one for group in named.values() for _, one in group if lit}
+    wanted = list(each.values())
+    results = _all(references.items(wanted, settings.samples, settings.seed), settings)
+    seen = references.by_situation(wanted, results)
+    stamp = f"{settings.samples} {settings.seed}"
+    return {
+        key: tuple(View(name, one, tuple(seen.get(one.key, ())), stamp) for name, one in group)
+        for key, group in named.items()
+    }
 
 
 def _points(
@@ -190,15 +197,8 @@ def remeasured(
 
     (scene, label) → the worst of the views; infinite where a chain fails.
     """
-    own = {one.name: (one, one.held_out()) for one in situations}
-    sides = [side for pair in own.values() for side in pair]
-    seen = references.by_situation(sides, _all(references.items(sides, settings.samples, settings.seed), settings))
-    stamp = f"{settings.samples} {settings.seed}"
-    views = {
-        name: tuple(View(view, side, tuple(seen[side.key]), stamp) for view, side in zip(VIEWS, pair, strict=True))
-        for name, pair in own.items()
-    }
-    points = [point for point in record["points"] if point["role"] == "material" and point["scene"] in own]
+    views = seen_views({one.name: sides(one) for one in situations}, settings)
+    points = [point for point in record["points"] if point["role"] == "material" and point["scene"] in views]
     items = [
         Item(
             "sssgen.lab.measure:measured",

@@ -41,7 +41,7 @@ def intervals(geometry: Geometry, origins: Array, directions: Array) -> Array:
     The whole line counts, before its origin too, but for meshes and distance functions: there from the origin on. Where
     a line has fewer than k intervals the others are empty.
     """
-    raise NotImplementedError(type(geometry).__name__)
+    raise NotImplementedError(type(geometry).__name__)  # each shape that a scene can have is registered below
 
 
 def _one(enters: Array, leaves: Array) -> Array:
