@@ -267,10 +267,10 @@ def by_hand() -> str:
     ratios = {name: taken[name] / taken[f"{name} by hand"] for name in shown}
     dearer = sorted((ratio, name) for name, ratio in ratios.items() if ratio > 1.01)
     rows = [
-        f"{record['s0']['device']}, {record['s0']['driver']}: the scene of seed 0 as published takes "
-        f"{published:.2f} ms at 1080p and as emitted {emitted:.2f} ms, {emitted / published:.2f} ×, with the same picture "
-        f"(FLIP {record['s0']['flip']:.4f}); of {len(ratios)} techniques {len(ratios) - len(dearer)} are within 1 % of "
-        "the formula by hand or faster. The dearer ones pay for what the hand leaves out, a guard or a stable form:",
+        f"{record['s0']['device']}, {record['s0']['driver']}: the scene of seed 0 as published takes {published:.2f} "
+        f"ms at 1080p and as emitted {emitted:.2f} ms, {emitted / published:.2f} ×, with the same picture (FLIP "
+        f"{record['s0']['flip']:.4f}); of {len(ratios)} techniques {len(ratios) - len(dearer)} are within 1 % of the "
+        "formula by hand or faster. The dearer ones pay for what the hand leaves out, a guard or a stable form:",
         "", "| technique | emitted / by hand | ms emitted |", "|---|---:|---:|",
         *(f"| `{name}` | {ratio:.2f} | {taken[name]:.4f} |" for ratio, name in dearer),
     ]  # fmt: skip
