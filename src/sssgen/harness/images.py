@@ -15,6 +15,7 @@ from sssgen.data import posix
 from sssgen.diagnostics import did_you_mean, failure
 from sssgen.output import write_files
 
+from . import png16
 from .extras import need
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -28,8 +29,8 @@ _WHOLE = {np.dtype(np.uint8): 255.0, np.dtype(np.uint16): 65535.0}
 def read(path: str | os.PathLike[str]) -> Array:
     """The picture in a file, (height, width, channels), row 0 at the top; channels are 1 to 4.
 
-    .png: one frame; 8 bits, and 16 where it is gray; values 0..1 as they are stored, no colour conversion. .exr: as
-    stored, which is linear light; R, G, B, A, or Y alone. .npy: an array of 2 to 4 axes, (height, width),
+    .png: one frame, up to 16 bits a channel; values 0..1 as they are stored, no colour conversion. .exr: as stored,
+    which is linear light; R, G, B, A, or Y alone. .npy: an array of 2 to 4 axes, (height, width),
     (height, width, channels) or, for 3-D textures, (depth, height, width, channels); floats as they are, uint8
     and uint16 as in a PNG. Raises SssgenError for a file that is missing, faulty, or none of these.
     """
@@ -74,27 +75,29 @@ def decode_srgb(encoded: npt.ArrayLike) -> Array:
     return linear
 
 
-def write_png(path: str | os.PathLike[str], color: npt.ArrayLike) -> None:
-    """Writes an encoded picture, (height, width) or (height, width, 1 to 4), 8 bits a channel, whole or not at all.
+def png_bytes(color: npt.ArrayLike, bits: int = 8) -> bytes:
+    """An encoded picture, (height, width) or (height, width, 1 to 4), as a PNG file of 8 or 16 bits a channel.
 
-    Values are 0..1; they are cut to that and rounded, and NaN becomes 0. Raises SssgenError for another ending than
-    .png and where the system refuses.
+    Values are 0..1; they are cut to that and rounded, and NaN becomes 0. Raises SssgenError for another shape or depth.
     """
-    array = _picture(path, color, ".png")
-    pillow = need("PIL.Image", "pillow")
-    bytes_ = np.rint(np.clip(np.nan_to_num(array, nan=0.0), 0.0, 1.0) * 255.0).astype(np.uint8)
+    if bits not in (8, 16):
+        raise failure(f"a PNG of {bits} bits a channel cannot be written", "8 or 16")
+    unit = np.clip(np.nan_to_num(_picture(color), nan=0.0), 0.0, 1.0)
+    if bits == 16:
+        return png16.encode(np.rint(unit * 65535.0).astype(np.uint16))
+    bytes_ = np.rint(unit * 255.0).astype(np.uint8)
     buffer = io.BytesIO()
+    pillow = need("PIL.Image", "pillow")
     pillow.fromarray(bytes_[..., 0] if bytes_.shape[-1] == 1 else bytes_).save(buffer, "PNG")
-    _write(path, buffer.getvalue())
+    return buffer.getvalue()
 
 
-def write_exr(path: str | os.PathLike[str], linear: npt.ArrayLike) -> None:
-    """Writes linear light, (height, width) or (height, width, 1 to 4), as 32-bit floats, whole or not at all.
+def exr_bytes(linear: npt.ArrayLike) -> bytes:
+    """Linear light, (height, width) or (height, width, 1 to 4), as an OpenEXR file of 32-bit floats.
 
-    One channel is written as Y, two as Y and A. Raises SssgenError for another ending than .exr and where the system
-    refuses.
+    One channel is written as Y, two as Y and A. Raises SssgenError for another shape.
     """
-    array = _picture(path, linear, ".exr")
+    array = _picture(linear)
     exr = need("OpenEXR")
     names = {1: "Y", 2: "YA", 3: "RGB", 4: "RGBA"}[array.shape[-1]]
     channels = {name: np.ascontiguousarray(array[..., at], np.float32) for at, name in enumerate(names)}
@@ -103,18 +106,38 @@ def write_exr(path: str | os.PathLike[str], linear: npt.ArrayLike) -> None:
         temporary = os.path.join(folder, "picture.exr")
         exr.File(header, channels).write(temporary)
         with open(temporary, "rb") as file:
-            data = file.read()
-    _write(path, data)
+            return file.read()
 
 
-def _picture(path: str | os.PathLike[str], values: npt.ArrayLike, suffix: str) -> Array:
-    """What is to be written, as (height, width, channels)."""
+def write_png(path: str | os.PathLike[str], color: npt.ArrayLike, bits: int = 8) -> None:
+    """Writes what png_bytes gives, whole or not at all.
+
+    Raises SssgenError for another ending than .png, where the system refuses, and as png_bytes does.
+    """
+    _check_ending(path, ".png")
+    _write(path, png_bytes(color, bits))
+
+
+def write_exr(path: str | os.PathLike[str], linear: npt.ArrayLike) -> None:
+    """Writes what exr_bytes gives, whole or not at all.
+
+    Raises SssgenError for another ending than .exr, where the system refuses, and as exr_bytes does.
+    """
+    _check_ending(path, ".exr")
+    _write(path, exr_bytes(linear))
+
+
+def _check_ending(path: str | os.PathLike[str], suffix: str) -> None:
     if check_suffix(path) != suffix:
         raise failure(f"the file's name must end in {suffix}", "", posix(path))
+
+
+def _picture(values: npt.ArrayLike) -> Array:
+    """What is to be written, as (height, width, channels)."""
     array = np.asarray(values, np.float64)
     array = array[..., None] if array.ndim == 2 else array
     if array.ndim != 3 or 0 in array.shape or array.shape[-1] > 4:
-        raise failure(f"an array of shape {array.shape} is no picture", "(height, width, 1 to 4)", posix(path))
+        raise failure(f"an array of shape {array.shape} is no picture", "(height, width, 1 to 4)")
     return array
 
 
@@ -132,7 +155,9 @@ def _read_png(path: str, shown: str) -> Array:
                 image.verify()  # sums that are wrong, and an end that is cut off, which loading passes over
             with pillow.open(path, formats=["PNG"]) as image:
                 frames = getattr(image, "n_frames", 1)
-                image.load()
+                deep = image.mode in ("RGB", "RGBA", "LA") and _depth(path) == 16
+                if not deep:  # the package would halve the bits in silence
+                    image.load()
     except (pillow.DecompressionBombError, pillow.DecompressionBombWarning, MemoryError):
         raise failure("the picture is too large to be read", "make it smaller", shown) from None
     except pillow.UnidentifiedImageError:
@@ -141,15 +166,22 @@ def _read_png(path: str, shown: str) -> Array:
         raise failure(f"the picture is faulty: {error}", "write it anew", shown) from None
     if frames > 1:
         raise failure("this picture moves: it has several frames", "save one of them", shown)
-    if image.mode in ("RGB", "RGBA", "LA") and _depth(path) == 16:  # the package would halve the bits in silence
-        hint = "save it with 8 bits a channel, in gray, or as .exr"
-        raise failure("a colour PNG of 16 bits a channel cannot be read", hint, shown)
+    if deep:
+        return _read_deep_png(path, shown)
     see_through = "A" in image.mode or "transparency" in image.info
     if image.mode in ("P", "PA", "RGB"):
         image = image.convert("RGBA" if see_through else "RGB")
     elif image.mode in ("1", "L"):
         image = image.convert("LA" if see_through else "L")
     return _as_unit(np.asarray(image), shown)
+
+
+def _read_deep_png(path: str, shown: str) -> Array:
+    try:
+        with open(path, "rb") as file:
+            return _as_unit(png16.decode(file.read()), shown)
+    except ValueError as error:
+        raise failure(f"the picture is faulty: {error}", "write it anew, not interlaced", shown) from None
 
 
 def _depth(path: str) -> int:
