@@ -38,12 +38,6 @@ def _chunk(kind: bytes, data: bytes) -> bytes:
     return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
 
-def header(data: bytes) -> tuple[int, int, int, int, int]:
-    """Width, height, bits a channel, colour type and interlacing of a PNG file of at least 29 bytes."""
-    width, height, depth, color_type, _, _, interlaced = struct.unpack_from(">IIBBBBB", data, 16)
-    return width, height, depth, color_type, interlaced
-
-
 def decode(data: bytes) -> Whole:
     """The picture in a PNG file of 16 bits a channel, (height, width, 1 to 4).
 
@@ -51,10 +45,12 @@ def decode(data: bytes) -> Whole:
     text for people, where the file is cut off, altered, interlaced, or of another depth.
     """
     chunks = list(_chunks(data))
-    width, height, depth, color_type, interlaced = header(data)
+    width, height, depth, color_type, _, _, interlaced = struct.unpack(">IIBBBBB", chunks[0][1])
     channels = {number: count for count, number in _COLOR_TYPES.items()}.get(color_type)
     if depth != 16 or channels is None:
         raise ValueError(f"it has {depth} bits a channel and colour type {color_type}")
+    if not width or not height:
+        raise ValueError("it has no pixels")
     if interlaced:
         raise ValueError("it is interlaced, which is not read at 16 bits a channel")
     size = height * (1 + width * channels * 2)
@@ -76,6 +72,8 @@ def decode(data: bytes) -> Whole:
 
 def _chunks(data: bytes) -> Iterator[tuple[bytes, bytes]]:
     """The kinds and contents of a file's chunks, IHDR first, up to IEND."""
+    if not data.startswith(_SIGNATURE):
+        raise ValueError("it is no PNG")
     at, kind = len(_SIGNATURE), b""
     while kind != b"IEND":
         length, previous = int.from_bytes(data[at : at + 4], "big"), kind
