@@ -137,8 +137,7 @@ def _(geometry: Mesh, origins: Array, directions: Array) -> Array:
     """The triangles that a ray passes: it leaves where it goes along a face's normal, and enters against it."""
     mesh = geometry.triangles
     size = float(np.linalg.norm(mesh.places.max(axis=0) - mesh.places.min(axis=0)))
-    found, rays, faces = mesh.rays.intersects_location(origins, directions, multiple_hits=True)
-    t = np.einsum("nc,nc->n", found - origins[rays], directions[rays])
+    rays, faces, t = geometry.rays.all(origins, directions)
     side = np.sign(np.einsum("nc,nc->n", mesh.flat[faces], directions[rays]))
     keep = (t > 1e-5 * size) & (side != 0.0)  # the surface that a ray starts from is none that it passes
     order = np.lexsort((t[keep], rays[keep]))

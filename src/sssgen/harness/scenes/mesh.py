@@ -14,6 +14,8 @@ from sssgen.data import posix
 from sssgen.diagnostics import did_you_mean, failure
 
 from ..extras import need
+from .mesh_distance import MeshDistance
+from .mesh_rays import MeshRays
 from .placed import Array, Geometry, Hits, any_tangent, spherical, spread, tangent_of, unit
 from .table import ANY
 
@@ -22,7 +24,10 @@ Indices: TypeAlias = npt.NDArray[np.int64]
 FARTHEST = ANY[1]
 """The largest coordinate: of a scene's numbers, so that no product of a few of them overflows."""
 
-SUFFIXES = (".obj", ".ply", ".stl", ".glb")
+SMALLEST = 1e-6
+"""The least that the largest side of a mesh may be: of a scene's numbers, too."""
+
+SUFFIXES = (".obj", ".ply", ".stl", ".glb", ".gltf")
 
 
 class Triangles(NamedTuple):
@@ -42,13 +47,11 @@ class Triangles(NamedTuple):
     """(f, 3, 3): of each corner, the direction in which u grows; of any length, 0 where there is none"""
     handedness: Array
     """(f,): -1 where uv is mirrored, else 1"""
-    rays: Any
-    """trimesh's intersector"""
 
 
 @dataclass(frozen=True)
 class Mesh(Geometry):
-    """The triangles of a .obj, .ply, .stl or .glb file; open ones, too. A file's parts become one mesh.
+    """The triangles of an .obj, .ply, .stl, .glb or .gltf file; open ones, too. A file's parts become one mesh.
 
     Normals are smooth: the faces' at a vertex, weighted by area, interpolated; a file's own are not read. uv, v up,
     are the file's; without, longitude and latitude about the box's centre (see `spherical`). Tangents are Lengyel's
@@ -63,7 +66,7 @@ class Mesh(Geometry):
         # Embree counts in 32 bits: near the mesh there are more of them to spare
         way = np.linalg.norm(0.5 * (low + high) - origin) - 0.5 * np.linalg.norm(high - low)
         starts = origin + max(0.0, float(way)) * directions
-        face = mesh.rays.intersects_first(starts, directions).astype(np.int64)
+        face = self.rays.first(starts, directions)
         rays = np.flatnonzero(face >= 0)
         face = face[rays]
         slope = np.einsum("nc,nc->n", directions[rays], mesh.flat[face])
@@ -88,11 +91,7 @@ class Mesh(Geometry):
 
     def distance(self, points: Array) -> Array:
         """Its sign is that of the winding number, which open meshes have too. Raises SssgenError without libigl."""
-        igl = need("igl", "libigl")
-        kind = igl.SIGNED_DISTANCE_TYPE_FAST_WINDING_NUMBER
-        mesh = self.triangles
-        distance: Array = igl.signed_distance(np.ascontiguousarray(points), mesh.places, mesh.corners, kind)[0]
-        return distance
+        return self.solid.signed(points)
 
     def bounds(self) -> tuple[Array, Array]:
         """The smallest and the largest corner, in object space."""
@@ -102,6 +101,16 @@ class Mesh(Geometry):
     def triangles(self) -> Triangles:
         """The mesh, read from its file. Raises SssgenError for a file that is missing or holds none."""
         return _prepare(_load(self.path), posix(self.path))
+
+    @cached_property
+    def solid(self) -> MeshDistance:
+        """What knows the distance to the triangles, and which points are inside."""
+        return MeshDistance(self.triangles.places, self.triangles.corners)
+
+    @cached_property
+    def rays(self) -> MeshRays:
+        """What casts rays at the triangles."""
+        return MeshRays(self.triangles.places, self.triangles.corners)
 
 
 def check_suffix(path: str) -> None:
@@ -137,6 +146,8 @@ def _prepare(loaded: Any, shown: str) -> Triangles:
         raise failure("a triangle names a vertex that there is not", "write it anew", shown)
     if not (np.abs(vertices) <= FARTHEST).all():
         raise failure(f"a vertex is no number, or beyond {FARTHEST:g}", "write it anew", shown)
+    if (size := float(np.ptp(vertices, axis=0).max())) < SMALLEST:
+        raise failure(f"the mesh is only {size:.1g} units large", f"scale it: at least {SMALLEST:g}", shown)
     uv = getattr(loaded.visual, "uv", None)
     uv = None if uv is None else np.asarray(uv, np.float64)
     if uv is not None and (uv.shape != (len(vertices), 2) or not (np.abs(uv) <= FARTHEST).all()):
@@ -152,12 +163,7 @@ def _prepare(loaded: Any, shown: str) -> Triangles:
     faces, corners, across = faces[full], corners[full], across[full]
     normals = np.zeros_like(places)
     np.add.at(normals, corners, across[:, None, :])
-    try:
-        tracer = need("trimesh.ray.ray_pyembree", "embreex")
-        rays = tracer.RayMeshIntersector(need("trimesh").Trimesh(places, corners, process=False))
-    except ValueError as error:
-        raise failure(f"the mesh cannot be used: {error}", "", shown) from None
-    mesh = Triangles(places, corners, unit(across), unit(normals), None, None, np.ones(len(faces)), rays)
+    mesh = Triangles(places, corners, unit(across), unit(normals), None, None, np.ones(len(faces)))
     return mesh if uv is None else _with_tangents(mesh, uv[faces])
 
 

@@ -1,0 +1,67 @@
+"""Volumes as KTX 2.0 files: one level, no supercompression, a basic data format descriptor.
+
+Sources: Khronos, "KTX File Format Specification", version 2.0; "Khronos Data Format Specification", version 1.3,
+chapter 5 (the basic descriptor).
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from sssgen.harness.volumes import KTX2_HEADER, KTX2_IDENTIFIER, KTX2_LEVEL, Encoding
+from sssgen.version import VERSION
+
+ORIENTATION = "ruo"
+"""x to the right, y up, z out of the screen: the axes ascend, and object space is right-handed, with y up.
+
+`rui` would say the same of a left-handed space; the specification recommends writers to keep to `rdi` and `ruo`.
+"""
+
+_MODEL_RGBSDA, _PRIMARIES_UNSPECIFIED, _TRANSFER_LINEAR = 1, 0, 1
+_SAMPLE_FLOAT, _SAMPLE_SIGNED = 0x80, 0x40
+_DESCRIPTOR_VERSION = 2
+
+
+def ktx2_bytes(texels: npt.NDArray[Any], encoding: Encoding) -> bytes:
+    """The file of (depth, height, width) texels of that encoding; the first texel is at texture coordinates 0."""
+    depth, height, width = texels.shape
+    texel = encoding.dtype.itemsize
+    descriptor = _descriptor(encoding)
+    keys = _key_values({"KTXorientation": ORIENTATION, "KTXwriter": f"sssgen {VERSION}"})
+    descriptor_at = KTX2_HEADER.size + KTX2_LEVEL.size
+    keys_at = descriptor_at + len(descriptor)
+    end = keys_at + len(keys)
+    padding = -end % math.lcm(texel, 4)
+    form = (encoding.vulkan, texel, width, height, depth, 0, 1, 1, 0)  # layers, faces, levels, supercompression
+    head = KTX2_HEADER.pack(KTX2_IDENTIFIER, *form, descriptor_at, len(descriptor), keys_at, len(keys), 0, 0)
+    level = KTX2_LEVEL.pack(end + padding, texels.nbytes, texels.nbytes)
+    return head + level + descriptor + keys + bytes(padding) + texels.tobytes()
+
+
+def _descriptor(encoding: Encoding) -> bytes:
+    """The data format descriptor of one channel, red; a distance is no light, so it has no primaries."""
+    bits = 8 * encoding.dtype.itemsize
+    if np.issubdtype(encoding.dtype, np.floating):
+        channel, bounds = _SAMPLE_FLOAT | _SAMPLE_SIGNED, struct.pack("<2f", -1.0, 1.0)
+    else:
+        channel, bounds = 0, struct.pack("<2I", 0, encoding.one)
+    sample = struct.pack("<HBB4x", 0, bits - 1, channel) + bounds
+    colors = struct.pack("<4B", _MODEL_RGBSDA, _PRIMARIES_UNSPECIFIED, _TRANSFER_LINEAR, 0)
+    planes = struct.pack("<4B8B", 0, 0, 0, 0, encoding.dtype.itemsize, 0, 0, 0, 0, 0, 0, 0)  # blocks of 1 × 1 × 1 texel
+    block = struct.pack("<IHH", 0, _DESCRIPTOR_VERSION, 8 + len(colors) + len(planes) + len(sample))
+    block += colors + planes + sample
+    return struct.pack("<I", 4 + len(block)) + block
+
+
+def _key_values(texts: dict[str, str]) -> bytes:
+    """Texts under their keys, sorted by these, each filled up to 4 bytes."""
+    data = b""
+    for key in sorted(texts):
+        pair = f"{key}\0{texts[key]}\0".encode()
+        data += struct.pack("<I", len(pair)) + pair + bytes(-len(pair) % 4)
+    return data

@@ -1,0 +1,101 @@
+"""Baked volumes as files: one channel, in the containers that engines and tools read."""
+
+from __future__ import annotations
+
+import io
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from sssgen.diagnostics import did_you_mean, failure
+from sssgen.harness import images
+from sssgen.harness.volumes import ENCODINGS, Encoding
+
+from .dds import dds_bytes
+from .ktx2 import ORIENTATION, ktx2_bytes
+from .sheet import columns_and_rows, sheet
+
+FORMATS = {"npy": ".npy", "dds": ".dds", "ktx2": ".ktx2", "exr-slices": ".exr", "raw+json": ".raw"}
+"""The formats and their files' endings."""
+
+
+def encoded_files(name: str, texels: npt.NDArray[Any], format: str) -> dict[str, bytes]:
+    """The files of a volume: their names, `name` with an ending, and what is in them; texels are little-endian.
+
+    `texels` is (depth, height, width) = z, y, x ascending; uint8 and uint16 stand for 0..1, float16 and float32 for
+    themselves. The JSON of `raw+json` is the caller's, who puts `layout` into it. Raises SssgenError for an unknown
+    format, another type or shape, and a volume that is too large for a sheet of slices.
+    """
+    encoding = _encoding(texels, format)
+    texels = np.ascontiguousarray(texels, encoding.dtype)
+    return {name + FORMATS[format]: _encoded(texels, encoding, format)}
+
+
+def layout(texels: npt.NDArray[Any], format: str) -> dict[str, Any]:
+    """What somebody must know who reads the file of `encoded_files` by other means, as values for JSON.
+
+    `size` is in texels; `one` is the stored number that stands for 1.0. Raises SssgenError as `encoded_files` does.
+    """
+    encoding = _encoding(texels, format)
+    depth, height, width = texels.shape
+    common = {"format": format, "encoding": encoding.name, "size": {"x": width, "y": height, "z": depth}}
+    return common | _details(texels, encoding, format)
+
+
+def _encoding(texels: npt.NDArray[Any], format: str) -> Encoding:
+    """How the texels are stored, once all that is given has been checked."""
+    if format not in FORMATS:
+        hint = did_you_mean(format, FORMATS) or f"there are {', '.join(FORMATS)}"
+        raise failure(f"'{format}' is no format of volumes", hint)
+    if texels.ndim != 3 or 0 in texels.shape:
+        raise failure(f"an array of shape {texels.shape} is no volume", "(depth, height, width)")
+    dtype = texels.dtype.newbyteorder("<")
+    encoding = next((encoding for encoding in ENCODINGS if encoding.dtype == dtype and encoding.channels == 1), None)
+    if encoding is None:
+        raise failure(f"texels of type {texels.dtype} have no file format", "use uint8, uint16, float16 or float32")
+    return encoding
+
+
+def _encoded(texels: npt.NDArray[Any], encoding: Encoding, format: str) -> bytes:
+    match format:
+        case "dds":
+            return dds_bytes(texels, encoding)
+        case "ktx2":
+            return ktx2_bytes(texels, encoding)
+        case "exr-slices":
+            return images.exr_bytes(sheet(texels)[..., None] / np.float32(encoding.one))
+        case "npy":
+            buffer = io.BytesIO()
+            np.save(buffer, texels, allow_pickle=False)
+            return buffer.getvalue()
+        case _:
+            return texels.tobytes()
+
+
+def _details(texels: npt.NDArray[Any], encoding: Encoding, format: str) -> dict[str, Any]:
+    """What `layout` says of one format only."""
+    match format:
+        case "dds":
+            return {"pixel_format": encoding.dxgi_name, "one": encoding.one}
+        case "ktx2":
+            return {"pixel_format": encoding.vulkan_name, "orientation": ORIENTATION, "one": encoding.one}
+        case "exr-slices":
+            columns, rows = columns_and_rows(*texels.shape)
+            return {
+                "dtype": "float32",
+                "channel": "Y",
+                "columns": columns,
+                "rows": rows,
+                "order": "z ascends from the top left, left to right, then downwards",
+                "slice_rows": "y descends: the top row of a slice is the largest y",
+                "one": 1,
+            }
+        case _:
+            return {
+                "dtype": encoding.dtype.name,
+                "byte_order": "little",
+                "axes": ["z", "y", "x"],
+                "order": "x is fastest, then y, then z; all ascend",
+                "one": encoding.one,
+            }

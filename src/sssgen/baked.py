@@ -1,0 +1,66 @@
+"""What a baked texture says of itself in the JSON beside it: its quantity, and the parameters it goes with."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from . import json_source
+from .data import posix
+from .diagnostics import failure
+
+FORMAT = 1
+"""Of the JSON; it grows when a reader of an older file would be wrong."""
+MAX_BYTES = 2**20
+
+
+class Baked(NamedTuple):
+    """The JSON beside a baked texture."""
+
+    kind: str
+    """distance, thickness, transmittance, depth, cells, normal or packed"""
+    holds: str
+    """The quantity of its numbers, as a material's types have it; "" where it is none"""
+    parameters: Mapping[str, Any]
+    """What techniques need with it, by their names: TOML values, in the body's own space"""
+    settings: Mapping[str, Any]
+    """How an engine imports it; see `settings`"""
+    facts: Mapping[str, Any]
+    """All that the file says"""
+
+
+def sidecar(path: str) -> str:
+    """The JSON's path beside a texture's."""
+    return f"{path}.json"
+
+
+def settings(
+    dimension: str = "2D", wrap: str = "repeat", srgb: bool = False, mipmaps: bool = True, normal_map: bool = False
+) -> dict[str, Any]:
+    """How an engine is to import a texture: its filter is linear for all of ours."""
+    return {
+        "dimension": dimension, "srgb": srgb, "filter": "linear", "wrap": wrap, "mipmaps": mipmaps,
+        "normal_map": normal_map,
+    }  # fmt: skip
+
+
+def read(path: str) -> Baked | None:
+    """What the JSON beside a texture says; None where there is none. Raises SssgenError for a faulty one."""
+    file = sidecar(path)
+    if not os.path.isfile(file):
+        return None
+    shown = posix(file)
+    try:
+        with open(file, "rb") as opened:
+            data = json_source.parse(opened.read(MAX_BYTES + 1)[:MAX_BYTES].decode("utf-8"), shown)
+    except (OSError, UnicodeDecodeError) as error:
+        raise failure(f"cannot read what was baked: {error}", "bake it anew", shown) from None
+    if not isinstance(data, dict) or not isinstance(data.get("kind"), str):
+        return None  # another program's JSON
+    if data.get("format") != FORMAT:
+        raise failure(f"this is of another format than {FORMAT}", "bake it anew", shown)
+    parameters, how = data.get("parameters", {}), data.get("import", {})
+    if not isinstance(parameters, dict) or not isinstance(how, dict):
+        raise failure("'parameters' and 'import' are tables", "bake it anew", shown)
+    return Baked(data["kind"], str(data.get("holds") or ""), parameters, how, data)
