@@ -1,0 +1,177 @@
+"""Voronoi cells as a picture: cracked ice, scales, cobbles.
+
+Steven Worley, A Cellular Texture Basis Function, SIGGRAPH 1996.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..diagnostics import did_you_mean, failure
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Bits: TypeAlias = npt.NDArray[np.uint32]
+
+FEATURES = ("f1", "f2-f1", "faceted")
+
+MOST = 16384
+"""Texels along a side that engines take."""
+_BLOCK = 2**15
+"""Texels that are worked out at once: their arrays fit a processor's cache."""
+
+
+def voronoi(
+    size: tuple[int, int],
+    cells: tuple[int, int],
+    jitter: float = 1.0,
+    seed: int = 0,
+    tileable: bool = True,
+    feature: str = "faceted",
+    bevel: float = 0.35,
+    variation: float = 0.6,
+) -> Array:
+    """Voronoi cells as heights 0..1, (height, width), row 0 at the top (v = 1).
+
+    size: width and height in texels, 1..16384; sampled at the texels' centres. cells: how many lie across and up, one
+    site in each; no more than texels. Distances are in cells, so cells as wide as high want the picture's proportions.
+    jitter: 0..1, how much of its cell a site may stand in; near 1 two sites may stand close together, and both their
+    cells are low then, as F2 - F1 is small all over them. seed: 0..2³² - 1. tileable: the picture continues in itself.
+
+    feature: "f1", the distance to the nearest site. "f2-f1", how much further the second one is, 0 on edges. Both are
+    divided by `scale`, so that nothing is cut. "faceted": level · smoothstep(0, bevel, F2 - F1) with
+    level = 1 - variation · hash(cell), as the technique voronoi_thickness: with jitter 0.6, seed 0, and not
+    tileable, its very cells. bevel: above 0, in cells; variation: 0..1.
+
+    The same on every platform: sites come from an integer hash, not from a generator that NumPy may change. Raises
+    SssgenError for arguments out of these ranges.
+    """
+    _check(size, cells, seed, feature)
+    for name, value, allowed, of in (
+        ("jitter", jitter, 0.0 <= jitter <= 1.0, "from 0 to 1"),
+        ("bevel", bevel, 0.0 < bevel < math.inf, "above 0"),
+        ("variation", variation, 0.0 <= variation <= 1.0, "from 0 to 1"),
+    ):
+        if not allowed:
+            raise failure(f"the cells' {name} is {value}", f"a number {of}")
+    width, height = size
+    across, up = cells
+    picture = np.empty((height, width))
+    x = (np.arange(width) + 0.5) * across / width
+    rows = max(1, _BLOCK // width)
+    for top in range(0, height, rows):
+        y = (height - np.arange(top, min(top + rows, height)) - 0.5) * up / height
+        first, second, owner = _nearest(x, y, cells if tileable else None, jitter, seed)
+        if feature == "faceted":
+            rise = np.clip((second - first) / bevel, 0.0, 1.0)
+            block = (1.0 - variation * _unit(owner + np.uint32(3))) * rise * rise * (3.0 - 2.0 * rise)
+        else:
+            block = (first if feature == "f1" else second - first) / scale(feature, jitter)
+        picture[top : top + rows] = block
+    return picture
+
+
+def scale(feature: str, jitter: float) -> float:
+    """What 1 in the picture stands for, in cells; 1 for "faceted", whose heights are parts of the highest level.
+
+    The largest values that there can be. F1 is largest in the corner where four cells meet with their sites at the far
+    corners. F2 is in a cell's middle: there the sites of the four cells beside it are furthest, and F1 may be 0.
+    """
+    _check_feature(feature)
+    largest = {
+        "f1": (1.0 + jitter) * math.sqrt(0.5),
+        "f2-f1": math.hypot(1.0 + 0.5 * jitter, 0.5 * jitter),
+        "faceted": 1.0,
+    }
+    return largest[feature]
+
+
+class Nearest(NamedTuple):
+    """What is known about places among the cells: arrays (rows, columns)."""
+
+    first: Array
+    """F1, the distance to the nearest site, in cells"""
+    second: Array
+    """F2, that to the second one"""
+    owner: Bits
+    """The hash of the nearest site's cell"""
+
+
+def _nearest(x: Array, y: Array, period: tuple[int, int] | None, jitter: float, seed: int) -> Nearest:
+    """The nearest sites of all places with one of the coordinates x (columns) and one of y (rows), in cells.
+
+    The 5 x 5 cells around a place but for their corners hold both. Say that the place lies in the upper right quarter
+    of its cell [0, 1]², no higher than it lies right: 1/2 <= y <= x <= 1. Its own cell and the one to the right hold a
+    site each, which is within √((2 - x)² + y²) <= √2.5. Sites more than two cells away are 2 away at least, and those
+    in the corners √((2 - x)² + (2 - y)²) or more, which is no less, as y <= 1.
+    """
+    home_x, home_y = np.floor(x).astype(np.int64), np.floor(y).astype(np.int64)
+    left, low = home_x.min() - 2, home_y.min() - 2
+    columns, rows = np.arange(left, home_x.max() + 3), np.arange(low, home_y.max() + 3)
+    keys = _keys(columns, rows, period, seed)
+    sites_x, sites_y = _sites(keys, columns, rows, jitter)
+    first = np.full((len(y), len(x)), np.inf)
+    second = first.copy()
+    owner = np.zeros(first.shape, np.uint32)
+    for j in range(-2, 3):
+        for i in range(-2, 3):
+            if abs(i) == abs(j) == 2:
+                continue
+            cell = np.ix_(home_y - low + j, home_x - left + i)
+            square = (sites_x[cell] - x) ** 2 + (sites_y[cell] - y[:, None]) ** 2
+            owner = np.where(square < first, keys[cell], owner)
+            second = np.minimum(second, np.maximum(first, square))
+            first = np.minimum(first, square)
+    return Nearest(np.sqrt(first), np.sqrt(second), owner)
+
+
+def _keys(
+    columns: npt.NDArray[np.int64], rows: npt.NDArray[np.int64], period: tuple[int, int] | None, seed: int
+) -> Bits:
+    """A hash of each cell, (rows, columns); the same for cells that are a period apart."""
+    if period is not None:
+        columns, rows = columns % period[0], rows % period[1]
+    of_seed = _hash(np.array([seed], np.uint32))
+    of_row = _hash(rows.astype(np.uint32) + of_seed + np.uint32(1))  # negative ones wrap round
+    return _hash(columns.astype(np.uint32) + of_row[:, None])
+
+
+def _sites(
+    keys: Bits, columns: npt.NDArray[np.int64], rows: npt.NDArray[np.int64], jitter: float
+) -> tuple[Array, Array]:
+    """Where the sites of cells stand, x and y, each (rows, columns)."""
+    x = columns + 0.5 + jitter * (_unit(keys + np.uint32(1)) - 0.5)
+    y = rows[:, None] + 0.5 + jitter * (_unit(keys + np.uint32(2)) - 0.5)
+    return x, y
+
+
+def _hash(x: Bits) -> Bits:
+    """Scrambles bits, as the techniques' common/hash.sss ("lowbias32", Chris Wellons, 2018)."""
+    x = (x ^ (x >> np.uint32(16))) * np.uint32(0x7FEB352D)
+    x = (x ^ (x >> np.uint32(15))) * np.uint32(0x846CA68B)
+    return x ^ (x >> np.uint32(16))
+
+
+def _unit(x: Bits) -> Array:
+    """A number in [0, 1) from 24 bits of the hash."""
+    number: Array = (_hash(x) >> np.uint32(8)) / 2.0**24
+    return number
+
+
+def _check(size: tuple[int, int], cells: tuple[int, int], seed: int, feature: str) -> None:
+    _check_feature(feature)
+    if not all(1 <= side <= MOST for side in size):
+        raise failure(f"a picture of {size[0]} x {size[1]} texels cannot be baked", f"1 to {MOST} along each side")
+    if not all(1 <= count <= side for count, side in zip(cells, size, strict=True)):
+        hint = "1 cell or more along each side, and no more than texels"
+        raise failure(f"{cells[0]} x {cells[1]} cells cannot be baked in {size[0]} x {size[1]} texels", hint)
+    if not 0 <= seed < 2**32:
+        raise failure(f"the cells' seed is {seed}", "0 to 4294967295")
+
+
+def _check_feature(feature: str) -> None:
+    if feature not in FEATURES:
+        raise failure(f"'{feature}' is no feature of cells", did_you_mean(feature, FEATURES) or ", ".join(FEATURES))
