@@ -34,7 +34,7 @@ def sheet(texels: npt.NDArray[Any]) -> npt.NDArray[Any]:
     """The picture of (depth, height, width) texels, (rows · height, columns · width), its row 0 at the top.
 
     Slice 0 is at the top left, the next to its right, and so on downwards. Within a slice y goes up, as v of a picture
-    does: its top row is that of the largest y.
+    does: its top row is that of the largest y. Where v of a picture goes down, as in Unreal, it is to be read at 1 - v.
     """
     depth, height, width = texels.shape
     columns, rows = columns_and_rows(depth, height, width)

@@ -150,5 +150,8 @@ def _texels(file: BinaryIO, offset: int, encoding: Encoding, size: tuple[int, in
         raise failure(message, "write it anew", shown)
     file.seek(offset)
     stored = np.frombuffer(file.read(length), encoding.dtype).reshape(*size, encoding.channels)
-    texels = stored.astype(np.float64)
-    return texels / encoding.one if encoding.one != 1 else texels
+    with np.errstate(invalid="ignore"):  # NaN stays NaN, the signalling one too
+        texels = stored.astype(np.float64)
+    if encoding.one != 1:
+        texels /= encoding.one
+    return texels
