@@ -7,6 +7,7 @@ import re
 from collections.abc import Callable
 from typing import NoReturn
 
+from .arguments_bake import add_baking
 from .diagnostics import did_you_mean, failure
 
 GUARDS = ("auto", "all", "none")
@@ -205,6 +206,7 @@ def parser() -> argparse.ArgumentParser:
     ci.add_argument("--junit", metavar="FILE", help="write a report in JUnit's XML")
 
     _measuring(command)
+    add_baking(command, add_where)
 
     new = command("new", "new", "write a commented material to start from")
     new.add_argument("MATERIAL", help="its name, or a .toml file; an old one is never overwritten")

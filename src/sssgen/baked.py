@@ -6,9 +6,12 @@ import os
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from . import json_source
+from . import json_source, library
 from .data import posix
 from .diagnostics import failure
+from .ir.nodes import Uniform
+from .ir.types import Sampler
+from .watch import note
 
 FORMAT = 1
 """Of the JSON; it grows when a reader of an older file would be wrong."""
@@ -48,6 +51,7 @@ def settings(
 def read(path: str) -> Baked | None:
     """What the JSON beside a texture says; None where there is none. Raises SssgenError for a faulty one."""
     file = sidecar(path)
+    note(file)
     if not os.path.isfile(file):
         return None
     shown = posix(file)
@@ -64,3 +68,28 @@ def read(path: str) -> Baked | None:
     if not isinstance(parameters, dict) or not isinstance(how, dict):
         raise failure("'parameters' and 'import' are tables", "bake it anew", shown)
     return Baked(data["kind"], str(data.get("holds") or ""), parameters, how, data)
+
+
+def check(made: Baked, uniform: Uniform, name: str) -> None:
+    """Raises SssgenError where a texture's uniform takes another quantity or shape than what was baked."""
+    assert isinstance(uniform.type, Sampler)
+    wanted = uniform.quantity
+    if wanted and made.holds != wanted:
+        holds = made.holds or f"no quantity: it is a {made.kind} texture"
+        raise failure(f"'{name}' holds {holds}, and '{uniform.name}' takes {wanted}", _readers(made.holds))
+    dimension = made.settings.get("dimension", uniform.type.dim)
+    if dimension != uniform.type.dim:
+        raise failure(f"'{name}' is a {dimension} texture, and '{uniform.name}' is {uniform.type.dim}")
+
+
+def _readers(quantity: str) -> str:
+    """Which techniques take a texture of a quantity."""
+    if not quantity:
+        return "sssgen bake thickness makes a map of a quantity"
+    known = [library.load(name) for name in library.index()]
+    reading = [one.name for one in known if any(_takes(uniform, quantity) for uniform in one.uniforms)]
+    return f"{quantity} is read by {' and '.join(reading)}; a conversion makes another quantity of it"
+
+
+def _takes(uniform: Uniform, quantity: str) -> bool:
+    return isinstance(uniform.type, Sampler) and uniform.quantity == quantity

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from typing import Any, NamedTuple
 
-from . import library, roles, slots
+from . import baked, library, roles, slots
 from .diagnostics import Diagnostic, SssgenError, did_you_mean
 from .ir.nodes import Function, Span, Uniform
 from .ir.types import Sampler
@@ -171,7 +171,7 @@ class _Reader:
                     continue
                 said[uniform.span] = key
                 stage = self.parameter(stage, uniform, (*path, key), raw)
-        return stage
+        return self.baked(stage, list(uniforms.values()), path, table)
 
     def technique(self, section: str, path: tuple[str | int, ...], table: dict[str, Any]) -> Technique | None:
         """The technique that a stage names."""
@@ -263,6 +263,34 @@ class _Reader:
             return stage
         if uniform.span.file != stage.technique.function.span.file:
             self.share(stage, uniform, path, value)
+        return stage
+
+    def baked(self, stage: Stage, uniforms: list[Uniform], path: tuple[str | int, ...], table: dict[str, Any]) -> Stage:
+        """The stage with the parameters that come with its baked textures, where it does not give them itself."""
+        for uniform in uniforms:
+            if uniform.name not in stage.textures:
+                continue
+            key = next(name for name in _names(uniform) if name in table)
+            span = self.document.place(*path, key).value
+            file = os.path.join(os.path.dirname(self.path), stage.textures[uniform.name])
+            try:
+                made = baked.read(file)
+                if made is None:
+                    continue
+                baked.check(made, uniform, stage.textures[uniform.name])
+            except SssgenError as wrong:
+                for found in wrong.diagnostics:
+                    self.document.error(span, found.message, found.hint)
+                continue
+            for other in uniforms:
+                if other.name in made.parameters and not any(name in table for name in _names(other)):
+                    try:
+                        components = read_value(other, made.parameters[other.name])
+                    except WrongValue as wrong:
+                        message = f"what is baked into '{stage.textures[uniform.name]}' does not fit: {wrong.message}"
+                        self.document.error(span, message, wrong.hint)
+                        continue
+                    stage = stage._replace(values={**stage.values, other.name: components})
         return stage
 
     def share(self, stage: Stage, uniform: Uniform, path: tuple[str | int, ...], value: object) -> None:

@@ -17,17 +17,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..compiler import Compiled, compile
-from ..diagnostics import did_you_mean, failure
-from ..ir.nodes import Uniform
-from ..material import Material, load_material
-from ..material_values import WrongValue, read_value
-from ..targets.numpy_textures import Texture
-from . import dice, inputs
+from ..diagnostics import failure
+from ..material import load_material
+from . import dice
 from .backends import Array, Backend
-from .evaluate import half
 from .images import decode_srgb, encode_srgb
+from .scene_values import shell_of
 from .scenes.reader import MAX_COUNT
-from .scenes.scene import DistanceTexture, Scene
+from .scenes.scene import Scene
 from .shade import shade
 from .shell import Shell
 
@@ -141,89 +138,3 @@ def _averaged(samples: Array, n: int) -> Array:
     height, width, channels = samples.shape
     found: Array = samples.reshape(height // n, n, width // n, n, channels).mean(axis=(1, 3))
     return found
-
-
-def shell_of(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> Shell:
-    """What the scene gives to the shell. Raises SssgenError at the scene's own lines."""
-    positions = [
-        [*light.position, 1.0] if light.position else [*(light.direction or ()), 0.0] for light in scene.lights
-    ]
-    parameters = _parameters(scene, material, reflection)
-    if any(uniform["source_name"] == "aspect" for uniform in reflection["uniforms"]):  # of a camera in the chain
-        parameters.setdefault("aspect", (scene.size[0] / scene.size[1],))
-    return Shell(
-        view_projection=np.eye(4),
-        camera_position=scene.camera.position,
-        time=scene.time,
-        ambient=scene.ambient,
-        light_positions=np.array(positions, float).reshape(-1, 4),
-        light_colors=np.array([light.color for light in scene.lights], float).reshape(-1, 3),
-        model=scene.geometry.to_world() if scene.geometry else np.eye(4),
-        parameters=parameters,
-        textures=_textures(scene, material, reflection),
-    )
-
-
-def _parameters(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> dict[str, tuple[float, ...]]:
-    """The scene's values for the material's uniforms, checked as the material's own are."""
-    known = {uniform["source_name"]: uniform for uniform in reflection["uniforms"]}
-    document, found = scene.document, {}
-    for name, raw in scene.parameters.items():
-        place = document.place("parameters", name)
-        if name not in known:
-            hint = did_you_mean(name, known) or f"it has: {', '.join(known) or 'none'}"
-            document.error(place.key, f"{material.name} has no parameter '{name}'", hint)
-            continue
-        try:
-            found[name] = read_value(_uniform(material, known[name]), raw)
-        except WrongValue as wrong:
-            document.error(place.value, wrong.message, wrong.hint)
-    document.reporter.check()
-    return found
-
-
-def _uniform(material: Material, entry: Mapping[str, Any]) -> Uniform:
-    """The uniform that an entry of the reflection comes from."""
-    for stage in material.stages:
-        modules = [stage.technique.module, *(binding.module for binding in stage.bindings.values())]
-        for uniform in (uniform for module in modules for uniform in module.uniforms):
-            if uniform.name == entry["technique_name"] and stage.technique.name == entry["technique"]:
-                return uniform
-    every = (uniform for stage in material.stages for uniform in stage.technique.module.uniforms)
-    return next(uniform for uniform in every if uniform.name == entry["technique_name"])
-
-
-def _textures(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> dict[str, Texture]:
-    """The scene's textures, and where it has none those that the material suggests."""
-    known = {texture["source_name"]: texture for texture in reflection["textures"]}
-    document, found = scene.document, {}
-    for name in scene.textures:
-        if name not in known:
-            hint = did_you_mean(name, known) or f"it has: {', '.join(known) or 'none'}"
-            document.error(document.place("textures", name).key, f"{material.name} has no texture '{name}'", hint)
-    document.reporter.check()
-    for name, texture in known.items():
-        given = scene.textures.get(name)
-        if isinstance(given, DistanceTexture):
-            if scene.geometry is None:
-                raise failure(f"texture '{name}' is the distance to the scene's geometry, and it has none")
-            found[name] = half(Texture(given.values(scene.geometry), wrap="clamp"))
-        elif given is not None:
-            found[name] = _picture(given.file, given.wrap, texture)
-        elif suggested := _suggested(material, texture):
-            found[name] = _picture(suggested, "repeat", texture)
-    return found
-
-
-def _suggested(material: Material, texture: Mapping[str, Any]) -> str:
-    for stage in material.stages:
-        if stage.technique.name == texture["technique"] and texture["technique_name"] in stage.textures:
-            return str(material.path.parent / stage.textures[texture["technique_name"]])
-    return ""
-
-
-def _picture(file: str, wrap: str, texture: Mapping[str, Any]) -> Texture:
-    made = inputs.texture(file, wrap, srgb=texture["color_space"] == "sRGB")
-    if made.dim != texture["type"].removeprefix("sampler"):
-        raise failure(f"this is a {made.dim} texture, and '{texture['source_name']}' is a {texture['type']}", file=file)
-    return half(made)

@@ -20,8 +20,9 @@ import numpy as np
 
 from ..compiler import compile, transpile
 from ..diagnostics import did_you_mean, failure
-from ..harness import probes, render, samples
+from ..harness import probes, samples
 from ..harness.backends import Array
+from ..harness.scene_values import shell_of
 from ..harness.scenes.camera import Camera
 from ..harness.scenes.geometry import Ball, Geometry
 from ..harness.scenes.scene import Scene
@@ -155,7 +156,7 @@ def of_material(
     material = material if isinstance(material, Material) else load_material(material)
     compiled = compile(material, TARGET, guards=guards)
     height, width = points.place.shape[:2]
-    drawn = drawing(compiled, render.shell_of(scene, material, compiled.reflection), (width, height), None, None)
+    drawn = drawing(compiled, shell_of(scene, material, compiled.reflection), (width, height), None, None)
     text = drawn.fragment.text.text
     varyings = [varying for varying in _VARYINGS if re.search(rf"^in \w+ {varying};$", text, re.MULTILINE)]
     text = re.sub(r"^(?:in|out) (\w+ (?:v_\w+|fragment_color);)$", r"\1", text, flags=re.MULTILINE)

@@ -27,6 +27,7 @@ HINTS = {
     "default_gray": (0, 0, str, True),
     "default_bump": (0, 0, str, True),
     "normal_map": (0, 0, str, True),
+    "repeat_disable": (0, 0, str, True),
     "holds": (1, 1, str, True),
 }
 

@@ -33,6 +33,7 @@ def reflect(
         if isinstance(uniform.type, Sampler):
             entry |= {"holds": uniform.quantity or None, "default": _default_texture(uniform)}
             entry |= {"color_space": "linear" if not _has(uniform, "source_color") else "sRGB"}
+            entry["import"] = _import(uniform)
             if emitted.bindings:
                 entry["binding"] = emitted.bindings[len(textures)]
             textures.append(entry)
@@ -105,6 +106,20 @@ def _described(uniform: Uniform) -> dict[str, Any]:
         "color": "source_color" in hints,
         "aliases": list(hints.get("alias", ())),
         "doc": " ".join(uniform.doc.split()),
+    }
+
+
+def _import(uniform: Uniform) -> dict[str, Any]:
+    """How an engine is to import what it binds to a texture."""
+    assert isinstance(uniform.type, Sampler)
+    flat = uniform.type.dim != "3D"
+    return {
+        "dimension": uniform.type.dim,
+        "srgb": _has(uniform, "source_color"),
+        "filter": "linear",
+        "wrap": "clamp" if _has(uniform, "repeat_disable") else "repeat",
+        "mipmaps": flat and not _has(uniform, "repeat_disable"),
+        "normal_map": _has(uniform, "normal_map"),
     }
 
 

@@ -264,7 +264,7 @@ class _Reader:
                 table = Table(self.document, path, raw, ("file", "wrap"))
                 place = (*path, "file") if "file" in raw else path
                 found[key] = Picture(
-                    self.picture(place, table.text("file", "")), table.text("wrap", "repeat", ("repeat", "clamp"))
+                    self.picture(place, table.text("file", "")), table.text("wrap", "", ("repeat", "clamp"))
                 )
             elif isinstance(raw, str):
                 found[key] = Picture(self.picture(path, raw))

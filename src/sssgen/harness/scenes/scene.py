@@ -42,8 +42,8 @@ class Picture:
 
     file: str
     """Its path; the scene's folder is in it"""
-    wrap: str = "repeat"
-    """repeat or clamp"""
+    wrap: str = ""
+    """repeat or clamp; "": as the technique has it"""
 
     def values(self) -> npt.NDArray[np.float64]:
         """(height, width, channels), row 0 at the top, or (depth, height, width, channels). Raises SssgenError."""

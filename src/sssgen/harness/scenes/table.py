@@ -66,7 +66,7 @@ class Table:
         if not isinstance(raw, str) or any(ord(character) < 32 for character in raw):
             self.error(key, f"'{key}' takes a text of one line", f'write {key} = "…"')
             return default
-        if choices and raw not in choices:
+        if choices and raw != default and raw not in choices:
             hint = did_you_mean(raw, choices) or f"one of: {', '.join(choices)}"
             self.error(key, f"unknown {key} '{raw}'", hint)
             return default

@@ -1,0 +1,86 @@
+"""Writes baked textures, each with its JSON beside it, whole or not at all."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import baked
+from ..data import posix
+from ..diagnostics import did_you_mean, failure
+from ..harness import images
+from ..output import write_files
+from ..version import VERSION
+from .volume_files import FORMATS, encoded_files, layout
+
+PICTURES = images.SUFFIXES
+
+
+def volume_format(path: str, named: str | None) -> str:
+    """The format of a volume's file: the one named, or that of its ending. Raises SssgenError."""
+    suffix = os.path.splitext(path)[1].lower()
+    if named is None:
+        found = [name for name, ending in FORMATS.items() if ending == suffix]
+        if not found:
+            hint = did_you_mean(suffix, FORMATS.values()) or f"end it in {', '.join(FORMATS.values())}"
+            raise failure(f"'{suffix}' is no volume file's ending", f"{hint}, or name a --format", posix(path))
+        return found[0]
+    if named not in FORMATS:
+        raise failure(f"unknown format '{named}'", did_you_mean(named, FORMATS) or f"one of: {', '.join(FORMATS)}")
+    if suffix != FORMATS[named]:
+        raise failure(f"a file of the format {named} ends in {FORMATS[named]}", "", posix(path))
+    return named
+
+
+def write_volume(path: str, texels: npt.NDArray[Any], format: str, facts: Mapping[str, Any]) -> list[str]:
+    """Writes a volume and its JSON; the paths."""
+    stem = os.path.splitext(os.path.basename(path))[0]
+    (data,) = encoded_files(stem, texels, format).values()
+    return _write(path, data, {**facts, "file": {"name": os.path.basename(path), **layout(texels, format)}})
+
+
+def picture_suffix(path: str, known: tuple[str, ...] = PICTURES) -> str:
+    """A picture file's ending, told before the work starts. Raises SssgenError where it is none of those known."""
+    suffix = images.check_suffix(path)
+    if suffix not in known:
+        raise failure(f"this is not written as '{suffix}'", f"end it in {' or '.join(known)}", posix(path))
+    return suffix
+
+
+def write_picture(path: str, values: npt.NDArray[np.float64], facts: Mapping[str, Any], bits: int = 16) -> list[str]:
+    """Writes a picture (h, w) or (h, w, channels), row 0 at the top, and its JSON; the paths.
+
+    .png: values 0..1 in so many bits. .exr: as they are. .npy: as they are, in float32, row 0 at the bottom, as
+    sssgen reads arrays.
+    """
+    suffix = picture_suffix(path)
+    layers = values if values.ndim == 3 else values[..., None]
+    if suffix == ".npy":
+        buffer = io.BytesIO()
+        np.save(buffer, np.flipud(layers).astype("<f4"), allow_pickle=False)
+        data, encoding = buffer.getvalue(), "r32f"
+    elif suffix == ".exr":
+        data, encoding = images.exr_bytes(layers), "r32f"
+    else:
+        data, encoding = images.png_bytes(layers, bits), f"unorm{bits}"
+    height, width = layers.shape[:2]
+    about = {
+        "name": os.path.basename(path), "size": {"x": width, "y": height}, "channels": layers.shape[2],
+        "encoding": encoding,
+    }  # fmt: skip
+    return _write(path, data, {**facts, "file": about})
+
+
+def _write(path: str, data: bytes, facts: Mapping[str, Any]) -> list[str]:
+    folder, name = os.path.split(path)
+    # a bare list of numbers a line, as people read it, would need a printer of its own: one key a line is near enough
+    lines = [f" {json.dumps(key)}: {json.dumps(value)}" for key, value in facts.items()]
+    lines.insert(2, f' "made_by": {json.dumps(f"sssgen {VERSION}")}')
+    text = "{\n" + ",\n".join(lines) + "\n}\n"
+    return [one.path for one in write_files(folder, {name: data, baked.sidecar(name): text})]
