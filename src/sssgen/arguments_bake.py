@@ -69,7 +69,7 @@ def add_baking(command: Callable[..., ArgumentParser], add_where: Callable[[Argu
         help="along this direction instead: a .json with direction or position, or X,Y,Z",
     )
     thickness.add_argument("--size", default="512", metavar="N|WxH", help="of the map, in texels (default: 512)")
-    thickness.add_argument("--rays", type=int, default=128, metavar="N", help="of each texel (default: 128)")
+    thickness.add_argument("--rays", type=int, default=256, metavar="N", help="of each texel (default: 256)")
     thickness.add_argument(
         "--attenuation", type=float, metavar="D", help="of --mode transmittance: the length after which 1/e is left"
     )

@@ -53,8 +53,14 @@ def picture_suffix(path: str, known: tuple[str, ...] = PICTURES) -> str:
     return suffix
 
 
-def write_picture(path: str, values: npt.NDArray[np.float64], facts: Mapping[str, Any], bits: int = 16) -> list[str]:
-    """Writes a picture (h, w) or (h, w, channels), row 0 at the top, and its JSON; the paths.
+def write_picture(
+    path: str,
+    values: npt.NDArray[np.float64],
+    facts: Mapping[str, Any],
+    bits: int = 16,
+    beside: Mapping[str, str] | None = None,
+) -> list[str]:
+    """Writes a picture (h, w) or (h, w, channels), row 0 at the top, its JSON, and texts `beside` it; the paths.
 
     .png: values 0..1 in so many bits. .exr: as they are. .npy: as they are, in float32, row 0 at the bottom, as
     sssgen reads arrays.
@@ -74,13 +80,12 @@ def write_picture(path: str, values: npt.NDArray[np.float64], facts: Mapping[str
         "name": os.path.basename(path), "size": {"x": width, "y": height}, "channels": layers.shape[2],
         "encoding": encoding,
     }  # fmt: skip
-    return _write(path, data, {**facts, "file": about})
+    return _write(path, data, {**facts, "file": about}, beside)
 
 
-def _write(path: str, data: bytes, facts: Mapping[str, Any]) -> list[str]:
+def _write(path: str, data: bytes, facts: Mapping[str, Any], beside: Mapping[str, str] | None = None) -> list[str]:
     folder, name = os.path.split(path)
-    # a bare list of numbers a line, as people read it, would need a printer of its own: one key a line is near enough
     lines = [f" {json.dumps(key)}: {json.dumps(value)}" for key, value in facts.items()]
     lines.insert(2, f' "made_by": {json.dumps(f"sssgen {VERSION}")}')
     text = "{\n" + ",\n".join(lines) + "\n}\n"
-    return [one.path for one in write_files(folder, {name: data, baked.sidecar(name): text})]
+    return [one.path for one in write_files(folder, {name: data, baked.sidecar(name): text, **(beside or {})})]

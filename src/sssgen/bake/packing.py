@@ -61,7 +61,7 @@ def load(sources: Sequence[Source | None]) -> list[Array | float | None]:
     Raises SssgenError for pictures that cannot be read, and where a picture has no such channel.
     """
     files = {source.file for source in sources if source is not None and source.file}
-    pictures = {file: images.read(file) for file in sorted(files)}
+    pictures = {file: images.upright(file) for file in sorted(files)}
     return [None if source is None else _channel(source, pictures) for source in sources]
 
 
@@ -69,8 +69,6 @@ def _channel(source: Source, pictures: Mapping[str, Array]) -> Array | float:
     if not source.file:
         return source.constant
     picture, shown = pictures[source.file], posix(source.file)
-    if picture.ndim != 3:
-        raise failure("this is a 3-D texture", "name a picture", shown)
     names = _NAMES[picture.shape[-1]]
     at = int(source.channel) if source.channel.isdigit() else names.find(source.channel)  # '' is found at 0
     if not 0 <= at < len(names):

@@ -67,7 +67,7 @@ def _encoded(texels: npt.NDArray[Any], encoding: Encoding, format: str) -> bytes
             return images.exr_bytes(sheet(texels)[..., None] / np.float32(encoding.one))
         case "npy":
             buffer = io.BytesIO()
-            np.save(buffer, texels, allow_pickle=False)
+            np.save(buffer, texels[..., None], allow_pickle=False)
             return buffer.getvalue()
         case _:
             return texels.tobytes()
@@ -95,7 +95,7 @@ def _details(texels: npt.NDArray[Any], encoding: Encoding, format: str) -> dict[
             return {
                 "dtype": encoding.dtype.name,
                 "byte_order": "little",
-                "axes": ["z", "y", "x"],
+                "axes": ["z", "y", "x", "channel"] if format == "npy" else ["z", "y", "x"],
                 "order": "x is fastest, then y, then z; all ascend",
                 "one": encoding.one,
             }

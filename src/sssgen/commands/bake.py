@@ -2,27 +2,39 @@
 
 from __future__ import annotations
 
+import os
 from argparse import Namespace
 from collections.abc import Callable
 from typing import Any
 
 from ..cli import OK, print_json
+from ..data import posix
+from ..diagnostics import failure
 from ..harness.extras import need
+
+LARGEST = 16384
+"""Texels along a side of a picture."""
+
+
+Done = tuple[list[str], dict[str, Any], list[str]]
+"""The files that were written, what their JSON says, and what people are told."""
 
 
 def run(arguments: Namespace) -> int:
     """Bakes one texture, writes it with its JSON, and says what it is."""
     need("numpy", extra="bake")
-    kinds: dict[str, Callable[[Namespace], tuple[list[str], dict[str, Any], list[str]]]] = {"sdf": _sdf}
+    kinds: dict[str, Callable[[Namespace], Done]] = {
+        "sdf": _sdf, "thickness": _thickness, "depth": _depth, "voronoi": _voronoi, "normal": _normal, "pack": _pack,
+    }  # fmt: skip
     paths, facts, told = kinds[arguments.WHAT](arguments)
     if arguments.json:
         print_json({"ok": True, "files": paths, **facts})
     else:
-        print("\n".join([f"wrote {', '.join(paths)}", *(f"  {line}" for line in told)]))
+        print("\n".join([f"wrote {', '.join(map(posix, paths))}", *(f"  {line}" for line in told)]))
     return OK
 
 
-def _sdf(arguments: Namespace) -> tuple[list[str], dict[str, Any], list[str]]:
+def _sdf(arguments: Namespace) -> Done:
     from ..bake import output
     from ..bake.sdf import sdf
     from ..lab.progress import Bar
@@ -51,13 +63,124 @@ def _sdf(arguments: Namespace) -> tuple[list[str], dict[str, Any], list[str]]:
     return paths, made.facts, told
 
 
-def _wholes(text: str, name: str, separators: str = ",x×") -> list[int]:
-    """Whole numbers with commas or crosses between them. Raises SssgenError."""
-    from ..diagnostics import failure
+def _thickness(arguments: Namespace) -> Done:
+    from ..bake import light, output
+    from ..bake.thickness import Request, thickness_map, warnings
+    from ..lab.progress import Bar
 
-    for separator in separators[1:]:
-        text = text.replace(separator, separators[0])
-    parts = text.split(separators[0])
+    output.picture_suffix(arguments.output)
+    wanted = Request(
+        arguments.mode,
+        light.read(arguments.direction) if arguments.direction else None,
+        arguments.rays,
+        arguments.attenuation or 0.0,
+        arguments.seed,
+    )
+    size = _size(arguments.size)
+    with Bar() as bar:
+        made = thickness_map(
+            arguments.MESH, size, wanted, arguments.unwrap, arguments.processes, arguments.scheduler, bar
+        )
+    mesh = f"{os.path.splitext(os.path.basename(arguments.output))[0]}.obj"
+    beside = {mesh: made.mesh} if made.mesh else {}
+    paths = output.write_picture(arguments.output, made.values, made.facts, beside=beside)
+    errors, top = made.facts["error"], made.facts["range"][1]
+    told = [
+        f"{made.facts['holds']} from 0 to {top:.4g}, in the mean {made.facts['mean']:.4g}",
+        f"standard error {errors['mean_standard_error']:.2g} in the mean, at most "
+        f"{errors['largest_standard_error']:.2g}, of {made.facts['rays']} rays a texel",
+        *([f"{mesh} is the mesh with its new texture coordinates: use that"] if made.mesh else []),
+        *(f"warning: {one}" for one in warnings(made.facts)),
+    ]
+    return paths, made.facts, told
+
+
+def _depth(arguments: Namespace) -> Done:
+    from ..bake import light, output
+    from ..bake.depth import depth_map
+    from ..lab.progress import Bar
+
+    output.picture_suffix(arguments.output, (".exr", ".npy"))
+    towards, size = light.read(arguments.direction), _size(arguments.size)
+    with Bar() as bar:
+        values, facts = depth_map(arguments.MESH, towards, size, bar)
+    paths = output.write_picture(arguments.output, values, facts)
+    return paths, facts, [f"depths from {facts['range'][0]:.4g}; the mesh is in {facts['covered']:.0%} of the texels"]
+
+
+def _voronoi(arguments: Namespace) -> Done:
+    from .. import baked
+    from ..bake import cells, output
+
+    output.picture_suffix(arguments.output)
+    size, count, tiles = _size(arguments.size), _pair(arguments.cells, "number of cells"), not arguments.no_tile
+    made = cells.voronoi(
+        size, count, arguments.jitter, arguments.seed, tiles, arguments.feature, arguments.bevel, arguments.variation
+    )
+    facts = {
+        "format": baked.FORMAT, "kind": "cells", "holds": "thickness", "feature": arguments.feature,
+        "cells": list(count), "jitter": arguments.jitter, "seed": arguments.seed, "tiles": tiles,
+        "bevel": arguments.bevel, "variation": arguments.variation,
+        "one_stands_for": cells.scale(arguments.feature, arguments.jitter), "parameters": {},
+        "import": baked.settings(wrap="repeat" if tiles else "clamp"),
+    }  # fmt: skip
+    paths = output.write_picture(arguments.output, made, facts)
+    return paths, facts, [f"{count[0]} × {count[1]} cells, {arguments.feature}{', tileable' if tiles else ''}"]
+
+
+def _normal(arguments: Namespace) -> Done:
+    from .. import baked
+    from ..bake import normals, output
+    from ..harness import images
+
+    output.picture_suffix(arguments.output)
+    height = images.upright(arguments.HEIGHT)
+    tiles = not arguments.no_tile
+    made = normals.from_height(height[..., 0], arguments.strength, tiles, arguments.green)
+    facts = {
+        "format": baked.FORMAT, "kind": "normal", "holds": None, "strength": arguments.strength,
+        "green": "up (OpenGL)" if arguments.green == "opengl" else "down (DirectX)", "tiles": tiles, "parameters": {},
+        "import": baked.settings(wrap="repeat" if tiles else "clamp", normal_map=True),
+    }  # fmt: skip
+    paths = output.write_picture(arguments.output, made, facts, arguments.bits)
+    return paths, facts, [f"tangent-space normals, green {facts['green']}"]
+
+
+def _pack(arguments: Namespace) -> Done:
+    from .. import baked
+    from ..bake import output, packing
+
+    output.picture_suffix(arguments.output)
+    given = {name: getattr(arguments, name) for name in ("red", "green", "blue", "alpha")}
+    if not any(given.values()):
+        raise failure("there is nothing to pack", "--red a.png --green b.png --blue 1-c.png")
+    made = packing.pack(packing.load([packing.parse(text) if text else None for text in given.values()]))
+    facts = {
+        "format": baked.FORMAT, "kind": "packed", "holds": None, "channels": given, "parameters": {},
+        "import": baked.settings(),
+    }  # fmt: skip
+    paths = output.write_picture(arguments.output, made, facts, arguments.bits)
+    return paths, facts, [f"{name}: {text}" for name, text in given.items() if text]
+
+
+def _size(text: str) -> tuple[int, int]:
+    """A picture's width and height. Raises SssgenError."""
+    found = _pair(text, "size")
+    if not all(1 <= side <= LARGEST for side in found):
+        raise failure(f"'{text}' is no size", f"N or WIDTHxHEIGHT in texels, each from 1 to {LARGEST}")
+    return found
+
+
+def _pair(text: str, name: str) -> tuple[int, int]:
+    found = _wholes(text, name)
+    if len(found) > 2:
+        raise failure(f"'{text}' is no {name}", "one whole number, or two")
+    return found[0], found[-1]
+
+
+def _wholes(text: str, name: str) -> list[int]:
+    """Whole numbers with commas or crosses between them. Raises SssgenError."""
+    parts = text.replace("x", ",").replace("×", ",").split(",")
     if not all(part.isdecimal() and len(part) < 6 for part in parts):
-        raise failure(f"'{text}' is no {name}", "whole numbers, with a comma between them where there are several")
+        raise failure(f"'{text}' is no {name}", "whole numbers, with a comma or x between them where there are several")
     return [int(part) for part in parts]

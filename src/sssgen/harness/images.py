@@ -15,12 +15,15 @@ from sssgen.data import posix
 from sssgen.diagnostics import did_you_mean, failure
 from sssgen.output import write_files
 
-from . import png16
+from . import png16, volumes
 from .extras import need
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
 SUFFIXES = (".png", ".exr", ".npy")
+"""Of pictures; an .npy may be a volume, too."""
+TEXTURES = (*SUFFIXES, *volumes.SUFFIXES)
+"""Of all that a texture may be."""
 
 _WHOLE = {np.dtype(np.uint8): 255.0, np.dtype(np.uint16): 65535.0}
 """What stands for 1 in the integers that a file may hold."""
@@ -32,24 +35,36 @@ def read(path: str | os.PathLike[str]) -> Array:
     .png: one frame, up to 16 bits a channel; values 0..1 as they are stored, no colour conversion. .exr: as stored,
     which is linear light; R, G, B, A, or Y alone. .npy: an array of 2 to 4 axes, (height, width),
     (height, width, channels) or, for 3-D textures, (depth, height, width, channels); floats as they are, uint8
-    and uint16 as in a PNG. Raises SssgenError for a file that is missing, faulty, or none of these.
+    and uint16 as in a PNG. .dds and .ktx2: volumes, see `volumes.read`. Raises SssgenError for a file that is missing,
+    faulty, or none of these.
     """
     shown = posix(path)
-    suffix = check_suffix(path)
+    suffix = check_suffix(path, TEXTURES)
     if not os.path.isfile(path):
         hint = "this is a folder: name a file in it" if os.path.isdir(path) else ""
         raise failure("cannot find the picture", hint, shown)
-    picture = {".png": _read_png, ".exr": _read_exr, ".npy": _read_npy}[suffix](os.fspath(path), shown)
+    reader = {".png": _read_png, ".exr": _read_exr, ".npy": _read_npy}.get(suffix, volumes.read)
+    picture = reader(os.fspath(path), shown)
     if 0 in picture.shape:
         raise failure("the picture is empty", "", shown)
     return picture
 
 
-def check_suffix(path: str | os.PathLike[str]) -> str:
-    """A picture file's suffix. Raises SssgenError where it is none of SUFFIXES."""
+def upright(path: str | os.PathLike[str]) -> Array:
+    """The picture in a file, (height, width, channels), row 0 at the top, whichever way the file has it: an .npy has
+    row 0 at v = 0. Raises SssgenError for a volume, and as `read` does.
+    """
+    picture = read(path)
+    if picture.ndim != 3:
+        raise failure("this is a 3-D texture", "name a picture", posix(path))
+    return np.flipud(picture) if check_suffix(path, TEXTURES) == ".npy" else picture
+
+
+def check_suffix(path: str | os.PathLike[str], known: tuple[str, ...] = SUFFIXES) -> str:
+    """A picture file's suffix. Raises SssgenError where it is none of those known."""
     suffix = os.path.splitext(os.fspath(path))[1].lower()
-    if suffix not in SUFFIXES:
-        hint = did_you_mean(suffix, SUFFIXES) or f"pictures end in {', '.join(SUFFIXES)}"
+    if suffix not in known:
+        hint = did_you_mean(suffix, known) or f"pictures end in {', '.join(known)}"
         raise failure(f"'{suffix}' is no picture file's ending", hint, posix(path))
     return suffix
 

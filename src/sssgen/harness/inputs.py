@@ -75,14 +75,14 @@ def _texture(name: str, given: str | dict[str, Any], beside: Path, srgb: bool) -
 
 
 def texture(path: str, wrap: str = "repeat", filter: str = "linear", srgb: bool = False) -> Texture:
-    """A texture from a .png, .exr or .npy file; the lowest row of a picture is at v = 0. Raises SssgenError.
+    """A texture from a file; the lowest row of a .png or .exr is at v = 0, the first one of others. Raises SssgenError.
 
     With `srgb` the colours of a .png are decoded to linear light, as an engine's sRGB textures are.
     """
     data = images.read(path)
     if srgb and path.lower().endswith(".png"):
         data = np.concatenate([images.decode_srgb(data[..., :3]), data[..., 3:]], axis=-1)
-    picture = not path.endswith(".npy")
+    picture = path.lower().endswith((".png", ".exr"))
     try:
         return Texture(np.flipud(data) if picture else data[..., None] if data.ndim == 2 else data, filter, wrap)
     except ValueError as error:

@@ -17,6 +17,8 @@ from sssgen.diagnostics import failure
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
+SUFFIXES = (".dds", ".ktx2")
+
 
 class Encoding(NamedTuple):
     """A way to store a texel. `dtype` is a channel's; `one` is the stored number that stands for 1.0."""

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..harness.backends import Array
 from ..harness.evaluate import half
+from ..harness.scenes.light_view import from_afar
 from ..targets.numpy_textures import Texture
 from . import body
 from .intervals import intervals, thickness
@@ -87,31 +88,17 @@ def mean_chord(situation: Situation) -> Array:
 
 def _depth_map(situation: Situation, towards: Array) -> tuple[dict[str, Any], dict[str, Texture]]:
     """The light's view without perspective: matrices for the techniques, and the depth of the first surface."""
-    corners = body.placed_corners(situation.geometry)
-    side = np.cross(towards, np.eye(3)[np.argmin(np.abs(towards))])
-    side /= np.linalg.norm(side)
-    up = np.cross(side, -towards)
-    middle = corners.mean(axis=0)
-    wide = 1.1 * max(float(np.ptp(corners @ axis)) for axis in (side, up))
-    start = float((corners @ towards).max()) + 0.1 * wide  # where the light's plane stands
-    grid = ((np.arange(DEPTH_MAP) + 0.5) / DEPTH_MAP - 0.5) * wide
-    x, y = np.meshgrid(grid + middle @ side, grid + middle @ up)
-    origins = x.reshape(-1, 1) * side + y.reshape(-1, 1) * up + start * towards
     geometry = situation.geometry
+    view = from_afar(body.placed_corners(geometry), towards, (DEPTH_MAP, DEPTH_MAP))
     inwards = geometry.to_object()
-    local = origins @ inwards[:3, :3].T + inwards[:3, 3]
-    way = np.broadcast_to(inwards[:3, :3] @ -towards * geometry.scale, local.shape).copy()
+    local = view.origins @ inwards[:3, :3].T + inwards[:3, 3]
+    way = view.directions @ inwards[:3, :3].T * geometry.scale
     found = intervals(geometry, local, way)
     filled = found[..., 1] > found[..., 0]
     first = np.where(filled, found[..., 0], np.inf).min(axis=1) * geometry.scale
-    depth = np.where(np.isfinite(first), first, 2.0 * wide).reshape(DEPTH_MAP, DEPTH_MAP)
-    to_map = np.zeros((4, 4))
-    to_map[0, :3], to_map[0, 3] = side / wide, 0.5 - middle @ side / wide
-    to_map[1, :3], to_map[1, 3] = up / wide, 0.5 - middle @ up / wide
-    to_map[2, :3], to_map[2, 3] = -towards, start
-    to_map[3, 3] = 1.0
+    depth = np.where(np.isfinite(first), first, view.far).reshape(DEPTH_MAP, DEPTH_MAP)
     seen = np.zeros((4, 4))  # the depth alone: to a light from afar it is the whole distance
-    seen[2], seen[3, 3] = to_map[2], 1.0
-    matrices = {"light_matrix": to_map, "light_texture": to_map, "light_view": seen}
+    seen[2], seen[3, 3] = view.matrix[2], 1.0
+    matrices = {"light_matrix": view.matrix, "light_texture": view.matrix, "light_view": seen}
     values = {name: matrix.T[..., None] for name, matrix in matrices.items()}
     return values, {"light_depth_map": Texture(depth[..., None], "linear", "clamp")}

@@ -51,6 +51,11 @@ class MeshRays:
         """The first triangle that each ray meets, (n,); -1 where there is none. Directions are unit."""
         return self._cast(origins, directions)[0]
 
+    def nearest(self, origins: Array, directions: Array) -> tuple[Indices, Array]:
+        """The first triangle of each ray, (n,), -1 where there is none, and how far it is."""
+        faces, ahead = self._cast(origins, directions)
+        return faces, self._lengths(faces, origins, directions, ahead)
+
     def all(self, origins: Array, directions: Array) -> Passed:
         """Every triangle that rays pass, from their origins on. Directions are unit."""
         going = np.arange(len(origins))
@@ -63,14 +68,19 @@ class MeshRays:
             going, faces, before, ahead = going[met], faces[met], before[met], ahead[met]
             if not len(going):
                 break
-            slope = np.einsum("nc,nc->n", directions[going], self._flat[faces])
-            way = np.einsum("nc,nc->n", self._first[faces] - origins[going], self._flat[faces])
-            t = np.divide(way, slope, out=before + ahead, where=np.abs(slope) > GRAZING)
+            t = self._lengths(faces, origins[going], directions[going], before + ahead)
             found.append(Passed(going, faces, t))
             reached[going] = np.maximum(t, before) + APART * self.size
         if not found:
             return Passed(going, going, np.zeros(0))
         return Passed(*(np.concatenate(parts) for parts in zip(*found, strict=True)))
+
+    def _lengths(self, faces: Indices, origins: Array, directions: Array, about: Array) -> Array:
+        """How far triangles are along rays, in float64, where float32 says about how far."""
+        slope = np.einsum("nc,nc->n", directions, self._flat[faces])
+        way = np.einsum("nc,nc->n", self._first[faces] - origins, self._flat[faces])
+        lengths: Array = np.divide(way, slope, out=about.copy(), where=np.abs(slope) > GRAZING)
+        return lengths
 
     def _cast(self, origins: Array, directions: Array) -> tuple[Indices, Array]:
         """The first triangle of each ray, and the way to it, right to float32."""

@@ -295,7 +295,7 @@ class _Reader:
             self.document.error(self.document.place(*path).value, "the texture has no file", 'write "x.png"')
             return name
         try:
-            images.check_suffix(name)
+            images.check_suffix(name, images.TEXTURES)
         except SssgenError as wrong:
             self.pass_on(wrong, path)
             return name

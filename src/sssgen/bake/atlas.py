@@ -1,0 +1,135 @@
+"""A mesh's texture coordinates as a map: which place of the surface each texel shows."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from ..data import posix
+from ..diagnostics import failure
+from ..harness.extras import need
+from ..harness.scenes.mesh import Triangles
+from ..harness.scenes.mesh_rays import MeshRays
+from .distance import BLOCK
+from .grid import Array
+
+Indices = npt.NDArray[np.int64]
+
+SHARED = 0.02
+"""The share of texels that several places claim, beyond which the map is told to be shared."""
+
+
+class Atlas(NamedTuple):
+    """The texels of a map that show a place of the surface."""
+
+    size: tuple[int, int]
+    """(width, height)"""
+    texels: Indices
+    """(n,): which texels, row by row, row 0 at the top"""
+    places: Array
+    """(n, 3): what their centres show"""
+    flat: Array
+    """(n, 3): the unit normals of the triangles there"""
+    shared: float
+    """The share of texels that are claimed more than once"""
+
+
+def atlas(mesh: Triangles, uv: Array, size: tuple[int, int], path: str) -> Atlas:
+    """The places at the centres of a map's texels.
+
+    `uv` is (f, 3, 2), v up; what lies beyond 0..1 is on the next tile. Raises SssgenError where texture coordinates
+    repeat the map, or cover no texel.
+    """
+    width, height = size
+    tiles = np.floor(uv.min(axis=(0, 1)) + 0.5 / np.array(size)), np.ceil(uv.max(axis=(0, 1)) - 0.5 / np.array(size))
+    if (tiles[0] < -1).any() or (tiles[1] > 2).any():
+        hint = "--unwrap makes new ones"
+        raise failure("the texture coordinates repeat the map: its texels have many places", hint, posix(path))
+    layout = uv * np.array([width, height])
+    edges = layout[:, 1:] - layout[:, :1]
+    areas = 0.5 * (edges[:, 0, 0] * edges[:, 1, 1] - edges[:, 0, 1] * edges[:, 1, 0])
+    solid = np.flatnonzero(areas != 0.0)
+    if not len(solid):
+        raise failure("the texture coordinates have no area", "--unwrap makes new ones", posix(path))
+    # a ray onto the flat map finds the triangle that covers a texel's centre, or its centre on the next tile
+    raised = np.concatenate([layout[solid], np.zeros((len(solid), 3, 1))], axis=2).reshape(-1, 3)
+    rays = MeshRays(raised, np.arange(3 * len(solid)).reshape(-1, 3))
+    faces = np.full(width * height, -1)
+    shown = np.zeros((width * height, 2))
+    for across in range(int(tiles[0][0]), int(tiles[1][0])):
+        for up in range(int(tiles[0][1]), int(tiles[1][1])):
+            for start in range(0, len(faces), BLOCK):
+                number = np.arange(start, min(start + BLOCK, len(faces)))
+                number = number[faces[number] < 0]
+                x, y = number % width + 0.5 + across * width, height - number // width - 0.5 + up * height
+                starts = np.stack([x, y, np.ones(len(number))], axis=1)
+                faces[number] = rays.first(starts, np.broadcast_to(np.array([0.0, 0.0, -1.0]), starts.shape))
+                shown[number] = starts[:, :2]
+    texels = np.flatnonzero(faces >= 0)
+    if not len(texels):
+        raise failure("no texel's centre is covered by the mesh", "take a larger --size", posix(path))
+    face = solid[faces[texels]]
+    places = np.einsum(
+        "nv,nvc->nc", _weights(shown[texels], layout[face], areas[face]), mesh.places[mesh.corners[face]]
+    )
+    claimed = float(np.abs(areas).sum())
+    return Atlas(size, texels, places, mesh.flat[face], max(0.0, 1.0 - len(texels) / claimed))
+
+
+def _weights(points: Array, corners: Array, areas: Array) -> Array:
+    """The barycentric weights (n, 3) of points (n, 2) in triangles (n, 3, 2) of these signed areas."""
+    first, second, third = np.moveaxis(corners - points[:, None], 1, 0)
+    twice = [a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] for a, b in ((second, third), (third, first), (first, second))]
+    weights = np.maximum(0.5 * np.stack(twice, axis=1) / areas[:, None], 0.0)
+    whole: Array = weights / weights.sum(axis=1, keepdims=True)
+    return whole
+
+
+def unwrapped(mesh: Triangles) -> Array:
+    """New texture coordinates, (f, 3, 2), without overlaps, by xatlas. Raises SssgenError without it."""
+    xatlas = need("xatlas", extra="bake")
+    low, high = mesh.places.min(axis=0), mesh.places.max(axis=0)
+    places = (mesh.places - low) / float((high - low).max())  # it counts in 32 bits, and in texels of its own
+    charts = xatlas.Atlas()
+    charts.add_mesh(places.astype(np.float32), mesh.corners.astype(np.uint32))
+    pack = xatlas.PackOptions()
+    pack.padding, pack.bilinear, pack.resolution = PADDING, True, RESOLUTION
+    charts.generate(xatlas.ChartOptions(), pack)
+    _, corners, uv = charts[0]
+    found: Array = uv.astype(np.float64)[corners.astype(np.int64)]
+    return found
+
+
+PADDING = 4
+"""Texels between charts, on a map of RESOLUTION."""
+RESOLUTION = 1024
+
+
+def filled(values: Array, texels: Indices, size: tuple[int, int]) -> Array:
+    """The map (height, width) of values at texels (n,); every other texel has that of the nearest of them.
+
+    So no filter and no mipmap mixes the surface with what is beside it.
+    """
+    width, height = size
+    nearest = need("scipy.ndimage", "scipy", "bake")
+    empty = np.ones(width * height, np.bool_)
+    empty[texels] = False
+    whole = np.zeros(width * height)
+    whole[texels] = values
+    rows, columns = nearest.distance_transform_edt(
+        empty.reshape(height, width), return_distances=False, return_indices=True
+    )
+    dilated: Array = whole.reshape(height, width)[rows, columns]
+    return dilated
+
+
+def obj(mesh: Triangles, uv: Array) -> str:
+    """The mesh as a Wavefront file with these texture coordinates."""
+    corners, corner_of = np.unique(uv.reshape(-1, 2), axis=0, return_inverse=True)
+    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in mesh.places]
+    lines += [f"vt {u:.9g} {v:.9g}" for u, v in corners]
+    for face, turns in zip(mesh.corners + 1, corner_of.reshape(-1, 3) + 1, strict=True):
+        lines.append("f " + " ".join(f"{place}/{turn}" for place, turn in zip(face, turns, strict=True)))
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,82 @@
+"""A light's view of a body: where each texel of its depth map looks, and the matrix that finds a place on it."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from sssgen.diagnostics import failure
+
+from .placed import Array
+
+MARGIN = 1.1
+"""How much wider the map is than the body."""
+FAR = 2.0
+"""What stands where the light meets nothing, in widths of the map: behind all of the body."""
+
+
+class LightView(NamedTuple):
+    """A light's depth map, before it is measured; its rows go from v = 0 up."""
+
+    matrix: Array
+    """(4, 4): a place to (u w, v w, distance from the light's plane, w)"""
+    origins: Array
+    """(h * w, 3): where the texels' rays start: on the light's plane, or at the light"""
+    directions: Array
+    """(h * w, 3), unit"""
+    slopes: Array
+    """(h * w,): the distance from the plane for one unit along a ray"""
+    far: float
+    """The distance that stands for nothing"""
+
+
+def from_afar(corners: Array, towards: Array, size: tuple[int, int]) -> LightView:
+    """The view along −`towards` (unit) on a body within `corners` (n, 3); `size` is (width, height) in texels."""
+    side, up = _frame(-towards)
+    middle = corners.mean(axis=0)
+    wide = MARGIN * max(float(np.ptp(corners @ axis)) for axis in (side, up))
+    start = float((corners @ towards).max()) + 0.1 * wide  # where the light's plane stands
+    across, along = (((np.arange(count) + 0.5) / count - 0.5) * wide for count in size)
+    x, y = np.meshgrid(across + middle @ side, along + middle @ up)
+    origins = x.reshape(-1, 1) * side + y.reshape(-1, 1) * up + start * towards
+    matrix = np.zeros((4, 4))
+    matrix[0, :3], matrix[0, 3] = side / wide, 0.5 - middle @ side / wide
+    matrix[1, :3], matrix[1, 3] = up / wide, 0.5 - middle @ up / wide
+    matrix[2, :3], matrix[2, 3] = -towards, start
+    matrix[3, 3] = 1.0
+    directions = np.broadcast_to(-towards, origins.shape).copy()
+    return LightView(matrix, origins, directions, np.ones(len(origins)), FAR * wide)
+
+
+def from_place(corners: Array, position: Array, size: tuple[int, int]) -> LightView:
+    """The view from `position` on a body within `corners`. Raises SssgenError where that is not before all of it."""
+    ahead = corners.mean(axis=0) - position
+    distance = float(np.linalg.norm(ahead))
+    ahead = ahead / max(distance, 1e-300)
+    side, up = _frame(ahead)
+    local = corners - position
+    depth = local @ ahead
+    if distance == 0.0 or depth.min() <= 0.01 * distance:
+        raise failure("the light stands in the body, or beside it", "take its direction instead: light from afar")
+    wide = MARGIN * 2.0 * max(float(np.abs(local @ axis / depth).max()) for axis in (side, up))  # at one unit ahead
+    across, along = (((np.arange(count) + 0.5) / count - 0.5) * wide for count in size)
+    x, y = np.meshgrid(across, along)
+    ways = x.reshape(-1, 1) * side + y.reshape(-1, 1) * up + ahead
+    lengths = np.linalg.norm(ways, axis=1)
+    matrix = np.zeros((4, 4))
+    matrix[3, :3], matrix[3, 3] = ahead, -position @ ahead
+    for row, axis in enumerate((side, up)):
+        matrix[row, :3], matrix[row, 3] = axis / wide, -position @ axis / wide
+        matrix[row] += 0.5 * matrix[3]
+    matrix[2] = matrix[3]
+    origins = np.broadcast_to(position, ways.shape).copy()
+    far = float(depth.max()) + FAR * wide * distance
+    return LightView(matrix, origins, ways / lengths[:, None], 1.0 / lengths, far)
+
+
+def _frame(ahead: Array) -> tuple[Array, Array]:
+    """Unit axes to the right and up of a view along `ahead`."""
+    side = np.cross(-ahead, np.eye(3)[np.argmin(np.abs(ahead))])
+    side /= np.linalg.norm(side)
+    return side, np.cross(side, ahead)
