@@ -146,14 +146,15 @@ def _prepare(loaded: Any, shown: str) -> Triangles:
         raise failure("a triangle names a vertex that there is not", "write it anew", shown)
     if not (np.abs(vertices) <= FARTHEST).all():
         raise failure(f"a vertex is no number, or beyond {FARTHEST:g}", "write it anew", shown)
-    if (size := float(np.ptp(vertices, axis=0).max())) < SMALLEST:
-        raise failure(f"the mesh is only {size:.1g} units large", f"scale it: at least {SMALLEST:g}", shown)
     uv = getattr(loaded.visual, "uv", None)
     uv = None if uv is None else np.asarray(uv, np.float64)
     if uv is not None and (uv.shape != (len(vertices), 2) or not (np.abs(uv) <= FARTHEST).all()):
         uv = None
-    places, place_of = np.unique(vertices, axis=0, return_inverse=True)
-    corners = place_of.reshape(-1)[faces]
+    named, at = np.unique(faces, return_inverse=True)  # a file may have vertices that belong to no triangle
+    places, place_of = np.unique(vertices[named], axis=0, return_inverse=True)
+    if (size := float(np.ptp(places, axis=0).max())) < SMALLEST:
+        raise failure(f"the mesh is only {size:.1g} units large", f"scale it: at least {SMALLEST:g}", shown)
+    corners = place_of.reshape(-1)[at.reshape(faces.shape)]
     first, second, third = np.moveaxis(places[corners], 1, 0)
     across = np.cross(second - first, third - first)
     area = np.linalg.norm(across, axis=1)
