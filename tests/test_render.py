@@ -127,6 +127,28 @@ def test_the_ball_is_where_the_camera_sees_it(backend: Callable[[str], Backend],
         assert top > 2.0 * bottom
 
 
+def test_what_comes_through_is_a_factor_on_each_lights_color(
+    backend: Callable[[str], Backend], scene: Callable[..., str], tmp_path: Path
+) -> None:
+    """Though it reads no light: without one it is dark, and two give the sum. What glows is there without a lamp."""
+    head = '[material]\nname = "shade"\nshading = "lit"\n[[surface]]\ntechnique = "base_color"\ntint = [0, 0, 0, 1]\n'
+    parts = '[[surface]]\ntechnique = "pbr_constants"\nsurface_roughness = 1.0\n[thickness]\n'
+    through = 'technique = "constant_thickness"\n[[translucency]]\ntechnique = "absorption_tint"\nweight = 0.5\n'
+    sky = 'technique = "thinness_map"\n[[translucency]]\ntechnique = "sky_glow"\n'
+
+    def middle(name: str, chain: str, lights: list[tuple[float, float, float]]) -> Any:
+        (tmp_path / "shade.toml").write_text(head + parts + chain, encoding="utf-8")
+        lamps = "".join(f"[[light]]\ndirection = [0.0, 0.0, -1.0]\ncolor = {[*color]}\n" for color in lights)
+        return render(load(scene(f'material = "shade.toml"\n{BALL}{lamps}')), backend(name), (16, 12)).linear[6, 8]
+
+    for name in ("numpy", "gl"):
+        red, green = (middle(name, through, [color]) for color in ((1.0, 0.0, 0.0), (0.0, 0.5, 0.0)))
+        both = middle(name, through, [(1.0, 0.0, 0.0), (0.0, 0.5, 0.0)])
+        assert red[0] > 0.01 and red[1] == red[2] == 0.0 and green[1] > 0.005 and not green[[0, 2]].any()
+        np.testing.assert_allclose(both, red + green, rtol=1e-5)
+        assert not middle(name, through, []).any() and middle(name, sky, []).min() > 0.01
+
+
 def test_background_exposure_and_averaging(scene: Callable[..., str]) -> None:
     far = '[geometry]\nkind = "ball"\nradius = 0.01\nposition = [9.0, 0.0, 0.0]\n'
     path = scene(f'material = "resin_inlay"\nbackground = [[0.0, 0.0, 0.0], [1.0, 0.5, 0.0]]\nexposure = 4.0\n{far}')

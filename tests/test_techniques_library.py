@@ -30,7 +30,7 @@ NAMES = sorted(library.index())
 # Documented
 
 SECTIONS = {"summary", "role", "formula", "source", "units"}
-KNOWN = SECTIONS | {"limits", "corrects", "baseline", "uncharted"}
+KNOWN = SECTIONS | {"limits", "corrects", "baseline", "uncharted", "glows"}
 
 
 @pytest.mark.parametrize("name", NAMES)

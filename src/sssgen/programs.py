@@ -123,11 +123,16 @@ class _Stage(NamedTuple):
     """The place that names it."""
     number: int
     """Its place in the material; one that the target adds has the next."""
+    glows: bool = False
+    """Whether the technique says so: its light needs no lamp."""
 
 
 def _stages(material: Material, target: Target) -> list[_Stage]:
     """The stages of a material that a target needs."""
-    stages = [_Stage(_link_stage(stage), stage.span, number) for number, stage in enumerate(material.stages)]
+    stages = [
+        _Stage(_link_stage(stage), stage.span, number, "glows" in stage.technique.doc)
+        for number, stage in enumerate(material.stages)
+    ]
     lit = material.shading == "lit"
     if lit and target.lighting and all(stage.link.role != "lighting" for stage in stages):
         technique = library.load(target.lighting)
@@ -144,7 +149,7 @@ def _build(material: Material, target: Target, form: str, guards: str) -> _Middl
     try:
         linked = link([stage.link for stage in stages], TAKEN)
         chained = [
-            ChainStage(stage.link.role, stage.link.technique, function, stage.span)
+            ChainStage(stage.link.role, stage.link.technique, function, stage.span, stage.glows)
             for stage, function in zip(stages, linked.functions, strict=True)
         ]
         chain = assemble(linked.module, chained, lit, material.alpha_mode == "opaque")

@@ -26,9 +26,8 @@ def depth_map(
     memory.check(width * height * 100.0, "take a smaller --size")
     mesh = Mesh(path=path)
     low, high = mesh.bounds()
-    corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
-    view = light.view(corners, size)
-    away = np.maximum(np.linalg.norm(view.origins - corners.mean(axis=0), axis=1) - np.linalg.norm(high - low), 0.0)
+    view = light.view(mesh.triangles.places, size)
+    away = np.maximum(np.linalg.norm(view.origins - 0.5 * (low + high), axis=1) - np.linalg.norm(high - low), 0.0)
     starts = view.origins + away[:, None] * view.directions  # Embree counts in 32 bits: near the mesh there are more
     depth = np.empty(len(starts))
     for start in range(0, len(starts), BLOCK):

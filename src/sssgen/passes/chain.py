@@ -83,6 +83,8 @@ class ChainStage(NamedTuple):
     technique: str
     function: Function
     span: Span
+    glows: bool = False
+    """Whether its light needs no lamp, so that no lamp's colour multiplies it"""
 
 
 class Entry(NamedTuple):
@@ -108,20 +110,20 @@ def assemble(module: Module, stages: Sequence[ChainStage], lit: bool, opaque: bo
     outputs = [stage for stage in stages if stage.role == "output"]
     chained = [stage for stage in stages if stage.role not in ("lighting", "output")]
     per_light = _per_light(chained)
-    surface = _Body("evaluate_surface")
+    surface = _Body("evaluate_surface", lit=True)
     for stage, late in zip(chained, per_light, strict=True):
         if not late:
             surface.add(stage)
     late_stages = [stage for stage, late in zip(chained, per_light, strict=True) if late]
     lighting = [stage for stage in stages if stage.role == "lighting"]
-    light = _Body("evaluate_translucency", surface)
+    light = _Body("evaluate_translucency", surface, lit=True)
+    if "translucency" in surface.values:  # the same for every light: each multiplies it by its colour
+        light.take_over("translucency", VEC3)
     for stage in late_stages:
         light.add(stage)
     shade = _Body("evaluate_lighting", surface)
     for stage in lighting:
         shade.add(stage)
-    if "translucency" in surface.values:  # light that comes without a lamp: the surface gives it off itself
-        surface.emit_translucency()
     crossing = [name for name in (*light.crossing, *shade.crossing) if name not in SURFACE_FIELDS]
     own = [name for name in SURFACE_FIELDS if name in surface.values and not (opaque and name == "alpha")]
     fields = own + list(dict.fromkeys(crossing))
@@ -130,7 +132,7 @@ def assemble(module: Module, stages: Sequence[ChainStage], lit: bool, opaque: bo
         fields = ["albedo"]
     struct = Struct("Surface", tuple(Field(name, surface.values[name].type) for name in fields))
     entries: dict[str, Entry] = {"surface": surface.finish_surface(struct)}
-    if late_stages:
+    if light.statements:
         entries["translucency"] = light.finish("translucency", VEC3, struct)
     if lighting:
         entries["lighting"] = shade.finish("color", VEC3, struct)
@@ -195,9 +197,10 @@ class _Value(NamedTuple):
 class _Body:
     """One entry function while it is put together."""
 
-    def __init__(self, name: str, surface: _Body | None = None) -> None:
+    def __init__(self, name: str, surface: _Body | None = None, lit: bool = False) -> None:
         self.name = name
         self.surface = surface
+        self.lit = lit
         self.inputs: dict[str, Type] = {}
         self.values: dict[str, _Value] = {}
         self.statements: list[Stmt] = []
@@ -229,7 +232,7 @@ class _Body:
         if not result:
             target.append(Evaluate(call, span))
         elif result == "translucency":
-            self.add_translucency(call, target, waits, span)
+            self.add_light("emission" if self.lit and stage.glows else "translucency", call, target, waits, span)
         else:
             self.store(result, call, target, waits, span)
         if stage.role == "geometry" and result == "hit":
@@ -293,21 +296,27 @@ class _Body:
             self.values[name] = _Value(value.type, waits)
             target.append(Declare(name, value.type, value, span))
 
-    def add_translucency(self, call: Call, target: list[Stmt], waits: bool, span: Span) -> None:
+    def add_light(self, name: str, call: Call, target: list[Stmt], waits: bool, span: Span) -> None:
+        """Adds to the translucency, or to the emission."""
         value: Expr = call if call.type == VEC3 else Construct(VEC3, (call,), span)
-        if "translucency" in self.values:
-            target.append(Assign(Local(VEC3, "translucency", span), "+", value, span))
+        if name in self.values:
+            target.append(Assign(Local(VEC3, name, span), "+", value, span))
         else:
-            self.values["translucency"] = _Value(VEC3, waits)
-            target.append(Declare("translucency", VEC3, value, span))
+            self.values[name] = _Value(VEC3, waits)
+            target.append(Declare(name, VEC3, value, span))
 
-    def emit_translucency(self) -> None:
-        """Adds the light that needs no lamp to the emission."""
-        span, value = self.span, Local(VEC3, "translucency", self.span)
-        if "emission" in self.values:
-            self.statements.append(Assign(Local(VEC3, "emission", span), "+", value, span))
-        else:
-            self.store("emission", value, self.statements, False, span)
+    def take_over(self, name: str, type_: Type) -> None:
+        """Begins with a value of the surface's, to which more may be added."""
+        assert self.surface is not None
+        self.span = self.surface.span
+        self.crossing[name] = None
+        self.store(
+            name,
+            Member(type_, Local(_SURFACE, "surface", self.span), name, self.span),
+            self.statements,
+            False,
+            self.span,
+        )
 
     # Finishing
 

@@ -1,0 +1,437 @@
+"""`sssgen bake sdf`: distances and signs against closed forms, all triangles and rays' votes; what is stored and told."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import bake_meshes as meshes
+from bake_meshes import SPOT, SUZANNE, Array, Made, joined, needs_meshes, write
+from oracle import technique
+from sssgen.diagnostics import SssgenError
+
+for package in ("trimesh", "igl", "embreex"):
+    pytest.importorskip(package, reason=f"{package} is missing: pip install 'sssgen[bake]'")
+
+from sssgen.bake.distance import distances, inside
+from sssgen.bake.encoding import ENCODINGS, decode
+from sssgen.bake.grid import Grid, around
+from sssgen.bake.sdf import Volume, sdf
+from sssgen.harness.scenes.mesh import Mesh
+from sssgen.harness.scenes.mesh_distance import INSIDE, MeshDistance
+from sssgen.lab.intervals import thickness
+from sssgen.targets.numpy_textures import Texture
+
+
+@pytest.fixture(autouse=True)
+def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def rng(seed: int = 5) -> np.random.Generator:
+    return np.random.default_rng(seed)
+
+
+def solid(made: Made) -> MeshDistance:
+    return Mesh(path=write(Path("body.ply"), made)).solid
+
+
+def grid_about(body: MeshDistance, resolution: int = 24, padding: float = 0.1) -> Grid:
+    return around(body.places.min(axis=0), body.places.max(axis=0), [resolution], padding)
+
+
+def centers(grid: Grid) -> Array:
+    """(z y x, 3), written out anew."""
+    z, y, x = np.mgrid[: grid.counts[2], : grid.counts[1], : grid.counts[0]]
+    found: Array = grid.low + (np.stack([x, y, z], axis=-1).reshape(-1, 3) + 0.5) * grid.voxel
+    return found
+
+
+def signed(body: MeshDistance, grid: Grid) -> Array:
+    """As they are baked, before they are encoded: (z y x,)."""
+    unsigned = distances(body, grid)
+    return np.where(inside(body, grid, unsigned), -1.0, 1.0).ravel() * unsigned.ravel()
+
+
+# Closed forms
+
+
+def to_ball(points: Array, radius: float) -> Array:
+    found: Array = np.linalg.norm(points, axis=1) - radius
+    return found
+
+
+def to_torus(points: Array, major: float, minor: float) -> Array:
+    found: Array = np.hypot(np.hypot(points[:, 0], points[:, 2]) - major, points[:, 1]) - minor
+    return found
+
+
+def to_box(points: Array, half: npt.ArrayLike) -> Array:
+    beyond = np.abs(points) - half
+    found: Array = np.linalg.norm(np.maximum(beyond, 0.0), axis=1) + np.minimum(beyond.max(axis=1), 0.0)
+    return found
+
+
+@pytest.mark.parametrize("size", [(1.0, 1.0, 1.0), (1.0, 2.0, 0.3)])
+@pytest.mark.parametrize("middle", [(0.0, 0.0, 0.0), (13.0, -7.0, 100.0)])
+def test_a_box_has_its_distance(size: Any, middle: Any) -> None:
+    body = solid(meshes.box(size).moved(middle))
+    grid = grid_about(body)
+    exact = to_box(centers(grid) - middle, 0.5 * np.array(size))
+    assert np.abs(signed(body, grid) - exact).max() <= 2e-7 * grid.diagonal
+    assert (exact < 0.0).mean() > 0.2
+
+
+def dent(made: Made, exact: Any) -> float:
+    """How far the triangles are from the surface that they stand for, at 66 places of each."""
+    weights = np.array([(i, j, 10 - i - j) for i in range(11) for j in range(11 - i)]) / 10.0
+    worst = 0.0
+    for some in np.array_split(made.faces, max(1, len(made.faces) // 20_000)):
+        worst = max(worst, float(np.abs(exact(np.einsum("wv,fvc->fwc", weights, made.vertices[some]).reshape(-1, 3))).max()))
+    return worst
+
+
+@pytest.mark.parametrize("level", [1, 4])
+def test_a_coarse_ball_is_as_far_off_as_its_triangles(level: int) -> None:
+    made = meshes.icosphere(0.9, level)
+    body = solid(made)
+    grid = grid_about(body)
+    depth = 0.9 - float(np.abs(np.einsum("fc,fc->f", made.triangles[:, 0], normals(made))).min())
+    error = signed(body, grid) - to_ball(centers(grid), 0.9)
+    assert -1e-7 <= error.min() and error.max() <= depth + 1e-7  # the mesh lies within the ball
+    assert error.max() > 0.3 * depth
+
+
+def normals(made: Made) -> Array:
+    a, b, c = np.moveaxis(made.triangles, 1, 0)
+    across = np.cross(b - a, c - a)
+    found: Array = across / np.linalg.norm(across, axis=1, keepdims=True)
+    return found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("shape", ["ball", "torus"])
+def test_a_fine_mesh_has_the_closed_forms_distance(shape: str) -> None:
+    """Within 1e-6 of the diagonal, of which its triangles take the most: their corners stand a little outside."""
+    if shape == "ball":
+        made = meshes.icosphere(1.0 + 1.8e-6, 8)
+
+        def exact(points: Array) -> Array:
+            return to_ball(points, 1.0)
+
+    else:
+        made = meshes.torus(1.0, 0.4 + 3.4e-6 * 0.75, 1600, 800)
+
+        def exact(points: Array) -> Array:
+            return to_torus(points, 1.0, 0.4)
+
+    body = solid(made)
+    grid = grid_about(body, 40, 0.05)
+    assert dent(made, exact) <= 0.95e-6 * grid.diagonal
+    wanted = exact(centers(grid))
+    error = np.abs(signed(body, grid) - wanted).max()
+    print(f"{shape}: {len(made.faces)} triangles, worst error {error / grid.diagonal:.2e} of the diagonal")
+    assert error <= 1e-6 * grid.diagonal
+    assert 0.1 < (wanted < 0.0).mean() < 0.9
+
+
+# All triangles, one by one
+
+
+def to_triangles(points: Array, triangles: Array) -> Array:
+    """The distance of points (n, 3) to the nearest of triangles: to their planes, or to their edges."""
+    nearest = np.full(len(points), np.inf)
+    for corners in triangles:
+        edges = np.roll(corners, -1, axis=0) - corners
+        normal = np.cross(edges[0], edges[1])
+        normal /= np.linalg.norm(normal)
+        ways = points[:, None] - corners
+        above = np.einsum("nvc,vc->nv", ways, np.cross(normal, edges)) >= 0.0
+        along = np.clip(np.einsum("nvc,vc->nv", ways, edges) / np.einsum("vc,vc->v", edges, edges), 0.0, 1.0)
+        to_edges = np.linalg.norm(ways - along[..., None] * edges, axis=2).min(axis=1)
+        nearest = np.minimum(nearest, np.where(above.all(axis=1), np.abs(ways[:, 0] @ normal), to_edges))
+    return nearest
+
+
+def turns(points: Array, triangles: Array) -> Array:
+    """The winding number: the sum of the solid angles (Van Oosterom and Strackee 1983)."""
+    total = np.zeros(len(points))
+    for corners in triangles:
+        a, b, c = np.moveaxis(corners - points[:, None], 1, 0)
+        la, lb, lc = (np.linalg.norm(side, axis=1) for side in (a, b, c))
+        volume = np.einsum("nc,nc->n", a, np.cross(b, c))
+        dots = [np.einsum("nc,nc->n", *pair) for pair in ((a, b), (b, c), (c, a))]
+        total += 2.0 * np.arctan2(volume, la * lb * lc + dots[0] * lc + dots[1] * la + dots[2] * lb)
+    found: Array = total / (4.0 * np.pi)
+    return found
+
+
+def tilted(made: Made, by: float) -> Made:
+    """Turned about y and a little about x, so that no voxel's centre lies in a face."""
+    y, x = np.radians([by, 0.4 * by])
+    about_y = np.array([[np.cos(y), 0.0, np.sin(y)], [0.0, 1.0, 0.0], [-np.sin(y), 0.0, np.cos(y)]])
+    about_x = np.array([[1.0, 0.0, 0.0], [0.0, np.cos(x), -np.sin(x)], [0.0, np.sin(x), np.cos(x)]])
+    return made._replace(vertices=made.vertices @ about_y.T @ about_x.T)
+
+
+def noisy(made: Made, by: float) -> Made:
+    return made._replace(vertices=made.vertices + rng().normal(scale=by, size=made.vertices.shape))
+
+
+CUBE = meshes.box()
+HOLLOW = joined(CUBE, meshes.box((0.5, 0.5, 0.5)).turned_out())
+FIN = Made(np.array([[-0.5, 0.5, -0.5], [0.5, 0.5, -0.5], [0.0, 0.9, -0.5]]), np.array([[0, 1, 2]]))
+BALL = meshes.icosphere(0.7, 2)
+ODD = {
+    "closed": tilted(CUBE, 20.0),
+    "a missing face": tilted(CUBE.without(4, 5), 20.0),
+    "a missing triangle": tilted(CUBE.without(7), 20.0),
+    "inside out": tilted(CUBE, 20.0).turned_out(),
+    "open and inside out": tilted(CUBE.without(0), 20.0).turned_out(),
+    "self-intersecting": noisy(meshes.icosphere(0.6, 2), 0.15),
+    "two that overlap": joined(tilted(CUBE, 20.0), tilted(CUBE, 50.0).moved((0.4, 0.3, 0.2))),
+    "two apart": joined(tilted(CUBE, 20.0), tilted(meshes.box((0.3, 0.3, 0.3)), 10.0).moved((1.2, 0.3, 0.2))),
+    "hollow": tilted(HOLLOW, 20.0),
+    "hollow and open": tilted(HOLLOW.without(3, 20), 20.0),
+    "a fin": tilted(joined(CUBE, FIN), 20.0),  # three triangles at an edge
+    "every face twice": tilted(joined(CUBE, CUBE), 20.0),
+    "half a ball": BALL.without(*np.flatnonzero(BALL.triangles.mean(axis=1)[:, 1] > 0.05)),
+    "two thirds of its faces": BALL.without(*range(0, 320, 3)),
+}
+
+
+@pytest.mark.parametrize("name", ODD)
+def test_distance_and_sign_of_odd_meshes_are_those_of_all_their_triangles(name: str) -> None:
+    made = ODD[name]
+    body = solid(made)
+    grid = grid_about(body, 14)
+    points = centers(grid)
+    unsigned = distances(body, grid)
+    exact = to_triangles(points, made.triangles)
+    assert np.abs(unsigned.ravel() - exact).max() <= 2e-7 * grid.diagonal
+    turn = turns(points, made.triangles)
+    turn = -turn if name in ("inside out", "open and inside out") else turn
+    found = inside(body, grid, unsigned).ravel()
+    clear = np.abs(turn - INSIDE) > 0.02  # what the fast number may be off by
+    assert (found == (turn > INSIDE))[clear].all()
+    assert clear.mean() > 0.9 and 0.01 < found.mean() < 0.9
+
+
+@pytest.mark.parametrize("name", ODD)
+@pytest.mark.parametrize("resolution", [9, 29])
+def test_blocks_have_the_sign_of_every_voxel_in_them(name: str, resolution: int) -> None:
+    body = solid(ODD[name])
+    grid = grid_about(body, resolution)
+    assert (inside(body, grid, distances(body, grid)).ravel() == (body.winding(centers(grid)) > INSIDE)).all()
+
+
+def test_what_is_hollow_is_outside_within() -> None:
+    grid = grid_about(solid(HOLLOW), 21)
+    found = signed(solid(HOLLOW), grid)
+    at = centers(grid)
+    assert (found[np.abs(at).max(axis=1) < 0.24] > 0.0).all()
+    assert (found[(np.abs(at).max(axis=1) > 0.26) & (np.abs(at).max(axis=1) < 0.49)] < 0.0).all()
+
+
+def vote(made: Array, points: Array, rays: int) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
+    """Which points all of so many random rays call outside, and which most of them call inside, by their parity."""
+    odd = np.zeros(len(points), np.int64)
+    for seed in range(rays):
+        ways = rng(seed).normal(size=points.shape)
+        _, met = meshes.passed(made, points, ways / np.linalg.norm(ways, axis=1, keepdims=True))
+        odd += met.sum(axis=1) % 2
+    return odd == 0, 2 * odd > rays
+
+
+def leak(path: Path, resolution: int, rays: int) -> tuple[float, float]:
+    """The share of voxels that all rays call outside which are inside; and of those most rays call inside, outside."""
+    mesh = Mesh(path=str(path))
+    grid = grid_about(mesh.solid, resolution, 0.05)
+    found = inside(mesh.solid, grid, distances(mesh.solid, grid)).ravel()
+    outside, within = vote(mesh.triangles.places[mesh.triangles.corners], centers(grid), rays)
+    return float(found[outside].mean()), float(1.0 - found[within].mean())
+
+
+@needs_meshes
+def test_suzanne_does_not_leak() -> None:
+    outside, within = leak(SUZANNE, 28, 5)
+    assert outside <= 1e-3, outside
+    assert within < 0.1, within
+
+
+@pytest.mark.slow
+@needs_meshes
+def test_suzanne_does_not_leak_in_fine_voxels() -> None:
+    outside, within = leak(SUZANNE, 56, 7)
+    print(f"Suzanne: {outside:.4%} of the exterior is inside, {within:.3%} of the interior is outside")
+    assert outside <= 1e-3, outside
+    assert within < 0.1, within
+
+
+# The grid, and what the JSON says
+
+
+def test_voxels_are_cubes_and_the_box_is_padded() -> None:
+    path = write(Path("body.obj"), meshes.box((1.0, 2.0, 0.5)).moved((5.0, 0.0, -3.0)))
+    made = sdf(path, (40,), padding=0.1)
+    voxel = made.grid.voxel
+    assert voxel == pytest.approx(np.full(3, 2.4 / 40.0))
+    assert made.grid.counts == (24, 40, 15)  # (1 + 0.4) / 0.06 and (0.5 + 0.4) / 0.06, and up
+    assert made.texels.shape == (15, 40, 24)
+    assert made.grid.low[1] == pytest.approx(-1.2) and made.grid.high[1] == pytest.approx(1.2)
+    assert (made.grid.low <= np.array([4.5, -1.0, -3.25]) - 0.2 + 1e-12).all()
+    assert (made.grid.high >= np.array([5.5, 1.0, -2.75]) + 0.2 - 1e-12).all()
+    assert 0.5 * (made.grid.low + made.grid.high) == pytest.approx([5.0, 0.0, -3.0])
+
+
+def test_three_counts_are_taken_as_they_are() -> None:
+    made = sdf(write(Path("body.obj"), meshes.box((1.0, 2.0, 0.5))), (8, 16, 9), padding=0.25)
+    assert made.texels.shape == (9, 16, 8)
+    assert made.facts["texels"] == [8, 16, 9]
+    assert made.grid.high - made.grid.low == pytest.approx([2.0, 3.0, 1.5])
+    assert made.facts["voxel"] == pytest.approx([2.0 / 8, 3.0 / 16, 1.5 / 9])
+
+
+def test_the_facts_are_what_was_baked() -> None:
+    path = write(Path("body.obj"), meshes.box((1.0, 2.0, 0.5)).moved((5.0, 0.0, -3.0)).without(0))
+    made = sdf(path, (20,), encoding="r8")
+    facts = made.facts
+    assert facts["box_min"] == made.grid.low.tolist() and facts["box_max"] == made.grid.high.tolist()
+    assert facts["parameters"] == {
+        "box_min": facts["box_min"], "box_max": facts["box_max"], "distance_range": facts["range"]
+    }  # fmt: skip
+    assert facts["mesh"]["triangles"] == 11 and not facts["mesh"]["closed"] and not facts["mesh"]["inside_out"]
+    assert facts["mesh"]["box_min"] == [4.5, -1.0, -3.25] and facts["mesh"]["box_max"] == [5.5, 1.0, -2.75]
+    body = Mesh(path=path).solid
+    exact = signed(body, made.grid)
+    assert facts["range"] == pytest.approx(np.abs(exact).max())
+    assert facts["inside"] == pytest.approx((exact < 0.0).mean(), abs=1e-6)
+    assert facts["beyond_range"] == 0.0
+    near = sdf(path, (20,), reach=0.1)
+    assert near.facts["range"] == 0.1
+    assert near.facts["beyond_range"] == pytest.approx((np.abs(exact) > 0.1).mean(), abs=1e-6)
+
+
+def test_vertices_of_no_triangle_do_not_widen_the_box() -> None:
+    stray = Made(np.array([[50.0, 0.0, 0.0]]), np.zeros((0, 3), np.int64))
+    assert sdf(write(Path("body.ply"), joined(CUBE, stray)), (8,)).facts["mesh"]["box_max"] == [0.5, 0.5, 0.5]
+
+
+def test_a_thin_plate_keeps_voxels_that_are_cubes() -> None:
+    made = sdf(write(Path("body.obj"), meshes.box((1.0, 0.02, 1.0))), (64,), padding=0.05)
+    assert made.grid.voxel == pytest.approx(np.full(3, 1.1 / 64.0))
+    assert made.grid.counts == (64, 7, 64)
+    exact = to_box(centers(made.grid), [0.5, 0.01, 0.5])
+    assert np.abs(stored(made) - exact).max() <= made.facts["error"]["at_texels"]
+
+
+def test_a_sheet_is_as_thick_as_it_is_told_to_be() -> None:
+    square = Made(np.array([[-0.5, 0, -0.5], [-0.5, 0, 0.5], [0.5, 0, 0.5], [0.5, 0, -0.5]], float), np.array([[0, 1, 2], [0, 2, 3]]))
+    path = write(Path("sheet.obj"), square)
+    with pytest.raises(SssgenError, match="flat sheet"):
+        sdf(path, (16,))
+    made = sdf(path, (32,), thin=0.2)
+    exact = to_box(centers(made.grid), [0.5, 0.0, 0.5]) - 0.1
+    assert np.abs(stored(made) - exact).max() <= made.facts["error"]["at_texels"]
+    assert made.facts["inside"] == pytest.approx((exact < 0.0).mean(), abs=1e-6) and made.facts["inside"] > 0.05
+
+
+def test_padding_0_still_has_a_box() -> None:
+    made = sdf(write(Path("body.obj"), CUBE), (8,), padding=0.0)
+    assert made.facts["box_min"] == [-0.5, -0.5, -0.5] and made.facts["inside"] == 1.0
+
+
+def test_the_sign_of_a_mesh_inside_out_is_said_and_right() -> None:
+    made = sdf(write(Path("body.obj"), CUBE.turned_out()), (12,))
+    assert made.facts["mesh"]["inside_out"] and made.facts["mesh"]["closed"]
+    assert np.array_equal(made.texels, sdf(write(Path("right.obj"), CUBE), (12,)).texels)
+
+
+# What is stored
+
+
+def stored(made: Volume) -> Array:
+    """The distances that the texels stand for, (z y x,)."""
+    found: Array = decode(made.texels, made.reach, ENCODINGS[made.facts["encoding"]]).ravel()
+    return found
+
+
+@pytest.mark.parametrize("encoding", ENCODINGS)
+@pytest.mark.parametrize("reach", [None, 0.2])
+def test_the_error_is_within_what_is_told(encoding: str, reach: float | None) -> None:
+    made = sdf(write(Path("body.obj"), tilted(meshes.box((1.0, 0.7, 0.4)), 25.0)), (30,), 0.2, encoding, reach)
+    mesh = Mesh(path="body.obj")
+    exact = np.clip(mesh.distance(centers(made.grid)), -made.reach, made.reach)
+    told = made.facts["error"]
+    off = np.abs(stored(made) - exact)
+    assert off.max() <= told["at_texels"]
+    # the bound is no wish: the steps are as coarse as that
+    floor = {"r8": 0.5, "r16": 0.5, "r16f": 0.5, "r32f": 0.0}[encoding]
+    assert off.max() >= floor * told["at_texels"]
+    points = rng().uniform(made.grid.low + 0.5 * made.grid.voxel, made.grid.high - 0.5 * made.grid.voxel, (20_000, 3))
+    between = np.abs(sampled(made, points) - np.clip(mesh.distance(points), -made.reach, made.reach))
+    assert between.max() <= told["between_texels"] + told["at_texels"]
+
+
+def sampled(made: Volume, points: Array) -> Array:
+    """The distance by the library's technique."""
+    found: Array = technique("distance_texture")(p=points, distance_map=texture(made), **made.facts["parameters"])
+    return found
+
+
+def texture(made: Volume) -> Texture:
+    texels = made.texels.astype(np.float64) / (ENCODINGS[made.facts["encoding"]].most or 1)
+    return Texture(texels[..., None], "linear", "clamp")
+
+
+# The march through the texture
+
+
+def on_the_surface(mesh: Mesh, count: int, seed: int = 3) -> tuple[Array, Array]:
+    """Places that are spread over the triangles, and directions to lights, of which the most are behind."""
+    corners = mesh.triangles.places[mesh.triangles.corners]
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    face = rng(seed).choice(len(area), count, p=area / area.sum())
+    weights = rng(seed + 1).dirichlet([1.0, 1.0, 1.0], count)
+    ways = rng(seed + 2).normal(size=(count, 3))
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    before = np.einsum("nc,nc->n", ways, mesh.triangles.flat[face]) > 0.0
+    ways[before & (rng(seed + 3).random(count) < 0.8)] *= -1.0
+    return np.einsum("nv,nvc->nc", weights, corners[face]), ways
+
+
+def marched(made: Volume, points: Array, ways: Array, method: str = "march_light", steps: int = 400) -> Array:
+    found: Array = technique(method, body_distance="distance_texture_world")(
+        P=points, L=ways, reach=made.grid.diagonal, steps=steps, distance_map=texture(made), **made.facts["parameters"]
+    )
+    return found
+
+
+@needs_meshes
+@pytest.mark.parametrize("path", [SPOT, SUZANNE], ids=["spot", "suzanne"])
+@pytest.mark.parametrize(("method", "steps"), [("march_light", 400), ("march_light_traced", 64)])
+def test_the_marched_thickness_is_right_to_a_voxel(path: Path, method: str, steps: int) -> None:
+    mesh = Mesh(path=str(path))
+    points, ways = on_the_surface(mesh, 2000)
+    exact = thickness(mesh, points, ways)
+    made = sdf(str(path), (64,))
+    error = np.abs(marched(made, points, ways, method, steps) - exact) / made.grid.voxel.max()
+    print(f"{path.stem}, {method}: median {np.median(error):.3f} voxels, 90 % within {np.percentile(error, 90):.2f}")
+    assert np.median(exact) > 5.0 * made.grid.voxel.max()
+    assert np.median(error) <= 1.0
+
+
+def test_added_matter_never_makes_it_thinner() -> None:
+    """But for what the texture's texels leave open."""
+    first, second = tilted(CUBE, 20.0), tilted(meshes.box((0.6, 0.6, 1.6)), 50.0).moved((0.3, 0.2, 0.1))
+    one, both = write(Path("one.ply"), first), write(Path("both.ply"), joined(first, second))
+    points, ways = on_the_surface(Mesh(path=one), 3000)
+    before, after = sdf(one, (64,), 0.5), sdf(both, (64,))
+    less = marched(before, points, ways) - marched(after, points, ways)
+    assert less.max() <= 2.0 * after.grid.voxel.max()
+    assert np.percentile(less, 99) <= 0.5 * after.grid.voxel.max()
+    assert less.min() < -0.3  # and it is thicker where the other is in the way
