@@ -75,7 +75,9 @@ def icosphere(radius: float, level: int) -> Made:
     vertices /= np.linalg.norm(vertices, axis=1, keepdims=True)
     # an edge of the icosahedron is its shortest distance between corners: every three such neighbours are a face
     near = np.linalg.norm(vertices[:, None] - vertices, axis=2) < 1.1
-    threes = [(a, b, c) for a in range(12) for b in range(a) for c in range(b) if near[a, b] and near[b, c] and near[a, c]]
+    threes = [
+        (a, b, c) for a in range(12) for b in range(a) for c in range(b) if near[a, b] and near[b, c] and near[a, c]
+    ]
     faces = np.array([three if np.linalg.det(vertices[list(three)]) > 0.0 else three[::-1] for three in threes])
     for _ in range(level):
         edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
@@ -113,7 +115,9 @@ def torus(major: float, minor: float, around: int, about: int) -> Made:
     here, on = row * about, (row + 1) % around * about
     up = (column + 1) % about
     quad = here + column, on + column, on + up, here + up
-    faces = np.concatenate([np.stack([quad[0], quad[1], quad[2]], axis=1), np.stack([quad[0], quad[2], quad[3]], axis=1)])
+    faces = np.concatenate(
+        [np.stack([quad[0], quad[1], quad[2]], axis=1), np.stack([quad[0], quad[2], quad[3]], axis=1)]
+    )
     return Made(vertices, faces)
 
 

@@ -91,7 +91,9 @@ def dent(made: Made, exact: Any) -> float:
     weights = np.array([(i, j, 10 - i - j) for i in range(11) for j in range(11 - i)]) / 10.0
     worst = 0.0
     for some in np.array_split(made.faces, max(1, len(made.faces) // 20_000)):
-        worst = max(worst, float(np.abs(exact(np.einsum("wv,fvc->fwc", weights, made.vertices[some]).reshape(-1, 3))).max()))
+        worst = max(
+            worst, float(np.abs(exact(np.einsum("wv,fvc->fwc", weights, made.vertices[some]).reshape(-1, 3))).max())
+        )
     return worst
 
 
@@ -258,7 +260,7 @@ def leak(path: Path, resolution: int, rays: int) -> tuple[float, float]:
 
 @needs_meshes
 def test_suzanne_does_not_leak() -> None:
-    outside, within = leak(SUZANNE, 28, 5)
+    outside, within = leak(SUZANNE, 18, 4)
     assert outside <= 1e-3, outside
     assert within < 0.1, within
 
@@ -266,7 +268,7 @@ def test_suzanne_does_not_leak() -> None:
 @pytest.mark.slow
 @needs_meshes
 def test_suzanne_does_not_leak_in_fine_voxels() -> None:
-    outside, within = leak(SUZANNE, 56, 7)
+    outside, within = leak(SUZANNE, 48, 7)
     print(f"Suzanne: {outside:.4%} of the exterior is inside, {within:.3%} of the interior is outside")
     assert outside <= 1e-3, outside
     assert within < 0.1, within
@@ -330,7 +332,10 @@ def test_a_thin_plate_keeps_voxels_that_are_cubes() -> None:
 
 
 def test_a_sheet_is_as_thick_as_it_is_told_to_be() -> None:
-    square = Made(np.array([[-0.5, 0, -0.5], [-0.5, 0, 0.5], [0.5, 0, 0.5], [0.5, 0, -0.5]], float), np.array([[0, 1, 2], [0, 2, 3]]))
+    square = Made(
+        np.array([[-0.5, 0, -0.5], [-0.5, 0, 0.5], [0.5, 0, 0.5], [0.5, 0, -0.5]], float),
+        np.array([[0, 1, 2], [0, 2, 3]]),
+    )
     path = write(Path("sheet.obj"), square)
     with pytest.raises(SssgenError, match="flat sheet"):
         sdf(path, (16,))
@@ -426,12 +431,16 @@ def test_the_marched_thickness_is_right_to_a_voxel(path: Path, method: str, step
 
 
 def test_added_matter_never_makes_it_thinner() -> None:
-    """But for what the texture's texels leave open."""
+    """But for what texels leave open: where a ray is steep on all faces, a wall that moves by less than a voxel."""
     first, second = tilted(CUBE, 20.0), tilted(meshes.box((0.6, 0.6, 1.6)), 50.0).moved((0.3, 0.2, 0.1))
-    one, both = write(Path("one.ply"), first), write(Path("both.ply"), joined(first, second))
-    points, ways = on_the_surface(Mesh(path=one), 3000)
-    before, after = sdf(one, (64,), 0.5), sdf(both, (64,))
-    less = marched(before, points, ways) - marched(after, points, ways)
-    assert less.max() <= 2.0 * after.grid.voxel.max()
-    assert np.percentile(less, 99) <= 0.5 * after.grid.voxel.max()
-    assert less.min() < -0.3  # and it is thicker where the other is in the way
+    ends = [meshes.box((0.01, 0.01, 0.01)).moved(place) for place in (np.full(3, -1.0), np.full(3, 1.2))]
+    alone = Mesh(path=write(Path("alone.ply"), first))
+    before = sdf(write(Path("one.ply"), joined(first, *ends)), (64,))
+    after = sdf(write(Path("both.ply"), joined(first, second, *ends)), (64,))
+    assert np.array_equal(before.grid.low, after.grid.low)  # the ends are there for this
+    points, ways = on_the_surface(alone, 4000)
+    less = (marched(before, points, ways) - marched(after, points, ways)) / after.grid.voxel.max()
+    steep = np.abs(ways @ np.concatenate([normals(first), normals(second)]).T).min(axis=1) > 0.2
+    assert less[steep].max() <= 2.0 and steep.sum() > 500
+    assert np.percentile(less, 99) <= 1.0
+    assert less.min() < -0.3 / after.grid.voxel.max()  # thicker where the other is in the way

@@ -1,0 +1,361 @@
+"""`sssgen bake thickness` and `depth`: against closed forms, quadrature and every triangle; honest errors; whole seams."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import bake_meshes as meshes
+from bake_meshes import SPOT, SUZANNE, Array, Made, needs_meshes, write
+from oracle import technique
+from sssgen.diagnostics import SssgenError
+
+for package in ("trimesh", "embreex", "scipy", "xatlas", "psutil"):
+    pytest.importorskip(package, reason=f"{package} is missing: pip install 'sssgen[bake]'")
+
+from sssgen.bake.atlas import Atlas, atlas
+from sssgen.bake.chords import Chords, inward
+from sssgen.bake.depth import depth_map
+from sssgen.bake.light import BakeLight
+from sssgen.bake.thickness import Map, Request, thickness_map
+from sssgen.harness.scenes.mesh import Mesh
+from sssgen.targets.numpy_textures import Texture
+
+
+@pytest.fixture(autouse=True)
+def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def rng(seed: int = 5) -> np.random.Generator:
+    return np.random.default_rng(seed)
+
+
+def unit(vectors: Any) -> Array:
+    found: Array = np.asarray(vectors, float) / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return found
+
+
+def shown(path: str, size: tuple[int, int]) -> Atlas:
+    mesh = Mesh(path=path).triangles
+    assert mesh.uv is not None
+    return atlas(mesh, mesh.uv, size, path)
+
+
+def sampled(path: str, at: Atlas, rays: int, attenuation: float = 0.0, seed: int = 0) -> Chords:
+    return inward(path, str(Path(path).resolve()), at.places, at.flat, rays, attenuation, (seed, 0))
+
+
+def baked(path: str, size: tuple[int, int], wanted: Request, unwrap: bool = False) -> Map:
+    return thickness_map(path, size, wanted, unwrap, processes=0)
+
+
+def lengths(made: Map, at: Atlas) -> Array:
+    """What the texels of an atlas stand for."""
+    found: Array = made.values.ravel()[at.texels] * made.facts["range"][1]
+    return found
+
+
+def assert_sound(value: Array, exact: Any, error: Array, bias: float = 0.0) -> None:
+    """Within the errors that are told, as often as such errors should be."""
+    z = (value - exact) / error
+    assert abs(z.mean()) <= 4.0 / np.sqrt(len(z)) + bias / error.mean(), z.mean()
+    assert 0.85 <= np.sqrt((z**2).mean()) <= 1.3
+    assert (np.abs(z) > 3.0).mean() <= 0.02  # 0.0027 of a normal distribution, and what estimated errors add
+    assert (np.abs(value - exact) <= 6.0 * error + bias).all()
+
+
+# A ball
+
+
+@pytest.fixture(scope="module")
+def globe(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """Radius 0.8; its normals are off by 0.03 at most, and its lengths by about the square of that."""
+    return write(tmp_path_factory.mktemp("globe") / "globe.obj", meshes.globe(0.8, 160, 80))
+
+
+BIAS = 3e-4
+"""Of lengths in the tessellated ball."""
+
+
+def test_a_ball_is_four_thirds_of_its_radius(globe: str) -> None:
+    at = shown(globe, (32, 16))
+    assert len(at.texels) == 32 * 16
+    found = sampled(globe, at, 256)
+    assert_sound(found.value, 4.0 / 3.0 * 0.8, found.error, BIAS)
+    assert found.lost.max() <= 0.01
+
+
+@pytest.mark.parametrize("depth", [0.3, 1.0, 20.0])
+def test_a_ball_lets_as_much_light_pass_as_its_integral_says(globe: str, depth: float) -> None:
+    """With chords 2 R cos, weighted by the cosine: 2 (1 - (1 + a) exp(-a)) / a², a = 2 R / depth."""
+    a = 2.0 * 0.8 / depth
+    found = sampled(globe, shown(globe, (24, 12)), 512, depth)
+    exact = 2.0 * (1.0 - (1.0 + a) * np.exp(-a)) / a**2
+    assert_sound(found.value, exact, found.error, BIAS * min(1.0, 1.0 / depth))
+    mean = sampled(globe, shown(globe, (24, 12)), 512).value
+    assert (found.value >= np.exp(-mean / depth) - 1e-9).all() and (found.value <= 1.0).all()  # Jensen
+
+
+def test_the_standard_error_is_the_spread_over_seeds(globe: str) -> None:
+    at = shown(globe, (12, 6))
+    runs = [sampled(globe, at, 64, seed=seed) for seed in range(40)]
+    spread = np.var([run.value for run in runs], axis=0, ddof=1)
+    told = np.mean([run.error**2 for run in runs], axis=0)
+    assert spread.mean() == pytest.approx(told.mean(), rel=0.08)  # of 39 · 72 degrees of freedom: 2.7 %
+    assert not np.array_equal(runs[0].value, runs[1].value)
+
+
+def test_four_times_the_rays_halve_the_error_or_better(globe: str) -> None:
+    at = shown(globe, (16, 8))
+    few, many = sampled(globe, at, 64).error.mean(), sampled(globe, at, 256).error.mean()
+    assert many < 0.55 * few
+
+
+def test_the_facts_of_a_map(globe: str) -> None:
+    made, at = baked(globe, (32, 16), Request(rays=64)), shown(globe, (32, 16))
+    assert made.facts["mean"] == pytest.approx(4.0 / 3.0 * 0.8, rel=2e-3)
+    assert made.facts["parameters"] == {"thickness_factor": made.facts["range"][1]}
+    assert made.values.max() == 1.0 and made.values.min() > 0.9
+    assert made.facts["holds"] == "thickness" and made.facts["rays"] == 64 and not made.mesh
+    told = made.facts["error"]
+    exact = sampled(globe, at, 64)  # one block of work, with the same rays
+    assert lengths(made, at) == pytest.approx(exact.value, abs=1e-12)
+    assert told["mean_standard_error"] == pytest.approx(exact.error.mean())
+    assert told["largest_standard_error"] == pytest.approx(exact.error.max())
+
+
+# A box, and a wide plate
+
+
+def to_exit(size: Array, places: Array, ways: Array) -> Array:
+    """The length inside a box about the origin, from places within it on."""
+    with np.errstate(divide="ignore"):
+        found: Array = ((0.5 * size * np.sign(ways) - places) / ways).min(axis=-1)
+    return np.maximum(found, 0.0)
+
+
+def by_quadrature(size: Array, place: Array, normal: Array, of: Callable[[Array], Array], count: int = 200) -> float:
+    """The mean of what `of` makes of lengths inward, weighted by their cosine: midpoints of the unit disk."""
+    square, turn = np.meshgrid((np.arange(count) + 0.5) / count, 2.0 * np.pi * (np.arange(count) + 0.5) / count)
+    side = np.roll(normal, 1)
+    across = np.cross(normal, side)
+    ways = (
+        np.sqrt(square)[..., None] * (np.cos(turn)[..., None] * side + np.sin(turn)[..., None] * across)
+        - np.sqrt(1.0 - square)[..., None] * normal
+    )
+    return float(of(to_exit(size, place, ways)).mean())
+
+
+@pytest.mark.parametrize("size", [(1.0, 1.4, 0.6), (2.0, 0.05, 2.0)])
+@pytest.mark.parametrize("depth", [0.0, 0.4])
+def test_a_box_has_its_integral(size: Any, depth: float) -> None:
+    path = write(Path("box.obj"), meshes.box(size))
+    at = shown(path, (48, 32))
+    some = rng().choice(len(at.texels), 150, replace=False)
+    found = sampled(path, at._replace(places=at.places[some], flat=at.flat[some]), 512, depth)
+
+    def light(length: Array) -> Array:
+        return np.exp(-length / depth) if depth else length
+
+    pairs = zip(at.places[some], at.flat[some], strict=True)
+    exact = np.array([by_quadrature(np.array(size), place, flat, light) for place, flat in pairs])
+    assert_sound(found.value, exact, found.error, 2e-4)
+
+
+def test_the_middle_of_a_wide_plate_is_twice_its_thickness() -> None:
+    """2 t for an infinite one; what is beyond the radius r is missing: t²/r at most, in the mean over its disk."""
+    path = write(Path("plate.obj"), meshes.box((10.0, 0.05, 10.0)))
+    at = shown(path, (96, 64))
+    middle = (np.abs(at.flat[:, 1]) == 1.0) & (np.hypot(*at.places[:, [0, 2]].T) < 3.0)
+    found = sampled(path, at._replace(places=at.places[middle], flat=at.flat[middle]), 1024)
+    assert middle.sum() > 200
+    assert found.value.mean() == pytest.approx(
+        0.1, abs=4.0 * found.error.mean() / np.sqrt(middle.sum()) + 0.05**2 / 2.0
+    )
+
+
+def test_straight_in_is_exact() -> None:
+    size = np.array([1.0, 2.0, 3.0])
+    path = write(Path("box.obj"), meshes.box(size))
+    made, at = baked(path, (60, 40), Request("chord")), shown(path, (60, 40))
+    assert lengths(made, at) == pytest.approx(np.abs(at.flat) @ size, abs=1e-6)
+    assert made.facts["error"]["largest_standard_error"] == 0.0 and made.facts["rays"] == 1
+
+
+@pytest.mark.parametrize(
+    "light", [BakeLight(unit([0.3, 0.9, -0.4]), True), BakeLight(np.array([2.0, 3.0, 4.0]), False)]
+)
+@pytest.mark.parametrize("depth", [0.0, 0.7])
+def test_towards_a_light_it_is_exact(light: BakeLight, depth: float) -> None:
+    size = np.array([1.0, 2.0, 3.0])
+    path = write(Path("box.obj"), meshes.box(size).moved((0.1, 0.2, 0.3)))
+    wanted = Request("transmittance" if depth else "mean", light, attenuation=depth)
+    made, at = baked(path, (60, 40), wanted), shown(path, (60, 40))
+    ways = np.tile(light.place, (len(at.places), 1)) if light.afar else unit(light.place - at.places)
+    lit = np.einsum("nc,nc->n", ways, at.flat) > 0.0
+    exact = np.where(lit, 0.0, to_exit(size, at.places - [0.1, 0.2, 0.3], ways))
+    assert lengths(made, at) == pytest.approx(np.exp(-exact / depth) if depth else exact, abs=1e-5)
+    assert 0.1 < lit.mean() < 0.9
+
+
+def test_a_hole_is_said_and_its_rays_do_not_count() -> None:
+    path = write(Path("box.obj"), meshes.box()._replace(faces=meshes.box().faces[:-2], uv=meshes.box().uv[:-2]))
+    made = baked(path, (24, 16), Request(rays=64))
+    assert 0.05 < made.facts["lost_rays"] < 0.5
+
+
+# A mesh of many triangles
+
+
+@needs_meshes
+def test_spot_has_the_integral_over_all_her_triangles() -> None:
+    """She is closed: a ray that starts inward is inside up to the first triangle, and again from the second on."""
+    at = shown(str(SPOT), (64, 64))
+    some = rng().choice(len(at.texels), 5, replace=False)
+    places, flat = at.places[some], at.flat[some]
+    found = sampled(str(SPOT), at._replace(places=places, flat=flat), 8192)
+    mesh = Mesh(path=str(SPOT)).triangles
+    for at_texel, (place, normal) in enumerate(zip(places, flat, strict=True)):
+        # uniform on the ball that touches the surface: weighted by the cosine about −normal
+        ways = unit(unit(rng(at_texel).normal(size=(400, 3))) - normal)
+        t, met = meshes.passed(mesh.places[mesh.corners], np.tile(place, (len(ways), 1)), ways)
+        met &= t > 1e-6
+        crossings = np.sort(np.where(met, t, np.inf), axis=1)[:, :12]
+        assert (np.isfinite(crossings).sum(axis=1) % 2 == 1).mean() > 0.99
+        ends = np.where(np.isfinite(crossings), crossings, 0.0)
+        length = (ends * np.where(np.arange(12) % 2 == 0, 1.0, -1.0)).sum(axis=1)
+        error = np.hypot(found.error[at_texel], length.std() / np.sqrt(len(length)))
+        assert abs(length.mean() - found.value[at_texel]) <= 4.0 * error + 1e-3 * length.mean()
+
+
+# Texture coordinates
+
+
+def on_edges(made: Made, count: int = 60) -> tuple[Array, Array]:
+    """uv on the edges of every face's triangle, (n, 2), and the faces they are of."""
+    assert made.uv is not None
+    along = np.linspace(0.0, 1.0, count)[:, None]
+    points = [(1.0 - along) * face[a] + along * face[b] for face in made.uv for a, b in ((0, 1), (1, 2), (2, 0))]
+    return np.concatenate(points), np.repeat(np.arange(len(made.uv)), 3 * count)
+
+
+def test_seams_mix_nothing_in() -> None:
+    """A box whose three pairs of faces have a length each: what is sampled on a chart's edge is its own."""
+    size = np.array([1.0, 2.0, 3.0])
+    made = meshes.box(size)
+    baked_map = baked(write(Path("box.obj"), made), (60, 40), Request("chord"))
+    assert baked_map.values.min() > 0.3  # no texel is left empty
+    uv, faces = on_edges(made)
+    texture = Texture(np.flipud(baked_map.values)[..., None], "linear", "repeat")
+    found = texture.sample(uv.T)[0] * baked_map.facts["range"][1]
+    normal = np.cross(*(made.triangles[:, 1:] - made.triangles[:, :1]).transpose(1, 0, 2))
+    assert found == pytest.approx(np.abs(unit(normal)[faces]) @ size, abs=1e-5)
+
+
+def test_a_ball_has_no_seam(globe: str) -> None:
+    made = baked(globe, (32, 16), Request(rays=256))
+    texture = Texture(np.flipud(made.values)[..., None], "linear", "clamp")
+    along = np.linspace(0.0, 1.0, 200)
+    for uv in (np.array([0.0 * along, along]), np.array([0.0 * along + 1.0, along]), np.array([along, 0.0 * along])):
+        assert texture.sample(uv)[0] * made.facts["range"][1] == pytest.approx(4.0 / 3.0 * 0.8, rel=0.03)
+
+
+def covered(uv: Array, size: int) -> Any:
+    """How many triangles hold each texel's centre, (size, size)."""
+    count = np.zeros((size, size), np.int64)
+    for corners in uv * size - 0.5:
+        low, high = np.ceil(corners.min(axis=0)).astype(int), np.floor(corners.max(axis=0)).astype(int)
+        x, y = np.meshgrid(np.arange(low[0], high[0] + 1), np.arange(low[1], high[1] + 1))
+        edges = np.roll(corners, -1, axis=0) - corners
+        sides = [
+            edge[0] * (y - start[1]) - edge[1] * (x - start[0]) for start, edge in zip(corners, edges, strict=True)
+        ]
+        within = np.all([side > 1e-6 for side in sides], axis=0) | np.all([side < -1e-6 for side in sides], axis=0)
+        count[low[1] : high[1] + 1, low[0] : high[0] + 1] += within
+    return count
+
+
+@needs_meshes
+def test_suzanne_gets_texture_coordinates() -> None:
+    made = baked(str(SUZANNE), (128, 128), Request(rays=16))
+    assert made.facts["mesh"]["new_uv"] and made.facts["mesh"]["shared_texels"] < 0.02
+    Path("new.obj").write_text(made.mesh, encoding="utf-8")
+    old, new = Mesh(path=str(SUZANNE)).triangles, Mesh(path="new.obj").triangles
+    assert new.places[new.corners] == pytest.approx(old.places[old.corners], abs=1e-6)
+    assert new.uv is not None and 0.0 <= new.uv.min() and new.uv.max() <= 1.0
+    count = covered(new.uv, 512)
+    assert count.max() == 1 and (count == 1).mean() > 0.4
+    assert made.values.min() > 0.0  # no texel is left empty
+    # the map fits the mesh that was written: baked on that, it is the same
+    again = baked("new.obj", (128, 128), Request(rays=16))
+    assert not again.facts["mesh"]["new_uv"]
+    assert np.median(np.abs(again.values - made.values)) < 0.02
+
+
+def test_texture_coordinates_on_the_next_tile_are_taken(globe: str) -> None:
+    made = meshes.box((1.0, 2.0, 3.0))
+    here = baked(write(Path("here.obj"), made), (30, 20), Request("chord"))
+    assert made.uv is not None
+    there = baked(write(Path("there.obj"), made._replace(uv=made.uv + [0.5, -0.25])), (30, 20), Request("chord"))
+    assert there.values == pytest.approx(np.roll(here.values, (5, 15), axis=(0, 1)), abs=1e-6)
+
+
+@pytest.mark.parametrize(("scale", "message"), [(10.0, "repeat the map"), (0.0, "no area")])
+def test_texture_coordinates_that_do_not_fit(scale: float, message: str) -> None:
+    made = meshes.box()
+    assert made.uv is not None
+    path = write(Path("box.obj"), made._replace(uv=scale * made.uv))
+    with pytest.raises(SssgenError, match=message):
+        baked(path, (16, 16), Request("chord"))
+    assert baked(path, (64, 64), Request("chord"), unwrap=True).facts["mean"] == pytest.approx(1.0, abs=1e-5)
+
+
+def test_charts_that_lie_on_one_another_are_told() -> None:
+    made = meshes.box()
+    assert made.uv is not None
+    once = np.concatenate([made.uv[:2]] * 6)
+    facts = baked(write(Path("box.obj"), made._replace(uv=once)), (60, 40), Request("chord")).facts
+    assert facts["mesh"]["shared_texels"] == pytest.approx(5.0 / 6.0, abs=0.02)
+
+
+# Depth
+
+
+@pytest.mark.parametrize(
+    "light",
+    [BakeLight(unit([0.3, 0.9, -0.4]), True), BakeLight(np.array([2.0, 1.0, 1.5]), False)],
+    ids=["afar", "near"],
+)
+def test_the_depth_map_of_a_ball_is_its_chord(globe: str, light: BakeLight) -> None:
+    """By the library's technique: how far behind the first surface a place lies, along the light's axis."""
+    count = 256
+    depth, facts = depth_map(globe, light, (count, count))
+    places = 0.8 * unit(rng().normal(size=(4000, 3)))
+    ways = np.tile(light.place, (len(places), 1)) if light.afar else unit(light.place - places)
+    slope = np.einsum("nc,nc->n", ways, unit(places))
+    found = technique("depth_map_thickness")(
+        P=places,
+        light_depth_map=Texture(np.flipud(depth)[..., None], "linear", "clamp"),
+        light_matrix=np.reshape(facts["parameters"]["light_matrix"], (4, 4)).T,
+        bias=0.0,
+    )
+    axis = light.place if light.afar else unit(light.place)
+    exact = np.where(slope < 0.0, -2.0 * 0.8 * slope, 0.0) * (ways @ axis)
+    # a texel of the map, on the side that the light meets: how much deeper is the next one
+    texel = 1.1 * 1.6 * (1.0 if light.afar else 1.5) / count
+    clear = np.abs(slope) > 0.3
+    assert np.abs(found - exact)[clear].max() <= texel / 0.3
+    assert np.median(np.abs(found - exact)[clear]) <= 0.3 * texel
+    assert clear.sum() > 2000
+    assert facts["nothing"] == depth.max() and 0.3 < facts["covered"] < 0.9
+
+
+def test_a_light_in_the_body_is_refused(globe: str) -> None:
+    for place in ((0.0, 0.0, 0.0), (0.0, 0.1, 0.2), (0.5, 0.5, 0.2)):
+        with pytest.raises(SssgenError, match="stands in the body"):
+            depth_map(globe, BakeLight(np.array(place), False), (8, 8))
