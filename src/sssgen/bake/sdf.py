@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from .. import baked
 from ..data import posix
-from ..diagnostics import failure
+from ..diagnostics import did_you_mean, failure
 from ..harness.scenes.mesh import Mesh
 from . import memory
 from .distance import BLOCK, Progress, distances, inside
@@ -52,6 +52,9 @@ def sdf(
     there is. `thin`: take the mesh as a sheet so thick, without an inside of its own. Raises SssgenError for a mesh
     that has no inside, and for a grid that there is no memory for.
     """
+    if encoding not in ENCODINGS:
+        hint = did_you_mean(encoding, ENCODINGS) or f"one of: {', '.join(ENCODINGS)}"
+        raise failure(f"unknown encoding '{encoding}'", hint)
     mesh, form = Mesh(path=path), ENCODINGS[encoding]
     low, high = mesh.bounds()
     for name, value in (("range", reach), ("thin", thin)):
