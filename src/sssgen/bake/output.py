@@ -15,7 +15,7 @@ from .. import baked
 from ..data import posix
 from ..diagnostics import did_you_mean, failure
 from ..harness import images
-from ..output import write_files
+from ..output import check_names, write_files
 from ..version import VERSION
 from .volume_files import FORMATS, encoded_files, layout
 
@@ -23,7 +23,11 @@ PICTURES = images.SUFFIXES
 
 
 def volume_format(path: str, named: str | None) -> str:
-    """The format of a volume's file: the one named, or that of its ending. Raises SssgenError."""
+    """The format of a volume's file: the one named, or that of its ending. Told before the work starts.
+
+    Raises SssgenError for an unknown one, and where no such file can be written.
+    """
+    _check_place(path)
     suffix = os.path.splitext(path)[1].lower()
     if named is None:
         found = [name for name, ending in FORMATS.items() if ending == suffix]
@@ -46,7 +50,11 @@ def write_volume(path: str, texels: npt.NDArray[Any], format: str, facts: Mappin
 
 
 def picture_suffix(path: str, known: tuple[str, ...] = PICTURES) -> str:
-    """A picture file's ending, told before the work starts. Raises SssgenError where it is none of those known."""
+    """A picture file's ending, told before the work starts.
+
+    Raises SssgenError where it is none of those known, and where no such file can be written.
+    """
+    _check_place(path)
     suffix = images.check_suffix(path)
     if suffix not in known:
         raise failure(f"this is not written as '{suffix}'", f"end it in {' or '.join(known)}", posix(path))
@@ -81,6 +89,18 @@ def write_picture(
         "encoding": encoding,
     }  # fmt: skip
     return _write(path, data, {**facts, "file": about}, beside)
+
+
+def _check_place(path: str) -> None:
+    """Raises SssgenError where a folder has the file's name, or a file that of its folder."""
+    folder, name = os.path.split(path)
+    check_names([name])
+    if os.path.isdir(path):
+        raise failure("cannot write the file: a folder has its name", file=posix(path))
+    while folder and not os.path.exists(folder):
+        folder = os.path.dirname(folder)
+    if folder and not os.path.isdir(folder):
+        raise failure("cannot write the file: this is no folder", "choose another one, with -o", posix(folder))
 
 
 def _write(path: str, data: bytes, facts: Mapping[str, Any], beside: Mapping[str, str] | None = None) -> list[str]:
