@@ -130,7 +130,8 @@ def _load(path: str) -> Any:
         return trimesh.load_mesh(path, process=False, skip_materials=True)
     except Exception as error:  # its readers raise whatever a faulty file leads them to
         kind = os.path.splitext(path)[1].lower()
-        hint = f"the reader says: {type(error).__name__}: {error}"
+        # bytes that are no text make it look for a package that guesses encodings
+        hint = "" if isinstance(error, ImportError) else f"the reader says: {type(error).__name__}: {error}"
         raise failure(f"the mesh cannot be read: it is no faultless {kind} file", hint, posix(path)) from None
 
 
