@@ -143,7 +143,7 @@ def write(path: Path, made: Made) -> str:
 
 
 def passed(triangles: Array, origins: Array, ways: Array, at_once: int = 2**22) -> tuple[Array, npt.NDArray[np.bool_]]:
-    """How far along rays (n, 3) each triangle (f, 3, 3) is met, (n, f), and whether it is (Möller and Trumbore 1997)."""
+    """How far along rays (n, 3) triangles (f, 3, 3) are met, (n, f), and whether they are (Möller, Trumbore 1997)."""
     edge, other = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
     lengths, met = [], []
     for some in np.array_split(np.arange(len(origins)), max(1, len(origins) * len(triangles) // at_once)):

@@ -1,4 +1,4 @@
-"""`sssgen bake sdf`: distances and signs against closed forms, all triangles and rays' votes; what is stored and told."""
+"""`sssgen bake sdf`: distances and signs against closed forms, all triangles and rays' votes; what is stored."""
 
 from __future__ import annotations
 
@@ -14,8 +14,9 @@ from bake_meshes import SPOT, SUZANNE, Array, Made, joined, needs_meshes, write
 from oracle import technique
 from sssgen.diagnostics import SssgenError
 
-for package in ("trimesh", "igl", "embreex"):
-    pytest.importorskip(package, reason=f"{package} is missing: pip install 'sssgen[bake]'")
+pytest.importorskip("trimesh", reason="trimesh is missing: pip install 'sssgen[bake]'")
+pytest.importorskip("igl", reason="libigl is missing: pip install 'sssgen[bake]'")
+pytest.importorskip("embreex", reason="embreex is missing: pip install 'sssgen[bake]'")
 
 from sssgen.bake.distance import distances, inside
 from sssgen.bake.encoding import ENCODINGS, decode
@@ -104,7 +105,7 @@ def test_a_coarse_ball_is_as_far_off_as_its_triangles(level: int) -> None:
     grid = grid_about(body)
     depth = 0.9 - float(np.abs(np.einsum("fc,fc->f", made.triangles[:, 0], normals(made))).min())
     error = signed(body, grid) - to_ball(centers(grid), 0.9)
-    assert -1e-7 <= error.min() and error.max() <= depth + 1e-7  # the mesh lies within the ball
+    assert error.min() >= -1e-7 and error.max() <= depth + 1e-7  # the mesh lies within the ball
     assert error.max() > 0.3 * depth
 
 
