@@ -1,0 +1,226 @@
+"""Bakes both meshes, draws docs/bake/ and writes docs/bake.md: python docs/bake.py [FOLDER OF THE MESHES]
+
+What it runs are the commands of examples/bake, in a copy of that folder. The meshes do not come with the project: Spot
+(Keenan Crane, CC0) and Suzanne (Blender), as spot.obj and suzanne.obj.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import re
+import shlex
+import shutil
+import sys
+from pathlib import Path
+from typing import Any
+
+import bake_reference
+import numpy as np
+
+from sssgen.cli import main as sssgen
+from sssgen.harness import images
+from sssgen.harness.compare import compare
+from sssgen.harness.extras import need
+from sssgen.harness.scenes.mesh import Mesh
+from sssgen.output import write_files
+from sssgen.targets.numpy_textures import Texture
+
+HERE = Path(__file__).parent
+PAGE, FOLDER = HERE / "bake.md", HERE / "bake"
+WORK = HERE.parent / "build" / "bake" / "page"
+MESHES = HERE.parent.parent / "shared" / "data" / "meshes"
+NAMES = {"spot": "Spot", "suzanne": "Suzanne"}
+WAYS = {
+    "distance": ("the distance texture, marched", "deep"),
+    "map": ("the thickness map", "light"),
+    "depth": ("the depth map", "light"),
+}
+"""The techniques' scenes, and the exact reference of each."""
+FINE = 360
+"""Points along a slice's height."""
+
+
+def main() -> int:
+    """Bakes, draws and writes."""
+    meshes = Path(sys.argv[1]) if len(sys.argv) > 1 else MESHES
+    missing = [name for name in NAMES if not (meshes / f"{name}.obj").is_file()]
+    if missing:
+        print(f"{', '.join(f'{name}.obj' for name in missing)} are not in {meshes}: name their folder")
+        return 2
+    copy(meshes)
+    commands = [command for scene in sorted(WORK.glob("*.toml")) for command in commands_of(scene)]
+    for command in commands:
+        print(f"$ {command}", flush=True)
+        if sssgen(in_folder(shlex.split(command)[1:])):
+            return 1
+    drawn = {"slices.png": slices(), "maps.png": maps(), "cells.png": cells()}
+    rows, drawn["renders.png"] = renders()
+    ice, drawn["ice.png"] = ice_row()
+    write_files(FOLDER, drawn)
+    text = (FOLDER / "page.md.in").read_text(encoding="utf-8")
+    parts = {"facts": facts(), "renders": rows, "ice": ice, "json": sidecar()}
+    for name, part in parts.items():
+        assert text.count(f"<!-- {name} -->") == 1, name
+        text = text.replace(f"<!-- {name} -->", part)
+    PAGE.write_text(text, encoding="utf-8")
+    print(f"wrote {PAGE}")
+    return 0
+
+
+def copy(meshes: Path) -> None:
+    """The examples and the meshes, where they may be baked."""
+    shutil.rmtree(WORK.parent, ignore_errors=True)
+    shutil.copytree(HERE.parent / "examples" / "bake", WORK)
+    shutil.copytree(HERE.parent / "examples" / "ice", WORK.parent / "ice")
+    for name in NAMES:
+        shutil.copy(meshes / f"{name}.obj", WORK)
+    shutil.copy(FOLDER / "exact_thickness.sss", WORK)
+
+
+def commands_of(scene: Path) -> list[str]:
+    """The commands that a scene's first lines give for what it needs."""
+    return re.findall(r"^# (sssgen bake [^;\n]*)", scene.read_text(encoding="utf-8"), re.MULTILINE)
+
+
+def in_folder(words: list[str]) -> list[str]:
+    """A command's words with its files in the folder of the copy."""
+    return [str(WORK / word) if re.search(r"\.(obj|npy|png|exr|json)$", word) else word for word in words]
+
+
+def told(name: str) -> dict[str, Any]:
+    """What the JSON beside a baked file says."""
+    found: dict[str, Any] = json.loads((WORK / f"{name}.json").read_text(encoding="utf-8"))
+    return found
+
+
+def facts() -> str:
+    """What was baked, and its errors."""
+    rows = ["| | texels | range | error as told in the JSON |", "|---|---|---|---|"]
+    for name, shown in NAMES.items():
+        volume, chord, depth = told(f"{name}.npy"), told(f"{name}_thickness.png"), told(f"{name}_depth.exr")
+        x, y, z = volume["texels"]
+        rows += [
+            f"| {shown}, distance texture | {x} × {y} × {z} | ±{volume['range']:.3g} | {volume['error']['at_texels']:.1e} "
+            f"at texels, ≤ {volume['error']['between_texels']:.2g} between (a texel is {volume['voxel'][0]:.2g}) |",
+            f"| {shown}, thickness map | {chord['texels']} | 0 to {chord['range'][1]:.3g} | standard error "
+            f"{chord['error']['mean_standard_error']:.1e} in the mean, ≤ {chord['error']['largest_standard_error']:.1e}; "
+            f"{chord['rays']} rays a texel; {chord['lost_rays']:.2%} of them lost in holes |",
+            f"| {shown}, depth map | {depth['file']['size']['x']} × {depth['file']['size']['y']} | "
+            f"{depth['range'][0]:.3g} to {depth['range'][1]:.3g} | none but float32's |",
+        ]  # fmt: skip
+    return "\n".join(rows)
+
+
+def sidecar() -> str:
+    """The JSON beside Spot's distance texture."""
+    return f"```json\n{(WORK / 'spot.npy.json').read_text(encoding='utf-8')}```"
+
+
+def slices() -> bytes:
+    """Each volume, interpolated as a shader reads it, beside the exact distance and their difference."""
+    plots = need("matplotlib.pyplot", "matplotlib", "chart")
+    plots.switch_backend("agg")
+    figure, axes = plots.subplots(len(NAMES), 3, figsize=(11, 7.4), layout="constrained")
+    for row, (name, shown) in zip(axes, NAMES.items(), strict=True):
+        said = told(f"{name}.npy")
+        low, high, voxel = np.array(said["box_min"]), np.array(said["box_max"]), said["voxel"][0]
+        texture = Texture(images.read(WORK / f"{name}.npy"), wrap="clamp")
+        y, z = np.meshgrid(*(np.linspace(low[at], high[at], FINE) for at in (1, 2)), indexing="ij")
+        places = np.stack([np.full(y.size, 0.5 * (low[0] + high[0]) + 0.07), y.ravel(), z.ravel()], axis=1)
+        uvw = ((places - low) / (high - low)).T
+        baked = ((2.0 * texture.sample(uvw)[0] - 1.0) * said["range"]).reshape(y.shape)
+        exact = Mesh(path=str(WORK / f"{name}.obj")).distance(places).reshape(y.shape)
+        window = {"origin": "lower", "extent": (low[2], high[2], low[1], high[1])}
+        limit = float(np.abs(exact).max())
+        for axis, values, title in ((row[0], baked, "baked"), (row[1], exact, "exact")):
+            picture = axis.imshow(values, cmap="RdBu", vmin=-limit, vmax=limit, **window)
+            axis.contour(z, y, values, np.arange(-1.0, 2.0, 0.1), colors="black", linewidths=0.35)
+            axis.contour(z, y, values, [0.0], colors="black", linewidths=1.6)
+            axis.set_title(f"{shown}: {title} distance")
+            figure.colorbar(picture, ax=axis, shrink=0.8)
+        apart = np.abs(baked - exact) / voxel
+        picture = row[2].imshow(apart, cmap="magma", vmin=0.0, vmax=0.5, **window)
+        row[2].contour(z, y, exact, [0.0], colors="white", linewidths=0.8)
+        row[2].set_title(f"difference in texels; median {np.median(apart):.3f}")
+        figure.colorbar(picture, ax=row[2], shrink=0.8)
+    data = io.BytesIO()
+    figure.savefig(data, format="png", dpi=80, metadata={"Software": None})
+    plots.close(figure)
+    return data.getvalue()
+
+
+def maps() -> bytes:
+    """The thickness and depth maps, in false colours."""
+    shown = []
+    for name in NAMES:
+        chord = images.upright(WORK / f"{name}_thickness.png")[..., 0]
+        depth = images.upright(WORK / f"{name}_depth.exr")[..., 0]
+        low, nothing = depth.min(), told(f"{name}_depth.exr")["nothing"]
+        high = depth[depth < nothing].max()
+        shown += [colored(chord), colored(np.where(depth < nothing, 1.0 - (depth - low) / (high - low), 0.0))]
+    return joined([shown])
+
+
+def colored(values: Any) -> Any:
+    """Values 0..1 in the colours of viridis."""
+    colors = need("matplotlib", extra="chart").colormaps["viridis"]
+    return colors(np.clip(values, 0.0, 1.0))[..., :3]
+
+
+def cells() -> bytes:
+    """Tileable cells with their normals, repeated twice each way, and the other features."""
+    shown = []
+    for feature in ("faceted", "f1", "f2-f1"):
+        file = str(WORK / f"tile_{feature}.png")
+        options = ["--size", "192", "--cells", "6", "--jitter", "0.8", "--feature", feature]
+        sssgen(["bake", "voronoi", "-o", file, *options])
+        shown.append(np.tile(images.upright(file), (2, 2, 3)))
+    file = str(WORK / "tile_normal.png")
+    sssgen(["bake", "normal", str(WORK / "tile_faceted.png"), "-o", file, "--strength", "0.03"])
+    shown.insert(1, np.tile(images.upright(file), (2, 2, 1)))
+    return joined([shown])
+
+
+def renders() -> tuple[str, bytes]:
+    """Each mesh by each technique, above it the exact reference; how far they are apart."""
+    rows, pictures = ["| | against exact thickness, FLIP (mean) |", "|---|---:|"], []
+    for name, shown in NAMES.items():
+        exact = {}
+        for way in dict.fromkeys(reference for _, reference in WAYS.values()):
+            base = WORK / f"{name}_{'distance' if way == 'deep' else 'depth'}.toml"
+            exact[way] = rendered(bake_reference.write(base, f"{name}_exact_{way}", way == "deep"))
+        made = {way: rendered(WORK / f"{name}_{way}.toml") for way in WAYS}
+        pictures.append([exact["deep"], made["distance"], made["depth"], exact["light"], made["map"]])
+        for way, (title, reference) in WAYS.items():
+            rows.append(f"| {shown}, {title} | {compare(made[way], exact[reference]).flip:.3f} |")
+    return "\n".join(rows), joined([[picture[::1, 70:410] for picture in row] for row in pictures], 0.75)
+
+
+def ice_row() -> tuple[str, bytes]:
+    """Ice with baked cells, beside the same with cells computed in the shader."""
+    made, exact = rendered(WORK / "ice_baked_scene.toml"), rendered(WORK.parent / "ice" / "scene.toml")
+    return f"FLIP {compare(made, exact).flip:.3f}", joined([[made, exact]], 0.75)
+
+
+def rendered(scene: Path) -> Any:
+    """A scene's picture."""
+    file = scene.with_suffix(".rendered.png")
+    assert sssgen(["render", str(scene), "-o", str(file)]) == 0
+    return images.encoded(file)
+
+
+def joined(rows: list[list[Any]], scale: float = 1.0) -> bytes:
+    """Pictures side by side, in rows; all of a size."""
+    picture = np.concatenate([np.concatenate(row, axis=1) for row in rows], axis=0)
+    pillow = need("PIL.Image", "pillow")
+    image = pillow.fromarray(np.rint(255.0 * picture).astype(np.uint8))
+    if scale != 1.0:
+        image = image.resize((round(image.width * scale), round(image.height * scale)), pillow.Resampling.LANCZOS)
+    data = io.BytesIO()
+    image.save(data, "PNG", optimize=True)
+    return data.getvalue()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,93 @@
+"""Exact thickness as a scene's camera sees it, for the pictures that docs/bake.py compares with."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sssgen import baked
+from sssgen.bake.output import write_picture
+from sssgen.harness.scenes.geometry import Mesh
+from sssgen.harness.scenes.light_view import from_place
+from sssgen.harness.scenes.scene import Scene, load
+from sssgen.lab.intervals import intervals, thickness
+
+SIZE = 1024
+"""Texels along a side of the map."""
+STEPS = 24
+"""Points along the inside of a view, from which the light's way is measured."""
+
+
+def write(scene_file: Path, name: str, deep: bool) -> Path:
+    """A scene like this one with the exact thickness in place of the technique's: the file's path.
+
+    Of the first light: the length inside the body from what is seen; or, where `deep`, the mean over the inside of the
+    view of the ways in from the light and out to the eye, which is what march_distance_texture marches.
+    """
+    scene, folder = load(scene_file), scene_file.parent
+    mesh, towards = scene.geometry, scene.lights[0].direction
+    assert isinstance(mesh, Mesh) and towards is not None
+    outwards = mesh.to_world()
+    corners = mesh.triangles.places @ outwards[:3, :3].T + outwards[:3, 3]
+    view = from_place(corners, np.array(scene.camera.position), (SIZE, SIZE))
+    inwards = mesh.to_object()
+    met, t = mesh.rays.nearest(view.origins @ inwards[:3, :3].T + inwards[:3, 3], view.directions @ inwards[:3, :3].T)
+    hit = met >= 0
+    places = view.origins[hit] + t[hit, None] * view.directions[hit]
+    light = np.broadcast_to(np.array(towards), places.shape).copy()
+    found = _deep(mesh, places, view.directions[hit], light) if deep else thickness(mesh, places, light)
+    values = np.zeros(len(met))
+    values[hit] = found / found.max()
+    facts: dict[str, Any] = {
+        "format": baked.FORMAT, "kind": "exact", "holds": "thickness",
+        "parameters": {
+            "exact_factor": float(found.max()), "camera_matrix": [float(one) for one in view.matrix.T.ravel()]
+        },
+        "import": baked.settings(wrap="clamp", mipmaps=False),
+    }  # fmt: skip
+    # what lies beside the body is filled from it, so that its edge is not darkened
+    from sssgen.bake.atlas import filled
+
+    rows = np.arange(SIZE * SIZE).reshape(SIZE, SIZE)[::-1].ravel()  # the view's rows go up, a picture's down
+    texels = np.flatnonzero(hit[rows])
+    picture = filled(values[rows][texels], texels, (SIZE, SIZE))
+    write_picture(str(folder / f"{name}.exr"), picture, facts)
+    return _scene_file(scene, scene_file, name)
+
+
+def _deep(mesh: Mesh, places: Any, ways: Any, light: Any) -> Any:
+    """The mean way through the body, in along the light and out along the view."""
+    inwards = mesh.to_object()
+    local, along = places @ inwards[:3, :3].T + inwards[:3, 3], ways @ inwards[:3, :3].T * mesh.scale
+    parts = intervals(mesh, local, along) * mesh.scale
+    lengths = parts[..., 1] - parts[..., 0]
+    seen = lengths.sum(axis=1)
+    before = np.cumsum(lengths, axis=1) - lengths
+    total = np.zeros(len(places))
+    for step in range(STEPS):
+        inside = (step + 0.5) / STEPS * seen
+        last = np.maximum((before <= inside[:, None]).sum(axis=1) - 1, 0)
+        rows = np.arange(len(places))
+        way = parts[rows, last, 0] + inside - before[rows, last]
+        total += inside + thickness(mesh, places + way[:, None] * ways, light)
+    mean = total / STEPS
+    return np.where(seen > 1e-6, mean, thickness(mesh, places, light))
+
+
+def _scene_file(scene: Scene, scene_file: Path, name: str) -> Path:
+    """The scene and its material as files, with the exact technique."""
+    folder = scene_file.parent
+    material = (folder / os.path.basename(scene.material)).read_text(encoding="utf-8")
+    head, _, rest = material.partition("[thickness]")
+    after = rest[rest.index("[translucency]") :]
+    own = f'{head}[thickness]\ntechnique = "exact_thickness.sss"\n\n{after}'
+    (folder / "wax_exact.toml").write_text(own, encoding="utf-8")
+    text = scene_file.read_text(encoding="utf-8")
+    text = text[: text.index("[textures]")] + f'[textures]\nexact_map = "{name}.exr"\n'
+    text = text.replace(f'"{os.path.basename(scene.material)}"', '"wax_exact.toml"')
+    path = folder / f"{name}.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
