@@ -54,11 +54,11 @@ def from_place(corners: Array, position: Array, size: tuple[int, int]) -> LightV
     ahead = corners.mean(axis=0) - position
     distance = float(np.linalg.norm(ahead))
     ahead = ahead / max(distance, 1e-300)
-    side, up = _frame(ahead)
     local = corners - position
     depth = local @ ahead
     if distance == 0.0 or depth.min() <= 0.01 * distance:
         raise failure("the light stands in the body, or beside it", "take its direction instead: light from afar")
+    side, up = _frame(ahead)
     wide = MARGIN * 2.0 * max(float(np.abs(local @ axis / depth).max()) for axis in (side, up))  # at one unit ahead
     across, along = (((np.arange(count) + 0.5) / count - 0.5) * wide for count in size)
     x, y = np.meshgrid(across, along)
