@@ -100,15 +100,16 @@ def facts() -> str:
     for name, shown in NAMES.items():
         volume, chord, depth = told(f"{name}.npy"), told(f"{name}_thickness.png"), told(f"{name}_depth.exr")
         x, y, z = volume["texels"]
+        fine, spread, size = volume["error"], chord["error"], depth["file"]["size"]
         rows += [
-            f"| {shown}, distance texture | {x} × {y} × {z} | ±{volume['range']:.3g} | {volume['error']['at_texels']:.1e} "
-            f"at texels, ≤ {volume['error']['between_texels']:.2g} between (a texel is {volume['voxel'][0]:.2g}) |",
+            f"| {shown}, distance texture | {x} × {y} × {z} | ±{volume['range']:.3g} | {fine['at_texels']:.1e} at "
+            f"texels, ≤ {fine['between_texels']:.2g} between (a texel is {volume['voxel'][0]:.2g}) |",
             f"| {shown}, thickness map | {chord['texels']} | 0 to {chord['range'][1]:.3g} | standard error "
-            f"{chord['error']['mean_standard_error']:.1e} in the mean, ≤ {chord['error']['largest_standard_error']:.1e}; "
-            f"{chord['rays']} rays a texel; {chord['lost_rays']:.2%} of them lost in holes |",
-            f"| {shown}, depth map | {depth['file']['size']['x']} × {depth['file']['size']['y']} | "
-            f"{depth['range'][0]:.3g} to {depth['range'][1]:.3g} | none but float32's |",
-        ]  # fmt: skip
+            f"{spread['mean_standard_error']:.1e} in the mean, ≤ {spread['largest_standard_error']:.1e}; "
+            f"{chord['rays']} rays a texel, {chord['lost_rays']:.2%} of them lost in holes |",
+            f"| {shown}, depth map | {size['x']} × {size['y']} | {depth['range'][0]:.3g} to {depth['range'][1]:.3g} | "
+            "none but float32's |",
+        ]
     return "\n".join(rows)
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from sssgen import baked
+from sssgen.bake.atlas import filled
 from sssgen.bake.output import write_picture
 from sssgen.harness.scenes.geometry import Mesh
 from sssgen.harness.scenes.light_view import from_place
@@ -49,8 +49,6 @@ def write(scene_file: Path, name: str, deep: bool) -> Path:
         "import": baked.settings(wrap="clamp", mipmaps=False),
     }  # fmt: skip
     # what lies beside the body is filled from it, so that its edge is not darkened
-    from sssgen.bake.atlas import filled
-
     rows = np.arange(SIZE * SIZE).reshape(SIZE, SIZE)[::-1].ravel()  # the view's rows go up, a picture's down
     texels = np.flatnonzero(hit[rows])
     picture = filled(values[rows][texels], texels, (SIZE, SIZE))
@@ -80,14 +78,14 @@ def _deep(mesh: Mesh, places: Any, ways: Any, light: Any) -> Any:
 def _scene_file(scene: Scene, scene_file: Path, name: str) -> Path:
     """The scene and its material as files, with the exact technique."""
     folder = scene_file.parent
-    material = (folder / os.path.basename(scene.material)).read_text(encoding="utf-8")
+    material = (folder / Path(scene.material).name).read_text(encoding="utf-8")
     head, _, rest = material.partition("[thickness]")
     after = rest[rest.index("[translucency]") :]
     own = f'{head}[thickness]\ntechnique = "exact_thickness.sss"\n\n{after}'
     (folder / "wax_exact.toml").write_text(own, encoding="utf-8")
     text = scene_file.read_text(encoding="utf-8")
     text = text[: text.index("[textures]")] + f'[textures]\nexact_map = "{name}.exr"\n'
-    text = text.replace(f'"{os.path.basename(scene.material)}"', '"wax_exact.toml"')
+    text = text.replace(f'"{Path(scene.material).name}"', '"wax_exact.toml"')
     path = folder / f"{name}.toml"
     path.write_text(text, encoding="utf-8")
     return path

@@ -390,7 +390,7 @@ def sampled(made: Volume, points: Array) -> Array:
 
 
 def texture(made: Volume) -> Texture:
-    texels = made.texels.astype(np.float64) / (ENCODINGS[made.facts["encoding"]].most or 1)
+    texels = made.texels.astype(np.float64) / ENCODINGS[made.facts["encoding"]].one
     return Texture(texels[..., None], "linear", "clamp")
 
 

@@ -50,6 +50,12 @@ class Picture:
         return read(self.file)
 
 
+def stored(distance: npt.NDArray[np.float64], reach: float) -> npt.NDArray[np.float64]:
+    """Signed distances as the technique distance_texture reads them: 0.5 + distance / (2 reach), cut to 0..1."""
+    value: npt.NDArray[np.float64] = np.clip(0.5 + distance / (2.0 * reach), 0.0, 1.0)
+    return value
+
+
 @dataclass(frozen=True)
 class DistanceTexture:
     """A 3-D texture of the signed distance to the scene's geometry, in the geometry's object space.
@@ -72,8 +78,7 @@ class DistanceTexture:
         x, y, z = (start[at] + size[at] * (np.arange(n) + 0.5) / n for at, n in enumerate(self.texels))
         places = np.stack(np.meshgrid(z, y, x, indexing="ij")[::-1], axis=-1)
         distance = geometry.distance(places.reshape(-1, 3)).reshape(*places.shape[:3], 1)
-        stored: npt.NDArray[np.float64] = np.clip(0.5 + distance / (2.0 * self.range), 0.0, 1.0)
-        return stored
+        return stored(distance, self.range)
 
 
 @dataclass(frozen=True)
