@@ -1,0 +1,576 @@
+"""`sssgen bake` as a command: faulty input, interrupts, formats, what materials and scenes take from it, and GPUs."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import bake_meshes as meshes
+from bake_meshes import Made, write
+from sssgen.cli import main
+
+pytest.importorskip("trimesh", reason="trimesh is missing: pip install 'sssgen[bake]'")
+pytest.importorskip("igl", reason="libigl is missing: pip install 'sssgen[bake]'")
+pytest.importorskip("embreex", reason="embreex is missing: pip install 'sssgen[bake]'")
+pytest.importorskip("scipy", reason="SciPy is missing: pip install 'sssgen[bake]'")
+pytest.importorskip("xatlas", reason="xatlas is missing: pip install 'sssgen[bake]'")
+pytest.importorskip("psutil", reason="psutil is missing: pip install 'sssgen[bake]'")
+pytest.importorskip("OpenEXR", reason="OpenEXR is missing: pip install 'sssgen[bake]'")
+
+from sssgen.bake.encoding import ENCODINGS
+from sssgen.compiler import compile
+from sssgen.diagnostics import SssgenError
+from sssgen.harness import images
+from sssgen.harness.backends import Backend
+from sssgen.harness.scene_values import shell_of
+from sssgen.harness.scenes.scene import load
+from sssgen.harness.shell import Shell
+from sssgen.lab import progress
+from sssgen.material import load_material
+
+SHEET = Made(np.array([[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1]], float), np.array([[0, 2, 1], [0, 3, 2]]))
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty folder, but for a box."""
+    monkeypatch.chdir(tmp_path)
+    write(Path("box.obj"), meshes.box((1.0, 0.6, 0.4)))
+    return tmp_path
+
+
+def bake(*arguments: str) -> None:
+    assert main(["bake", *arguments]) == 0
+
+
+def facts(path: str) -> Any:
+    return json.loads(Path(path + ".json").read_text(encoding="utf-8"))
+
+
+def there() -> set[str]:
+    return {str(path) for path in Path().rglob("*")}
+
+
+# Faulty input
+
+
+@pytest.fixture
+def idle(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What takes long must not begin."""
+
+    def working(*_: Any, **__: Any) -> None:
+        raise AssertionError("the work began")
+
+    monkeypatch.setattr("sssgen.bake.sdf.distances", working)
+    monkeypatch.setattr("sssgen.bake.thickness._measured", working)
+    monkeypatch.setattr("sssgen.harness.scenes.mesh_rays.MeshRays.nearest", working)
+
+
+def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
+    """What is said of a bake that must not be; nothing is written."""
+    before = there()
+    capsys.readouterr()
+    status = main(["bake", *arguments])
+    told = capsys.readouterr()
+    assert status == 2 and "Traceback" not in told.err and told.out == "", told
+    assert there() == before
+    status = main(["bake", *arguments, "--json"])
+    as_json = json.loads(capsys.readouterr().out)
+    assert status == 2 and not as_json["ok"] and as_json["diagnostics"][0]["message"] in told.err
+    assert there() == before
+    return told.err
+
+
+def with_vertex(text: str) -> str:
+    return Path("box.obj").read_text(encoding="utf-8").replace("v ", f"v {text} 0 0\nv ", 1).replace("f 1/", "f 2/", 1)
+
+
+NOISE = np.random.default_rng(1).integers(0, 256, 4000).astype(np.uint8).tobytes()
+FILES: dict[str, tuple[str, Callable[[], str | bytes], str]] = {
+    "a text": ("a.obj", lambda: "a letter\nto nobody\n", "no triangles"),
+    "noise.obj": ("a.obj", lambda: NOISE, "mesh"),
+    "noise.ply": ("a.ply", lambda: NOISE, "cannot be read"),
+    "noise.stl": ("a.stl", lambda: NOISE, "cannot be read"),
+    "noise.glb": ("a.glb", lambda: NOISE, "cannot be read"),
+    "noise.gltf": ("a.gltf", lambda: NOISE, "cannot be read"),
+    "empty.obj": ("a.obj", lambda: b"", "a.obj"),
+    "empty.ply": ("a.ply", lambda: b"", "a.ply"),
+    "empty.glb": ("a.glb", lambda: b"", "a.glb"),
+    "points": ("a.obj", lambda: "v 0 0 0\nv 1 0 0\nv 0 1 0\n", "no triangles"),
+    "no area": ("a.obj", lambda: "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "without area"),
+    "a vertex that is not": ("a.obj", lambda: "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "a.obj"),
+    "nan": ("a.obj", lambda: with_vertex("nan"), "no number"),
+    "inf": ("a.obj", lambda: with_vertex("inf"), "no number"),
+    "other": ("a.fbx", lambda: NOISE, "no mesh file's ending"),
+}
+
+
+@pytest.mark.parametrize("what", ["sdf", "thickness", "depth"])
+@pytest.mark.parametrize("name", FILES)
+def test_files_that_are_no_mesh(capsys: pytest.CaptureFixture[str], idle: None, what: str, name: str) -> None:
+    file, content, said = FILES[name]
+    data = content()
+    Path(file).write_bytes(data if isinstance(data, bytes) else data.encode())
+    more = ["--direction", "0,1,0"] if what == "depth" else []
+    assert said in refused(capsys, what, file, "-o", "o.npy", *more)
+
+
+@pytest.mark.parametrize(("size", "said"), [(1e-30, "is only 1e-30 units large"), (1e30, "no number, or beyond")])
+def test_sizes_that_numbers_do_not_reach(
+    capsys: pytest.CaptureFixture[str], idle: None, size: float, said: str
+) -> None:
+    box = meshes.box()
+    write(Path("a.obj"), box._replace(vertices=size * box.vertices))
+    for what in ("sdf", "thickness"):
+        assert said in refused(capsys, what, "a.obj", "-o", "o.npy")
+
+
+@pytest.mark.parametrize("size", [2e-6, 1e8])
+def test_sizes_that_they_reach(size: float) -> None:
+    box = meshes.box()
+    write(Path("a.obj"), box._replace(vertices=size * box.vertices))
+    bake("sdf", "a.obj", "-o", "o.npy", "--resolution", "12", "--encode", "r32f")
+    assert facts("o.npy")["inside"] == pytest.approx((1.0 / 1.1) ** 3, abs=0.25)
+    assert facts("o.npy")["range"] == pytest.approx(0.5 * size, rel=0.1)
+    bake("thickness", "a.obj", "-o", "t.npy", "--mode", "chord", "--size", "32", "--processes", "1")
+    assert facts("t.npy")["mean"] == pytest.approx(size, rel=1e-4)
+
+
+WRONG: list[tuple[list[str], str]] = [
+    (["sdf", "no.obj", "-o", "o.npy"], "cannot find the mesh"),
+    (["sdf", ".", "-o", "o.npy"], "no mesh file's ending"),
+    (["sdf", "box.obj", "-o", "o.tga"], "'.tga' is no volume file's ending"),
+    (["sdf", "box.obj", "-o", "o"], "no volume file's ending"),
+    (["sdf", "box.obj", "-o", "o.npy", "--format", "dss"], "did you mean 'dds'?"),
+    (["sdf", "box.obj", "-o", "o.npy", "--format", "dds"], "ends in .dds"),
+    (["sdf", "box.obj", "-o", "o.npy", "--encode", "r12"], "unknown encoding 'r12'"),
+    (["sdf", "box.obj", "-o", "o.npy", "--resolution", "0"], "'0' is no resolution"),
+    (["sdf", "box.obj", "-o", "o.npy", "--resolution=-8"], "'-8' is no resolution"),
+    (["sdf", "box.obj", "-o", "o.npy", "--resolution", "8,8"], "is no resolution"),
+    (["sdf", "box.obj", "-o", "o.npy", "--resolution", "8,8,8,8"], "is no resolution"),
+    (["sdf", "box.obj", "-o", "o.npy", "--resolution", "many"], "'many' is no resolution"),
+    (["sdf", "box.obj", "-o", "o.npy", "--resolution", "8.5"], "'8.5' is no resolution"),
+    (["sdf", "box.obj", "-o", "o.npy", "--resolution", ""], "'' is no resolution"),
+    (["sdf", "box.obj", "-o", "o.npy", "--resolution", "99999"], "is no resolution"),
+    (["sdf", "box.obj", "-o", "o.npy", "--resolution", "2048,2048,2048"], "GiB are free"),
+    (["sdf", "box.obj", "-o", "o.npy", "--padding", "-1"], "is no padding"),
+    (["sdf", "box.obj", "-o", "o.npy", "--padding", "nan"], "is no padding"),
+    (["sdf", "box.obj", "-o", "o.npy", "--range", "0"], "--range 0 is no length"),
+    (["sdf", "box.obj", "-o", "o.npy", "--range", "nan"], "is no length"),
+    (["sdf", "box.obj", "-o", "o.npy", "--thin", "-1"], "--thin -1 is no length"),
+    (["sdf", "box.obj", "-o", "box.obj/o.npy"], "box.obj"),
+    (["sdf", "box.obj", "-o", "folder.npy"], "a folder has its name"),
+    (["sdf", "sheet.obj", "-o", "o.npy"], "--thin"),
+    (["thickness", "no.obj", "-o", "o.png"], "cannot find the mesh"),
+    (["thickness", "box.obj", "-o", "o.jpg"], "'.jpg'"),
+    (["thickness", "box.obj", "-o", "folder.png"], "a folder has its name"),
+    (["thickness", "box.obj", "-o", "o.png", "--mode", "median"], "median"),
+    (["thickness", "box.obj", "-o", "o.png", "--rays", "7"], "7 is no number of rays"),
+    (["thickness", "box.obj", "-o", "o.png", "--rays", "-8"], "-8 is no number of rays"),
+    (["thickness", "box.obj", "-o", "o.png", "--rays", "0"], "0 is no number of rays"),
+    (["thickness", "box.obj", "-o", "o.png", "--rays", "1000000"], "is no number of rays"),
+    (["thickness", "box.obj", "-o", "o.png", "--seed", "-1"], "-1 is no seed"),
+    (["thickness", "box.obj", "-o", "o.png", "--size", "0"], "'0' is no size"),
+    (["thickness", "box.obj", "-o", "o.png", "--size", "20000"], "'20000' is no size"),
+    (["thickness", "box.obj", "-o", "o.png", "--size", "8x8x8"], "is no size"),
+    (["thickness", "box.obj", "-o", "o.png", "--mode", "transmittance"], "--attenuation"),
+    (["thickness", "box.obj", "-o", "o.png", "--mode", "transmittance", "--attenuation", "0"], "--attenuation"),
+    (["thickness", "box.obj", "-o", "o.png", "--mode", "transmittance", "--attenuation", "nan"], "--attenuation"),
+    (["thickness", "box.obj", "-o", "o.png", "--attenuation", "1"], "--mode transmittance"),
+    (["thickness", "box.obj", "-o", "o.png", "--processes", "0"], "processes"),
+    (["thickness", "tiled.obj", "-o", "o.png"], "--unwrap"),
+    (["thickness", "box.obj", "-o", "o.png", "--direction", "up"], "'up' is no light"),
+    (["thickness", "box.obj", "-o", "o.png", "--direction", "0,0,0"], "no length"),
+    (["thickness", "box.obj", "-o", "o.png", "--direction", "0,nan,0"], "three numbers"),
+    (["thickness", "box.obj", "-o", "o.png", "--direction", "1,2"], "three numbers"),
+    (["thickness", "box.obj", "-o", "o.png", "--direction", "no.json"], "cannot find the light's file"),
+    (["depth", "box.obj", "-o", "o.npy"], "--direction"),
+    (["depth", "box.obj", "-o", "o.png", "--direction", "0,1,0"], ".exr or .npy"),
+    (["depth", "box.obj", "-o", "folder.npy", "--direction", "0,1,0"], "a folder has its name"),
+    (["pack", "-o", "o.png"], "nothing to pack"),
+    (["pack", "-o", "o.png", "--red", "0.5"], "no picture to pack"),
+    (["pack", "-o", "o.png", "--red", "a.png", "--green", "b.png"], "different sizes"),
+    (["pack", "-o", "o.png", "--red", "a.png:x"], "'x' is no channel"),
+    (["pack", "-o", "o.png", "--red", "a.png:b"], "no channel b"),
+    (["pack", "-o", "o.png", "--red", "no.png"], "cannot find the picture"),
+    (["pack", "-o", "o.png", "--red", "2"], "from 0 to 1"),
+    (["normal", "no.png", "-o", "o.png"], "cannot find the picture"),
+    (["normal", "a.png", "-o", "folder.png"], "a folder has its name"),
+    (["voronoi", "-o", "o.png", "--cells", "0"], ""),
+    (["voronoi", "-o", "o.png", "--size", "-4"], "is no size"),
+    (["voronoi", "-o", "folder.png"], "a folder has its name"),
+]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"), WRONG, ids=lambda part: " ".join(part) if isinstance(part, list) else ""
+)
+def test_wrong_arguments(capsys: pytest.CaptureFixture[str], idle: None, arguments: list[str], said: str) -> None:
+    for name in ("folder.npy", "folder.png"):
+        Path(name).mkdir()
+    write(Path("sheet.obj"), SHEET)
+    box = meshes.box()
+    assert box.uv is not None
+    write(Path("tiled.obj"), box._replace(uv=10.0 * box.uv))
+    images.write_png("a.png", np.full((4, 4), 0.5))
+    images.write_png("b.png", np.full((4, 8), 0.5))
+    assert said in refused(capsys, *arguments)
+
+
+LIGHTS = {
+    "{": "this is no JSON",
+    "": "",
+    "[1, 2, 3]": "a direction or a position",
+    "{}": "a direction or a position",
+    '{"direction": [0, 1, 0], "position": [0, 9, 0]}': "just one of them",
+    '{"directoin": [0, 1, 0]}': "did you mean 'direction'?",
+    '{"direction": [0, 1]}': "three numbers",
+    '{"direction": [0, 1, 0, 0]}': "three numbers",
+    '{"direction": 1}': "three numbers",
+    '{"direction": ["a", "b", "c"]}': "three numbers",
+    '{"direction": [true, false, false]}': "three numbers",
+    '{"direction": [0, 0, 0]}': "no length",
+    '{"direction": [NaN, 0, 0]}': "",
+    '{"position": [0, 1e30, 0]}': "three numbers",
+    '{"position": [0, 0, 0]}': "stands in the body",
+    '{"position": [0.1, 0.1, 0]}': "stands in the body",
+}
+
+
+@pytest.mark.parametrize("text", LIGHTS)
+def test_lights_that_are_none(capsys: pytest.CaptureFixture[str], idle: None, text: str) -> None:
+    Path("light.json").write_text(text, encoding="utf-8")
+    arguments = ["depth", "box.obj", "-o", "o.npy", "--direction", "light.json", "--size", "8"]
+    assert LIGHTS[text] in refused(capsys, *arguments)
+
+
+def test_a_sheet_with_a_thickness_is_a_body() -> None:
+    write(Path("sheet.obj"), SHEET)
+    bake("sdf", "sheet.obj", "-o", "o.npy", "--thin", "0.2", "--resolution", "24")
+    assert facts("o.npy")["inside"] > 0.1
+
+
+def test_a_sheet_has_no_thickness_map(capsys: pytest.CaptureFixture[str]) -> None:
+    write(Path("sheet.obj"), SHEET)
+    told = refused(capsys, "thickness", "sheet.obj", "-o", "o.png", "--size", "16", "--rays", "8", "--processes", "1")
+    assert "no inside" in told
+
+
+def test_folders_are_made() -> None:
+    bake("sdf", "box.obj", "-o", "new/deep/o.npy", "--resolution", "8")
+    assert {"new/deep/o.npy", "new/deep/o.npy.json"} < {path.replace(os.sep, "/") for path in there()}
+
+
+def test_what_is_said(capsys: pytest.CaptureFixture[str]) -> None:
+    bake("sdf", "box.obj", "-o", "o.npy", "--resolution", "16")
+    assert "wrote o.npy, o.npy.json" in capsys.readouterr().out
+    bake("sdf", "box.obj", "-o", "o.npy", "--resolution", "16", "--json")
+    told = json.loads(capsys.readouterr().out)
+    assert told["ok"] and told["files"] == ["o.npy", "o.npy.json"]
+    assert told["parameters"] == facts("o.npy")["parameters"]
+
+
+# Interrupts
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["sdf", "box.obj", "-o", "o.npy", "--resolution", "16"],
+        ["thickness", "box.obj", "-o", "o.png", "--size", "16", "--rays", "8", "--processes", "1"],
+        ["depth", "box.obj", "-o", "o.npy", "--direction", "0,1,0", "--size", "8"],
+    ],
+    ids=lambda arguments: arguments[0],
+)
+def test_an_interrupt_leaves_nothing(monkeypatch: pytest.MonkeyPatch, arguments: list[str]) -> None:
+    def interrupt(*_: Any) -> None:
+        raise KeyboardInterrupt
+
+    before = there()
+    with monkeypatch.context() as patch:
+        patch.setattr(progress.Bar, "__call__", interrupt)
+        assert main(["bake", *arguments]) == 130
+    assert there() == before
+
+    def half(path: str, data: bytes) -> None:
+        Path(path).write_bytes(data[: len(data) // 2])
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr("sssgen.output._write_bytes", half)
+        assert main(["bake", *arguments]) == 130
+    assert there() == before
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for a group of processes")
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["sdf", "ball.obj", "-o", "o.npy", "--resolution", "512"],
+        ["thickness", "ball.obj", "-o", "o.png", "--size", "4096", "--processes", "2"],
+    ],
+    ids=lambda arguments: arguments[0],
+)
+def test_ctrl_c_ends_all_of_it(arguments: list[str]) -> None:
+    write(Path("ball.obj"), meshes.globe(1.0, 64, 32))
+    before = there()
+    command = [sys.executable, "-m", "sssgen", "bake", *arguments]
+    with subprocess.Popen(command, start_new_session=True, stderr=subprocess.PIPE, text=True) as process:
+        time.sleep(10.0)
+        assert process.poll() is None, "it ended before it was interrupted"
+        os.killpg(process.pid, signal.SIGINT)
+        try:
+            _, told = process.communicate(timeout=60.0)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            raise
+    assert process.returncode == 130 and told.strip() == "interrupted"
+    assert there() == before
+    for _ in range(50):
+        try:
+            os.killpg(process.pid, 0)
+        except ProcessLookupError:
+            return
+        time.sleep(0.1)
+    os.killpg(process.pid, signal.SIGKILL)
+    raise AssertionError("a worker is left")
+
+
+@pytest.mark.parametrize("mode", [["--mode", "mean"], ["--mode", "transmittance", "--attenuation", "0.3"]])
+def test_processes_make_no_difference(mode: list[str]) -> None:
+    """To the byte: the chance of the rays goes by the texel."""
+    common = ["thickness", "box.obj", "--size", "96", "--rays", "64", *mode]
+    bake(*common, "-o", "one.png", "--processes", "1")
+    bake(*common, "-o", "two.png", "--processes", "2")
+    bake(*common, "-o", "other.png", "--processes", "1", "--seed", "1")
+    assert Path("one.png").read_bytes() == Path("two.png").read_bytes() != Path("other.png").read_bytes()
+    one, two = ({**facts(name), "file": None} for name in ("one.png", "two.png"))
+    assert one == two
+
+
+# Formats
+
+
+@pytest.mark.parametrize("encoding", ENCODINGS)
+def test_all_formats_hold_the_same(encoding: str) -> None:
+    common = ["sdf", "box.obj", "--resolution", "12,10,9", "--encode", encoding]
+    for name in ("npy", "dds", "ktx2"):
+        bake(*common, "-o", f"o.{name}")
+    bake(*common, "-o", "o.exr", "--format", "exr-slices")
+    bake(*common, "-o", "o.raw", "--format", "raw+json")
+    expected = images.read("o.npy")
+    assert expected.shape == (9, 10, 12, 1) and expected.min() >= 0.0 and expected.max() <= 1.0
+    assert np.array_equal(images.read("o.dds"), expected)
+    assert np.array_equal(images.read("o.ktx2"), expected)
+    told = facts("o.raw")["file"]
+    stored = np.fromfile("o.raw", np.dtype(told["dtype"]).newbyteorder("<"))
+    assert np.array_equal(stored.reshape(9, 10, 12) / told["one"], expected[..., 0])
+    sheet, told = images.read("o.exr")[..., 0], facts("o.exr")["file"]
+    for z in range(9):
+        row, column = divmod(z, told["columns"])
+        part = sheet[10 * row : 10 * (row + 1), 12 * column : 12 * (column + 1)]
+        assert part[::-1] == pytest.approx(expected[z, ..., 0], abs=1e-7)
+    assert len({json.dumps({**facts(f"o.{name}"), "file": 0}) for name in ("npy", "dds", "ktx2", "exr", "raw")}) == 1
+
+
+# What materials and scenes take
+
+
+def material(path: str, section: str) -> str:
+    Path(path).write_text(
+        f"""
+[material]
+name = "made"
+shading = "lit"
+{section}
+[translucency]
+technique = "absorption_tint"
+[[surface]]
+technique = "base_color"
+[[surface]]
+technique = "pbr_constants"
+""",
+        encoding="utf-8",
+    )
+    return path
+
+
+def mapped(quantity: str, file: str, more: str = "") -> str:
+    conversion = '[[thickness]]\ntechnique = "thickness_from_transmittance"\n' if quantity == "transmittance" else ""
+    return f'[[thickness]]\ntechnique = "{quantity}_map"\n{quantity}_texture = "{file}"\n{more}\n{conversion}'
+
+
+MODES = {"thickness": [], "transmittance": ["--mode", "transmittance", "--attenuation", "0.4"]}
+
+
+@pytest.fixture(scope="module")
+def baked_maps(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """thickness.png and transmittance.png, each with its JSON."""
+    folder = tmp_path_factory.mktemp("maps")
+    box = write(folder / "box.obj", meshes.box((1.0, 0.6, 0.4)))
+    for quantity, mode in MODES.items():
+        path = str(folder / f"{quantity}.png")
+        bake("thickness", box, "-o", path, "--size", "24", "--rays", "8", "--processes", "1", *mode)
+    return folder
+
+
+@pytest.fixture
+def maps(baked_maps: Path, folder: Path) -> None:
+    """The same, here."""
+    for quantity in MODES:
+        for name in (f"{quantity}.png", f"{quantity}.png.json"):
+            (folder / name).write_bytes((baked_maps / name).read_bytes())
+
+
+@pytest.mark.parametrize("quantity", MODES)
+def test_a_map_of_another_quantity_is_refused(maps: None, quantity: str) -> None:
+    (other,) = MODES.keys() - {quantity}
+    with pytest.raises(SssgenError) as caught:
+        load_material(material("made.toml", mapped(quantity, f"{other}.png")))
+    told = str(caught.value)
+    assert f"'{other}.png' holds {other}, and '{quantity}_texture' takes {quantity}" in told
+    assert f"{other}_map" in told and "made.toml:7" in told
+
+
+@pytest.mark.parametrize("quantity", MODES)
+def test_a_map_of_the_right_one_compiles_for_all_targets(maps: None, quantity: str) -> None:
+    path = material("made.toml", mapped(quantity, f"{quantity}.png"))
+    assert main(["emit", path, "--target", "all", "-o", "out"]) == 0
+    assert len(list(Path("out").iterdir())) > 8
+
+
+def test_the_factor_is_the_maps_unless_the_material_says_it(maps: None) -> None:
+    made = load_material(material("made.toml", mapped("thickness", "thickness.png")))
+    top = facts("thickness.png")["range"][1]
+    assert made.stages[0].values["thickness_factor"] == (pytest.approx(top),) and 0.4 < top < 1.3
+    said = load_material(material("said.toml", mapped("thickness", "thickness.png", "thickness_factor = 2.5")))
+    assert said.stages[0].values["thickness_factor"] == (2.5,)
+    alias = load_material(material("alias.toml", mapped("thickness", "thickness.png", "thicknessFactor = 2.5")))
+    assert alias.stages[0].values["thickness_factor"] == (2.5,)
+
+
+def test_a_map_without_its_json_is_taken_as_it_is(maps: None) -> None:
+    Path("thickness.png.json").unlink()
+    made = load_material(material("made.toml", mapped("transmittance", "thickness.png")))
+    assert made.stages[0].textures == {"transmittance_texture": "thickness.png"}
+
+
+def test_a_faulty_json_is_an_error(maps: None) -> None:
+    for text in ("{", '{"kind": "thickness", "format": 99}', '{"kind": "thickness", "format": 1, "parameters": 3}'):
+        Path("thickness.png.json").write_text(text, encoding="utf-8")
+        with pytest.raises(SssgenError):
+            load_material(material("made.toml", mapped("thickness", "thickness.png")))
+
+
+MARCH = """
+[thickness]
+technique = "march_light"
+bind = { body_distance = "distance_texture_world" }
+"""
+
+
+def test_a_distance_texture_brings_its_box() -> None:
+    bake("sdf", "box.obj", "-o", "o.dds", "--resolution", "16")
+    made = load_material(material("made.toml", MARCH + 'distance_map = "o.dds"'))
+    for name, value in facts("o.dds")["parameters"].items():
+        assert made.stages[0].values[name] == pytest.approx(np.atleast_1d(value))
+    given = load_material(material("given.toml", MARCH + 'distance_map = "o.dds"\ndistance_range = 3.0'))
+    assert given.stages[0].values["distance_range"] == (3.0,)
+    assert given.stages[0].values["box_min"] == made.stages[0].values["box_min"]
+
+
+def test_a_picture_is_no_volume(maps: None) -> None:
+    with pytest.raises(SssgenError, match=r"'thickness.png' is a 2D texture, and 'distance_map' is 3D"):
+        load_material(material("made.toml", MARCH + 'distance_map = "thickness.png"'))
+
+
+def shell(textures: str, section: str, place: str = "", parameters: str = "") -> Shell:
+    """What a scene gives to a material with these textures, which lie beside it."""
+    path = material("made.toml", section)
+    Path("scene.toml").write_text(
+        f'material = "{path}"\n[geometry]\nkind = "mesh"\nfile = "box.obj"\n{place}\n'
+        f"[[light]]\ndirection = [0, 0, 1]\n[parameters]\n{parameters}\n[textures]\n{textures}\n",
+        encoding="utf-8",
+    )
+    scene = load(Path("scene.toml"))
+    made = load_material(path)
+    return shell_of(scene, made, compile(made, "numpy").reflection)
+
+
+@pytest.mark.parametrize("format", ["npy", "dds", "ktx2"])
+def test_scenes_take_distance_textures(format: str) -> None:
+    bake("sdf", "box.obj", "-o", f"o.{format}", "--resolution", "16")
+    told = facts(f"o.{format}")["parameters"]
+    found = shell(f'distance_map = "o.{format}"', MARCH, "scale = 2.0\nposition = [1.0, 2.0, 3.0]")
+    texture = found.textures["distance_map"]
+    assert texture.dim == "3D" and texture.wrap == "clamp"
+    expected = images.read(f"o.{format}")[..., 0]
+    assert texture.levels[0][..., 0] == pytest.approx(expected, abs=2.0**-11)
+    for name, value in told.items():
+        assert found.parameters[name] == pytest.approx(np.atleast_1d(value))
+    assert found.parameters["object_scale"] == (2.0,)
+    to_object = np.reshape(found.parameters["world_to_object"], (4, 4)).T
+    assert to_object @ [3.0, 2.0, 3.0, 1.0] == pytest.approx([1.0, 0.0, 0.0, 1.0])
+    given = shell(f'distance_map = "o.{format}"', MARCH, parameters="distance_range = 3.0")
+    assert given.parameters["distance_range"] == (3.0,)
+
+
+def test_scenes_take_maps(maps: None) -> None:
+    found = shell('thickness_texture = "thickness.png"', '[thickness]\ntechnique = "thickness_map"', "scale = 3.0")
+    top = facts("thickness.png")["range"][1]
+    assert found.parameters["thickness_factor"] == pytest.approx((3.0 * top,))  # units of the world
+    stored = images.read("thickness.png")
+    assert found.textures["thickness_texture"].levels[0][..., 0] == pytest.approx(
+        np.flipud(stored)[..., 0], abs=2.0**-11
+    )
+    with pytest.raises(SssgenError, match="holds transmittance, and 'thickness_texture' takes thickness"):
+        shell('thickness_texture = "transmittance.png"', '[thickness]\ntechnique = "thickness_map"')
+    with pytest.raises(SssgenError, match="holds thickness, and 'transmittance_texture' takes transmittance"):
+        shell('transmittance_texture = "thickness.png"', mapped("transmittance", "transmittance.png"))
+
+
+# GPUs take the bytes as they are
+
+
+def raw(encoding: str) -> tuple[tuple[int, int, int], bytes]:
+    """A baked .raw file, whose rows are no multiple of four bytes long."""
+    bake("sdf", "box.obj", "-o", "o.raw", "--resolution", "7,5,6", "--encode", encoding, "--format", "raw+json")
+    size = facts("o.raw")["file"]["size"]
+    return (size["x"], size["y"], size["z"]), Path("o.raw").read_bytes()
+
+
+@pytest.mark.parametrize(("encoding", "dtype"), [("r8", "f1"), ("r16", "nu2"), ("r16f", "f2"), ("r32f", "f4")])
+def test_opengl_takes_the_bytes(backend: Callable[[str], Backend], encoding: str, dtype: str) -> None:
+    context: Any = getattr(backend("gl"), "context")  # noqa: B009 - of that back end only
+    size, data = raw(encoding)
+    with context:
+        texture = context.texture3d(size, 1, data, alignment=1, dtype=dtype)
+        try:
+            assert texture.read(alignment=1) == data
+        finally:
+            texture.release()
+
+
+@pytest.mark.parametrize(("encoding", "format"), [("r8", "r8unorm"), ("r16f", "r16float"), ("r32f", "r32float")])
+def test_webgpu_takes_the_bytes(backend: Callable[[str], Backend], encoding: str, format: str) -> None:
+    device: Any = getattr(backend("webgpu"), "gpu")  # noqa: B009 - of that back end only
+    import wgpu
+
+    (width, height, depth), data = raw(encoding)
+    size = (width, height, depth)
+    usage = wgpu.TextureUsage.COPY_DST | wgpu.TextureUsage.COPY_SRC
+    texture = device.create_texture(size=size, dimension="3d", format=format, usage=usage)
+    layout = {"offset": 0, "bytes_per_row": len(data) // (height * depth), "rows_per_image": height}
+    device.queue.write_texture({"texture": texture}, data, layout, size)
+    assert bytes(device.queue.read_texture({"texture": texture}, layout, size)) == data
