@@ -16,7 +16,9 @@ from PIL import Image
 
 from amounts import COUNTED
 from ir_sample import SAMPLE
-from sssgen import data
+from sssgen import baked, data
+from sssgen.bake import light
+from sssgen.bake.volume_files import encoded_files
 from sssgen.compiler import compile, transpile
 from sssgen.diagnostics import Diagnostic, SssgenError
 from sssgen.harness import images, inputs, probes, shader_files
@@ -171,6 +173,24 @@ def _mesh(path: Path) -> None:
     _ = Mesh(path=str(path)).triangles
 
 
+def _volumes(kind: str) -> Callable[[], list[bytes]]:
+    def made() -> list[bytes]:
+        types = (np.uint8, np.uint16, np.float16, np.float32)
+        volumes = [np.ones((2, 3, 4), one) for one in types]
+        return [next(iter(encoded_files("seed", one, kind).values())) for one in volumes]
+
+    return made
+
+
+def _baked() -> list[bytes]:
+    facts = {"format": 1, "kind": "distance", "holds": None, "parameters": {"box_min": [0, 0, 0]}}
+    return [json.dumps(facts | {"import": baked.settings("3D", "clamp")}).encode()]
+
+
+def _lights() -> list[bytes]:
+    return [b'{"direction": [0.0, 1.0, -2.5]}', b'{"position": [1, 2, 3]}']
+
+
 def _meshes(kind: str) -> Callable[[], list[bytes]]:
     def made() -> list[bytes]:
         import trimesh
@@ -196,6 +216,10 @@ FRONT_ENDS = {
     "png": FrontEnd(".png", images.read, _pngs, False),
     "exr": FrontEnd(".exr", images.read, _exrs, False),
     "npy": FrontEnd(".npy", images.read, _arrays, False),
+    "dds": FrontEnd(".dds", images.read, _volumes("dds"), False),
+    "ktx2": FrontEnd(".ktx2", images.read, _volumes("ktx2"), False),
+    "baked": FrontEnd(".png.json", lambda path: baked.read(str(path).removesuffix(".json")), _baked),
+    "light": FrontEnd(".json", lambda path: light.read(str(path)), _lights),
     "obj": FrontEnd(".obj", _mesh, _meshes("obj"), False),
     "ply": FrontEnd(".ply", _mesh, _meshes("ply"), False),
     "stl": FrontEnd(".stl", _mesh, _meshes("stl"), False),
@@ -205,8 +229,9 @@ FRONT_ENDS = {
 
 WHOLE = re.compile(
     "the file (is too large|is empty|has no function)|the technique .* has no role|unknown role|no such file"
-    "|no file can|this is not a (file|reflection)|cannot read|cannot find the (picture|mesh)|no technique is named"
+    "|no file can|this is not a (file|reflection)|cannot read|cannot find the (picture|mesh|light)|no technique is named"
     "|nothing to compile|there is nothing to check|the lists are nested|a number has thousands|the inputs are no"
+    "|this is of another format|'parameters' and|the light has|a light's|this direction"
     "|'.*' is no |'samples' is|unknown key|texture '.*' is given"
 )
 """The errors of texts that are about the whole file, or about a JSON value, whose place json does not tell."""

@@ -13,7 +13,7 @@ from sssgen.lang import loader
 from sssgen.lang.loader import load_file
 from watchdog import bounded
 
-BESIDE = ("ci folder", "reflection", "ci table")
+BESIDE = ("ci folder", "reflection", "ci table", "baked")
 """These look for their files themselves."""
 
 posix = pytest.mark.skipif(os.name != "posix", reason="there are no pipes with names")

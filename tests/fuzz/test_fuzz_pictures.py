@@ -54,7 +54,7 @@ PICTURES = {
     "a palette of 16 bits": png(2, 2, 16, 3, b"\0" * 10),
     "an unknown depth": png(2, 2, 3, 2, b"\0" * 20),
     "an unknown kind of colour": png(2, 2, 8, 5, b"\0" * 20),
-    "colours of 16 bits": png(2, 2, 16, 2, b"\0" * 26),
+    "too few rows of 16 bits": png(2, 2, 16, 2, b"\0" * 25),
     "a text that is a bomb": png(2, 2, rows=b"\0" * 14, extra=chunk(b"zTXt", BOMB)),
     "a profile that is a bomb": png(2, 2, rows=b"\0" * 14, extra=chunk(b"iCCP", BOMB)),
     "a chunk beyond the end": GOOD[:8] + struct.pack(">I", 0xFFFFFFFF) + b"IHDR",
