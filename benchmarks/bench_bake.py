@@ -211,11 +211,13 @@ def measure_growth(name: str, places: Array, corners: Indices) -> None:
         for shape in ((places, corners), subdivided(places, corners)):
             mesh = Path(folder) / "mesh.ply"
             trimesh.Trimesh(*shape, process=False).export(mesh)
-            found = [command(mesh, resolution, Path(folder) / "sdf.npy") for resolution in GROWTH]
-            for index, (resolution, (seconds, memory)) in enumerate(zip(GROWTH, found, strict=True)):
-                before = found[max(index - 1, 0)]
+            before: tuple[float, float] | None = None
+            for resolution in GROWTH:
+                seconds, memory = command(mesh, resolution, Path(folder) / "sdf.npy")
+                before = before or (seconds, memory)
                 print(f"| {len(shape[1]):31} | {resolution:13} | {seconds:7.2f} | {seconds / before[0]:5.2f} ", end="")
-                print(f"| {memory:4.0f} | {memory / before[1]:5.2f} |")
+                print(f"| {memory:4.0f} | {memory / before[1]:5.2f} |", flush=True)
+                before = seconds, memory
     print("each a process of its own, with all that it imports; ratios to the line above")
 
 
