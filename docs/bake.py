@@ -143,7 +143,7 @@ def slices() -> bytes:
         apart = np.abs(baked - exact) / voxel
         picture = row[2].imshow(apart, cmap="magma", vmin=0.0, vmax=0.5, **window)
         row[2].contour(z, y, exact, [0.0], colors="white", linewidths=0.8)
-        row[2].set_title(f"difference in texels; median {np.median(apart):.3f}")
+        row[2].set_title(f"texels off; median {np.median(apart):.3f}")
         figure.colorbar(picture, ax=row[2], shrink=0.8)
     data = io.BytesIO()
     figure.savefig(data, format="png", dpi=80, metadata={"Software": None})
@@ -195,7 +195,7 @@ def renders() -> tuple[str, bytes]:
         pictures.append([exact["deep"], made["distance"], made["depth"], exact["light"], made["map"]])
         for way, (title, reference) in WAYS.items():
             rows.append(f"| {shown}, {title} | {compare(made[way], exact[reference]).flip:.3f} |")
-    return "\n".join(rows), joined([[picture[::1, 70:410] for picture in row] for row in pictures], 0.75)
+    return "\n".join(rows), joined([[picture[:, 50:450] for picture in row] for row in pictures], 0.75)
 
 
 def ice_row() -> tuple[str, bytes]:

@@ -24,6 +24,8 @@ class _Parser(argparse.ArgumentParser):
             choices = re.findall(r"[\w-]+", known)
             message = f"unknown {'command' if which == 'COMMAND' else which.lower()} '{word}'"
             hint = did_you_mean(word, choices) or f"choose from: {', '.join(choices)}"
+        elif found := re.match(r"argument (?:\S+/)?(--[\w-]+): expected one argument", message):
+            hint = f"a value that begins with - is written {found[1]}=VALUE"
         raise failure(message, hint)
 
 

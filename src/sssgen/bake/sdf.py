@@ -19,7 +19,7 @@ from .grid import Array, Grid, around
 
 SHEET = 1e-5
 """A mesh that is flatter than this share of its size is a sheet, without an inside."""
-A_POINT = 160
+A_POINT = 200
 """Bytes that a query takes for each point."""
 A_TRIANGLE = 800
 """Bytes that its trees take for each triangle."""
@@ -68,7 +68,11 @@ def sdf(
     grid = around(low - extra, high + extra, resolution, padding)
     across, up, deep = grid.counts
     size = np.dtype(form.dtype).itemsize
-    wanted = across * up * deep * (4 + 2 + 2 * size) + 4 * BLOCK * A_POINT + len(mesh.triangles.corners) * A_TRIANGLE
+    wanted = (
+        across * up * deep * (4 + 2 + 2 * size)
+        + max(4 * BLOCK, across * up) * A_POINT
+        + len(mesh.triangles.corners) * A_TRIANGLE
+    )
     memory.check(wanted, "take a lower --resolution")
     solid = mesh.solid
     unsigned = distances(solid, grid, told)

@@ -34,15 +34,16 @@ class LightView(NamedTuple):
 def from_afar(corners: Array, towards: Array, size: tuple[int, int]) -> LightView:
     """The view along −`towards` (unit) on a body within `corners` (n, 3); `size` is (width, height) in texels."""
     side, up = _frame(-towards)
-    middle = corners.mean(axis=0)
-    wide = MARGIN * max(float(np.ptp(corners @ axis)) for axis in (side, up))
+    spans = [corners @ axis for axis in (side, up)]
+    right, high = (0.5 * float(span.min() + span.max()) for span in spans)
+    wide = MARGIN * max(float(np.ptp(span)) for span in spans)
     start = float((corners @ towards).max()) + 0.1 * wide  # where the light's plane stands
     across, along = (((np.arange(count) + 0.5) / count - 0.5) * wide for count in size)
-    x, y = np.meshgrid(across + middle @ side, along + middle @ up)
+    x, y = np.meshgrid(across + right, along + high)
     origins = x.reshape(-1, 1) * side + y.reshape(-1, 1) * up + start * towards
     matrix = np.zeros((4, 4))
-    matrix[0, :3], matrix[0, 3] = side / wide, 0.5 - middle @ side / wide
-    matrix[1, :3], matrix[1, 3] = up / wide, 0.5 - middle @ up / wide
+    matrix[0, :3], matrix[0, 3] = side / wide, 0.5 - right / wide
+    matrix[1, :3], matrix[1, 3] = up / wide, 0.5 - high / wide
     matrix[2, :3], matrix[2, 3] = -towards, start
     matrix[3, 3] = 1.0
     directions = np.broadcast_to(-towards, origins.shape).copy()
