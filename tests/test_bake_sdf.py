@@ -261,7 +261,7 @@ def leak(path: Path, resolution: int, rays: int) -> tuple[float, float]:
 
 @needs_meshes
 def test_suzanne_does_not_leak() -> None:
-    outside, within = leak(SUZANNE, 18, 4)
+    outside, within = leak(SUZANNE, 18, 7)
     assert outside <= 1e-3, outside
     assert within < 0.1, within
 
@@ -276,6 +276,22 @@ def test_suzanne_does_not_leak_in_fine_voxels() -> None:
 
 
 # The grid, and what the JSON says
+
+
+def test_a_coarse_grid_has_voxels_outside() -> None:
+    """Where there is padding, a voxel of it on every side."""
+    made = sdf(write(Path("body.obj"), meshes.box((1.0, 2.0, 1.0))), (6,), encoding="r32f")
+    signs = decode(made.texels, made.reach, ENCODINGS["r32f"]) > 0.0
+    shell = np.ones(signs.shape, np.bool_)
+    shell[1:-1, 1:-1, 1:-1] = False
+    assert signs[shell].all() and not signs.all()
+
+
+def test_where_the_sign_jumps_is_said() -> None:
+    whole, box = meshes.box(), meshes.box()
+    cut = box._replace(faces=box.faces[2:])
+    assert "but" not in sdf(write(Path("whole.obj"), whole), (12,)).facts["error"]
+    assert "holes" in sdf(write(Path("cut.obj"), cut), (12,)).facts["error"]["but"]
 
 
 def test_voxels_are_cubes_and_the_box_is_padded() -> None:

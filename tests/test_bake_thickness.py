@@ -24,7 +24,7 @@ from sssgen.bake.atlas import Atlas, atlas
 from sssgen.bake.chords import Chords, inward
 from sssgen.bake.depth import depth_map
 from sssgen.bake.light import BakeLight
-from sssgen.bake.thickness import Map, Request, thickness_map
+from sssgen.bake.thickness import Map, Request, thickness_map, warnings
 from sssgen.harness.scenes.mesh import Mesh
 from sssgen.targets.numpy_textures import Texture
 
@@ -204,6 +204,18 @@ def test_towards_a_light_it_is_exact(light: BakeLight, depth: float) -> None:
     exact = np.where(lit, 0.0, to_exit(size, at.places - [0.1, 0.2, 0.3], ways))
     assert lengths(made, at) == pytest.approx(np.exp(-exact / depth) if depth else exact, abs=1e-5)
     assert 0.1 < lit.mean() < 0.9
+
+
+def test_a_mesh_that_is_inside_out_is_as_thick() -> None:
+    ring = meshes.torus(1.0, 0.4, 24, 12)
+    turned = ring._replace(faces=ring.faces[:, ::-1], uv=None if ring.uv is None else ring.uv[:, ::-1])
+    right, wrong = (
+        thickness_map(write(Path(name), one), (48, 48), Request(rays=64), True, processes=0)
+        for name, one in (("ring.obj", ring), ("turned.obj", turned))
+    )
+    assert wrong.facts["mesh"]["inside_out"] and not right.facts["mesh"]["inside_out"]
+    assert wrong.facts["lost_rays"] < 0.01 and wrong.facts["mean"] == pytest.approx(right.facts["mean"], rel=0.02)
+    assert any("inside out" in one for one in warnings(wrong.facts))
 
 
 def test_a_hole_is_said_and_its_rays_do_not_count() -> None:

@@ -16,6 +16,8 @@ Progress: TypeAlias = Callable[[int, int, str], None]
 
 BLOCK = 2**18
 """Points of one query, at about a hundred bytes each."""
+TILE = 4
+"""Voxels along a side of what is asked for in a row."""
 SPLIT = 3
 """What a block's sides are divided by: an odd number, as a block's middle is a voxel then."""
 COARSEST = SPLIT**3
@@ -28,12 +30,23 @@ def distances(body: MeshDistance, grid: Grid, told: Progress = lambda *_: None) 
     """The unsigned distances, exact but for the rounding to float32: (z, y, x)."""
     across, up, deep = grid.counts
     found = np.empty((deep, up, across), np.float32)
-    layers = max(1, BLOCK // (across * up))
+    layers = min(deep, max(1, BLOCK // (across * up * TILE)) * TILE)
+    order = _in_tiles((layers, up, across))
     for start in range(0, deep, layers):
         end = min(start + layers, deep)
-        found[start:end] = body.unsigned(grid.slab(start, end)).reshape(end - start, up, across)
+        if end - start < layers:
+            order = _in_tiles((end - start, up, across))
+        block = np.empty(len(order))
+        block[order] = body.unsigned(grid.slab(start, end)[order])
+        found[start:end] = block.reshape(end - start, up, across)
         told(end, deep, "distances")
     return found
+
+
+def _in_tiles(shape: tuple[int, int, int]) -> npt.NDArray[np.int64]:
+    """The order of voxels tile by tile: neighbours walk the same branches of a tree."""
+    z, y, x = (at.ravel() // TILE for at in np.indices(shape, np.int32))
+    return np.lexsort((x, y, z))
 
 
 def inside(body: MeshDistance, grid: Grid, unsigned: Distances) -> npt.NDArray[np.bool_]:

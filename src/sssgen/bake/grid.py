@@ -63,7 +63,8 @@ def around(low: Array, high: Array, resolution: Sequence[int], padding: float) -
     """The grid around what lies between two corners (3,).
 
     `resolution` is the count along the longest side, with voxels that are cubes, or three counts. `padding` is added
-    on every side, in parts of the longest. Raises SssgenError for a resolution or padding that makes no grid.
+    on every side, in parts of the longest, and where there is any, at least a voxel. Raises SssgenError for a
+    resolution or padding that makes no grid.
     """
     if len(resolution) not in (1, 3) or not all(LEAST <= count <= MOST for count in resolution):
         told = ",".join(map(str, resolution))
@@ -71,7 +72,9 @@ def around(low: Array, high: Array, resolution: Sequence[int], padding: float) -
     if not 0.0 <= padding <= 10.0:
         raise failure(f"{padding:g} is no padding", "a part of the longest side, from 0 to 10, as 0.05")
     size, middle = high - low, 0.5 * (low + high)
-    size = np.maximum(size + 2.0 * padding * size.max(), FLAT * np.linalg.norm(size))
+    counts_of = np.array(resolution if len(resolution) == 3 else [max(resolution)] * 3)
+    least = (size if len(resolution) == 3 else size.max()) / (counts_of - 2) if padding else 0.0
+    size = np.maximum(size + 2.0 * np.maximum(padding * size.max(), least), FLAT * np.linalg.norm(size))
     if len(resolution) == 1:
         voxel = float(size.max()) / resolution[0]
         counts = [max(LEAST, math.ceil(side / voxel * (1.0 - 1e-9))) for side in size]

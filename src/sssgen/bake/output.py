@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -89,6 +89,13 @@ def write_picture(
         "encoding": encoding,
     }  # fmt: skip
     return _write(path, data, {**facts, "file": about}, beside)
+
+
+def check_apart(path: str, sources: Iterable[str]) -> None:
+    """Raises SssgenError where a file that would be written is one that is read."""
+    for source in sources:
+        if os.path.exists(path) and os.path.exists(source) and os.path.samefile(path, source):
+            raise failure("this would overwrite what it is made from", "name another file with -o", posix(path))
 
 
 def _check_place(path: str) -> None:

@@ -100,6 +100,7 @@ def sdf(
         "error": {
             "at_texels": error_at_texels(reach, form, grid.diagonal),
             "between_texels": 0.5 * float(np.linalg.norm(grid.voxel)),
+            **({"but": "not across its holes, where the sign jumps"} if solid.rim and thin is None else {}),
         },
         "inside": round(float(within.mean()), 6),
         "parameters": {"box_min": _told(grid.low), "box_max": _told(grid.high), "distance_range": reach},

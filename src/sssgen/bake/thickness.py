@@ -64,22 +64,28 @@ def thickness_map(
     _check(wanted)
     width, height = size
     memory.check(width * height * 120.0 + 4 * RAYS * 500.0, "take a smaller --size")
-    mesh = Mesh(path=path).triangles
+    body = Mesh(path=path)
+    mesh = body.triangles
     fresh = unwrap or mesh.uv is None
     uv = unwrapped(mesh) if fresh or mesh.uv is None else mesh.uv
     shown = atlas(mesh, uv, size, path)
+    if body.inside_out:
+        shown = shown._replace(flat=-shown.flat)
     chords = [
         np.concatenate(parts) for parts in zip(*_measured(path, shown, wanted, processes, scheduler, told), strict=True)
     ]
     value, error, lost = chords
     if lost.min(initial=0.0) >= 1.0 or not value.any():
-        raise failure("no ray leaves the mesh: it has no inside", "is it a sheet, or inside out?", posix(path))
+        raise failure("no ray leaves the mesh: it has no inside", "is it a sheet?", posix(path))
     passing = wanted.mode == "transmittance"
     top = 1.0 if passing else float(value.max())
     holds = "transmittance" if passing else "thickness"
     facts = {
         "format": baked.FORMAT, "kind": holds, "holds": holds, "mode": wanted.mode,
-        "mesh": {"triangles": len(mesh.corners), "new_uv": fresh, "shared_texels": round(shown.shared, 6)},
+        "mesh": {
+            "triangles": len(mesh.corners), "new_uv": fresh, "inside_out": body.inside_out,
+            "shared_texels": round(shown.shared, 6),
+        },
         "light": wanted.light.facts() if wanted.light else None,
         "unit": "" if passing else "of the mesh", "range": [0.0, top],
         "formula": "transmittance = texel" if passing else f"thickness = {top!r} * texel",
@@ -98,7 +104,7 @@ def thickness_map(
 
 def warnings(facts: dict[str, Any]) -> list[str]:
     """What the user of a map should know of it."""
-    found = []
+    found = ["the mesh is inside out: taken the other way round"] if facts["mesh"]["inside_out"] else []
     if (shared := facts["mesh"]["shared_texels"]) > SHARED:
         found.append(
             f"{shared:.0%} of the texels are claimed by several places: --unwrap makes texture coordinates anew"

@@ -56,7 +56,8 @@ def _sdf(arguments: Namespace) -> Done:
     mesh = made.facts["mesh"]
     told = [
         f"{x} × {y} × {z} texels of {made.grid.voxel.max():.4g} units; {made.facts['inside']:.1%} are inside",
-        f"a distance is right to {error['at_texels']:.2g} at texels, and to {error['between_texels']:.2g} between them",
+        f"a distance is right to {error['at_texels']:.2g} at texels, and to {error['between_texels']:.2g} between them"
+        + (f", but {error['but']}" if "but" in error else ""),
         f"the mesh is {'closed' if mesh['closed'] else 'open'}"
         + (", and inside out: taken the other way round" if mesh["inside_out"] else ""),
     ]
@@ -69,6 +70,8 @@ def _thickness(arguments: Namespace) -> Done:
     from ..lab.progress import Bar
 
     output.picture_suffix(arguments.output)
+    mesh = f"{os.path.splitext(arguments.output)[0]}.obj"  # where it gets new texture coordinates
+    output.check_apart(mesh, [arguments.MESH])
     wanted = Request(
         arguments.mode,
         light.read(arguments.direction) if arguments.direction else None,
@@ -81,15 +84,14 @@ def _thickness(arguments: Namespace) -> Done:
         made = thickness_map(
             arguments.MESH, size, wanted, arguments.unwrap, arguments.processes, arguments.scheduler, bar
         )
-    mesh = f"{os.path.splitext(os.path.basename(arguments.output))[0]}.obj"
-    beside = {mesh: made.mesh} if made.mesh else {}
+    beside = {os.path.basename(mesh): made.mesh} if made.mesh else {}
     paths = output.write_picture(arguments.output, made.values, made.facts, beside=beside)
     errors, top = made.facts["error"], made.facts["range"][1]
     told = [
         f"{made.facts['holds']} from 0 to {top:.4g}, in the mean {made.facts['mean']:.4g}",
         f"standard error {errors['mean_standard_error']:.2g} in the mean, at most "
         f"{errors['largest_standard_error']:.2g}, of {made.facts['rays']} rays a texel",
-        *([f"{mesh} is the mesh with its new texture coordinates: use that"] if made.mesh else []),
+        *([f"{posix(mesh)} is the mesh with its new texture coordinates: use that"] if made.mesh else []),
         *(f"warning: {one}" for one in warnings(made.facts)),
     ]
     return paths, made.facts, told
@@ -134,6 +136,7 @@ def _normal(arguments: Namespace) -> Done:
     from ..harness import images
 
     output.picture_suffix(arguments.output)
+    output.check_apart(arguments.output, [arguments.HEIGHT])
     height = images.upright(arguments.HEIGHT)
     tiles = not arguments.no_tile
     made = normals.from_height(height[..., 0], arguments.strength, tiles, arguments.green)
@@ -154,7 +157,9 @@ def _pack(arguments: Namespace) -> Done:
     given = {name: getattr(arguments, name) for name in ("red", "green", "blue", "alpha")}
     if not any(given.values()):
         raise failure("there is nothing to pack", "--red a.png --green b.png --blue 1-c.png")
-    made = packing.pack(packing.load([packing.parse(text) if text else None for text in given.values()]))
+    sources = [packing.parse(text) if text else None for text in given.values()]
+    output.check_apart(arguments.output, [source.file for source in sources if source and source.file])
+    made = packing.pack(packing.load(sources))
     facts = {
         "format": baked.FORMAT, "kind": "packed", "holds": None, "channels": given, "parameters": {},
         "import": baked.settings(),
@@ -181,6 +186,6 @@ def _pair(text: str, name: str) -> tuple[int, int]:
 def _wholes(text: str, name: str) -> list[int]:
     """Whole numbers with commas or crosses between them. Raises SssgenError."""
     parts = text.replace("x", ",").replace("×", ",").split(",")
-    if not all(part.isdecimal() and len(part) < 6 for part in parts):
+    if not all(part.isdecimal() and len(part) < 10 for part in parts):
         raise failure(f"'{text}' is no {name}", "whole numbers, with a comma or x between them where there are several")
     return [int(part) for part in parts]

@@ -138,7 +138,7 @@ def _(geometry: Mesh, origins: Array, directions: Array) -> Array:
     mesh = geometry.triangles
     size = float(np.linalg.norm(mesh.places.max(axis=0) - mesh.places.min(axis=0)))
     rays, faces, t = geometry.rays.all(origins, directions)
-    side = np.sign(np.einsum("nc,nc->n", mesh.flat[faces], directions[rays]))
+    side = np.sign(np.einsum("nc,nc->n", mesh.flat[faces], directions[rays])) * (-1.0 if geometry.inside_out else 1.0)
     keep = (t > 1e-5 * size) & (side != 0.0)  # the surface that a ray starts from is none that it passes
     order = np.lexsort((t[keep], rays[keep]))
     t, rays, side = t[keep][order], rays[keep][order], side[keep][order]

@@ -14,7 +14,7 @@ from sssgen.data import posix
 from sssgen.diagnostics import did_you_mean, failure
 
 from ..extras import need
-from .mesh_distance import MeshDistance
+from .mesh_distance import MeshDistance, is_inside_out
 from .mesh_rays import MeshRays
 from .placed import Array, Geometry, Hits, any_tangent, spherical, spread, tangent_of, unit
 from .table import ANY
@@ -106,6 +106,11 @@ class Mesh(Geometry):
     def solid(self) -> MeshDistance:
         """What knows the distance to the triangles, and which points are inside."""
         return MeshDistance(self.triangles.places, self.triangles.corners)
+
+    @cached_property
+    def inside_out(self) -> bool:
+        """Whether the triangles' normals look inwards, on the whole."""
+        return is_inside_out(self.triangles.places, self.triangles.corners)
 
     @cached_property
     def rays(self) -> MeshRays:

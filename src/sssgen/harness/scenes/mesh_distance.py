@@ -23,10 +23,7 @@ class MeshDistance:
 
     def __init__(self, places: Array, corners: npt.NDArray[np.int64]) -> None:
         igl = need("igl", "libigl")
-        first, second, third = np.moveaxis(places[corners], 1, 0)
-        middle = places.mean(axis=0)
-        volume = np.einsum("nc,nc->", first - middle, np.cross(second - middle, third - middle)) / 6.0
-        self.inside_out = bool(volume < 0.0)
+        self.inside_out = is_inside_out(places, corners)
         self.places = np.ascontiguousarray(places)
         self.corners = np.ascontiguousarray(corners[:, ::-1] if self.inside_out else corners)
         self.rim = rim_length(self.places, self.corners)
@@ -50,6 +47,12 @@ class MeshDistance:
     def signed(self, points: Array) -> Array:
         """The distance, negative inside, (n,)."""
         return np.where(self.winding(points) > INSIDE, -1.0, 1.0) * self.unsigned(points)
+
+
+def is_inside_out(places: Array, corners: npt.NDArray[np.int64]) -> bool:
+    """Whether the triangles enclose a negative volume, about their middle."""
+    first, second, third = np.moveaxis(places[corners] - places.mean(axis=0), 1, 0)
+    return bool(np.einsum("nc,nc->", first, np.cross(second, third)) < 0.0)
 
 
 def rim_length(places: Array, corners: npt.NDArray[np.int64]) -> float:
