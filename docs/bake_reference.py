@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from sssgen import baked
 from sssgen.bake.atlas import filled
 from sssgen.bake.output import write_picture
 from sssgen.harness.scenes.geometry import Mesh
 from sssgen.harness.scenes.light_view import from_place
 from sssgen.harness.scenes.scene import Scene, load
 from sssgen.lab.intervals import intervals, thickness
+from sssgen.targets.texture_import import import_settings
 
 SIZE = 1024
 """Texels along a side of the map."""
@@ -42,11 +42,11 @@ def write(scene_file: Path, name: str, deep: bool) -> Path:
     values = np.zeros(len(met))
     values[hit] = found / found.max()
     facts: dict[str, Any] = {
-        "format": baked.FORMAT, "kind": "exact", "holds": "thickness",
+        "kind": "exact", "holds": "thickness",
         "parameters": {
             "exact_factor": float(found.max()), "camera_matrix": [float(one) for one in view.matrix.T.ravel()]
         },
-        "import": baked.settings(wrap="clamp", mipmaps=False),
+        "import": import_settings(wrap="clamp", mipmaps=False),
     }  # fmt: skip
     # what lies beside the body is filled from it, so that its edge is not darkened
     rows = np.arange(SIZE * SIZE).reshape(SIZE, SIZE)[::-1].ravel()  # the view's rows go up, a picture's down

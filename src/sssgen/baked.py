@@ -28,7 +28,7 @@ class Baked(NamedTuple):
     parameters: Mapping[str, Any]
     """What techniques need with it, by their names: TOML values, in the body's own space"""
     settings: Mapping[str, Any]
-    """How an engine imports it; see `settings`"""
+    """How an engine imports it; see `targets.texture_import`"""
     facts: Mapping[str, Any]
     """All that the file says"""
 
@@ -36,16 +36,6 @@ class Baked(NamedTuple):
 def sidecar(path: str) -> str:
     """The JSON's path beside a texture's."""
     return f"{path}.json"
-
-
-def settings(
-    dimension: str = "2D", wrap: str = "repeat", srgb: bool = False, mipmaps: bool = True, normal_map: bool = False
-) -> dict[str, Any]:
-    """How an engine is to import a texture: its filter is linear for all of ours."""
-    return {
-        "dimension": dimension, "srgb": srgb, "filter": "linear", "wrap": wrap, "mipmaps": mipmaps,
-        "normal_map": normal_map,
-    }  # fmt: skip
 
 
 def read(path: str) -> Baked | None:

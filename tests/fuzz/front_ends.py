@@ -33,6 +33,7 @@ from sssgen.lab import situation
 from sssgen.lang.loader import load_file, load_text, read_text
 from sssgen.library import TECHNIQUES, load_path
 from sssgen.material import load_material
+from sssgen.targets.texture_import import import_settings
 from watchdog import bounded
 
 NAME = "fuzzed"
@@ -184,7 +185,7 @@ def _volumes(kind: str) -> Callable[[], list[bytes]]:
 
 def _baked() -> list[bytes]:
     facts = {"format": 1, "kind": "distance", "holds": None, "parameters": {"box_min": [0, 0, 0]}}
-    return [json.dumps(facts | {"import": baked.settings("3D", "clamp")}).encode()]
+    return [json.dumps(facts | {"import": import_settings("3D", "clamp")}).encode()]
 
 
 def _lights() -> list[bytes]:

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from .. import baked
 from ..harness.scenes.mesh import Mesh
+from ..targets.texture_import import import_settings
 from . import memory
 from .distance import BLOCK, Progress
 from .grid import Array
@@ -36,11 +36,11 @@ def depth_map(
         depth[part] = np.where(met >= 0, (away[part] + t) * view.slopes[part], view.far)
         told(min(start + BLOCK, len(starts)), len(starts), "depths")
     facts = {
-        "format": baked.FORMAT, "kind": "depth", "holds": None, "light": light.facts(), "unit": "of the mesh",
+        "kind": "depth", "holds": None, "light": light.facts(), "unit": "of the mesh",
         "formula": "texel = distance from the light's plane to the first surface",
         "range": [float(depth.min()), float(depth.max())], "nothing": view.far,
         "covered": round(float((depth < view.far).mean()), 6),
         "parameters": {"light_matrix": [float(value) for value in view.matrix.T.ravel()]},
-        "import": baked.settings(wrap="clamp", mipmaps=False),
+        "import": import_settings(wrap="clamp", mipmaps=False),
     }  # fmt: skip
     return np.flipud(depth.reshape(height, width)), facts

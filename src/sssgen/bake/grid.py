@@ -72,9 +72,7 @@ def around(low: Array, high: Array, resolution: Sequence[int], padding: float) -
     if not 0.0 <= padding <= 10.0:
         raise failure(f"{padding:g} is no padding", "a part of the longest side, from 0 to 10, as 0.05")
     size, middle = high - low, 0.5 * (low + high)
-    counts_of = np.array(resolution if len(resolution) == 3 else [max(resolution)] * 3)
-    least = (size if len(resolution) == 3 else size.max()) / (counts_of - 2) if padding else 0.0
-    size = np.maximum(size + 2.0 * np.maximum(padding * size.max(), least), FLAT * np.linalg.norm(size))
+    size = np.maximum(size + 2.0 * _margin(size, resolution, padding), FLAT * np.linalg.norm(size))
     if len(resolution) == 1:
         voxel = float(size.max()) / resolution[0]
         counts = [max(LEAST, math.ceil(side / voxel * (1.0 - 1e-9))) for side in size]
@@ -86,3 +84,13 @@ def around(low: Array, high: Array, resolution: Sequence[int], padding: float) -
     if far > TOLD_APART:
         raise failure("the mesh stands too far from its origin for shaders' 32-bit numbers", "move it nearer")
     return grid
+
+
+def _margin(size: Array, resolution: Sequence[int], padding: float) -> Array | float:
+    """What is added on every side: the padding, and a voxel at least, so that there is an outside."""
+    if not padding:
+        return 0.0
+    between = np.array(resolution) - 2  # voxels that are left for the mesh
+    voxel = size / between if len(resolution) == 3 else size.max() / between[0]
+    margin: Array = np.maximum(padding * size.max(), voxel)
+    return margin

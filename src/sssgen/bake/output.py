@@ -112,7 +112,7 @@ def _check_place(path: str) -> None:
 
 def _write(path: str, data: bytes, facts: Mapping[str, Any], beside: Mapping[str, str] | None = None) -> list[str]:
     folder, name = os.path.split(path)
-    lines = [f" {json.dumps(key)}: {json.dumps(value)}" for key, value in facts.items()]
-    lines.insert(2, f' "made_by": {json.dumps(f"sssgen {VERSION}")}')
+    said = {"format": baked.FORMAT, "made_by": f"sssgen {VERSION}", **facts}
+    lines = [f" {json.dumps(key)}: {json.dumps(value)}" for key, value in said.items()]
     text = "{\n" + ",\n".join(lines) + "\n}\n"
     return [one.path for one in write_files(folder, {name: data, baked.sidecar(name): text, **(beside or {})})]

@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from .. import baked
 from ..data import posix
 from ..diagnostics import did_you_mean, failure
 from ..harness.scenes.mesh import Mesh
+from ..targets.texture_import import import_settings
 from . import memory
 from .distance import BLOCK, Progress, distances, inside
 from .encoding import ENCODINGS, encode, error_at_texels
@@ -86,7 +86,7 @@ def sdf(
     reach = float(unsigned.max()) if reach is None else reach
     texels = encode(unsigned, within, reach, form)
     facts = {
-        "format": baked.FORMAT, "kind": "distance", "holds": None,
+        "kind": "distance", "holds": None,
         "mesh": {
             "triangles": len(mesh.triangles.corners), "closed": solid.rim == 0.0, "inside_out": solid.inside_out,
             "box_min": _told(low), "box_max": _told(high),
@@ -104,7 +104,7 @@ def sdf(
         },
         "inside": round(float(within.mean()), 6),
         "parameters": {"box_min": _told(grid.low), "box_max": _told(grid.high), "distance_range": reach},
-        "import": baked.settings("3D", "clamp", mipmaps=False),
+        "import": import_settings("3D", "clamp", mipmaps=False),
     }  # fmt: skip
     return Volume(texels, grid, reach, facts)
 

@@ -7,12 +7,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .. import baked, cache
+from .. import cache
 from ..data import posix
 from ..diagnostics import failure
 from ..harness.scenes.mesh import Mesh
 from ..lab.executor import Item, Progress, failures, run
 from ..lab.store import Store
+from ..targets.texture_import import import_settings
 from . import memory
 from .atlas import SHARED, Atlas, atlas, filled, obj, unwrapped
 from .grid import Array
@@ -81,7 +82,7 @@ def thickness_map(
     top = 1.0 if passing else float(value.max())
     holds = "transmittance" if passing else "thickness"
     facts = {
-        "format": baked.FORMAT, "kind": holds, "holds": holds, "mode": wanted.mode,
+        "kind": holds, "holds": holds, "mode": wanted.mode,
         "mesh": {
             "triangles": len(mesh.corners), "new_uv": fresh, "inside_out": body.inside_out,
             "shared_texels": round(shown.shared, 6),
@@ -97,7 +98,7 @@ def thickness_map(
         "rays": 1 if _is_exact(wanted) else wanted.rays, "lost_rays": round(float(lost.mean()), 6),
         "attenuation_distance": wanted.attenuation or None,
         "parameters": {} if passing else {"thickness_factor": top},
-        "import": baked.settings(),
+        "import": import_settings(),
     }  # fmt: skip
     return Map(filled(value / top, shown.texels, size), facts, obj(mesh, uv) if fresh else "")
 

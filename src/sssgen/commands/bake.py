@@ -11,6 +11,7 @@ from ..cli import OK, print_json
 from ..data import posix
 from ..diagnostics import failure
 from ..harness.extras import need
+from ..targets.texture_import import import_settings
 
 LARGEST = 16384
 """Texels along a side of a picture."""
@@ -111,7 +112,6 @@ def _depth(arguments: Namespace) -> Done:
 
 
 def _voronoi(arguments: Namespace) -> Done:
-    from .. import baked
     from ..bake import cells, output
 
     output.picture_suffix(arguments.output)
@@ -120,18 +120,17 @@ def _voronoi(arguments: Namespace) -> Done:
         size, count, arguments.jitter, arguments.seed, tiles, arguments.feature, arguments.bevel, arguments.variation
     )
     facts = {
-        "format": baked.FORMAT, "kind": "cells", "holds": "thickness", "feature": arguments.feature,
+        "kind": "cells", "holds": "thickness", "feature": arguments.feature,
         "cells": list(count), "jitter": arguments.jitter, "seed": arguments.seed, "tiles": tiles,
         "bevel": arguments.bevel, "variation": arguments.variation,
         "one_stands_for": cells.scale(arguments.feature, arguments.jitter), "parameters": {},
-        "import": baked.settings(wrap="repeat" if tiles else "clamp"),
+        "import": import_settings(wrap="repeat" if tiles else "clamp"),
     }  # fmt: skip
     paths = output.write_picture(arguments.output, made, facts)
     return paths, facts, [f"{count[0]} × {count[1]} cells, {arguments.feature}{', tileable' if tiles else ''}"]
 
 
 def _normal(arguments: Namespace) -> Done:
-    from .. import baked
     from ..bake import normals, output
     from ..harness import images
 
@@ -141,16 +140,15 @@ def _normal(arguments: Namespace) -> Done:
     tiles = not arguments.no_tile
     made = normals.from_height(height[..., 0], arguments.strength, tiles, arguments.green)
     facts = {
-        "format": baked.FORMAT, "kind": "normal", "holds": None, "strength": arguments.strength,
+        "kind": "normal", "holds": None, "strength": arguments.strength,
         "green": "up (OpenGL)" if arguments.green == "opengl" else "down (DirectX)", "tiles": tiles, "parameters": {},
-        "import": baked.settings(wrap="repeat" if tiles else "clamp", normal_map=True),
+        "import": import_settings(wrap="repeat" if tiles else "clamp", normal_map=True),
     }  # fmt: skip
     paths = output.write_picture(arguments.output, made, facts, arguments.bits)
     return paths, facts, [f"tangent-space normals, green {facts['green']}"]
 
 
 def _pack(arguments: Namespace) -> Done:
-    from .. import baked
     from ..bake import output, packing
 
     output.picture_suffix(arguments.output)
@@ -161,8 +159,8 @@ def _pack(arguments: Namespace) -> Done:
     output.check_apart(arguments.output, [source.file for source in sources if source and source.file])
     made = packing.pack(packing.load(sources))
     facts = {
-        "format": baked.FORMAT, "kind": "packed", "holds": None, "channels": given, "parameters": {},
-        "import": baked.settings(),
+        "kind": "packed", "holds": None, "channels": given, "parameters": {},
+        "import": import_settings(),
     }  # fmt: skip
     paths = output.write_picture(arguments.output, made, facts, arguments.bits)
     return paths, facts, [f"{name}: {text}" for name, text in given.items() if text]

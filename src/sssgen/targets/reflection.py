@@ -8,6 +8,7 @@ from ..ir.nodes import Uniform
 from ..ir.types import Sampler, spell
 from .descriptor import Target
 from .emit import Emitted, Program
+from .texture_import import import_settings
 
 VERSION = 1
 """The format's version; it grows when a reader of an older file would be wrong."""
@@ -112,15 +113,9 @@ def _described(uniform: Uniform) -> dict[str, Any]:
 def _import(uniform: Uniform) -> dict[str, Any]:
     """How an engine is to import what it binds to a texture."""
     assert isinstance(uniform.type, Sampler)
-    flat = uniform.type.dim != "3D"
-    return {
-        "dimension": uniform.type.dim,
-        "srgb": _has(uniform, "source_color"),
-        "filter": "linear",
-        "wrap": "clamp" if _has(uniform, "repeat_disable") else "repeat",
-        "mipmaps": flat and not _has(uniform, "repeat_disable"),
-        "normal_map": _has(uniform, "normal_map"),
-    }
+    held = _has(uniform, "repeat_disable")
+    wrap, mipmaps = "clamp" if held else "repeat", not held and uniform.type.dim != "3D"
+    return import_settings(uniform.type.dim, wrap, _has(uniform, "source_color"), mipmaps, _has(uniform, "normal_map"))
 
 
 def _has(uniform: Uniform, hint: str) -> bool:
