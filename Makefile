@@ -15,7 +15,8 @@ NODE_PACKAGES := webgpu@0.6.2
 BUILT_PACKAGES := compushady==0.17.5
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-MATERIALS := $(foreach folder,$(wildcard examples/*),$(wildcard $(folder)/$(notdir $(folder)).toml))
+MATERIALS := $(foreach folder,$(wildcard examples/*),$(wildcard $(folder)/$(notdir $(folder)).toml)) \
+	$(addprefix examples/bake/,wax_distance.toml wax_map.toml wax_depth.toml ice_baked.toml)
 
 export PYTHONUTF8 := 1
 .DELETE_ON_ERROR:

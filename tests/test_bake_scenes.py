@@ -1,0 +1,111 @@
+"""The scenes of examples/bake: baked by the commands that they name, and the same picture on every back end."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+import shlex
+import shutil
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sssgen.cli import main
+from sssgen.compiler import compile
+from sssgen.harness import backends
+from sssgen.harness.backends import Backend
+from sssgen.harness.render import Rendered, render
+from sssgen.harness.scenes.scene import load
+
+for package in ("trimesh", "igl", "embreex", "xatlas", "scipy", "psutil"):
+    pytest.importorskip(package, reason=f"{package} is missing: pip install 'sssgen[bake]'")
+
+ROOT = Path(__file__).parents[1]
+MESHES = ROOT.parent / "shared" / "data" / "meshes"
+NAMES = ("spot", "suzanne")
+FILE = re.compile(r"\.(obj|npy|png|exr|json)$")
+COARSE = {
+    "sdf": ["--resolution", "32"],
+    "thickness": ["--size", "64", "--rays", "32", "--processes", "1"],
+    "depth": ["--size", "64"],
+}
+"""What makes bakes quick, and pictures still tell one technique from another."""
+SCENES = ("spot_distance", "spot_map", "spot_depth", "suzanne_distance", "suzanne_map", "suzanne_depth")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The examples with everything baked."""
+    top = tmp_path_factory.mktemp("bake")
+    shutil.copytree(ROOT / "examples" / "ice", top / "ice")
+    made: Path = shutil.copytree(ROOT / "examples" / "bake", top / "bake")
+    for name in NAMES:
+        if (MESHES / f"{name}.obj").is_file():
+            shutil.copy(MESHES / f"{name}.obj", made)
+    for scene in sorted(made.glob("*.toml")):
+        text = scene.read_text(encoding="utf-8")
+        if (needed := re.search(r'file = "([a-z]+)[_.]', text)) and not (made / f"{needed[1]}.obj").is_file():
+            continue
+        for command in re.findall(r"^# sssgen (bake [^;\n]*)", text, re.MULTILINE):
+            words = [
+                str(made / word) if re.search(r"\.(obj|npy|png|exr|json)$", word) else word
+                for word in shlex.split(command)
+            ]
+            assert main([*words, *COARSE.get(words[1], [])]) == 0
+    return made
+
+
+@cache
+def drawn(scene: Path, backend: str) -> Rendered:
+    loaded = load(scene)
+    return render(dataclasses.replace(loaded, size=(48, 40), samples=1), backends.get(backend))
+
+
+def found(folder: Path, name: str) -> Path:
+    mesh = name.partition("_")[0]
+    if mesh in NAMES and not (folder / f"{mesh}.obj").is_file():
+        pytest.skip(f"{mesh}.obj is missing: it lies in ../shared/data/meshes")
+    return folder / f"{name}.toml"
+
+
+@pytest.mark.parametrize("other", ["gl", "webgpu", "browser", "hlsl"])
+@pytest.mark.parametrize("name", [*SCENES[:3], "ice_baked_scene"])
+def test_every_back_end_draws_the_same(name: str, other: str, folder: Path, backend: Callable[[str], Backend]) -> None:
+    backend(other)
+    scene = found(folder, name)
+    oracle = drawn(scene, "numpy")
+    assert 255.0 * np.abs(drawn(scene, other).encoded - oracle.encoded).max() < 1.0
+    shown = oracle.encoded[oracle.covered > 0.5]
+    assert 0.2 < shown.mean() < 0.85 and shown.mean(axis=1).std() > 0.03
+
+
+@pytest.mark.parametrize("mesh", NAMES)
+def test_thin_parts_are_bright_and_the_three_ways_differ(
+    mesh: str, folder: Path, backend: Callable[[str], Backend]
+) -> None:
+    backend("gl")
+    pictures = [drawn(found(folder, f"{mesh}_{way}"), "gl") for way in ("distance", "map", "depth")]
+    for picture in pictures:
+        red, blue = picture.encoded[..., 0], picture.encoded[..., 2]
+        shown = picture.covered > 0.9
+        assert np.ptp(blue[shown]) > 0.3 and (red[shown] > blue[shown]).mean() > 0.9  # wax
+    first, second, third = (picture.encoded for picture in pictures)
+    assert min(np.abs(first - second).max(), np.abs(second - third).max(), np.abs(first - third).max()) > 0.1
+
+
+@pytest.mark.parametrize("material", ["wax_distance", "wax_map", "wax_depth", "ice_baked"])
+def test_what_is_imported_is_said(material: str, folder: Path) -> None:
+    textures = compile(folder / f"{material}.toml", "wgsl").reflection["textures"]
+    said = {texture["technique_name"]: texture["import"] for texture in textures}
+    if material == "wax_distance":
+        volume = said["distance_map"]
+        assert (volume["dimension"], volume["wrap"], volume["mipmaps"], volume["srgb"]) == ("3D", "clamp", False, False)
+    if material == "wax_depth":
+        assert said["light_depth_map"]["wrap"] == "clamp" and not said["light_depth_map"]["mipmaps"]
+    if material == "ice_baked":
+        assert said["normal_texture"]["normal_map"] and not said["thickness_texture"]["srgb"]
+        assert said["thickness_texture"]["wrap"] == "repeat" and said["thickness_texture"]["mipmaps"]
+    assert said["base_color_texture"]["srgb"]
