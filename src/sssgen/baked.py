@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from . import json_source, library
+from . import library
 from .data import posix
 from .diagnostics import failure
 from .ir.nodes import Uniform
@@ -44,6 +44,8 @@ def read(path: str) -> Baked | None:
     note(file)
     if not os.path.isfile(file):
         return None
+    from . import json_source  # most materials have nothing baked, and starting without json is quicker
+
     shown = posix(file)
     try:
         with open(file, "rb") as opened:
