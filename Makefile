@@ -2,6 +2,7 @@
 # make test   the tests, but the slow ones (make test-long)      make lint   ruff and mypy
 # make gallery  the example scenes' pictures, and docs/gallery.md
 # make stability  what fails in the published techniques and holds in ours: docs/stability.md
+# make bake   bakes two meshes, and docs/bake.md with pictures beside the exact reference
 # make accuracy   error against cost of everything, on two cores an hour: docs/accuracy.md
 # make fuzz   random programs and files for FUZZ_MINUTES (10)
 # make bench  the benchmarks   make bench-gpu  what shaders cost on this GPU, emitted and by hand
@@ -20,7 +21,7 @@ MATERIALS := $(foreach folder,$(wildcard examples/*),$(wildcard $(folder)/$(notd
 
 export PYTHONUTF8 := 1
 .DELETE_ON_ERROR:
-.PHONY: setup accuracy demo test test-long fuzz lint bench bench-gpu gallery stability clean
+.PHONY: setup accuracy bake demo test test-long fuzz lint bench bench-gpu gallery stability clean
 
 setup: .venv/done build/node/done
 
@@ -57,6 +58,9 @@ gallery: setup
 stability: setup
 	$(BIN)/python docs/stability.py
 	$(BIN)/python docs/safety.py
+
+bake: setup
+	$(BIN)/python docs/bake.py
 
 accuracy: setup
 	$(BIN)/python docs/accuracy.py
