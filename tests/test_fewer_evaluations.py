@@ -192,6 +192,7 @@ def test_a_traced_march_is_nearer_with_fewer_evaluations(name: str) -> None:
     assert evaluations("march_light_traced", name, reach=WAY, steps=16) < 15.0
 
 
+@pytest.mark.slow
 def test_the_front_moves() -> None:
     """At as many evaluations, 7 or more, little more than half the error: ball, slab, cube and torus together."""
 

@@ -114,6 +114,7 @@ def test_no_light_is_followed_for_roles_that_need_none(monkeypatch: pytest.Monke
     assert [point["label"] for point in alone] == [one.label for one in candidates.thickness()]
 
 
+@pytest.mark.slow
 def test_the_same_bytes_in_processes_as_here(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     scenes, roles = [cube(), situation.load("inlay_ball")], ("coordinates", "translucency")
     here = to_json(chart.charted(scenes, settings(roles=roles)))

@@ -242,6 +242,7 @@ def test_each_pixel_looks_along_its_own_ray(geometry: Geometry) -> None:
     assert np.sqrt((difference**2).mean()) < 0.02
 
 
+@pytest.mark.slow
 def test_a_mesh_of_a_ball_reads_like_the_ball() -> None:
     light, medium = Light((0.6, 0.0, -0.8)), grey(0.9, 4.0)
     camera = Camera(position=(0.0, 0.0, 4.0), field_of_view=25.0)
@@ -258,6 +259,7 @@ def test_a_mesh_of_a_ball_reads_like_the_ball() -> None:
 # --- the noise ---
 
 
+@pytest.mark.slow
 def test_the_error_is_that_of_equal_rays() -> None:
     # 400 equal rays, in 8 and in 64 batches: their means spread as each one's own error says
     origins, directions = (np.repeat(part, 400, axis=0) for part in looking(np.array([0.8])))

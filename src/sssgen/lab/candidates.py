@@ -172,7 +172,9 @@ def needs(technique: Technique) -> str:
     found = []
     for slot in technique.slots:
         texture = slot.params[0].quantity != "world_position"
-        found.append("the body as a distance texture" if texture else "the body as a distance function")
+        found.append(
+            "the body as a distance texture (sssgen bake sdf)" if texture else "the body as a distance function"
+        )
     for uniform in technique.uniforms:
         if isinstance(uniform.type, Sampler) and not technique.slots:
             holds = dict(uniform.hints).get("holds")
