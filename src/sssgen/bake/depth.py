@@ -35,12 +35,12 @@ def depth_map(
         met, t = mesh.rays.nearest(starts[part], view.directions[part])
         depth[part] = np.where(met >= 0, (away[part] + t) * view.slopes[part], view.far)
         told(min(start + BLOCK, len(starts)), len(starts), "depths")
-    met = depth[depth < view.far]
+    reached = depth[depth < view.far]
     facts = {
         "kind": "depth", "holds": None, "light": light.facts(), "unit": "of the mesh",
         "formula": "texel = distance from the light's plane to the first surface",
-        "range": [float(met.min(initial=view.far)), float(met.max(initial=0.0))], "nothing": view.far,
-        "covered": round(len(met) / len(depth), 6),
+        "range": [float(reached.min(initial=view.far)), float(reached.max(initial=0.0))], "nothing": view.far,
+        "covered": round(len(reached) / len(depth), 6),
         "parameters": {"light_matrix": [float(value) for value in view.matrix.T.ravel()]},
         "import": import_settings(wrap="clamp", mipmaps=False),
     }  # fmt: skip
