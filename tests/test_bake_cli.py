@@ -267,19 +267,49 @@ def test_a_sheet_has_no_thickness_map(capsys: pytest.CaptureFixture[str]) -> Non
 
 
 def test_what_is_read_is_not_overwritten(capsys: pytest.CaptureFixture[str], idle: None) -> None:
-    """A mesh that gets texture coordinates is written beside its map, and may not be the one that was given."""
-    box = meshes.box()
-    write(Path("box.obj"), box._replace(uv=None))
+    """Neither by the texture nor by what is written beside it: its JSON, and a mesh that gets texture coordinates."""
+    box = meshes.box()._replace(uv=None)
+    write(Path("box.png.obj"), box)
     images.write_png("height.png", np.eye(4))
-    before = {name: Path(name).read_bytes() for name in ("box.obj", "height.png")}
+    Path("d.exr.json").write_text('{"direction": [0, 1, 0]}', encoding="utf-8")
+    before = {name: Path(name).read_bytes() for name in ("box.png.obj", "height.png", "d.exr.json")}
     for arguments in (
-        ["thickness", "box.obj", "-o", "box.png"],
-        ["thickness", "./box.obj", "-o", "box.exr", "--unwrap"],
+        ["thickness", "./box.png.obj", "-o", "box.png"],
+        ["depth", "box.png.obj", "-o", "d.exr", "--direction", "d.exr.json"],
         ["normal", "height.png", "-o", "height.png"],
         ["pack", "-o", "height.png", "--red", "0", "--green", "1-height.png:r"],
     ):
         assert "would overwrite" in refused(capsys, *arguments)
     assert before == {name: Path(name).read_bytes() for name in before}
+
+
+def test_other_files_beside_the_map_are_left_alone() -> None:
+    write(Path("plain.obj"), meshes.box()._replace(uv=None))
+    Path("map.obj").write_text("mine", encoding="utf-8")
+    bake("thickness", "plain.obj", "-o", "map.png", "--mode", "chord", "--size", "16", "--processes", "1")
+    assert Path("map.obj").read_text(encoding="utf-8") == "mine" and Path("map.png.obj").is_file()
+
+
+def test_triangles_that_face_opposite_ways_are_told(capsys: pytest.CaptureFixture[str]) -> None:
+    box = meshes.box()
+    faces = box.faces.copy()
+    faces[::2] = faces[::2, ::-1]
+    write(Path("mixed.obj"), box._replace(faces=faces, uv=None))
+    for what, name in (("sdf", "m.npy"), ("thickness", "m.png")):
+        if (
+            main(["bake", what, "mixed.obj", "-o", name, *(["--thin", "0.1"] if what == "sdf" else ["--size", "16"])])
+            == 0
+        ):
+            assert facts(name)["mesh"]["mixed_sides"]
+            assert "face opposite ways" in capsys.readouterr().out
+    bake("sdf", "box.obj", "-o", "right.npy", "--resolution", "12")
+    assert not facts("right.npy")["mesh"]["mixed_sides"]
+
+
+def test_a_light_that_meets_nothing_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    write(Path("sheet.obj"), SHEET)
+    bake("depth", "sheet.obj", "-o", "d.exr", "--direction", "1,0,0", "--size", "16")
+    assert "the light meets nothing" in capsys.readouterr().out
 
 
 def test_folders_are_made() -> None:

@@ -15,6 +15,7 @@ import pytest
 
 from sssgen.cli import main
 from sssgen.compiler import compile
+from sssgen.diagnostics import SssgenError
 from sssgen.harness import backends
 from sssgen.harness.backends import Backend
 from sssgen.harness.render import Rendered, render
@@ -109,3 +110,46 @@ def test_what_is_imported_is_said(material: str, folder: Path) -> None:
         assert said["normal_texture"]["normal_map"] and not said["thickness_texture"]["srgb"]
         assert said["thickness_texture"]["wrap"] == "repeat" and said["thickness_texture"]["mipmaps"]
     assert said["base_color_texture"]["srgb"]
+
+
+PAIRS = {
+    "normals as a colour": ("base_color", "base_color_texture", ["normal", "cells.png"], "takes colours"),
+    "cells as normals": ("normal_map", "normal_texture", ["voronoi"], "takes normals"),
+    "normals with green down": ("normal_map", "normal_texture", ["normal", "cells.png", "--green", "directx"], "green"),
+    "a thickness as a view": ("depth_map_thickness", "light_depth_map", ["voronoi"], "what a view of the body sees"),
+    "normals as a height": ("normal_from_height", "height_texture", ["normal", "cells.png"], "takes other numbers"),
+}
+
+
+@pytest.mark.parametrize("pair", PAIRS)
+def test_what_does_not_fit_is_refused(pair: str, tmp_path: Path) -> None:
+    technique, texture, words, message = PAIRS[pair]
+    assert main(["bake", "voronoi", "-o", str(tmp_path / "cells.png"), "--size", "16", "--cells", "4"]) == 0
+    words = [str(tmp_path / word) if FILE.search(word) else word for word in words]
+    file = tmp_path / "made.png"
+    assert (
+        main(["bake", words[0], *words[1:], "-o", str(file), *(["--size", "16"] if words[0] == "voronoi" else [])]) == 0
+    )
+    section = "thickness" if technique.endswith("thickness") else "surface"
+    text = f'[material]\nname = "m"\n[{section}]\ntechnique = "{technique}"\n{texture} = "made.png"\n'
+    text += '[translucency]\ntechnique = "absorption_tint"\n' if section == "thickness" else ""
+    (tmp_path / "m.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(SssgenError, match=message):
+        compile(tmp_path / "m.toml", "wgsl")
+
+
+def test_a_fixed_parameter_is_the_baked_one(tmp_path: Path) -> None:
+    (tmp_path / "t.png.json").write_text(
+        '{"format": 1, "kind": "thickness", "holds": "thickness", "parameters": {"thickness_factor": 0.25}}',
+        encoding="utf-8",
+    )
+    head = '[material]\nname = "m"\n[thickness]\ntechnique = "thickness_map"\nthickness_texture = "t.png"\n'
+    rest = '[translucency]\ntechnique = "absorption_tint"\n'
+    (tmp_path / "m.toml").write_text(f"{head}thickness_factor = {{ fixed = true }}\n{rest}", encoding="utf-8")
+    text = compile(tmp_path / "m.toml", "wgsl").files["m.wgsl"]
+    assert "0.25 * textureSample" in text and "material.thickness_factor" not in text
+    for wrong in ("1" + 400 * "0", '"a"', "[[1]]", "NaN"):
+        said = f'"holds": "thickness", "parameters": {{"thickness_factor": {wrong}}}'
+        (tmp_path / "t.png.json").write_text(f'{{"format": 1, "kind": "thickness", {said}}}', encoding="utf-8")
+        with pytest.raises(SssgenError, match="not made of numbers"):
+            compile(tmp_path / "m.toml", "wgsl")

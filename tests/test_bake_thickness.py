@@ -20,12 +20,14 @@ pytest.importorskip("scipy", reason="SciPy is missing: pip install 'sssgen[bake]
 pytest.importorskip("xatlas", reason="xatlas is missing: pip install 'sssgen[bake]'")
 pytest.importorskip("psutil", reason="psutil is missing: pip install 'sssgen[bake]'")
 
+from sssgen.bake import unwrap
 from sssgen.bake.atlas import Atlas, atlas
 from sssgen.bake.chords import Chords, inward
 from sssgen.bake.depth import depth_map
 from sssgen.bake.light import BakeLight
 from sssgen.bake.thickness import Map, Request, thickness_map, warnings
 from sssgen.harness.scenes.mesh import Mesh
+from sssgen.lab.executor import Failure, run
 from sssgen.targets.numpy_textures import Texture
 
 
@@ -376,3 +378,52 @@ def test_a_light_in_the_body_is_refused(globe: str) -> None:
     for place in ((0.0, 0.0, 0.0), (0.0, 0.1, 0.2), (0.5, 0.5, 0.2)):
         with pytest.raises(SssgenError, match="stands in the body"):
             depth_map(globe, BakeLight(np.array(place), False), (8, 8))
+
+
+def test_gltf_keeps_its_parts_and_their_texture_coordinates() -> None:
+    trimesh = pytest.importorskip("trimesh", reason="trimesh is missing: pip install 'sssgen[bake]'")
+    made = meshes.box((1.0, 0.6, 0.4))
+    assert made.uv is not None
+    corners = made.triangles.reshape(-1, 3)
+    visual = trimesh.visual.TextureVisuals(uv=made.uv.reshape(-1, 2))
+    part = trimesh.Trimesh(corners, np.arange(len(corners)).reshape(-1, 3), visual=visual, process=False)
+    scene = trimesh.Scene()
+    mirrored = np.diag([-2.0, 1.0, 1.0, 1.0])
+    mirrored[:3, 3] = 5.0, 0.0, 0.0
+    scene.add_geometry(part, node_name="first")
+    scene.add_geometry(part, node_name="second", transform=mirrored)
+    for suffix in ("glb", "gltf"):
+        scene.export(f"parts.{suffix}")
+        mesh = Mesh(path=f"parts.{suffix}")
+        assert len(mesh.triangles.corners) == 24 and mesh.triangles.uv is not None
+        wanted = np.concatenate([made.uv, made.uv])
+        assert np.sort(mesh.triangles.uv.ravel()) == pytest.approx(np.sort(wanted.ravel()), abs=1e-6)
+        assert mesh.triangles.places.max(axis=0)[0] == pytest.approx(6.0, abs=1e-6)
+        assert not mesh.inside_out and mesh.solid.rim == 0.0
+        volume = mesh.solid.winding(np.array([[0.0, 0.0, 0.0], [5.0, 0.0, 0.0], [2.5, 0.0, 0.0]]))
+        assert volume == pytest.approx([1.0, 1.0, 0.0], abs=0.02)
+
+
+def test_what_xatlas_cannot_do_whole_it_does_in_parts(monkeypatch: pytest.MonkeyPatch, globe: str) -> None:
+    asked: list[int] = []
+
+    def once_lost(items: Any, **options: Any) -> list[Any]:
+        asked.append(len(np.unique(items[0].arguments[2])))
+        return [Failure("texture coordinates", "its process crashed")] if len(asked) == 1 else run(items, **options)
+
+    monkeypatch.setattr(unwrap, "run", once_lost)
+    mesh = Mesh(path=globe).triangles
+    uv = unwrap.unwrapped(mesh)
+    assert asked == [1, 6] and uv.shape == (len(mesh.corners), 3, 2) and uv.min() >= 0.0 and uv.max() <= 1.0
+    assert atlas(mesh, uv, (256, 256), globe).shared < 0.05
+    monkeypatch.setattr(unwrap, "run", lambda *_, **__: [Failure("texture coordinates", "its process crashed")])
+    with pytest.raises(SssgenError, match="finds no texture coordinates"):
+        unwrap.unwrapped(mesh)
+
+
+@pytest.mark.slow
+def test_a_ball_that_xatlas_crashes_on() -> None:
+    trimesh = pytest.importorskip("trimesh", reason="trimesh is missing: pip install 'sssgen[bake]'")
+    trimesh.creation.icosphere(subdivisions=6).export("ball.ply")
+    made = thickness_map("ball.ply", (64, 64), Request(mode="chord"))
+    assert made.facts["mean"] == pytest.approx(2.0, rel=1e-2) and made.facts["mesh"]["new_uv"]

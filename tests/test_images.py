@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import struct
 import zlib
 from pathlib import Path
@@ -12,6 +13,7 @@ import pytest
 
 from sssgen.diagnostics import SssgenError
 from sssgen.harness import png16
+from sssgen.harness.extras import need
 from sssgen.harness.images import encode_srgb, png_bytes, read, write_exr, write_png
 from sssgen.harness.scenes.camera import Camera
 
@@ -260,3 +262,18 @@ def test_the_picture_is_upright_and_not_mirrored() -> None:
     assert down[0].tolist() == above[0].tolist() == [1.0, 0.0, 0.0]
     assert down[1].tolist() == [0.0, 0.0, -1.0]
     assert above[1].tolist() == [0.0, 0.0, 1.0]
+
+
+def test_interrupts_wait_for_imports(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A package that catches whatever is raised while it is imported does not swallow Ctrl-C."""
+    (tmp_path / "swallows.py").write_text(
+        "import signal\ntry:\n    signal.raise_signal(signal.SIGINT)\nexcept BaseException:\n    pass\n",
+        encoding="utf-8",
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            need("swallows")
+    finally:
+        signal.signal(signal.SIGINT, before)

@@ -20,7 +20,7 @@ def add_baking(command: Callable[..., ArgumentParser], add_where: Callable[[Argu
         "  sssgen bake thickness bunny.glb -o bunny_thickness.png\n"
         "Beside each texture lies a JSON: what it holds, its errors, and the parameters that it goes with.",
     )
-    kinds = bake.add_subparsers(metavar="WHAT", dest="WHAT", required=True)
+    kinds = bake.add_subparsers(metavar="TEXTURE", dest="TEXTURE", required=True)
 
     def kind(name: str, text: str, epilog: str = "") -> Any:
         made = kinds.add_parser(

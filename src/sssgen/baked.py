@@ -16,6 +16,10 @@ from .watch import note
 FORMAT = 1
 """Of the JSON; it grows when a reader of an older file would be wrong."""
 MAX_BYTES = 2**20
+LARGEST = 1e30
+"""Beyond any number of a bake."""
+UNITS = "materials count in metres: scale the mesh, so that it is a few units large"
+"""What to do where a baked length is out of a parameter's range."""
 
 
 class Baked(NamedTuple):
@@ -59,6 +63,10 @@ def read(path: str) -> Baked | None:
     parameters, how = data.get("parameters", {}), data.get("import", {})
     if not isinstance(parameters, dict) or not isinstance(how, dict):
         raise failure("'parameters' and 'import' are tables", "bake it anew", shown)
+    for name, value in parameters.items():
+        numbers = value if isinstance(value, list) else [value]
+        if not all(isinstance(one, int | float) and abs(one) < LARGEST for one in numbers):
+            raise failure(f"'parameters': '{name}' is not made of numbers", "bake it anew", shown)
     return Baked(data["kind"], str(data.get("holds") or ""), parameters, how, data)
 
 
@@ -72,6 +80,15 @@ def check(made: Baked, uniform: Uniform, name: str) -> None:
     dimension = made.settings.get("dimension", uniform.type.dim)
     if dimension != uniform.type.dim:
         raise failure(f"'{name}' is a {dimension} texture, and '{uniform.name}' is {uniform.type.dim}")
+    hints = dict(uniform.hints)
+    is_normal, is_color = "normal_map" in hints, "source_color" in hints
+    if is_color or is_normal != (made.kind == "normal"):
+        takes = "normals" if is_normal else "colours" if is_color else "other numbers"
+        raise failure(f"'{name}' is a {made.kind} texture, and '{uniform.name}' takes {takes}")
+    if is_normal and str(made.facts.get("green")).startswith("down"):
+        raise failure(f"the green of '{name}' is down, as DirectX has it", "bake it with --green opengl")
+    if "repeat_disable" in hints and not wanted and made.holds and made.kind != "exact":
+        raise failure(f"'{name}' holds {made.holds}, and '{uniform.name}' takes what a view of the body sees")
 
 
 def _readers(quantity: str) -> str:
@@ -80,6 +97,8 @@ def _readers(quantity: str) -> str:
         return "sssgen bake thickness makes a map of a quantity"
     known = [library.load(name) for name in library.index()]
     reading = [one.name for one in known if any(_takes(uniform, quantity) for uniform in one.uniforms)]
+    if not reading:
+        return "bake it anew"
     return f"{quantity} is read by {' and '.join(reading)}; a conversion makes another quantity of it"
 
 

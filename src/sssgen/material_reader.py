@@ -283,12 +283,13 @@ class _Reader:
                     self.document.error(span, found.message, found.hint)
                 continue
             for other in uniforms:
-                if other.name in made.parameters and not any(name in table for name in _names(other)):
+                given = [table[name] for name in _names(other) if name in table]
+                if other.name in made.parameters and all(isinstance(raw, dict) and "value" not in raw for raw in given):
                     try:
                         components = read_value(other, made.parameters[other.name])
                     except WrongValue as wrong:
                         message = f"what is baked into '{stage.textures[uniform.name]}' does not fit: {wrong.message}"
-                        self.document.error(span, message, wrong.hint)
+                        self.document.error(span, message, "; ".join(filter(None, (wrong.hint, baked.UNITS))))
                         continue
                     stage = stage._replace(values={**stage.values, other.name: components})
         return stage

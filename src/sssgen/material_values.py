@@ -126,7 +126,7 @@ def _number(uniform: Uniform, raw: Any, index: int | None) -> float:
     if not low <= raw <= high:  # also true of nan
         what = (
             str(raw)
-            if not math.isfinite(raw)
+            if isinstance(raw, float) and not math.isfinite(raw)
             else f"a number of {len(str(raw))} digits"
             if abs(raw) > 1e300
             else f"{raw:g}"

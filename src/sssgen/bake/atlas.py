@@ -87,26 +87,6 @@ def _weights(points: Array, corners: Array, areas: Array) -> Array:
     return whole
 
 
-def unwrapped(mesh: Triangles) -> Array:
-    """New texture coordinates, (f, 3, 2), without overlaps, by xatlas. Raises SssgenError without it."""
-    xatlas = need("xatlas", extra="bake")
-    low, high = mesh.places.min(axis=0), mesh.places.max(axis=0)
-    places = (mesh.places - low) / float((high - low).max())  # it counts in 32 bits, and in texels of its own
-    charts = xatlas.Atlas()
-    charts.add_mesh(places.astype(np.float32), mesh.corners.astype(np.uint32))
-    pack = xatlas.PackOptions()
-    pack.padding, pack.bilinear, pack.resolution = PADDING, True, RESOLUTION
-    charts.generate(xatlas.ChartOptions(), pack)
-    _, corners, uv = charts[0]
-    found: Array = uv.astype(np.float64)[corners.astype(np.int64)]
-    return found
-
-
-PADDING = 4
-"""Texels between charts, on a map of RESOLUTION."""
-RESOLUTION = 1024
-
-
 def filled(values: Array, texels: Indices, size: tuple[int, int]) -> Array:
     """The map (height, width) of values at texels (n,); every other texel has that of the nearest of them.
 
@@ -123,13 +103,3 @@ def filled(values: Array, texels: Indices, size: tuple[int, int]) -> Array:
     )
     dilated: Array = whole.reshape(height, width)[rows, columns]
     return dilated
-
-
-def obj(mesh: Triangles, uv: Array) -> str:
-    """The mesh as a Wavefront file with these texture coordinates."""
-    corners, corner_of = np.unique(uv.reshape(-1, 2), axis=0, return_inverse=True)
-    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in mesh.places]
-    lines += [f"vt {u:.9g} {v:.9g}" for u, v in corners]
-    for face, turns in zip(mesh.corners + 1, corner_of.reshape(-1, 3) + 1, strict=True):
-        lines.append("f " + " ".join(f"{place}/{turn}" for place, turn in zip(face, turns, strict=True)))
-    return "\n".join(lines) + "\n"

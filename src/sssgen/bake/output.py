@@ -92,10 +92,16 @@ def write_picture(
 
 
 def check_apart(path: str, sources: Iterable[str]) -> None:
-    """Raises SssgenError where a file that would be written is one that is read."""
-    for source in sources:
-        if os.path.exists(path) and os.path.exists(source) and os.path.samefile(path, source):
-            raise failure("this would overwrite what it is made from", "name another file with -o", posix(path))
+    """Raises SssgenError where a file that would be written, at the path or beside it, is one that is read."""
+    for written in (path, baked.sidecar(path), mesh_beside(path)):
+        for source in sources:
+            if os.path.exists(written) and os.path.exists(source) and os.path.samefile(written, source):
+                raise failure("this would overwrite what it is made from", "name another file with -o", posix(written))
+
+
+def mesh_beside(path: str) -> str:
+    """The file of a mesh that got texture coordinates for a map."""
+    return f"{path}.obj"
 
 
 def _check_place(path: str) -> None:

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from ..data import posix
 from ..diagnostics import did_you_mean, failure
 from ..harness.scenes.mesh import Mesh
+from ..harness.scenes.mesh_distance import mixed_sides
 from ..targets.texture_import import import_settings
 from . import memory
 from .distance import BLOCK, Progress, distances, inside
@@ -19,6 +20,7 @@ from .grid import Array, Grid, around
 
 SHEET = 1e-5
 """A mesh that is flatter than this share of its size is a sheet, without an inside."""
+MIXED = "neighbouring triangles face opposite ways, so that inside is not what it seems: make their normals agree"
 A_POINT = 200
 """Bytes that a query takes for each point."""
 A_TRIANGLE = 800
@@ -89,6 +91,7 @@ def sdf(
         "kind": "distance", "holds": None,
         "mesh": {
             "triangles": len(mesh.triangles.corners), "closed": solid.rim == 0.0, "inside_out": solid.inside_out,
+            "mixed_sides": mixed_sides(mesh.triangles.corners),
             "box_min": _told(low), "box_max": _told(high),
         },
         "texels": list(grid.counts), "voxel": _told(grid.voxel),
@@ -120,7 +123,7 @@ def _without_inside(path: str, is_open: bool, thin: float | None, grid: Grid) ->
     if is_open and thin is None:
         hint = "give a sheet its thickness with --thin; close a body's holes, or raise --resolution for thin walls"
         raise failure(f"no voxel of {voxel:.3g} units lies inside the mesh, which is open", hint, posix(path))
-    hint = f"raise --resolution: a voxel is {voxel:.3g} units"
+    hint = f"raise --resolution (a voxel is {voxel:.3g} units), or take its walls as a sheet with --thin"
     raise failure("no voxel lies inside the mesh: its walls are thinner than a voxel", hint, posix(path))
 
 

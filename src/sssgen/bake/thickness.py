@@ -11,13 +11,16 @@ from .. import cache
 from ..data import posix
 from ..diagnostics import failure
 from ..harness.scenes.mesh import Mesh
+from ..harness.scenes.mesh_distance import mixed_sides
 from ..lab.executor import Item, Progress, failures, run
 from ..lab.store import Store
 from ..targets.texture_import import import_settings
 from . import memory
-from .atlas import SHARED, Atlas, atlas, filled, obj, unwrapped
+from .atlas import SHARED, Atlas, atlas, filled
 from .grid import Array
 from .light import BakeLight
+from .sdf import MIXED
+from .unwrap import obj, unwrapped
 
 MODES = ("mean", "chord", "transmittance")
 RAYS = 2**18
@@ -68,7 +71,7 @@ def thickness_map(
     body = Mesh(path=path)
     mesh = body.triangles
     fresh = unwrap or mesh.uv is None
-    uv = unwrapped(mesh) if fresh or mesh.uv is None else mesh.uv
+    uv = unwrapped(mesh, told) if fresh or mesh.uv is None else mesh.uv
     shown = atlas(mesh, uv, size, path)
     if body.inside_out:
         shown = shown._replace(flat=-shown.flat)
@@ -82,10 +85,10 @@ def thickness_map(
     top = 1.0 if passing else float(value.max())
     holds = "transmittance" if passing else "thickness"
     facts = {
-        "kind": holds, "holds": holds, "mode": wanted.mode,
+        "kind": holds, "holds": holds, "mode": "direction" if wanted.light else wanted.mode,
         "mesh": {
             "triangles": len(mesh.corners), "new_uv": fresh, "inside_out": body.inside_out,
-            "shared_texels": round(shown.shared, 6),
+            "shared_texels": round(shown.shared, 6), "mixed_sides": mixed_sides(mesh.corners),
         },
         "light": wanted.light.facts() if wanted.light else None,
         "unit": "" if passing else "of the mesh", "range": [0.0, top],
@@ -106,10 +109,12 @@ def thickness_map(
 def warnings(facts: dict[str, Any]) -> list[str]:
     """What the user of a map should know of it."""
     found = ["the mesh is inside out: taken the other way round"] if facts["mesh"]["inside_out"] else []
-    if (shared := facts["mesh"]["shared_texels"]) > SHARED:
+    if (shared := facts["mesh"]["shared_texels"]) > SHARED and not facts["mesh"]["new_uv"]:
         found.append(
             f"{shared:.0%} of the texels are claimed by several places: --unwrap makes texture coordinates anew"
         )
+    if facts["mesh"]["mixed_sides"]:
+        found.append(MIXED)
     if (lost := facts["lost_rays"]) > 0.001:
         found.append(f"{lost:.1%} of the rays left through holes of the mesh, and do not count")
     return found

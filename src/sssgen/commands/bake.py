@@ -27,7 +27,7 @@ def run(arguments: Namespace) -> int:
     kinds: dict[str, Callable[[Namespace], Done]] = {
         "sdf": _sdf, "thickness": _thickness, "depth": _depth, "voronoi": _voronoi, "normal": _normal, "pack": _pack,
     }  # fmt: skip
-    paths, facts, told = kinds[arguments.WHAT](arguments)
+    paths, facts, told = kinds[arguments.TEXTURE](arguments)
     if arguments.json:
         print_json({"ok": True, "files": paths, **facts})
     else:
@@ -37,10 +37,11 @@ def run(arguments: Namespace) -> int:
 
 def _sdf(arguments: Namespace) -> Done:
     from ..bake import output
-    from ..bake.sdf import sdf
+    from ..bake.sdf import MIXED, sdf
     from ..lab.progress import Bar
 
     format = output.volume_format(arguments.output, arguments.format)
+    output.check_apart(arguments.output, [arguments.MESH])
     with Bar() as bar:
         made = sdf(
             arguments.MESH,
@@ -61,6 +62,7 @@ def _sdf(arguments: Namespace) -> Done:
         + (f", but {error['but']}" if "but" in error else ""),
         f"the mesh is {'closed' if mesh['closed'] else 'open'}"
         + (", and inside out: taken the other way round" if mesh["inside_out"] else ""),
+        *([f"warning: {MIXED}"] if mesh["mixed_sides"] else []),
     ]
     return paths, made.facts, told
 
@@ -71,8 +73,7 @@ def _thickness(arguments: Namespace) -> Done:
     from ..lab.progress import Bar
 
     output.picture_suffix(arguments.output)
-    mesh = f"{os.path.splitext(arguments.output)[0]}.obj"  # where it gets new texture coordinates
-    output.check_apart(mesh, [arguments.MESH])
+    output.check_apart(arguments.output, [arguments.MESH, arguments.direction or ""])
     wanted = Request(
         arguments.mode,
         light.read(arguments.direction) if arguments.direction else None,
@@ -85,6 +86,7 @@ def _thickness(arguments: Namespace) -> Done:
         made = thickness_map(
             arguments.MESH, size, wanted, arguments.unwrap, arguments.processes, arguments.scheduler, bar
         )
+    mesh = output.mesh_beside(arguments.output)
     beside = {os.path.basename(mesh): made.mesh} if made.mesh else {}
     paths = output.write_picture(arguments.output, made.values, made.facts, beside=beside)
     errors, top = made.facts["error"], made.facts["range"][1]
@@ -104,11 +106,14 @@ def _depth(arguments: Namespace) -> Done:
     from ..lab.progress import Bar
 
     output.picture_suffix(arguments.output, (".exr", ".npy"))
+    output.check_apart(arguments.output, [arguments.MESH, arguments.direction])
     towards, size = light.read(arguments.direction), _size(arguments.size)
     with Bar() as bar:
         values, facts = depth_map(arguments.MESH, towards, size, bar)
     paths = output.write_picture(arguments.output, values, facts)
-    return paths, facts, [f"depths from {facts['range'][0]:.4g}; the mesh is in {facts['covered']:.0%} of the texels"]
+    low, high = facts["range"]
+    told = [f"depths from {low:.4g} to {high:.4g}; the mesh is in {facts['covered']:.0%} of the texels"]
+    return paths, facts, told if facts["covered"] else ["warning: the light meets nothing"]
 
 
 def _voronoi(arguments: Namespace) -> Done:

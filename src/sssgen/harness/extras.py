@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
+import signal
+import threading
+from collections.abc import Iterator
 from typing import Any
 
 from sssgen.diagnostics import failure
@@ -14,7 +18,24 @@ def need(module: str, package: str = "", extra: str = "render") -> Any:
     Raises SssgenError where it is missing.
     """
     try:
-        return importlib.import_module(module)
+        with _interrupts_wait():
+            return importlib.import_module(module)
     except ImportError as error:
         message = f"the package '{package or module}' is missing: {error}"
         raise failure(message, f"pip install 'sssgen[{extra}]'") from None
+
+
+@contextlib.contextmanager
+def _interrupts_wait() -> Iterator[None]:
+    """Interrupts are raised afterwards: some packages catch whatever is raised while they import others."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    held: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, _: held.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+        if held:
+            signal.raise_signal(held[0])

@@ -11,7 +11,7 @@ import numpy as np
 from .. import baked
 from ..baked import Baked
 from ..data import posix
-from ..diagnostics import did_you_mean, failure
+from ..diagnostics import SssgenError, did_you_mean, failure
 from ..ir.nodes import Uniform
 from ..material import Material
 from ..material_values import WrongValue, read_value
@@ -67,18 +67,26 @@ def _of_baked(scene: Scene, material: Material, reflection: Mapping[str, Any]) -
     found: dict[str, tuple[float, ...]] = {}
     for texture in reflection["textures"]:
         file = _file(scene, material, texture)
-        made = baked.read(file) if file else None
-        if made is None:
+        try:
+            made = baked.read(file) if file else None
+            if made is None:
+                continue
+            baked.check(made, _uniform(material, texture), os.path.basename(file))
+            values = _placed(made, scene.geometry)
+        except SssgenError as wrong:
+            if (name := texture["source_name"]) not in scene.textures:
+                raise
+            for one in wrong.diagnostics:
+                scene.document.error(scene.document.place("textures", name).value, one.message, one.hint)
             continue
-        baked.check(made, _uniform(material, texture), os.path.basename(file))
-        values = _placed(made, scene.geometry)
         for entry in reflection["uniforms"]:
             if entry["technique"] == texture["technique"] and entry["technique_name"] in values:
                 raw = values[entry["technique_name"]]
                 try:
                     found[entry["source_name"]] = read_value(_uniform(material, entry), raw)
                 except WrongValue as wrong:
-                    raise failure(f"what is baked does not fit: {wrong.message}", wrong.hint, posix(file)) from None
+                    hint = "; ".join(filter(None, (wrong.hint, baked.UNITS)))
+                    raise failure(f"what is baked does not fit: {wrong.message}", hint, posix(file)) from None
     return found
 
 
@@ -93,12 +101,12 @@ def _placed(made: Baked, geometry: Geometry | None) -> dict[str, Any]:
     inwards = geometry.to_object()
     if made.kind == "distance":
         values |= {"object_scale": geometry.scale, "world_to_object": [*inwards.T.ravel()]}
-    if made.kind == "thickness" and "thickness_factor" in values:
-        values["thickness_factor"] *= geometry.scale
-    if made.kind == "depth" and "light_matrix" in values:
+    if isinstance(factor := values.get("thickness_factor"), int | float) and made.kind == "thickness":
+        values["thickness_factor"] = factor * geometry.scale
+    if isinstance(matrix := values.get("light_matrix"), list) and made.kind == "depth" and len(matrix) == 16:
         if geometry.scale != 1.0:
             raise failure("the depth map is of the body's own size, and the scene scales it", "scale the mesh itself")
-        values["light_matrix"] = [*(np.array(values["light_matrix"]).reshape(4, 4).T @ inwards).T.ravel()]
+        values["light_matrix"] = [*(np.array(matrix).reshape(4, 4).T @ inwards).T.ravel()]
     return values
 
 

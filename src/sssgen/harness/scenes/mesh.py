@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from sssgen.data import posix
-from sssgen.diagnostics import did_you_mean, failure
+from sssgen.diagnostics import failure
 
-from ..extras import need
+from . import mesh_files
 from .mesh_distance import MeshDistance, is_inside_out
 from .mesh_rays import MeshRays
 from .placed import Array, Geometry, Hits, any_tangent, spherical, spread, tangent_of, unit
@@ -26,8 +25,6 @@ FARTHEST = ANY[1]
 
 SMALLEST = 1e-6
 """The least that the largest side of a mesh may be: of a scene's numbers, too."""
-
-SUFFIXES = (".obj", ".ply", ".stl", ".glb", ".gltf")
 
 
 class Triangles(NamedTuple):
@@ -100,7 +97,7 @@ class Mesh(Geometry):
     @cached_property
     def triangles(self) -> Triangles:
         """The mesh, read from its file. Raises SssgenError for a file that is missing or holds none."""
-        return _prepare(_load(self.path), posix(self.path))
+        return _prepare(mesh_files.read(self.path), posix(self.path))
 
     @cached_property
     def solid(self) -> MeshDistance:
@@ -118,42 +115,14 @@ class Mesh(Geometry):
         return MeshRays(self.triangles.places, self.triangles.corners)
 
 
-def check_suffix(path: str) -> None:
-    """Raises SssgenError where a file's name does not end as a mesh's does."""
-    suffix = os.path.splitext(path)[1].lower()
-    if suffix not in SUFFIXES:
-        hint = did_you_mean(suffix, SUFFIXES) or f"meshes end in {', '.join(SUFFIXES)}"
-        raise failure(f"'{suffix}' is no mesh file's ending", hint, posix(path))
-
-
-def _load(path: str) -> Any:
-    check_suffix(path)
-    if not os.path.isfile(path):
-        raise failure("cannot find the mesh", "", posix(path))
-    trimesh = need("trimesh")
-    try:
-        return trimesh.load_mesh(path, process=False, skip_materials=True)
-    except Exception as error:  # its readers raise whatever a faulty file leads them to
-        kind = os.path.splitext(path)[1].lower()
-        # bytes that are no text make it look for a package that guesses encodings
-        hint = "" if isinstance(error, ImportError) else f"the reader says: {type(error).__name__}: {error}"
-        raise failure(f"the mesh cannot be read: it is no faultless {kind} file", hint, posix(path)) from None
-
-
-def _prepare(loaded: Any, shown: str) -> Triangles:
-    try:
-        vertices = np.asarray(getattr(loaded, "vertices", ()), np.float64).reshape(-1, 3)
-        faces = np.asarray(getattr(loaded, "faces", ()), np.int64).reshape(-1, 3)
-    except (ValueError, TypeError):
-        raise failure("its vertices have not three coordinates each", "write it anew", shown) from None
+def _prepare(read: mesh_files.Read, shown: str) -> Triangles:
+    vertices, faces, uv = read
     if not len(faces):
         raise failure("the file holds no triangles", "", shown)
     if faces.min() < 0 or faces.max() >= len(vertices):
         raise failure("a triangle names a vertex that there is not", "write it anew", shown)
     if not (np.abs(vertices) <= FARTHEST).all():
-        raise failure(f"a vertex is no number, or beyond {FARTHEST:g}", "write it anew", shown)
-    uv = getattr(loaded.visual, "uv", None)
-    uv = None if uv is None else np.asarray(uv, np.float64)
+        raise failure(f"a vertex is no number, or beyond {FARTHEST:g}", "scale the mesh, or write it anew", shown)
     if uv is not None and (uv.shape != (len(vertices), 2) or not (np.abs(uv) <= FARTHEST).all()):
         uv = None
     named, at = np.unique(faces, return_inverse=True)  # a file may have vertices that belong to no triangle

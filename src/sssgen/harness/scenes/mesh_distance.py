@@ -57,9 +57,23 @@ def is_inside_out(places: Array, corners: npt.NDArray[np.int64]) -> bool:
 
 def rim_length(places: Array, corners: npt.NDArray[np.int64]) -> float:
     """The length of the edges that triangles do not pass in both directions equally often, each so often counted."""
+    edges, _, passed = _edges(corners)
+    lengths = np.linalg.norm(places[edges[:, 0]] - places[edges[:, 1]], axis=1)
+    return float((np.abs(passed) * lengths).sum())
+
+
+def mixed_sides(corners: npt.NDArray[np.int64]) -> bool:
+    """Whether two triangles that alone share an edge face opposite ways: both pass it in the same direction."""
+    _, number, passed = _edges(corners)
+    return bool(((number == 2) & (np.abs(passed) == 2.0)).any())
+
+
+def _edges(corners: npt.NDArray[np.int64]) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.intp], Array]:
+    """The edges (e, 2), how many triangles have each, and how much oftener they pass it one way than the other."""
     starts, ends = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
     low, high = np.minimum(starts, ends), np.maximum(starts, ends)
-    edges, edge_of = np.unique(low * len(places) + high, return_inverse=True)
-    passed = np.bincount(edge_of.ravel(), np.where(starts < ends, 1.0, -1.0), len(edges))
-    lengths = np.linalg.norm(places[edges // len(places)] - places[edges % len(places)], axis=1)
-    return float((np.abs(passed) * lengths).sum())
+    count = int(corners.max()) + 1
+    edges, edge_of = np.unique(low * count + high, return_inverse=True)
+    number = np.bincount(edge_of.ravel(), minlength=len(edges))
+    passed = np.bincount(edge_of.ravel(), np.where(starts < ends, 1.0, -1.0), len(edges)).astype(np.float64)
+    return np.stack([edges // count, edges % count], axis=1), number, passed

@@ -12,7 +12,7 @@ from sssgen.material import examples
 from sssgen.toml_source import Document, Path
 
 from .. import images
-from . import mesh
+from . import mesh_files
 from .camera import Camera
 from .distance_field import PROJECTIONS
 from .geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
@@ -207,10 +207,12 @@ class _Reader:
     def mesh(self, table: Table, place: dict[str, Any]) -> Mesh | None:
         name = table.text("file", "")
         if not name:
-            table.error("file", "the mesh has no file", f"write file = one that ends in {', '.join(mesh.SUFFIXES)}")
+            table.error(
+                "file", "the mesh has no file", f"write file = one that ends in {', '.join(mesh_files.SUFFIXES)}"
+            )
             return None
         try:
-            mesh.check_suffix(name)
+            mesh_files.check_suffix(name)
         except SssgenError as wrong:
             self.pass_on(wrong, (*table.path, "file"))
             return None
