@@ -147,7 +147,7 @@ def test_a_fixed_parameter_is_the_baked_one(tmp_path: Path) -> None:
     rest = '[translucency]\ntechnique = "absorption_tint"\n'
     (tmp_path / "m.toml").write_text(f"{head}thickness_factor = {{ fixed = true }}\n{rest}", encoding="utf-8")
     text = compile(tmp_path / "m.toml", "wgsl").files["m.wgsl"]
-    assert "0.25 * textureSample" in text and "material.thickness_factor" not in text
+    assert "return 0.25 * " in text and "material.thickness_factor" not in text
     for wrong in ("1" + 400 * "0", '"a"', "[[1]]", "NaN"):
         said = f'"holds": "thickness", "parameters": {{"thickness_factor": {wrong}}}'
         (tmp_path / "t.png.json").write_text(f'{{"format": 1, "kind": "thickness", {said}}}', encoding="utf-8")
