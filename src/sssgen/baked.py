@@ -82,12 +82,12 @@ def check(made: Baked, uniform: Uniform, name: str) -> None:
         raise failure(f"'{name}' is a {dimension} texture, and '{uniform.name}' is {uniform.type.dim}")
     hints = dict(uniform.hints)
     is_normal, is_color = "normal_map" in hints, "source_color" in hints
-    if is_color or is_normal != (made.kind == "normal"):
+    if (is_color and made.kind != "packed") or is_normal != (made.kind == "normal"):
         takes = "normals" if is_normal else "colours" if is_color else "other numbers"
         raise failure(f"'{name}' is a {made.kind} texture, and '{uniform.name}' takes {takes}")
     if is_normal and str(made.facts.get("green")).startswith("down"):
         raise failure(f"the green of '{name}' is down, as DirectX has it", "bake it with --green opengl")
-    if "repeat_disable" in hints and not wanted and made.holds and made.kind != "exact":
+    if "repeat_disable" in hints and not wanted and made.holds:
         raise failure(f"'{name}' holds {made.holds}, and '{uniform.name}' takes what a view of the body sees")
 
 
