@@ -28,7 +28,8 @@ def need(module: str, package: str = "", extra: str = "render") -> Any:
 @contextlib.contextmanager
 def _interrupts_wait() -> Iterator[None]:
     """Interrupts are raised afterwards: some packages catch whatever is raised while they import others."""
-    if threading.current_thread() is not threading.main_thread():
+    unknown = signal.getsignal(signal.SIGINT) is None  # not set by Python: it could not be set again
+    if unknown or threading.current_thread() is not threading.main_thread():
         yield
         return
     held: list[int] = []
