@@ -34,7 +34,7 @@ Indices: TypeAlias = npt.NDArray[np.int64]
 Bake: TypeAlias = Callable[[Array, Indices, Grid, Array], npt.NDArray[np.float32]]
 """From places (v, 3), corners (f, 3), the grid and its voxels' centres (n, 3) to signed distances (n,)"""
 
-SPOT = Path(__file__).parent.parent.parent / "shared/data/meshes/spot.obj"
+SPOT = Path(__file__).resolve().parent.parent.parent / "shared/data/meshes/spot.obj"
 SAMPLE = 2000
 """Voxels that are compared with brute force, fewer where there are many triangles:"""
 PAIRS = 2**25
