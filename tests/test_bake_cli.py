@@ -371,7 +371,9 @@ def test_an_interrupt_leaves_nothing(monkeypatch: pytest.MonkeyPatch, arguments:
 def test_ctrl_c_ends_all_of_it(arguments: list[str]) -> None:
     write(Path("ball.obj"), meshes.globe(1.0, 64, 32))
     before = there()
-    command = [sys.executable, "-m", "sssgen", "bake", *arguments]
+    # a process of a shell in the background ignores interrupts, and so would its own
+    heed = "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler); "
+    command = [sys.executable, "-c", f"{heed}from sssgen.cli import main; sys.exit(main())", "bake", *arguments]
     with subprocess.Popen(command, start_new_session=True, stderr=subprocess.PIPE, text=True) as process:
         time.sleep(10.0)
         assert process.poll() is None, "it ended before it was interrupted"
