@@ -14,7 +14,7 @@ import numpy.typing as npt
 import pytest
 
 from sssgen.bake.sheet import columns_and_rows
-from sssgen.bake.volume_files import FORMATS, encoded_files, layout
+from sssgen.bake.volume_files import FORMATS, encoded, layout
 from sssgen.diagnostics import SssgenError
 from sssgen.harness import images
 from sssgen.harness.volumes import read
@@ -41,9 +41,7 @@ def volume(size: tuple[int, int, int], dtype: str) -> npt.NDArray[Any]:
 
 
 def file_of(texels: npt.NDArray[Any], format: str) -> bytes:
-    files = encoded_files("body", texels, format)
-    assert list(files) == ["body" + FORMATS[format]]
-    return files["body" + FORMATS[format]]
+    return encoded(texels, format)
 
 
 def read_bytes(data: bytes, format: str) -> npt.NDArray[np.float64]:
@@ -154,7 +152,7 @@ def test_a_sheet_is_nearly_square_and_full() -> None:
     with pytest.raises(SssgenError, match="257 slices of 128 × 128 texels do not fit"):
         columns_and_rows(257, 128, 128)
     with pytest.raises(SssgenError, match="do not fit"):
-        encoded_files("body", np.zeros((1, 1, 16385), np.uint8), "exr-slices")
+        encoded(np.zeros((1, 1, 16385), np.uint8), "exr-slices")
 
 
 @pytest.mark.parametrize("dtype", TYPES)
@@ -192,9 +190,9 @@ def test_memory_order_and_byte_order_leave_no_trace(format: str) -> None:
 
 def test_what_is_no_volume_is_not_written() -> None:
     with pytest.raises(SssgenError, match="did you mean 'ktx2'"):
-        encoded_files("body", volume((1, 1, 1), "uint8"), "ktx")
+        encoded(volume((1, 1, 1), "uint8"), "ktx")
     with pytest.raises(SssgenError, match="texels of type int32"):
-        encoded_files("body", np.zeros((2, 2, 2), np.int32), "dds")
+        encoded(np.zeros((2, 2, 2), np.int32), "dds")
     for shape in [(2, 2), (2, 2, 2, 1), (0, 2, 2)]:
         with pytest.raises(SssgenError, match="is no volume"):
             layout(np.zeros(shape, np.uint8), "dds")

@@ -19,7 +19,7 @@ pytest.importorskip("igl", reason="libigl is missing: pip install 'sssgen[bake]'
 pytest.importorskip("embreex", reason="embreex is missing: pip install 'sssgen[bake]'")
 
 from sssgen.bake.distance import distances, inside
-from sssgen.bake.encoding import ENCODINGS, decode
+from sssgen.bake.encoding import ENCODINGS
 from sssgen.bake.grid import Grid, around
 from sssgen.bake.sdf import Volume, sdf
 from sssgen.harness.scenes.mesh import Mesh
@@ -31,6 +31,12 @@ from sssgen.targets.numpy_textures import Texture
 @pytest.fixture(autouse=True)
 def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
+
+
+def decode(texels: npt.NDArray[Any], reach: float, name: str) -> Array:
+    """The distances that texels stand for, as the technique distance_texture reads them."""
+    found: Array = (2.0 * texels.astype(np.float64) / ENCODINGS[name].one - 1.0) * reach
+    return found
 
 
 def rng(seed: int = 5) -> np.random.Generator:
@@ -281,7 +287,7 @@ def test_suzanne_does_not_leak_in_fine_voxels() -> None:
 def test_a_coarse_grid_has_voxels_outside() -> None:
     """Where there is padding, a voxel of it on every side."""
     made = sdf(write(Path("body.obj"), meshes.box((1.0, 2.0, 1.0))), (6,), encoding="r32f")
-    signs = decode(made.texels, made.reach, ENCODINGS["r32f"]) > 0.0
+    signs = decode(made.texels, made.reach, "r32f") > 0.0
     shell = np.ones(signs.shape, np.bool_)
     shell[1:-1, 1:-1, 1:-1] = False
     assert signs[shell].all() and not signs.all()
@@ -378,7 +384,7 @@ def test_the_sign_of_a_mesh_inside_out_is_said_and_right() -> None:
 
 def stored(made: Volume) -> Array:
     """The distances that the texels stand for, (z y x,)."""
-    found: Array = decode(made.texels, made.reach, ENCODINGS[made.facts["encoding"]]).ravel()
+    found: Array = decode(made.texels, made.reach, made.facts["encoding"]).ravel()
     return found
 
 

@@ -30,13 +30,18 @@ def add_baking(command: Callable[..., ArgumentParser], add_where: Callable[[Argu
         made.add_argument("--json", action="store_true", help="print the result, or the errors, as JSON")
         return made
 
-    sdf = kind(
+    def of_mesh(name: str, text: str, epilog: str, files: str) -> Any:
+        made = kind(name, text, epilog)
+        made.add_argument("MESH", help=f"a file that ends in {MESHES}")
+        made.add_argument("-o", "--output", metavar="FILE", required=True, help=files)
+        return made
+
+    sdf = of_mesh(
         "sdf",
         "the signed distance to a mesh, as a 3-D texture",
         "Bind it to distance_map of the technique distance_texture.",
+        "the texture's file",
     )
-    sdf.add_argument("MESH", help=f"a file that ends in {MESHES}")
-    sdf.add_argument("-o", "--output", metavar="FILE", required=True, help="the texture's file")
     sdf.add_argument(
         "--resolution", default="64", metavar="N|X,Y,Z", help="texels along the longest side, or each (default: 64)"
     )
@@ -50,14 +55,13 @@ def add_baking(command: Callable[..., ArgumentParser], add_where: Callable[[Argu
     )
     sdf.add_argument("--thin", type=float, metavar="T", help="take the mesh as a sheet so thick, without an inside")
 
-    thickness = kind(
+    thickness = of_mesh(
         "thickness",
         "how thick a body is below each texel of its texture coordinates",
         "The exact lengths inside the mesh along rays. Bind it to thickness_texture of thickness_map, or, for\n"
         "--mode transmittance, to transmittance_texture of transmittance_map.",
+        "a .png (16 bit), .exr or .npy",
     )
-    thickness.add_argument("MESH", help=f"a file that ends in {MESHES}")
-    thickness.add_argument("-o", "--output", metavar="FILE", required=True, help="a .png (16 bit), .exr or .npy")
     thickness.add_argument(
         "--mode", choices=("mean", "chord", "transmittance"), default="mean",
         help="the mean over inward directions, weighted by their cosine (default); the length straight in; "
@@ -66,7 +70,7 @@ def add_baking(command: Callable[..., ArgumentParser], add_where: Callable[[Argu
     thickness.add_argument(
         "--direction",
         metavar="LIGHT",
-        help="along this direction instead: a .json with direction or position, or X,Y,Z",
+        help="towards a light instead: a .json with direction or position, or X,Y,Z",
     )
     thickness.add_argument("--size", default="512", metavar="N|WxH", help="of the map, in texels (default: 512)")
     thickness.add_argument("--rays", type=int, default=256, metavar="N", help="of each texel (default: 256)")
@@ -79,13 +83,12 @@ def add_baking(command: Callable[..., ArgumentParser], add_where: Callable[[Argu
     )
     add_where(thickness)
 
-    depth = kind(
+    depth = of_mesh(
         "depth",
         "how far the first surface is that a light meets, as a map from the light's view",
         "Bind it to light_depth_map of the technique depth_map_thickness.",
+        "an .exr or .npy",
     )
-    depth.add_argument("MESH", help=f"a file that ends in {MESHES}")
-    depth.add_argument("-o", "--output", metavar="FILE", required=True, help="an .exr or .npy")
     depth.add_argument(
         "--direction", metavar="LIGHT", required=True, help="the light: a .json with direction or position, or X,Y,Z"
     )

@@ -85,7 +85,7 @@ def check(made: Baked, uniform: Uniform, name: str) -> None:
     if (is_color and made.kind != "packed") or is_normal != (made.kind == "normal"):
         takes = "normals" if is_normal else "colours" if is_color else "other numbers"
         raise failure(f"'{name}' is a {made.kind} texture, and '{uniform.name}' takes {takes}")
-    if is_normal and str(made.facts.get("green")).startswith("down"):
+    if is_normal and made.facts.get("green") == "directx":
         raise failure(f"the green of '{name}' is down, as DirectX has it", "bake it with --green opengl")
     if "repeat_disable" in hints and not wanted and made.holds:
         raise failure(f"'{name}' holds {made.holds}, and '{uniform.name}' takes what a view of the body sees")

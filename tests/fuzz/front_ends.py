@@ -18,7 +18,7 @@ from amounts import COUNTED
 from ir_sample import SAMPLE
 from sssgen import baked, data
 from sssgen.bake import light
-from sssgen.bake.volume_files import encoded_files
+from sssgen.bake.volume_files import encoded
 from sssgen.compiler import compile, transpile
 from sssgen.diagnostics import Diagnostic, SssgenError
 from sssgen.harness import images, inputs, probes, shader_files
@@ -178,7 +178,7 @@ def _volumes(kind: str) -> Callable[[], list[bytes]]:
     def made() -> list[bytes]:
         types = (np.uint8, np.uint16, np.float16, np.float32)
         volumes = [np.ones((2, 3, 4), one) for one in types]
-        return [next(iter(encoded_files("seed", one, kind).values())) for one in volumes]
+        return [encoded(one, kind) for one in volumes]
 
     return made
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -10,12 +10,12 @@ import numpy.typing as npt
 from ..data import posix
 from ..diagnostics import failure
 from ..harness.extras import need
-from ..harness.scenes.mesh import Triangles
+from ..harness.scenes.mesh import Triangles, barycentric
 from ..harness.scenes.mesh_rays import MeshRays
 from .distance import BLOCK
 from .grid import Array
 
-Indices = npt.NDArray[np.int64]
+Indices: TypeAlias = npt.NDArray[np.int64]
 
 SHARED = 0.02
 """The share of texels that several places claim, beyond which the map is told to be shared."""
@@ -24,8 +24,6 @@ SHARED = 0.02
 class Atlas(NamedTuple):
     """The texels of a map that show a place of the surface."""
 
-    size: tuple[int, int]
-    """(width, height)"""
     texels: Indices
     """(n,): which texels, row by row, row 0 at the top"""
     places: Array
@@ -54,37 +52,26 @@ def atlas(mesh: Triangles, uv: Array, size: tuple[int, int], path: str) -> Atlas
     if not len(solid):
         raise failure("the texture coordinates have no area", "--unwrap makes new ones", posix(path))
     # a ray onto the flat map finds the triangle that covers a texel's centre, or its centre on the next tile
-    raised = np.concatenate([layout[solid], np.zeros((len(solid), 3, 1))], axis=2).reshape(-1, 3)
-    rays = MeshRays(raised, np.arange(3 * len(solid)).reshape(-1, 3))
+    raised = np.concatenate([layout[solid], np.zeros((len(solid), 3, 1))], axis=2)
+    rays = MeshRays(raised.reshape(-1, 3), np.arange(3 * len(solid)).reshape(-1, 3))
     faces = np.full(width * height, -1)
-    shown = np.zeros((width * height, 2))
+    shown = np.zeros((width * height, 3))
     for across in range(int(tiles[0][0]), int(tiles[1][0])):
         for up in range(int(tiles[0][1]), int(tiles[1][1])):
             for start in range(0, len(faces), BLOCK):
                 number = np.arange(start, min(start + BLOCK, len(faces)))
                 number = number[faces[number] < 0]
                 x, y = number % width + 0.5 + across * width, height - number // width - 0.5 + up * height
-                starts = np.stack([x, y, np.ones(len(number))], axis=1)
-                faces[number] = rays.first(starts, np.broadcast_to(np.array([0.0, 0.0, -1.0]), starts.shape))
-                shown[number] = starts[:, :2]
+                shown[number] = np.stack([x, y, np.zeros(len(number))], axis=1)
+                down = np.broadcast_to(np.array([0.0, 0.0, -1.0]), (len(number), 3))
+                faces[number] = rays.first(shown[number] - down, down)
     texels = np.flatnonzero(faces >= 0)
     if not len(texels):
         raise failure("no texel's centre is covered by the mesh", "take a larger --size", posix(path))
     face = solid[faces[texels]]
-    places = np.einsum(
-        "nv,nvc->nc", _weights(shown[texels], layout[face], areas[face]), mesh.places[mesh.corners[face]]
-    )
+    places = np.einsum("nv,nvc->nc", barycentric(shown[texels], raised[faces[texels]]), mesh.places[mesh.corners[face]])
     claimed = float(np.abs(areas).sum())
-    return Atlas(size, texels, places, mesh.flat[face], max(0.0, 1.0 - len(texels) / claimed))
-
-
-def _weights(points: Array, corners: Array, areas: Array) -> Array:
-    """The barycentric weights (n, 3) of points (n, 2) in triangles (n, 3, 2) of these signed areas."""
-    first, second, third = np.moveaxis(corners - points[:, None], 1, 0)
-    twice = [a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] for a, b in ((second, third), (third, first), (first, second))]
-    weights = np.maximum(0.5 * np.stack(twice, axis=1) / areas[:, None], 0.0)
-    whole: Array = weights / weights.sum(axis=1, keepdims=True)
-    return whole
+    return Atlas(texels, places, mesh.flat[face], max(0.0, 1.0 - len(texels) / claimed))
 
 
 def filled(values: Array, texels: Indices, size: tuple[int, int]) -> Array:

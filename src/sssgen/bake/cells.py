@@ -12,14 +12,13 @@ import numpy as np
 import numpy.typing as npt
 
 from ..diagnostics import did_you_mean, failure
+from ..harness.images import LARGEST_SIDE
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Bits: TypeAlias = npt.NDArray[np.uint32]
 
 FEATURES = ("f1", "f2-f1", "faceted")
 
-MOST = 16384
-"""Texels along a side that engines take."""
 _BLOCK = 2**15
 """Texels that are worked out at once: their arrays fit a processor's cache."""
 
@@ -163,8 +162,10 @@ def _unit(x: Bits) -> Array:
 
 def _check(size: tuple[int, int], cells: tuple[int, int], seed: int, feature: str) -> None:
     _check_feature(feature)
-    if not all(1 <= side <= MOST for side in size):
-        raise failure(f"a picture of {size[0]} x {size[1]} texels cannot be baked", f"1 to {MOST} along each side")
+    if not all(1 <= side <= LARGEST_SIDE for side in size):
+        raise failure(
+            f"a picture of {size[0]} x {size[1]} texels cannot be baked", f"1 to {LARGEST_SIDE} along each side"
+        )
     if not all(1 <= count <= side for count, side in zip(cells, size, strict=True)):
         hint = "1 cell or more along each side, and no more than texels"
         raise failure(f"{cells[0]} x {cells[1]} cells cannot be baked in {size[0]} x {size[1]} texels", hint)

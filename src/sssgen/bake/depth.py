@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 
 from ..harness.scenes.mesh import Mesh
+from ..lab.executor import Progress
 from ..targets.texture_import import import_settings
 from . import memory
-from .distance import BLOCK, Progress
+from .distance import BLOCK
 from .grid import Array
 from .light import BakeLight
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from ..harness.scenes.mesh_distance import INSIDE, MeshDistance
+from ..lab.executor import Progress
 from .grid import Array, Grid
 
 Distances: TypeAlias = npt.NDArray[np.float32]
-Progress: TypeAlias = Callable[[int, int, str], None]
 
 BLOCK = 2**18
 """Points of one query, at about a hundred bytes each."""

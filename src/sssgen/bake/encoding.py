@@ -25,13 +25,6 @@ def encode(distance: Distances, inside: npt.NDArray[np.bool_], reach: float, enc
     return texels
 
 
-def decode(texels: npt.NDArray[Any], reach: float, encoding: Encoding) -> npt.NDArray[np.float64]:
-    """The signed distances that texels stand for, as the technique distance_texture reads them."""
-    value = texels.astype(np.float64) / encoding.one
-    signed: npt.NDArray[np.float64] = (2.0 * value - 1.0) * reach
-    return signed
-
-
 def error_at_texels(reach: float, encoding: Encoding, diagonal: float) -> float:
     """The largest error of a decoded distance within the reach: half a step, and the distances' own rounding."""
     step = 1.0 / encoding.one if encoding.dtype.kind == "u" else 0.5 * float(np.finfo(encoding.dtype).eps)

@@ -17,7 +17,7 @@ from ..diagnostics import did_you_mean, failure
 from ..harness import images
 from ..output import check_names, write_files
 from ..version import VERSION
-from .volume_files import FORMATS, encoded_files, layout
+from .volume_files import FORMATS, encoded, layout
 
 PICTURES = images.SUFFIXES
 
@@ -44,9 +44,9 @@ def volume_format(path: str, named: str | None) -> str:
 
 def write_volume(path: str, texels: npt.NDArray[Any], format: str, facts: Mapping[str, Any]) -> list[str]:
     """Writes a volume and its JSON; the paths."""
-    stem = os.path.splitext(os.path.basename(path))[0]
-    (data,) = encoded_files(stem, texels, format).values()
-    return _write(path, data, {**facts, "file": {"name": os.path.basename(path), **layout(texels, format)}})
+    return _write(
+        path, encoded(texels, format), {**facts, "file": {"name": os.path.basename(path), **layout(texels, format)}}
+    )
 
 
 def picture_suffix(path: str, known: tuple[str, ...] = PICTURES) -> str:
@@ -82,7 +82,7 @@ def write_picture(
     elif suffix == ".exr":
         data, encoding = images.exr_bytes(layers), "r32f"
     else:
-        data, encoding = images.png_bytes(layers, bits), f"unorm{bits}"
+        data, encoding = images.png_bytes(layers, bits), f"unorm{bits}"  # each number is half a step off at most
     height, width = layers.shape[:2]
     about = {
         "name": os.path.basename(path), "size": {"x": width, "y": height}, "channels": layers.shape[2],

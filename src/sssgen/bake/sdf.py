@@ -12,15 +12,15 @@ from ..data import posix
 from ..diagnostics import did_you_mean, failure
 from ..harness.scenes.mesh import Mesh
 from ..harness.scenes.mesh_distance import mixed_sides
+from ..lab.executor import Progress
 from ..targets.texture_import import import_settings
 from . import memory
-from .distance import BLOCK, Progress, distances, inside
+from .distance import BLOCK, distances, inside
 from .encoding import ENCODINGS, encode, error_at_texels
 from .grid import Array, Grid, around
 
 SHEET = 1e-5
 """A mesh that is flatter than this share of its size is a sheet, without an inside."""
-MIXED = "neighbouring triangles face opposite ways, so that inside is not what it seems: make their normals agree"
 A_POINT = 200
 """Bytes that a query takes for each point."""
 A_TRIANGLE = 800

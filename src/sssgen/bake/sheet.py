@@ -8,23 +8,21 @@ import numpy as np
 import numpy.typing as npt
 
 from sssgen.diagnostics import failure
-
-MAX_SIDE = 16384
-"""Pixels; the largest picture that engines and GPUs take."""
+from sssgen.harness.images import LARGEST_SIDE
 
 
 def columns_and_rows(depth: int, height: int, width: int) -> tuple[int, int]:
     """How many slices lie side by side, and how many below one another, on the sheet that is nearest to a square.
 
-    columns × rows = depth: no place stays empty. Raises SssgenError where no such sheet keeps to MAX_SIDE.
+    columns × rows = depth: no place stays empty. Raises SssgenError where no such sheet keeps to LARGEST_SIDE.
     """
     divisors = (columns for columns in range(1, depth + 1) if depth % columns == 0)
     columns = min(divisors, key=lambda columns: (max(columns * width, depth // columns * height), -columns))
     rows = depth // columns
-    if max(columns * width, rows * height) > MAX_SIDE:
+    if max(columns * width, rows * height) > LARGEST_SIDE:
         raise failure(
             f"{depth} slices of {width} × {height} texels do not fit on a sheet: "
-            f"the best has {columns * width} × {rows * height} pixels, and a side may have {MAX_SIDE}",
+            f"the best has {columns * width} × {rows * height} pixels, and a side may have {LARGEST_SIDE}",
             "choose a number of slices that has more divisors, fewer texels, or another format",
         )
     return columns, rows

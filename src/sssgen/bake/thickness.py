@@ -11,7 +11,7 @@ from .. import cache
 from ..data import posix
 from ..diagnostics import failure
 from ..harness.scenes.mesh import Mesh
-from ..harness.scenes.mesh_distance import mixed_sides
+from ..harness.scenes.mesh_distance import MIXED, mixed_sides
 from ..lab.executor import Item, Progress, failures, run
 from ..lab.store import Store
 from ..targets.texture_import import import_settings
@@ -19,10 +19,8 @@ from . import memory
 from .atlas import SHARED, Atlas, atlas, filled
 from .grid import Array
 from .light import BakeLight
-from .sdf import MIXED
 from .unwrap import obj, unwrapped
 
-MODES = ("mean", "chord", "transmittance")
 RAYS = 2**18
 """In a block of work: some hundred megabytes."""
 
@@ -31,7 +29,7 @@ class Request(NamedTuple):
     """What a thickness map is to hold."""
 
     mode: str = "mean"
-    """One of MODES: the mean over inward directions, the length along −N, or the share of light that passes"""
+    """mean: over inward directions; chord: the length along −N; transmittance: the share of light that passes"""
     light: BakeLight | None = None
     """The length towards this instead"""
     rays: int = 256
@@ -49,7 +47,7 @@ class Map(NamedTuple):
     facts: dict[str, Any]
     """For the JSON beside it"""
     mesh: str
-    """The mesh as a Wavefront file where it got new texture coordinates, else \"\""""
+    """The mesh as a Wavefront file where it got new texture coordinates, else empty"""
 
 
 def thickness_map(
@@ -96,7 +94,6 @@ def thickness_map(
         "texels": len(value), "mean": float(value.mean()),
         "error": {
             "mean_standard_error": float(error.mean()), "largest_standard_error": float(error.max()),
-            "half_a_step_of_16_bits": 0.5 * top / 65535.0,
         },
         "rays": 1 if _is_exact(wanted) else wanted.rays, "lost_rays": round(float(lost.mean()), 6),
         "attenuation_distance": wanted.attenuation or None,

@@ -20,8 +20,8 @@ FORMATS = {"npy": ".npy", "dds": ".dds", "ktx2": ".ktx2", "exr-slices": ".exr", 
 """The formats and their files' endings."""
 
 
-def encoded_files(name: str, texels: npt.NDArray[Any], format: str) -> dict[str, bytes]:
-    """The files of a volume: their names, `name` with an ending, and what is in them; texels are little-endian.
+def encoded(texels: npt.NDArray[Any], format: str) -> bytes:
+    """The file of a volume; texels are little-endian.
 
     `texels` is (depth, height, width) = z, y, x ascending; uint8 and uint16 stand for 0..1, float16 and float32 for
     themselves. The JSON of `raw+json` is the caller's, who puts `layout` into it. Raises SssgenError for an unknown
@@ -29,13 +29,25 @@ def encoded_files(name: str, texels: npt.NDArray[Any], format: str) -> dict[str,
     """
     encoding = _encoding(texels, format)
     texels = np.ascontiguousarray(texels, encoding.dtype)
-    return {name + FORMATS[format]: _encoded(texels, encoding, format)}
+    match format:
+        case "dds":
+            return dds_bytes(texels, encoding)
+        case "ktx2":
+            return ktx2_bytes(texels, encoding)
+        case "exr-slices":
+            return images.exr_bytes(sheet(texels)[..., None] / np.float32(encoding.one))
+        case "npy":
+            buffer = io.BytesIO()
+            np.save(buffer, texels[..., None], allow_pickle=False)
+            return buffer.getvalue()
+        case _:
+            return texels.tobytes()
 
 
 def layout(texels: npt.NDArray[Any], format: str) -> dict[str, Any]:
-    """What somebody must know who reads the file of `encoded_files` by other means, as values for JSON.
+    """What somebody must know who reads the file of `encoded` by other means, as values for JSON.
 
-    `size` is in texels; `one` is the stored number that stands for 1.0. Raises SssgenError as `encoded_files` does.
+    `size` is in texels; `one` is the stored number that stands for 1.0. Raises SssgenError as `encoded` does.
     """
     encoding = _encoding(texels, format)
     depth, height, width = texels.shape
@@ -55,22 +67,6 @@ def _encoding(texels: npt.NDArray[Any], format: str) -> Encoding:
     if encoding is None:
         raise failure(f"texels of type {texels.dtype} have no file format", "use uint8, uint16, float16 or float32")
     return encoding
-
-
-def _encoded(texels: npt.NDArray[Any], encoding: Encoding, format: str) -> bytes:
-    match format:
-        case "dds":
-            return dds_bytes(texels, encoding)
-        case "ktx2":
-            return ktx2_bytes(texels, encoding)
-        case "exr-slices":
-            return images.exr_bytes(sheet(texels)[..., None] / np.float32(encoding.one))
-        case "npy":
-            buffer = io.BytesIO()
-            np.save(buffer, texels[..., None], allow_pickle=False)
-            return buffer.getvalue()
-        case _:
-            return texels.tobytes()
 
 
 def _details(texels: npt.NDArray[Any], encoding: Encoding, format: str) -> dict[str, Any]:

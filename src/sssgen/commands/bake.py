@@ -13,9 +13,7 @@ from ..diagnostics import failure
 from ..harness.extras import need
 from ..targets.texture_import import import_settings
 
-LARGEST = 16384
-"""Texels along a side of a picture."""
-
+GREEN = {"opengl": "OpenGL (up)", "directx": "DirectX (down)"}
 
 Done = tuple[list[str], dict[str, Any], list[str]]
 """The files that were written, what their JSON says, and what people are told."""
@@ -37,7 +35,8 @@ def run(arguments: Namespace) -> int:
 
 def _sdf(arguments: Namespace) -> Done:
     from ..bake import output
-    from ..bake.sdf import MIXED, sdf
+    from ..bake.sdf import sdf
+    from ..harness.scenes.mesh_distance import MIXED
     from ..lab.progress import Bar
 
     format = output.volume_format(arguments.output, arguments.format)
@@ -146,11 +145,11 @@ def _normal(arguments: Namespace) -> Done:
     made = normals.from_height(height[..., 0], arguments.strength, tiles, arguments.green)
     facts = {
         "kind": "normal", "holds": None, "strength": arguments.strength,
-        "green": "up (OpenGL)" if arguments.green == "opengl" else "down (DirectX)", "tiles": tiles, "parameters": {},
+        "green": arguments.green, "tiles": tiles, "parameters": {},
         "import": import_settings(wrap="repeat" if tiles else "clamp", normal_map=True),
     }  # fmt: skip
     paths = output.write_picture(arguments.output, made, facts, arguments.bits)
-    return paths, facts, [f"tangent-space normals, green {facts['green']}"]
+    return paths, facts, [f"tangent-space normals, green as in {GREEN[arguments.green]}"]
 
 
 def _pack(arguments: Namespace) -> Done:
@@ -173,9 +172,11 @@ def _pack(arguments: Namespace) -> Done:
 
 def _size(text: str) -> tuple[int, int]:
     """A picture's width and height. Raises SssgenError."""
+    from ..harness.images import LARGEST_SIDE
+
     found = _pair(text, "size")
-    if not all(1 <= side <= LARGEST for side in found):
-        raise failure(f"'{text}' is no size", f"N or WIDTHxHEIGHT in texels, each from 1 to {LARGEST}")
+    if not all(1 <= side <= LARGEST_SIDE for side in found):
+        raise failure(f"'{text}' is no size", f"N or WIDTHxHEIGHT in texels, each from 1 to {LARGEST_SIDE}")
     return found
 
 

@@ -22,6 +22,8 @@ Array: TypeAlias = npt.NDArray[np.float64]
 
 SUFFIXES = (".png", ".exr", ".npy")
 """Of pictures; an .npy may be a volume, too."""
+LARGEST_SIDE = 16384
+"""Texels along a side of the largest picture that engines take."""
 TEXTURES = (*SUFFIXES, *volumes.SUFFIXES)
 """Of all that a texture may be."""
 

@@ -19,7 +19,7 @@ from ..targets.numpy_textures import Texture
 from . import inputs
 from .evaluate import half
 from .scenes.geometry import Geometry
-from .scenes.scene import DistanceTexture, Picture, Scene
+from .scenes.scene import DistanceTexture, Picture, Scene, placement
 from .shell import Shell
 
 
@@ -100,7 +100,7 @@ def _placed(made: Baked, geometry: Geometry | None) -> dict[str, Any]:
         return values
     inwards = geometry.to_object()
     if made.kind == "distance":
-        values |= {"object_scale": geometry.scale, "world_to_object": [*inwards.T.ravel()]}
+        values |= placement(geometry)
     if isinstance(factor := values.get("thickness_factor"), int | float) and made.kind == "thickness":
         values["thickness_factor"] = factor * geometry.scale
     if isinstance(matrix := values.get("light_matrix"), list) and made.kind == "depth" and len(matrix) == 16:

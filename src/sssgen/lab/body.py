@@ -16,7 +16,7 @@ import numpy as np
 from ..diagnostics import failure
 from ..harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
 from ..harness.scenes.placed import Array, Vector
-from ..harness.scenes.scene import DistanceTexture
+from ..harness.scenes.scene import DistanceTexture, placement
 
 TEXELS = 64
 """Along the longest side of a distance texture."""
@@ -181,5 +181,5 @@ def given(geometry: Geometry, texture: DistanceTexture) -> dict[str, object]:
     """The numbers that go with a shape's distance texture by the names of techniques, as TOML has them."""
     return {
         "box_min": [*texture.box_min], "box_max": [*texture.box_max], "distance_range": texture.range,
-        "world_to_object": [*geometry.to_object().T.ravel()], "object_scale": geometry.scale,
+        **placement(geometry),
     }  # fmt: skip

@@ -118,7 +118,7 @@ def assemble(module: Module, stages: Sequence[ChainStage], lit: bool, opaque: bo
     lighting = [stage for stage in stages if stage.role == "lighting"]
     light = _Body("evaluate_translucency", surface, lit=True)
     if "translucency" in surface.values:  # the same for every light: each multiplies it by its colour
-        light.take_over("translucency", VEC3)
+        light.take_over("translucency")
     for stage in late_stages:
         light.add(stage)
     shade = _Body("evaluate_lighting", surface)
@@ -305,18 +305,13 @@ class _Body:
             self.values[name] = _Value(VEC3, waits)
             target.append(Declare(name, VEC3, value, span))
 
-    def take_over(self, name: str, type_: Type) -> None:
+    def take_over(self, name: str) -> None:
         """Begins with a value of the surface's, to which more may be added."""
         assert self.surface is not None
-        self.span = self.surface.span
+        self.span = span = self.surface.span
         self.crossing[name] = None
-        self.store(
-            name,
-            Member(type_, Local(_SURFACE, "surface", self.span), name, self.span),
-            self.statements,
-            False,
-            self.span,
-        )
+        member = Member(self.surface.values[name].type, Local(_SURFACE, "surface", span), name, span)
+        self.store(name, member, self.statements, False, span)
 
     # Finishing
 

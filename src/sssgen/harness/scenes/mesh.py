@@ -72,7 +72,7 @@ class Mesh(Geometry):
         first = mesh.places[mesh.corners[face, 0]]
         t = np.einsum("nc,nc->n", first - origin, mesh.flat[face]) / slope
         position = origin + t[:, None] * directions[rays]
-        weights = _barycentric(position, mesh.places[mesh.corners[face]])
+        weights = barycentric(position, mesh.places[mesh.corners[face]])
         hit = np.zeros(len(directions), np.bool_)
         hit[rays] = True
         normal = _mixed(weights, mesh.normals[mesh.corners[face]])
@@ -162,7 +162,7 @@ def _with_tangents(mesh: Triangles, uv: Array) -> Triangles:
     return mesh._replace(uv=uv, tangents=tangents, handedness=handedness)
 
 
-def _barycentric(points: Array, triangles: Array) -> Array:
+def barycentric(points: Array, triangles: Array) -> Array:
     """The weights (n, 3) of the corners of triangles (n, 3, 3) at points in their planes, cut to the triangles."""
     first, second, third = np.moveaxis(triangles, 1, 0)
     across = np.cross(second - first, third - first)

@@ -12,6 +12,10 @@ INSIDE = 0.5
 """The winding number beyond which a point is inside: half of a turn, which is what closes an open mesh's holes."""
 
 
+MIXED = "neighbouring triangles face opposite ways, so that inside is not what it seems: make their normals agree"
+"""What to tell of triangles with `mixed_sides`."""
+
+
 class MeshDistance:
     """Distances to triangles: `places` (v, 3) and `corners` (f, 3), as `mesh.Triangles` has them.
 

@@ -56,6 +56,11 @@ def stored(distance: npt.NDArray[np.float64], reach: float) -> npt.NDArray[np.fl
     return value
 
 
+def placement(geometry: Geometry) -> dict[str, Any]:
+    """Where a body with a distance texture stands, by the names of techniques, as TOML has them."""
+    return {"world_to_object": [*geometry.to_object().T.ravel()], "object_scale": geometry.scale}
+
+
 @dataclass(frozen=True)
 class DistanceTexture:
     """A 3-D texture of the signed distance to the scene's geometry, in the geometry's object space.
