@@ -34,7 +34,7 @@ class Local(NamedTuple):
 
 
 class Global(NamedTuple):
-    """A uniform, a texture or a module constant."""
+    """A uniform, a texture, a module constant or a module variable."""
 
     type: Type
     name: str
@@ -275,6 +275,25 @@ class Constant(NamedTuple):
     span: Span
 
 
+class Variable(NamedTuple):
+    """A module variable: each run of a shader has its own.
+
+    `storage` is private, in (what a stage is given, which is read only) or out (what it gives). A private one may
+    have a `value`, of constants, uniforms and earlier variables. `builtin` is the `gl_` name that it stands for, or ''.
+    `interpolation` is flat, noperspective, centroid or ''; `location` is -1 where none is written.
+    """
+
+    name: str
+    type: Type
+    storage: str
+    value: Expr | None
+    builtin: str
+    interpolation: str
+    location: int
+    doc: str
+    span: Span
+
+
 class StructDecl(NamedTuple):
     """The declaration of a struct type (the type itself holds the fields)."""
 
@@ -290,6 +309,7 @@ class Module(NamedTuple):
     constants: tuple[Constant, ...] = ()
     uniforms: tuple[Uniform, ...] = ()
     functions: tuple[Function, ...] = ()
+    variables: tuple[Variable, ...] = ()
 
 
 def function_key(name: str, types: list[Type]) -> str:

@@ -40,6 +40,7 @@ from .nodes import (
     Swizzle,
     Unary,
     Uniform,
+    Variable,
     While,
     function_key,
 )
@@ -183,7 +184,7 @@ class _Reader:
     # Declarations
 
     def module(self) -> Module:
-        found: dict[str, list[object]] = {"struct": [], "const": [], "uniform": [], "function": []}
+        found: dict[str, list[object]] = {"struct": [], "const": [], "uniform": [], "function": [], "variable": []}
         bodies: dict[int, int] = {}
         try:
             while self.take("file"):
@@ -237,19 +238,35 @@ class _Reader:
     def uniform(self, doc: str, span: Span) -> Uniform:
         type_, name, quantity = self.type(), self.name(), self.quantity()
         self.globals[name] = type_
-        default, hints = [], []
+        default = []
         if self.take("="):
             self.expect("(")
             default.append(self.number())
             while self.take(","):
                 default.append(self.number())
             self.expect(")")
+        return Uniform(name, type_, tuple(default), self.hints(), quantity, doc, span)
+
+    def variable(self, doc: str, span: Span) -> Variable:
+        storage, type_, name = self.name(), self.type(), self.name()
+        said: dict[str, float | str] = {"builtin": "", "interpolation": "", "location": -1.0}
+        for hint, args in self.hints():
+            if hint not in said or len(args) != 1 or type(args[0]) is not type(said[hint]):
+                raise self.fail(f"a variable says nothing like '{hint}'", 1)
+            said[hint] = args[0]
+        value = self.expr() if self.take("=") else None
+        self.globals[name] = type_
+        builtin, interpolation, location = said.values()
+        return Variable(name, type_, storage, value, str(builtin), str(interpolation), int(location), doc, span)
+
+    def hints(self) -> tuple[tuple[str, tuple[float | str, ...]], ...]:
+        found = []
         if self.take("["):
-            hints.append(self.hint())
+            found.append(self.hint())
             while self.take(","):
-                hints.append(self.hint())
+                found.append(self.hint())
             self.expect("]")
-        return Uniform(name, type_, tuple(default), tuple(hints), quantity, doc, span)
+        return tuple(found)
 
     def hint(self) -> tuple[str, tuple[float | str, ...]]:
         name, args = self.name(), []

@@ -2,6 +2,7 @@
 
     file 0 "wax.sss"
     uniform@0:1:15-22 float density : thickness = (0.5) [hint_range(0.0, 1.0)]
+    variable@0:2:10-12 in vec2 uv [interpolation("flat"), location(1.0)]
     doc "How much light is left behind a body."
     function@0:3:7-16 float remaining(in@0:3:23-24 vec3 p) {
         var@0:4:5-14 float d = length(p@0:4:23-24)@0:4:16-25;
@@ -54,6 +55,7 @@ from .nodes import (
     Swizzle,
     Unary,
     Uniform,
+    Variable,
     While,
 )
 from .reader import TextError, read_module
@@ -76,6 +78,7 @@ class _Printer:
         parts = [self.struct(struct) for struct in module.structs]
         parts += [self.constant(constant) for constant in module.constants]
         parts += [self.uniform(uniform) for uniform in module.uniforms]
+        parts += [self.variable(variable) for variable in module.variables]
         parts += [self.function(function) for function in module.functions]
         files = [f"file {index} {_quoted(name)}\n" for name, index in self.files.items()]
         return "".join(files + parts)
@@ -100,9 +103,16 @@ class _Printer:
     def uniform(self, uniform: Uniform) -> str:
         declared = f"{spell(uniform.type)} {uniform.name}{_colon(uniform.quantity)}"
         default = f" = ({', '.join(map(_number, uniform.default))})" if uniform.default else ""
-        hints = [f"{name}({', '.join(map(_hint_argument, args))})" for name, args in uniform.hints]
-        listed = f" [{', '.join(hints)}]" if hints else ""
-        return f"{_doc(uniform.doc)}uniform{self.at(uniform.span)} {declared}{default}{listed}\n"
+        return f"{_doc(uniform.doc)}uniform{self.at(uniform.span)} {declared}{default}{_hints(uniform.hints)}\n"
+
+    def variable(self, variable: Variable) -> str:
+        declared = f"{variable.storage} {spell(variable.type)} {variable.name}"
+        hints: list[tuple[str, tuple[float | str, ...]]] = []
+        hints += [("builtin", (variable.builtin,))] if variable.builtin else []
+        hints += [("interpolation", (variable.interpolation,))] if variable.interpolation else []
+        hints += [("location", (float(variable.location),))] if variable.location >= 0 else []
+        value = f" = {self.expr(variable.value)}" if variable.value is not None else ""
+        return f"{_doc(variable.doc)}variable{self.at(variable.span)} {declared}{_hints(hints)}{value}\n"
 
     def function(self, function: Function) -> str:
         params = [
@@ -188,6 +198,11 @@ def _number(value: float) -> str:
     if not isfinite(value):
         raise ValueError(f"{value} has no text")
     return repr(float(value))
+
+
+def _hints(hints: Iterable[tuple[str, tuple[float | str, ...]]]) -> str:
+    listed = [f"{name}({', '.join(map(_hint_argument, args))})" for name, args in hints]
+    return f" [{', '.join(listed)}]" if listed else ""
 
 
 def _hint_argument(value: float | str) -> str:

@@ -38,6 +38,7 @@ from .nodes import (
     Swizzle,
     Unary,
     Uniform,
+    Variable,
     While,
 )
 from .rules import FLOAT_MAX, constructs, element_type, inferred, is_type, operator_type, returns
@@ -79,6 +80,8 @@ class _Verifier:
         self.problems: list[str] = []
         self.structs: dict[str, Struct] = {}
         self.globals: dict[str, Type] = {}
+        self.written: set[str] = set()
+        """The module variables that can be written."""
         self.functions: dict[str, Function] = {}
         self.function_at_hand: Function | None = None
         self.scopes: list[dict[str, Type]] = []
@@ -104,6 +107,7 @@ class _Verifier:
             [(struct.type.name, struct.span) for struct in whole.structs if isinstance(struct.type, Struct)]
             + [(constant.name, constant.span) for constant in whole.constants]
             + [(uniform.name, uniform.span) for uniform in whole.uniforms]
+            + [(variable.name, variable.span) for variable in whole.variables]
             + list({one.name: (one.name, one.span) for one in whole.functions}.values()),
             "is declared twice in the module",
         )
@@ -129,6 +133,8 @@ class _Verifier:
                     self.report(part.span, f"the value of '{constant.name}' is not constant")
             constants.add(constant.name)
             self.globals[constant.name] = constant.type
+        for variable in whole.variables:
+            self.variable(variable)
         self.calls()
         for function in whole.functions:
             self.function_at_hand = function
@@ -154,14 +160,34 @@ class _Verifier:
     def uniform(self, uniform: Uniform) -> None:
         type_, span, name = uniform.type, uniform.span, uniform.name
         self.globals[name] = type_
-        self.type(type_, span, (Struct, type(VOID)))
+        self.type(type_, span, (type(VOID),))
         innermost = type_.element if isinstance(type_, Array) else type_
         if isinstance(innermost, Struct):
-            self.report(span, f"uniform '{name}' is made of structs")
+            if self.linked:
+                self.report(span, f"uniform '{name}' is made of structs")
         elif len(uniform.default) != components(type_):
             self.report(span, f"'{name}' has {len(uniform.default)} defaults, not {components(type_)}")
         elif not all(_fits(value, kind_of(innermost)) for value in uniform.default):
             self.report(span, f"'{name}' has a default that no {spell(innermost)} holds: {uniform.default}")
+
+    def variable(self, variable: Variable) -> None:
+        name, span = variable.name, variable.span
+        self.type(variable.type, span, (Sampler, type(VOID)))
+        if variable.storage not in ("private", "in", "out"):
+            self.report(span, f"'{variable.storage}' is no storage")
+        if variable.interpolation not in ("", "flat", "noperspective", "centroid"):
+            self.report(span, f"'{variable.interpolation}' is no interpolation")
+        if variable.value is not None:
+            if variable.storage != "private":
+                self.report(span, f"'{name}' is {variable.storage} and has a value")
+            self.expression(variable.value)
+            self.same(variable.value.type, variable.type, span, f"'{name}'")
+            for part in subexpressions(variable.value):
+                if isinstance(part, Call):
+                    self.report(part.span, f"the value of '{name}' is a call's")
+        self.globals[name] = variable.type
+        if variable.storage != "in":
+            self.written.add(name)
 
     def calls(self) -> None:
         """Every call goes to a function of the module and none comes back; linked, only to earlier ones."""
@@ -297,7 +323,8 @@ class _Verifier:
             if isinstance(inner, Swizzle) and len(set(inner.components)) != len(inner.components):
                 self.report(target.span, f"'.{inner.components}' is assigned to, and names a component twice")
             inner = inner.value
-        if not isinstance(inner, Local) or isinstance(target.type, Sampler):
+        variable = isinstance(inner, Local) or (isinstance(inner, Global) and inner.name in self.written)
+        if not variable or isinstance(target.type, Sampler):
             what = f"a {type(inner).__name__} of type {_name(target.type)}"
             self.report(target.span, f"{what} cannot be assigned to")
 

@@ -230,7 +230,13 @@ def callees(function: Function) -> list[str]:
 
 
 def root(target: Expr) -> Local | None:
-    """The variable that an assignment to `target` changes, or None where it is not a variable."""
+    """The function's own variable that an assignment to `target` changes, or None where it is none of these."""
+    found = written_root(target)
+    return found if isinstance(found, Local) else None
+
+
+def written_root(target: Expr) -> Local | Global | None:
+    """The variable that an assignment to `target` changes, the function's own or the module's."""
     while isinstance(target, Swizzle | Index | Member):
         target = target.value
-    return target if isinstance(target, Local) else None
+    return target if isinstance(target, Local | Global) else None
