@@ -17,7 +17,7 @@ def page() -> str:
     lines = [
         "# The builtins",
         "",
-        "Made from the intrinsic table (`src/sssgen/ir/intrinsics.py`) by `python docs/intrinsics.py`.",
+        "Made from the intrinsic table (`src/sssgen/ir/intrinsics/`) by `python docs/intrinsics.py`.",
         "",
         "`genF` stands for float, vec2, vec3 and vec4 alike, `vecF` for the vectors; likewise I, U, B. A language that",
         "has the builtin under its own name shows it; *polyfill* means that a definition in our own language takes its",

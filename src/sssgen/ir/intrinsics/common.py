@@ -1,0 +1,190 @@
+"""Common functions, of one component at a time: 8.3 of the specification."""
+
+from __future__ import annotations
+
+from .table import F1, FINITE, INF, NAN, NONZERO, Builtin, Guard
+
+_PLAIN = F1[0], "genI(genI)"
+_ONES = ("float", "int", "uint")
+_PAIR = tuple(f"gen{k}(gen{k}, {other})" for k, one in zip("FIU", _ONES) for other in (f"gen{k}", one))
+
+# A table: several fields to a line.
+# fmt: off
+ROWS = (
+    Builtin("abs", _PLAIN, "Absolute value.",
+        range="absolute(x)",
+        inside="x != -2147483648",
+        domain="for an int: x > -2147483648",
+        ulp=0.0, vectors=(((-1.5,), 1.5), ((0.0,), 0.0), ((-7,), 7), (((1, -2),), (1, 2))),
+    ),
+    Builtin("sign", _PLAIN, "1 for x > 0, -1 for x < 0, else 0.",
+        range="signs(x)",
+        texts={"hlsl/genF": "{type}(sign({0}))"},
+        ulp=0.0, vectors=(((-2.5,), -1.0), ((0.0,), 0.0), ((0.125,), 1.0), ((-3,), -1), ((0,), 0)),
+    ),
+    Builtin("floor", F1, "Largest integer not above x.",
+        range="rising(math.floor, x)",
+        ulp=0.0, vectors=(((1.75,), 1.0), ((-0.25,), -1.0), ((-2.0,), -2.0)),
+    ),
+    Builtin("ceil", F1, "Smallest integer not below x.",
+        range="rising(math.ceil, x)",
+        ulp=0.0, vectors=(((1.25,), 2.0), ((-1.75,), -1.0), ((2.0,), 2.0)),
+    ),
+    Builtin("trunc", F1, "Nearest integer not larger in size: x rounded towards 0.",
+        range="rising(math.trunc, x)",
+        ulp=0.0, vectors=(((1.75,), 1.0), ((-1.75,), -1.0), ((3.0,), 3.0)),
+    ),
+    Builtin("round", F1,
+        "Nearest integer; of two, the even one (GLSL leaves that choice open, so it is written roundEven there).",
+        range="rising(round, x)",
+        texts={"glsl": "roundEven"}, ulp=0.0, vectors=(((1.75,), 2.0), ((0.5,), 0.0), ((-1.5,), -2.0), ((2.5,), 2.0)),
+    ),
+    Builtin("roundEven", F1, "Nearest integer; of two, the even one.",
+        range="rising(round, x)",
+        texts={"hlsl": "round", "wgsl": "round"},
+        ulp=0.0, vectors=(((1.25,), 1.0), ((0.5,), 0.0), ((1.5,), 2.0), ((-2.5,), -2.0)),
+    ),
+    Builtin("fract", F1, "x - floor(x), in [0, 1); may round to 1 for a tiny negative x.",
+        range="fraction(x)",
+        texts={"hlsl": "frac"}, vectors=(((1.75,), 0.75), ((-0.25,), 0.75), ((-3.0,), 0.0)),
+    ),
+    Builtin("mod", ("genF(genF, genF)", "genF(genF, float)"),
+        "Floored remainder x - y·floor(x/y); has the sign of y. Not HLSL's fmod, which truncates.",
+        range="remainder(x, y)",
+        guards=(Guard("not y.has_zero()", "a remainder of division by 0", NONZERO, "y"),),
+        inside="(y != 0.0) & ((x == 0.0) | (abs(x / y) > 1e-36)) & (abs(x / y - round(x / y)) >= 2.0**-20 * abs(x / y))", size="max(abs(x), abs(y))",
+        domain="y != 0; where x/y is within rounding of an integer the result may wrap", texts={"hlsl": "", "wgsl": ""},
+        polyfill="""
+genF mod(genF x, genF y) { return x - y * floor(x / y); }
+vecF mod(vecF x, float y) { return x - y * floor(x / y); }
+""",
+        cost=4,
+        vectors=(
+            ((5.5, 2.0), 1.5), ((-0.5, 2.0), 1.5), ((5.5, -2.0), -0.5), (((5.5, -0.5), 2.0), (1.5, 1.5)),
+        ),
+    ),
+    Builtin("fmod", ("genF(genF, genF)", "genF(genF, float)"),
+        "Truncated remainder x - y·trunc(x/y), as in C and HLSL; has the sign of x. Written out in HLSL, where glslang "
+        "takes fmod for the floored one.",
+        range="truncated(x, y)",
+        guards=(Guard("not y.has_zero()", "a remainder of division by 0", NONZERO, "y"),),
+        inside="(y != 0.0) & ((x == 0.0) | (abs(x / y) > 1e-36)) & (abs(x / y - round(x / y)) >= 2.0**-20 * abs(x / y))", size="max(abs(x), abs(y))",
+        domain="y != 0; where x/y is within rounding of an integer the result may wrap", texts={"glsl": "", "hlsl": "", "wgsl": "op:%"},
+        polyfill="""
+genF fmod(genF x, genF y) { return x - y * trunc(x / y); }
+vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
+""",
+        splat=(), cost=4,
+        vectors=(
+            ((5.5, 2.0), 1.5), ((-0.5, 2.0), -0.5), ((5.5, -2.0), 1.5), (((5.5, -0.5), 2.0), (1.5, -0.5)),
+        ),
+    ),
+    Builtin("min", _PAIR, "The smaller; either one where one is NaN.",
+        range="minimum(x, y)",
+        domain="neither is NaN",
+        ulp=0.0, vectors=(
+            ((1.0, -2.0), -2.0), ((3, 3), 3), (((1.0, 4.0), 2.0), (1.0, 2.0)), (((1, -4), (-1, 2)), (-1, -4)),
+        ),
+    ),
+    Builtin("max", _PAIR, "The larger; either one where one is NaN.",
+        range="maximum(x, y)",
+        domain="neither is NaN",
+        ulp=0.0, vectors=(
+            ((1.0, -2.0), 1.0), ((3, 3), 3), (((1.0, 4.0), 2.0), (2.0, 4.0)), (((1, -4), (-1, 2)), (1, 2)),
+        ),
+    ),
+    Builtin("clamp",
+        tuple(f"gen{k}(gen{k}, {bound}, {bound})" for k, one in zip("FIU", _ONES) for bound in (f"gen{k}", one)),
+        "min(max(x, y), z).",
+        range="clip(x, y, z)",
+        guards=(Guard("y.high <= z.low or ordered(y, z)", "the lower bound above the upper one", "min(max(x, y), z)"),),
+        inside="y <= z",
+        domain="y <= z; x is not NaN", cost=2,
+        ulp=0.0, vectors=(
+            ((0.5, 0.0, 1.0), 0.5), ((-0.5, 0.0, 1.0), 0.0), ((7, 1, 4), 4),
+            (((-1.0, 3.0), 0.0, 2.0), (0.0, 2.0)),
+        ),
+    ),
+    Builtin("saturate", F1, "clamp(x, 0, 1). Of our own: HLSL and WGSL have it, GLSL has not.",
+        range="clip(x, 0.0, 1.0)",
+        domain="x is not NaN", texts={"glsl": ""},
+        polyfill="genF saturate(genF x) { return clamp(x, 0.0, 1.0); }",
+        ulp=0.0, vectors=(((0.25,), 0.25), ((-1.0,), 0.0), ((1.5,), 1.0), (((2.0, -0.0, 1.0),), (1.0, 0.0, 1.0))),
+    ),
+    Builtin("mix", ("genF(genF, genF, genF)", "genF(genF, genF, float)", "genF(genF, genF, genB)"),
+        "Linear blend x·(1 - z) + y·z; with a bool, z ? y : x, where the other one may be infinite or NaN.",
+        range="blend(x, y, z)",
+        inside="(np.asarray(z).dtype == bool) | (max(abs(x), abs(y)) * max(abs(z), 1.0) < 1e38)", size="max(abs(x), abs(y)) * max(abs(z), 1.0)",
+        domain="x and y finite, unless z is a bool",
+        texts={"hlsl": "lerp", "hlsl/genF,genF,genB": "", "wgsl/genF,genF,genB": "select"},
+        polyfill="""
+float mix(float x, float y, bool a) { return a ? y : x; }
+vec2 mix(vec2 x, vec2 y, bvec2 a) { return vec2(a.x ? y.x : x.x, a.y ? y.y : x.y); }
+vec3 mix(vec3 x, vec3 y, bvec3 a) { return vec3(a.x ? y.x : x.x, a.y ? y.y : x.y, a.z ? y.z : x.z); }
+vec4 mix(vec4 x, vec4 y, bvec4 a) {
+    return vec4(a.x ? y.x : x.x, a.y ? y.y : x.y, a.z ? y.z : x.z, a.w ? y.w : x.w);
+}
+""",
+        splat=(), cost=2,
+        vectors=(
+            ((0.0, 10.0, 0.25), 2.5), ((1.0, 3.0, 0.0), 1.0), (((0.0, 2.0), (4.0, 4.0), 0.5), (2.0, 3.0)),
+            (((1.0, 2.0), (3.0, 4.0), (True, False)), (3.0, 2.0)), ((INF, 4.0, True), 4.0),
+        ),
+    ),
+    Builtin("step", ("genF(genF, genF)", "genF(float, genF)"), "0 for y < x, else 1.",
+        range="hull(0, 1)",
+        ulp=0.0, vectors=(((0.5, 0.25), 0.0), ((0.5, 0.5), 1.0), ((1.0, (0.0, 2.0)), (0.0, 1.0))),
+    ),
+    Builtin("smoothstep", ("genF(genF, genF, genF)", "genF(float, float, genF)"),
+        "Cubic step t·t·(3 - 2·t) with t = clamp((z - x)/(y - x), 0, 1).",
+        range="hull(0, 1)",
+        guards=(Guard("(y - x).low > 0.0 and (y - x).high <= F.largest", "edges in the wrong order, or one", "{ genF t = clamp((z - x) / clamp(y - x, DIVISOR, LARGEST), 0.0, 1.0); return t * t * (3.0 - 2.0 * t); }",
+            doc="smoothstep; with edges in the wrong order or one, a step."),),
+        inside="(x < y) & (y - x < 1e30)",
+        domain="x < y", cost=8, ulp=16.0,
+        clause="WGSL, Vulkan: that of the formula, with 2.5 ulp for the division",
+        vectors=(((0.0, 2.0, 0.5), 0.15625), ((0.0, 1.0, 0.0), 0.0), ((0.0, 1.0, (0.5, 3.0)), (0.5, 1.0))),
+    ),
+    Builtin("isnan", ("genB(genF)",),
+        "Whether x is not a number, by its bits: compilers may take it that no NaN occurs.",
+        range="hull(0, 1)",
+        texts={"glsl": "", "hlsl": "", "wgsl": ""},
+        polyfill="""
+bool isnan(float x) { return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u; }
+vecB isnan(vecF x) { return greaterThan(floatBitsToUint(x) & vecU(0x7fffffffu), vecU(0x7f800000u)); }
+""",
+        cost=2, vectors=(((NAN,), True), ((INF,), False), ((0.0,), False), (((1.0, NAN),), (False, True))),
+    ),
+    Builtin("isinf", ("genB(genF)",), "Whether x is infinite, by its bits, as isnan.",
+        range="hull(0, 1)",
+        texts={"glsl": "", "hlsl": "", "wgsl": ""},
+        polyfill="""
+bool isinf(float x) { return (floatBitsToUint(x) & 0x7fffffffu) == 0x7f800000u; }
+vecB isinf(vecF x) { return equal(floatBitsToUint(x) & vecU(0x7fffffffu), vecU(0x7f800000u)); }
+""",
+        cost=2,
+        vectors=(((-INF,), True), ((NAN,), False), ((2.0**127,), False), (((1.0, INF),), (False, True))),
+    ),
+    Builtin("floatBitsToInt", ("genI(genF)",), "The float32's bits, as an int.",
+        texts={"hlsl": "asint", "wgsl": "bitcast<{type}>({0})"},
+        vectors=(((1.0,), 0x3F800000), ((-2.0,), -0x40000000), ((0.0,), 0)),
+    ),
+    Builtin("floatBitsToUint", ("genU(genF)",), "The float32's bits, as a uint.",
+        texts={"hlsl": "asuint", "wgsl": "bitcast<{type}>({0})"},
+        vectors=(((1.0,), 0x3F800000), ((-2.0,), 0xC0000000), ((0.0,), 0)),
+    ),
+    Builtin("intBitsToFloat", ("genF(genI)",), "The float32 with these bits.",
+        guards=(Guard("False", "bits of no finite number", FINITE, "result"),),
+        inside="abs(intBitsToFloat(x)) < 1e39",
+        domain="the bits are those of a finite float",
+        texts={"hlsl": "asfloat", "wgsl": "bitcast<{type}>({0})"},
+        ulp=0.0, vectors=(((0x3F800000,), 1.0), ((-0x40000000,), -2.0), ((0,), 0.0)),
+    ),
+    Builtin("uintBitsToFloat", ("genF(genU)",), "The float32 with these bits.",
+        guards=(Guard("False", "bits of no finite number", FINITE, "result"),),
+        inside="abs(uintBitsToFloat(x)) < 1e39",
+        domain="the bits are those of a finite float",
+        texts={"hlsl": "asfloat", "wgsl": "bitcast<{type}>({0})"},
+        ulp=0.0, vectors=(((0x3F800000,), 1.0), ((0xC0000000,), -2.0), ((0,), 0.0)),
+    ),
+)

@@ -1,0 +1,90 @@
+"""Functions of matrices."""
+
+from __future__ import annotations
+
+from .table import Builtin, Guard
+
+# A table: several fields to a line.
+# fmt: off
+ROWS = (
+    Builtin("matrixCompMult", ("mat(mat, mat)",), "Componentwise product.",
+        range="x * y",
+        inside="abs(x * y) < 1e38",
+        texts={"hlsl": "", "wgsl": ""},
+        polyfill="""
+mat2 matrixCompMult(mat2 x, mat2 y) { return mat2(x[0] * y[0], x[1] * y[1]); }
+mat3 matrixCompMult(mat3 x, mat3 y) { return mat3(x[0] * y[0], x[1] * y[1], x[2] * y[2]); }
+mat4 matrixCompMult(mat4 x, mat4 y) { return mat4(x[0] * y[0], x[1] * y[1], x[2] * y[2], x[3] * y[3]); }
+""",
+        vectors=(
+            ((((1.0, 2.0), (3.0, 4.0)), ((5.0, 6.0), (7.0, 8.0))), ((5.0, 12.0), (21.0, 32.0))),
+            ((((1.0, 0.0), (0.0, 1.0)), ((5.0, 6.0), (7.0, 8.0))), ((5.0, 0.0), (0.0, 8.0))),
+            ((((0.0, 0.0), (0.0, 0.0)), ((5.0, 6.0), (7.0, 8.0))), ((0.0, 0.0), (0.0, 0.0))),
+        ),
+    ),
+    Builtin("outerProduct", ("mat2(vec2, vec2)", "mat3(vec3, vec3)", "mat4(vec4, vec4)"),
+        "The matrix whose column i is x·y[i].",
+        range="whole: outer(x, y)",
+        inside="length(x) * length(y) < 1e38",
+        texts={"hlsl": "", "wgsl": ""},
+        polyfill="""
+mat2 outerProduct(vec2 x, vec2 y) { return mat2(x * y.x, x * y.y); }
+mat3 outerProduct(vec3 x, vec3 y) { return mat3(x * y.x, x * y.y, x * y.z); }
+mat4 outerProduct(vec4 x, vec4 y) { return mat4(x * y.x, x * y.y, x * y.z, x * y.w); }
+""",
+        vectors=(
+            (((1.0, 2.0), (3.0, 4.0)), ((3.0, 6.0), (4.0, 8.0))),
+            (((0.0, 0.0), (3.0, 4.0)), ((0.0, 0.0), (0.0, 0.0))),
+            (((1.0, 0.0, 2.0), (0.0, 1.0, -1.0)), ((0.0, 0.0, 0.0), (1.0, 0.0, 2.0), (-1.0, 0.0, -2.0))),
+        ),
+    ),
+    Builtin("transpose", ("mat(mat)",), "Rows for columns.",
+        range="whole: transposed(x)",
+        cost=0,
+        ulp=0.0, vectors=(
+            ((((1.0, 2.0), (3.0, 4.0)),), ((1.0, 3.0), (2.0, 4.0))),
+            ((((1.0, 0.0), (0.0, 1.0)),), ((1.0, 0.0), (0.0, 1.0))),
+            ((((1.0, 2.0, 3.0), (4.0, 5.0, 6.0), (7.0, 8.0, 9.0)),), ((1.0, 4.0, 7.0), (2.0, 5.0, 8.0), (3.0, 6.0, 9.0))),
+        ),
+    ),
+    Builtin("determinant", ("float(mat)",), "Determinant.",
+        range="whole: determinant(x)",
+        cost=8, ulp=32.0, clause="WGSL: no bound",
+        vectors=(
+            ((((1.0, 2.0), (3.0, 4.0)),), -2.0), ((((1.0, 2.0), (2.0, 4.0)),), 0.0),
+            ((((2.0, 0.0, 0.0), (1.0, 3.0, 0.0), (5.0, 7.0, 4.0)),), 24.0),
+        ),
+    ),
+    Builtin("inverse", ("mat(mat)",), "Inverse matrix.",
+        guards=(Guard("False", "a matrix without an inverse", "", doc="The inverse; of a matrix without one, large numbers."),),
+        domain="determinant(x) != 0, and well away from it for accuracy", texts={"hlsl": "", "wgsl": ""},
+        polyfill="""
+mat2 inverse(mat2 x) {
+    return mat2(x[1].y, -x[0].y, -x[1].x, x[0].x) * (1.0 / (x[0].x * x[1].y - x[1].x * x[0].y));
+}
+mat3 inverse(mat3 x) {
+    vec3 a = cross(x[1], x[2]);
+    return transpose(mat3(a, cross(x[2], x[0]), cross(x[0], x[1]))) * (1.0 / dot(x[0], a));
+}
+mat4 inverse(mat4 x) {
+    vec3 a = cross(x[0].xyz, x[1].xyz);
+    vec3 b = cross(x[2].xyz, x[3].xyz);
+    vec3 c = x[0].xyz * x[1].w - x[1].xyz * x[0].w;
+    vec3 d = x[2].xyz * x[3].w - x[3].xyz * x[2].w;
+    float s = 1.0 / (dot(a, d) + dot(b, c));
+    return transpose(mat4(
+        vec4(cross(x[1].xyz, d) + b * x[1].w, -dot(x[1].xyz, b)),
+        vec4(cross(d, x[0].xyz) - b * x[0].w, dot(x[0].xyz, b)),
+        vec4(cross(x[3].xyz, c) + a * x[3].w, -dot(x[3].xyz, a)),
+        vec4(cross(c, x[2].xyz) - a * x[2].w, dot(x[2].xyz, a))
+    )) * s;
+}
+""",
+        cost=16, ulp=64.0, clause="GLSL ES 3.00: no bound, and undefined where ill-conditioned",
+        vectors=(
+            ((((1.0, 2.0), (3.0, 4.0)),), ((-2.0, 1.0), (1.5, -0.5))),
+            ((((2.0, 0.0, 0.0), (0.0, 4.0, 0.0), (6.0, 8.0, 1.0)),), ((0.5, 0.0, 0.0), (0.0, 0.25, 0.0), (-3.0, -2.0, 1.0))),
+            ((((2.0, 0.0, 0.0, 0.0), (0.0, 0.0, -1.0, 0.0), (0.0, 1.0, 0.0, 0.0), (4.0, 3.0, 2.0, 1.0)),), ((0.5, 0.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0), (0.0, -1.0, 0.0, 0.0), (-2.0, 2.0, -3.0, 1.0))),
+        ),
+    ),
+)

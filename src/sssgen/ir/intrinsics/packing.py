@@ -1,0 +1,90 @@
+"""Packing of several numbers into a uint; the first component goes into the low bits."""
+
+from __future__ import annotations
+
+from .table import FINITE, Builtin, Guard
+
+# A table: several fields to a line.
+# fmt: off
+ROWS = (
+    Builtin("packSnorm2x16", ("uint(vec2)",),
+        "Two numbers in [-1, 1], each as a signed 16-bit fraction of 32767.",
+        inside="abs(fract(clamp(x, -1.0, 1.0) * 32767.0) - 0.5) > 0.01",
+        texts={"glsl-330": "", "hlsl": "", "wgsl": "pack2x16snorm"},
+        polyfill="""
+uint packSnorm2x16(vec2 x) {
+    ivec2 i = ivec2(round(clamp(x, -1.0, 1.0) * 32767.0));
+    return (uint(i.x) & 0xffffu) | (uint(i.y) << 16u);
+}
+""",
+        cost=9, vectors=((((-1.0, 1.0),), 0x7FFF8001), (((0.0, 0.0),), 0), (((4.0, -4.0),), 0x80017FFF)),
+    ),
+    Builtin("packUnorm2x16", ("uint(vec2)",), "Two numbers in [0, 1], each as a 16-bit fraction of 65535.",
+        inside="abs(fract(clamp(x, 0.0, 1.0) * 65535.0) - 0.5) > 0.01",
+        texts={"glsl-330": "", "hlsl": "", "wgsl": "pack2x16unorm"},
+        polyfill="""
+uint packUnorm2x16(vec2 x) {
+    uvec2 u = uvec2(round(clamp(x, 0.0, 1.0) * 65535.0));
+    return u.x | (u.y << 16u);
+}
+""",
+        cost=8, vectors=((((0.0, 1.0),), 0xFFFF0000), (((0.0, 0.0),), 0), (((2.0, -1.0),), 0xFFFF)),
+    ),
+    Builtin("packHalf2x16", ("uint(vec2)",), "Two numbers as float16.",
+        inside="unpackHalf2x16(packHalf2x16(x)) == x",
+        domain="representable in float16: the rounding is the target's",
+        texts={"glsl-330": "", "hlsl": "dot(f32tof16({0}), uint2(1u, 65536u))", "hlsl-dx9": "", "wgsl": "pack2x16float"},
+        polyfill="""
+uint packHalf2x16(vec2 x) {
+    uvec2 bits = floatBitsToUint(abs(x));
+    uvec2 normal = (bits - 0x37fff001u + ((bits >> 13u) & 1u)) >> 13u;
+    uvec2 tiny = uvec2(round(abs(x) * 16777216.0));
+    uvec2 halves = uvec2(bits.x < 0x38800000u ? tiny.x : normal.x, bits.y < 0x38800000u ? tiny.y : normal.y);
+    halves |= (floatBitsToUint(x) >> 16u) & 0x8000u;
+    return halves.x | (halves.y << 16u);
+}
+""",
+        cost=3,
+        vectors=((((1.0, -2.0),), 0xC0003C00), (((0.5, 0.0),), 0x3800), (((65504.0, 0.25),), 0x34007BFF)),
+    ),
+    Builtin("unpackSnorm2x16", ("vec2(uint)",),
+        "Two numbers in [-1, 1] from signed 16-bit fractions of 32767.",
+        range="hull(-1, 1)",
+        texts={"glsl-330": "", "hlsl": "", "wgsl": "unpack2x16snorm"},
+        polyfill="""
+vec2 unpackSnorm2x16(uint x) {
+    return clamp(vec2(float(int(x << 16u) >> 16), float(int(x) >> 16)) / 32767.0, -1.0, 1.0);
+}
+""",
+        cost=4,
+        vectors=(((0x80007FFF,), (1.0, -1.0)), ((0,), (0.0, 0.0)), ((0x4000,), (0.500015259254738, 0.0))),
+    ),
+    Builtin("unpackUnorm2x16", ("vec2(uint)",), "Two numbers in [0, 1] from 16-bit fractions of 65535.",
+        range="hull(0, 1)",
+        texts={"glsl-330": "", "hlsl": "", "wgsl": "unpack2x16unorm"},
+        polyfill="vec2 unpackUnorm2x16(uint x) { return vec2(float(x & 65535u), float(x >> 16u)) / 65535.0; }",
+        cost=3,
+        vectors=(((0xFFFF,), (1.0, 0.0)), ((0,), (0.0, 0.0)), ((0x80000000,), (0.0, 0.5000076295109483))),
+    ),
+    Builtin("unpackHalf2x16", ("vec2(uint)",), "Two numbers from float16.",
+        range="hull(-65504, 65504)",
+        guards=(Guard("False", "bits of no finite number", FINITE, "result"),),
+        inside="abs(unpackHalf2x16(x)) < 1e5",
+        domain="both are finite",
+        texts={
+            "glsl-330": "", "hlsl": "f16tof32(({0}) >> uint2(0u, 16u))", "hlsl-dx9": "", "wgsl": "unpack2x16float",
+        },
+        polyfill="""
+vec2 unpackHalf2x16(uint x) {
+    uvec2 halves = uvec2(x & 0xffffu, x >> 16u);
+    uvec2 bits = halves & 0x7fffu;
+    vec2 normal = uintBitsToFloat((bits << 13u) + 0x38000000u);
+    vec2 tiny = vec2(bits) / 16777216.0;
+    vec2 size = vec2(bits.x < 1024u ? tiny.x : normal.x, bits.y < 1024u ? tiny.y : normal.y);
+    return uintBitsToFloat(floatBitsToUint(size) | ((halves & 0x8000u) << 16u));
+}
+""",
+        cost=2,
+        ulp=0.0, vectors=(((0xC0003C00,), (1.0, -2.0)), ((0x3800,), (0.5, 0.0)), ((0x34007BFF,), (65504.0, 0.25))),
+    ),
+)
