@@ -2,9 +2,9 @@
 
 A texture read that chooses its own level, or a derivative, compares a pixel with its neighbours, so they must
 all get there: control flow must be *uniform*. The analysis is that of WGSL, section 15.2, made simpler on the
-safe side. What depends on an entry's parameters or on a texture varies; uniforms and constants do not. After
-a branch that some pixels leave for good (by return, break, continue or discard), flow stays non-uniform to
-the end of the function or loop.
+safe side. What depends on an entry's parameters, a module variable or a texture varies; uniforms and constants
+do not. After a branch that some pixels leave for good (by return, break, continue or discard), flow stays
+non-uniform to the end of the function or loop.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ from ..ir.nodes import (
     Expr,
     For,
     Function,
+    Global,
     If,
     Intrinsic,
     Literal,
@@ -37,6 +38,7 @@ from ..ir.nodes import (
     While,
 )
 from ..ir.walk import expressions, operands, root, statements
+from .effects import NONE, Effects, effects
 
 
 @cache
@@ -67,11 +69,14 @@ class Summary(NamedTuple):
     outs: tuple[int, ...]
     """The positions of its out and inout parameters."""
     callees: tuple[str, ...]
+    reads: frozenset[str] = frozenset()
+    writes: frozenset[str] = frozenset()
+    """The module variables that it reads and writes, itself or through what it calls."""
 
     @property
     def pure(self) -> bool:
         """Whether a call does nothing but give its value."""
-        return not self.outs and not self.discards
+        return not self.outs and not self.discards and not self.writes
 
 
 _UNKNOWN = Summary(False, True, True, (), ())
@@ -81,6 +86,7 @@ def summaries(module: Module) -> dict[str, Summary]:
     """A summary of each function of a module."""
     functions = {function.key: function for function in module.functions}
     found: dict[str, Summary] = {}
+    shared = effects(module)
 
     def visit(key: str) -> Summary:
         known = found.get(key)
@@ -89,7 +95,7 @@ def summaries(module: Module) -> dict[str, Summary]:
             if function is None:
                 return _UNKNOWN
             found[key] = _UNKNOWN
-            known = found[key] = _summary(function, visit)
+            known = found[key] = _summary(function, visit, shared.get(key, NONE))
         return known
 
     for key in functions:
@@ -97,7 +103,7 @@ def summaries(module: Module) -> dict[str, Summary]:
     return found
 
 
-def _summary(function: Function, visit: Any) -> Summary:
+def _summary(function: Function, visit: Any, shared: Effects) -> Summary:
     names: set[str] = set()
     callees: dict[str, None] = {}
     discards = function.body is None
@@ -117,10 +123,11 @@ def _summary(function: Function, visit: Any) -> Summary:
     called = [visit(key) for key in callees]
     return Summary(
         not names.isdisjoint(implicit()) or any(callee.compares for callee in called),
-        not names.isdisjoint(varying_builtins()) or any(callee.varies for callee in called),
+        bool(shared.reads) or not names.isdisjoint(varying_builtins()) or any(callee.varies for callee in called),
         discards or any(callee.discards for callee in called),
         tuple([index for index, param in enumerate(function.params) if param.direction != "in"]),
         tuple(callees),
+        *shared,
     )
 
 
@@ -156,6 +163,7 @@ class Divergence:
         """The statements, by id, that are reached uniformly and left otherwise."""
         self.sites: dict[str, Site] = {}
         """How the functions are called that want uniform flow."""
+        self.shared = summaries.get(function.key, _UNKNOWN).reads
         self.flow = site.uniform
         self.varying = set(site.varying)
         self.hits = 0
@@ -267,6 +275,8 @@ class Divergence:
         """Whether a value may differ from pixel to pixel. Notes what is misplaced on the way."""
         if isinstance(expr, Local):
             return expr.name in self.varying
+        if isinstance(expr, Global):
+            return expr.name in self.shared
         if isinstance(expr, Binary) and expr.op in ("&&", "||"):
             left = self.varies(expr.left)
             return self.apart(left, (expr.right,)) or left

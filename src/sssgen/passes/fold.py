@@ -42,6 +42,7 @@ from ..ir.nodes import (
     Stmt,
     Swizzle,
     Unary,
+    Variable,
     While,
 )
 from ..ir.rules import element_type
@@ -72,7 +73,8 @@ def fold(module: Module, fixed: Mapping[str, tuple[float, ...]] = {}) -> Module:
     uniforms = module.uniforms
     if folder.fixed:
         uniforms = tuple([uniform for uniform in uniforms if uniform.name not in folder.fixed])
-    return Module(module.structs, tuple(constants), uniforms, functions)
+    variables = tuple([folder.variable(variable) for variable in module.variables])
+    return Module(module.structs, tuple(constants), uniforms, functions, variables)
 
 
 def uniform_value(type: Type, numbers: tuple[float, ...], span: Span) -> Expr:
@@ -145,6 +147,10 @@ class _Folder:
             Index: self.index,
             Member: self.member,
         }
+
+    def variable(self, variable: Variable) -> Variable:
+        value = self.expression(variable.value) if variable.value is not None else None
+        return variable if value is variable.value else variable._replace(value=value)
 
     # Statements
 

@@ -39,7 +39,7 @@ from ..ir.nodes import (
     While,
 )
 from ..ir.types import FLOAT, Scalar, Type
-from ..ir.walk import all_expressions, operands, root, statements, subexpressions, with_operands
+from ..ir.walk import all_expressions, operands, statements, subexpressions, with_operands, written_root
 from .divergence import Divergence, Site, Summary, joined, summaries
 from .scopes import declared, fresh
 
@@ -104,7 +104,7 @@ class _Region:
         self.available = set(visible)
         """The variables that there are before the region."""
         self.changed: set[str] = set()
-        """Those of them that have changed since."""
+        """Those of them that have changed since, and module variables (see `named`)."""
         self.definitions: dict[str, Expr] = {}
         """What variables hold, as expressions over what was available and has not changed."""
         self.starts: dict[str, Expr] = {}
@@ -139,6 +139,7 @@ class _Hoister:
         """How many blocks enclose the statement at hand."""
         self.depths = {param.name: 1 for param in function.params}
         """How many enclose each variable's declaration."""
+        self.shared = known[function.key].reads
         self.region = None if site.uniform else _Region((), False)
 
     def run(self) -> Function:
@@ -218,10 +219,12 @@ class _Hoister:
     def assign(self, target: Expr, op: str, value: Expr) -> None:
         """Notes what an assignment changes. In the variable's own block it is as good as a declaration."""
         assert self.region is not None
-        variable = root(target)
+        variable = written_root(target)
         if variable is None:
             return
-        if target is variable and self.depths.get(variable.name, 0) == self.depth:
+        if isinstance(variable, Global):
+            self.region.change((named(variable),))
+        elif target is variable and self.depths.get(variable.name, 0) == self.depth:
             if op:
                 value = Binary(target.type, op, target, value, target.span)
             known = self.before(value)
@@ -250,17 +253,18 @@ class _Hoister:
         """The variables that a block may change."""
         names = set()
         for stmt in statements(block):
-            target = root(stmt.target) if isinstance(stmt, Assign) else None
+            target = written_root(stmt.target) if isinstance(stmt, Assign) else None
             if target is not None:
-                names.add(target.name)
+                names.add(named(target))
         for expr in all_expressions(block):
             if isinstance(expr, Call):
                 names |= self.written(expr)
         return names
 
     def written(self, call: Call) -> set[str]:
-        targets = [root(call.args[index]) for index in self.known[call.function].outs]
-        return {target.name for target in targets if target is not None}
+        summary = self.known[call.function]
+        targets = [written_root(call.args[index]) for index in summary.outs]
+        return {named(target) for target in targets if target is not None}.union(map("${}".format, summary.writes))
 
     # Expressions
 
@@ -290,8 +294,12 @@ class _Hoister:
             if expr.name in region.definitions:
                 return region.definitions[expr.name]
             return expr if expr.name in region.available and expr.name not in region.changed else None
-        if isinstance(expr, Call) and not self.known[expr.function].pure:
-            return None
+        if isinstance(expr, Global):
+            return None if named(expr) in region.changed else expr
+        if isinstance(expr, Call):
+            called = self.known[expr.function]
+            if not called.pure or not region.changed.isdisjoint(map("${}".format, called.reads)):
+                return None
         return self.over(expr, [self.before(operand) for operand in operands(expr)])
 
     def over(self, expr: Expr, new: list[Expr | None]) -> Expr | None:
@@ -325,7 +333,7 @@ class _Hoister:
             return _zero(expr.type, expr.span)
         map_, at, *bias = expr.args
         coordinates = self.start(at)
-        if coordinates is None or not any(isinstance(part, Local) for part in subexpressions(coordinates)):
+        if coordinates is None or not any(map(self.may_vary, subexpressions(coordinates))):
             self.note(f"{_words(map_)} is read at level 0 here", expr.span)
             level = bias[0] if bias else Literal(FLOAT, 0.0, expr.span)
             return Intrinsic(expr.type, "textureLod", (map_, at, level), expr.span)
@@ -339,6 +347,10 @@ class _Hoister:
             slopes = [Binary(at.type, "*", slope, scale, expr.span) for slope in slopes]
         self.note(f"{_words(map_)} is read here at the level that its coordinates had before", expr.span)
         return Intrinsic(expr.type, "textureGrad", (map_, at, *slopes), expr.span)
+
+    def may_vary(self, part: Expr) -> bool:
+        """Whether it is a variable."""
+        return isinstance(part, Local) or (isinstance(part, Global) and part.name in self.shared)
 
     def start(self, expr: Expr) -> Expr | None:
         """What coordinates start from before the region: as far as they are known, sums without what is
@@ -361,6 +373,11 @@ class _Hoister:
     def note(self, message: str, span: Span) -> None:
         why = "neighbouring pixels may go another way"
         self.notes[Note(f"{message}: {why}, so their difference is not known", span)] = None
+
+
+def named(variable: Local | Global) -> str:
+    """A variable's name, told apart from the module's as in the IR's text form."""
+    return variable.name if isinstance(variable, Local) else f"${variable.name}"
 
 
 def _base_name(expr: Call | Intrinsic) -> str:

@@ -4,8 +4,9 @@ Why: a polyfill of one expression reads better in place, and some targets cannot
 Place: right after whatever brings such functions, and before `prune`, which drops those that nothing calls
 any more.
 
-Only functions that are one `return` are inlined. An argument takes its parameter's place where the parameter
-is used at most once, or where the argument costs nothing (a literal, a name, or components of one).
+Only functions that are one `return`, and write no module variable, are inlined. An argument takes its
+parameter's place where the parameter is used at most once, or where the argument costs nothing (a literal, a
+name, or components of one).
 """
 
 from __future__ import annotations
@@ -66,9 +67,11 @@ def inline(module: Module, should_inline: Callable[[Function], bool], insist: bo
         for function in module.functions
         if _expression_of(function) is not None and should_inline(function)
     }
+    known = summaries(module) if chosen else {}
+    chosen = {key: function for key, function in chosen.items() if not known[key].writes}
     if not chosen:
         return module
-    inliner = _Inliner(chosen, summaries(module), insist)
+    inliner = _Inliner(chosen, known, insist)
     functions = tuple([inliner.function(function) for function in module.functions])
     return module._replace(functions=functions)
 

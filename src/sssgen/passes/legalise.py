@@ -28,8 +28,9 @@ from ..ir.types import (
 )
 from ..ir.walk import expressions, operands, rewrite, root, statements, subexpressions, with_operands
 from . import blocks
+from .effects import effects
 from .integers import counts_up, with_result
-from .lift_calls import is_awkward, lift
+from .lift_calls import awkward, lift
 from .stores import is_dynamic_store, is_swizzle_store, parts_of, whole_store
 from .substitute import in_place, is_cheap
 
@@ -45,6 +46,10 @@ class Unsupported(Exception):
     def __init__(self, message: str, span: ir.Span) -> None:
         super().__init__(message)
         self.message, self.span = message, span
+
+
+class _OutOfOrder(Exception):
+    """Something would be computed before a call that it stands behind."""
 
 
 def legalise(module: ir.Module, dialect: str, can: Can, polyfill: Polyfill) -> ir.Module:
@@ -66,19 +71,48 @@ class _Legaliser:
         """The counters of the loops around that are never negative."""
         self.names: set[str] = set()
         self.prelude: list[ir.Stmt] | None = None
+        self.shared = effects(module)
+        self.writing = bool(self.shared) or any(
+            param.direction != "in" for function in module.functions for param in function.params
+        )
+        """Whether any call can write anything."""
+        self.ordered: set[int] = set()
+        """The statements, by id, before which nothing of theirs may be computed."""
 
     def run(self) -> ir.Module:
         functions = [self.function(function) for function in self.module.functions]
         constants = tuple(constant._replace(value=self.initial(constant.value)) for constant in self.module.constants)
-        return self.module._replace(constants=constants, functions=(*self.helpers.values(), *functions))
+        variables = tuple([self.variable(variable) for variable in self.module.variables])
+        functions = [*self.helpers.values(), *functions]
+        return self.module._replace(constants=constants, functions=tuple(functions), variables=variables)
+
+    def variable(self, variable: ir.Variable) -> ir.Variable:
+        value = self.initial(variable.value) if variable.value is not None else None
+        return variable if value is variable.value else variable._replace(value=value)
 
     def function(self, function: ir.Function) -> ir.Function:
         if isinstance(function.result, Array) and not self.can("array_constructors"):
             raise Unsupported(
                 "a function cannot return an array for this target: give it an out parameter", function.span
             )
-        if not self.can("out_parameters") or is_awkward(function, self.functions):
-            function = lift(function, self.functions)
+        if not self.writing:
+            return self.lifted(function)
+        if not self.can("out_parameters"):
+            return self.lifted(lift(function, self.functions, self.shared))
+        stmts = awkward(function, self.functions, self.shared)
+        by_parameters = stmts and awkward(function, self.functions)
+        if by_parameters or (stmts and not self.can("operand_order")):
+            return self.lifted(lift(function, self.functions, self.shared))
+        self.ordered = {id(stmt) for stmt in stmts}
+        prelude, counters = self.prelude, list(self.counters)
+        try:
+            return self.lifted(function)
+        except _OutOfOrder:
+            self.ordered, self.prelude, self.counters = set(), prelude, counters
+            return self.lifted(lift(function, self.functions, self.shared))
+
+    def lifted(self, function: ir.Function) -> ir.Function:
+        """A function whose writing calls stand where they can."""
         body = function.body or ()
         self.names = {param.name for param in function.params}
         self.names |= {stmt.name for stmt in statements(body) if isinstance(stmt, ir.Declare)}
@@ -146,6 +180,8 @@ class _Legaliser:
         elif isinstance(stmt, ir.For | ir.While):
             new = self.loop(stmt)
         result = self.prelude if new is None else [*self.prelude, new]
+        if len(result) > 1 and id(stmt) in self.ordered:
+            raise _OutOfOrder
         self.prelude = outer
         return result
 
@@ -222,6 +258,8 @@ class _Legaliser:
         self.counters.append(counter)
         body = self.inner(loop.body)
         self.counters.pop()
+        if before and id(loop) in self.ordered:
+            raise _OutOfOrder
         if before and condition is not None:
             stop = ir.Unary(BOOL, "!", condition, condition.span)
             body = (*before, ir.If(stop, (ir.Break(loop.span),), (), loop.span), *body)
@@ -326,12 +364,13 @@ class _Legaliser:
         for helper in module.functions:
             if helper.key not in self.helpers:
                 self.functions[helper.key] = helper
-                names, prelude = self.names, self.prelude
+                self.writing = self.writing or any(param.direction != "in" for param in helper.params)
+                names, prelude, ordered = self.names, self.prelude, self.ordered
                 self.helpers[helper.key] = helper  # before its own body: it may be asked for again there
                 legal = self.function(helper)
                 del self.helpers[helper.key]
                 self.helpers[helper.key] = legal
-                self.names, self.prelude = names, prelude
+                self.names, self.prelude, self.ordered = names, prelude, ordered
         return ir.Call(call.type, function.key, call.args, call.span)
 
     def construct(self, construct: ir.Construct) -> ir.Expr:

@@ -22,6 +22,7 @@ from ..ir.nodes import (
     Expr,
     For,
     Function,
+    Global,
     If,
     Index,
     Literal,
@@ -38,12 +39,15 @@ from ..ir.nodes import (
     While,
 )
 from ..ir.types import BOOL, VOID, Type
-from ..ir.walk import callees, expressions, operands, root, statements, subexpressions, with_operands
+from ..ir.walk import callees, expressions, operands, statements, subexpressions, with_operands, written_root
+from .effects import NONE, Effects
 from .scopes import declared, fresh
 
 Functions = Mapping[str, Function]
 
 DISCARDED = "discarded"
+
+_NOTHING: Mapping[str, Effects] = {}
 
 
 def lift_calls(module: Module) -> Module:
@@ -57,26 +61,30 @@ def lift_calls(module: Module) -> Module:
     return module._replace(functions=tuple(lifted.values()))
 
 
-def lift(function: Function, functions: Functions) -> Function:
-    """One function with its writing calls as statements; discarding stays as it is."""
-    return _Lifter(function, functions).run()
+def lift(function: Function, functions: Functions, shared: Mapping[str, Effects] = _NOTHING) -> Function:
+    """One function with its writing calls as statements; discarding stays as it is.
+
+    `shared` says which functions read and write module variables.
+    """
+    return _Lifter(function, functions, shared).run()
 
 
-def is_awkward(function: Function, functions: Functions) -> bool:
-    """Whether a writing call stands inside a larger expression.
+def awkward(function: Function, functions: Functions, shared: Mapping[str, Effects] = _NOTHING) -> list[Stmt]:
+    """The statements in which a writing call stands inside a larger expression.
 
     There languages differ in the order of evaluation, and in whether the right side of `&&` and both arms of a choice
     are always evaluated; and what other passes compute before the statement would be computed too early.
     """
-    lifter = _Lifter(function, functions)
+    lifter = _Lifter(function, functions, shared)
     if not lifter.writes_in(function.body or ()):
-        return False
+        return []
+    found = []
     for stmt in statements(function.body or ()):
         for expr in expressions(stmt):
-            parts = operands(expr) if isinstance(expr, Call) else (expr,)
-            if any(lifter.writes(part) for part in parts):
-                return True
-    return False
+            alone = isinstance(expr, Call) and not (isinstance(stmt, Assign) and lifter.meets(stmt))
+            if any(map(lifter.writes, operands(expr) if alone else (expr,))):
+                found.append(stmt)
+    return found
 
 
 def out_arguments(call: Expr, functions: Functions) -> list[str]:
@@ -104,10 +112,20 @@ def _announce_discard(function: Function, known: Functions, taken: set[str]) -> 
     return new
 
 
+def _named(variable: Local | Global) -> str:
+    return variable.name if isinstance(variable, Local) else f"${variable.name}"
+
+
+def _read(expr: Expr) -> list[str]:
+    """The variables that an expression mentions."""
+    return [_named(part) for part in subexpressions(expr) if isinstance(part, Local | Global)]
+
+
 class _Lifter:
-    def __init__(self, function: Function, functions: Functions) -> None:
+    def __init__(self, function: Function, functions: Functions, shared: Mapping[str, Effects] = _NOTHING) -> None:
         self.function = function
         self.functions = functions
+        self.shared = shared
         self.names = set(declared(function))
         self.out: list[Stmt] = []
 
@@ -119,15 +137,12 @@ class _Lifter:
         """Whether a call inside the expression changes something beside its result."""
         if expr is None:
             return False
-        return any(
-            isinstance(part, Call) and any(param.direction != "in" for param in self.functions[part.function].params)
-            for part in subexpressions(expr)
-        )
+        return any(isinstance(part, Call) and self.writes_itself(part) for part in subexpressions(expr))
 
     def writes_in(self, body: Block) -> bool:
         keys = callees(Function("", (), VOID, "", body, "", self.function.span))
         evaluates = any(isinstance(stmt, Evaluate) for stmt in statements(body))
-        return evaluates or any(param.direction != "in" for key in keys for param in self.functions[key].params)
+        return evaluates or any(map(self.changes, keys))
 
     def local(self, type: Type, name: str, span: Span) -> Local:
         name = fresh(name, self.names)
@@ -156,8 +171,7 @@ class _Lifter:
                 call, after = self.call(stmt.call)
                 self.out += [stmt._replace(call=call), *after]
             else:
-                for operand in operands(stmt.call):
-                    self.expr(operand)  # the call itself does nothing; what its arguments call may
+                self.out.append(stmt._replace(call=with_operands(stmt.call, tuple(self.in_order(operands(stmt.call))))))
         elif isinstance(stmt, Return) and stmt.value is not None:
             self.out.append(stmt._replace(value=self.expr(stmt.value)))
         elif isinstance(stmt, If):
@@ -169,8 +183,10 @@ class _Lifter:
             self.out.append(stmt)
 
     def assign(self, stmt: Assign) -> None:
-        target, value = self.expr(stmt.target), stmt.value
-        alone = isinstance(target, Local) and not stmt.op and target.name not in self.written(value)
+        value = stmt.value
+        pinned = any(map(self.written(value).__contains__, _read(stmt.target)))
+        target = self.expr(self.pinned(stmt.target) if pinned else stmt.target)
+        alone = isinstance(target, Local | Global) and not stmt.op and not self.meets(stmt)
         if alone and isinstance(value, Call) and self.writes_itself(value):
             call, after = self.call(value)
             self.out += [Assign(target, "", call, stmt.span), *after]
@@ -196,7 +212,17 @@ class _Lifter:
     # Expressions
 
     def writes_itself(self, call: Call) -> bool:
-        return any(param.direction != "in" for param in self.functions[call.function].params)
+        return self.changes(call.function)
+
+    def changes(self, key: str) -> bool:
+        """Whether a function writes through its parameters, or a module variable."""
+        wrote = key in self.shared and bool(self.shared[key].writes)
+        return wrote or any(param.direction != "in" for param in self.functions[key].params)
+
+    def meets(self, stmt: Assign) -> bool:
+        """Whether an assignment's value also writes what the assignment writes."""
+        target = written_root(stmt.target)
+        return target is not None and _named(target) in self.written(stmt.value)
 
     def expr(self, expr: Expr) -> Expr:
         """The expression with what its calls write computed before it."""
@@ -216,27 +242,37 @@ class _Lifter:
         return with_operands(expr, tuple(self.in_order(operands(expr))))
 
     def written(self, expr: Expr) -> set[str]:
-        """The variables that the calls in an expression change."""
+        """The variables that the calls in an expression change, the module's as `$name`."""
         found: set[str] = set()
         for part in subexpressions(expr):
             if isinstance(part, Call):
                 params = self.functions[part.function].params
-                places = [root(arg) for arg, param in zip(part.args, params, strict=False) if param.direction != "in"]
-                found.update(place.name for place in places if place is not None)
+                outs = [arg for arg, param in zip(part.args, params, strict=False) if param.direction != "in"]
+                found.update(_named(place) for place in map(written_root, outs) if place is not None)
+                found.update(map("${}".format, self.shared.get(part.function, NONE).writes))
+        return found
+
+    def read(self, expr: Expr) -> set[str]:
+        """The variables that an expression reads, the module's as `$name`, those that its calls read too."""
+        found = set(_read(expr))
+        for part in subexpressions(expr):
+            if isinstance(part, Call):
+                found.update(map("${}".format, self.shared.get(part.function, NONE).reads))
         return found
 
     def in_order(self, exprs: tuple[Expr, ...]) -> list[Expr]:
         """Expressions evaluated from left to right: what a later one changes is read before."""
-        done: list[Expr] = []
-        for index, expr in enumerate(exprs):
-            later = {name for other in exprs[index + 1 :] for name in self.written(other)}
-            value = self.expr(expr)
-            if any(isinstance(part, Local) and part.name in later for part in subexpressions(value)):
-                kept = self.local(value.type, "before", value.span)
-                self.out.append(Declare(kept.name, kept.type, value, value.span))
-                value = kept
-            done.append(value)
-        return done
+        return [self.before(expr, exprs[index + 1 :]) for index, expr in enumerate(exprs)]
+
+    def before(self, expr: Expr, others: tuple[Expr, ...]) -> Expr:
+        """An expression's value, read before those that are evaluated later can change it."""
+        later = {name for other in others for name in self.written(other)}
+        value = self.expr(expr)
+        if later and later & self.read(value):
+            kept = self.local(value.type, "before", value.span)
+            self.out.append(Declare(kept.name, kept.type, value, value.span))
+            value = kept
+        return value
 
     def choose(self, select: Select) -> Expr:
         """A choice as an if, so that only the chosen arm's calls write."""
@@ -251,9 +287,9 @@ class _Lifter:
         function = self.functions[call.function]
         args: list[Expr] = []
         after: list[Stmt] = []
-        for arg, param in zip(call.args, function.params, strict=False):
+        for index, (arg, param) in enumerate(zip(call.args, function.params, strict=False)):
             if param.direction == "in":
-                arg = self.expr(arg)
+                arg = self.before(arg, call.args[index + 1 :])
             elif not isinstance(arg, Local):
                 place = self.expr(self.pinned(arg))
                 arg = self.local(arg.type, param.name, arg.span)

@@ -87,6 +87,9 @@ class _Linker:
 
     def function(self, function: Function, module: Module, index: int, stage: LinkStage) -> Function:
         """The linked instance of a function as this stage uses it."""
+        if module.variables:
+            variable = module.variables[0]
+            raise LinkError(f"a technique has no variables outside its functions, as '{variable.name}'", variable.span)
         if function.body is None:
             bound = stage.bindings.get(function.name)
             if bound is None:

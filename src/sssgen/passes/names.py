@@ -27,6 +27,7 @@ from ..ir.nodes import (
     Member,
     Module,
     Stmt,
+    Variable,
     function_key,
 )
 from ..ir.types import Array, Field, Struct, Type, spell
@@ -85,14 +86,13 @@ class _Namer:
             structs = tuple([struct._replace(type=self.retype(struct.type)) for struct in structs])
         if self.structs or self.globals:
             constants = tuple([self.constant(constant) for constant in constants])
-        uniforms = tuple(
-            [
-                uniform._replace(name=self.globals[uniform.name]) if uniform.name in self.globals else uniform
-                for uniform in module.uniforms
-            ]
-        )
+        uniforms, variables = module.uniforms, module.variables
+        if self.globals:
+            uniforms = tuple([one._replace(name=self.globals.get(one.name, one.name)) for one in uniforms])
+        if self.structs or self.globals:
+            variables = tuple([self.variable(variable) for variable in variables])
         functions = tuple([self.function(key, function) for key, function in self.keyed])
-        return Module(structs, constants, uniforms, functions), self.renamed
+        return Module(structs, constants, uniforms, functions, variables), self.renamed
 
     # The module's own names
 
@@ -130,7 +130,7 @@ class _Namer:
         return name not in taken and name not in self.taken and self.legal(name)
 
     def name_declarations(self) -> None:
-        """Names structs, constants, uniforms and functions: they share one scope.
+        """Names structs, constants, uniforms, variables and functions: they share one scope.
 
         First come those that can have the name they want, so that as few as possible are changed.
         """
@@ -138,6 +138,7 @@ class _Namer:
         wanted = {("struct", spell(struct.type)): spell(struct.type) for struct in module.structs}
         wanted |= {("global", constant.name): constant.name for constant in module.constants}
         wanted |= {("global", uniform.name): self.uniform_name(uniform.name) for uniform in module.uniforms}
+        wanted |= {("global", variable.name): variable.name for variable in module.variables}
         mangled = self.mangled() if self.mangle_overloads else {}
         for key, function in self.keyed:
             if key in mangled:
@@ -207,10 +208,19 @@ class _Namer:
     # What uses the names
 
     def constant(self, constant: Constant) -> Constant:
-        value = rewrite(constant.value, self.retyped) if self.structs else constant.value
-        value = Renamer(self.globals, self.keys).expression(value)
         name = self.globals.get(constant.name, constant.name)
-        return Constant(name, self.retype(constant.type), value, constant.span)
+        return Constant(name, self.retype(constant.type), self.value(constant.value), constant.span)
+
+    def variable(self, variable: Variable) -> Variable:
+        name = self.globals.get(variable.name, variable.name)
+        value = self.value(variable.value) if variable.value is not None else None
+        return variable._replace(name=name, type=self.retype(variable.type), value=value)
+
+    def value(self, value: Expr) -> Expr:
+        """A declaration's value with the new names."""
+        value = rewrite(value, self.retyped) if self.structs else value
+        renamed: Expr = Renamer(self.globals, self.keys).expression(value)
+        return renamed
 
     def function(self, key: str, function: Function) -> Function:
         name = self.function_names[key]

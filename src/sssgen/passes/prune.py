@@ -6,8 +6,8 @@ Place: after `fold`, which makes branches and uniforms unused; before `hoist`, `
 then meet only what is there, callees before callers. It may run again after a pass that leaves remains.
 
 A statement is kept if it has an effect (it returns, discards, leaves a kept loop, or writes an out
-parameter), if it writes a variable that a kept statement mentions, or if it contains a kept statement. Loops
-end (the checker has seen to it), so an unkept loop has no effect.
+parameter or a module variable), if it writes a variable that a kept statement mentions, or if it contains a
+kept statement. Loops end (the checker has seen to it), so an unkept loop has no effect.
 """
 
 from __future__ import annotations
@@ -55,6 +55,8 @@ if TYPE_CHECKING:
 def prune(module: Module, roots: Iterable[str]) -> Module:
     """The part of a module that the functions with the keys `roots` use, without dead statements.
 
+    What a stage is given and gives (in and out variables) stays: other stages count on it.
+
     Functions come out with callees before callers, otherwise in the order they had. Raises KeyError for a
     root that the module does not have.
     """
@@ -74,6 +76,13 @@ def prune(module: Module, roots: Iterable[str]) -> Module:
     for cleaned in kept.values():
         names |= cleaned.needs.globals
         types |= cleaned.needs.types
+    variables = []
+    for variable in reversed(module.variables):
+        if variable.name in names or variable.storage != "private":
+            variables.append(variable)
+            needs = _needs_of(variable.value, variable.type)
+            names |= needs.globals
+            types |= needs.types
     constants = []
     for constant in reversed(module.constants):
         if constant.name in names:
@@ -87,6 +96,7 @@ def prune(module: Module, roots: Iterable[str]) -> Module:
         _same(module.constants, constants[::-1]),
         _same(module.uniforms, [uniform for uniform in module.uniforms if uniform.name in names]),
         _same(module.functions, [cleaned.function for cleaned in kept.values()]),
+        _same(module.variables, variables[::-1]),
     )
 
 
@@ -117,7 +127,7 @@ class _Needs(NamedTuple):
 class _Cleaned(NamedTuple):
     function: Function
     needs: _Needs
-    discards: bool
+    acts: bool
 
 
 def _place(key: str, cleaner: _Cleaner, kept: dict[str, _Cleaned]) -> None:
@@ -179,9 +189,9 @@ class _Cleaner:
         needs = self.cleaned(key).needs
         return needs.globals.union(*(self.reads(callee) for callee in needs.calls))
 
-    def discards(self, key: str) -> bool:
-        """Whether a call may drop the fragment; so may what is not known."""
-        return key not in self.functions or self.cleaned(key).discards
+    def acts(self, key: str) -> bool:
+        """Whether a call may drop the fragment or write a module variable; so may what is not known."""
+        return key not in self.functions or self.cleaned(key).acts
 
 
 class _FunctionCleaner:
@@ -201,7 +211,7 @@ class _FunctionCleaner:
         self.essential: list[_Unit] = []
         self.assumptions: list[_Unit] = []
         self.units: list[_Unit] = []
-        self.discards = function.body is None
+        self.acts = function.body is None
 
     def run(self) -> _Cleaned:
         function = self.function
@@ -216,7 +226,7 @@ class _FunctionCleaner:
         body = self.rebuild(units, function.body or (), needs)
         if function.body is not None and body is not function.body:
             function = function._replace(body=body)
-        return _Cleaned(function, needs, self.discards)
+        return _Cleaned(function, needs, self.acts)
 
     def keep_assumptions(self) -> None:
         """Keeps those that speak of what is there anyway: they keep nothing alive."""
@@ -289,7 +299,7 @@ class _FunctionCleaner:
             self.assumptions.append(unit)
         elif isinstance(stmt, Discard):
             # a target may still want a return after it, so what follows stays
-            self.discards = True
+            self.acts = True
             self.essential.append(unit)
         elif self.jumps is not None:
             self.jumps.append(unit)
@@ -338,14 +348,15 @@ class _FunctionCleaner:
     def call(self, call: Call, unit: _Unit) -> None:
         for index in self.cleaner.outs.get(call.function, ()):
             self.store(call.args[index], unit)
-        if self.cleaner.discards(call.function):
-            self.discards = True
+        if self.cleaner.acts(call.function):
+            self.acts = True
             self.essential.append(unit)
 
     def store(self, target: Expr, unit: _Unit) -> None:
         """Notes that a statement writes a variable; what is no variable of the function is an effect."""
         variable = root(target)
         number = self.numbers.get(variable.name) if variable is not None else None
+        self.acts = self.acts or variable is None
         if number is None or self.live[number]:
             self.essential.append(unit)
         else:
@@ -432,12 +443,14 @@ def _note_types(needs: _Needs, result: Type, params: tuple[Param, ...]) -> None:
             needs.types.add(type_)
 
 
-def _needs_of(value: Expr, type_: Type) -> _Needs:
-    """What a constant mentions."""
+def _needs_of(value: Expr | None, type_: Type) -> _Needs:
+    """What a constant or a variable mentions."""
+    needs = _Needs({}, set(), {type_})
+    if value is None:
+        return needs
     unit = _Unit(Return(value, value.span), None)
     empty = Function("", (), type_, "", (), "", value.span)
     _FunctionCleaner(_Cleaner(Module()), empty).expression(value, unit)
-    needs = _Needs({}, set(), {type_})
     for node in unit.needs:
         _note(needs, node)
     return needs

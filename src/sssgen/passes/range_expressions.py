@@ -39,6 +39,8 @@ class Expressions(Builtins):
         return self.value(found.parts, found.numbers, found.length)
 
     def global_(self, node: ir.Global) -> Value:
+        if node.name in self.variables:  # what it holds, any function may have changed
+            return self.unknown(node.type)
         found = self.globals[node.name]
         return found if found.texel is not None or not self.state.facts.ranges else self.known(found)
 

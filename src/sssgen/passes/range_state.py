@@ -69,6 +69,7 @@ class Known:
         self.frames: list[Frame] = []
         self.loops: list[Loop] = []
         self.globals: dict[str, Value] = {}
+        self.variables = frozenset(variable.name for variable in module.variables)
         self.state = State({}, Facts({}, {}))
         for uniform in module.uniforms:
             inner = innermost(uniform.type)

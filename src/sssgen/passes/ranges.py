@@ -105,7 +105,7 @@ class _Analysis(Loops):
         ]
         # an index among them may be written by the call
         written = [
-            self.places(arg) if param.direction != "in" else None
+            self.places(arg) if param.direction != "in" and root(arg) is not None else None
             for param, arg in zip(function.params, node.args, strict=True)
         ]
         result, ends = self.enter(function, args) if function.body is not None else (None, args)

@@ -31,6 +31,9 @@ def undefined_constants(module: Module) -> list[Undefined]:
     checker = _Checker()
     for constant in module.constants:
         checker.constants[constant.name] = checker.numbers(constant.value)
+    for variable in module.variables:
+        if variable.value is not None:
+            checker.numbers(variable.value)
     for function in module.functions:
         for stmt in statements(function.body or ()):
             for expr in expressions(stmt):
