@@ -34,7 +34,7 @@ from sssgen.ir.types import (
 )
 from sssgen.targets import numpy_runtime as rt
 
-# GLSL ES 3.00, chapter 8, without what the table's head says is left out.
+# Chapter 8 of GLSL ES 1.00 to GLSL 4.60: what is computed by a function without out parameters.
 CHAPTER_8 = set(
     """
 radians degrees sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh pow exp log exp2 log2 sqrt inversesqrt
@@ -42,8 +42,10 @@ abs sign floor trunc round roundEven ceil fract mod min max clamp mix step smoot
 floatBitsToUint intBitsToFloat uintBitsToFloat packSnorm2x16 unpackSnorm2x16 packUnorm2x16 unpackUnorm2x16 packHalf2x16
 unpackHalf2x16 length distance dot cross normalize faceforward reflect refract matrixCompMult outerProduct transpose
 determinant inverse lessThan lessThanEqual greaterThan greaterThanEqual equal notEqual any all not textureSize texture
-textureLod textureGrad texelFetch dFdx dFdy fwidth
-""".split()  # noqa: SIM905 (eighty names)
+textureLod textureGrad texelFetch dFdx dFdy fwidth fma ldexp bitCount findLSB findMSB bitfieldReverse bitfieldExtract
+bitfieldInsert packSnorm4x8 unpackSnorm4x8 packUnorm4x8 unpackUnorm4x8 dFdxFine dFdyFine fwidthFine dFdxCoarse
+dFdyCoarse fwidthCoarse
+""".split()  # noqa: SIM905 (a hundred names)
 )
 LANGUAGES = ("glsl", "glsl-330", "hlsl", "hlsl-dx9", "hlsl-macros", "wgsl")
 REFUSED = {("textureSize", "hlsl"), ("texelFetch", "hlsl-dx9")}

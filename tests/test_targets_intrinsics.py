@@ -1,8 +1,8 @@
 """Every builtin of the intrinsic table, in all languages side by side.
 
-What is the same everywhere stands in SAME; the rest in CASES, each as GLSL 3.30, HLSL and WGSL have it. GLSL ES is
-written as GLSL, and Unity's two dialects as HLSL, where a case does not say otherwise. NumPy has each builtin under its
-own name.
+What is the same everywhere stands in SAME; the rest in CASES (what GLSL 3.30 has not: in texts_of_glsl_4.py), each as
+GLSL 3.30, HLSL and WGSL have it. GLSL ES is written as GLSL, and Unity's two dialects as HLSL, where a case does not
+say otherwise. NumPy has each builtin under its own name.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Module
 from sssgen.ir.signatures import overload, parse
+from texts_of_glsl_4 import LATER
 from validate import TARGETS, module_of, validate_all
 
 SAME = """
@@ -457,7 +458,7 @@ for name, size in ("map", "vec2i"), ("volume", "vec3i"), ("cube", "vec2i"):
     read = f"{size}(textureDimensions({name}, i))"
     CASES[f"textureSize({name}, i)"] = {"glsl": f"textureSize({name}, i)", "wgsl": read, **refused}
 
-ALL = {**{text.strip(): {"glsl": text.strip()} for text in SAME.split(";")}, **CASES}
+ALL = {**{text.strip(): {"glsl": text.strip()} for text in SAME.split(";")}, **CASES, **LATER}
 
 
 @pytest.mark.parametrize("source", ALL)

@@ -22,8 +22,8 @@ from .backends import Array
 from .backends.calls import grid
 from .evaluate import shape_of
 
-NEIGHBOURS = ("texture", "textureGrad", "dFdx", "dFdy", "fwidth")
-"""What looks at neighbouring pixels, or has a level that comes from them."""
+NEIGHBOURS = ("texture", "textureGrad")
+"""Texture reads whose level comes from neighbouring pixels, or from given derivatives."""
 
 FEW = 12
 """Lanes of the texture reads and derivatives."""
@@ -86,6 +86,12 @@ INTERVALS: Mapping[str, Any] = {
 }  # fmt: skip
 """The domain's ends: for all arguments, or for one after the other; else every finite number."""
 
+_BITS = (0, 32)
+WHOLE: Mapping[str, Mapping[int, tuple[int, int]]] = {
+    "bitfieldExtract": {1: _BITS, 2: _BITS}, "bitfieldInsert": {2: _BITS, 3: _BITS}, "ldexp": {1: (-126, 127)},
+}  # fmt: skip
+"""The same for integers, argument by argument; both ends are among them."""
+
 
 class Case(NamedTuple):
     """One overload of a builtin, and its arguments: arrays over all lanes, and textures by name."""
@@ -117,7 +123,7 @@ def cases(lanes: int) -> tuple[Case, ...]:
     found = []
     for row in BUILTINS.values():
         for params, (result, _) in signatures.overloads(row.name).items():
-            if row.name in NEIGHBOURS:
+            if row.name in NEIGHBOURS or row.kind == "derivative":
                 args = over_the_image(row, params)
             elif row.kind == "fetch":
                 args = _reads(row.name, params)
@@ -143,7 +149,7 @@ def evaluated(expression: str, args: tuple[Any, ...]) -> Array:
 
     An argument that the overload lacks is 1.
     """
-    names = dict.fromkeys("xyz", 1.0) | dict(zip("xyz", args, strict=False))
+    names = dict.fromkeys("xyzw", 1.0) | dict(zip("xyzw", args, strict=False))
     with runtime.precision("float64"):
         value = np.asarray(eval(expression, vars(runtime) | {"np": np}, names))  # the table's own text
     axes = tuple(range(value.ndim - 1))
@@ -193,6 +199,8 @@ def _column(name: str, index: int, type_: Type, count: int, rng: np.random.Gener
     third = (*size[:-1], count // 3)
     rest = (*size[:-1], count - 2 * (count // 3))
     if kind in ("int", "uint"):
+        if index in (ends := WHOLE.get(name, {})):
+            return rng.integers(ends[index][0], ends[index][1] + 1, size).astype(DTYPES[kind])
         info = np.iinfo(DTYPES[kind])
         edges = np.array([sign * one for one in INTEGERS for sign in (1, -1)], np.int64)
         edges = edges[(edges >= info.min) & (edges <= info.max)]

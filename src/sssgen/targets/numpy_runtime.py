@@ -1,7 +1,8 @@
 """What Python printed from a shader calls: the builtins here, and from `numpy_values` the constructors and operators.
 
-Each function of the intrinsic table has the builtin's own name (`not_` for `not`), and so hides Python's here. The
-semantics are those of GLSL ES 3.00; where it leaves a result open, the function says what it gives.
+Each function of the intrinsic table has the builtin's own name (`not_` for `not`), and so hides Python's here; those of
+bits stand in `numpy_bits`, texture reads and derivatives in `numpy_reads`. The semantics are those of GLSL; where it
+leaves a result open, the function says what it gives.
 """
 
 from __future__ import annotations
@@ -9,11 +10,12 @@ from __future__ import annotations
 from math import pi
 
 import numpy as np
-import numpy.typing as npt
 
-from .numpy_textures import Texture
+from .numpy_bits import *
+from .numpy_reads import *
+from .numpy_textures import Texture as Texture
 from .numpy_values import *
-from .numpy_values import Value, arrays, image_shape, silent, working
+from .numpy_values import Value, silent
 
 # 8.1 and 8.2 Trigonometry and exponentials: NumPy's own functions, outside their domain NaN or infinite
 
@@ -95,6 +97,17 @@ def unpackNormal(texel: Value) -> Value:
 
 
 @silent
+def fma(x: Value, y: Value, z: Value) -> Value:
+    """Rounded twice."""
+    return x * y + z
+
+
+@silent
+def ldexp(x: Value, exponent: Value) -> Value:
+    return np.ldexp(x, exponent.astype(np.int32))
+
+
+@silent
 def mix(x: Value, y: Value, a: Value) -> Value:
     return np.where(a, y, x) if a.dtype.kind == "b" else x * (1.0 - a) + y * a
 
@@ -109,70 +122,6 @@ def smoothstep(x: Value, y: Value, z: Value) -> Value:
     """By the formula also for x >= y, where GLSL leaves it open; NaN where z = x = y."""
     t = clamp((z - x) / (y - x), 0.0, 1.0)
     return t * t * (3.0 - 2.0 * t)
-
-
-@silent
-def floatBitsToInt(x: Value) -> Value:
-    """Of x rounded to float32."""
-    return x.astype(np.float32).view(np.int32)
-
-
-@silent
-def floatBitsToUint(x: Value) -> Value:
-    """Of x rounded to float32."""
-    return x.astype(np.float32).view(np.uint32)
-
-
-@silent
-def intBitsToFloat(x: Value) -> Value:
-    return x.astype(np.int32).view(np.float32).astype(working())
-
-
-@silent
-def uintBitsToFloat(x: Value) -> Value:
-    return x.astype(np.uint32).view(np.float32).astype(working())
-
-
-# 8.4 Packing
-
-
-def _pack(words: Value) -> Value:
-    low, high = words.astype(np.int64).astype(np.uint32) & np.uint32(0xFFFF)
-    return low | high << np.uint32(16)
-
-
-def _unpack(x: Value, dtype: npt.DTypeLike) -> Value:
-    x = np.asarray(x).astype(np.uint32)
-    words = np.stack([x & np.uint32(0xFFFF), x >> np.uint32(16)]).astype(np.uint16)
-    return words.reshape(2, -1).view(dtype)
-
-
-@silent
-def packSnorm2x16(x: Value) -> Value:
-    return _pack(np.rint(np.clip(x.astype(np.float64), -1.0, 1.0) * 32767.0))
-
-
-@silent
-def packUnorm2x16(x: Value) -> Value:
-    return _pack(np.rint(np.clip(x.astype(np.float64), 0.0, 1.0) * 65535.0))
-
-
-@silent
-def packHalf2x16(x: Value) -> Value:
-    """Rounds to the nearest float16."""
-    return _pack(x.astype(np.float16).view(np.uint16))
-
-
-def unpackSnorm2x16(x: Value) -> Value:
-    return np.maximum(_unpack(x, np.int16) / 32767.0, -1.0).astype(working())
-
-
-def unpackUnorm2x16(x: Value) -> Value:
-    return (_unpack(x, np.uint16) / 65535.0).astype(working())
-
-
-def unpackHalf2x16(x: Value) -> Value:
-    return _unpack(x, np.float16).astype(working())
 
 
 # 8.5 Geometry
@@ -282,72 +231,3 @@ def any(x: Value) -> Value:
 
 def all(x: Value) -> Value:
     return np.logical_and.reduce(x, axis=0)
-
-
-# 8.8 Texture reads; see `Texture` for what they do
-
-
-def _level(level: Value) -> int:
-    """The level of all lanes: that of the first."""
-    return int(np.ravel(level)[0])
-
-
-def textureSize(texture: Texture, level: Value) -> Value:
-    """Of one level for all lanes."""
-    return np.array(texture.size(_level(level)), np.int32)[:, None]
-
-
-def texture(texture: Texture, coord: Value, bias: Value = 0.0) -> Value:
-    """With mipmaps it needs a `grid`, from whose derivatives the level comes."""
-    if len(texture.levels) == 1:
-        return texture.sample(coord)
-    return texture.sample(coord, texture.level(coord, dFdx(coord), dFdy(coord)) + bias)
-
-
-def textureLod(texture: Texture, coord: Value, level: Value) -> Value:
-    return texture.sample(coord, level)
-
-
-def textureGrad(texture: Texture, coord: Value, dx: Value, dy: Value) -> Value:
-    return texture.sample(coord, texture.level(coord, dx, dy))
-
-
-def texelFetch(texture: Texture, place: Value, level: Value) -> Value:
-    """Of one level for all lanes; 0 outside of it. In the working precision."""
-    return texture.fetch(place, _level(level)).astype(working())
-
-
-# 8.9 Derivatives: differences within quads of 2×2 pixels, row by row and column by column (the "fine" ones)
-
-
-def _difference(name: str, value: Value, axis: int) -> Value:
-    shape = image_shape.get()
-    if shape is None:
-        raise RuntimeError(f"{name} needs neighbours: name the image's size, `with grid(height, width):`")
-    (value,) = arrays((value,))
-    if value.ndim == 0 or value.shape[-1] == 1 != shape[0] * shape[1]:
-        return np.zeros_like(value)
-    if value.shape[-1] != shape[0] * shape[1]:
-        raise ValueError(f"{name}: {value.shape[-1]} lanes are not an image of {shape[0]}×{shape[1]}")
-    image = np.moveaxis(value.reshape(*value.shape[:-1], *shape), axis, -1)
-    count = image.shape[-1]
-    if count == 1:
-        return np.zeros_like(value)
-    first = np.minimum(np.arange(count) // 2 * 2, count - 2)
-    with np.errstate(all="ignore"):
-        difference = image[..., first + 1] - image[..., first]
-    return np.moveaxis(difference, -1, axis).reshape(value.shape)
-
-
-def dFdx(x: Value) -> Value:
-    """From left to right. At an odd width the last column takes its left neighbour."""
-    return _difference("dFdx", x, -1)
-
-
-def dFdy(x: Value) -> Value:
-    """From bottom to top, as in OpenGL. At an odd height the last row takes the one below it."""
-    return _difference("dFdy", x, -2)
-
-
-def fwidth(x: Value) -> Value:
-    return np.abs(_difference("fwidth", x, -1)) + np.abs(_difference("fwidth", x, -2))

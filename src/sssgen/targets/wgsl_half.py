@@ -18,7 +18,9 @@ from .printer import PRIMARY, Line, shortest
 from .wgsl import WgslPrinter
 
 _BITS = frozenset(("floatBitsToInt", "floatBitsToUint", "intBitsToFloat", "uintBitsToFloat")) | {
-    f"{way}{form}2x16" for way in ("pack", "unpack") for form in ("Half", "Snorm", "Unorm")
+    f"{way}{form}"
+    for way in ("pack", "unpack")
+    for form in ("Half2x16", "Snorm2x16", "Unorm2x16", "Snorm4x8", "Unorm4x8")
 }
 
 

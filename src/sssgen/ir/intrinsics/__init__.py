@@ -34,13 +34,24 @@ more than 4 ulp, WGSL means its section "Accuracy of Concrete Floating Point Exp
 
 from __future__ import annotations
 
-from . import common, derivatives, exponential, geometry, matrices, packing, relations, textures, trigonometry
+from . import (
+    common,
+    derivatives,
+    exponential,
+    geometry,
+    integers,
+    matrices,
+    packing,
+    relations,
+    textures,
+    trigonometry,
+)
 from .table import FINITE, NONZERO, Builtin, Guard, with_constants
 
 __all__ = ["BUILTINS", "FINITE", "NONZERO", "Builtin", "Guard", "with_constants"]
 
 CHAPTERS = (
-    trigonometry, exponential, common, packing, geometry, matrices, relations, textures, derivatives,
+    trigonometry, exponential, common, packing, geometry, matrices, relations, integers, textures, derivatives,
 )  # fmt: skip
 
 BUILTINS: dict[str, Builtin] = {row.name: row for chapter in CHAPTERS for row in chapter.ROWS}

@@ -8,6 +8,18 @@ _PLAIN = F1[0], "genI(genI)"
 _ONES = ("float", "int", "uint")
 _PAIR = tuple(f"gen{k}(gen{k}, {other})" for k, one in zip("FIU", _ONES) for other in (f"gen{k}", one))
 
+
+def _choice(scalar: str, vector: str) -> str:
+    """The polyfill of `mix` with bools, for one kind of number."""
+    definitions = [f"{scalar} mix({scalar} x, {scalar} y, bool a) {{ return a ? y : x; }}"]
+    for size in (2, 3, 4):
+        parts = ", ".join(f"a.{at} ? y.{at} : x.{at}" for at in "xyzw"[:size])
+        definitions.append(
+            f"{vector}{size} mix({vector}{size} x, {vector}{size} y, bvec{size} a) {{ return {vector}{size}({parts}); }}"
+        )
+    return "\n".join(definitions)
+
+
 # A table: several fields to a line.
 # fmt: off
 ROWS = (
@@ -111,24 +123,22 @@ vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
         polyfill="genF saturate(genF x) { return clamp(x, 0.0, 1.0); }",
         ulp=0.0, vectors=(((0.25,), 0.25), ((-1.0,), 0.0), ((1.5,), 1.0), (((2.0, -0.0, 1.0),), (1.0, 0.0, 1.0))),
     ),
-    Builtin("mix", ("genF(genF, genF, genF)", "genF(genF, genF, float)", "genF(genF, genF, genB)"),
+    Builtin("mix",
+        ("genF(genF, genF, genF)", "genF(genF, genF, float)", *(f"gen{k}(gen{k}, gen{k}, genB)" for k in "FIUB")),
         "Linear blend x·(1 - z) + y·z; with a bool, z ? y : x, where the other one may be infinite or NaN.",
         range="blend(x, y, z)",
         inside="(np.asarray(z).dtype == bool) | (max(abs(x), abs(y)) * max(abs(z), 1.0) < 1e38)", size="max(abs(x), abs(y)) * max(abs(z), 1.0)",
         domain="x and y finite, unless z is a bool",
-        texts={"hlsl": "lerp", "hlsl/genF,genF,genB": "", "wgsl/genF,genF,genB": "select"},
-        polyfill="""
-float mix(float x, float y, bool a) { return a ? y : x; }
-vec2 mix(vec2 x, vec2 y, bvec2 a) { return vec2(a.x ? y.x : x.x, a.y ? y.y : x.y); }
-vec3 mix(vec3 x, vec3 y, bvec3 a) { return vec3(a.x ? y.x : x.x, a.y ? y.y : x.y, a.z ? y.z : x.z); }
-vec4 mix(vec4 x, vec4 y, bvec4 a) {
-    return vec4(a.x ? y.x : x.x, a.y ? y.y : x.y, a.z ? y.z : x.z, a.w ? y.w : x.w);
-}
-""",
+        texts={
+            "hlsl": "lerp", **{f"glsl/gen{k},gen{k},genB": "" for k in "IUB"},
+            **{f"hlsl/gen{k},gen{k},genB": "" for k in "FIUB"}, **{f"wgsl/gen{k},gen{k},genB": "select" for k in "FIUB"},
+        },
+        polyfill="\n".join(map(_choice, ("float", "int", "uint", "bool"), ("vec", "ivec", "uvec", "bvec"))),
         splat=(), cost=2,
         vectors=(
             ((0.0, 10.0, 0.25), 2.5), ((1.0, 3.0, 0.0), 1.0), (((0.0, 2.0), (4.0, 4.0), 0.5), (2.0, 3.0)),
             (((1.0, 2.0), (3.0, 4.0), (True, False)), (3.0, 2.0)), ((INF, 4.0, True), 4.0),
+            ((3, -4, True), -4), (((True, False), (False, True), (True, False)), (False, False)),
         ),
     ),
     Builtin("step", ("genF(genF, genF)", "genF(float, genF)"), "0 for y < x, else 1.",
@@ -186,5 +196,32 @@ vecB isinf(vecF x) { return equal(floatBitsToUint(x) & vecU(0x7fffffffu), vecU(0
         domain="the bits are those of a finite float",
         texts={"hlsl": "asfloat", "wgsl": "bitcast<{type}>({0})"},
         ulp=0.0, vectors=(((0x3F800000,), 1.0), ((0xC0000000,), -2.0), ((0,), 0.0)),
+    ),
+    Builtin("fma", ("genF(genF, genF, genF)",), "x·y + z, rounded once or twice.",
+        range="x * y + z + hull(-1.0, 1.0) * (F.epsilon * (x * y).size + F.tiny)",
+        inside="abs(x * y) + abs(z) < 1e38", size="max(abs(x * y), abs(z))",
+        texts={"glsl": "", "hlsl": "mad"},
+        polyfill="genF fma(genF x, genF y, genF z) { return x * y + z; }", cost=2,
+        vectors=(
+            ((2.0, 3.0, -1.0), 5.0), ((0.0, 4.0, 0.5), 0.5), (((1.5, -2.0), (2.0, 0.25), (1.0, 0.5)), (4.0, 0.0)),
+        ),
+    ),
+    Builtin("ldexp", ("genF(genF, genI)",), "x·2^y.",
+        range="x * rising(math.exp2, y)",
+        guards=(
+            Guard("y.low >= -126.0 and y.high <= 127.0 and (absolute(x) * rising(math.exp2, y)).high < F.largest", "the power is beyond the exponents of a float, or the product overflows",
+                "clamp(ldexp(x, clamp(y, -126, 127)), -LARGEST, LARGEST)"),
+        ),
+        inside="(y >= -126) & (y <= 127) & (abs(ldexp(x, y)) < 1e38) & ((x == 0.0) | (abs(ldexp(x, y)) > 1e-37))",
+        domain="-126 <= y <= 127, and the result is 0 or a normal number", texts={"glsl": "", "hlsl": ""},
+        polyfill="""
+genF ldexp(genF x, genI y) {
+    genI whole = clamp(y, -252, 254);
+    genI part = whole >> 1u;
+    return x * intBitsToFloat((part + 127) << 23u) * intBitsToFloat((whole - part + 127) << 23u);
+}
+""",
+        cost=8,
+        vectors=(((0.75, 3), 6.0), ((-1.0, -2), -0.25), ((0.0, 100), 0.0), (((1.0, 3.0), (0, 1)), (1.0, 6.0))),
     ),
 )

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from .table import F1, Builtin
 
+_HOW = {"Fine": "for each pair of pixels by itself", "Coarse": "perhaps one for each quad of pixels"}
+
 # A table: several fields to a line.
 # fmt: off
 ROWS = (
@@ -19,5 +21,20 @@ ROWS = (
     Builtin("fwidth", F1, "abs(dFdx(x)) + abs(dFdy(x)).",
         range="absolute(x - x) * 2.0",
         domain="uniform control flow", kind="derivative", cost=3,
+    ),
+    *(
+        Builtin(f"dFd{axis}{how}", F1, f"dFd{axis}, {said}; where a language has no such choice, as dFd{axis}.",
+            range="x - x", domain="uniform control flow", kind="derivative",
+            texts={"glsl": f"dFd{axis}", "hlsl": f"dd{axis}_{how.lower()}", "hlsl-dx9": f"dd{axis}", "wgsl": f"dpd{axis}{how}"},
+        )
+        for axis in "xy" for how, said in _HOW.items()
+    ),
+    *(
+        Builtin(f"fwidth{how}", F1, f"abs(dFdx{how}(x)) + abs(dFdy{how}(x)).",
+            range="absolute(x - x) * 2.0", domain="uniform control flow", kind="derivative", cost=3,
+            texts={"glsl": "fwidth", "hlsl": "", "hlsl-dx9": "fwidth"},
+            polyfill=f"genF fwidth{how}(genF x) {{ return abs(dFdx{how}(x)) + abs(dFdy{how}(x)); }}",
+        )
+        for how in _HOW
     ),
 )

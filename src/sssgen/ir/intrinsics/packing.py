@@ -87,4 +87,55 @@ vec2 unpackHalf2x16(uint x) {
         cost=2,
         ulp=0.0, vectors=(((0xC0003C00,), (1.0, -2.0)), ((0x3800,), (0.5, 0.0)), ((0x34007BFF,), (65504.0, 0.25))),
     ),
+    Builtin("packSnorm4x8", ("uint(vec4)",), "Four numbers in [-1, 1], each as a signed 8-bit fraction of 127.",
+        inside="abs(fract(clamp(x, -1.0, 1.0) * 127.0) - 0.5) > 0.01",
+        texts={"glsl": "", "hlsl": "", "wgsl": "pack4x8snorm"},
+        polyfill="""
+uint packSnorm4x8(vec4 x) {
+    uvec4 u = uvec4(ivec4(round(clamp(x, -1.0, 1.0) * 127.0))) & 0xffu;
+    return u.x | (u.y << 8u) | (u.z << 16u) | (u.w << 24u);
+}
+""",
+        cost=5, vectors=(
+            (((-1.0, 1.0, 0.0, 4.0),), 0x7F007F81), (((0.0, 0.0, 0.0, 0.0),), 0), (((0.5, -0.25, 0.0, -4.0),), 0x8100E040),
+        ),
+    ),
+    Builtin("packUnorm4x8", ("uint(vec4)",), "Four numbers in [0, 1], each as an 8-bit fraction of 255.",
+        inside="abs(fract(clamp(x, 0.0, 1.0) * 255.0) - 0.5) > 0.01",
+        texts={"glsl": "", "hlsl": "", "wgsl": "pack4x8unorm"},
+        polyfill="""
+uint packUnorm4x8(vec4 x) {
+    uvec4 u = uvec4(round(clamp(x, 0.0, 1.0) * 255.0));
+    return u.x | (u.y << 8u) | (u.z << 16u) | (u.w << 24u);
+}
+""",
+        cost=5, vectors=(
+            (((0.0, 1.0, 0.25, 2.0),), 0xFF40FF00), (((0.0, 0.0, 0.0, 0.0),), 0), (((-1.0, 0.125, 0.0, 0.75),), 0xBF002000),
+        ),
+    ),
+    Builtin("unpackSnorm4x8", ("vec4(uint)",), "Four numbers in [-1, 1] from signed 8-bit fractions of 127.",
+        range="hull(-1, 1)",
+        texts={"glsl": "", "hlsl": "", "wgsl": "unpack4x8snorm"},
+        polyfill="""
+vec4 unpackSnorm4x8(uint x) {
+    ivec4 parts = ivec4(int(x << 24u), int(x << 16u), int(x << 8u), int(x)) >> 24u;
+    return clamp(vec4(parts) / 127.0, -1.0, 1.0);
+}
+""",
+        cost=5, vectors=(
+            ((0x7F8081,), (-1.0, -1.0, 1.0, 0.0)), ((0,), (0.0, 0.0, 0.0, 0.0)), ((0x40000000,), (0.0, 0.0, 0.0, 0.5039370078740157)),
+        ),
+    ),
+    Builtin("unpackUnorm4x8", ("vec4(uint)",), "Four numbers in [0, 1] from 8-bit fractions of 255.",
+        range="hull(0, 1)",
+        texts={"glsl": "", "hlsl": "", "wgsl": "unpack4x8unorm"},
+        polyfill="""
+vec4 unpackUnorm4x8(uint x) {
+    return vec4(float(x & 255u), float((x >> 8u) & 255u), float((x >> 16u) & 255u), float(x >> 24u)) / 255.0;
+}
+""",
+        cost=3, vectors=(
+            ((0xFF00FF,), (1.0, 0.0, 1.0, 0.0)), ((0,), (0.0, 0.0, 0.0, 0.0)), ((0x80000000,), (0.0, 0.0, 0.0, 0.5019607843137255)),
+        ),
+    ),
 )

@@ -1,0 +1,123 @@
+"""Functions of the bits of integers: chapter 8.8 of GLSL 4.60, which 3.30 and ES 3.00 do not have."""
+
+from __future__ import annotations
+
+from .table import Builtin
+
+_BOTH = ("genI(genI)", "genI(genU)")
+_FIELD = "y >= 0, z >= 0, and y + z <= 32"
+
+
+def _of_both(definition: str) -> str:
+    """A polyfill for uints and for ints: in the definition FROM stands for the type, BITS for its bits as a uint."""
+    unsigned = definition.replace("FROM", "genU").replace("BITS", "x")
+    signed = definition.replace("FROM", "genI").replace("BITS", "genU(x)")
+    return unsigned + signed
+
+
+# A table: several fields to a line.
+# fmt: off
+ROWS = (
+    Builtin("bitCount", _BOTH, "How many bits are 1.",
+        range="hull(0, 32)",
+        texts={
+            "glsl": "", "hlsl": "{type}(countbits(asuint({0})))", "hlsl/genU": "{type}(countbits({0}))", "hlsl-dx9": "",
+            "wgsl": "countOneBits", "wgsl/genU": "{type}(countOneBits({0}))",
+        },
+        polyfill=_of_both("""
+genI bitCount(FROM x) {
+    genU bits = BITS;
+    bits -= (bits >> 1u) & 0x55555555u;
+    bits = (bits & 0x33333333u) + ((bits >> 2u) & 0x33333333u);
+    bits = (bits + (bits >> 4u)) & 0x0f0f0f0fu;
+    return genI((bits * 0x01010101u) >> 24u);
+}
+"""),
+        cost=10, vectors=(((7,), 3), ((0,), 0), ((-1,), 32), ((0x80000001,), 2), (((5, -2),), (2, 31))),
+    ),
+    Builtin("findLSB", _BOTH, "The number of the lowest bit that is 1; of 0, -1.",
+        range="hull(-1, 31)",
+        texts={
+            "glsl": "", "hlsl": "{type}(firstbitlow({0}))", "hlsl-dx9": "",
+            "wgsl": "firstTrailingBit", "wgsl/genU": "{type}(firstTrailingBit({0}))",
+        },
+        polyfill=_of_both("""
+genI findLSB(FROM x) {
+    genU bits = BITS;
+    genI count = bitCount(~bits & (bits - 1u));
+    return count | -(count >> 5u);
+}
+"""),
+        cost=14, vectors=(((12,), 2), ((0,), -1), ((-2147483648,), 31), ((0x80000000,), 31), (((1, 6),), (0, 1))),
+    ),
+    Builtin("findMSB", _BOTH,
+        "The number of the highest bit that is 1, of a negative int that is 0; where there is none, -1.",
+        range="hull(-1, 31)",
+        texts={
+            "glsl": "", "hlsl": "", "hlsl/genU": "{type}(firstbithigh({0}))", "hlsl-dx9": "",  # DXC takes an int for a uint
+            "wgsl": "firstLeadingBit", "wgsl/genU": "{type}(firstLeadingBit({0}))",
+        },
+        polyfill=_of_both("""
+genI findMSB(FROM x) {
+    genU bits = BITS;
+    bits |= bits >> 1u;
+    bits |= bits >> 2u;
+    bits |= bits >> 4u;
+    bits |= bits >> 8u;
+    bits |= bits >> 16u;
+    return bitCount(bits) - 1;
+}
+""").replace("genU(x)", "genU(x ^ (x >> 31u))"),
+        cost=20, vectors=(((12,), 3), ((0,), -1), ((-1,), -1), ((-9,), 3), ((0x80000000,), 31), (((1, 6),), (0, 2))),
+    ),
+    Builtin("bitfieldReverse", ("genI(genI)", "genU(genU)"), "The bits in the opposite order.",
+        texts={
+            "glsl": "", "hlsl": "asint(reversebits(asuint({0})))", "hlsl/genU": "reversebits", "hlsl-dx9": "",
+            "wgsl": "reverseBits",
+        },
+        polyfill="".join(f"""
+gen{kind} bitfieldReverse(gen{kind} x) {{
+    genU bits = genU(x);
+    bits = ((bits >> 1u) & 0x55555555u) | ((bits & 0x55555555u) << 1u);
+    bits = ((bits >> 2u) & 0x33333333u) | ((bits & 0x33333333u) << 2u);
+    bits = ((bits >> 4u) & 0x0f0f0f0fu) | ((bits & 0x0f0f0f0fu) << 4u);
+    bits = ((bits >> 8u) & 0x00ff00ffu) | ((bits & 0x00ff00ffu) << 8u);
+    return gen{kind}((bits >> 16u) | (bits << 16u));
+}}
+""" for kind in "IU"),
+        cost=23,
+        vectors=(((1,), -2147483648), ((-1,), -1), ((0x80000000,), 1), ((0,), 0), (((6, 2),), (0x60000000, 0x40000000))),
+    ),
+    Builtin("bitfieldExtract", ("genI(genI, int, int)", "genU(genU, int, int)"),
+        "The z bits of x from bit y on, in the low bits; of an int, with the sign that the highest of them has.",
+        inside="(y >= 0) & (z >= 0) & (y <= 32) & (z <= 32) & (y + z <= 32)", domain=_FIELD,
+        texts={"glsl": "", "hlsl": "", "wgsl": "extractBits({0}, u32({1}), u32({2}))"},
+        polyfill="""
+genI bitfieldExtract(genI x, int y, int z) {
+    return z == 0 ? genI(0) : (x << uint(32 - y - z)) >> uint(32 - z);
+}
+genU bitfieldExtract(genU x, int y, int z) {
+    return z == 0 ? genU(0u) : (x << uint(32 - y - z)) >> uint(32 - z);
+}
+""",
+        splat=(), cost=3, vectors=(
+            ((0xABC, 4, 5), 11), ((-1, 3, 0), 0), ((0xF0000000, 28, 4), 15), ((-5, 0, 32), -5), ((14, 1, 3), -1),
+            (((255, 15), 2, 3), (-1, 3)),
+        ),
+    ),
+    Builtin("bitfieldInsert", ("genI(genI, genI, int, int)", "genU(genU, genU, int, int)"),
+        "x with its w bits from bit z on replaced by the low ones of y.",
+        inside="(z >= 0) & (w >= 0) & (z <= 32) & (w <= 32) & (z + w <= 32)", domain="z >= 0, w >= 0, and z + w <= 32",
+        texts={"glsl": "", "hlsl": "", "wgsl": "insertBits({0}, {1}, u32({2}), u32({3}))"},
+        polyfill="".join(f"""
+gen{kind} bitfieldInsert(gen{kind} x, gen{kind} y, int z, int w) {{
+    gen{kind} mask = gen{kind}((w > 31 ? 0xffffffffu : (1u << uint(w)) - 1u) << uint(z));
+    return (x & ~mask) | ((y << uint(z)) & mask);
+}}
+""" for kind in "IU"),
+        splat=(), cost=7, vectors=(
+            ((0, 7, 4, 2), 48), ((-1, 0, 0, 32), 0), ((5, 9, 32, 0), 5), ((0xFFFFFFFF, 0, 8, 8), 0xFFFF00FF),
+            (((1, 2), (3, 0), 1, 1), (3, 0)),
+        ),
+    ),
+)
