@@ -1,0 +1,250 @@
+"""One file of public shader code: whether it counts, and what becomes of it in every target and every compiler.
+
+A file counts where glslang takes it as GLSL. One without `#version` is read as 4.50 of the compatibility profile, which
+knows `varying`, `texture2D` and `gl_FragColor` too; one with a version as it is, or, where that fails, as 4.50. A file
+of functions gets an empty `main`, a Shadertoy scene the uniforms and the `main` that the site gives it.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from sssgen.compiler import transpile
+from sssgen.diagnostics import SssgenError
+from sssgen.harness import compilers
+from sssgen.harness.compilers import Source, errors
+from sssgen.harness.compilers.calls import glsl_entry, hlsl_entry
+from sssgen.harness.compilers.gl import with_version
+from sssgen.harness.compilers.glslang import LIBRARY_ENTRY
+from sssgen.harness.handwritten import hand_written
+from sssgen.harness.includes import expanded
+from sssgen.lang.loader import load_file, read_text
+
+BATCH = 40
+"""Texts to a process of glslang."""
+SECONDS = 60.0
+"""How long one process of glslang may take."""
+
+COMPILERS = {
+    "wgsl": ("naga", "tint"),
+    "hlsl": ("glslang", "dxc"),
+    "glsl-330": ("glslang",),
+    "glsl-es-300": ("glslang",),
+}
+"""Target → the compilers that must take it."""
+
+_COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
+_VERSION = re.compile(r"^\s*#\s*version[^\n]*\n?", re.MULTILINE)
+_SCENE = """
+uniform vec3 iResolution;
+uniform float iTime, iTimeDelta, iFrameRate, iSampleRate, iGlobalTime;
+uniform int iFrame;
+uniform vec4 iMouse, iDate;
+uniform float iChannelTime[4];
+uniform vec3 iChannelResolution[4];
+uniform sampler2D iChannel0, iChannel1, iChannel2, iChannel3;
+"""
+_SCENE_MAIN = "\nvoid main() { vec4 color; mainImage(color, gl_FragCoord.xy); gl_FragColor = color; }\n"
+
+
+class Code(NamedTuple):
+    """A file as it is found."""
+
+    path: Path
+    text: str
+    """With its includes in it."""
+
+    @property
+    def is_scene(self) -> bool:
+        """Whether it is one of Shadertoy's: `mainImage` and no `main`."""
+        bare = _COMMENT.sub(" ", self.text)
+        return re.search(r"\bvoid\s+mainImage\s*\(", bare) is not None and not _has_main(bare)
+
+    @property
+    def stage(self) -> str:
+        return "vert" if self.path.suffix in (".vert", ".vs") else "frag"
+
+
+class Made(NamedTuple):
+    """What one target made of a file."""
+
+    source: Source | None
+    """The text, with the entry that it has; None where there is none."""
+    problem: str
+    """Why not, or what naga, Tint or DXC says: `who: message`; '' where there is nothing to say."""
+
+
+def read(path: Path, folders: Sequence[Path]) -> Code:
+    """A file with what it includes, which is looked for in `folders` too; one that lacks a file does not compile."""
+    try:
+        return Code(path, expanded(read_text(path, path.as_posix()), path, folders))
+    except SssgenError as error:
+        return Code(path, f"#error {error.diagnostics[0].message}\n")
+
+
+def accepted(codes: Sequence[Code]) -> list[str]:
+    """What glslang says of each file: '' where it counts."""
+    said = _in_batches([(code.stage, _whole(code, own_version=True)) for code in codes])
+    again = [index for index, message in enumerate(said) if message and _VERSION.search(codes[index].text)]
+    for index, message in zip(
+        again, _in_batches([(codes[i].stage, _whole(codes[i], own_version=False)) for i in again]), strict=True
+    ):
+        said[index] = message
+    return said
+
+
+def glslang(texts: Sequence[tuple[str, str]]) -> list[str]:
+    """What glslang says of texts that were made, (target, text): '' of those that it takes."""
+    found = [""] * len(texts)
+    for target in {target for target, _ in texts}:
+        chosen = [index for index, (one, _) in enumerate(texts) if one == target]
+        options = ("-D", "-e", LIBRARY_ENTRY) if target == "hlsl" else ()
+        programs = [("frag", texts[index][1]) for index in chosen]
+        for index, message in zip(chosen, _in_batches(programs, options), strict=True):
+            found[index] = message
+    return found
+
+
+def for_glslang(source: Source) -> str:
+    """The text that glslang is given of a source: with an entry point, whose name is the same for all in HLSL."""
+    if source.language != "hlsl":
+        text = with_version(source.text, source.language)
+        return glsl_entry(text) if source.stage == "library" else text
+    if source.stage == "library":
+        return hlsl_entry(source.text)
+    return f"#define {source.entry} {LIBRARY_ENTRY}\n{source.text}"
+
+
+def preprocessed(code: Code) -> str:
+    """The whole program without directives, as 4.50: what a front end without a preprocessor is given."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"whole.{code.stage}"
+        path.write_text(_whole(code, own_version=False), "utf-8")
+        command = ["glslangValidator", "-E", str(path)]
+        done = subprocess.run(command, capture_output=True, encoding="utf-8", errors="replace", timeout=SECONDS)
+    body = "\n".join(line for line in done.stdout.splitlines() if not line.lstrip().startswith("#"))
+    return f"#version 450\n{body}\n"
+
+
+def _whole(code: Code, own_version: bool) -> str:
+    """The program that glslang is asked about."""
+    version = _VERSION.search(code.text) if own_version else None
+    head = version[0] if version else "#version 450 compatibility\n"
+    text = _VERSION.sub("\n", code.text, count=1)
+    scene = code.is_scene
+    tail = _SCENE_MAIN if scene else "" if _has_main(_COMMENT.sub(" ", text)) else "\nvoid main() {}\n"
+    return head + (_SCENE if scene else "") + text + tail
+
+
+def _has_main(bare: str) -> bool:
+    return re.search(r"\bvoid\s+main\s*\(", bare) is not None
+
+
+def _in_batches(programs: Sequence[tuple[str, str]], options: Sequence[str] = ()) -> list[str]:
+    """The first complaint about each (stage, text)."""
+    found: list[str] = []
+    for start in range(0, len(programs), BATCH):
+        found += _batch(programs[start : start + BATCH], options)
+    return found
+
+
+def _batch(programs: Sequence[tuple[str, str]], options: Sequence[str]) -> list[str]:
+    """One process; where it does not end well, one for each text, so that only one is without an answer."""
+    with tempfile.TemporaryDirectory() as folder:
+        paths = [Path(folder) / f"{number}.{stage}" for number, (stage, _) in enumerate(programs)]
+        for path, (_, text) in zip(paths, programs, strict=True):
+            path.write_text(text, "utf-8")
+        command = ["glslangValidator", *options, *map(str, paths)]
+        try:
+            done = subprocess.run(command, capture_output=True, encoding="utf-8", errors="replace", timeout=SECONDS)
+        except subprocess.TimeoutExpired:
+            done = None
+    if done is None or done.returncode < 0:
+        if len(programs) == 1:
+            return ["glslang crashed or did not end"]
+        return [message for one in programs for message in _batch([one], options)]
+    said = [""] * len(programs)
+    number = -1
+    for line in done.stdout.splitlines():
+        if number + 1 < len(paths) and line.strip() == str(paths[number + 1]):
+            number += 1
+        elif line.startswith("ERROR:") and number >= 0 and not said[number]:
+            said[number] = re.sub(r"^ERROR: (?:[^:]*:\d+: )?", "", line).strip()
+    return said
+
+
+Question = tuple[str, tuple[object, ...]]
+"""What is asked, `made` or `naga_glsl`, and its arguments."""
+
+
+def naga_glsl(text: str, stage: str) -> str:
+    """What naga's own front end for GLSL says of a text; '' where it takes it."""
+    import wgpu
+
+    try:
+        compilers.get("naga").gpu.create_shader_module(label=stage, code=text)  # type: ignore[attr-defined]
+    except wgpu.GPUError as error:
+        lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+        return next((line for line in reversed(lines) if "error" in line.lower() or ":" in line), lines[-1])
+    return ""
+
+
+def serve(_: str) -> tuple[str, Callable[[Question], object]]:
+    """For `harness.process`: a process that transpiles files and has the compilers which stay started."""
+
+    def answer(question: Question) -> object:
+        what, given = question
+        return _ANSWERS[what](*given)
+
+    return "ready", answer
+
+
+def made(code: Code, folders: Sequence[Path], targets: Sequence[str]) -> dict[str, Made]:
+    """Each target's text and what the compilers in this process say of it; {"": …} where the file cannot be read."""
+    try:
+        module = load_file(code.path, code.path.name, tuple(folders))
+    except Exception as error:
+        return {"": Made(None, _reason(error))}
+    found = {}
+    for target in targets:
+        try:
+            files = transpile(module, target, "file").files
+        except Exception as error:
+            found[target] = Made(None, _reason(error))
+            continue
+        text = "\n".join(text for name, text in files.items() if not name.endswith(".json"))
+        source = hand_written(text, target, "made")[0]
+        found[target] = Made(source, next(_complaints(source), ""))
+    return found
+
+
+def _complaints(source: Source) -> Iterator[str]:
+    for name in COMPILERS[source.language]:
+        if name != "glslang":
+            for message in errors(compilers.get(name).check(source))[:1]:
+                yield f"{name}: {message.text}"
+
+
+def _reason(error: Exception) -> str:
+    """A message for people, or, where there is none, what broke."""
+    if isinstance(error, SssgenError):
+        return error.diagnostics[0].message
+    trace = error.__traceback__
+    while trace is not None and trace.tb_next is not None:
+        trace = trace.tb_next
+    where = f" in {Path(trace.tb_frame.f_code.co_filename).name}" if trace is not None else ""
+    return f"BROKEN: {type(error).__name__}{where}: {error}"
+
+
+def blank(message: str) -> str:
+    """A message without the names and numbers in it, so that equal reasons are counted together."""
+    message = re.sub(r"'[^']*'|\"[^\"]*\"|`[^`]*`", "'…'", message.splitlines()[0] if message else "")
+    return re.sub(r"\d+", "N", message)[:150]
+
+
+_ANSWERS: dict[str, Callable[..., object]] = {"made": made, "naga_glsl": naga_glsl}
