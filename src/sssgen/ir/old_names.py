@@ -1,0 +1,54 @@
+"""The names that functions had in older versions of GLSL and in extensions of it, and what they are called now.
+
+    new_name("texture2D", 3)         # "texture": the third argument is the bias in both
+    new_name("texture2DLodEXT", 3)   # "textureLod"
+    new_name("mix", 3)               # None
+
+The arguments are the same, in the same order. The new name is that of a builtin of the intrinsic table or of one of
+`ir.out_builtins`. The shadow reads of GLSL 1.20, which gave a vec4, are functions there by their old names.
+Source: chapter 8.7 of GLSL 1.20 and of GLSL ES 1.00; GL_ARB_shader_texture_lod, GL_EXT_shader_texture_lod,
+GL_EXT_gpu_shader4, GL_EXT_shadow_samplers.
+"""
+
+from __future__ import annotations
+
+_RENAMED = (
+    ("texture2D texture3D textureCube texture2DArray", "texture", (2, 3)),
+    (
+        "texture2DLod texture3DLod textureCubeLod texture2DArrayLod texture2DLodEXT texture3DLodEXT textureCubeLodEXT",
+        "textureLod",
+        (3,),
+    ),
+    (
+        "texture2DGrad texture3DGrad textureCubeGrad texture2DArrayGrad texture2DGradARB texture3DGradARB "
+        "textureCubeGradARB texture2DGradEXT texture3DGradEXT textureCubeGradEXT",
+        "textureGrad",
+        (4,),
+    ),
+    ("texture2DProj texture3DProj", "textureProj", (2, 3)),
+    (
+        "texture2DProjLod texture3DProjLod texture2DProjLodEXT texture3DProjLodEXT",
+        "textureProjLod",
+        (3,),
+    ),
+    (
+        "texture2DProjGrad texture3DProjGrad texture2DProjGradARB texture3DProjGradARB texture2DProjGradEXT "
+        "texture3DProjGradEXT",
+        "textureProjGrad",
+        (4,),
+    ),
+    ("texelFetch2D texelFetch3D texelFetch2DArray", "texelFetch", (3,)),
+    ("textureSize2D textureSize3D textureSizeCube textureSize2DArray", "textureSize", (2,)),
+)
+"""Old names; the new name; with how many arguments."""
+
+OLD_NAMES: dict[str, tuple[str, tuple[int, ...]]] = {
+    old: (new, counts) for names, new, counts in _RENAMED for old in names.split()
+}
+"""Old name → the new one, and with how many arguments it was called."""
+
+
+def new_name(name: str, count: int) -> str | None:
+    """What a call of `name` with this many arguments is now; None where it is no old name, or not with so many."""
+    new, counts = OLD_NAMES.get(name, ("", ()))
+    return new if count in counts else None

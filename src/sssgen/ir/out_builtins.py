@@ -1,0 +1,131 @@
+"""Builtins that are ordinary functions of our own language: those with out parameters, and the projective reads.
+
+A builtin of the intrinsic table gives one value and has no out parameter. These, and texture reads at a coordinate that
+is divided first, are written out instead: the front end puts the function into the module where a file first calls it,
+and every pass and target then treats it as one of the file's own.
+
+    out_builtin("modf", [VEC3, VEC3])    # the text of vec3 modf(vec3 x, out vec3 whole)
+
+The texts are generic as the table's signatures are (`genF`: float, vec2, vec3, vec4 alike). What GLSL leaves open:
+`modf` and `frexp` of an infinity or NaN give anything; `frexp` takes a subnormal number for 0, as GPUs do.
+Source: chapters 8.3, 8.8 and 8.9 of the GLSL 4.60 specification.
+"""
+
+from __future__ import annotations
+
+import functools
+import re
+from collections.abc import Sequence
+
+from .signatures import instantiate
+from .types import Type, components, spell
+
+OUT_BUILTINS: dict[str, str] = {
+    "modf": """
+genF modf(genF x, out genF whole) {
+    whole = trunc(x);
+    return x - whole;
+}
+""",
+    "frexp": """
+genF frexp(genF x, out genI exponent) {
+    genU bits = floatBitsToUint(x);
+    genI biased = genI((bits >> 23u) & 0xffu);
+    genI normal = min(biased, 1);
+    exponent = (biased - 126) * normal;
+    return uintBitsToFloat((bits & 0x80000000u) | (((bits & 0x007fffffu) | 0x3f000000u) * genU(normal)));
+}
+""",
+    "uaddCarry": """
+genU uaddCarry(genU x, genU y, out genU carry) {
+    genU sum = x + y;
+    carry = ((x & y) | ((x | y) & ~sum)) >> 31u;
+    return sum;
+}
+""",
+    "usubBorrow": """
+genU usubBorrow(genU x, genU y, out genU borrow) {
+    genU difference = x - y;
+    borrow = ((~x & y) | ((~x | y) & difference)) >> 31u;
+    return difference;
+}
+""",
+    "umulExtended": """
+void umulExtended(genU x, genU y, out genU msb, out genU lsb) {
+    genU low = (x & 0xffffu) * (y & 0xffffu);
+    genU middle = (x >> 16u) * (y & 0xffffu) + (low >> 16u);
+    genU other = (x & 0xffffu) * (y >> 16u) + (middle & 0xffffu);
+    msb = (x >> 16u) * (y >> 16u) + (middle >> 16u) + (other >> 16u);
+    lsb = x * y;
+}
+""",
+    # the product of the same bits as uints, less 2^32 times one factor where the other is negative
+    "imulExtended": """
+void imulExtended(genI x, genI y, out genI msb, out genI lsb) {
+    genU a = genU(x);
+    genU b = genU(y);
+    genU low = (a & 0xffffu) * (b & 0xffffu);
+    genU middle = (a >> 16u) * (b & 0xffffu) + (low >> 16u);
+    genU other = (a & 0xffffu) * (b >> 16u) + (middle & 0xffffu);
+    genU high = (a >> 16u) * (b >> 16u) + (middle >> 16u) + (other >> 16u);
+    msb = genI(high) - ((x >> 31u) & y) - ((y >> 31u) & x);
+    lsb = x * y;
+}
+""",
+    "textureProj": """
+vec4 textureProj(sampler2D map, vec3 P) { return texture(map, P.xy / P.z); }
+vec4 textureProj(sampler2D map, vec4 P) { return texture(map, P.xy / P.w); }
+vec4 textureProj(sampler3D map, vec4 P) { return texture(map, P.xyz / P.w); }
+vec4 textureProj(sampler2D map, vec3 P, float bias) { return texture(map, P.xy / P.z, bias); }
+vec4 textureProj(sampler2D map, vec4 P, float bias) { return texture(map, P.xy / P.w, bias); }
+vec4 textureProj(sampler3D map, vec4 P, float bias) { return texture(map, P.xyz / P.w, bias); }
+""",
+    "textureProjLod": """
+vec4 textureProjLod(sampler2D map, vec3 P, float level) { return textureLod(map, P.xy / P.z, level); }
+vec4 textureProjLod(sampler2D map, vec4 P, float level) { return textureLod(map, P.xy / P.w, level); }
+vec4 textureProjLod(sampler3D map, vec4 P, float level) { return textureLod(map, P.xyz / P.w, level); }
+""",
+    "textureProjGrad": """
+vec4 textureProjGrad(sampler2D map, vec3 P, vec2 dx, vec2 dy) { return textureGrad(map, P.xy / P.z, dx, dy); }
+vec4 textureProjGrad(sampler2D map, vec4 P, vec2 dx, vec2 dy) { return textureGrad(map, P.xy / P.w, dx, dy); }
+vec4 textureProjGrad(sampler3D map, vec4 P, vec3 dx, vec3 dy) { return textureGrad(map, P.xyz / P.w, dx, dy); }
+""",
+}
+"""Name → its definitions; each ends with the first brace at the end of a line."""
+
+_GENERIC = re.compile(r"\bgen[FIUB]\b")
+_DEFINITION = re.compile(r"^\w.*?\}$", re.MULTILINE | re.DOTALL)
+
+
+def is_out_builtin(name: str) -> bool:
+    """Whether there is such a function here, for whatever types."""
+    return name in OUT_BUILTINS
+
+
+def out_builtin(name: str, types: Sequence[Type]) -> str | None:
+    """The text of the one function `name` for arguments of exactly these types; None where there is none."""
+    return _written(name, tuple(types))
+
+
+@functools.cache
+def _written(name: str, types: tuple[Type, ...]) -> str | None:
+    size = max([components(type_) for type_ in types], default=0)
+    if size > 4:
+        return None
+
+    def sized(match: re.Match[str]) -> str:
+        type_ = instantiate(match.group(), size)
+        assert type_ is not None
+        return spell(type_)
+
+    for source in _DEFINITION.findall(OUT_BUILTINS.get(name, "")):
+        text = _GENERIC.sub(sized, source)
+        if _parameters(text) == [spell(type_) for type_ in types]:
+            return text + "\n"
+    return None
+
+
+def _parameters(definition: str) -> list[str]:
+    """The types of a definition's parameters, as they are spelt."""
+    listed = definition[definition.index("(") + 1 : definition.index(")")]
+    return [param.split()[-2] for param in listed.split(",")]

@@ -1,0 +1,168 @@
+"""Builtins with out parameters, and projective reads: their numbers on every back end, and what there is of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sssgen.compiler import transpile
+from sssgen.harness.backends import Array, Backend, Call, Text
+from sssgen.harness.parity_inputs import DTYPES, textures
+from sssgen.ir.out_builtins import OUT_BUILTINS, is_out_builtin, out_builtin
+from sssgen.ir.types import FLOAT, VEC2, VEC3, VEC4, Sampler, Type, kind_of, spell, vector_of
+from sssgen.lang.loader import load_text
+
+BACKENDS = ("numpy", "numpy-f32", "gl", "gl-es", "webgpu", "browser", "hlsl", "hlsl-glslang", "unity", "unity-urp")
+LANES = 64
+
+KINDS: dict[str, tuple[str, ...]] = {
+    "modf": ("float", "float"), "frexp": ("float", "int"), "uaddCarry": ("uint",) * 3, "usubBorrow": ("uint",) * 3,
+    "umulExtended": ("uint",) * 4, "imulExtended": ("int",) * 4,
+}  # fmt: skip
+"""Name → the kinds of its arguments; the last ones are out, one where it has a result of its own, else two."""
+
+
+def typed(name: str, size: int) -> list[Type]:
+    return [vector_of(kind, size) for kind in KINDS[name]]
+
+
+def program(name: str, size: int) -> tuple[str, list[Type]]:
+    """A function for each thing that comes out of a call, and the types of what comes out."""
+    types = typed(name, size)
+    outs = 2 if name.endswith("Extended") else 1
+    source = out_builtin(name, types)
+    assert source is not None
+    given = types[:-outs]
+    results = types[-outs:] if outs == 2 else [given[0], types[-1]]
+    params = ", ".join(f"{spell(type_)} {letter}" for type_, letter in zip(given, "xy", strict=False))
+    locals_ = "".join(f"{spell(type_)} out_{index}; " for index, type_ in enumerate(types[-outs:]))
+    call = f"{name}({', '.join(['xy'[at] for at in range(len(given))] + [f'out_{at}' for at in range(outs)])})"
+    first = f"{spell(results[0])} first({params}) {{ {locals_}"
+    first += f"return {call}; }}" if outs == 1 else f"{call}; return out_0; }}"
+    second = f"{spell(results[1])} second({params}) {{ {locals_}"
+    second += f"{call}; return out_{outs - 1}; }}"
+    return f"{source}{first}\n{second}", results
+
+
+def run(backend: Backend, text: str, calls: Sequence[tuple[str, list[Type], Type, tuple[Any, ...]]]) -> list[Array]:
+    made = transpile(load_text(text, "case"), backend.target.name, "case")
+    emitted = next(text for name, text in made.files.items() if not name.endswith(".json"))
+    renames = made.reflection["renames"]
+    prepared = [Call(renames.get(name, name), tuple(types), result, args) for name, types, result, args in calls]
+    return backend.run(Text(emitted), prepared, textures())
+
+
+def drawn(name: str, types: Sequence[Type]) -> tuple[Array, ...]:
+    """Edges, small numbers and numbers of all sizes."""
+    rng = np.random.default_rng(3)
+    found = []
+    for type_ in types:
+        size = getattr(type_, "size", 1)
+        if kind_of(type_) == "float":
+            edges = [0.0, 0.5, -0.5, 1.0, -1.0, 1.75, -2.25, 2.0**23 - 0.5, 2.0**-126, 1.0 - 2.0**-24]
+            values = rng.normal(size=(size, LANES)) * 2.0 ** rng.integers(-20, 20, (size, LANES))
+            values[:, :10] = edges
+        else:
+            info = np.iinfo(DTYPES[kind_of(type_)])
+            values = rng.integers(info.min, info.max, (size, LANES), endpoint=True)
+            edges = [info.min, info.max, 0, 1, 65535, 65536]
+            values[:, :36] = np.repeat(edges, 6) if not found else np.tile(edges, 6)
+        found.append((values if size > 1 else values[0]).astype(DTYPES[kind_of(type_)]))
+    return tuple(found)
+
+
+def expected(name: str, args: tuple[Array, ...]) -> tuple[Array, Array]:
+    """By NumPy's own functions and 64-bit integers."""
+    x = args[0]
+    if name == "modf":
+        part, whole = np.modf(x.astype(np.float64))
+        return part, whole
+    if name == "frexp":
+        significand, exponent = np.frexp(x.astype(np.float64))
+        return significand, exponent
+    wide, other = (arg.astype(np.int64) for arg in args)
+    if name == "uaddCarry":
+        return (wide + other) % 2**32, (wide + other) // 2**32
+    if name == "usubBorrow":
+        return (wide - other) % 2**32, (wide < other).astype(np.int64)
+    exact = x.astype(object) * args[1].astype(object)  # Python's integers: the product of two uints needs 64 bits
+    return (exact // 2**32).astype(np.int64), (exact % 2**32).astype(np.int64)
+
+
+@pytest.mark.parametrize("name", BACKENDS)
+@pytest.mark.parametrize("builtin", KINDS)
+def test_both_results_on_every_back_end(builtin: str, name: str, backend: Callable[[str], Backend]) -> None:
+    for size in (1, 3):
+        text, results = program(builtin, size)
+        types = typed(builtin, size)[: -2 if builtin.endswith("Extended") else -1]
+        args = drawn(builtin, types)
+        calls = [(function, types, result, args) for function, result in zip(("first", "second"), results, strict=True)]
+        for got, wanted in zip(run(backend(name), text, calls), expected(builtin, args), strict=True):
+            if got.dtype.kind in "iu":
+                np.testing.assert_array_equal(got, wanted.astype(got.dtype), builtin)
+            else:
+                np.testing.assert_array_equal(got.astype(np.float64), wanted, builtin)
+
+
+# Projective reads
+
+READS = [
+    ("textureProj", Sampler("2D"), VEC3, ()), ("textureProj", Sampler("2D"), VEC4, (FLOAT,)),
+    ("textureProjLod", Sampler("2D"), VEC3, (FLOAT,)), ("textureProjLod", Sampler("3D"), VEC4, (FLOAT,)),
+    ("textureProjGrad", Sampler("2D"), VEC4, (VEC2, VEC2)), ("textureProjGrad", Sampler("3D"), VEC4, (VEC3, VEC3)),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", BACKENDS)
+def test_projective_reads(name: str, backend: Callable[[str], Backend]) -> None:
+    """They are the reads at the divided coordinate; of level 0, that the levels of derivatives are out of the way."""
+    texts, calls, wanted = [], [], []
+    rng = np.random.default_rng(5)
+    for number, (builtin, sampler, place, extra) in enumerate(READS):
+        source = out_builtin(builtin, [sampler, place, *extra])
+        assert source is not None
+        if source not in texts:
+            texts.append(source)
+        params = ", ".join(f"{spell(type_)} p{at}" for at, type_ in enumerate((sampler, place, *extra)))
+        names = ", ".join(f"p{at}" for at in range(2 + len(extra)))
+        texts.append(f"vec4 case_{number}({params}) {{ return {builtin}({names}); }}\n")
+        map_ = textures()["map" if sampler.dim == "2D" else "volume"]
+        reach = 2 if sampler.dim == "2D" else 3
+        coord = np.full((place.size, 12), 0.5, np.float32)
+        coord[:reach] = rng.uniform(0.2, 1.8, (reach, 1))  # the same for all lanes: no derivative
+        coord[-1] = rng.uniform(0.5, 2.0, 1)
+        rest = [np.zeros(12 if type_ == FLOAT else (type_.size, 12), np.float32) for type_ in extra]
+        calls.append(
+            (f"case_{number}", [sampler, place, *extra], VEC4, ("map" if reach == 2 else "volume", coord, *rest))
+        )
+        wanted.append(map_.sample(coord[:reach].astype(np.float64) / coord[-1], 0.0))
+    for read, got, right in zip(READS, run(backend(name), "".join(texts), calls), wanted, strict=True):
+        np.testing.assert_allclose(got, right, rtol=0.0, atol=2.0**-7, err_msg=str(read))
+
+
+# What there is
+
+
+def test_there_is_one_for_each_size_and_none_for_others() -> None:
+    for name in KINDS:
+        for size in (1, 2, 3, 4):
+            source = out_builtin(name, typed(name, size))
+            assert source is not None
+            assert "gen" not in source
+            (function,) = load_text(source, "case").functions
+            assert function.name == name
+        assert out_builtin(name, typed(name, 2)[:-1]) is None
+        assert out_builtin(name, [VEC2] * 5) is None
+    assert out_builtin("modf", [VEC2, FLOAT]) is None
+    assert out_builtin("textureProj", [Sampler("2D"), VEC2]) is None
+    assert out_builtin("mix", [VEC2, VEC2, VEC2]) is None
+
+
+def test_every_definition_is_found_by_its_types() -> None:
+    for name, source in OUT_BUILTINS.items():
+        assert is_out_builtin(name)
+        assert source.count(f" {name}(") >= 1
+    assert not is_out_builtin("texture")
