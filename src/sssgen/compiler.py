@@ -106,9 +106,12 @@ def _copy(made: Compiled) -> Compiled:
 
 def transpile(
     module: Module, target: str, name: str, guards: str = "none", called: Sequence[str] | None = None,
-    at: Callable[[Site], str] | None = None, chained: bool = False,
+    at: Callable[[Site], str] | None = None, chained: bool = False, keep: bool = False,
 ) -> Compiled:  # fmt: skip
-    """The functions form of a module of plain functions (no chain): what `sssgen transpile` writes.
+    """The functions form of a module of plain functions (no chain), or a whole shader where it has a `void main()`.
+
+    It is what `sssgen transpile` writes. With `keep` the text stays as it was written, but for what the target cannot
+    say, and `called` only leaves functions out.
 
     `called` are the keys of the functions that are called from outside, with any argument that they allow; None: all.
     `chained`: they are techniques, whose parameters have the meaning of their names. `at` is that of
@@ -118,8 +121,8 @@ def transpile(
 
     _check_guards(guards)
     chosen = descriptor.load(target)
-    program = make_library(module, chosen, guards, called, at, chained)._replace(about=About(name, name))
-    return _finish(program, chosen, "functions", None)
+    program = make_library(module, chosen, guards, called, at, chained, keep)._replace(about=About(name, name))
+    return _finish(program, chosen, program.stage.kind if program.stage else "functions", None)
 
 
 def guarded_sites(material: Material, target: str = "glsl-330", form: str = "shader") -> list[Site]:

@@ -22,16 +22,19 @@ from .passes.cost import Cost, cost_of
 from .passes.fold import fold
 from .passes.guards import Guarded, guard
 from .passes.hoist import Note, hoist
+from .passes.initial_values import NoEntry, set_at_start
 from .passes.inline import inline
 from .passes.legalise import Unsupported, legalise
 from .passes.link import LinkError, LinkStage, link
 from .passes.names import rename
 from .passes.parameters import uniforms_to_parameters
 from .passes.predicate import predicate
-from .passes.prune import prune
+from .passes.prune import only, prune
 from .passes.ranges import analyse
 from .passes.sites import Site, report
+from .passes.stage import ENTRY, Stage, StageError, entry_of, interface, remarks, stage_kind, turned_derivatives
 from .passes.undefined import undefined_constants
+from .passes.variables_to_parameters import variables_to_parameters
 from .targets import descriptor
 from .targets.descriptor import Target, Words
 from .targets.emit import About, Program, print_parts
@@ -68,17 +71,44 @@ def make(material: Material, structure: str, target: Target, form: str, guards: 
 
 def make_library(
     module: Module, target: Target, guards: str, called: Sequence[str] | None,
-    at: Callable[[Site], str] | None = None, chained: bool = False,
+    at: Callable[[Site], str] | None = None, chained: bool = False, keep: bool = False,
 ) -> Program:  # fmt: skip
-    """The program of a module of plain functions. Raises SssgenError.
+    """The program of a module of plain functions, or of a whole shader. Raises SssgenError.
 
     `called` are the keys of those that are called from outside; None means all of them. `at` and `chained` are
-    those of `guard`.
+    those of `guard`. With `keep` the text stays as its author wrote it, but for what the target cannot say: then
+    `called` only leaves out the functions that these do not call.
     """
-    module, notes, roots = plain_module(module)
+    kind = stage_kind(module)
+    kind = kind if kind in target.files else ""
+    turned = _turned(target)
+    if kind and turned:
+        module = turned_derivatives(module)
+    if keep:
+        module, notes, roots = _kept(module, target, called)
+    else:
+        module, notes, roots = plain_module(module)
+    if kind:
+        known = target.table.get("stage_builtins")
+        notes = notes + ([Note(*one) for one in remarks(module, kind, known, turned)] if known is not None else [])
     guarded = guard(module, called or roots, guards, guard_source, polyfill, format_of(target), at, chained)
     middle = _Middle(guarded.module, {}, None, {}, {}, _warnings(notes), guarded=guarded)
-    return _finish(middle, target, "functions")
+    return _finish(middle, target, kind or "functions", keep)
+
+
+def _turned(target: Target) -> bool:
+    """Whether the target's framebuffer counts y from the top."""
+    return bool(target.table.get("conventions", {}).get("framebuffer_y") == "down")
+
+
+def _kept(module: Module, target: Target, called: Sequence[str] | None) -> tuple[Module, list[Note], list[str]]:
+    """A module as it was written, with its derivatives where the target can have them."""
+    if called is not None:
+        module = only(module, called)
+    roots = [function.key for function in module.functions if function.body is not None]
+    if target.can("implicit_levels"):
+        return module, [], roots
+    return *hoist(module, roots), roots
 
 
 def sites_of(material: Material, target: Target, form: str) -> list[Site]:
@@ -207,28 +237,36 @@ def _slot_functions(material: Material, module: Module) -> frozenset[str]:
     return frozenset(function.key for function in module.functions if function.span in bound)
 
 
-def _finish(middle: _Middle, target: Target, form: str) -> Program:
+def _finish(middle: _Middle, target: Target, form: str, keep: bool = False) -> Program:
     """The target's own part: parameters, legalise, names, printing."""
     module = middle.module
-    if form in target.parameters:
-        module = uniforms_to_parameters(module)
+    start = ENTRY if entry_of(module) is not None else ""
     try:
-        module = legalise(module, target.dialect, target.can, polyfill)
-    except Unsupported as error:
-        message = f"{error.message} ({target.name})"
-        raise SssgenError([Diagnostic("error", message, error.span, "", source_line(error.span))]) from None
+        if not target.can("module_variables"):
+            module = variables_to_parameters(module, start).module
+        elif not target.can("variable_values"):
+            module = set_at_start(module, start)
+        if form in target.parameters:
+            module = uniforms_to_parameters(module)
+        module = legalise(module, target.dialect, _can_keeping(target) if keep else target.can, polyfill)
+    except (Unsupported, NoEntry) as error:
+        raise _refused(error.message, error.span, target) from None
     if not target.can("lane_control_flow"):
         module = predicate(module)
     before = [uniform.name for uniform in module.uniforms]
-    exact, folded, prefixes = descriptor.reserved_everywhere()
+    main = _entry_name(target, form)
     module, renames = rename(
         module,
-        Words(exact | target.reserved, prefixes + target.prefixes),
+        _reserved(target, main, keep),
         _uniform_style(target),
         not target.can("overloads"),
-        folded | target.folded,
+        target.folded if keep else descriptor.reserved_everywhere()[1] | target.folded,
     )
-    parts = print_parts(target, module, comments_before)
+    try:
+        stage = _stage(module, target, form, renames)
+    except StageError as error:
+        raise _refused(error.message, error.span, target) from None
+    parts = print_parts(target, module, comments_before, stage, main)
     module = module._replace(functions=tuple([function._replace(body=()) for function in module.functions]))
     entries = {}
     for kind, entry in middle.entries.items():
@@ -239,8 +277,47 @@ def _finish(middle: _Middle, target: Target, form: str) -> Program:
     return Program(
         module, entries, surface, source_names, About("", ""), middle.encoded, parts, middle.owners, renames,
         {kind: cost._asdict() for kind, cost in middle.costs.items()}, middle.warnings, middle.settings,
-        report(middle.guarded.sites, middle.guarded.guarded) if middle.guarded else {},
+        report(middle.guarded.sites, middle.guarded.guarded) if middle.guarded else {}, stage,
     )  # fmt: skip
+
+
+def _can_keeping(target: Target) -> Callable[[str], bool]:
+    """What a target can say where its operators may mean what they mean in GLSL, which leaves some results open."""
+    return lambda capability: capability == "integer_division" or target.can(capability)
+
+
+def _refused(message: str, span: Span, target: Target) -> SssgenError:
+    return SssgenError([Diagnostic("error", f"{message} ({target.name})", span, "", source_line(span))])
+
+
+def _entry_name(target: Target, form: str) -> str:
+    """What the function is called that a whole shader begins with; '' in the other forms."""
+    return target.files[form][0].stages[form] if form in ("vertex", "fragment") else ""
+
+
+def _reserved(target: Target, entry: str, keep: bool) -> Words:
+    """The words that are not free for names.
+
+    Kept names keep clear of the target's own words alone. A shader whose entry is the author's has that name, and no
+    shell of ours around it.
+    """
+    exact, _, prefixes = descriptor.reserved_everywhere()
+    words, prefixes = (
+        (target.reserved, target.prefixes) if keep else (exact | target.reserved, prefixes + target.prefixes)
+    )
+    if entry == "main":
+        return Words(words - {"main", *target.table.get("names", {}).get("shell", "").split()}, prefixes)
+    return Words(words | {"main"}, prefixes)
+
+
+def _stage(module: Module, target: Target, form: str, renames: Mapping[str, str]) -> Stage | None:
+    """The interface of a whole shader with its final names. Raises StageError."""
+    if not _entry_name(target, form):
+        return None
+    main = renames.get(ENTRY) or renames.get("main", "main")
+    builtins = target.table.get("stage_builtins")
+    known = {one.builtin for one in module.variables} if builtins is None else set(builtins)
+    return interface(module, form, f"{main}()", known, _turned(target))
 
 
 def _uniform_style(target: Target) -> Any:

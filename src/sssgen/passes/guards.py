@@ -15,7 +15,7 @@ from ..ir import nodes as ir
 from ..ir.formats import FLOAT32, Format
 from ..ir.intrinsics import Guard, with_constants
 from ..ir.types import BOOL, FLOAT, UINT, Matrix, Type, components, kind_of, spell, vector_of
-from ..ir.walk import operands, rewrite_function, rewrite_module, with_operands
+from ..ir.walk import operands, rewrite_function, rewrite_module, statements, with_operands
 from .ranges import Findings, analyse
 from .sites import BOUNDS, DIVISION, Site
 from .substitute import in_place, widened_bound
@@ -60,6 +60,8 @@ def _without_assumptions(module: ir.Module) -> ir.Module:
     def restate(stmt: ir.Stmt) -> ir.Block | None:
         return () if isinstance(stmt, ir.Assume) else None
 
+    if not any(isinstance(stmt, ir.Assume) for one in module.functions for stmt in statements(one.body or ())):
+        return module
     return rewrite_module(module, lambda expr: expr, restate)
 
 

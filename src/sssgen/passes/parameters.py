@@ -8,7 +8,9 @@ brings parameters to shape and names to make legal.
 
 from __future__ import annotations
 
-from ..ir.nodes import Call, Expr, Function, Global, Local, Module, Param, Uniform, function_key
+from collections.abc import Container, Mapping
+
+from ..ir.nodes import Call, Expr, Function, Global, Local, Module, Param, function_key
 from ..ir.types import Sampler
 from ..ir.walk import rewrite_function
 from .scopes import declared, fresh, mentions, rename_locals
@@ -24,16 +26,24 @@ def uniforms_to_parameters(module: Module, textures: bool = True) -> Module:
     uniforms = {
         uniform.name: uniform for uniform in module.uniforms if textures or not isinstance(uniform.type, Sampler)
     }
-    closer = _Closer(module, uniforms)
-    functions = tuple([closer.function(key, function) for key, function in closer.functions.items()])
-    return module._replace(functions=functions)
+    handed = {
+        name: Param(name, uniform.type, "in", uniform.quantity, uniform.span) for name, uniform in uniforms.items()
+    }
+    closer = Closer(module, handed, {})
+    return module._replace(functions=closer.run())
 
 
-class _Closer:
-    def __init__(self, module: Module, uniforms: dict[str, Uniform]) -> None:
-        self.uniforms = uniforms
+class Closer:
+    """Gives functions parameters for the globals that they use, themselves or through what they call.
+
+    `handed` are the globals with their parameters; `written` says which of them a function writes, by its key: they
+    are inout there.
+    """
+
+    def __init__(self, module: Module, handed: Mapping[str, Param], written: Mapping[str, Container[str]]) -> None:
+        self.handed, self.written = handed, written
         self.functions = {function.key: function for function in module.functions}
-        self.order = {name: position for position, name in enumerate(uniforms)}
+        self.order = {name: position for position, name in enumerate(handed)}
         self.reads: dict[str, list[str]] = {}
         self.names: dict[str, str] = {}
         """The new name of each function, by its old key: another overload may have the new parameters
@@ -43,21 +53,25 @@ class _Closer:
         # functions that stay as they are come first, so that others make way for them
         for key, function in sorted(self.functions.items(), key=lambda item: bool(self.read(item[0]))):
             types = [param.type for param in function.params]
-            types += [uniforms[name].type for name in self.read(key)]
+            types += [handed[name].type for name in self.read(key)]
             name, count = function.name, 2
             while function_key(name, types) in taken:
                 name, count = f"{function.name}_{count}", count + 1
             self.names[key], self.keys[key] = name, function_key(name, types)
             taken.add(self.keys[key])
 
+    def run(self) -> tuple[Function, ...]:
+        """The functions with their new parameters, in the order they had."""
+        return tuple([self.function(key, function) for key, function in self.functions.items()])
+
     def read(self, key: str) -> list[str]:
-        """The uniforms that a function reads, in the order of their declaration."""
+        """The globals that a function uses, in the order of their declaration."""
         found = self.reads.get(key)
         if found is None:
             names, self.reads[key] = set[str](), []
             if key in self.functions:
                 globals_, calls = mentions(self.functions[key])
-                names = globals_ & self.uniforms.keys()
+                names = globals_ & self.handed.keys()
                 for callee in calls:
                     names.update(self.read(callee))
             found = self.reads[key] = sorted(names, key=self.order.__getitem__)
@@ -72,16 +86,14 @@ class _Closer:
             function, _ = rename_locals(function, hidden, fresh)
 
         def change(node: Expr) -> Expr:
-            if type(node) is Global and node.name in self.uniforms:
+            if type(node) is Global and node.name in self.handed:
                 return Local(node.type, node.name, node.span)
             if type(node) is Call and self.reads.get(node.function):
-                extra = [Local(self.uniforms[name].type, name, node.span) for name in self.read(node.function)]
+                extra = [Local(self.handed[name].type, name, node.span) for name in self.read(node.function)]
                 return Call(node.type, self.keys[node.function], (*node.args, *extra), node.span)
             return node
 
         function = rewrite_function(function, change)
-        params = [
-            Param(name, uniform.type, "in", uniform.quantity, uniform.span)
-            for name, uniform in ((name, self.uniforms[name]) for name in names)
-        ]
+        written = self.written.get(key, ())
+        params = [self.handed[name]._replace(direction="inout" if name in written else "in") for name in names]
         return function._replace(name=self.names[key], params=(*function.params, *params))

@@ -44,7 +44,7 @@ from ..ir.nodes import (
     While,
 )
 from ..ir.types import Array, Struct, Type
-from ..ir.walk import root
+from ..ir.walk import callees, root
 
 if TYPE_CHECKING:
     from typing import TypeVar
@@ -98,6 +98,22 @@ def prune(module: Module, roots: Iterable[str]) -> Module:
         _same(module.functions, [cleaned.function for cleaned in kept.values()]),
         _same(module.variables, variables[::-1]),
     )
+
+
+def only(module: Module, roots: Iterable[str]) -> Module:
+    """The module with the functions alone that `roots` call, themselves or through others; all else as it was.
+
+    Raises KeyError for a root that the module does not have.
+    """
+    functions = {function.key: function for function in module.functions}
+    reached: set[str] = set()
+    pending = list(roots)
+    while pending:
+        key = pending.pop()
+        if key not in reached:
+            reached.add(key)
+            pending += callees(functions[key])
+    return module._replace(functions=tuple([one for key, one in functions.items() if key in reached]))
 
 
 def _same(old: tuple[_T, ...], new: list[_T]) -> tuple[_T, ...]:

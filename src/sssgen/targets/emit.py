@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 from ..diagnostics import Diagnostic, failure
 from ..ir.nodes import Function, Local, Module, Param, Span, Uniform
 from ..ir.types import Sampler, Struct, spell
+from ..passes.stage import Stage
 from .descriptor import Target
 from .layout import Member, place
 from .printer import Comments, Line, Printer, comment_text
@@ -48,7 +49,8 @@ class Program(NamedTuple):
     encoded: bool
     """Whether the colour that comes out is already encoded for a display."""
     parts: Mapping[str, list[list[Line]]]
-    """What is printed of the structs (`types`), constants and functions; the functions in `module` have no bodies."""
+    """What is printed of the structs (`types`), constants, variables, functions and the entry. The functions in
+    `module` have no bodies."""
     owners: Mapping[str, tuple[str, str]]
     """A uniform's source name → its technique and its name there."""
     renames: Mapping[str, str]
@@ -58,6 +60,8 @@ class Program(NamedTuple):
     """A uniform's source name → the material's stages that may give it a value, and its name there."""
     guards: Mapping[str, Any]
     """How many operations with a domain are proven safe, and each that is guarded: where, what, why."""
+    stage: Stage | None = None
+    """The interface, where the module is a whole shader."""
 
 
 class Emitted(NamedTuple):
@@ -91,14 +95,19 @@ def printer_for(target: Target, module: Module) -> Printer:
     return printer
 
 
-def print_parts(target: Target, module: Module, comments: Comments) -> dict[str, list[list[Line]]]:
-    """Prints all of a legal module but its uniforms."""
+def print_parts(
+    target: Target, module: Module, comments: Comments, stage: Stage | None = None, entry: str = ""
+) -> dict[str, list[list[Line]]]:
+    """Prints all of a legal module but its uniforms; of a whole shader the function `entry` that it begins with."""
     printer = printer_for(target, module)
     printer.comments = comments
+    printer.stage = stage
     return {
         "types": [printer.print_struct(struct) for struct in module.structs],
         "constants": [[line for constant in module.constants for line in printer.print_constant(constant)]],
+        "variables": [[line for variable in module.variables for line in printer.print_variable(variable)]],
         "functions": [printer.print_function(function) for function in module.functions],
+        "entry": [printer.print_entry(entry)] if stage is not None else [],
     }
 
 
@@ -118,7 +127,9 @@ def emit(target: Target, program: Program, form: str, templates: str | None = No
         "uniforms": _text([uniform_lines], marks),
         "textures": _text([texture_lines], marks),
         "declarations": _text([uniform_lines, texture_lines], marks),
+        "variables": _text(program.parts["variables"], marks),
         "functions": _text(program.parts["functions"], marks),
+        "entry": _text(program.parts["entry"], marks),
     }
     context = _context(target, program, printer, form, code)
     files: dict[str, str] = {}

@@ -3,12 +3,41 @@
 from __future__ import annotations
 
 from ..ir import nodes as ir
+from ..passes.stage import COLORS
+from .descriptor import Target
 from .layout import Member
 from .printer import Line, Printer, documented
 
 
 class GlslPrinter(Printer):
     """Uniforms stand in the default block; everything else is as in the IR."""
+
+    def __init__(self, target: Target, module: ir.Module) -> None:
+        super().__init__(target, module)
+        self.builtins = {one.name: one.builtin for one in module.variables if one.builtin and one.builtin not in COLORS}
+
+    def global_value(self, value: ir.Global) -> str:
+        return self.builtins.get(value.name, value.name)
+
+    def print_variable(self, variable: ir.Variable) -> list[Line]:
+        """A variable, as it was written; the language has its builtins, but for the colours of older versions."""
+        if variable.name in self.builtins:
+            return []
+        if variable.storage == "private":
+            return super().print_variable(variable)
+        words = [variable.interpolation] if variable.interpolation else []
+        text = " ".join([*words, variable.storage, self.variable(variable.type, variable.name)])
+        return self.with_comments(variable, [Line(f"{self.layout(variable)}{text};", variable.span)])
+
+    def layout(self, variable: ir.Variable) -> str:
+        """Where a variable is bound, where the version can say so: a vertex's attributes and a fragment's colours."""
+        stage = self.stage
+        if stage is None or (stage.kind, variable.storage) not in (("vertex", "in"), ("fragment", "out")):
+            return ""
+        slots = [slot for slot in stage.inputs + stage.outputs if slot.variable is variable]
+        colors = {slot.variable.name for slot in stage.outputs if slot.location >= 0}
+        told = variable.location >= 0 or (variable.storage == "out" and len(colors) > 1)
+        return f"layout(location = {slots[0].location}) " if told and slots else ""
 
     def print_uniforms(self, members: list[Member]) -> list[Line]:
         """The uniform declarations, one a line."""

@@ -13,6 +13,7 @@ from __future__ import annotations
 from ..ir import nodes as ir
 from ..ir.types import Array, Matrix, Scalar, Struct, Vector, kind_of
 from ..passes.blocks import block_type
+from .hlsl_entry import print_entry
 from .layout import Member
 from .printer import POSTFIX, PRIMARY, UNARY, Line, Printer, documented
 
@@ -24,6 +25,7 @@ class HlslPrinter(Printer):
     """One printer for all dialects; the descriptor says how textures and uniforms are written."""
 
     constant = "static const"
+    private = "static "
 
     @property
     def engine_matrices(self) -> bool:
@@ -104,6 +106,10 @@ class HlslPrinter(Printer):
             )
             lines += [Line(part, texture.span) for part in text.splitlines()]
         return lines
+
+    def print_entry(self, name: str) -> list[Line]:
+        assert self.stage is not None
+        return print_entry(self, self.stage, name, self.stage.resolution)
 
     def binding(self, index: int) -> dict[str, int | str]:
         if "bindings" not in self.target.table:

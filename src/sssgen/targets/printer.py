@@ -18,6 +18,7 @@ from ..ir.operators import PRECEDENCE
 from ..ir.rules import FLOAT_MAX
 from ..ir.types import FLOAT, INT, UINT, Array, Sampler, Struct, Type, spell
 from ..ir.walk import expressions, root, statements, subexpressions
+from ..passes.stage import Stage
 from .descriptor import Target
 from .layout import Member
 
@@ -51,6 +52,8 @@ class Printer:
 
     constant = "const"
     """What a module constant's declaration begins with."""
+    private = ""
+    """What a module variable's declaration begins with."""
 
     def __init__(self, target: Target, module: ir.Module) -> None:
         self.target = target
@@ -59,6 +62,8 @@ class Printer:
         self.function: ir.Function | None = None
         self.comments: Comments = no_comments
         self.assigned: set[str] = set()
+        self.stage: Stage | None = None
+        """The interface of a whole shader."""
 
     # Types and literals
 
@@ -320,6 +325,21 @@ class Printer:
     def print_constant(self, constant: ir.Constant) -> list[Line]:
         declared = self.variable(constant.type, constant.name)
         return wrap(f"{self.constant} {declared} = {self.expr(constant.value)};", constant.span)
+
+    def print_variable(self, variable: ir.Variable) -> list[Line]:
+        """A module variable; what it is bound to is the entry's."""
+        value = f" = {self.expr(variable.value)}" if variable.value is not None else ""
+        text = f"{self.private}{self.variable(variable.type, variable.name)}{value};"
+        return self.with_comments(variable, wrap(text, variable.span))
+
+    def with_comments(self, variable: ir.Variable, lines: list[Line]) -> list[Line]:
+        """A declaration under the author's comments on it."""
+        told = [Line(f"// {comment_text(text)}") for text in self.comments(variable.span.file, variable.span.line)]
+        return [*told, *lines]
+
+    def print_entry(self, name: str) -> list[Line]:
+        """The function that the stage begins with, where that is not the author's own."""
+        return []
 
 
 def documented(text: str, uniform: ir.Uniform) -> Line:

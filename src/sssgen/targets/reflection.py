@@ -56,6 +56,7 @@ def reflect(
             {"name": output.name.format(material=program.about.name), "stages": output.stages}
             for output in target.files.get(form, ())
         ],
+        **_stage(program),
         "uniforms": uniforms,
         "uniform_block_size": emitted.block_size if blocked else None,
         "textures": textures,
@@ -77,6 +78,22 @@ def reflect(
             for name, lines in emitted.lines.items()
         },
         "warnings": [warning.message for warning in program.warnings],
+    }
+
+
+def _stage(program: Program) -> dict[str, Any]:
+    """What goes into a whole shader and comes out, beside its uniforms."""
+    if program.stage is None:
+        return {}
+    both = {"stage_inputs": program.stage.inputs, "stage_outputs": program.stage.outputs}
+    return {
+        name: [
+            {"name": slot.variable.name, "builtin": slot.variable.builtin or None}
+            | {"path": list(slot.path), "type": spell(slot.type)}
+            | {"location": slot.location if slot.location >= 0 else None}
+            for slot in slots
+        ]
+        for name, slots in both.items()
     }
 
 

@@ -8,12 +8,18 @@ from __future__ import annotations
 from ..ir import nodes as ir
 from ..ir.types import VOID, Array, Sampler, Struct, Type
 from ..passes.blocks import block_type
+from .descriptor import Target
 from .layout import Member
 from .printer import PRIMARY, UNARY, Line, Printer, documented, wrap
+from .wgsl_entry import print_entry
 
 
 class WgslPrinter(Printer):
     """Declarations and parameters are WGSL's own; expressions differ in conversions and selects."""
+
+    def __init__(self, target: Target, module: ir.Module) -> None:
+        super().__init__(target, module)
+        self.uniforms = frozenset(uniform.name for uniform in module.uniforms)
 
     def type(self, type_: Type) -> str:
         if isinstance(type_, Array):
@@ -34,9 +40,8 @@ class WgslPrinter(Printer):
         return super().bound(expr)
 
     def global_value(self, value: ir.Global) -> str:
-        if isinstance(value.type, Sampler) or not any(u.name == value.name for u in self.module.uniforms):
-            return value.name
-        return f"material.{value.name}"
+        in_block = value.name in self.uniforms and not isinstance(value.type, Sampler)
+        return f"material.{value.name}" if in_block else value.name
 
     def select(self, select: ir.Select) -> tuple[str, int]:
         return f"select({self.arguments((select.no, select.yes, select.condition))})", PRIMARY
@@ -82,6 +87,15 @@ class WgslPrinter(Printer):
     def print_constant(self, constant: ir.Constant) -> list[Line]:
         declared = self.variable(constant.type, constant.name)
         return wrap(f"const {declared} = {self.expr(constant.value)};", constant.span)
+
+    def print_variable(self, variable: ir.Variable) -> list[Line]:
+        declared = f"var<private> {self.variable(variable.type, variable.name)}"
+        value = f" = {self.expr(variable.value)}" if variable.value is not None else ""
+        return self.with_comments(variable, wrap(f"{declared}{value};", variable.span))
+
+    def print_entry(self, name: str) -> list[Line]:
+        assert self.stage is not None
+        return print_entry(self, self.stage, name, f"material.{self.stage.resolution}")
 
     def print_uniforms(self, members: list[Member]) -> list[Line]:
         """The uniform struct; WGSL's own alignment rules give std140's offsets."""

@@ -1,0 +1,81 @@
+"""The function that a stage begins with in languages where inputs and outputs are parameters and results.
+
+It copies what it is given to the module's variables, calls the author's main function, and gives back what that
+left in them. `wgsl_entry` and `hlsl_entry` say it in their languages; here is what they share.
+
+gl_FragCoord counts y from the bottom in GLSL and from the top in WebGPU and D3D, where its w is that of the clip
+space in D3D. gl_Position.z goes from -w to w in GLSL, from 0 to w in the others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from ..ir import nodes as ir
+from ..ir.types import INT, UINT, Struct, Type
+from ..passes.scopes import fresh
+from ..passes.stage import Slot, Stage
+
+
+class Given(NamedTuple):
+    """A parameter of the entry: its name, and the slot that it fills."""
+
+    name: str
+    slot: Slot
+
+
+def names_of(module: ir.Module) -> set[str]:
+    """The names that the module declares."""
+    declared = (module.constants, module.uniforms, module.variables, module.functions)
+    structs = {struct.type.name for struct in module.structs if isinstance(struct.type, Struct)}
+    return structs | {one.name for group in declared for one in group}
+
+
+def parameters(stage: Stage, taken: set[str]) -> list[Given]:
+    """A parameter for each input."""
+    found = []
+    for slot in stage.inputs:
+        name = fresh("_".join([slot.variable.name, "in", *map(str, slot.path)]), taken)
+        taken.add(name)
+        found.append(Given(name, slot))
+    return found
+
+
+def place_text(slot: Slot) -> str:
+    """A slot as an expression."""
+    return slot.variable.name + "".join([f"[{index}]" for index in slot.path])
+
+
+def member(slot: Slot) -> str:
+    """A slot's name in a struct."""
+    return "_".join([slot.variable.name, *map(str, slot.path)])
+
+
+def is_count(slot: Slot) -> bool:
+    """Whether it is a builtin that is an int in GLSL and a uint elsewhere."""
+    return slot.location < 0 and slot.type == INT
+
+
+def given_type(slot: Slot) -> Type:
+    """The type in which a slot is given."""
+    return UINT if is_count(slot) else slot.type
+
+
+def adjusted(stage: Stage, resolution: str, clip_w: bool) -> list[str]:
+    """Statements that give gl_FragCoord the meaning that it has in GLSL."""
+    lines = []
+    for slot in stage.inputs:
+        if slot.variable.builtin == "gl_FragCoord":
+            name = slot.variable.name
+            if stage.resolution:
+                lines.append(f"{name}.y = {resolution}.y - {name}.y;")
+            if clip_w:
+                lines.append(f"{name}.w = 1.0 / {name}.w;")
+    return lines
+
+
+def depth_halved(slots: Iterable[Slot]) -> list[str]:
+    """Statements that bring the depth of gl_Position from [-w, w] to [0, w]."""
+    names = [slot.variable.name for slot in slots if slot.variable.builtin == "gl_Position"]
+    return [f"{name}.z = ({name}.z + {name}.w) * 0.5;" for name in names]

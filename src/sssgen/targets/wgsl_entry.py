@@ -1,0 +1,54 @@
+"""The entry function of a stage in WGSL: attributes for locations and builtins, a struct for several outputs."""
+
+from __future__ import annotations
+
+from ..ir.nodes import NOWHERE
+from ..ir.types import INT, kind_of
+from ..passes.stage import Slot, Stage
+from .entry_points import adjusted, depth_halved, given_type, is_count, member, names_of, parameters, place_text
+from .printer import Line, Printer, wrap
+
+_INTERPOLATION = {"flat": "flat", "noperspective": "linear", "centroid": "perspective, centroid"}
+
+
+def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> list[Line]:
+    """The lines of the entry `name`; `resolution` is how that uniform is read."""
+    taken = names_of(printer.module) | {name}
+    builtins = printer.target.table["stage_builtins"]
+    given = parameters(stage, taken)
+
+    def declared(slot: Slot, name: str, varying: bool) -> str:
+        if slot.location < 0:
+            return f"@builtin({builtins[slot.variable.builtin]}) {printer.variable(given_type(slot), name)}"
+        word = "flat" if kind_of(slot.type) in ("int", "uint") else slot.variable.interpolation
+        sampled = f" @interpolate({_INTERPOLATION[word]})" if varying and word else ""
+        return f"@location({slot.location}){sampled} {printer.variable(slot.type, name)}"
+
+    params = ", ".join([declared(one.slot, one.name, stage.kind == "fragment") for one in given])
+    body = []
+    for one in given:
+        value = f"{printer.type(INT)}({one.name})" if is_count(one.slot) else one.name
+        body.append(f"{place_text(one.slot)} = {value};")
+    body += [
+        *adjusted(stage, resolution, False),
+        f"{printer.by_key[stage.function].name}();",
+        *depth_halved(stage.outputs),
+    ]
+    lines: list[Line] = []
+    result = ""
+    if len(stage.outputs) == 1:
+        (slot,) = stage.outputs
+        attribute, _, type_ = declared(slot, "result", stage.kind == "vertex").partition("result: ")
+        result = f" -> {attribute}{type_}"
+        body.append(f"return {place_text(slot)};")
+    elif stage.outputs:
+        struct = f"{stage.kind.capitalize()}Output"
+        while struct in taken:
+            struct += "_"
+        lines.append(Line(f"struct {struct} {{"))
+        lines += [Line(f"    {declared(slot, member(slot), stage.kind == 'vertex')},") for slot in stage.outputs]
+        lines += [Line("}"), Line("")]
+        result = f" -> {struct}"
+        body.append(f"return {struct}({', '.join(map(place_text, stage.outputs))});")
+    lines += [Line(f"@{stage.kind}"), *wrap(f"fn {name}({params}){result} {{", NOWHERE)]
+    return [*lines, *[line for text in body for line in wrap(f"    {text}", NOWHERE)], Line("}")]
