@@ -34,6 +34,7 @@ from .passes.ranges import analyse
 from .passes.sites import Site, report
 from .passes.stage import ENTRY, Stage, StageError, entry_of, interface, remarks, stage_kind, turned_derivatives
 from .passes.undefined import undefined_constants
+from .passes.uniform_structs import Unreadable, uniform_structs
 from .passes.variables_to_parameters import variables_to_parameters
 from .targets import descriptor
 from .targets.descriptor import Target, Words
@@ -79,6 +80,10 @@ def make_library(
     those of `guard`. With `keep` the text stays as its author wrote it, but for what the target cannot say: then
     `called` only leaves out the functions that these do not call.
     """
+    try:
+        module = uniform_structs(module)
+    except Unreadable as error:
+        raise _refused(error.message, error.span, target) from None
     kind = stage_kind(module)
     kind = kind if kind in target.files else ""
     turned = _turned(target)

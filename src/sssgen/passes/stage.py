@@ -62,7 +62,8 @@ class Stage(NamedTuple):
 
 def entry_of(module: Module) -> Function | None:
     """The function that a stage begins with."""
-    return next((one for one in module.functions if one.key == ENTRY and one.result == VOID and one.body), None)
+    found = (one for one in module.functions if one.key == ENTRY and one.result == VOID and one.body is not None)
+    return next(found, None)
 
 
 def stage_kind(module: Module) -> str:
