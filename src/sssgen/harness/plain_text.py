@@ -1,0 +1,114 @@
+"""A whole shader's text as functions and variables: what a stage is given and gives becomes variables of the file.
+
+A program around the text can then set what a function reads, call any function, `main` too, and read what it wrote.
+Only words at file scope change, so that the text may be given to a driver and to our own front end alike: `in`, `out`,
+`varying` and `attribute` go, and with them `layout(…)` and the words of interpolation; the stage's own variables
+(`gl_FragCoord`, …) get other names by macros. Uniforms stay.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+MAIN = "sssgen_written_main"
+"""What `main` is called."""
+
+STAGE = {
+    "gl_FragCoord": ("vec4", "sssgen_coordinates"),
+    "gl_FrontFacing": ("bool", "sssgen_facing"),
+    "gl_PointCoord": ("vec2", "sssgen_point"),
+    "gl_FragColor": ("vec4", "sssgen_color"),
+    "gl_FragDepth": ("float", "sssgen_depth"),
+    "gl_FragDepthEXT": ("float", "sssgen_depth_ext"),
+    "gl_Position": ("vec4", "sssgen_position"),
+    "gl_PointSize": ("float", "sssgen_point_size"),
+    "gl_VertexID": ("int", "sssgen_vertex"),
+    "gl_InstanceID": ("int", "sssgen_instance"),
+}
+"""The variables of the stages: their types, and their names here."""
+
+OLD = {
+    "texture1D": "texture", "texture2D": "texture", "texture3D": "texture", "textureCube": "texture",
+    "texture2DLod": "textureLod", "texture2DLodEXT": "textureLod", "textureCubeLod": "textureLod",
+    "textureCubeLodEXT": "textureLod", "texture3DLod": "textureLod", "texture2DGradEXT": "textureGrad",
+    "textureCubeGradEXT": "textureGrad", "texture2DProj": "textureProj", "texture2DProjLod": "textureProjLod",
+    "texture2DProjLodEXT": "textureProjLod",
+}  # fmt: skip
+"""What GLSL 1.00 and 1.20 call functions that newer drivers know by other names."""
+
+_PART = re.compile(
+    r"(?P<skip>//[^\n]*|/\*.*?\*/|^[ \t]*\#(?:\\\n|[^\n])*)|(?P<name>[A-Za-z_]\w*)|(?P<mark>[{}()])",
+    re.DOTALL | re.MULTILINE,
+)
+_VERSION = re.compile(r"^[ \t]*#[ \t]*version[ \t]+(\d+)[ \t]*(\w*)[^\n]*$", re.MULTILINE)
+_EXTENSION = re.compile(r"^[ \t]*#[ \t]*extension\b[^\n]*$", re.MULTILINE)
+_LAYOUT = re.compile(r"layout\s*\([^()]*\)(?!\s*(?:uniform|buffer)\b)")
+_DROPPED = frozenset(
+    {"in", "out", "varying", "attribute", "flat", "smooth", "noperspective", "centroid", "sample", "invariant"}
+)
+
+
+class Plain(NamedTuple):
+    """A text without a stage."""
+
+    version: str
+    """What its `#version` says, as in `300 es`; '' where it has none."""
+    text: str
+    """Without `#version`; for our front end."""
+
+    @property
+    def is_es(self) -> bool:
+        """Whether it is written for OpenGL ES 3."""
+        return self.version.endswith("es")
+
+    def for_driver(self, version: str) -> str:
+        """The text with this `#version`, and with new names for what that version knows by other names."""
+        named = [f"#define {old} {new}" for old, new in OLD.items() if _uses(self.text, old)]
+        extensions = _EXTENSION.findall(self.text)
+        text = _EXTENSION.sub("", self.text)
+        precision = _ES_PRECISION if version.endswith("es") else []
+        return "\n".join([f"#version {version}", *extensions, *precision, *named, text])
+
+
+_ES_PRECISION = [
+    f"precision highp {type_};" for type_ in ("float", "int", "sampler2D", "sampler3D", "samplerCube", "sampler2DArray")
+]
+
+
+def plain(text: str) -> Plain:
+    """The text as functions and variables."""
+    version = _VERSION.search(text)
+    body = _without_interface(_VERSION.sub("", text, count=1))
+    head = []
+    for name, (type_, new) in STAGE.items():
+        if _uses(body, name):
+            head += [f"{type_} {new};", f"#define {name} {new}"]
+    if _uses(body, "main"):
+        head.append(f"#define main {MAIN}")
+        body += "\n#undef main"
+    return Plain(f"{version[1]} {version[2]}".strip() if version else "", "\n".join([*head, body, ""]))
+
+
+def _uses(text: str, name: str) -> bool:
+    """Whether a name stands in a text that does not define it as a macro."""
+    defined = re.search(rf"^[ \t]*#[ \t]*define[ \t]+{name}\b", text, re.MULTILINE)
+    return defined is None and re.search(rf"\b{name}\b", text) is not None
+
+
+def _without_interface(text: str) -> str:
+    """Without the words that tie declarations at file scope to a stage."""
+    kept: list[str] = []
+    depth = done = 0
+    for match in _PART.finditer(text):
+        if match.start() < done:
+            continue
+        if match["mark"]:
+            depth += 1 if match["mark"] in "{(" else -1
+        elif match["name"] and depth == 0:
+            layout = _LAYOUT.match(text, match.start())
+            if layout or match["name"] in _DROPPED:
+                kept.append(text[done : match.start()])
+                done = layout.end() if layout else match.end()
+    kept.append(text[done:])
+    return "".join(kept)

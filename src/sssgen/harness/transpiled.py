@@ -1,0 +1,312 @@
+"""`sssgen transpile --verify`: a file's functions as the driver reads them, against what is made of them.
+
+Each function runs on random inputs (`written_inputs`): the author's own text in OpenGL's driver; the GLSL, HLSL and
+WGSL made of it; and the oracle, NumPy in float64, made of it too. Each deviation is from the author's text, over the
+larger of the value's size and 1. Where a value hangs on the last bits of its inputs, as at the edge of a cell or in a
+hash, the lane is left out and counted: `deviation` says how that is measured, but here inputs move by up to `STEPS`
+units in the last place, for nothing is known of the functions. Left out, too, are lanes where the author's text or the
+oracle gives infinity or NaN: there the languages promise nothing.
+
+A uniform has one value in each of a few rounds. What cannot be run is in the list, with the reason.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from functools import cache, partial
+from typing import NamedTuple
+
+import numpy as np
+
+from ..compiler import transpile
+from ..diagnostics import SssgenError, failure
+from ..ir.nodes import Function, Module, Param
+from ..ir.types import Sampler
+from ..lang.loader import load_text
+from ..passes.parameters import uniforms_to_parameters
+from ..passes.prune import only
+from ..passes.variables_to_parameters import variables_to_parameters
+from ..targets.descriptor import load
+from ..targets.numpy_textures import Texture
+from .backends import Array, Bound, Call, CompilerMissing, Place, Text, calls
+from .deviation import DRAWS, GOAL, MARGIN, errors
+from .isolated import Isolated, isolated
+from .plain_text import MAIN, Plain, plain
+from .transpiled_report import BACKENDS, Found, Report, Row
+from .written_inputs import numbers, picture
+from .written_probes import TEXTURES, Leaf, Probe, Probed, probed
+
+SAMPLES = 1000
+ROUNDS = 4
+"""How many values a uniform has."""
+STEPS = 8
+"""How far inputs move, in units in the last place."""
+SECONDS = 60.0
+"""How long one function may take on one back end."""
+VERSIONS = ("450 core", "330 core", "300 es")
+"""What the driver is offered a text as, where the text does not say or says a version before 3.30."""
+
+
+def verify(
+    text: str, shown: str, samples: int = SAMPLES, seed: int = 0, read: Callable[[str, str], Module] = load_text,
+) -> Report:  # fmt: skip
+    """Every function of a text with its includes in it (`includes.expanded`), on `samples` random inputs.
+
+    `shown` is its name in messages; `read` makes a module of a text and that name. Raises SssgenError where the front
+    end refuses the text, and where OpenGL is not here: there is nothing to compare with.
+    """
+    written = plain(text)
+    module = read(written.text, shown)
+    functions = [one for one in module.functions if one.body is not None and one.span.file == shown]
+    cases = probed(module, functions)
+    probes = "\n".join(probe.text for case in cases for probe in case.probes)
+    whole = read(written.text + probes, shown)
+    with _machines() as (machines, missing):
+        rows = [_Case(case, written, whole, machines, samples, seed).row() for case in cases]
+    return Report(rows, missing)
+
+
+@contextmanager
+def _machines() -> Iterator[tuple[dict[str, Isolated], dict[str, str]]]:
+    """The back ends, each in a process of its own, and what is missing."""
+    machines: dict[str, Isolated] = {}
+    missing: dict[str, str] = {}
+    try:
+        for name in ("numpy-f32", *BACKENDS.values()):
+            try:
+                machines[name] = isolated(name, SECONDS)
+            except CompilerMissing as reason:
+                missing[name] = str(reason)
+        if "gl" in missing:
+            raise failure("OpenGL is missing, which runs the text as it is written", missing["gl"])
+        yield machines, missing
+    finally:
+        for machine in machines.values():
+            machine.close()
+
+
+class _Inputs(NamedTuple):
+    """One round."""
+
+    values: dict[str, Array]
+    """By the probe's parameter or the uniform's name, lanes last."""
+    textures: dict[str, Texture]
+
+
+class _Emitted(NamedTuple):
+    """A text that was made, and the probes in it."""
+
+    probes: tuple[Probe, ...]
+    text: Text
+    names: Mapping[str, str]
+    """What is renamed in it."""
+
+
+class _Case:
+    """One function on all back ends."""
+
+    def __init__(
+        self, case: Probed, written: Plain, whole: Module, machines: Mapping[str, Isolated], samples: int, seed: int
+    ) -> None:
+        self.case, self.written, self.machines, self.seed = case, written, machines, seed
+        self.texts: dict[str, list[_Emitted]] = {}
+        names = {probe.name for probe in case.probes}
+        self.keys = {function.name: function.key for function in whole.functions if function.name in names}
+        self.module = only(whole, list(self.keys.values()))
+        closed = {function.name: function.params for function in uniforms_to_parameters(self.module).functions}
+        self.params: dict[str, tuple[Param, ...]] = {name: closed[name] for name in names if name in closed}
+        rounds = ROUNDS if self.uniforms() else 1
+        self.inputs = [self.draw(samples // rounds, number) for number in range(rounds)] if case.probes else []
+
+    def uniforms(self) -> dict[str, Param]:
+        """What the function reads of the text's uniforms."""
+        own = {leaf.name for probe in self.case.probes for leaf in probe.leaves}
+        return {param.name: param for params in self.params.values() for param in params if param.name not in own}
+
+    def draw(self, lanes: int, number: int) -> _Inputs:
+        seed = self.seed * ROUNDS + number
+        values, textures = {}, {}
+        leaves = [leaf for probe in self.case.probes[:1] for leaf in probe.leaves]
+        uniforms = [Leaf(name, name, param.type) for name, param in self.uniforms().items()]
+        for leaf in [*leaves, *uniforms]:
+            if isinstance(leaf.type, Sampler):
+                if leaf.type in TEXTURES:
+                    textures[leaf.name] = picture(leaf.path, leaf.type, seed)
+                continue
+            one = leaf in uniforms
+            drawn = numbers(leaf.path.removeprefix("local_"), leaf.type, 1 if one else lanes, seed)
+            values[leaf.name] = np.broadcast_to(drawn, (*drawn.shape[:-1], lanes))
+        return _Inputs(values, textures)
+
+    def row(self) -> Row:
+        function = self.case.function
+        row = Row(_title(function), function.span.line, reason=self.case.reason)
+        for name, param in self.uniforms().items():
+            if isinstance(param.type, Sampler) and param.type not in TEXTURES:
+                row = row._replace(reason=f"it reads {name}, a texture that cannot be given")
+        if row.reason:
+            return row
+        try:
+            original = self.all_rounds(self.original)
+        except SssgenError as error:
+            return row._replace(reason=f"the driver does not take it as it is written: {error.diagnostics[0].message}")
+        return self.compared(row, original)
+
+    def compared(self, row: Row, original: Mapping[str, Array]) -> Row:
+        """The row with what each text gives, against the original."""
+        given: dict[str, dict[str, Array] | str] = {}
+        for name, backend in BACKENDS.items():
+            if backend in self.machines:
+                try:
+                    given[name] = self.all_rounds(partial(self.transpiled, backend))
+                except SssgenError as error:
+                    given[name] = error.diagnostics[0].message
+        oracle = given.get("oracle")
+        finite = _finite(original)
+        if isinstance(oracle, dict):
+            finite &= _finite(oracle)
+        blur = cache(lambda: self.blur(oracle) if isinstance(oracle, dict) else {})
+        found, blurred = {}, np.zeros(len(finite), np.bool_)
+        for name, outputs in given.items():
+            if isinstance(outputs, str):
+                found[name] = Found(None, error=outputs)
+            else:
+                found[name], excused = _judged(outputs, original, finite, blur)
+                blurred |= excused
+        reason = "" if finite.any() else "every result is infinity or NaN"
+        lanes, undefined = len(finite), int((~finite).sum())
+        return row._replace(lanes=lanes, undefined=undefined, blurred=int(blurred.sum()), found=found, reason=reason)
+
+    def all_rounds(self, run: Callable[[_Inputs], list[Array]], rounds: Sequence[_Inputs] = ()) -> dict[str, Array]:
+        """Each output of all rounds (or of those given), lanes first."""
+        found = [run(inputs) for inputs in rounds or self.inputs]
+        return {
+            probe.output: np.concatenate([np.moveaxis(one[index], -1, 0) for one in found])
+            for index, probe in enumerate(self.case.probes)
+        }
+
+    def original(self, inputs: _Inputs) -> list[Array]:
+        """The author's text, in the first of the versions that the driver takes it as."""
+        number = self.written.version.split(" ")[0]
+        versions = [self.written.version] if number and (int(number) >= 330 or self.written.is_es) else VERSIONS
+        errors_: list[SssgenError] = []
+        for version in versions:
+            try:
+                return self.draw_original(version, inputs)
+            except SssgenError as error:
+                errors_.append(error)
+        raise errors_[0]
+
+    def draw_original(self, version: str, inputs: _Inputs) -> list[Array]:
+        """A draw of the author's text with the probes behind it. Its uniforms are bound by their names."""
+        probes = "\n".join(probe.text for probe in self.case.probes)
+        text = Text(f"{self.written.for_driver(version)}\n{probes}")
+        made = [
+            self.call(probe, probe.name, [leaf.name for leaf in probe.leaves], inputs) for probe in self.case.probes
+        ]
+        target = load("glsl-es-300" if version.endswith("es") else "glsl-330")
+        drawing, layout = calls.drawing(target, text, made, inputs.textures)
+        uniforms = self.uniforms()
+        bound = {name: Bound(inputs.textures[name], Place(0, 0)) for name in uniforms if name in inputs.textures}
+        values = {name: inputs.values[name][..., 0] for name in uniforms if name in inputs.values}
+        drawing = drawing._replace(textures={**drawing.textures, **bound}, values=values)
+        return calls.results(made, layout, self.machines["gl"].draw(drawing))
+
+    def transpiled(self, backend: str, inputs: _Inputs) -> list[Array]:
+        """What is made of the text for a back end."""
+        machine = self.machines[backend]
+        found: list[Array] = []
+        for probes, text, names in self.emitted(machine.target.name):
+            made = [
+                self.call(probe, names.get(probe.name, probe.name), [p.name for p in self.params[probe.name]], inputs)
+                for probe in probes
+            ]
+            found += machine.run(text, made, inputs.textures)
+        return found
+
+    def emitted(self, target: str) -> list[_Emitted]:
+        """The texts for a target, made once."""
+        if target not in self.texts:
+            probes = self.case.probes
+            alone = bool(self.module.variables) and target == "numpy"
+            self.texts[target] = [self.made(target, [one]) for one in probes] if alone else [self.made(target, probes)]
+        return self.texts[target]
+
+    def made(self, target: str, probes: Sequence[Probe]) -> _Emitted:
+        """One text with these probes. In NumPy module variables are a probe's own: it is alone in its text then."""
+        keys = [self.keys[probe.name] for probe in probes]
+        module = only(self.module, keys)
+        if target == "numpy" and module.variables:
+            module = variables_to_parameters(module, keys[0]).module
+        compiled = transpile(module, target, "verified", "none", keys, keep=True)
+        text = "\n".join([text for name, text in compiled.files.items() if not name.endswith(".json")])
+        return _Emitted(tuple(probes), Text(text), compiled.reflection["renames"])
+
+    def call(self, probe: Probe, name: str, params: Sequence[str], inputs: _Inputs) -> Call:
+        types = {param.name: param.type for param in self.params[probe.name]}
+        args = tuple([inputs.values.get(param, param) for param in params])
+        return Call(name, tuple([types[param] for param in params]), probe.result, args)
+
+    def blur(self, oracle: Mapping[str, Array]) -> dict[str, Array]:
+        """How far rounding may take each lane of each output from the oracle, (lanes,)."""
+        rounded = self.all_rounds(partial(self.transpiled, "numpy-f32"))
+        found = {name: errors(value, oracle[name]) for name, value in rounded.items()}
+        rng = np.random.default_rng(0)
+        for _ in range(DRAWS):
+            near = [_near(inputs, rng) for inputs in self.inputs]
+            right = self.all_rounds(partial(self.transpiled, "numpy"), near)
+            got = self.all_rounds(partial(self.transpiled, "numpy-f32"), near)
+            for name, value in right.items():
+                apart = np.maximum(errors(value, oracle[name]), errors(got[name], value))
+                found[name] = np.maximum(found[name], apart)
+        return found
+
+
+def _near(inputs: _Inputs, rng: np.random.Generator) -> _Inputs:
+    return inputs._replace(values={name: _moved(value, rng) for name, value in inputs.values.items()})
+
+
+def _moved(value: Array, rng: np.random.Generator) -> Array:
+    """Numbers moved up or down by up to `STEPS` units in float32's last place; whole numbers stay, and 0."""
+    if value.dtype.kind != "f":
+        return value
+    moved: Array = value + rng.integers(-STEPS, STEPS + 1, value.shape) * np.spacing(np.abs(value).astype(np.float32))
+    return moved
+
+
+def _judged(
+    got: Mapping[str, Array], wanted: Mapping[str, Array], counted: Array, blur: Callable[[], Mapping[str, Array]]
+) -> tuple[Found, Array]:
+    """The largest deviation of the lanes that count, and which lanes the blur excuses, (lanes,)."""
+    each = {name: np.where(counted, errors(got[name], right), 0.0) for name, right in wanted.items()}
+    excused = {name: np.zeros(len(counted), np.bool_) for name in wanted}
+    if any((apart > GOAL).any() for apart in each.values()):
+        limit = blur()
+        excused = {
+            name: (apart > GOAL) & (apart <= MARGIN * limit[name]) if name in limit else excused[name]
+            for name, apart in each.items()
+        }
+    found = Found(0.0)
+    for name, apart in each.items():
+        left = np.where(excused[name], 0.0, apart)
+        lane = int(np.argmax(left))
+        if left[lane] > (found.deviation or 0.0):
+            at = f"{name}[{lane}]: {_shown(got[name][lane])}, the author's text gives {_shown(wanted[name][lane])}"
+            found = Found(float(left[lane]), at)
+    return found, np.any([*excused.values()], axis=0)
+
+
+def _shown(value: Array) -> str:
+    return str(np.asarray(value).tolist())
+
+
+def _finite(outputs: Mapping[str, Array]) -> Array:
+    """The lanes in which every output is finite."""
+    each = [np.isfinite(value).reshape(len(value), -1).all(axis=1) for value in outputs.values()]
+    found: Array = np.all(each, axis=0)
+    return found
+
+
+def _title(function: Function) -> str:
+    return function.key.replace(MAIN, "main")
