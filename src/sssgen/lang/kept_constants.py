@@ -59,9 +59,9 @@ class KeptConstants:
             else:
                 del self.words[name], self.begins[name]
 
-    def in_use(self, used: set[str]) -> list[str]:
-        """The constants that are used, and those that their values name, in the order of their definitions."""
-        found, looked_at = set[str](), [name for name in used if name in self.words]
+    def in_use(self, tokens: Sequence[Token]) -> list[str]:
+        """The constants that words name, and those that their values name, in the order of their definitions."""
+        found, looked_at = set[str](), list({token.text for token in tokens} & self.words.keys())
         while looked_at:
             name = looked_at.pop()
             if name not in found:

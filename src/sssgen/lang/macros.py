@@ -17,7 +17,7 @@ from .tokens import Token
 MAX_EXPANSION = 100_000
 """How many words one use of a macro may become. Tables in macros have some thousands."""
 
-MAX_TOKENS = 2_000_000
+MAX_TOKENS = 1_000_000
 """How many words a text may have when its macros are expanded."""
 
 MAX_NESTED = 100
@@ -35,6 +35,8 @@ class Macro(NamedTuple):
     name: str
     params: tuple[str, ...] | None
     body: tuple[Token, ...]
+    pastes: bool = False
+    """Whether there is a `##` in the body."""
 
     def same_as(self, other: Macro) -> bool:
         """Whether both say the same, wherever they stand."""
@@ -66,7 +68,7 @@ def definition(words: Sequence[Token], place: Span) -> Macro:
     for edge in (*body[:1], *body[-1:]):
         if edge.type == "PASTE":
             raise Fault(edge.span, "'##' stands between two words")
-    return Macro(name.text, params, tuple(body))
+    return Macro(name.text, params, tuple(body), any(token.type == "PASTE" for token in body))
 
 
 def _params(words: Sequence[Token]) -> tuple[str, ...]:
@@ -90,13 +92,15 @@ class Expander:
     """The macros at one point of a text, and what they make of words.
 
     `join` makes the word that `##` puts together, and `report` notes errors. `kept` are names of macros that are not
-    expanded in code; which of them were met is in `used`.
+    expanded in code; which of them were met is in `used`, and those that `##` joined when
+    they should have been expanded in `joined`.
     """
 
     def __init__(self, join: Callable[[str, Span], Token], report: Callable[[Span, str, str], None]) -> None:
         self.macros: dict[str, Macro] = {}
         self.kept: set[str] = set()
         self.used: set[str] = set()
+        self.joined: set[str] = set()
         self.join = join
         self.report = report
         self.made = 0
@@ -166,7 +170,7 @@ class Expander:
                 continue
             if name in self.kept and not condition:
                 self.used.add(name)
-                out.append(word)
+                out.append((token, hidden | {name}))  # as if it were expanded
                 continue
             arguments: list[list[_Word]] = []
             if macro.params is not None:
@@ -232,6 +236,8 @@ class Expander:
         """The body with its arguments, each expanded by itself, but not beside `##`."""
         if macro is _LINE:
             return [(Token("INT", str(place.line), place), hidden)]
+        if not arguments and not macro.pastes:
+            return [(tuple.__new__(Token, (token[0], token[1], place)), hidden) for token in macro.body]
         raw = dict(zip(macro.params or (), arguments, strict=True))
         expanded: dict[str, list[_Word]] = {}
         body, made = macro.body, list[_Word]()
@@ -254,6 +260,7 @@ class Expander:
                 start = len(made)
             elif words and len(made) > start:
                 (left, one), (right, other) = made.pop(), words[0]
+                self.joined |= self.kept & ({left.text} & one | {right.text} & other)
                 made.append((self.join(left.text + right.text, place), (one & other) | hidden))
                 words = words[1:]
             made += words

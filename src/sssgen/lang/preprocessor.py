@@ -75,8 +75,8 @@ def preprocess(text: str, file: str, find: Find, defines: Mapping[str, str] | No
         run.finish()
         if run.constants is None:
             break
-        names = run.constants.in_use(run.expander.used)
-        conflicts = run.constants.conflicts(names, run.tokens) if names else set()
+        names = run.constants.in_use(run.tokens) if run.constants.words else []
+        conflicts = run.expander.joined | run.constants.conflicts(names, run.tokens)
         if not conflicts:
             return run.result(run.constants.declared(names, run.tokens), names)
         barred |= conflicts  # text wherever they stand; once more, as what is made of them is text then, too

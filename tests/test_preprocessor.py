@@ -1,0 +1,574 @@
+"""The preprocessor: C's macros and conditions, places through macros and includes, what is kept, what is refused."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sssgen.diagnostics import SssgenError, failure
+from sssgen.ir.spans import Span
+from sssgen.lang.lexer import scan
+from sssgen.lang.preprocessor import MAX_CONDITIONALS, MAX_INCLUDED, Preprocessed, preprocess
+
+
+def run(text: str, files: Mapping[str, str] | None = None, **defines: str) -> Preprocessed:
+    def find(name: str, place: Span, angled: bool) -> tuple[str, str]:
+        shown = f"<{name}>" if angled else name
+        if shown not in (files or {}):
+            raise failure(f"no {shown} at {place.line}:{place.column}-{place.end_column}")
+        return shown, (files or {})[shown]
+
+    return preprocess(text, "main", find, defines)
+
+
+def words(text: str, files: Mapping[str, str] | None = None, **defines: str) -> str:
+    return " ".join(token.text for token in run(text, files, **defines).tokens)
+
+
+def spaced(text: str) -> str:
+    """A text's words as `words` gives them."""
+    return " ".join(token.text for token in scan(text, "")[0])
+
+
+def faults(text: str, files: Mapping[str, str] | None = None, **defines: str) -> list[tuple[str, str, int, int]]:
+    """Of each error its message, its file, its line and its column. None takes more than a few seconds."""
+    began = time.process_time()
+    with pytest.raises(SssgenError) as caught:
+        run(text, files, **defines)
+    assert time.process_time() - began < 5
+    return [(one.message, *one.span[:3]) for one in caught.value.diagnostics]
+
+
+# Macros
+
+RESCANNED = """
+#define x y 3
+#define f(a) f(x * (a))
+#undef x
+#define x int(2)
+#define g f
+#define z z[0]
+#define h g(~
+#define m(a) a(w)
+#define w 0,1
+#define t(a) a
+#define p() int
+#define q(x) x
+#define r(x,y) x ## y
+"""
+"""C11, section 6.10.3.5, example 3, but for what GLSL lacks; x is no constant, as it stands behind itself twice."""
+
+
+@pytest.mark.parametrize(
+    ("use", "made"),
+    [
+        ("f(y+1) + f(f(z)) % t(t(g)(0) + t)(1);", "f(X * (y+1)) + f(X * (f(X * (z[0])))) % f(X * (0)) + t(1);"),
+        ("g(x+(3,4)-w) | h 5) & m\n(f)^m(m);", "f(X * (X+(3,4)-0,1)) | f(X * ( ~ 5)) & f(X * (0,1))^m(0,1);"),
+        ("p() i[q()] = { q(1), r(2,3), r(4,), r(,5), r(,) };", "int i[] = { 1, 23, 4, 5, };"),
+    ],
+)
+def test_the_rescan_examples_of_the_standard(use: str, made: str) -> None:
+    text = "void before() {" + RESCANNED + use
+    assert words(text) == spaced("void before() {" + made.replace("X", "int(2)"))
+
+
+def test_the_paste_examples_of_the_standard() -> None:
+    """C11, section 6.10.3.5, examples 5 and 7 in GLSL's words."""
+    text = "#define t(x,y,z) x ## y ## z\nj = t(1,2,3), t(,4,5), t(6,,7), t(8,9,), t(10,,), t(,11,), t(,,12), t(,,);"
+    assert words(text) == spaced("j = 123, 45, 67, 89, 10, 11, 12, ;")
+
+
+@pytest.mark.parametrize(
+    ("text", "made"),
+    [
+        ("#define f(x) f(x+1)\nf(f(2))", "f(f(2+1)+1)"),
+        ("#define a b\n#define b a\na b", "a b"),
+        ("#define a b + c\n#define b a + d\n#define c b\na;", "a + d + a + d;"),
+        ("#define f(x) x\n#define g f\ng(1) g f (2) f", "1 g 2 f".replace("g", "f")),
+        ("#define f(x) x*f\nf(2)(9)", "2*f(9)"),
+        ("#define f(a) a*g\n#define g(a) f(a)\nf(2)(9)", "2*9*g"),
+        ("#define f(x, y) x + y\nf((1, 2),\n  vec2(3, 4)[0])", "(1, 2) + vec2(3, 4)[0]"),
+        ("#define f(x) [x]\nf() f( ) f(,", None),
+        ("#define f() 1\nf() f( )", "1 1"),
+        ("#define e\n#define f(x) x\ne f e (1) e", "f (1)"),
+        ("#define f (x) y\nf", "(x) y"),
+        (
+            "#define cat(a, b) a ## b\n#define xcat(a, b) cat(a, b)\n#define one 1\n{cat(one, 2) xcat(one, 2)}",
+            "{one2 12}",
+        ),
+        ("#define v(n) in_ ## n ## _attr.x\nv(normal)", "in_normal_attr.x"),
+        ("#define op(a) a ## =\nx op(+) y op(<<) z", "x += y <<= z"),
+        ("#define texture2D texture\n#define lowp\nlowp vec4 c = texture2D(a, b);", "vec4 c = texture(a, b);"),
+        ("#define f(x) \\\n  x + \\\n  x\nf(1)", "1 + 1"),
+        ("#define f(x) x /* of\n x */ + 1 // end\nf(2)", "2 + 1"),
+        ("#define A 1 +\n#undef A\n#undef A\nA", "A"),
+        ("#define A 1 +\n#define A 2 +\nA", "2 +"),
+        ("#define L __LINE__ +\nL\n__LINE__ L __FILE__", "2 + 3 3 + 0"),
+        ("#define f(x) x +\n#ifdef no\na\n#else\nf\n#endif\n(3)", "3 +"),
+        ("#define f(x) x +\n#ifdef no\na\n#else\nf\n#endif\n[3]", "f[3]"),
+        ("#define f(x) x +\nf", "f"),
+        ("#define f(x) x +\nf\n#undef f\n(3)", "f(3)"),
+    ],
+)
+def test_macros(text: str, made: str | None) -> None:
+    if made is None:
+        assert faults(text)[0][0] == "the arguments of 'f' are not closed"
+    else:
+        assert words(text) == spaced(made)
+
+
+def test_places_go_through_macros() -> None:
+    text = "#define TWICE(x) (x + x)\n#define OUTER(x) TWICE(x * HERE) + HERE\n#define HERE here.x\n  OUTER(a  +\n b);"
+    place = {token.text: token.span[1:] for token in run(text).tokens}
+    use = (4, 3, 4, 8)
+    assert place == {
+        "(": use, "+": use, "*": use, ")": use, "here": use, ".": use, "x": use,
+        "a": (4, 9, 4, 10), "b": (5, 2, 5, 3), ";": (5, 4, 5, 5),
+    }  # fmt: skip
+    tokens = run(text).tokens
+    assert [token.span[1:] for token in tokens if token.text == "a"] == [(4, 9, 4, 10)] * 2
+    assert [token.span[1:] for token in tokens if token.text == "+"] == [(4, 12, 4, 13), use, (4, 12, 4, 13), use]
+    pasted = run("#define cat(a, b) a ## b\n cat(x, y) z").tokens
+    assert [(token.text, token.span[1:]) for token in pasted] == [("xy", (2, 2, 2, 5)), ("z", (2, 12, 2, 13))]
+
+
+def test_places_go_through_includes() -> None:
+    files = {"a": "float a;\n  #include <b>\n  float c;", "<b>": "#define B float b;\n\n B"}
+    tokens = run('/* 1\n2 */ #include "a"\nfloat d;', files).tokens
+    assert [(token.text, *token.span[:3]) for token in tokens if token.type in ("NAME", "TYPE")] == [
+        ("float", "a", 1, 1), ("a", "a", 1, 7), ("float", "<b>", 3, 2), ("b", "<b>", 3, 2), ("float", "a", 3, 3),
+        ("c", "a", 3, 9), ("float", "main", 3, 1), ("d", "main", 3, 7),
+    ]  # fmt: skip
+
+
+# Conditions
+
+VALUES = {
+    "1": 1, "0": 0, "0x10": 16, "010": 8, "10u": 10, "X": 0, "float": 0, "true": 0, "ONE": 1, "TWICE(3)": 6,
+    "1 + 2 * 3": 7, "(1 + 2) * 3": 9, "7 - 2 - 1": 4, "-7 / 2": -3, "-7 % 2": -1, "7 / -2": -3, "7 % -2": 1,
+    "1 << 3 + 1": 16, "-16 >> 2": -4, "1 << 63 < 0": 1, "0x7fffffffffffffff + 1 < 0": 1, "~0": -1, "- - 3": 3,
+    "!0 + !5": 1, "!!7": 1, "~-1": 0, "--3": 3, "1 < 2 == 1": 1, "3 > 2 > 1": 0, "2 >= 2": 1, "2 <= 1": 0, "1 != 2": 1,
+    "6 & 3": 2, "6 | 3": 7, "6 ^ 3": 5, "1 | 2 ^ 3 & 4": 3, "1 || 0 && 0": 1, "5 && 6": 1, "0 || 7": 1,
+    "0 && 1 / 0": 0, "1 || 1 % 0": 1, "1 ? 2 : 1 / 0": 2, "0 ? 1 : 0 ? 2 : 3": 3, "defined ONE": 1, "defined(X)": 0,
+    "defined ( ONE ) && !defined X": 1, "HAS": 1, "defined(TWICE)": 1, "defined __LINE__": 1, "__VERSION__": 450,
+    "defined GL_ES": 0, "GL_core_profile": 1, "__LINE__": 5, "X ? 1 : 2": 2, "1 /* a */ + // b": None,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("expression", VALUES)
+def test_the_arithmetic_of_conditions(expression: str) -> None:
+    value = VALUES[expression]
+    head = "\n#define ONE 1\n#define TWICE(x) (x + x)\n#define HAS defined(ONE)\n"
+    if value is None:
+        assert faults(f"{head}#if {expression}\n#endif")[0][0] == "the expression ends too early"
+        return
+    assert words(f"{head}#if ({expression}) == ({value})\nyes\n#else\nno\n#endif") == "yes"
+    assert words(f"{head}#if {expression}\nyes\n#else\nno\n#endif") == ("yes" if value else "no")
+
+
+@pytest.mark.parametrize(
+    ("expression", "message", "column"),
+    [
+        ("1 +", "the expression ends too early", 1),
+        ("(1", "a ')' is missing", 1),
+        ("1 2", "'2' is not expected here", 7),
+        ("f(1)", "'(' is not expected here", 6),
+        ("1 / 0", "a division by 0", 7),
+        ("1 << 64", "a shift by 64: 0 to 63 are possible", 7),
+        ("1 << -1", "a shift by -1: 0 to 63 are possible", 7),
+        ("1.0 > 0", "'1.0' is not a whole number", 5),
+        ("08", "'08' is no number", 5),
+        ("defined 3", "'defined' wants the name of a macro", 13),
+        ("1 = 1", "'=' is not expected here", 7),
+        ("1 ^^ 1", "'^^' is not expected here", 7),
+        ("* 3", "'*' is not expected here", 5),
+        ("", "a condition is missing here", 1),
+    ],
+)
+def test_faulty_conditions(expression: str, message: str, column: int) -> None:
+    assert faults(f"#if {expression}\n#endif") == [(message, "main", 1, column)]
+
+
+def test_one_branch_is_taken_and_the_others_are_not_looked_at() -> None:
+    text = "#if {0}\na\n#elif {1}\nb\n#elif {2}\nc\n#else\nd\n#endif"
+    assert [words(text.format(*values)) for values in ((1, "1/0", "@"), (0, 1, "1/0"), (0, 0, 1), (0, 0, 0))] == [
+        *"abcd"
+    ]
+    off = (
+        '#if 0\n\' @ 1f "\n#foo\n#error no\n#include "x"\n#if 1/0\n#elif 1\ne\n#else\nf\n#endif\n#define A 1\n#endif\nA'
+    )
+    assert words(off) == "A"
+    assert words("#ifndef A\n#define A\na\n#endif\n#ifdef A\nb\n#endif A") == "a b"
+    assert words("#if 0\n/*\n#endif\n*/ // \\\n#endif\na\n#endif\nb") == "b"
+
+
+def test_directives_in_comments_and_within_lines_are_none() -> None:
+    assert words("/*\n#if 0\n*/ a // \\\n#error no\n b") == "a b"
+    assert words("/* x */ # /* y */ define /* z */ A /* w\n*/ b +\n  # \nA") == "b +"
+    assert faults("a # define B")[0] == ("'#' has no meaning here", "main", 1, 3)
+    assert faults("/*\n*/ a #if 1")[0] == ("'#' has no meaning here", "main", 2, 6)
+
+
+def test_conditions_close() -> None:
+    assert faults("#if 1\n#ifdef A\n#endif") == [("this condition is not closed", "main", 1, 1)]
+    assert faults("a\n #endif") == [("there is no #if before this #endif", "main", 2, 2)]
+    assert faults("#else\n#elif 1") == [
+        ("there is no #if before this #else", "main", 1, 1),
+        ("there is no #if before this #elif", "main", 2, 1),
+    ]
+    assert faults("#if 1\n#else\n#else\n#elif 1\n#endif") == [
+        ("#else behind #else", "main", 3, 1),
+        ("#elif behind #else", "main", 4, 1),
+    ]
+    assert faults('#include "a"\n#endif', {"a": "\n#if 1\n"}) == [
+        ("this condition is not closed", "a", 2, 1),
+        ("there is no #if before this #endif", "main", 2, 1),
+    ] or faults('#include "a"\n#endif', {"a": "\n#if 1\n"}) == [
+        ("there is no #if before this #endif", "main", 2, 1),
+        ("this condition is not closed", "a", 2, 1),
+    ]
+
+
+# Other directives
+
+
+def test_versions() -> None:
+    for version, profile, holds in [
+        ("", "", "GL_core_profile && __VERSION__ == 450 && !defined GL_ES"),
+        ("100", "es", "GL_ES && __VERSION__ == 100 && !defined GL_core_profile && GL_FRAGMENT_PRECISION_HIGH"),
+        ("300 es", "es", "GL_ES && GL_es_profile && __VERSION__ == 300"),
+        ("120", "", "!defined GL_core_profile && !defined GL_ES"),
+        ("330 core", "core", "GL_core_profile && !defined GL_compatibility_profile"),
+        ("460 compatibility", "compatibility", "GL_compatibility_profile && !defined GL_core_profile"),
+    ]:
+        head = f"# version {version} // one\n" if version else ""
+        made = run(f"{head}#if {holds}\nyes\n#endif")
+        assert [token.text for token in made.tokens] == ["yes"], version
+        assert (made.version, made.profile) == (int(version.split()[0]) if version else 0, profile)
+    assert faults("#version 300 fs") == [("'300 fs' is no version", "main", 1, 1)]
+    assert faults("#version 330\n#version 300 es") == [("the version is 330 already", "main", 2, 1)]
+
+
+def test_extensions_pragmas_and_lines() -> None:
+    made = run("#extension GL_A:enable\n#extension  all : /* */ disable\n#pragma optimize(on) // x\n#line 7 2\n#\na")
+    assert (made.extensions, made.pragmas) == (["GL_A:enable", "all : disable"], ["optimize(on)"])
+    assert [token.span[1:3] for token in made.tokens] == [(6, 1)]
+
+
+def test_errors_of_people_and_of_directives() -> None:
+    assert faults(
+        "#error no // really\n @\n#foo\n#elseif\n#define\n#define f(a\n#define g(a,a) a\n#define 1\n#undef A B"
+    ) == [
+        ("#error no", "main", 1, 1),
+        ("'@' has no meaning here", "main", 2, 2),
+        ("there is no directive '#foo'", "main", 3, 1),
+        ("there is no directive '#elseif'", "main", 4, 1),
+        ("#define wants a name", "main", 5, 1),
+        ("these parameters are not closed", "main", 6, 10),
+        ("'a' is not expected here", "main", 7, 13),
+        ("#define wants a name", "main", 8, 9),
+        ("'B' is not expected here", "main", 9, 10),
+    ]
+    assert faults("#define f(x) x\n#define g(x, y) x\nf(1, 2) g(1) f(3\n") == [
+        ("'f' takes 1 argument, 2 given", "main", 3, 1),
+        ("'g' takes 2 arguments, 1 given", "main", 3, 9),
+        ("the arguments of 'f' are not closed", "main", 3, 14),
+    ]
+    assert faults("#define A ## b\n#define B b ##\n#define C(x) x ## ;\nC(1)") == [
+        ("'##' stands between two words", "main", 1, 11),
+        ("'##' stands between two words", "main", 2, 13),
+        ("'##' makes '1;' here, which is no word", "main", 4, 1),
+    ]
+    assert faults("#define A @\n#endif /* x") == [
+        ("'@' has no meaning here", "main", 1, 11),
+        ("there is no #if before this #endif", "main", 2, 1),
+        ("this comment is not closed", "main", 2, 8),
+    ]
+    assert faults('#define A "x\n#define B /* y') == [
+        ("this text is not closed on its line", "main", 1, 11),
+        ("this comment is not closed", "main", 2, 11),
+    ]
+
+
+def test_the_line_of_an_error_is_shown() -> None:
+    with pytest.raises(SssgenError) as caught:
+        run('#include "a"', {"a": "\n\n  b @"})
+    assert caught.value.diagnostics[0].source_line == "  b @"
+
+
+def test_definitions_from_outside() -> None:
+    assert words("#if A == 3\nA B C\n#endif", A="3", B="", C="x +") == "3 x +"
+    assert run("float a = A;", A="3").macros == []
+    assert words("A", A="__VERSION__ +") == "450 +"
+    assert "@" in faults("a", A="@")[0][0]
+
+
+# Includes
+
+
+def test_includes() -> None:
+    files = {"a": "a1\n#define A a2 +\n", "<a>": "angled", "once": "#pragma once\no", "twice": "t"}
+    assert words('#include "a"\n#include <a> // x\nA', files) == "a1 angled a2 +"
+    assert words('#include "once"\n#include "once"\n#include "twice"\n#include "twice"', files) == "o t t"
+    assert run('#include "a"', files).texts == {"main": '#include "a"', "a": files["a"]}
+    missing = faults('#include "x"\n  #include <y> z\n#include\n#include A\n#include "z" // \n@')
+    assert missing == [
+        ("no x at 1:11-12", "", 0, 0),
+        ("no z at 5:11-12", "", 0, 0),
+        ('#include wants a file: "name" or <name>', "main", 2, 3),
+        ('#include wants a file: "name" or <name>', "main", 3, 1),
+        ('#include wants a file: "name" or <name>', "main", 4, 1),
+        ("'@' has no meaning here", "main", 6, 1),
+    ]
+
+
+def test_a_guarded_circle_is_none() -> None:
+    guarded = '#ifndef A\n#define A\n#include "b"\na\n#endif'
+    assert words('#include "a"\n#include "b"', {"a": guarded, "b": '#include "a"\nb'}) == "b a b"
+
+
+def test_circles_and_depths_are_named() -> None:
+    circle = {"a": '#include "b"', "b": '\n #include "c"', "c": '#include "a"'}
+    ((message, _, _, _),) = faults('#include "a"', circle)
+    assert message in ("'a' includes itself: a → b → c → a", "'b' includes itself: b → c → a → b",
+                       "'c' includes itself: c → a → b → c")  # fmt: skip
+    chain = {f"f{n}": f'#include "f{n + 1}"' for n in range(MAX_INCLUDED)} | {f"f{MAX_INCLUDED}": "a"}
+    assert words('#include "f1"', chain) == "a"
+    assert faults('#include "f0"', chain)[0][0] == f"files include files more than {MAX_INCLUDED} deep"
+
+
+# Constants
+
+KEPT = {
+    "3": "const auto A = 3;",
+    "-1.5": "const auto A = -1.5;",
+    "true": "const auto A = true;",
+    "(1 + 2)": "const auto A = (1 + 2);",
+    "((1) * (2))": "const auto A = ((1) * (2));",
+    "vec3(1.0, 2, -3)": "const auto A = vec3(1.0, 2, -3);",
+    "mat2(vec2(1), vec2(2))": "const auto A = mat2(vec2(1), vec2(2));",
+    "(B > 1 ? float(B) : 0.5)": "const auto B = 2; const auto A = (B > 1 ? float(B) : 0.5);",
+    "B": "const auto B = 2; const auto A = B;",
+}
+
+
+@pytest.mark.parametrize("value", KEPT)
+def test_names_of_numbers_are_kept(value: str) -> None:
+    made = run(f"#define B 2\n#define UNUSED 7\n#define A {value} // its name\nfloat x = A;")
+    assert " ".join(token.text for token in made.tokens) == spaced(KEPT[value] + " float x = A;")
+    assert made.macros == (["B", "A"] if "B" in value else ["A"])
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        "1 + 2",
+        "- x",
+        "x",
+        "(x)",
+        "(1, 2)",
+        "f(1)",
+        "vec2(sin(1.0))",
+        "(1) + (2)",
+        "(1)(2)",
+        "vec2",
+        "(vec2)",
+        "",
+        ")(",
+        "(",
+        "(1",
+        "1;",
+        "sampler2D(1)",
+        "+",
+        "C",
+        "v.x",
+        "(a = 1)",
+        "vec2(1).x",
+        '"x"',
+        "UNDEFINED",
+    ],
+)
+def test_what_is_no_constant_is_text(value: str) -> None:
+    made = run(f"#define C 1 +\n#define A {value}\nq = A;")
+    assert made.macros == []
+    assert " ".join(token.text for token in made.tokens) == spaced(f"q = {value.replace('C', '1 +')};")
+
+
+def test_places_of_constants() -> None:
+    made = run("float a;\n  #define HIGH (2.0 * 1.5)\nfloat b = HIGH;\nfloat c = HIGH;")
+    head = (2, 11, 2, 15)
+    assert [(token.type, token.text, token.span[1:]) for token in made.tokens[3:13]] == [
+        ("CONST", "const", head), ("TYPE", "auto", head), ("NAME", "HIGH", head), ("ASSIGN", "=", head),
+        ("LPAR", "(", (2, 16, 2, 17)), ("FLOAT", "2.0", (2, 17, 2, 20)), ("OPERATOR", "*", (2, 21, 2, 22)),
+        ("FLOAT", "1.5", (2, 23, 2, 26)), ("RPAR", ")", (2, 26, 2, 27)), ("SEMICOLON", ";", (2, 27, 2, 27)),
+    ]  # fmt: skip
+    assert [(t.type, t.span[1:3]) for t in made.tokens[13:] if t.text == "HIGH"] == [
+        ("NAME", (3, 11)),
+        ("NAME", (4, 11)),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "made"),
+    [
+        ("#define A 1\n#if A\nb;\n#endif", "b;"),
+        ("#define A 1\n#define A 1\na = A;\n#define A 1\nb = A;", "const auto A = 1; a = A; b = A;"),
+        ("#define A 1\n#undef A\n#define A 2\na = A;", "const auto A = 2; a = A;"),
+        ("#define A 1\na = A;\n#undef A\n#define A 2\nb = A;", "const auto A = 1; a = A; b = 2;"),
+        ("#define A 1\na = A;\n#define A 2\nb = A;", "const auto A = 1; a = A; b = 2;"),
+        ("#define A 1\na = A;\n#undef A\nint A;", "a = 1; int A;"),
+        ("int A;\n#define A 1\na = A;", "int A; a = 1;"),
+        ("#define A 1\n#define B (A)\na = B;\n#undef A\n#define A 2\nb = B;",
+         "const auto A = 1; const auto B = (A); a = B; b = (2);"),
+        ("#define B (A)\n#define A 1\na = B;", "const auto A = 1; a = (A);"),
+        ("#define ARGS (1.0)\na = f ARGS;", "a = f (1.0);"),
+        ("#define A 1\n#define B (A)\na = f B; b = A;", "const auto A = 1; a = f (A); b = A;"),
+        ("void f() {\n#define A 1\na = A;\n}", "void f() { a = 1; }"),
+        ("float f(\n#define A 1\nfloat a[A]);", "float f(float a[1]);"),
+        ("float a =\n#define A 1\nA;", "float a = 1;"),
+        ("struct S { int a; };\n#define A 1\nfloat a[A];", "struct S { int a; }; const auto A = 1; float a[A];"),
+        ("#define A 1\n#define cat(x) v ## x\n#define two(x) x + x\na = cat(A) + two(A);",
+         "const auto A = 1; a = vA + A + A;"),
+        ("#define float 1\na = float;", "a = 1;"),
+        ("#define A 1\n#define f(x) 2\na = f(A);", "a = 2;"),
+    ],
+)  # fmt: skip
+def test_constants_stand_only_where_they_may(text: str, made: str) -> None:
+    assert words(text) == spaced(made)
+
+
+def test_constants_of_includes() -> None:
+    files = {"a": "#ifndef PI\n#define PI 3.14\n#endif\nfloat a = PI;\n"}
+    assert words('#include "a"\n#include "a"\nb = PI;', files) == spaced(
+        "const auto PI = 3.14; float a = PI; float a = PI; b = PI;"
+    )
+    assert words('#define PI 3.0\n#include "a"', files) == spaced("const auto PI = 3.0; float a = PI;")
+
+
+# Bounds
+
+DOUBLED = "".join(f"#define a{n} a{n - 1} a{n - 1}\n" for n in range(1, 21))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("#define a0 x\n" + DOUBLED + "b a20", "this macro becomes more than 100000 words"),
+        ("#define a0\n" + DOUBLED + "b a20", "this macro becomes more than 100000 words"),
+        ("#define f(x) x x\nb " + "f(" * 20 + "1" + ")" * 20, "this macro becomes more than 100000 words"),
+        ("#define f(x) x\nb " + "f(" * 200 + "1" + ")" * 200, "macros stand in each other more than 100 levels deep"),
+        ("#define a0 x\n" + "".join(f"#define a{n} a{n - 1}\n" for n in range(1, 500)) + "b a499",
+         "macros stand in each other more than 100 levels deep"),
+        ("#define a0 x\n" + DOUBLED + "\n" + "a14 " * 100, "macros become more than 1000000 words"),
+        ("#define a0 1\n" + DOUBLED + "#if a20\n#endif", "this macro becomes more than 100000 words"),
+        ("#if " + "(" * 1000 + "1" + ")" * 1000 + "\n#endif", "an expression nested more than 100 levels deep"),
+        ("#if 1" + " ? 1 : 1" * 1000 + "\n#endif", "an expression nested more than 100 levels deep"),
+        ("#if 1\n" * 1000, f"conditions nested more than {MAX_CONDITIONALS} deep"),
+    ],
+)  # fmt: skip
+def test_what_grows_without_end_is_refused(text: str, message: str) -> None:
+    assert message in [fault[0] for fault in faults(text)]
+
+
+def test_what_is_deep_but_not_too_deep_is_taken() -> None:
+    deep = 95
+    assert words("#if 1\n" * 200 + "a" + "\n#endif" * 200) == "a"
+    assert words(f"#if {'(' * deep}1{')' * deep}\na\n#endif") == "a"
+    assert words(f"#if {'!' * 1000}1 {'+ 1' * 10000}\na\n#endif") == "a"
+    assert words(f"#define f(x) x +\n{'f(' * deep}1{')' * deep}") == "1" + " +" * deep
+
+
+def test_includes_that_multiply_are_refused() -> None:
+    files = {f"f{n}": f'#include "f{n + 1}"\n#include "f{n + 1}"\n' for n in range(40)} | {"f40": ""}
+    assert faults('#include "f0"', files)[0][0] == "too much is included"
+    files = {"long": "//" + "x" * 3_000_000}
+    assert faults('#include "long"\n' * 10, files)[0][0] == "too much is included"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "#define A 1 + " + "x + " * 250_000 + "\nA",
+        "#define F(x) x\nF(" + "(" * 300_000,
+        "#define F(x) x\n" + "F(" * 300_000,
+        "/*\n*/" * 200_000,
+        "/**/" * 200_000 + "#" + "/**/" * 200_000,
+        "#\n" * 300_000,
+        "#if 0\n#elif 0\n#endif\n" * 30_000,
+        "#define A 1\n#undef A\n" * 30_000,
+        "#define A 1\nx = A;\n#undef A\n" * 20_000,
+        "".join(f"#define A{n} 1\n#define B{n} (A{n})\nx = B{n};\n" for n in range(10_000)),
+        "#if 1\n/*" * 100_000,
+        '#include "' * 100_000,
+        "\\\n" * 300_000 + "#if 1",
+        "x(" * 200_000 + "\n#define A 1\n" + "y\n#define B 1\n" * 20_000,
+    ],
+    ids=range(14),
+)
+def test_hostile_texts_take_no_long(text: str) -> None:
+    began = time.process_time()
+    try:
+        run(text)
+    except SssgenError as error:
+        assert error.diagnostics
+    assert time.process_time() - began < 8
+
+
+# Without directives it is the lexer
+
+PIECES = [
+    "float",
+    "x",
+    " ",
+    "\n",
+    "\t",
+    "1 ",
+    "2.5 ",
+    "+",
+    "(",
+    ")",
+    "{",
+    "}",
+    ";",
+    ",",
+    "// c",
+    "/* d */",
+    "/*\n*/",
+    "in",
+]
+
+
+@given(st.lists(st.sampled_from(PIECES), max_size=40).map("".join))
+def test_a_text_without_directives_is_only_split(text: str) -> None:
+    made = run(text)
+    tokens, comments = scan(text, "main")
+    assert (made.tokens, made.comments.get("main", []), made.texts) == (tokens, comments, {"main": text})
+
+
+@given(st.lists(st.sampled_from(PIECES), max_size=40).map("".join))
+def test_directives_that_do_nothing_change_nothing(text: str) -> None:
+    """#if 1 around each line that is no part of a comment, and a macro for a name, leave the words as they are."""
+    plain = run(text).tokens
+    assert [t[:2] for t in run("#define unused(x) y\n#if 1\n" + text + "\n#endif").tokens] == [t[:2] for t in plain]
+    named = run("#define x q\n#define q x\n" + text).tokens
+    assert [t[:2] for t in named] == [t[:2] for t in plain]
+
+
+def test_line_ends_of_windows() -> None:
+    text = "#define A(x) x + \\\n 1\n#if A(1) == 2 // c\nA(2) /* d\n */;\n#endif\n"
+    one, other = run(text), run(text.replace("\n", "\r\n"))
+    assert (one.tokens, spaced("2 + 1;")) == (other.tokens, " ".join(token.text for token in other.tokens))
+
+
+def test_comments_of_what_is_switched_on() -> None:
+    files = {"a": "// a1\n#if 0\n// a2\n#endif\n#define B 1 /* a3 */\n"}
+    made = run('// m1\n#include "a"\n#include "a"\n/* m2 */ #if 1 // m3\n// m4\n#else\n// m5\n#endif', files)
+    assert {file: [comment.text.strip() for comment in found] for file, found in made.comments.items()} == {
+        "main": ["// m1", "/* m2 */", "// m3", "// m4"],
+        "a": ["// a1", "/* a3 */"],
+    }
+    assert [comment.first for comment in made.comments["main"]] == [1, 4, 4, 5]
