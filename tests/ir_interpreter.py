@@ -37,7 +37,7 @@ class Returned(Exception):
 
 
 class Interpreter:
-    """Runs the functions of one module. `uniforms` gives the values of its globals."""
+    """Runs the functions of one module. `uniforms` gives the values of its globals; variables have one without."""
 
     def __init__(self, module: ir.Module, uniforms: dict[str, Value] | None = None) -> None:
         self.functions = {function.key: function for function in module.functions}
@@ -45,6 +45,9 @@ class Interpreter:
         self.frame: dict[str, Value] = {}
         for constant in module.constants:
             self.globals[constant.name] = self.value(constant.value)
+        for variable in module.variables:
+            begin = zero(variable.type) if variable.value is None else self.value(variable.value)
+            self.globals.setdefault(variable.name, begin)
 
     def call(self, key: str, *args: Value) -> tuple[Value, ...]:
         """Calls a function with its in and inout arguments; gives its result (if it has one), then its outs."""
@@ -72,11 +75,11 @@ class Interpreter:
         if isinstance(stmt, ir.Declare):
             self.frame[stmt.name] = zero(stmt.type) if stmt.value is None else self.value(stmt.value)
         elif isinstance(stmt, ir.Assign):
-            value = self.value(stmt.value)
+            place, value = self.pinned(stmt.target), self.value(stmt.value)
             if stmt.op:
-                old = self.value(stmt.target)
-                value = binary(stmt.op, stmt.target.type, stmt.target.type, stmt.value.type, old, value)
-            self.store(stmt.target, value)
+                old = self.value(place)
+                value = binary(stmt.op, place.type, place.type, stmt.value.type, old, value)
+            self.store(place, value)
         elif isinstance(stmt, ir.Evaluate):
             self.value(stmt.call)
         elif isinstance(stmt, ir.If):
@@ -109,8 +112,9 @@ class Interpreter:
 
     def store(self, target: ir.Expr, value: Value) -> None:
         """Assigns to a variable or a part of one."""
-        if isinstance(target, ir.Local):
-            self.frame[target.name] = value
+        if isinstance(target, ir.Local | ir.Global):
+            where = self.frame if isinstance(target, ir.Local) else self.globals
+            where[target.name] = value
             return
         assert isinstance(target, ir.Swizzle | ir.Index | ir.Member)
         whole = list(self.value(target.value))

@@ -280,11 +280,6 @@ WRONG: dict[str, tuple[Callable[[], ir.Module], str]] = {
     "array of nothing": (lambda: evaluated(local(Array(FLOAT, 0))), "this cannot be Array"),
     "operator on no types": (
         lambda: evaluated(ir.Unary(FLOAT, "-", local(Scalar("half")), NOWHERE)), "'-' is not defined for (Scalar"),
-    "uniform of a struct": (
-        lambda: SAMPLE_MODULE._replace(uniforms=(UNIFORM._replace(type=STRUCT.type),)), "this cannot be Struct"),
-    "uniform of structs": (
-        lambda: SAMPLE_MODULE._replace(uniforms=(UNIFORM._replace(type=Array(STRUCT.type, 2)),)),
-        "is made of structs"),
     "too few defaults": (
         lambda: ir.Module(uniforms=(UNIFORM._replace(type=VEC2),)), "'density' has 1 defaults, not 2"),
     "default of a texture": (
@@ -341,6 +336,10 @@ def test_linked_modules_have_no_slots_and_an_order() -> None:
     assert verify(late) == []
     assert verify(late, linked=True) == ["f() calls g(), which stands behind it"]
     assert any("slot body_distance(vec3) is not bound" in one for one in verify(SAMPLE_MODULE, linked=True))
+    for type_ in (STRUCT.type, Array(STRUCT.type, 2)):
+        module = ir.Module(structs=(STRUCT,), uniforms=(UNIFORM._replace(type=type_),))
+        assert verify(module) == []
+        assert "uniform 'density' is made of structs" in verify(module, linked=True)[0]
 
 
 def test_long_chains_of_calls() -> None:
