@@ -2,46 +2,14 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Mapping
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sssgen.diagnostics import SssgenError, failure
-from sssgen.ir.spans import Span
+from preprocessed import faults, run, spaced, words
+from sssgen.diagnostics import SssgenError
 from sssgen.lang.lexer import scan
-from sssgen.lang.preprocessor import MAX_CONDITIONALS, MAX_INCLUDED, Preprocessed, preprocess
-
-
-def run(text: str, files: Mapping[str, str] | None = None, **defines: str) -> Preprocessed:
-    def find(name: str, place: Span, angled: bool) -> tuple[str, str]:
-        shown = f"<{name}>" if angled else name
-        if shown not in (files or {}):
-            raise failure(f"no {shown} at {place.line}:{place.column}-{place.end_column}")
-        return shown, (files or {})[shown]
-
-    return preprocess(text, "main", find, defines)
-
-
-def words(text: str, files: Mapping[str, str] | None = None, **defines: str) -> str:
-    return " ".join(token.text for token in run(text, files, **defines).tokens)
-
-
-def spaced(text: str) -> str:
-    """A text's words as `words` gives them."""
-    return " ".join(token.text for token in scan(text, "")[0])
-
-
-def faults(text: str, files: Mapping[str, str] | None = None, **defines: str) -> list[tuple[str, str, int, int]]:
-    """Of each error its message, its file, its line and its column. None takes more than a few seconds."""
-    began = time.process_time()
-    with pytest.raises(SssgenError) as caught:
-        run(text, files, **defines)
-    assert time.process_time() - began < 5
-    return [(one.message, *one.span[:3]) for one in caught.value.diagnostics]
-
+from sssgen.lang.preprocessor import MAX_INCLUDED
 
 # Macros
 
@@ -227,9 +195,6 @@ def test_conditions_close() -> None:
     assert faults('#include "a"\n#endif', {"a": "\n#if 1\n"}) == [
         ("this condition is not closed", "a", 2, 1),
         ("there is no #if before this #endif", "main", 2, 1),
-    ] or faults('#include "a"\n#endif', {"a": "\n#if 1\n"}) == [
-        ("there is no #if before this #endif", "main", 2, 1),
-        ("this condition is not closed", "a", 2, 1),
     ]
 
 
@@ -333,189 +298,10 @@ def test_a_guarded_circle_is_none() -> None:
 
 def test_circles_and_depths_are_named() -> None:
     circle = {"a": '#include "b"', "b": '\n #include "c"', "c": '#include "a"'}
-    ((message, _, _, _),) = faults('#include "a"', circle)
-    assert message in ("'a' includes itself: a → b → c → a", "'b' includes itself: b → c → a → b",
-                       "'c' includes itself: c → a → b → c")  # fmt: skip
+    assert faults('#include "a"', circle) == [("'c' includes itself: c → a → b → c", "b", 2, 12)]
     chain = {f"f{n}": f'#include "f{n + 1}"' for n in range(MAX_INCLUDED)} | {f"f{MAX_INCLUDED}": "a"}
     assert words('#include "f1"', chain) == "a"
     assert faults('#include "f0"', chain)[0][0] == f"files include files more than {MAX_INCLUDED} deep"
-
-
-# Constants
-
-KEPT = {
-    "3": "const auto A = 3;",
-    "-1.5": "const auto A = -1.5;",
-    "true": "const auto A = true;",
-    "(1 + 2)": "const auto A = (1 + 2);",
-    "((1) * (2))": "const auto A = ((1) * (2));",
-    "vec3(1.0, 2, -3)": "const auto A = vec3(1.0, 2, -3);",
-    "mat2(vec2(1), vec2(2))": "const auto A = mat2(vec2(1), vec2(2));",
-    "(B > 1 ? float(B) : 0.5)": "const auto B = 2; const auto A = (B > 1 ? float(B) : 0.5);",
-    "B": "const auto B = 2; const auto A = B;",
-}
-
-
-@pytest.mark.parametrize("value", KEPT)
-def test_names_of_numbers_are_kept(value: str) -> None:
-    made = run(f"#define B 2\n#define UNUSED 7\n#define A {value} // its name\nfloat x = A;")
-    assert " ".join(token.text for token in made.tokens) == spaced(KEPT[value] + " float x = A;")
-    assert made.macros == (["B", "A"] if "B" in value else ["A"])
-
-
-@pytest.mark.parametrize(
-    "value",
-    [
-        "1 + 2",
-        "- x",
-        "x",
-        "(x)",
-        "(1, 2)",
-        "f(1)",
-        "vec2(sin(1.0))",
-        "(1) + (2)",
-        "(1)(2)",
-        "vec2",
-        "(vec2)",
-        "",
-        ")(",
-        "(",
-        "(1",
-        "1;",
-        "sampler2D(1)",
-        "+",
-        "C",
-        "v.x",
-        "(a = 1)",
-        "vec2(1).x",
-        '"x"',
-        "UNDEFINED",
-    ],
-)
-def test_what_is_no_constant_is_text(value: str) -> None:
-    made = run(f"#define C 1 +\n#define A {value}\nq = A;")
-    assert made.macros == []
-    assert " ".join(token.text for token in made.tokens) == spaced(f"q = {value.replace('C', '1 +')};")
-
-
-def test_places_of_constants() -> None:
-    made = run("float a;\n  #define HIGH (2.0 * 1.5)\nfloat b = HIGH;\nfloat c = HIGH;")
-    head = (2, 11, 2, 15)
-    assert [(token.type, token.text, token.span[1:]) for token in made.tokens[3:13]] == [
-        ("CONST", "const", head), ("TYPE", "auto", head), ("NAME", "HIGH", head), ("ASSIGN", "=", head),
-        ("LPAR", "(", (2, 16, 2, 17)), ("FLOAT", "2.0", (2, 17, 2, 20)), ("OPERATOR", "*", (2, 21, 2, 22)),
-        ("FLOAT", "1.5", (2, 23, 2, 26)), ("RPAR", ")", (2, 26, 2, 27)), ("SEMICOLON", ";", (2, 27, 2, 27)),
-    ]  # fmt: skip
-    assert [(t.type, t.span[1:3]) for t in made.tokens[13:] if t.text == "HIGH"] == [
-        ("NAME", (3, 11)),
-        ("NAME", (4, 11)),
-    ]
-
-
-@pytest.mark.parametrize(
-    ("text", "made"),
-    [
-        ("#define A 1\n#if A\nb;\n#endif", "b;"),
-        ("#define A 1\n#define A 1\na = A;\n#define A 1\nb = A;", "const auto A = 1; a = A; b = A;"),
-        ("#define A 1\n#undef A\n#define A 2\na = A;", "const auto A = 2; a = A;"),
-        ("#define A 1\na = A;\n#undef A\n#define A 2\nb = A;", "const auto A = 1; a = A; b = 2;"),
-        ("#define A 1\na = A;\n#define A 2\nb = A;", "const auto A = 1; a = A; b = 2;"),
-        ("#define A 1\na = A;\n#undef A\nint A;", "a = 1; int A;"),
-        ("int A;\n#define A 1\na = A;", "int A; a = 1;"),
-        ("#define A 1\n#define B (A)\na = B;\n#undef A\n#define A 2\nb = B;",
-         "const auto A = 1; const auto B = (A); a = B; b = (2);"),
-        ("#define B (A)\n#define A 1\na = B;", "const auto A = 1; a = (A);"),
-        ("#define ARGS (1.0)\na = f ARGS;", "a = f (1.0);"),
-        ("#define A 1\n#define B (A)\na = f B; b = A;", "const auto A = 1; a = f (A); b = A;"),
-        ("void f() {\n#define A 1\na = A;\n}", "void f() { a = 1; }"),
-        ("float f(\n#define A 1\nfloat a[A]);", "float f(float a[1]);"),
-        ("float a =\n#define A 1\nA;", "float a = 1;"),
-        ("struct S { int a; };\n#define A 1\nfloat a[A];", "struct S { int a; }; const auto A = 1; float a[A];"),
-        ("#define A 1\n#define cat(x) v ## x\n#define two(x) x + x\na = cat(A) + two(A);",
-         "const auto A = 1; a = vA + A + A;"),
-        ("#define float 1\na = float;", "a = 1;"),
-        ("#define A 1\n#define f(x) 2\na = f(A);", "a = 2;"),
-    ],
-)  # fmt: skip
-def test_constants_stand_only_where_they_may(text: str, made: str) -> None:
-    assert words(text) == spaced(made)
-
-
-def test_constants_of_includes() -> None:
-    files = {"a": "#ifndef PI\n#define PI 3.14\n#endif\nfloat a = PI;\n"}
-    assert words('#include "a"\n#include "a"\nb = PI;', files) == spaced(
-        "const auto PI = 3.14; float a = PI; float a = PI; b = PI;"
-    )
-    assert words('#define PI 3.0\n#include "a"', files) == spaced("const auto PI = 3.0; float a = PI;")
-
-
-# Bounds
-
-DOUBLED = "".join(f"#define a{n} a{n - 1} a{n - 1}\n" for n in range(1, 21))
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("#define a0 x\n" + DOUBLED + "b a20", "this macro becomes more than 100000 words"),
-        ("#define a0\n" + DOUBLED + "b a20", "this macro becomes more than 100000 words"),
-        ("#define f(x) x x\nb " + "f(" * 20 + "1" + ")" * 20, "this macro becomes more than 100000 words"),
-        ("#define f(x) x\nb " + "f(" * 200 + "1" + ")" * 200, "macros stand in each other more than 100 levels deep"),
-        ("#define a0 x\n" + "".join(f"#define a{n} a{n - 1}\n" for n in range(1, 500)) + "b a499",
-         "macros stand in each other more than 100 levels deep"),
-        ("#define a0 x\n" + DOUBLED + "\n" + "a14 " * 100, "macros become more than 1000000 words"),
-        ("#define a0 1\n" + DOUBLED + "#if a20\n#endif", "this macro becomes more than 100000 words"),
-        ("#if " + "(" * 1000 + "1" + ")" * 1000 + "\n#endif", "an expression nested more than 100 levels deep"),
-        ("#if 1" + " ? 1 : 1" * 1000 + "\n#endif", "an expression nested more than 100 levels deep"),
-        ("#if 1\n" * 1000, f"conditions nested more than {MAX_CONDITIONALS} deep"),
-    ],
-)  # fmt: skip
-def test_what_grows_without_end_is_refused(text: str, message: str) -> None:
-    assert message in [fault[0] for fault in faults(text)]
-
-
-def test_what_is_deep_but_not_too_deep_is_taken() -> None:
-    deep = 95
-    assert words("#if 1\n" * 200 + "a" + "\n#endif" * 200) == "a"
-    assert words(f"#if {'(' * deep}1{')' * deep}\na\n#endif") == "a"
-    assert words(f"#if {'!' * 1000}1 {'+ 1' * 10000}\na\n#endif") == "a"
-    assert words(f"#define f(x) x +\n{'f(' * deep}1{')' * deep}") == "1" + " +" * deep
-
-
-def test_includes_that_multiply_are_refused() -> None:
-    files = {f"f{n}": f'#include "f{n + 1}"\n#include "f{n + 1}"\n' for n in range(40)} | {"f40": ""}
-    assert faults('#include "f0"', files)[0][0] == "too much is included"
-    files = {"long": "//" + "x" * 3_000_000}
-    assert faults('#include "long"\n' * 10, files)[0][0] == "too much is included"
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "#define A 1 + " + "x + " * 250_000 + "\nA",
-        "#define F(x) x\nF(" + "(" * 300_000,
-        "#define F(x) x\n" + "F(" * 300_000,
-        "/*\n*/" * 200_000,
-        "/**/" * 200_000 + "#" + "/**/" * 200_000,
-        "#\n" * 300_000,
-        "#if 0\n#elif 0\n#endif\n" * 30_000,
-        "#define A 1\n#undef A\n" * 30_000,
-        "#define A 1\nx = A;\n#undef A\n" * 20_000,
-        "".join(f"#define A{n} 1\n#define B{n} (A{n})\nx = B{n};\n" for n in range(10_000)),
-        "#if 1\n/*" * 100_000,
-        '#include "' * 100_000,
-        "\\\n" * 300_000 + "#if 1",
-        "x(" * 200_000 + "\n#define A 1\n" + "y\n#define B 1\n" * 20_000,
-    ],
-    ids=range(14),
-)
-def test_hostile_texts_take_no_long(text: str) -> None:
-    began = time.process_time()
-    try:
-        run(text)
-    except SssgenError as error:
-        assert error.diagnostics
-    assert time.process_time() - began < 8
 
 
 # Without directives it is the lexer

@@ -1,0 +1,41 @@
+"""What the tests of the preprocessor share: texts with included files, and what comes of them."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+
+import pytest
+
+from sssgen.diagnostics import SssgenError, failure
+from sssgen.ir.spans import Span
+from sssgen.lang.lexer import scan
+from sssgen.lang.preprocessor import Preprocessed, preprocess
+
+
+def run(text: str, files: Mapping[str, str] | None = None, **defines: str) -> Preprocessed:
+    def find(name: str, place: Span, angled: bool) -> tuple[str, str]:
+        shown = f"<{name}>" if angled else name
+        if shown not in (files or {}):
+            raise failure(f"no {shown} at {place.line}:{place.column}-{place.end_column}")
+        return shown, (files or {})[shown]
+
+    return preprocess(text, "main", find, defines)
+
+
+def words(text: str, files: Mapping[str, str] | None = None, **defines: str) -> str:
+    return " ".join(token.text for token in run(text, files, **defines).tokens)
+
+
+def spaced(text: str) -> str:
+    """A text's words as `words` gives them."""
+    return " ".join(token.text for token in scan(text, "")[0])
+
+
+def faults(text: str, files: Mapping[str, str] | None = None, **defines: str) -> list[tuple[str, str, int, int]]:
+    """Of each error its message, its file, its line and its column. None takes more than a few seconds."""
+    began = time.process_time()
+    with pytest.raises(SssgenError) as caught:
+        run(text, files, **defines)
+    assert time.process_time() - began < 5
+    return [(one.message, *one.span[:3]) for one in caught.value.diagnostics]

@@ -1,0 +1,77 @@
+"""The preprocessor's limits: what grows without end, or is hostile, is an error soon."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+
+from preprocessed import faults, run, words
+from sssgen.diagnostics import SssgenError
+from sssgen.lang.preprocessor import MAX_CONDITIONALS
+
+DOUBLED = "".join(f"#define a{n} a{n - 1} a{n - 1}\n" for n in range(1, 21))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("#define a0 x\n" + DOUBLED + "b a20", "this macro becomes more than 100000 words"),
+        ("#define a0\n" + DOUBLED + "b a20", "this macro becomes more than 100000 words"),
+        ("#define f(x) x x\nb " + "f(" * 20 + "1" + ")" * 20, "this macro becomes more than 100000 words"),
+        ("#define f(x) x\nb " + "f(" * 200 + "1" + ")" * 200, "macros stand in each other more than 100 levels deep"),
+        ("#define a0 x\n" + "".join(f"#define a{n} a{n - 1}\n" for n in range(1, 500)) + "b a499",
+         "macros stand in each other more than 100 levels deep"),
+        ("#define a0 x\n" + DOUBLED + "\n" + "a14 " * 100, "macros become more than 1000000 words"),
+        ("#define a0 1\n" + DOUBLED + "#if a20\n#endif", "this macro becomes more than 100000 words"),
+        ("#if " + "(" * 1000 + "1" + ")" * 1000 + "\n#endif", "an expression nested more than 100 levels deep"),
+        ("#if 1" + " ? 1 : 1" * 1000 + "\n#endif", "an expression nested more than 100 levels deep"),
+        ("#if 1\n" * 1000, f"conditions nested more than {MAX_CONDITIONALS} deep"),
+    ],
+)  # fmt: skip
+def test_what_grows_without_end_is_refused(text: str, message: str) -> None:
+    assert message in [fault[0] for fault in faults(text)]
+
+
+def test_what_is_deep_but_not_too_deep_is_taken() -> None:
+    deep = 95
+    assert words("#if 1\n" * 200 + "a" + "\n#endif" * 200) == "a"
+    assert words(f"#if {'(' * deep}1{')' * deep}\na\n#endif") == "a"
+    assert words(f"#if {'!' * 1000}1 {'+ 1' * 10000}\na\n#endif") == "a"
+    assert words(f"#define f(x) x +\n{'f(' * deep}1{')' * deep}") == "1" + " +" * deep
+
+
+def test_includes_that_multiply_are_refused() -> None:
+    files = {f"f{n}": f'#include "f{n + 1}"\n#include "f{n + 1}"\n' for n in range(40)} | {"f40": ""}
+    assert faults('#include "f0"', files)[0][0] == "too much is included"
+    files = {"long": "//" + "x" * 3_000_000}
+    assert faults('#include "long"\n' * 10, files)[0][0] == "too much is included"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "#define A 1 + " + "x + " * 250_000 + "\nA",
+        "#define F(x) x\nF(" + "(" * 300_000,
+        "#define F(x) x\n" + "F(" * 300_000,
+        "/*\n*/" * 200_000,
+        "/**/" * 200_000 + "#" + "/**/" * 200_000,
+        "#\n" * 300_000,
+        "#if 0\n#elif 0\n#endif\n" * 30_000,
+        "#define A 1\n#undef A\n" * 30_000,
+        "#define A 1\nx = A;\n#undef A\n" * 20_000,
+        "".join(f"#define A{n} 1\n#define B{n} (A{n})\nx = B{n};\n" for n in range(10_000)),
+        "#if 1\n/*" * 100_000,
+        '#include "' * 100_000,
+        "\\\n" * 300_000 + "#if 1",
+        "x(" * 200_000 + "\n#define A 1\n" + "y\n#define B 1\n" * 20_000,
+    ],
+    ids=range(14),
+)
+def test_hostile_texts_take_no_long(text: str) -> None:
+    began = time.process_time()
+    try:
+        run(text)
+    except SssgenError as error:
+        assert error.diagnostics
+    assert time.process_time() - began < 8
