@@ -69,6 +69,7 @@ def test_the_paste_examples_of_the_standard() -> None:
             "{one2 12}",
         ),
         ("#define v(n) in_ ## n ## _attr.x\nv(normal)", "in_normal_attr.x"),
+        ("#define r(x, y) a x ## y b\nr(, 1) r(1, ) r(, )", "a 1 b a 1 b a b"),
         ("#define op(a) a ## =\nx op(+) y op(<<) z", "x += y <<= z"),
         ("#define texture2D texture\n#define lowp\nlowp vec4 c = texture2D(a, b);", "vec4 c = texture(a, b);"),
         ("#define f(x) \\\n  x + \\\n  x\nf(1)", "1 + 1"),
@@ -177,6 +178,7 @@ def test_one_branch_is_taken_and_the_others_are_not_looked_at() -> None:
 def test_directives_in_comments_and_within_lines_are_none() -> None:
     assert words("/*\n#if 0\n*/ a // \\\n#error no\n b") == "a b"
     assert words("/* x */ # /* y */ define /* z */ A /* w\n*/ b +\n  # \nA") == "b +"
+    assert faults("# \\\n /*\n*/ undef \\\n A\n@ b")[0] == ("'@' has no meaning here", "main", 5, 1)
     assert faults("a # define B")[0] == ("'#' has no meaning here", "main", 1, 3)
     assert faults("/*\n*/ a #if 1")[0] == ("'#' has no meaning here", "main", 2, 6)
 
