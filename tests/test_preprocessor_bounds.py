@@ -24,6 +24,8 @@ DOUBLED = "".join(f"#define a{n} a{n - 1} a{n - 1}\n" for n in range(1, 21))
          "macros stand in each other more than 100 levels deep"),
         ("#define a0 x\n" + DOUBLED + "\n" + "a14 " * 100, "macros become more than 1000000 words"),
         ("#define a0 1\n" + DOUBLED + "#if a20\n#endif", "this macro becomes more than 100000 words"),
+        ("#define d(a) a ## a\n#define e(a) d(a)\nb " + "e(" * 40 + "x" + ")" * 40,
+         "'##' makes a word of more than 1024 characters"),
         ("#if " + "(" * 1000 + "1" + ")" * 1000 + "\n#endif", "an expression nested more than 100 levels deep"),
         ("#if 1" + " ? 1 : 1" * 1000 + "\n#endif", "an expression nested more than 100 levels deep"),
         ("#if 1\n" * 1000, f"conditions nested more than {MAX_CONDITIONALS} deep"),

@@ -71,6 +71,8 @@ class KeptConstants:
 
     def conflicts(self, names: Sequence[str], tokens: Sequence[Token]) -> set[str]:
         """Those of the names that stand where they are no constant's, or no operand can be."""
+        if not names:
+            return set()
         wanted, found, before = set(names), set[str](), ""
         for position, (kind, text, _) in enumerate(tokens):
             if text in wanted and (

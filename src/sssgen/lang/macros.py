@@ -23,6 +23,9 @@ MAX_TOKENS = 1_000_000
 MAX_NESTED = 100
 """How deeply macros may stand in each other, and uses in the arguments of uses."""
 
+MAX_JOINED = 1024
+"""How long a word may be that `##` makes; no longer name is a name in GLSL (GLSL ES 3.20, section 3.8)."""
+
 _Word = tuple[Token, frozenset[str]]
 """A word and its hide set."""
 
@@ -260,6 +263,8 @@ class Expander:
                 start = len(made)
             elif words and len(made) > start:
                 (left, one), (right, other) = made.pop(), words[0]
+                if len(left.text) + len(right.text) > MAX_JOINED:
+                    raise TooMuch(place, f"'##' makes a word of more than {MAX_JOINED} characters")
                 self.joined |= self.kept & ({left.text} & one | {right.text} & other)
                 made.append((self.join(left.text + right.text, place), (one & other) | hidden))
                 words = words[1:]
