@@ -150,7 +150,7 @@ def test_a_line_of_a_megabyte_takes_no_long(repeated: str) -> None:
         scan(repeated * (1_000_000 // len(repeated)), "f")
     except SssgenError as error:
         assert len(str(error)) < 100_000
-    assert time.process_time() - began < 5
+    assert time.process_time() - began < 10  # seconds; what is quadratic takes minutes
 
 
 PIECES = ["vec3", "in", "x", ".", "1", "1.5", ".5e3", "0x", "+", "++", "+=", "<<", "<<=", "/", "*", "//", "/*", "*/"]

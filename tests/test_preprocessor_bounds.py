@@ -76,4 +76,4 @@ def test_hostile_texts_take_no_long(text: str) -> None:
         run(text)
     except SssgenError as error:
         assert error.diagnostics
-    assert time.process_time() - began < 8
+    assert time.process_time() - began < 20  # seconds; what is quadratic takes minutes
