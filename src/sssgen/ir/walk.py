@@ -49,8 +49,8 @@ def operands(expr: Expr) -> tuple[Expr, ...]:
         return expr.args  # type: ignore[union-attr]  # the three classes with args
     if kind is Binary:
         return (expr.left, expr.right)  # type: ignore[union-attr]  # it is a Binary
-    if isinstance(expr, Swizzle | Member):
-        return (expr.value,)
+    if kind is Swizzle or kind is Member:
+        return (expr.value,)  # type: ignore[union-attr]  # one of the two
     if isinstance(expr, Unary):
         return (expr.operand,)
     if isinstance(expr, Select):
@@ -168,10 +168,10 @@ def _only(block: Block) -> Stmt:
 
 def expressions(stmt: Stmt) -> tuple[Expr, ...]:
     """The expressions that stand directly in a statement (not those of inner statements)."""
+    if type(stmt) is Assign:
+        return (stmt.target, stmt.value)
     if isinstance(stmt, Declare | Return):
         return (stmt.value,) if stmt.value is not None else ()
-    if isinstance(stmt, Assign):
-        return (stmt.target, stmt.value)
     if isinstance(stmt, If | While | Assume):
         return (stmt.condition,)
     if isinstance(stmt, For):
@@ -199,9 +199,8 @@ def statements(block: Block) -> Iterator[Stmt]:
     while stack:
         stmt = stack.pop()
         yield stmt
-        inner = inner_statements(stmt)
-        if inner:
-            stack.extend(reversed(inner))
+        if isinstance(stmt, (If, For, While)):
+            stack.extend(reversed(inner_statements(stmt)))
 
 
 def subexpressions(expr: Expr) -> Iterator[Expr]:

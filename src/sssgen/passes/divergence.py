@@ -113,7 +113,10 @@ def _summary(function: Function, visit: Any, shared: Effects) -> Summary:
         while stack:
             node = stack.pop()
             kind = type(node)
-            if kind is Local or kind is Literal:
+            if kind is Local or kind is Literal or kind is Global:
+                continue
+            if isinstance(node, Binary):
+                stack += (node.left, node.right)
                 continue
             if isinstance(node, Call):
                 callees[node.function] = None

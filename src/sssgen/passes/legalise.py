@@ -7,6 +7,7 @@ say is its descriptor's `[capabilities]`; which builtins it has is the intrinsic
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from operator import is_
 
 from ..ir import nodes as ir
 from ..ir import signatures
@@ -26,11 +27,12 @@ from ..ir.types import (
     kind_of,
     vector_of,
 )
-from ..ir.walk import expressions, operands, rewrite, root, statements, subexpressions, with_operands
+from ..ir.walk import operands, rewrite, subexpressions, with_operands
 from . import blocks
 from .effects import effects
 from .integers import counts_up, with_result
 from .lift_calls import awkward, lift
+from .scopes import assigned, declared, outs_of
 from .stores import is_dynamic_store, is_swizzle_store, parts_of, whole_store
 from .substitute import in_place, is_cheap
 
@@ -38,6 +40,10 @@ Polyfill = Callable[[str, Sequence[Type]], ir.Module]
 """Gives the module whose last function stands in for a builtin with these argument types."""
 
 Can = Callable[[str], bool]
+
+
+_EVERYWHERE = frozenset(("+", "-", "*", "<", ">", "<=", ">=", "&&", "||"))
+"""The operators that mean the same in every language, but on matrices."""
 
 
 class Unsupported(Exception):
@@ -70,11 +76,13 @@ class _Legaliser:
         self.counters: list[str] = []
         """The counters of the loops around that are never negative."""
         self.names: set[str] = set()
+        """Those of the function at hand, once one is to be chosen."""
+        self.at_hand: ir.Function | None = None
         self.prelude: list[ir.Stmt] | None = None
+        self.texts: dict[tuple[str, tuple[Type, ...]], str] = {}
         self.shared = effects(module)
-        self.writing = bool(self.shared) or any(
-            param.direction != "in" for function in module.functions for param in function.params
-        )
+        self.outs = outs_of(module.functions)
+        self.writing = bool(self.shared or self.outs)
         """Whether any call can write anything."""
         self.ordered: set[int] = set()
         """The statements, by id, before which nothing of theirs may be computed."""
@@ -113,21 +121,17 @@ class _Legaliser:
 
     def lifted(self, function: ir.Function) -> ir.Function:
         """A function whose writing calls stand where they can."""
-        body = function.body or ()
-        self.names = {param.name for param in function.params}
-        self.names |= {stmt.name for stmt in statements(body) if isinstance(stmt, ir.Declare)}
+        self.names, self.at_hand = set(), function
         if not self.can("mutable_parameters"):
             function = self.copy_parameters(function)
-        return function._replace(body=self.block(function.body or ()))
+        body = self.block(function.body or ())
+        return function if body is function.body else function._replace(body=body)
 
     def copy_parameters(self, function: ir.Function) -> ir.Function:
         """Gives each `in` parameter that is assigned a variable of its own name; the parameter is renamed."""
-        written = {
-            target.name
-            for stmt in statements(function.body or ())
-            for written in self.written(stmt)
-            if (target := root(written)) is not None
-        }
+        written = assigned(function, self.outs)
+        if written.isdisjoint([param.name for param in function.params]):
+            return function
         params, copies = [], []
         for param in function.params:
             if param.direction == "in" and param.name in written:
@@ -137,18 +141,10 @@ class _Legaliser:
             params.append(param)
         return function._replace(params=tuple(params), body=(*copies, *(function.body or ())))
 
-    def written(self, stmt: ir.Stmt) -> list[ir.Expr]:
-        """What a statement assigns to, through a call too."""
-        found = [stmt.target] if isinstance(stmt, ir.Assign) else []
-        for expr in expressions(stmt):
-            for part in subexpressions(expr):
-                if isinstance(part, ir.Call):
-                    params = self.functions[part.function].params
-                    found += [arg for arg, param in zip(part.args, params, strict=True) if param.direction != "in"]
-        return found
-
     def fresh(self, name: str) -> str:
         """A name that the function does not use yet."""
+        assert self.at_hand is not None
+        self.names = self.names or set(declared(self.at_hand))
         free, count = name, 2
         while free in self.names:
             free, count = f"{name}_{count}", count + 1
@@ -161,18 +157,19 @@ class _Legaliser:
         result: list[ir.Stmt] = []
         for stmt in block:
             result.extend(self.statement(stmt))
-        return tuple(result)
+        return block if len(result) == len(block) and all(map(is_, result, block)) else tuple(result)
 
     def statement(self, stmt: ir.Stmt) -> list[ir.Stmt]:
         """A statement, after what it needs to have computed before."""
         outer, self.prelude = self.prelude, []
         new: ir.Stmt | None = stmt
-        if isinstance(stmt, ir.Declare) and stmt.value is not None:
-            new = self.declare(stmt, stmt.value)
+        if isinstance(stmt, ir.Declare):
+            new = self.declare(stmt, stmt.value) if stmt.value is not None else stmt
         elif isinstance(stmt, ir.Assign):
             new = self.assign(stmt)
-        elif isinstance(stmt, ir.Return) and stmt.value is not None:
-            new = ir.Return(self.leaving(stmt.value, stmt.span), stmt.span)
+        elif isinstance(stmt, ir.Return):
+            value = self.leaving(stmt.value, stmt.span) if stmt.value is not None else None
+            new = stmt if value is stmt.value else ir.Return(value, stmt.span)
         elif isinstance(stmt, ir.Evaluate):
             new = ir.Evaluate(self.expr(stmt.call), stmt.span)
         elif isinstance(stmt, ir.If):
@@ -194,11 +191,12 @@ class _Legaliser:
                 self.prelude.insert(-1, declare._replace(value=None))
                 return None
             return declare._replace(value=value)
-        return declare._replace(value=self.initial(value))
+        begin = self.initial(value)
+        return declare if begin is value else ir.Declare(declare.name, declare.type, begin, declare.span)
 
     def initial(self, value: ir.Expr) -> ir.Expr:
         """What a variable begins with: there the parts of an array or struct can be listed in every language."""
-        if isinstance(value, ir.Construct) and isinstance(value.type, Array | Struct):
+        if type(value) is ir.Construct and isinstance(value.type, (Array, Struct)):
             return value._replace(args=tuple([self.initial(arg) for arg in value.args]))
         return self.expr(value)
 
@@ -212,7 +210,7 @@ class _Legaliser:
             value = self.select(assign.value, assign.target)
             return None if value is assign.target else assign._replace(value=value)
         place, value = self.place(assign.target), self.expr(assign.value)
-        if any(map(self.refused, parts_of(place))):
+        if type(place) is not ir.Local and any(map(self.refused, parts_of(place))):
             if op:
                 value = self.binary(ir.Binary(place.type, op, place, value, span))
             place, value = whole_store(place, value, self.refused, self.keep_cheap)
@@ -223,7 +221,8 @@ class _Legaliser:
             if linear or not (isinstance(result, ir.Binary) and result.op == op and result.left is place):
                 return ir.Assign(place, "", result, span)
             value = result.right
-        return ir.Assign(place, op, value, span)
+        same = place is assign.target and value is assign.value
+        return assign if same else ir.Assign(place, op, value, span)
 
     def refused(self, part: ir.Expr) -> bool:
         """Whether the target has no store into such a part."""
@@ -291,14 +290,20 @@ class _Legaliser:
     # Expressions
 
     def expr(self, expr: ir.Expr) -> ir.Expr:
-        if isinstance(expr, ir.Select) and not self.chooses(expr):
-            return self.select(expr)
+        kind = type(expr)
+        if kind is ir.Local or kind is ir.Literal:
+            return expr
+        if isinstance(expr, ir.Binary):
+            left, right = self.expr(expr.left), self.expr(expr.right)
+            same = left is expr.left and right is expr.right
+            return self.binary(expr if same else ir.Binary(expr.type, expr.op, left, right, expr.span))
+        if kind is ir.Select and not self.chooses(expr):  # type: ignore[arg-type]  # narrowed by its exact class
+            return self.select(expr)  # type: ignore[arg-type]  # the same
         if isinstance(expr, ir.Index) and isinstance(expr.value, ir.Global) and expr.value.name in self.uniforms:
             return blocks.element(expr._replace(index=self.expr(expr.index)), self.can)
         old = operands(expr)
         new = tuple([self.expr(operand) for operand in old])
-        same = all(one is other for one, other in zip(old, new, strict=True))
-        return self.node(expr if same else with_operands(expr, new))
+        return self.node(expr if all(map(is_, old, new)) else with_operands(expr, new))
 
     def place(self, place: ir.Expr) -> ir.Expr:
         """What is assigned to: only its indices are expressions."""
@@ -309,13 +314,11 @@ class _Legaliser:
         return place
 
     def node(self, expr: ir.Expr) -> ir.Expr:
-        """One node whose operands are legal already."""
+        """One node, no operator of two, whose operands are legal already."""
         if isinstance(expr, ir.Intrinsic):
             return self.intrinsic(expr)
         if isinstance(expr, ir.Construct):
             return self.construct(expr)
-        if isinstance(expr, ir.Binary):
-            return self.binary(expr)
         if (
             isinstance(expr, ir.Unary)
             and expr.op == "-"
@@ -334,7 +337,7 @@ class _Legaliser:
 
     def intrinsic(self, call: ir.Intrinsic) -> ir.Expr:
         types = [arg.type for arg in call.args]
-        text = signatures.text(call.name, self.dialect, types)
+        text = self.text(call.name, tuple(types))
         row = BUILTINS[call.name]
         if text.startswith("op:"):
             if len(call.args) == 1:
@@ -354,6 +357,13 @@ class _Legaliser:
             return call._replace(args=args)
         return call
 
+    def text(self, name: str, types: tuple[Type, ...]) -> str:
+        """How the target writes a builtin of these types."""
+        known = self.texts.get((name, types))
+        if known is None:
+            known = self.texts[name, types] = signatures.text(name, self.dialect, types)
+        return known
+
     def call_polyfill(self, call: ir.Intrinsic, types: list[Type]) -> ir.Expr:
         """The polyfill's expression itself where it is short and its arguments are cheap, else a call of it."""
         module = self.polyfill(call.name, types)
@@ -364,13 +374,14 @@ class _Legaliser:
         for helper in module.functions:
             if helper.key not in self.helpers:
                 self.functions[helper.key] = helper
-                self.writing = self.writing or any(param.direction != "in" for param in helper.params)
-                names, prelude, ordered = self.names, self.prelude, self.ordered
+                self.outs |= outs_of([helper])
+                self.writing = bool(self.shared or self.outs)
+                around = self.names, self.at_hand, self.prelude, self.ordered
                 self.helpers[helper.key] = helper  # before its own body: it may be asked for again there
                 legal = self.function(helper)
                 del self.helpers[helper.key]
                 self.helpers[helper.key] = legal
-                self.names, self.prelude, self.ordered = names, prelude, ordered
+                self.names, self.at_hand, self.prelude, self.ordered = around
         return ir.Call(call.type, function.key, call.args, call.span)
 
     def construct(self, construct: ir.Construct) -> ir.Expr:
@@ -409,6 +420,8 @@ class _Legaliser:
 
     def binary(self, binary: ir.Binary) -> ir.Expr:
         left, right, op, span = binary.left, binary.right, binary.op, binary.span
+        if op in _EVERYWHERE and type(left.type) is not Matrix and type(right.type) is not Matrix:
+            return binary
         if op == "^^":
             return ir.Binary(BOOL, "!=", left, right, span)
         if op in ("==", "!=") and binary.type == BOOL and not isinstance(left.type, Scalar):

@@ -29,6 +29,8 @@ def uniforms_to_parameters(module: Module, textures: bool = True) -> Module:
     handed = {
         name: Param(name, uniform.type, "in", uniform.quantity, uniform.span) for name, uniform in uniforms.items()
     }
+    if not handed:
+        return module
     closer = Closer(module, handed, {})
     return module._replace(functions=closer.run())
 

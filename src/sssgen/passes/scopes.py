@@ -6,7 +6,7 @@ statements to another block puts this right again with `separate`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Container, Mapping
+from collections.abc import Callable, Collection, Container, Iterable, Mapping
 from typing import Any
 
 from ..ir.nodes import (
@@ -30,7 +30,7 @@ from ..ir.nodes import (
     Stmt,
     While,
 )
-from ..ir.walk import expressions, inner_statements, operands, rewrite, statements, with_operands
+from ..ir.walk import expressions, inner_statements, operands, rewrite, root, statements, subexpressions, with_operands
 
 _NONE: Mapping[str, str] = {}
 
@@ -66,6 +66,33 @@ def mentions(function: Function) -> tuple[set[str], set[str]]:
                 calls.add(node.function)
             stack += operands(node)
     return globals_, calls
+
+
+def outs_of(functions: Iterable[Function]) -> dict[str, tuple[int, ...]]:
+    """The keys of the functions that write through parameters, and the positions of these."""
+    found = {}
+    for function in functions:
+        places = tuple([index for index, param in enumerate(function.params) if param.direction != "in"])
+        if places:
+            found[function.key] = places
+    return found
+
+
+def assigned(function: Function, outs: Mapping[str, tuple[int, ...]]) -> set[str]:
+    """The parameters and variables of a function that its statements write; not where they are declared.
+
+    `outs` is what `outs_of` says of the module's functions.
+    """
+    targets: list[Expr] = []
+    for stmt in statements(function.body or ()):
+        if type(stmt) is Assign:
+            targets.append(stmt.target)
+        if outs:
+            for expr in expressions(stmt):
+                for part in subexpressions(expr):
+                    if type(part) is Call and part.function in outs:
+                        targets += [part.args[index] for index in outs[part.function]]
+    return {variable.name for variable in map(root, targets) if variable is not None}
 
 
 def fresh(name: str, taken: Container[str]) -> str:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import lru_cache
 from typing import NamedTuple
 
 from ..ir import nodes as ir
@@ -17,7 +18,6 @@ from ..ir.intrinsics import BUILTINS
 from ..ir.operators import PRECEDENCE
 from ..ir.rules import FLOAT_MAX
 from ..ir.types import FLOAT, INT, UINT, Array, Sampler, Struct, Type, spell
-from ..ir.walk import expressions, root, statements, subexpressions
 from ..passes.stage import Stage
 from .descriptor import Target
 from .layout import Member
@@ -61,7 +61,7 @@ class Printer:
         self.by_key = {function.key: function for function in module.functions}
         self.function: ir.Function | None = None
         self.comments: Comments = no_comments
-        self.assigned: set[str] = set()
+        self.texts: dict[tuple[str, tuple[Type, ...]], str] = {}
         self.stage: Stage | None = None
         """The interface of a whole shader."""
 
@@ -108,6 +108,11 @@ class Printer:
             return text, UNARY if text[0] == "-" else PRIMARY
         if isinstance(expr, ir.Binary):
             return self.binary(expr)
+        if isinstance(expr, ir.Swizzle):
+            letters = expr.components
+            if isinstance(expr.value, ir.Intrinsic) and BUILTINS[expr.value.name].kind == "fetch":
+                letters = letters.translate(_COLOR_LETTERS)  # a texel's channels are colours to a reader
+            return f"{self.expr(expr.value, POSTFIX)}.{letters}", POSTFIX
         if isinstance(expr, ir.Global):
             return self.global_value(expr), PRIMARY
         if isinstance(expr, ir.Intrinsic):
@@ -116,11 +121,6 @@ class Printer:
             return self.construct(expr)
         if isinstance(expr, ir.Call):
             return self.call(expr), PRIMARY
-        if isinstance(expr, ir.Swizzle):
-            letters = expr.components
-            if isinstance(expr.value, ir.Intrinsic) and BUILTINS[expr.value.name].kind == "fetch":
-                letters = letters.translate(_COLOR_LETTERS)  # a texel's channels are colours to a reader
-            return f"{self.expr(expr.value, POSTFIX)}.{letters}", POSTFIX
         if isinstance(expr, ir.Member):
             return f"{self.expr(expr.value, POSTFIX)}.{expr.field}", POSTFIX
         if isinstance(expr, ir.Unary):
@@ -183,7 +183,7 @@ class Printer:
 
     def intrinsic(self, call: ir.Intrinsic) -> tuple[str, int]:
         """A builtin, as the intrinsic table says for this language."""
-        text = signatures.text(call.name, self.target.dialect, [arg.type for arg in call.args])
+        text = self.builtin_text(call.name, tuple([arg.type for arg in call.args]))
         if "{" not in text:
             return f"{text}({self.arguments(call.args)})", PRIMARY
         named = {}
@@ -199,6 +199,13 @@ class Printer:
             }
         args = [self.expr(arg) if not isinstance(arg.type, Sampler) else "" for arg in call.args]
         return text.format(*args, type=self.type(call.type), **named), PRIMARY
+
+    def builtin_text(self, name: str, types: tuple[Type, ...]) -> str:
+        """How the language writes a builtin of these types."""
+        known = self.texts.get((name, types))
+        if known is None:
+            known = self.texts[name, types] = signatures.text(name, self.target.dialect, types)
+        return known
 
     def sampler(self, texture: str) -> str:
         """The name of a texture's sampler, where they are two things."""
@@ -298,7 +305,6 @@ class Printer:
         """A function with the first line of its documentation."""
         body = function.body or ()
         self.function = function
-        self.assigned = assigned_names(function, self.by_key)
         lines = [Line(f"// {text}", function.span) for text in summary(function.doc)]
         lines += wrap(f"{self.signature(function)} {{", function.span)
         lines += self.block(body, 1)
@@ -360,6 +366,7 @@ def float_text(value: float) -> str:
     return shortest(value, FLOAT32)
 
 
+@lru_cache(4096)
 def shortest(value: float, format: Format) -> str:
     """The shortest decimal, always with a point, that reads back to the same number of the format; not for 0."""
     nearest = format.rounded(value)
@@ -386,32 +393,10 @@ def summary(doc: str) -> list[str]:
     return [comment_text(first)] if first else []
 
 
-def assigned_names(function: ir.Function, by_key: dict[str, ir.Function]) -> set[str]:
-    """The locals that are written after their declaration."""
-    names = set()
-    for stmt in statements(function.body or ()):
-        if isinstance(stmt, ir.Assign):
-            target = root(stmt.target)
-            if target is not None:
-                names.add(target.name)
-        elif isinstance(stmt, ir.Declare) and stmt.value is None:
-            names.add(stmt.name)
-        for expr in _expressions(stmt):
-            if isinstance(expr, ir.Call):
-                for arg, param in zip(expr.args, by_key[expr.function].params, strict=True):
-                    target = root(arg) if param.direction != "in" else None
-                    if target is not None:
-                        names.add(target.name)
-    return names
-
-
-def _expressions(stmt: ir.Stmt) -> list[ir.Expr]:
-
-    return [part for expr in expressions(stmt) for part in subexpressions(expr)]
-
-
 def wrap(text: str, span: ir.Span) -> list[Line]:
     """Breaks a long line at the outermost commas and operators; what follows is indented once more."""
+    if len(text) <= WIDTH:
+        return [Line(text, span)]
     indent = len(text) - len(text.lstrip())
     lines = []
     while len(text) > WIDTH:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from ..ir import nodes as ir
 from ..ir.types import VOID, Array, Sampler, Struct, Type
 from ..passes.blocks import block_type
+from ..passes.scopes import assigned, outs_of
 from .descriptor import Target
 from .layout import Member
 from .printer import PRIMARY, UNARY, Line, Printer, documented, wrap
@@ -20,6 +21,11 @@ class WgslPrinter(Printer):
     def __init__(self, target: Target, module: ir.Module) -> None:
         super().__init__(target, module)
         self.uniforms = frozenset(uniform.name for uniform in module.uniforms)
+        self.outs = outs_of(module.functions)
+        self.assigned: set[str] = set()
+        """What the function at hand writes after its declaration."""
+        self.pointers: set[str] = set()
+        """The parameters of the function at hand that are pointers."""
 
     def type(self, type_: Type) -> str:
         if isinstance(type_, Array):
@@ -29,14 +35,14 @@ class WgslPrinter(Printer):
     def variable(self, type_: Type, name: str) -> str:
         return f"{name}: {self.type(type_)}"
 
-    def pointers(self) -> set[str]:
-        """The parameters of the function at hand that are pointers."""
-        params = self.function.params if self.function is not None else ()
-        return {param.name for param in params if param.direction != "in"}
+    def print_function(self, function: ir.Function) -> list[Line]:
+        self.assigned = assigned(function, self.outs)
+        self.pointers = {param.name for param in function.params if param.direction != "in"}
+        return super().print_function(function)
 
     def bound(self, expr: ir.Expr) -> tuple[str, int]:
-        if type(expr) is ir.Local and expr.name in self.pointers():
-            return f"*{expr.name}", UNARY
+        if type(expr) is ir.Local:
+            return (f"*{expr.name}", UNARY) if expr.name in self.pointers else (expr.name, PRIMARY)
         return super().bound(expr)
 
     def global_value(self, value: ir.Global) -> str:
@@ -53,7 +59,7 @@ class WgslPrinter(Printer):
     def argument(self, arg: ir.Expr, param: ir.Param) -> str:
         if param.direction == "in" or not isinstance(arg, ir.Local):
             return super().argument(arg, param)
-        return arg.name if arg.name in self.pointers() else f"&{arg.name}"
+        return arg.name if arg.name in self.pointers else f"&{arg.name}"
 
     def target_of(self, target: ir.Expr) -> str:
         return self.expr(target, UNARY)
@@ -127,6 +133,8 @@ class WgslPrinter(Printer):
 
 def _has_open_less(text: str) -> bool:
     """Whether a `<` stands in no parentheses."""
+    if " < " not in text:
+        return False
     depth = 0
     for index, char in enumerate(text):
         depth += (char in "([") - (char in ")]")
