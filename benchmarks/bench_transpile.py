@@ -22,7 +22,7 @@ from pathlib import Path
 from queue import Queue
 from typing import Any, NamedTuple
 
-from public_code import COMPILERS, Code, Made, accepted, blank, for_glslang, glslang, naga_glsl, preprocessed, read
+from public_code import BATCHED, COMPILERS, Code, Made, accepted, blank, glslang, naga_glsl, preprocessed, read
 
 from sssgen.harness.process import LostError, Process
 
@@ -80,18 +80,18 @@ def judged(
     """The verdict on each file."""
     answers: list[dict[str, Made] | LostError] = pool.ask("made", [(code, folders, targets) for code in codes])
     said = [{"": Made(None, f"the process {one}")} if isinstance(one, LostError) else one for one in answers]
-    programs = [
-        (target, for_glslang(made.source))
+    sources = [
+        made.source
         for one in said
         for target, made in one.items()
-        if made.source is not None and "glslang" in COMPILERS[target]
+        if made.source is not None and ("glslang", target) in BATCHED
     ]
-    messages = iter(glslang(programs))
+    messages = iter(glslang(sources))
     found = []
     for code, one in zip(codes, said, strict=True):
         problems = {target or READ: made.problem for target, made in one.items() if made.problem}
         for target, made in one.items():
-            if made.source is not None and "glslang" in COMPILERS[target] and (message := next(messages)):
+            if made.source is not None and ("glslang", target) in BATCHED and (message := next(messages)):
                 problems.setdefault(target, f"glslang: {message}")
         found.append(Verdict(kind, code.path, problems))
     return found

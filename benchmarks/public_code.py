@@ -18,12 +18,12 @@ from sssgen.compiler import transpile
 from sssgen.diagnostics import SssgenError
 from sssgen.harness import compilers
 from sssgen.harness.compilers import Source, errors
-from sssgen.harness.compilers.calls import glsl_entry, hlsl_entry
+from sssgen.harness.compilers.calls import glsl_entry
 from sssgen.harness.compilers.gl import with_version
-from sssgen.harness.compilers.glslang import LIBRARY_ENTRY
 from sssgen.harness.handwritten import hand_written
 from sssgen.harness.includes import expanded
-from sssgen.lang.loader import load_file, read_text
+from sssgen.lang.glsl import load_glsl
+from sssgen.lang.loader import read_text
 
 BATCH = 40
 """Texts to a process of glslang."""
@@ -37,7 +37,10 @@ COMPILERS = {
     "glsl-es-300": ("glslang",),
 }
 """Target → the compilers that must take it."""
+BATCHED = {("glslang", "glsl-330"), ("glslang", "glsl-es-300")}
+"""What is asked for many texts at once."""
 
+_STAGES = {"vertex": "vert", "fragment": "frag", "library": "frag"}
 _COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
 _VERSION = re.compile(r"^\s*#\s*version[^\n]*\n?", re.MULTILINE)
 _SCENE = """
@@ -76,7 +79,7 @@ class Made(NamedTuple):
     source: Source | None
     """The text, with the entry that it has; None where there is none."""
     problem: str
-    """Why not, or what naga, Tint or DXC says: `who: message`; '' where there is nothing to say."""
+    """Why not, or what a compiler that is not asked in batches says, as `who: message`; '' where all is well."""
 
 
 def read(path: Path, folders: Sequence[Path]) -> Code:
@@ -98,26 +101,14 @@ def accepted(codes: Sequence[Code]) -> list[str]:
     return said
 
 
-def glslang(texts: Sequence[tuple[str, str]]) -> list[str]:
-    """What glslang says of texts that were made, (target, text): '' of those that it takes."""
-    found = [""] * len(texts)
-    for target in {target for target, _ in texts}:
-        chosen = [index for index, (one, _) in enumerate(texts) if one == target]
-        options = ("-D", "-e", LIBRARY_ENTRY) if target == "hlsl" else ()
-        programs = [("frag", texts[index][1]) for index in chosen]
-        for index, message in zip(chosen, _in_batches(programs, options), strict=True):
-            found[index] = message
-    return found
+def glslang(sources: Sequence[Source]) -> list[str]:
+    """What glslang says of GLSL that was made: '' of what it takes."""
+    return _in_batches([(_STAGES[source.stage], _with_entry(source)) for source in sources])
 
 
-def for_glslang(source: Source) -> str:
-    """The text that glslang is given of a source: with an entry point, whose name is the same for all in HLSL."""
-    if source.language != "hlsl":
-        text = with_version(source.text, source.language)
-        return glsl_entry(text) if source.stage == "library" else text
-    if source.stage == "library":
-        return hlsl_entry(source.text)
-    return f"#define {source.entry} {LIBRARY_ENTRY}\n{source.text}"
+def _with_entry(source: Source) -> str:
+    text = with_version(source.text, source.language)
+    return glsl_entry(text) if source.stage == "library" else text
 
 
 def preprocessed(code: Code) -> str:
@@ -145,21 +136,21 @@ def _has_main(bare: str) -> bool:
     return re.search(r"\bvoid\s+main\s*\(", bare) is not None
 
 
-def _in_batches(programs: Sequence[tuple[str, str]], options: Sequence[str] = ()) -> list[str]:
+def _in_batches(programs: Sequence[tuple[str, str]]) -> list[str]:
     """The first complaint about each (stage, text)."""
     found: list[str] = []
     for start in range(0, len(programs), BATCH):
-        found += _batch(programs[start : start + BATCH], options)
+        found += _batch(programs[start : start + BATCH])
     return found
 
 
-def _batch(programs: Sequence[tuple[str, str]], options: Sequence[str]) -> list[str]:
+def _batch(programs: Sequence[tuple[str, str]]) -> list[str]:
     """One process; where it does not end well, one for each text, so that only one is without an answer."""
     with tempfile.TemporaryDirectory() as folder:
         paths = [Path(folder) / f"{number}.{stage}" for number, (stage, _) in enumerate(programs)]
         for path, (_, text) in zip(paths, programs, strict=True):
             path.write_text(text, "utf-8")
-        command = ["glslangValidator", *options, *map(str, paths)]
+        command = ["glslangValidator", *map(str, paths)]
         try:
             done = subprocess.run(command, capture_output=True, encoding="utf-8", errors="replace", timeout=SECONDS)
         except subprocess.TimeoutExpired:
@@ -167,12 +158,15 @@ def _batch(programs: Sequence[tuple[str, str]], options: Sequence[str]) -> list[
     if done is None or done.returncode < 0:
         if len(programs) == 1:
             return ["glslang crashed or did not end"]
-        return [message for one in programs for message in _batch([one], options)]
-    said = [""] * len(programs)
+        return [message for one in programs for message in _batch([one])]
+    if done.returncode == 0:
+        return [""] * len(programs)
+    said = ["glslang says nothing of it"] * len(programs)
     number = -1
     for line in done.stdout.splitlines():
         if number + 1 < len(paths) and line.strip() == str(paths[number + 1]):
             number += 1
+            said[number] = ""
         elif line.startswith("ERROR:") and number >= 0 and not said[number]:
             said[number] = re.sub(r"^ERROR: (?:[^:]*:\d+: )?", "", line).strip()
     return said
@@ -207,13 +201,14 @@ def serve(_: str) -> tuple[str, Callable[[Question], object]]:
 def made(code: Code, folders: Sequence[Path], targets: Sequence[str]) -> dict[str, Made]:
     """Each target's text and what the compilers in this process say of it; {"": …} where the file cannot be read."""
     try:
-        module = load_file(code.path, code.path.name, tuple(folders))
+        entry = "shadertoy" if code.is_scene else ""
+        module = load_glsl(code.path, code.path.name, tuple(folders), entry=entry).module
     except Exception as error:
         return {"": Made(None, _reason(error))}
     found = {}
     for target in targets:
         try:
-            files = transpile(module, target, "file").files
+            files = transpile(module, target, "file", keep=True).files
         except Exception as error:
             found[target] = Made(None, _reason(error))
             continue
@@ -225,7 +220,7 @@ def made(code: Code, folders: Sequence[Path], targets: Sequence[str]) -> dict[st
 
 def _complaints(source: Source) -> Iterator[str]:
     for name in COMPILERS[source.language]:
-        if name != "glslang":
+        if (name, source.language) not in BATCHED:
             for message in errors(compilers.get(name).check(source))[:1]:
                 yield f"{name}: {message.text}"
 
