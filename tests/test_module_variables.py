@@ -239,7 +239,7 @@ function void main() {
     set $gl_FragColor = vec4{1.0};
 }
 """
-SEVERAL = """variable out vec4[2] gl_FragData [builtin("gl_FragData")]
+SEVERAL = """variable out vec4[8] gl_FragData [builtin("gl_FragData")]
 variable out float gl_FragDepth [builtin("gl_FragDepth")]
 function void main() {
     set $gl_FragData[0] = vec4{1.0};
@@ -270,6 +270,12 @@ def test_a_whole_shader_compiles(name: str, target: str, keep: bool) -> None:
     text = whole(STAGES[name], target, keep)
     found = check(Source(text, target, stage, entry))  # type: ignore[arg-type]  # one of its two words
     assert [str(one) for messages in found.values() for one in errors(messages)] == [], text
+
+
+def test_colours_that_nothing_gives_are_left_out() -> None:
+    assert "out vec4 FragData[2];" in whole(SEVERAL, "glsl-es-300")
+    assert "SV_Target1" in whole(SEVERAL, "hlsl")
+    assert "SV_Target2" not in whole(SEVERAL, "hlsl")
 
 
 def test_the_stages_meet() -> None:

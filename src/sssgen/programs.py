@@ -32,7 +32,17 @@ from .passes.predicate import predicate
 from .passes.prune import only, prune
 from .passes.ranges import analyse
 from .passes.sites import Site, report
-from .passes.stage import ENTRY, Stage, StageError, entry_of, interface, remarks, stage_kind, turned_derivatives
+from .passes.stage import (
+    ENTRY,
+    Stage,
+    StageError,
+    colors_in_use,
+    entry_of,
+    interface,
+    remarks,
+    stage_kind,
+    turned_derivatives,
+)
 from .passes.undefined import undefined_constants
 from .passes.uniform_structs import Unreadable, uniform_structs
 from .passes.variables_to_parameters import variables_to_parameters
@@ -87,6 +97,8 @@ def make_library(
     kind = stage_kind(module)
     kind = kind if kind in target.files else ""
     turned = _turned(target)
+    if kind:
+        module = colors_in_use(module)
     if kind and turned:
         module = turned_derivatives(module)
     if keep:

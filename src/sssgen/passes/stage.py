@@ -11,10 +11,10 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
-from ..ir.nodes import Expr, Function, Intrinsic, Module, Span, Unary, Variable
+from ..ir.nodes import Expr, Function, Global, Index, Intrinsic, Literal, Module, Span, Unary, Variable
 from ..ir.rules import element_type
 from ..ir.types import VOID, Array, Matrix, Struct, Type, Vector
-from ..ir.walk import rewrite_module, statements
+from ..ir.walk import all_expressions, operands, rewrite_module, statements
 from .effects import stored
 
 ENTRY = "main()"
@@ -112,6 +112,30 @@ def turned_derivatives(module: Module) -> Module:
         return expr
 
     return rewrite_module(module, change)
+
+
+def colors_in_use(module: Module) -> Module:
+    """The module with gl_FragData no longer than what it uses of it, where its indices say so."""
+    data = {one.name: one.type for one in module.variables if one.builtin == "gl_FragData"}
+    if not data:
+        return module
+    length = 0
+    for function in module.functions:
+        for expr in all_expressions(function.body or ()):
+            named = [part for part in operands(expr) if isinstance(part, Global) and part.name in data]
+            if named and not (isinstance(expr, Index) and isinstance(expr.index, Literal)):
+                return module
+            if named and isinstance(expr, Index) and isinstance(expr.index, Literal):
+                length = max(length, int(expr.index.value) + 1)
+
+    def short(type_: Type) -> Type:
+        return type_._replace(length=length) if isinstance(type_, Array) and length else type_
+
+    def change(expr: Expr) -> Expr:
+        return expr._replace(type=short(expr.type)) if isinstance(expr, Global) and expr.name in data else expr
+
+    variables = tuple([one._replace(type=short(one.type)) if one.name in data else one for one in module.variables])
+    return rewrite_module(module._replace(variables=variables), change)
 
 
 def remarks(module: Module, kind: str, builtins: Collection[str], turned: bool) -> list[tuple[str, Span]]:
