@@ -44,12 +44,21 @@ unpackHalf2x16 length distance dot cross normalize faceforward reflect refract m
 determinant inverse lessThan lessThanEqual greaterThan greaterThanEqual equal notEqual any all not textureSize texture
 textureLod textureGrad texelFetch dFdx dFdy fwidth fma ldexp bitCount findLSB findMSB bitfieldReverse bitfieldExtract
 bitfieldInsert packSnorm4x8 unpackSnorm4x8 packUnorm4x8 unpackUnorm4x8 dFdxFine dFdyFine fwidthFine dFdxCoarse
-dFdyCoarse fwidthCoarse
+dFdyCoarse fwidthCoarse textureOffset textureLodOffset textureGradOffset texelFetchOffset textureGather
+textureGatherOffset textureQueryLevels textureQueryLod
 """.split()  # noqa: SIM905 (a hundred names)
 )
 LANGUAGES = ("glsl", "glsl-330", "hlsl", "hlsl-dx9", "hlsl-macros", "wgsl")
-REFUSED = {("textureSize", "hlsl"), ("texelFetch", "hlsl-dx9")}
-PLACES = ("texture", "sampler", "bare_texture", "bare_sampler", "dim", "type")
+OWN = {
+    *("saturate", "fmod", "unpackNormal", "textureLayer", "textureLayerLod", "textureLayerGrad", "texelFetchLayer"),
+    *("textureCompare", "textureCompareLod"),
+}
+REFUSED = {
+    ("textureSize", "hlsl"), ("texelFetch", "hlsl-dx9"), ("textureQueryLevels", "glsl"), ("textureQueryLevels", "hlsl"),
+    ("textureQueryLod", "glsl"), ("textureQueryLod", "wgsl"), ("textureQueryLod", "hlsl-dx9"),
+    ("textureOffset", "hlsl-dx9"), ("textureLodOffset", "hlsl-dx9"), ("textureGradOffset", "hlsl-dx9"),
+}  # fmt: skip
+PLACES = ("texture", "sampler", "bare_texture", "bare_sampler", "dim", "channel", "type")
 VECTORS = [(row, *vector) for row in BUILTINS.values() for vector in row.vectors]
 
 
@@ -102,12 +111,13 @@ def test_row_is_sane(row: Builtin) -> None:
             assert place in PLACES or int(place) < max(p.count(",") + 1 for p in params)
         if value == "":
             assert row.polyfill or (row.name, language) in REFUSED
+    assert all(index < max(params_.count(",") + 1 for params_ in params) for index in row.constant)
     for definition in re.findall(r"^\w+ (\w+)\(", row.polyfill, re.MULTILINE):
         assert definition == row.name
 
 
 def test_the_table_is_complete() -> None:
-    assert set(BUILTINS) == CHAPTER_8 | {"saturate", "fmod", "unpackNormal"}
+    assert set(BUILTINS) == CHAPTER_8 | OWN
 
 
 @pytest.mark.parametrize("row, arguments, expected", VECTORS, ids=lambda value: getattr(value, "name", None))

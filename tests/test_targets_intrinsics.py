@@ -1,6 +1,6 @@
 """Every builtin of the intrinsic table, in all languages side by side.
 
-What is the same everywhere stands in SAME; the rest in CASES (what GLSL 3.30 has not: in texts_of_glsl_4.py), each as
+What is the same everywhere stands in SAME; the rest in CASES (and in texts_of_glsl_4.py and texts_of_reads.py), each as
 GLSL 3.30, HLSL and WGSL have it. GLSL ES is written as GLSL, and Unity's two dialects as HLSL, where a case does not
 say otherwise. NumPy has each builtin under its own name.
 """
@@ -19,7 +19,8 @@ from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Module
 from sssgen.ir.signatures import overload, parse
 from texts_of_glsl_4 import LATER
-from validate import TARGETS, module_of, validate_all
+from texts_of_reads import READS
+from validate import SAMPLERS, TARGETS, module_of, validate_all
 
 SAME = """
 radians(x); radians(x3); degrees(x); degrees(x3); sin(x); sin(x3); cos(x); cos(x3); tan(x); tan(x3); asin(x);
@@ -451,14 +452,27 @@ for name, op in RELATIONS.items():
     for x, y in ("x3", "y3"), ("i3", "j3"), ("u3", "w3"), *([("p3", "q3")] if op in ("==", "!=") else []):
         written = f"{x} {op} {y}"
         CASES[f"{name}({x}, {y})"] = {"glsl": f"{name}({x}, {y})", "hlsl": written, "wgsl": written}
-for name, size in ("map", "vec2i"), ("volume", "vec3i"), ("cube", "vec2i"):
-    refused = {
-        target: f"error: this target has no textureSize ({TARGETS[target]})" for target in ("hlsl", "dx9", "urp")
-    }
-    read = f"{size}(textureDimensions({name}, i))"
-    CASES[f"textureSize({name}, i)"] = {"glsl": f"textureSize({name}, i)", "wgsl": read, **refused}
 
-ALL = {**{text.strip(): {"glsl": text.strip()} for text in SAME.split(";")}, **CASES, **LATER}
+
+def refusals(builtin: str, *targets: str) -> dict[str, str]:
+    return {target: f"error: this target has no {builtin} ({TARGETS[target]})" for target in targets}
+
+
+for name in SAMPLERS:
+    size = "vec3i" if name.endswith(("volume", "layers", "cubes", "shades")) else "vec2i"
+    read = f"{size}(textureDimensions({name}, i))"
+    if name.endswith(("layers", "cubes", "shades")):
+        read = f"vec3i(vec3u(textureDimensions({name}, i), textureNumLayers({name})))"
+    told = {"glsl": f"textureSize({name}, i)", "wgsl": read, **refusals("textureSize", "hlsl", "dx9", "urp")}
+    if name == "cubes":
+        told["glsl"] = "error: GLSL 3.30 (OpenGL 3.3 core) has no samplerCubeArray"
+        told["glsl-es"] = "error: GLSL ES 3.00 (WebGL 2, OpenGL ES 3.0) has no samplerCubeArray"
+    CASES[f"textureSize({name}, i)"] = told
+for name in "map", "volume", "cube", "layers":
+    refused = refusals("textureQueryLevels", "glsl", "glsl-es", "hlsl", "dx9", "urp")
+    CASES[f"textureQueryLevels({name})"] = {"wgsl": f"i32(textureNumLevels({name}))", **refused}
+
+ALL = {**{text.strip(): {"glsl": text.strip()} for text in SAME.split(";")}, **CASES, **LATER, **READS}
 
 
 @pytest.mark.parametrize("source", ALL)
@@ -490,8 +504,7 @@ def test_every_case_compiles(target: str, assert_compiles: Callable[[Source], No
     functions = []
     for number, (source, told) in enumerate(ALL.items()):
         refused = [name for name, text in told.items() if text.startswith("error:")]
-        of_hlsl = target in ("dx9", "urp", "unity-shadergraph") and "hlsl" in refused
-        if target not in refused and not of_hlsl:
+        if {"unity-shadergraph": "urp"}.get(target, target) not in refused:
             (function,) = module_of(source).functions
             functions.append(function._replace(name=f"case_{number}"))
     name = TARGETS.get(target, target)

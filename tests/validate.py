@@ -4,7 +4,7 @@
 
 An expression's free variables are typed by their names: x, y, z, t are floats, i, j, k ints, u, v, w uints, p, q bools, m, n
 matrices, and a digit behind the letter is the size: x3 is a vec3, p2 a bvec2, m4 a mat4. `map` is a sampler2D, `volume`
-a sampler3D, `cube` a samplerCube. What is compared is the text behind `return`, or, where a target needs more than that,
+a sampler3D, `cube` a samplerCube, and SAMPLERS has more. What is compared is the text behind `return`, or, where a target needs more than that,
 its statements, with the functions that it calls above them.
 
 A text with a brace in it is one or more functions, and whole functions are compared. Where a target refuses, it is the
@@ -36,8 +36,14 @@ TARGETS = {
 
 _KINDS = {"x": "float", "y": "float", "z": "float", "t": "float", "i": "int", "j": "int", "k": "int", "u": "uint", "v": "uint", "w": "uint",
           "p": "bool", "q": "bool"}  # fmt: skip
-_SAMPLERS = {"map": "sampler2D", "volume": "sampler3D", "cube": "samplerCube"}
-_VARIABLE = re.compile(r"(?<![.\w])(?:[xyztijkuvwpq][234]?|[mn][234]|map|volume|cube)(?![\w(])")
+SAMPLERS = {
+    "map": "sampler2D", "volume": "sampler3D", "cube": "samplerCube", "layers": "sampler2DArray",
+    "cubes": "samplerCubeArray", "shade": "sampler2DShadow", "shadecube": "samplerCubeShadow",
+    "shades": "sampler2DArrayShadow", "ints": "isampler2D", "intvolume": "isampler3D", "intcube": "isamplerCube",
+    "intlayers": "isampler2DArray", "uints": "usampler2D", "uintvolume": "usampler3D", "uintcube": "usamplerCube",
+    "uintlayers": "usampler2DArray",
+}  # fmt: skip
+_VARIABLE = re.compile(rf"(?<![.\w])(?:[xyztijkuvwpq][234]?|[mn][234]|{'|'.join(SAMPLERS)})(?![\w(])")
 
 
 def validate_all(source: str, expected: Mapping[str, str]) -> None:
@@ -85,8 +91,8 @@ def module_of(source: str, file: str = "case") -> ir.Module:
 
 def variable_type(name: str) -> Type:
     """The type that a free variable's name stands for."""
-    if name in _SAMPLERS:
-        return BY_NAME[_SAMPLERS[name]]
+    if name in SAMPLERS:
+        return BY_NAME[SAMPLERS[name]]
     if name[0] in "mn":
         return BY_NAME[f"mat{name[1]}"]
     return vector_of(_KINDS[name[0]], int(name[1:] or 1))

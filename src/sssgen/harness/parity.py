@@ -17,7 +17,8 @@ arguments whose denormals are zero, or be off by `TINY`. Such lanes are in no fi
 from __future__ import annotations
 
 import keyword
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,8 +26,11 @@ import numpy as np
 from ..compiler import transpile
 from ..ir import signatures
 from ..ir.intrinsics import Builtin
-from ..ir.types import kind_of, spell
+from ..ir.nodes import Intrinsic
+from ..ir.types import Type, Vector, kind_of, spell
+from ..ir.walk import all_expressions
 from ..lang.loader import load_text
+from ..lang.polyfills import polyfill
 from ..targets import numpy_runtime as runtime
 from .backends import Array, Backend, Call, Text
 from .backends.calls import grid
@@ -47,6 +51,9 @@ TINY = 2.0**-120
 
 BATCH = 100
 """Overloads to a program: more of them make drivers slow."""
+
+TEXTURES = 12
+"""Textures to a program: drivers take 16."""
 
 
 class Figure(NamedTuple):
@@ -84,16 +91,35 @@ class _Lanes(NamedTuple):
 
 def measure(backend: Backend, chosen: Sequence[Case]) -> dict[str, Figure]:
     """A figure for each builtin that the back end's target has."""
-    known = [case for case in chosen if supported(case, backend.target.dialect)]
+    known = [case for case in chosen if supported(case, backend)]
     found: dict[str, list[tuple[Case, Array]]] = {}
     for case, got in zip(known, run(backend, known), strict=True):
         found.setdefault(case.name, []).append((case, got))
     return {name: _figure(results) for name, results in found.items()}
 
 
-def supported(case: Case, dialect: str) -> bool:
-    """Whether a dialect has the overload."""
-    return signatures.text(case.name, dialect, case.params) != "" or case.row.polyfill != ""
+def supported(case: Case, backend: Backend) -> bool:
+    """Whether a back end's target has the overload, and it the textures for that."""
+    types = [spell(type_) for type_ in case.params]
+    made = all(name in backend.target.types and name not in backend.unmade for name in types)
+    return made and _written(case.name, case.params, backend.target.dialect)
+
+
+@cache
+def _written(name: str, params: tuple[Type, ...], dialect: str) -> bool:
+    """Whether a dialect has a builtin, or all that its polyfill calls."""
+    if signatures.text(name, dialect, params):
+        return True
+    try:
+        written = polyfill(name, params)
+    except KeyError:
+        return False
+    return all(
+        _written(expr.name, tuple([arg.type for arg in expr.args]), dialect)
+        for function in written.functions
+        for expr in all_expressions(function.body or ())
+        if isinstance(expr, Intrinsic)
+    )
 
 
 def run(backend: Backend, chosen: Sequence[Case]) -> list[Array]:
@@ -101,27 +127,47 @@ def run(backend: Backend, chosen: Sequence[Case]) -> list[Array]:
     found: list[Array | None] = [None] * len(chosen)
     for few in (True, False):
         numbers = [number for number, case in enumerate(chosen) if (case.lanes == FEW) == few]
-        for start in range(0, len(numbers), BATCH):
-            batch = numbers[start : start + BATCH]
+        for batch in _batches(numbers, chosen):
             for number, got in zip(batch, _program(backend, [chosen[number] for number in batch]), strict=True):
                 found[number] = got
     return [got for got in found if got is not None]
 
 
+def _batches(numbers: Sequence[int], chosen: Sequence[Case]) -> Iterator[list[int]]:
+    """The numbers of cases, as many as go into a program."""
+    batch: list[int] = []
+    names: set[str] = set()
+    for number in numbers:
+        named = {arg for arg in chosen[number].args if isinstance(arg, str)}
+        if len(batch) == BATCH or len(names | named) > TEXTURES:
+            yield batch
+            batch, names = [], set()
+        batch.append(number)
+        names |= named
+    if batch:
+        yield batch
+
+
 def _program(backend: Backend, chosen: Sequence[Case]) -> list[Array]:
-    lines = []
+    lines, calls = [], []
     for number, case in enumerate(chosen):
-        names = "abcd"[: len(case.params)]
-        params = ", ".join(f"{spell(type_)} {name}" for type_, name in zip(case.params, names, strict=True))
-        lines.append(f"{spell(case.result)} case_{number}({params}) {{ return {case.name}({', '.join(names)}); }}")
+        given = [index for index in range(len(case.params)) if index not in case.constant]
+        params = ", ".join(f"{spell(case.params[index])} p{index}" for index in given)
+        args = [f"p{at}" if at in given else _literal(case.params[at], case.args[at]) for at in range(len(case.params))]
+        lines.append(f"{spell(case.result)} case_{number}({params}) {{ return {case.name}({', '.join(args)}); }}")
+        passed = tuple(case.params[index] for index in given), case.result, tuple(case.args[index] for index in given)
+        calls.append(Call(f"case_{number}", *passed))
     made = transpile(load_text("\n".join(lines), "cases"), backend.target.name, "cases")
     text = next(text for name, text in made.files.items() if not name.endswith(".json"))
     renames = made.reflection["renames"]
-    calls = [
-        Call(renames.get(f"case_{number}", f"case_{number}"), case.params, case.result, case.args)
-        for number, case in enumerate(chosen)
-    ]
+    calls = [call._replace(function=renames.get(call.function, call.function)) for call in calls]
     return backend.run(Text(text), calls, textures())
+
+
+def _literal(type_: Type, value: Array) -> str:
+    """A constant argument, an int or a vector of them, as the program has it."""
+    numbers = ", ".join(str(part) for part in np.atleast_2d(value)[:, 0])
+    return f"{spell(type_)}({numbers})" if isinstance(type_, Vector) else numbers
 
 
 def oracle(case: Case, flush: bool = False) -> Array:
@@ -176,6 +222,7 @@ def _badness(row: Builtin, lanes: _Lanes) -> Array:
 def _lanes(case: Case, got: Array) -> _Lanes:
     """The errors of one overload, lane by lane."""
     exact = kind_of(case.result) != "float"
+    got = np.broadcast_to(got, (*got.shape[:-1], case.lanes))
     wanted: Array = np.broadcast_to(oracle(case), got.shape)
     tiny = _any_lane(wanted, case.lanes)
     for arg in case.args:

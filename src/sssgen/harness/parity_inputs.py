@@ -15,15 +15,12 @@ import numpy as np
 
 from ..ir import signatures
 from ..ir.intrinsics import BUILTINS, Builtin
-from ..ir.types import FLOAT, INT, Matrix, Sampler, Scalar, Type, Vector, components, kind_of, spell
+from ..ir.types import BY_NAME, INT, Matrix, Sampler, Scalar, Type, Vector, components, kind_of, spell
 from ..targets import numpy_runtime as runtime
 from ..targets.numpy_textures import Texture
 from .backends import Array
 from .backends.calls import grid
 from .evaluate import shape_of
-
-NEIGHBOURS = ("texture", "textureGrad")
-"""Texture reads whose level comes from neighbouring pixels, or from given derivatives."""
 
 FEW = 12
 """Lanes of the texture reads and derivatives."""
@@ -32,7 +29,14 @@ MIN, MAX = 2.0**-126, float(np.finfo(np.float32).max)
 """The smallest and the largest normal float32."""
 
 DTYPES: dict[str, Any] = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.bool_}
-TEXTURES = {"2D": "map", "3D": "volume", "Cube": "cube"}
+TEXTURES = {
+    "sampler2D": "map", "sampler3D": "volume", "samplerCube": "cube", "sampler2DArray": "layers",
+    "samplerCubeArray": "cubes", "sampler2DShadow": "shade", "samplerCubeShadow": "shades_around",
+    "sampler2DArrayShadow": "shades", "isampler2D": "ints", "isampler3D": "int_volume", "isamplerCube": "int_cube",
+    "isampler2DArray": "int_layers", "usampler2D": "uints", "usampler3D": "uint_volume", "usamplerCube": "uint_cube",
+    "usampler2DArray": "uint_layers",
+}  # fmt: skip
+"""Sampler type → the name of its texture."""
 UNIT = {"reflect": (1,), "refract": (0, 1)}
 """Arguments that are unit vectors."""
 
@@ -111,7 +115,12 @@ class Case(NamedTuple):
 
     @property
     def lanes(self) -> int:
-        return max(int(arg.shape[-1]) for arg in self.args if not isinstance(arg, str))
+        return max((int(arg.shape[-1]) for arg in self.args if not isinstance(arg, str)), default=FEW)
+
+    @property
+    def constant(self) -> tuple[int, ...]:
+        """The positions of arguments that are constants of the program; the same in all lanes."""
+        return tuple(index for index in self.row.constant if index < len(self.params))
 
 
 @cache
@@ -123,10 +132,10 @@ def cases(lanes: int) -> tuple[Case, ...]:
     found = []
     for row in BUILTINS.values():
         for params, (result, _) in signatures.overloads(row.name).items():
-            if row.name in NEIGHBOURS or row.kind == "derivative":
+            if row.kind == "derivative":
                 args = over_the_image(row, params)
             elif row.kind == "fetch":
-                args = _reads(row.name, params)
+                args = reads(row, params)
             else:
                 args = _drawn(row, params, lanes)
             found.append(Case(row.name, params, result, args))
@@ -135,13 +144,24 @@ def cases(lanes: int) -> tuple[Case, ...]:
 
 @cache
 def textures() -> dict[str, Texture]:
-    """A texture of each kind, of numbers that float16 holds."""
+    """A texture of each kind: of numbers that float16 holds, of depths, or of integers."""
     rng = np.random.default_rng(11)
-
-    def noise(dim: str, *size: int) -> Texture:
-        return Texture(rng.integers(0, 256, (*size, 4)).astype(np.float16) / np.float16(256.0), dim=dim, mipmaps=True)
-
-    return {"map": noise("2D", 8, 16), "volume": noise("3D", 4, 4, 8), "cube": noise("Cube", 6, 4, 4)}
+    sizes = {"2D": (8, 16), "3D": (4, 4, 8), "Cube": (6, 4, 4)}
+    found = {}
+    for spelt, name in TEXTURES.items():
+        type_ = BY_NAME[spelt]
+        assert isinstance(type_, Sampler)
+        size = (*((3,) if type_.array else ()), *sizes[type_.dim], 4)
+        plain = type_.kind == "float" and not type_.shadow
+        data: Array = rng.integers(0, 256, size).astype(np.float16) / np.float16(256.0)
+        if type_.kind != "float":
+            low = -(2**31) if type_.kind == "int" else 0
+            data = rng.integers(low, low + 2**32, size)
+        found[name] = Texture(
+            data, "linear" if type_.kind == "float" else "nearest", dim=type_.dim, mipmaps=plain,
+            layers=type_.array, kind=type_.kind, compare=type_.shadow,
+        )  # fmt: skip
+    return found
 
 
 def evaluated(expression: str, args: tuple[Any, ...]) -> Array:
@@ -276,45 +296,78 @@ def _fits(value: object, type_: Type) -> bool:
 # Textures and derivatives
 
 
-def _reads(name: str, params: tuple[Type, ...]) -> tuple[Any, ...]:
-    """Arguments of the reads that name their level; it is the same for all lanes where it is an integer."""
+CONSTANTS = {"ivec2": np.array([1, -2]), "ivec3": np.array([1, -2, 1]), "int": np.array(2)}
+"""Constant arguments: offsets in texels, a channel."""
+
+
+def reads(row: Builtin, params: tuple[Type, ...]) -> tuple[Any, ...]:
+    """Arguments of a texture read or of a question about a texture.
+
+    A level that is an integer is the same for all lanes, as are constants. Reads that look at neighbouring pixels, or
+    get derivatives, have coordinates that are linear over the image, two texels a pixel, so level 1 everywhere:
+    levels between are an implementation's own. The others have random ones.
+    """
     rng = np.random.default_rng(7)
-    args: list[Any] = []
-    for index, type_ in enumerate(params):
-        size = (*shape_of(type_), FEW)
-        if isinstance(type_, Sampler):
-            args.append(TEXTURES[type_.dim])
-        elif kind_of(type_) == "int":
-            args.append(np.ones(size, np.int32) if type_ == INT else rng.integers(0, 2, size).astype(np.int32))
+    sampler = params[0]
+    assert isinstance(sampler, Sampler)
+    name = TEXTURES[spell(sampler)]
+    texture = textures()[name]
+    layer = rng.integers(0, 3, FEW)
+    reference = (rng.integers(40, 216, FEW) + 0.5) / 256.0  # between the texels, which are multiples of 1/256
+    linear, slopes = _over_the_image(texture)
+    if row.domain != "uniform control flow" and "Grad" not in row.name:
+        linear = rng.uniform(-1.0, 2.0, linear.shape)
+        if texture.dim == "Cube":
+            linear[1] = 3.0  # to the middle of a cube's face
+    args: list[Any] = [name]
+    for index, type_ in enumerate(params[1:], 1):
+        last_int = type_ == INT and INT not in params[index + 1 :]
+        value: Array
+        if index in row.constant:
+            value = CONSTANTS[spell(type_)][..., None] * np.ones(FEW, np.int32)
+        elif isinstance(type_, Vector) and type_.kind == "int":
+            value = np.concatenate([rng.integers(0, 2, (texture.axes, FEW)), [layer]])[: type_.size]
+            value -= CONSTANTS[spell(type_)][..., None] * ("Offset" in row.name)  # what is read lies inside
+        elif index == 1 and isinstance(type_, Vector):
+            further = [layer + 0.25] * texture.layers + [reference] * texture.compare
+            value = np.concatenate([linear, *(one[None] for one in further)])[: type_.size]
+        elif isinstance(type_, Vector):
+            value = slopes[index - params.index(type_, 2)]
+        elif last_int and ("Fetch" in row.name or "Size" in row.name):
+            value = np.full(FEW, min(1, len(texture.levels) - 1))
+        elif type_ == INT:
+            value = layer
+        elif "Compare" in row.name:
+            value = reference
+        elif row.domain == "uniform control flow":
+            value = np.full(FEW, 1.0 if "Offset" in row.name else 0.5)  # a bias
         else:
-            value = rng.uniform(*((-1.0, 2.0) if index == 1 else (0.0, 3.0)), size)
-            if name == "textureLod" and params[0] == Sampler("Cube") and index == 1:
-                value[1] = 3.0  # to the middle of a cube's face
-            args.append(value.astype(np.float32))
+            value = rng.uniform(0.0, 3.0, FEW)  # a level
+            value = np.floor(value) if "Offset" in row.name else value  # SwiftShader mistakes those between
+        args.append(value.astype(DTYPES[kind_of(type_)]))
     return tuple(args)
 
 
-def over_the_image(row: Builtin, params: tuple[Type, ...]) -> tuple[Any, ...]:
-    """Arguments for what looks at neighbours: linear over the image, two texels a pixel, so level 1 everywhere.
+def _over_the_image(texture: Texture) -> tuple[Array, Array]:
+    """A coordinate that moves by two texels a pixel, (axes, lanes), and its two slopes, (2, axes, lanes)."""
+    width = grid(FEW).width
+    x, y = np.arange(FEW) % width - 2.0, np.arange(FEW) // width - 0.5
+    sizes = np.array(texture.size()).reshape(-1, 1)
+    steps = np.zeros((2, texture.axes, FEW))
+    steps[0, 0], steps[1, 1] = 2.0 / sizes[0], 2.0 / sizes[1]
+    coord = steps[0] * x + steps[1] * y + 0.3
+    if texture.dim == "Cube":
+        coord, steps = np.array([coord[0], np.full(FEW, 2.0), coord[1]]), 4.0 * steps[:, [0, 2, 1]]
+    return coord, steps
 
-    Levels between, and the coarse and the fine derivatives of anything else, are an implementation's own.
+
+def over_the_image(row: Builtin, params: tuple[Type, ...]) -> tuple[Any, ...]:
+    """Arguments of derivatives: linear over the image.
+
+    The coarse and the fine derivatives of anything else are an implementation's own.
     """
     width = grid(FEW).width
     x, y = np.arange(FEW) % width - 2.0, np.arange(FEW) // width - 0.5
-    first = params[0]
-    if not isinstance(first, Sampler):
-        slope = 0.5 * x - 0.25 * y
-        args = [slope * np.arange(1, components(type_) + 1)[:, None] for type_ in params]
-        return tuple(arg.reshape(*shape_of(first), FEW).astype(np.float32) for arg in args)
-    name = TEXTURES[first.dim]
-    sizes = np.array(textures()[name].size()).reshape(-1, 1)
-    cube = first.dim == "Cube"
-    steps = np.zeros((2, 3 if cube else len(sizes), FEW))
-    steps[0, 0], steps[1, 1] = 2.0 / sizes[0], 2.0 / sizes[1]
-    coord = steps[0] * x + steps[1] * y + 0.3
-    if cube:
-        coord, steps = np.array([coord[0], np.full(FEW, 2.0), coord[1]]), 4.0 * steps[:, [0, 2, 1]]
-    given = [coord, *steps] if row.name == "textureGrad" else [coord]
-    if params[-1] == FLOAT:
-        given.append(np.full(FEW, 0.5))
-    return (name, *[arg.astype(np.float32) for arg in given])
+    slope = 0.5 * x - 0.25 * y
+    args = [slope * np.arange(1, components(type_) + 1)[:, None] for type_ in params]
+    return tuple(arg.reshape(*shape_of(params[0]), FEW).astype(np.float32) for arg in args)

@@ -51,9 +51,16 @@ class Struct(NamedTuple):
 
 
 class Sampler(NamedTuple):
-    """A texture together with its sampler; `dim` is 2D, 3D or Cube."""
+    """A texture together with its sampler.
+
+    `dim` is 2D, 3D or Cube, `kind` that of its texels: float, int or uint; `array` says that it has layers, `shadow`
+    that a read compares.
+    """
 
     dim: str
+    kind: str = "float"
+    array: bool = False
+    shadow: bool = False
 
 
 class Void(NamedTuple):
@@ -74,6 +81,14 @@ for _size in (2, 3, 4):
     BY_NAME[f"mat{_size}"] = BY_NAME[f"mat{_size}x{_size}"] = Matrix(_size)
 for _dim in ("2D", "3D", "Cube"):
     BY_NAME[f"sampler{_dim}"] = Sampler(_dim)
+for _dim in ("2D", "Cube"):
+    BY_NAME[f"sampler{_dim}Array"] = Sampler(_dim, array=True)
+    BY_NAME[f"sampler{_dim}Shadow"] = Sampler(_dim, shadow=True)
+BY_NAME["sampler2DArrayShadow"] = Sampler("2D", array=True, shadow=True)
+for _kind, _prefix in (("int", "i"), ("uint", "u")):
+    for _dim in ("2D", "3D", "Cube"):
+        BY_NAME[f"{_prefix}sampler{_dim}"] = Sampler(_dim, _kind)
+    BY_NAME[f"{_prefix}sampler2DArray"] = Sampler("2D", _kind, array=True)
 
 _NAMES: dict[Type, str] = {}
 for _name, _type in BY_NAME.items():

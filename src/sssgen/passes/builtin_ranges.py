@@ -45,7 +45,8 @@ def result(name: str, args: tuple[Value, ...], size: int, format: Format) -> Who
     """The components of a builtin's result, not yet rounded, and its length (ANY: what the components say)."""
     text = BUILTINS[name].range
     if text.startswith("whole:"):
-        return _WHOLE[text.removeprefix("whole: ").partition("(")[0]](format, *args)
+        parts, length = _WHOLE[text.removeprefix("whole: ").partition("(")[0]](format, *args)
+        return parts[:size], length
     if not text:
         return [ANY] * size, ANY
     error = _ERRORS.get(name)

@@ -36,9 +36,10 @@ from ..ir.nodes import (
     Return,
     Span,
     Stmt,
+    Swizzle,
     While,
 )
-from ..ir.types import FLOAT, Scalar, Type
+from ..ir.types import FLOAT, Sampler, Scalar, Type, components, vector_of
 from ..ir.walk import all_expressions, operands, statements, subexpressions, with_operands, written_root
 from .divergence import Divergence, Site, Summary, joined, summaries
 from .scopes import declared, fresh
@@ -331,22 +332,32 @@ class _Hoister:
         if not expr.name.startswith("texture"):
             self.note(f"{expr.name} is taken as 0 here", expr.span)
             return _zero(expr.type, expr.span)
-        map_, at, *bias = expr.args
-        coordinates = self.start(at)
+        map_, at, *rest = expr.args
+        assert isinstance(map_.type, Sampler)
+        known = expr.name in ("texture", "textureOffset")
+        if not known or (map_.type.shadow and map_.type != Sampler("2D", shadow=True)):
+            return expr  # there is none with a level of its own
+        offset = rest[:1] if expr.name == "textureOffset" else []
+        bias = rest[len(offset) :]
+        ending = "Offset" if offset else ""
+        coordinates = self.start(at) if not map_.type.shadow else None
         if coordinates is None or not any(map(self.may_vary, subexpressions(coordinates))):
             self.note(f"{_words(map_)} is read at level 0 here", expr.span)
             level = bias[0] if bias else Literal(FLOAT, 0.0, expr.span)
-            return Intrinsic(expr.type, "textureLod", (map_, at, level), expr.span)
+            return Intrinsic(expr.type, f"textureLod{ending}", (map_, at, level, *offset), expr.span)
         name = coordinates.name if isinstance(coordinates, Local) else "coordinates"
+        if map_.type.array:  # the layer has no slope
+            letters = "xyzw"[: components(at.type) - 1]
+            coordinates = Swizzle(vector_of("float", len(letters)), coordinates, letters, expr.span)
         slopes: list[Expr] = []
-        for builtin, ending in (("dFdx", "dx"), ("dFdy", "dy")):
-            slope = Intrinsic(at.type, builtin, (coordinates,), expr.span)
-            slopes.append(self.hoisted(slope, f"{name}_{ending}", expr.span))
+        for builtin, axis in (("dFdx", "dx"), ("dFdy", "dy")):
+            slope = Intrinsic(coordinates.type, builtin, (coordinates,), expr.span)
+            slopes.append(self.hoisted(slope, f"{name}_{axis}", expr.span))
         if bias:
             scale = Intrinsic(FLOAT, "exp2", (bias[0],), expr.span)
-            slopes = [Binary(at.type, "*", slope, scale, expr.span) for slope in slopes]
+            slopes = [Binary(slope.type, "*", slope, scale, expr.span) for slope in slopes]
         self.note(f"{_words(map_)} is read here at the level that its coordinates had before", expr.span)
-        return Intrinsic(expr.type, "textureGrad", (map_, at, *slopes), expr.span)
+        return Intrinsic(expr.type, f"textureGrad{ending}", (map_, at, *slopes, *offset), expr.span)
 
     def may_vary(self, part: Expr) -> bool:
         """Whether it is a variable."""

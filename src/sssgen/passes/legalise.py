@@ -344,9 +344,11 @@ class _Legaliser:
                 return ir.Unary(call.type, text[3:], call.args[0], call.span)
             return ir.Binary(call.type, text[3:], call.args[0], call.args[1], call.span)
         if text == "":
-            if not row.polyfill:
-                raise Unsupported(f"this target has no {call.name}", call.span)
-            return self.call_polyfill(call, types)
+            try:
+                module = self.polyfill(call.name, types)
+            except KeyError:
+                raise Unsupported(f"this target has no {call.name}", call.span) from None
+            return self.call_polyfill(call, module)
         if self.language in row.splat and isinstance(call.type, Vector):
             args = tuple(
                 ir.Construct(Vector(kind_of(arg.type), call.type.size), (arg,), arg.span)
@@ -364,9 +366,8 @@ class _Legaliser:
             known = self.texts[name, types] = signatures.text(name, self.dialect, types)
         return known
 
-    def call_polyfill(self, call: ir.Intrinsic, types: list[Type]) -> ir.Expr:
+    def call_polyfill(self, call: ir.Intrinsic, module: ir.Module) -> ir.Expr:
         """The polyfill's expression itself where it is short and its arguments are cheap, else a call of it."""
-        module = self.polyfill(call.name, types)
         function = module.functions[-1]
         placed = in_place(module, call.args, call.span)
         if placed is not None:

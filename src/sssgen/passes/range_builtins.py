@@ -15,7 +15,8 @@ from .shapes import hull_of, scalars
 from .sites import TEXEL
 from .vectors import Value
 
-FETCHES = ("texture", "textureLod", "textureGrad", "texelFetch")
+FETCHES = frozenset(name for name, row in BUILTINS.items() if row.range == "whole: texels(x)")
+"""What gives texels."""
 
 
 class Builtins(Known):
@@ -26,7 +27,7 @@ class Builtins(Known):
         args, needed = self.guarded(node, args)
         size = scalars(node.type)
         parts, length = builtin_ranges.result(node.name, args, size, self.format)
-        if kind_of(node.type) != "float" and not row.range:
+        if kind_of(node.type) != "float" and (not row.range or node.name in FETCHES):
             return self.unknown(node.type)
         if node.name in FETCHES and args[0].texel is not None and not args[0].texel.finite and as_texel:
             limits = (args[0].texel.low, args[0].texel.high)

@@ -101,6 +101,7 @@ class HlslPrinter(Printer):
                 name=texture.name,
                 sampler=self.sampler(texture.name),
                 type=self.type(texture.type),
+                sampler_type=self.sampler_type(texture.type),
                 dim=texture.type.dim.upper(),  # type: ignore[union-attr]  # textures have sampler types
                 binding=binding,
             )

@@ -18,9 +18,23 @@ __all__ = [
     "fwidthCoarse",
     "fwidthFine",
     "texelFetch",
+    "texelFetchLayer",
+    "texelFetchOffset",
     "texture",
+    "textureCompare",
+    "textureCompareLod",
+    "textureGather",
+    "textureGatherOffset",
     "textureGrad",
+    "textureGradOffset",
+    "textureLayer",
+    "textureLayerGrad",
+    "textureLayerLod",
     "textureLod",
+    "textureLodOffset",
+    "textureOffset",
+    "textureQueryLevels",
+    "textureQueryLod",
     "textureSize",
 ]
 
@@ -34,27 +48,121 @@ def _level(level: Value) -> int:
 
 def textureSize(texture: Texture, level: Value) -> Value:
     """Of one level for all lanes."""
-    return np.array(texture.size(_level(level)), np.int32)[:, None]
+    count = (len(texture.levels[0]),) if texture.layers else ()
+    return np.array((*texture.size(_level(level)), *count), np.int32)[:, None]
+
+
+def textureQueryLevels(texture: Texture) -> Value:
+    return np.int32(len(texture.levels))
+
+
+def textureQueryLod(texture: Texture, coord: Value) -> Value:
+    """The level that is read, and the one that derivatives give; it needs a `grid`."""
+    level = texture.level(coord, dFdx(coord), dFdy(coord))
+    return np.stack([np.clip(level, 0.0, len(texture.levels) - 1), level])
+
+
+def _by_derivatives(texture: Texture, coord: Value, bias: Value) -> Value:
+    """The level that a read takes by itself. With mipmaps it needs a `grid`, whose derivatives tell it."""
+    if len(texture.levels) == 1:
+        return 0.0
+    place = coord[: texture.axes]
+    return texture.level(place, dFdx(place), dFdy(place)) + bias
 
 
 def texture(texture: Texture, coord: Value, bias: Value = 0.0) -> Value:
-    """With mipmaps it needs a `grid`, from whose derivatives the level comes."""
-    if len(texture.levels) == 1:
-        return texture.sample(coord)
-    return texture.sample(coord, texture.level(coord, dFdx(coord), dFdy(coord)) + bias)
+    """With mipmaps it needs a `grid`, from whose derivatives the level comes. A texture that compares has the reference
+    as the last component."""
+    if texture.compare:
+        return textureCompare(texture, coord[:-1], coord[-1])
+    return texture.sample(coord, _by_derivatives(texture, coord, bias))
+
+
+def textureOffset(texture: Texture, coord: Value, offset: Value, bias: Value = 0.0) -> Value:
+    """The offset is the same in all lanes."""
+    return texture.sample(coord, _by_derivatives(texture, coord, bias), _first(offset))
 
 
 def textureLod(texture: Texture, coord: Value, level: Value) -> Value:
+    if texture.compare:
+        return textureCompareLod(texture, coord[:-1], coord[-1])
     return texture.sample(coord, level)
 
 
+def textureLodOffset(texture: Texture, coord: Value, level: Value, offset: Value) -> Value:
+    """The offset is the same in all lanes."""
+    return texture.sample(coord, level, _first(offset))
+
+
 def textureGrad(texture: Texture, coord: Value, dx: Value, dy: Value) -> Value:
-    return texture.sample(coord, texture.level(coord, dx, dy))
+    return texture.sample(coord, texture.level(coord[: texture.axes], dx, dy))
+
+
+def textureGradOffset(texture: Texture, coord: Value, dx: Value, dy: Value, offset: Value) -> Value:
+    """The offset is the same in all lanes."""
+    return texture.sample(coord, texture.level(coord, dx, dy), _first(offset))
 
 
 def texelFetch(texture: Texture, place: Value, level: Value) -> Value:
     """Of one level for all lanes; 0 outside of it. In the working precision."""
-    return texture.fetch(place, _level(level)).astype(working())
+    texels = texture.fetch(place, _level(level))
+    return texels if texels.dtype.kind in "iu" else texels.astype(working())
+
+
+def texelFetchOffset(texture: Texture, place: Value, level: Value, offset: Value) -> Value:
+    return texelFetch(texture, place + offset, level)
+
+
+def textureGather(texture: Texture, coord: Value, channel: Value = 0) -> Value:
+    """Of one channel for all lanes, at level 0."""
+    return texture.gather(coord, _level(channel))
+
+
+def textureGatherOffset(texture: Texture, coord: Value, offset: Value, channel: Value = 0) -> Value:
+    """The offset is the same in all lanes."""
+    return texture.gather(coord, _level(channel), _first(offset))
+
+
+def _first(offset: Value) -> Value:
+    """The offset of all lanes, (2, 1) or (3, 1): that of the first."""
+    return np.asarray(offset).reshape(len(offset), -1)[:, :1]
+
+
+# Layers and references as arguments of their own
+
+
+def textureLayer(texture: Texture, coord: Value, layer: Value, bias: Value = 0.0) -> Value:
+    whole = _with(coord, layer)
+    return texture.sample(whole, _by_derivatives(texture, whole, bias))
+
+
+def textureLayerLod(texture: Texture, coord: Value, layer: Value, level: Value) -> Value:
+    return texture.sample(_with(coord, layer), level)
+
+
+def textureLayerGrad(texture: Texture, coord: Value, layer: Value, dx: Value, dy: Value) -> Value:
+    return texture.sample(_with(coord, layer), texture.level(coord, dx, dy))
+
+
+def texelFetchLayer(texture: Texture, place: Value, layer: Value, level: Value) -> Value:
+    return texelFetch(texture, _with(place, layer), level)
+
+
+def textureCompare(texture: Texture, coord: Value, *rest: Value) -> Value:
+    """At level 0, as depth textures have no other here. `rest`: a layer where there are layers, the reference."""
+    *layer, reference = rest
+    whole = _with(coord, *layer)
+    return texture.sample(whole, 0.0, reference=np.asarray(reference, whole.dtype))[0]
+
+
+textureCompareLod = textureCompare
+
+
+def _with(coord: Value, *more: Value) -> Value:
+    """A coordinate with further components."""
+    lanes = np.broadcast_shapes(coord.shape[-1:], *(np.shape(one)[-1:] for one in more))
+    parts = [np.broadcast_to(np.asarray(one).astype(coord.dtype), lanes) for one in (*coord, *more)]
+    return np.stack(parts)
 
 
 # Derivatives: differences within quads of 2×2 pixels, row by row and column by column (the "fine" ones)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import product
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -24,15 +24,26 @@ _FACES = np.array(
 )
 
 
+class _Read(NamedTuple):
+    """What a filtered read has beside its coordinate and level."""
+
+    layer: Array | None
+    offset: Array | None
+    reference: Array | None
+
+
 class Texture:
     """An image to sample.
 
     `data` is (height, width, channels), (depth, height, width, channels), or for `dim="Cube"` (6, size, size,
-    channels) with the faces +x, -x, +y, -y, +z, -z; row 0 is at v = 0. Missing channels read as 0, alpha as 1.
+    channels) with the faces +x, -x, +y, -y, +z, -z; row 0 is at v = 0. With `layers`, an axis for them stands in front.
+    Missing channels read as 0, alpha as 1.
     Texel i of N has its centre at (i + 0.5)/N. `filter` is linear or nearest; `wrap` is repeat, clamp or mirror (a cube
     wraps over its edges; at a corner one of the three faces gives the missing texel). With `mipmaps`, each level is
     the box-filtered one before it, and reads blend the two nearest levels; without, there is level 0 alone.
-    Samples have the floating-point type of the coordinate.
+    Samples have the floating-point type of the coordinate. `kind` is that of the texels: float, or int or uint, which
+    are only fetched. With `compare`, a read compares: 1 where the reference is at most the texel's first channel, else
+    0, and filters that.
     """
 
     def __init__(
@@ -42,30 +53,46 @@ class Texture:
         wrap: str = "repeat",
         dim: str = "",
         mipmaps: bool = False,
+        *,
+        layers: bool = False,
+        kind: str = "float",
+        compare: bool = False,
     ) -> None:
         data = np.asarray(data)
-        self.dim = dim or {3: "2D", 4: "3D"}.get(data.ndim, "")
-        if data.ndim != {"2D": 3, "3D": 4, "Cube": 4}.get(self.dim) or not 1 <= data.shape[-1] <= 4:
+        self.layers, self.kind, self.compare = layers, kind, compare
+        self.dim = dim or {3: "2D", 4: "3D"}.get(data.ndim - layers, "")
+        if data.ndim - layers != {"2D": 3, "3D": 4, "Cube": 4}.get(self.dim) or not 1 <= data.shape[-1] <= 4:
             raise ValueError(f"data of shape {data.shape} is no {self.dim or 'texture'}: see Texture")
-        if self.dim == "Cube" and (data.shape[0] != 6 or data.shape[1] != data.shape[2]):
+        if self.dim == "Cube" and (data.shape[-4] != 6 or data.shape[-3] != data.shape[-2]):
             raise ValueError(f"a cube has 6 square faces, not {data.shape[:-1]}")
         if filter not in ("linear", "nearest") or wrap not in ("repeat", "clamp", "mirror"):
             raise ValueError(f"filter={filter!r}, wrap={wrap!r}: see Texture")
         self.filter, self.wrap = filter, wrap
-        filled = np.zeros((*data.shape[:-1], 4), np.result_type(data, np.float16))
-        filled[..., 3] = 1.0
+        floating: np.dtype[Any] = np.result_type(data, np.float16)
+        numbers = {"float": floating, "int": np.dtype(np.int32), "uint": np.dtype(np.uint32)}[kind]
+        filled = np.zeros((*data.shape[:-1], 4), numbers)
+        filled[..., 3] = 1
         filled[..., : data.shape[-1]] = data
         self.levels = [filled]
         while mipmaps and max(self.size(len(self.levels) - 1)) > 1:
             self.levels.append(self._halve(self.levels[-1]))
 
+    @property
+    def axes(self) -> int:
+        """How many components a coordinate has, without that for the layer."""
+        return 2 if self.dim == "2D" else 3
+
     def size(self, level: int = 0) -> tuple[int, ...]:
         """Width, height and, for 3D, depth of a level in texels."""
-        shape: tuple[int, ...] = self.levels[level].shape[:-1]
-        return shape[:0:-1] if self.dim == "Cube" else shape[::-1]
+        shape: tuple[int, ...] = self.levels[level].shape[self._outer() : -1]
+        return shape[::-1]
+
+    def _outer(self) -> int:
+        """How many axes there are before those of the texels' places: for layers, for a cube's faces."""
+        return self.layers + (self.dim == "Cube")
 
     def level(self, coord: Array, dx: Array, dy: Array) -> Array:
-        """The level of detail, (n,), for a coordinate that changes by dx and dy from pixel to pixel.
+        """The level of detail, (n,), for a coordinate (without a layer) that changes by dx and dy from pixel to pixel.
 
         log2 of the longer of the two steps in texels; on a cube, of the step across the face's plane.
         """
@@ -77,51 +104,86 @@ class Texture:
             level: Array = (0.5 * np.log2(step)).astype(coord.dtype)
         return level
 
-    def sample(self, coord: Array, level: float | Array = 0.0) -> Array:
-        """The filtered texels, (4, n), at coordinates (2, n) or (3, n); `level` is () or (n,)."""
+    def sample(
+        self, coord: Array, level: float | Array = 0.0, offset: Array | None = None, reference: Array | None = None
+    ) -> Array:
+        """The filtered texels, (4, n), at coordinates (2, n) or (3, n), one more for a layer; `level` is () or (n,).
+
+        `offset`, (2, 1) or (3, 1), is in texels of each level. With a `reference`, () or (n,), the texels are 1 or 0.
+        """
+        coord, layer = self._layer(coord)
+        read = _Read(layer, offset, reference)
         with np.errstate(all="ignore"):
             if len(self.levels) == 1:
-                return self._sample(0, coord)
+                return self._sample(0, coord, read)
             detail = np.clip(np.asarray(level, coord.dtype), 0.0, len(self.levels) - 1)
             result = np.zeros((4, *np.broadcast_shapes(detail.shape, coord.shape[-1:])), coord.dtype)
             for number in range(len(self.levels)):
                 weight = np.maximum(1.0 - np.abs(detail - number), 0.0)
                 if weight.any():
-                    result += weight * self._sample(number, coord)
+                    result += weight * self._sample(number, coord, read)
             return result
 
+    def gather(self, coord: Array, channel: int, offset: Array | None = None) -> Array:
+        """One channel of the four texels, (4, n), that a linear filter takes at level 0: from the lower left one on,
+        (0, 1), (1, 1), (1, 0), (0, 0)."""
+        with np.errstate(all="ignore"):
+            low = [np.floor(c * n - 0.5) for c, n in zip(coord, self.size(), strict=True)]
+        moved = np.zeros((2, 1), np.int64) if offset is None else offset
+        corners = [
+            self._wrapped(0, [_whole(p) + bit + o for p, bit, o in zip(low, corner, moved, strict=True)], None, None)
+            for corner in ((0, 1), (1, 1), (1, 0), (0, 0))
+        ]
+        return np.stack([texels[channel] for texels in corners]).astype(coord.dtype)
+
     def fetch(self, place: Array, level: int = 0) -> Array:
-        """The texels, (4, n), at integer places (2, n) or (3, n); 0 outside."""
-        size = np.array(self.size(level)).reshape(-1, 1)
+        """The texels, (4, n), at integer places (2, n) or (3, n), one more for a layer; 0 outside."""
+        count = (len(self.levels[0]),) if self.layers else ()
+        size = np.array((*self.size(level), *count)).reshape(-1, 1)
         inside = ((place >= 0) & (place < size)).all(axis=0)
         return np.where(inside, self._texels(level, list(np.clip(place, 0, size - 1))), 0)
 
+    def _layer(self, coord: Array) -> tuple[Array, Array | None]:
+        """The coordinate without its last component where that is the layer, and the layer."""
+        if not self.layers:
+            return coord, None
+        return coord[:-1], np.clip(_whole(np.rint(coord[-1])), 0, len(self.levels[0]) - 1)
+
     def _texels(self, level: int, places: list[Array]) -> Array:
-        """The texels at x, y, (z or face)."""
+        """The texels at x, y, (z or face), (layer)."""
         return np.moveaxis(self.levels[level][tuple(places[::-1])], -1, 0)
 
-    def _sample(self, level: int, coord: Array) -> Array:
+    def _sample(self, level: int, coord: Array, read: _Read) -> Array:
         size = self.size(level)
         face = None
         if self.dim == "Cube":
             face, coord = _project(coord)
         base = [c * n - (0.5 if self.filter == "linear" else 0.0) for c, n in zip(coord, size, strict=True)]
-        low = [np.nan_to_num(np.floor(b)) for b in base]
+        low = [np.floor(b) for b in base]
+        moved = np.zeros((len(base), 1), np.int64) if read.offset is None else read.offset
+
+        def texels(corner: tuple[int, ...]) -> Array:
+            places = [_whole(p) + bit + o for p, bit, o in zip(low, corner, moved, strict=True)]
+            found = self._wrapped(level, places, face, read.layer)
+            if read.reference is not None:
+                found = np.where(read.reference <= found[:1].astype(coord.dtype), 1.0, 0.0)
+            return found.astype(coord.dtype)
+
         if self.filter == "nearest":
-            return self._wrapped(level, [p.astype(np.int64) for p in low], face).astype(coord.dtype)
+            return texels((0,) * len(base))
         result = np.zeros((4, *coord.shape[1:]), coord.dtype)
         for corner in product((0, 1), repeat=len(base)):
             weight = np.ones((), coord.dtype)
             for b, p, bit in zip(base, low, corner, strict=True):
                 weight = weight * (b - p if bit else 1.0 - (b - p))
-            places = [p.astype(np.int64) + bit for p, bit in zip(low, corner, strict=True)]
-            result += weight * self._wrapped(level, places, face).astype(coord.dtype)
+            result = result + weight * texels(corner)
         return result
 
-    def _wrapped(self, level: int, places: list[Array], face: Array | None) -> Array:
+    def _wrapped(self, level: int, places: list[Array], face: Array | None, layer: Array | None) -> Array:
         size = self.size(level)
+        rest = [] if layer is None else [layer]
         if face is not None:
-            return self._texels(level, _over_edges(places, size[0], face))
+            return self._texels(level, [*_over_edges(places, size[0], face), *rest])
         wrapped = []
         for p, n in zip(places, size, strict=True):
             if self.wrap == "clamp":
@@ -131,11 +193,11 @@ class Texture:
             else:
                 p = np.minimum(p % (2 * n), 2 * n - 1 - p % (2 * n))
             wrapped.append(p)
-        return self._texels(level, wrapped)
+        return self._texels(level, [*wrapped, *rest])
 
     def _halve(self, data: Array) -> Array:
         """The next level: each axis of N texels averaged into N // 2; an odd N shares its texels by area."""
-        for axis in range(1 if self.dim == "Cube" else 0, data.ndim - 1):
+        for axis in range(self._outer(), data.ndim - 1):
             data = np.moveaxis(data, axis, 0)
             count = len(data) // 2
             if len(data) > 1 and len(data) % 2 == 0:
@@ -145,6 +207,11 @@ class Texture:
                 data = (data[:-1:2] * (count - i) + data[1::2] * count + data[2::2] * (i + 1)) / len(data)
             data = np.moveaxis(data, 0, axis)
         return data
+
+
+def _whole(number: Array) -> Array:
+    """Whole floats as integers; NaN gives 0."""
+    return np.nan_to_num(number).astype(np.int64)
 
 
 def _project(direction: Array) -> tuple[Array, Array]:

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import NamedTuple
 
+from ..diagnostics import failure
 from ..ir import nodes as ir
 from ..ir import signatures
 from ..ir.formats import FLOAT32, Format
@@ -27,6 +28,8 @@ _COLOR_LETTERS = str.maketrans("xyzw", "rgba")
 UNARY, POSTFIX, PRIMARY, TERNARY = 13, 14, 15, -1
 _SUM, _RELATIONAL, _EQUALITY = PRECEDENCE["+"], PRECEDENCE["<"], PRECEDENCE["=="]
 _ALONE = frozenset(("<<", ">>", "&", "|", "^", "&&", "||"))
+_SMALLEST = 2.0**-126
+"""The smallest float32 that is no subnormal number."""
 WIDTH = 110
 """Lines longer than this are broken at a call's arguments."""
 
@@ -61,6 +64,10 @@ class Printer:
         self.by_key = {function.key: function for function in module.functions}
         self.function: ir.Function | None = None
         self.comments: Comments = no_comments
+        self.told: set[tuple[str, int]] = set()
+        """The lines of the source whose comments stand in the function at hand."""
+        self.kept = False
+        """Whether numbers have the digits that they were written with."""
         self.texts: dict[tuple[str, tuple[Type, ...]], str] = {}
         self.stage: Stage | None = None
         """The interface of a whole shader."""
@@ -73,7 +80,14 @@ class Printer:
             return type_.name
         if isinstance(type_, Array):
             return f"{self.type(type_.element)}[{type_.length}]"
+        if spell(type_) not in self.target.types:
+            raise failure(f"{self.target.title} has no {spell(type_)}")
         return self.target.types[spell(type_)]
+
+    def sampler_type(self, type_: Type) -> str:
+        """The type of a texture's sampler, where that is a thing of its own: one that compares has another."""
+        compares = isinstance(type_, Sampler) and type_.shadow
+        return self.target.types.get("samplerShadow" if compares else "sampler", "")
 
     def variable(self, type_: Type, name: str) -> str:
         """A declaration of a variable: C puts an array's length behind the name."""
@@ -83,7 +97,7 @@ class Printer:
 
     def literal(self, literal: ir.Literal) -> str:
         if literal.type == FLOAT:
-            return float_text(float(literal.value))
+            return float_text(float(literal.value), self.kept)
         if literal.type == INT:
             return str(literal.value) if literal.value != -2147483648 else "(-2147483647 - 1)"
         if literal.type == UINT:
@@ -196,6 +210,7 @@ class Printer:
                 "bare_texture": bare.format(name=texture),
                 "bare_sampler": self.target.textures.get("bare_sampler", "{name}").format(name=sampler),
                 "dim": first.type.dim.upper(),
+                "channel": _channel(call.args[-1]),
             }
         args = [self.expr(arg) if not isinstance(arg.type, Sampler) else "" for arg in call.args]
         return text.format(*args, type=self.type(call.type), **named), PRIMARY
@@ -215,14 +230,13 @@ class Printer:
 
     def block(self, block: ir.Block, indent: int) -> list[Line]:
         lines: list[Line] = []
-        told: tuple[str, int] | None = None
         for stmt in block:
             place = (stmt.span.file, stmt.span.line)
-            if place != told:
+            if place not in self.told:
+                self.told.add(place)
                 lines += [
                     Line(f"{'    ' * indent}// {comment_text(text)}", stmt.span) for text in self.comments(*place)
                 ]
-                told = place
             lines.extend(self.statement(stmt, indent))
         return lines
 
@@ -292,6 +306,7 @@ class Printer:
                 name=param.name,
                 sampler=self.sampler(param.name),
                 type=self.type(param.type),
+                sampler_type=self.sampler_type(param.type),
                 dim=param.type.dim.upper(),
             )
         text = self.variable(param.type, param.name)
@@ -305,6 +320,7 @@ class Printer:
         """A function with the first line of its documentation."""
         body = function.body or ()
         self.function = function
+        self.told = {(function.span.file, function.span.line)}
         lines = [Line(f"// {text}", function.span) for text in summary(function.doc)]
         lines += wrap(f"{self.signature(function)} {{", function.span)
         lines += self.block(body, 1)
@@ -348,6 +364,12 @@ class Printer:
         return []
 
 
+def _channel(arg: ir.Expr) -> str:
+    """The colour that a literal int numbers; Red for anything else."""
+    number = int(arg.value) if isinstance(arg, ir.Literal) and arg.type == INT else 0
+    return ("Red", "Green", "Blue", "Alpha")[number] if 0 <= number < 4 else "Red"
+
+
 def documented(text: str, uniform: ir.Uniform) -> Line:
     """A uniform's declaration with the first sentence of its documentation, where that fits on the line."""
     words = comment_text(" ".join(uniform.doc.split()).split(". ")[0].rstrip("."))
@@ -355,8 +377,10 @@ def documented(text: str, uniform: ir.Uniform) -> Line:
     return Line(full if words and len(full) <= WIDTH else text, uniform.span)
 
 
-def float_text(value: float) -> str:
-    """The shortest decimal that reads back to the same float32, always with a point."""
+def float_text(value: float, kept: bool = False) -> str:
+    """The shortest decimal that reads back to the same float32, always with a point; `kept`: to the same float64."""
+    if kept and _SMALLEST <= abs(value) < FLOAT_MAX:
+        return _with_point(repr(value))
     if abs(value) > FLOAT_MAX:  # the largest float: any shorter decimal is beyond it, which WGSL refuses
         value = math.copysign(FLOAT_MAX, value)
     if abs(value) == FLOAT_MAX:
@@ -376,7 +400,12 @@ def shortest(value: float, format: Format) -> str:
             break
     mantissa, _, exponent = text.partition("e")
     if exponent and -5 < int(exponent) < 8:
-        mantissa, exponent = f"{float(text):.{max(1, digits - int(exponent) - 1)}f}", ""
+        text = f"{float(text):.{max(1, digits - int(exponent) - 1)}f}"
+    return _with_point(text)
+
+
+def _with_point(text: str) -> str:
+    mantissa, _, exponent = text.partition("e")
     if "." not in mantissa:
         mantissa += ".0"
     return f"{mantissa}e{int(exponent)}" if exponent else mantissa

@@ -14,7 +14,7 @@ _TEXELS = {
     "default_gray": "[0.5, 0.5, 0.5, 1.0]",
     "default_bump": "[0.5, 0.5, 1.0, 1.0]",
 }
-_SHAPES = {"2D": "[[{}]]", "3D": "[[[{}]]]", "Cube": '[[[{}]]] * 6, dim="Cube"'}
+_SHAPES = {"2D": "[[{}]]", "3D": "[[[{}]]]", "Cube": "[[[{}]]] * 6"}
 _BREAK = re.compile(r"[(\[]|[)\]]|(?<=,) | (?=[-+*/&|<>]+ )")
 
 
@@ -61,4 +61,11 @@ def texture_text(texture: Uniform) -> str:
     assert isinstance(texture.type, Sampler)
     hints = {name for name, _ in texture.hints}
     texel = next((text for hint, text in _TEXELS.items() if hint in hints), _TEXELS["default_white"])
-    return f"Texture({_SHAPES[texture.type.dim].format(texel)})"
+    type_ = texture.type
+    data = _SHAPES[type_.dim].format(texel if type_.kind == "float" else "[0, 0, 0, 0]")
+    options = {"dim": '"Cube"'} if type_.dim == "Cube" else {}
+    options |= {"layers": "True"} if type_.array else {}
+    options |= {"kind": f'"{type_.kind}"'} if type_.kind != "float" else {}
+    options |= {"compare": "True"} if type_.shadow else {}
+    named = "".join(f", {name}={value}" for name, value in options.items())
+    return f"Texture({f'[{data}]' if type_.array else data}{named})"

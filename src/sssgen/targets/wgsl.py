@@ -121,7 +121,7 @@ class WgslPrinter(Printer):
             at = self.binding(index)
             for half, name, type_ in (
                 ("texture", texture.name, self.type(texture.type)),
-                ("sampler", self.sampler(texture.name), "sampler"),
+                ("sampler", self.sampler(texture.name), self.sampler_type(texture.type)),
             ):
                 place = f"@group({at['group']}) @binding({at[half]})"
                 lines.append(Line(f"{place} var {name}: {type_};", texture.span))

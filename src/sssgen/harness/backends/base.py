@@ -51,6 +51,8 @@ class Backend(ABC):
 
     name: str
     target: Target
+    unmade: frozenset[str] = frozenset()
+    """Sampler types that the target has, and of which this cannot make textures."""
 
     @abstractmethod
     def device(self) -> str:

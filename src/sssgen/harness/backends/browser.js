@@ -110,12 +110,13 @@ function bindBlocks(plan, groups, piece, keep) {
 
 function bindTextures(plan, groups, piece, keep) {
   for (const texture of plan.textures) {
-    const { group, binding, sampler, view, filter, wrap } = texture;
+    const { group, binding, sampler, view, filter, wrap, compare } = texture;
     groups[group].push({ binding, resource: keep(uploaded(texture, piece)).createView({ dimension: view }) });
     if (sampler < 0) continue;
     const wraps = { addressModeU: wrap, addressModeV: wrap, addressModeW: wrap };
     const filters = { magFilter: filter, minFilter: filter, mipmapFilter: "linear" };
-    groups[group].push({ binding: sampler, resource: device.createSampler({ ...wraps, ...filters }) });
+    const compares = compare ? { compare } : {};
+    groups[group].push({ binding: sampler, resource: device.createSampler({ ...wraps, ...filters, ...compares }) });
   }
 }
 

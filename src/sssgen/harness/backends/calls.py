@@ -107,9 +107,10 @@ _HALF = {
 
 _TEXTURES = {
     "glsl": "uniform highp {type} {name};",
-    "hlsl": "{type} {name};\nSamplerState {sampler};",
+    "hlsl": "{type} {name};\n{sampler_type} {sampler};",
     "hlsl-dx9": "{type} {name};",
-    "wgsl": "@group(0) @binding({first}) var {name}: {type};\n@group(0) @binding({second}) var {sampler}: sampler;",
+    "wgsl": "@group(0) @binding({first}) var {name}: {type};\n"
+    "@group(0) @binding({second}) var {sampler}: {sampler_type};",
 }
 
 
@@ -245,9 +246,11 @@ def _family(target: Target) -> str:
 def _declared(target: Target, name: str, bound: Bound) -> str:
     assert isinstance(bound.data, Texture)
     pattern = _TEXTURES.get(target.dialect) or _TEXTURES[_family(target)]
-    type_ = target.types[spell(Sampler(bound.data.dim))]
-    first, second = bound.place.binding, bound.place.sampler
-    return pattern.format(name=name, sampler=f"{name}_sampler", type=type_, first=first, second=second)
+    data = bound.data
+    type_ = target.types[spell(Sampler(data.dim, data.kind, data.layers, data.compare))].removeprefix("highp ")
+    sampler_type = target.types.get("samplerShadow" if data.compare else "sampler", "SamplerState")
+    places = {"first": bound.place.binding, "second": bound.place.sampler}
+    return pattern.format(name=name, sampler=f"{name}_sampler", type=type_, sampler_type=sampler_type, **places)
 
 
 def _rows(type_: Type, value: Array, grid: Grid) -> list[Array]:

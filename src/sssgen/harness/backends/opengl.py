@@ -29,6 +29,8 @@ _KEPT = 64
 class OpenGL(DrawingBackend):
     """Compiles GLSL in the driver and draws with it."""
 
+    unmade = frozenset(("samplerCubeArray", "samplerCubeShadow", "sampler2DArrayShadow"))  # moderngl binds none
+
     def __init__(self, name: str, target: str) -> None:
         super().__init__(name, target)
         driver = compilers.get("gl")
@@ -151,10 +153,7 @@ class OpenGL(DrawingBackend):
             made = context.texture((data.shape[1], data.shape[0]), 4, np.ascontiguousarray(data), dtype="u4")
             made.filter = (context.NEAREST, context.NEAREST)
             return made
-        level = np.ascontiguousarray(data.levels[0], np.float16).tobytes()
-        make = getattr(context, {"2D": "texture", "3D": "texture3d", "Cube": "texture_cube"}[data.dim])
-        size = data.size()
-        made = make(size, 4, level, dtype="f2")
+        made = self.depths(data) if data.compare else self.texels(data)
         if len(data.levels) > 1:
             made.build_mipmaps()
         between, within = {
@@ -166,6 +165,26 @@ class OpenGL(DrawingBackend):
             made.repeat_x = made.repeat_y = data.wrap == "repeat"
         if data.dim == "3D":
             made.repeat_z = data.wrap == "repeat"
+        return made
+
+    def texels(self, data: Texture) -> Any:
+        """The first level of a texture, not yet filtered. Raises SssgenError for a kind that moderngl does not make."""
+        if data.layers and data.dim != "2D":
+            raise gave_up(self.name, "cube maps in layers cannot be made in OpenGL here", "WebGPU has them")
+        name = {"2D": "texture", "3D": "texture3d", "Cube": "texture_cube"}[data.dim]
+        name = "texture_array" if data.layers else name
+        size = (*data.size(), len(data.levels[0])) if data.layers else data.size()
+        dtype = {"float": "f2", "int": "i4", "uint": "u4"}[data.kind]
+        level = np.ascontiguousarray(data.levels[0], np.float16 if data.kind == "float" else None)
+        return getattr(self.context, name)(size, 4, level.tobytes(), dtype=dtype)
+
+    def depths(self, data: Texture) -> Any:
+        """A depth texture that compares. Raises SssgenError for a kind that moderngl does not make, or bind."""
+        if data.layers or data.dim != "2D":
+            raise gave_up(self.name, "only flat depth textures can be made in OpenGL here", "WebGPU has the others")
+        depths = np.ascontiguousarray(data.levels[0][..., 0], np.float32)
+        made = self.context.depth_texture(data.size(), depths.tobytes())
+        made.compare_func = "<="
         return made
 
 

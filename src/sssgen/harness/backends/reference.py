@@ -31,7 +31,7 @@ class Reference(Backend):
 
     def call(self, functions: Mapping[str, Any], call: Call, textures: Mapping[str, Texture]) -> Array:
         """One call, on the grid of pixels that the other back ends have, so that derivatives have their neighbours."""
-        lanes = max(np.shape(arg)[-1] for arg in call.args if not isinstance(arg, str))
+        lanes = max((np.shape(arg)[-1] for arg in call.args if not isinstance(arg, str)), default=1)
         shape = programs.grid(lanes)
         filled = shape.width * shape.rows
         args = [textures[arg] if isinstance(arg, str) else self._lanes(np.asarray(arg), filled) for arg in call.args]

@@ -136,7 +136,8 @@ class WebGPU(DrawingBackend):
             if texture.sampler >= 0:
                 wraps = {f"address_mode_{axis}": texture.wrap for axis in "uvw"}
                 filters = dict.fromkeys(("mag_filter", "min_filter"), texture.filter) | {"mipmap_filter": "linear"}
-                found.append({"binding": texture.sampler, "resource": self.gpu.create_sampler(**filters, **wraps)})
+                made = self.gpu.create_sampler(**filters, **wraps, compare=texture.compare or None)
+                found.append({"binding": texture.sampler, "resource": made})
         return groups
 
     def upload(self, texture: TexturePlan) -> Any:

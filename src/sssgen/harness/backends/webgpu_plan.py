@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...targets.numpy_textures import Texture
-from .base import ATTRIBUTES, Bound, Drawing
+from .base import ATTRIBUTES, Array, Bound, Drawing
 
 _WRAP = {"repeat": "repeat", "clamp": "clamp-to-edge", "mirror": "mirror-repeat"}
 
@@ -30,10 +30,12 @@ class TexturePlan(NamedTuple):
     dimension: str
     """Of the texture: 2d or 3d."""
     view: str
-    """Of the view: 2d, 3d or cube."""
+    """Of the view: 2d, 3d, cube, 2d-array or cube-array."""
     filter: str
     wrap: str
     levels: list[Level]
+    compare: str = ""
+    """How its sampler compares; '' where it does not."""
 
 
 class BlockPlan(NamedTuple):
@@ -93,16 +95,31 @@ def _texture(bound: Bound) -> TexturePlan:
         size = data.shape[1], data.shape[0], 1
         level = Level(size, np.ascontiguousarray(data, np.uint32).tobytes())
         return TexturePlan(place.group, place.binding, -1, "rgba32uint", 16, "2d", "2d", "nearest", "repeat", [level])
+    format, bytes_per_texel = _FORMATS["depth" if data.compare else data.kind]
     levels = []
     for texels in data.levels:
-        size = texels.shape[-2], texels.shape[-3], texels.shape[0] if data.dim != "2D" else 1
-        levels.append(Level(size, np.ascontiguousarray(texels, np.float16).tobytes()))
+        size = texels.shape[-2], texels.shape[-3], int(np.prod(texels.shape[:-3]))
+        levels.append(Level(size, _bytes(texels, format)))
     dimension = "3d" if data.dim == "3D" else "2d"
-    view = data.dim.lower()
-    wrap = _WRAP[data.wrap]
+    view = data.dim.lower() + ("-array" if data.layers else "")
+    wrap, compare = _WRAP[data.wrap], "less-equal" if data.compare else ""
     return TexturePlan(
-        place.group, place.binding, place.sampler, "rgba16float", 8, dimension, view, data.filter, wrap, levels
-    )
+        place.group, place.binding, place.sampler, format, bytes_per_texel, dimension, view, data.filter, wrap, levels,
+        compare,
+    )  # fmt: skip
+
+
+_FORMATS = {
+    "float": ("rgba16float", 8), "int": ("rgba32sint", 16), "uint": ("rgba32uint", 16), "depth": ("depth16unorm", 2),
+}  # fmt: skip
+"""What texels are → the format, and its bytes a texel. Of the depths, this one can be written."""
+_SAMPLED = {"rgba16float": "float", "rgba32sint": "sint", "rgba32uint": "uint", "depth16unorm": "depth"}
+
+
+def _bytes(texels: Array, format: str) -> bytes:
+    if format == "depth16unorm":
+        return np.rint(texels[..., 0].astype(np.float64) * 65535.0).astype(np.uint16).tobytes()
+    return np.ascontiguousarray(texels, np.float16 if format == "rgba16float" else None).tobytes()
 
 
 def layout_entries(plan: Plan) -> dict[int, list[dict[str, Any]]]:
@@ -113,11 +130,10 @@ def layout_entries(plan: Plan) -> dict[int, list[dict[str, Any]]]:
         entry = {"binding": block.binding, "visibility": both, "buffer": {"type": "uniform"}}
         groups.setdefault(block.group, []).append(entry)
     for texture in plan.textures:
-        kind = "uint" if texture.format == "rgba32uint" else "float"
-        reads = {"sample_type": kind, "view_dimension": texture.view}
+        reads = {"sample_type": _SAMPLED[texture.format], "view_dimension": texture.view}
         found = groups.setdefault(texture.group, [])
         found.append({"binding": texture.binding, "visibility": fragment, "texture": reads})
         if texture.sampler >= 0:
-            sampler = {"type": "filtering"}
+            sampler = {"type": "comparison" if texture.compare else "filtering"}
             found.append({"binding": texture.sampler, "visibility": fragment, "sampler": sampler})
     return groups

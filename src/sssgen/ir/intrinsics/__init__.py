@@ -2,8 +2,9 @@
 
 From it come the checker's overloads, the printers' text, the polyfills, the static cost, the documentation
 (`docs/intrinsics.md`), and an executed test of every builtin on every target. It holds the functions of chapter 8 of
-the GLSL specifications, from ES 1.00 to 4.60, and three of our own: `saturate`, the truncated remainder `fmod`, and
-`unpackNormal`. Each chapter has a file.
+the GLSL specifications, from ES 1.00 to 4.60, and some of our own: `saturate`, the truncated remainder `fmod`,
+`unpackNormal`, and reads of textures with the layer or the reference apart. Each chapter has a file. Builtins with out
+parameters and projective reads are functions, in `ir.out_builtins`; old names stand in `ir.old_names`.
 
 Signatures are written as in that specification: `genF` stands for float, vec2, vec3 and vec4 alike (one size throughout
 a signature), `vecF` for the vectors alone; likewise genI, genU, genB, vecI, vecU, vecB; `mat` for mat2, mat3 and mat4.
@@ -16,8 +17,8 @@ A value is one of
 - `"op:<"`: the binary (two arguments) or unary (one argument) operator;
 - a pattern: `"{texture}.Sample({sampler}, {1})"`, where `{0}`, `{1}`… are arguments, `{texture}` and `{sampler}` the two
   halves of argument 0 (`{bare_texture}` and `{bare_sampler}` where an engine wraps them into structs that lack the
-  method), `{dim}` its dimension (2D, 3D, CUBE) and `{type}` the result's type as the target spells it;
-  arguments stand only where a call's argument could;
+  method), `{dim}` its dimension (2D, 3D, CUBE), `{channel}` the colour that the last argument numbers, if it is a literal
+  int, else Red, and `{type}` the result's type as the target spells it; arguments stand only where a call's argument could;
 - `""`: the language has no such builtin, and `polyfill` is put in its place; without a polyfill it is refused there.
 The dialects `hlsl-dx9` (Unity's built-in pipeline) and `hlsl-macros` (Unity's SRP) fall back to `hlsl`, and `glsl-330`,
 which lacks some of what ES 3.00 has, to `glsl`.

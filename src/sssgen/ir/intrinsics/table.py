@@ -68,6 +68,8 @@ class Builtin(NamedTuple):
     """What the error is measured in ulp of, as Python: the size of terms that may cancel; '' means the result."""
     texts: Mapping[str, str] = MappingProxyType({})
     polyfill: str = ""
+    constant: tuple[int, ...] = ()
+    """The positions of arguments that must be constant expressions."""
     splat: tuple[str, ...] = ("wgsl",)
     """Languages in which a scalar beside vectors must be widened to a vector first."""
     kind: str = "alu"

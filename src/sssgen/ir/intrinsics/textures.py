@@ -1,11 +1,35 @@
-"""Reads of textures."""
+"""Reads of textures.
+
+A coordinate of a texture with layers has the layer behind it, one of a texture that compares the reference behind that.
+HLSL and WGSL want some of these as arguments of their own. So there are builtins of our own that have them so, named
+`…Layer…` and `…Compare…`, and the polyfills are written with them.
+
+Texels of integers are fetched only, as WGSL and HLSL filter none. HLSL asks for a texture's size in a statement, which
+no expression can say; so it is refused there.
+"""
 
 from __future__ import annotations
 
 from .table import Builtin
 
 _SAMPLE = ("vec4(sampler2D, vec2", "vec4(sampler3D, vec3", "vec4(samplerCube, vec3")
+_LAYERS = ("vec4(sampler2DArray, vec3", "vec4(samplerCubeArray, vec4")
+_OWN_LAYER = ("vec4(sampler2DArray, vec2, int", "vec4(samplerCubeArray, vec3, int")
+_FLAT = ("vec4(sampler2D, vec2", "vec4(sampler3D, vec3")
+_SHADOWS = ("sampler2DShadow,vec3", "samplerCubeShadow,vec4", "sampler2DArrayShadow,vec4")
+_KINDS = ("", "i", "u")
 _EIGHT_BITS = "D3D: filter weights of 8 bits; WGSL, Vulkan, GLSL: no bound"
+
+
+def _params(signature: str) -> str:
+    """The parameters of a signature's beginning, as a key of `texts` names them: `sampler2D,vec2`."""
+    return signature.partition("(")[2].replace(" ", "")
+
+
+def _offsets(extra: str = "") -> tuple[str, ...]:
+    """Signatures with an offset in texels behind `extra`."""
+    return tuple(f"{read}{extra}, ivec{size})" for read, size in zip(_FLAT, (2, 3), strict=True))
+
 
 # A table: several fields to a line.
 # fmt: off
@@ -21,20 +45,49 @@ ROWS = (
             (((0.75, 0.25, 1.0, 1.0),), (0.5, -0.5, 1.0)),
         ),
     ),
-    Builtin("textureSize", ("ivec2(sampler2D, int)", "ivec3(sampler3D, int)", "ivec2(samplerCube, int)"),
-        "Size in texels of level y. HLSL has it only as a statement, so it is refused there.",
-        range="hull(0, 65536)", domain="the level exists", texts={"hlsl": "", "wgsl": "{type}(textureDimensions({texture}, {1}))"},
+    # What there is
+    Builtin("textureSize",
+        (
+            *(f"ivec{size}({kind}sampler{dim}, int)" for kind in _KINDS for dim, size in (("2D", 2), ("3D", 3), ("Cube", 2), ("2DArray", 3))),
+            "ivec3(samplerCubeArray, int)", "ivec2(sampler2DShadow, int)", "ivec2(samplerCubeShadow, int)", "ivec3(sampler2DArrayShadow, int)",
+        ),
+        "Size in texels of level y, and how many layers there are.",
+        range="hull(0, 65536)", domain="the level exists",
+        texts={
+            "hlsl": "", "wgsl": "{type}(textureDimensions({texture}, {1}))",
+            **{
+                f"wgsl/{sampler},int": "{type}(vec3u(textureDimensions({texture}, {1}), textureNumLayers({texture})))"
+                for sampler in ("sampler2DArray", "isampler2DArray", "usampler2DArray", "samplerCubeArray", "sampler2DArrayShadow")
+            },
+        },
         splat=(), kind="fetch",
     ),
-    Builtin("texture", (*(f"{read})" for read in _SAMPLE), *(f"{read}, float)" for read in _SAMPLE)),
-        "Filtered texture read; the level comes from screen-space derivatives, with z added to it.",
+    Builtin("textureQueryLevels", ("int(sampler2D)", "int(sampler3D)", "int(samplerCube)", "int(sampler2DArray)"),
+        "How many levels there are.", range="hull(0, 32)",
+        texts={"glsl": "", "hlsl": "", "wgsl": "{type}(textureNumLevels({texture}))"}, kind="fetch",
+    ),
+    Builtin("textureQueryLod", ("vec2(sampler2D, vec2)", "vec2(sampler3D, vec3)"),
+        "The level that a read would take at y, and the one that derivatives give. HLSL has it alone.",
+        domain="uniform control flow", kind="fetch", absolute=0.01, clause="D3D, GLSL: no bound",
+        texts={
+            "glsl": "", "wgsl": "", "hlsl-dx9": "",
+            "hlsl": "float2({bare_texture}.CalculateLevelOfDetail({bare_sampler}, {1}), {bare_texture}.CalculateLevelOfDetailUnclamped({bare_sampler}, {1}))",
+        },
+        splat=(),
+    ),
+    # Filtered reads
+    Builtin("texture",
+        (
+            *(f"{read})" for read in (*_SAMPLE, *_LAYERS)), *(f"{read}, float)" for read in (*_SAMPLE, *_LAYERS)),
+            *(f"float({shadow.replace(',', ', ')})" for shadow in _SHADOWS),
+        ),
+        "Filtered texture read; the level comes from screen-space derivatives, with z added to it. Of a texture that "
+        "compares: how much of it is not below the reference.",
         range="whole: texels(x)",
         domain="uniform control flow",
         texts={
             "hlsl": "{texture}.Sample({sampler}, {1})",
-            "hlsl/sampler2D,vec2,float": "{texture}.SampleBias({sampler}, {1}, {2})",
-            "hlsl/sampler3D,vec3,float": "{texture}.SampleBias({sampler}, {1}, {2})",
-            "hlsl/samplerCube,vec3,float": "{texture}.SampleBias({sampler}, {1}, {2})",
+            **{f"hlsl/{_params(read)},float": "{texture}.SampleBias({sampler}, {1}, {2})" for read in (*_SAMPLE, *_LAYERS)},
             "hlsl-dx9": "tex{dim}({texture}, {1})",
             "hlsl-dx9/sampler2D,vec2,float": "tex2Dbias({texture}, float4({1}, 0.0, {2}))",
             "hlsl-dx9/sampler3D,vec3,float": "tex3Dbias({texture}, float4({1}, {2}))",
@@ -44,25 +97,44 @@ ROWS = (
             "hlsl-macros/sampler3D,vec3,float": "{bare_texture}.SampleBias({bare_sampler}, {1}, {2})",
             "hlsl-macros/samplerCube,vec3,float": "SAMPLE_TEXTURECUBE_BIAS({texture}, {sampler}, {1}, {2})",
             "wgsl": "textureSample({texture}, {sampler}, {1})",
-            "wgsl/sampler2D,vec2,float": "textureSampleBias({texture}, {sampler}, {1}, {2})",
-            "wgsl/sampler3D,vec3,float": "textureSampleBias({texture}, {sampler}, {1}, {2})",
-            "wgsl/samplerCube,vec3,float": "textureSampleBias({texture}, {sampler}, {1}, {2})",
+            **{f"wgsl/{_params(read)},float": "textureSampleBias({texture}, {sampler}, {1}, {2})" for read in _SAMPLE},
+            **{f"wgsl/{_params(read)}{bias}": "" for read in _LAYERS for bias in ("", ",float")},
+            **{f"{language}/{shadow}": "" for language in ("hlsl", "wgsl") for shadow in _SHADOWS},
         },
+        polyfill="""
+vec4 texture(sampler2DArray map, vec3 P) { return textureLayer(map, P.xy, int(round(P.z))); }
+vec4 texture(samplerCubeArray map, vec4 P) { return textureLayer(map, P.xyz, int(round(P.w))); }
+vec4 texture(sampler2DArray map, vec3 P, float bias) { return textureLayer(map, P.xy, int(round(P.z)), bias); }
+vec4 texture(samplerCubeArray map, vec4 P, float bias) { return textureLayer(map, P.xyz, int(round(P.w)), bias); }
+float texture(sampler2DShadow map, vec3 P) { return textureCompare(map, P.xy, P.z); }
+float texture(samplerCubeShadow map, vec4 P) { return textureCompare(map, P.xyz, P.w); }
+float texture(sampler2DArrayShadow map, vec4 P) { return textureCompare(map, P.xy, int(round(P.z)), P.w); }
+""",
         splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
     ),
-    Builtin("textureLod", tuple(f"{read}, float)" for read in _SAMPLE), "Filtered texture read at level z.",
-        range="whole: texels(x)",
+    Builtin("textureLod", (*(f"{read}, float)" for read in (*_SAMPLE, *_LAYERS)), "float(sampler2DShadow, vec3, float)"),
+        "Filtered texture read at level z; HLSL and WGSL compare at level 0 only.",
+        range="whole: texels(x)", domain="z = 0 for a texture that compares",
         texts={
-            "hlsl": "{texture}.SampleLevel({sampler}, {1}, {2})",
+            "hlsl": "{texture}.SampleLevel({sampler}, {1}, {2})", "hlsl/sampler2DShadow,vec3,float": "",
             "hlsl-dx9": "tex{dim}lod({texture}, float4({1}, {2}))",
             "hlsl-dx9/sampler2D,vec2,float": "tex2Dlod({texture}, float4({1}, 0.0, {2}))",
             "hlsl-macros": "SAMPLE_TEXTURE{dim}_LOD({texture}, {sampler}, {1}, {2})",
-            "wgsl": "textureSampleLevel({texture}, {sampler}, {1}, {2})",
+            "wgsl": "textureSampleLevel({texture}, {sampler}, {1}, {2})", "wgsl/sampler2DShadow,vec3,float": "",
+            **{f"wgsl/{_params(read)},float": "" for read in _LAYERS},
         },
+        polyfill="""
+vec4 textureLod(sampler2DArray map, vec3 P, float level) { return textureLayerLod(map, P.xy, int(round(P.z)), level); }
+vec4 textureLod(samplerCubeArray map, vec4 P, float level) { return textureLayerLod(map, P.xyz, int(round(P.w)), level); }
+float textureLod(sampler2DShadow map, vec3 P, float level) { return textureCompareLod(map, P.xy, P.z); }
+""",
         splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
     ),
     Builtin("textureGrad",
-        ("vec4(sampler2D, vec2, vec2, vec2)", *(f"{read}, vec3, vec3)" for read in _SAMPLE[1:])),
+        (
+            "vec4(sampler2D, vec2, vec2, vec2)", *(f"{read}, vec3, vec3)" for read in _SAMPLE[1:]),
+            "vec4(sampler2DArray, vec3, vec2, vec2)", "vec4(samplerCubeArray, vec4, vec3, vec3)",
+        ),
         "Filtered texture read; the level comes from the given derivatives of the coordinate along screen x and y.",
         range="whole: texels(x)",
         texts={
@@ -71,19 +143,194 @@ ROWS = (
             "hlsl-macros": "{bare_texture}.SampleGrad({bare_sampler}, {1}, {2}, {3})",
             "hlsl-macros/sampler2D,vec2,vec2,vec2": "SAMPLE_TEXTURE2D_GRAD({texture}, {sampler}, {1}, {2}, {3})",
             "wgsl": "textureSampleGrad({texture}, {sampler}, {1}, {2}, {3})",
+            "wgsl/sampler2DArray,vec3,vec2,vec2": "", "wgsl/samplerCubeArray,vec4,vec3,vec3": "",
+        },
+        polyfill="""
+vec4 textureGrad(sampler2DArray map, vec3 P, vec2 dx, vec2 dy) { return textureLayerGrad(map, P.xy, int(round(P.z)), dx, dy); }
+vec4 textureGrad(samplerCubeArray map, vec4 P, vec3 dx, vec3 dy) { return textureLayerGrad(map, P.xyz, int(round(P.w)), dx, dy); }
+""",
+        splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
+    ),
+    # The same, some texels off
+    Builtin("textureOffset", (*_offsets(), *(f"{one[:-1]}, float)" for one in _offsets())),
+        "As texture, with z added to the place in texels, and w to the level.",
+        range="whole: texels(x)", constant=(2,), domain="uniform control flow",
+        texts={
+            "hlsl": "{bare_texture}.Sample({bare_sampler}, {1}, {2})",
+            **{f"hlsl/{_params(one)[:-1]},float": "{bare_texture}.SampleBias({bare_sampler}, {1}, {3}, {2})" for one in _offsets()},
+            "hlsl-dx9": "",
+            "wgsl": "textureSample({texture}, {sampler}, {1}, {2})",
+            **{f"wgsl/{_params(one)[:-1]},float": "textureSampleBias({texture}, {sampler}, {1}, {3}, {2})" for one in _offsets()},
         },
         splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
     ),
-    Builtin("texelFetch", ("vec4(sampler2D, ivec2, int)", "vec4(sampler3D, ivec3, int)"),
+    Builtin("textureLodOffset", _offsets(", float"), "As textureLod, with w added to the place in texels.",
+        range="whole: texels(x)", constant=(3,),
+        texts={
+            "hlsl": "{bare_texture}.SampleLevel({bare_sampler}, {1}, {2}, {3})", "hlsl-dx9": "",
+            "wgsl": "textureSampleLevel({texture}, {sampler}, {1}, {2}, {3})",
+        },
+        splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
+    ),
+    Builtin("textureGradOffset",
+        ("vec4(sampler2D, vec2, vec2, vec2, ivec2)", "vec4(sampler3D, vec3, vec3, vec3, ivec3)"),
+        "As textureGrad, with the last argument added to the place in texels.",
+        range="whole: texels(x)", constant=(4,),
+        texts={
+            "hlsl": "{bare_texture}.SampleGrad({bare_sampler}, {1}, {2}, {3}, {4})", "hlsl-dx9": "",
+            "wgsl": "textureSampleGrad({texture}, {sampler}, {1}, {2}, {3}, {4})",
+        },
+        splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
+    ),
+    # Texels
+    Builtin("texelFetch",
+        tuple(f"{kind}vec4({kind}sampler{place}, int)" for kind in _KINDS for place in ("2D, ivec2", "3D, ivec3", "2DArray, ivec3")),
         "The texel at y of level z, unfiltered.",
         range="whole: texels(x)",
         domain="the texel and the level exist",
         texts={
-            "hlsl": "{texture}.Load(int3({1}, {2}))",
-            "hlsl/sampler3D,ivec3,int": "{texture}.Load(int4({1}, {2}))", "hlsl-dx9": "",
+            "hlsl": "{texture}.Load(int3({1}, {2}))", "hlsl-dx9": "",
+            **{f"hlsl/{kind}sampler{dim},ivec3,int": "{texture}.Load(int4({1}, {2}))" for kind in _KINDS for dim in ("3D", "2DArray")},
             "hlsl-macros": "LOAD_TEXTURE{dim}_LOD({texture}, {1}, {2})",
             "wgsl": "textureLoad({texture}, {1}, {2})",
+            **{f"wgsl/{kind}sampler2DArray,ivec3,int": "" for kind in _KINDS},
+        },
+        polyfill="\n".join(
+            f"{kind}vec4 texelFetch({kind}sampler2DArray map, ivec3 P, int level) {{ return texelFetchLayer(map, P.xy, P.z, level); }}"
+            for kind in _KINDS
+        ),
+        splat=(), kind="fetch", ulp=0.0,
+    ),
+    Builtin("texelFetchOffset", ("vec4(sampler2D, ivec2, int, ivec2)", "vec4(sampler3D, ivec3, int, ivec3)"),
+        "As texelFetch, at y + w.",
+        range="whole: texels(x)", constant=(3,), domain="the texel and the level exist",
+        texts={"hlsl": "", "wgsl": ""},
+        polyfill="""
+vec4 texelFetchOffset(sampler2D map, ivec2 P, int level, ivec2 offset) { return texelFetch(map, P + offset, level); }
+vec4 texelFetchOffset(sampler3D map, ivec3 P, int level, ivec3 offset) { return texelFetch(map, P + offset, level); }
+""",
+        splat=(), kind="fetch", ulp=0.0,
+    ),
+    Builtin("textureGather", ("vec4(sampler2D, vec2)", "vec4(sampler2D, vec2, int)"),
+        "One channel, the first or z, of the four texels around y at level 0: those at (0, 1), (1, 1), (1, 0), (0, 0) "
+        "from the lower left one.",
+        range="whole: texels(x)", constant=(2,),
+        texts={
+            "glsl": "",
+            "hlsl": "{bare_texture}.Gather{channel}({bare_sampler}, {1})", "hlsl-dx9": "",
+            "wgsl": "textureGather(0, {texture}, {sampler}, {1})",
+            "wgsl/sampler2D,vec2,int": "textureGather({2}, {texture}, {sampler}, {1})",
+        },
+        polyfill="""
+vec4 textureGather(sampler2D map, vec2 P) { return textureGatherOffset(map, P, ivec2(0)); }
+vec4 textureGather(sampler2D map, vec2 P, int channel) { return textureGatherOffset(map, P, ivec2(0), channel); }
+""",
+        splat=(), kind="fetch", ulp=0.0,
+    ),
+    Builtin("textureGatherOffset", ("vec4(sampler2D, vec2, ivec2)", "vec4(sampler2D, vec2, ivec2, int)"),
+        "As textureGather, with z added to the places in texels; the channel is w.",
+        range="whole: texels(x)", constant=(2, 3),
+        texts={
+            "glsl": "",
+            "hlsl": "{bare_texture}.Gather{channel}({bare_sampler}, {1}, {2})", "hlsl-dx9": "",
+            "wgsl": "textureGather(0, {texture}, {sampler}, {1}, {2})",
+            "wgsl/sampler2D,vec2,ivec2,int": "textureGather({3}, {texture}, {sampler}, {1}, {2})",
+        },
+        polyfill="""
+vec4 textureGatherOffset(sampler2D map, vec2 P, ivec2 offset) {
+    vec2 size = vec2(textureSize(map, 0));
+    vec2 low = (floor(P * size - 0.5) + vec2(offset) + 0.5) / size;
+    vec2 high = low + 1.0 / size;
+    return vec4(
+        textureLod(map, vec2(low.x, high.y), 0.0).x, textureLod(map, high, 0.0).x,
+        textureLod(map, vec2(high.x, low.y), 0.0).x, textureLod(map, low, 0.0).x
+    );
+}
+vec4 textureGatherOffset(sampler2D map, vec2 P, ivec2 offset, int channel) {
+    vec2 size = vec2(textureSize(map, 0));
+    vec2 low = (floor(P * size - 0.5) + vec2(offset) + 0.5) / size;
+    vec2 high = low + 1.0 / size;
+    vec4 a = textureLod(map, vec2(low.x, high.y), 0.0);
+    vec4 b = textureLod(map, high, 0.0);
+    vec4 c = textureLod(map, vec2(high.x, low.y), 0.0);
+    vec4 d = textureLod(map, low, 0.0);
+    return vec4(a[channel], b[channel], c[channel], d[channel]);
+}
+""",
+        splat=(), kind="fetch", absolute=2.0**-12, clause="In GLSL without it, by reads at the texels' centres",
+    ),
+    # Of our own: layers and references as arguments of their own
+    Builtin("textureLayer", (*(f"{read})" for read in _OWN_LAYER), *(f"{read}, float)" for read in _OWN_LAYER)),
+        "As texture, of layer z, with w added to the level. Of our own.",
+        range="whole: texels(x)", domain="uniform control flow",
+        texts={
+            "glsl/sampler2DArray,vec2,int": "texture({texture}, vec3({1}, float({2})))",
+            "glsl/sampler2DArray,vec2,int,float": "texture({texture}, vec3({1}, float({2})), {3})",
+            "glsl/samplerCubeArray,vec3,int": "texture({texture}, vec4({1}, float({2})))",
+            "glsl/samplerCubeArray,vec3,int,float": "texture({texture}, vec4({1}, float({2})), {3})",
+            "hlsl/sampler2DArray,vec2,int": "{texture}.Sample({sampler}, float3({1}, float({2})))",
+            "hlsl/sampler2DArray,vec2,int,float": "{texture}.SampleBias({sampler}, float3({1}, float({2})), {3})",
+            "hlsl/samplerCubeArray,vec3,int": "{texture}.Sample({sampler}, float4({1}, float({2})))",
+            "hlsl/samplerCubeArray,vec3,int,float": "{texture}.SampleBias({sampler}, float4({1}, float({2})), {3})",
+            "wgsl": "textureSample({texture}, {sampler}, {1}, {2})",
+            **{f"wgsl/{_params(read)},float": "textureSampleBias({texture}, {sampler}, {1}, {2}, {3})" for read in _OWN_LAYER},
+        },
+        splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
+    ),
+    Builtin("textureLayerLod", tuple(f"{read}, float)" for read in _OWN_LAYER), "As textureLod at level w, of layer z. Of our own.",
+        range="whole: texels(x)",
+        texts={
+            "glsl/sampler2DArray,vec2,int,float": "textureLod({texture}, vec3({1}, float({2})), {3})",
+            "glsl/samplerCubeArray,vec3,int,float": "textureLod({texture}, vec4({1}, float({2})), {3})",
+            "hlsl/sampler2DArray,vec2,int,float": "{texture}.SampleLevel({sampler}, float3({1}, float({2})), {3})",
+            "hlsl/samplerCubeArray,vec3,int,float": "{texture}.SampleLevel({sampler}, float4({1}, float({2})), {3})",
+            "wgsl": "textureSampleLevel({texture}, {sampler}, {1}, {2}, {3})",
+        },
+        splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
+    ),
+    Builtin("textureLayerGrad", ("vec4(sampler2DArray, vec2, int, vec2, vec2)", "vec4(samplerCubeArray, vec3, int, vec3, vec3)"),
+        "As textureGrad, of layer z. Of our own.",
+        range="whole: texels(x)",
+        texts={
+            "glsl/sampler2DArray,vec2,int,vec2,vec2": "textureGrad({texture}, vec3({1}, float({2})), {3}, {4})",
+            "glsl/samplerCubeArray,vec3,int,vec3,vec3": "textureGrad({texture}, vec4({1}, float({2})), {3}, {4})",
+            "hlsl/sampler2DArray,vec2,int,vec2,vec2": "{texture}.SampleGrad({sampler}, float3({1}, float({2})), {3}, {4})",
+            "hlsl/samplerCubeArray,vec3,int,vec3,vec3": "{texture}.SampleGrad({sampler}, float4({1}, float({2})), {3}, {4})",
+            "wgsl": "textureSampleGrad({texture}, {sampler}, {1}, {2}, {3}, {4})",
+        },
+        splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
+    ),
+    Builtin("texelFetchLayer", tuple(f"{kind}vec4({kind}sampler2DArray, ivec2, int, int)" for kind in _KINDS),
+        "As texelFetch at level w, of layer z. Of our own.",
+        range="whole: texels(x)", domain="the texel, the layer and the level exist",
+        texts={
+            "glsl": "texelFetch({texture}, ivec3({1}, {2}), {3})", "hlsl": "{texture}.Load(int4({1}, {2}, {3}))",
+            "wgsl": "textureLoad({texture}, {1}, {2}, {3})",
         },
         splat=(), kind="fetch", ulp=0.0,
+    ),
+    Builtin("textureCompare",
+        ("float(sampler2DShadow, vec2, float)", "float(samplerCubeShadow, vec3, float)", "float(sampler2DArrayShadow, vec2, int, float)"),
+        "As texture of a texture that compares; the reference is the last argument. Of our own.",
+        range="hull(0, 1)", domain="uniform control flow",
+        texts={
+            "glsl/sampler2DShadow,vec2,float": "texture({texture}, vec3({1}, {2}))",
+            "glsl/samplerCubeShadow,vec3,float": "texture({texture}, vec4({1}, {2}))",
+            "glsl/sampler2DArrayShadow,vec2,int,float": "texture({texture}, vec4({1}, float({2}), {3}))",
+            "hlsl": "{texture}.SampleCmp({sampler}, {1}, {2})",
+            "hlsl/sampler2DArrayShadow,vec2,int,float": "{texture}.SampleCmp({sampler}, float3({1}, float({2})), {3})",
+            "wgsl": "textureSampleCompare({texture}, {sampler}, {1}, {2})",
+            "wgsl/sampler2DArrayShadow,vec2,int,float": "textureSampleCompare({texture}, {sampler}, {1}, {2}, {3})",
+        },
+        splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
+    ),
+    Builtin("textureCompareLod", ("float(sampler2DShadow, vec2, float)",),
+        "As textureCompare, at level 0. Of our own.",
+        range="hull(0, 1)",
+        texts={
+            "glsl": "textureLod({texture}, vec3({1}, {2}), 0.0)", "hlsl": "{texture}.SampleCmpLevelZero({sampler}, {1}, {2})",
+            "wgsl": "textureSampleCompareLevel({texture}, {sampler}, {1}, {2})",
+        },
+        splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
     ),
 )

@@ -1,0 +1,45 @@
+"""Old names of functions: each means a function that there is, with as many arguments."""
+
+from __future__ import annotations
+
+import pytest
+
+from sssgen.ir.old_names import OLD_NAMES, new_name
+from sssgen.ir.out_builtins import is_out_builtin, out_builtin
+from sssgen.ir.signatures import overloads
+from sssgen.ir.types import FLOAT, INT, VEC2, VEC3, VEC4, Sampler, Type, Vector
+
+IVEC2, IVEC3 = Vector("int", 2), Vector("int", 3)
+PLACES: dict[str, tuple[Type, Type, Type]] = {
+    "2DArray": (VEC3, IVEC3, VEC2), "2D": (VEC2, IVEC2, VEC2), "3D": (VEC3, IVEC3, VEC3), "Cube": (VEC3, IVEC3, VEC3),
+}  # fmt: skip
+"""Dimension → the types of a coordinate, of a texel's place, and of a derivative."""
+
+
+def arguments(old: str, new: str, count: int) -> list[Type]:
+    """The types with which an old name was called."""
+    dim = next(dim for dim in PLACES if dim in old)
+    coord, texel, slope = PLACES[dim]
+    sampler = Sampler(dim.removesuffix("Array"), array=dim.endswith("Array"))
+    place = VEC4 if "Proj" in new else texel if "Fetch" in new else coord
+    rest: list[Type] = [slope, slope] if "Grad" in new else [INT if "Fetch" in new else FLOAT]
+    return [sampler, INT] if "Size" in new else [sampler, place, *rest][:count]
+
+
+@pytest.mark.parametrize("old", OLD_NAMES)
+def test_an_old_name_means_a_function_with_these_arguments(old: str) -> None:
+    new, counts = OLD_NAMES[old]
+    for count in counts:
+        assert new_name(old, count) == new
+        types = arguments(old, new, count)
+        assert len(types) == count
+        known = out_builtin(new, types) is not None if is_out_builtin(new) else tuple(types) in overloads(new)
+        assert known, (old, new, types)
+        assert old not in (new, *overloads(old))
+
+
+def test_other_names_and_other_counts_are_left_alone() -> None:
+    assert new_name("texture2D", 4) is None
+    assert new_name("texture2DLod", 2) is None
+    assert new_name("texture", 2) is None
+    assert new_name("mix", 3) is None
