@@ -96,12 +96,15 @@ def printer_for(target: Target, module: Module) -> Printer:
 
 
 def print_parts(
-    target: Target, module: Module, comments: Comments, stage: Stage | None = None, entry: str = ""
+    target: Target, module: Module, comments: Comments, stage: Stage | None = None, entry: str = "", kept: bool = False
 ) -> dict[str, list[list[Line]]]:
-    """Prints all of a legal module but its uniforms; of a whole shader the function `entry` that it begins with."""
+    """Prints all of a legal module but its uniforms; of a whole shader the function `entry` that it begins with.
+
+    `kept`: numbers have the digits that they were written with.
+    """
     printer = printer_for(target, module)
     printer.comments = comments
-    printer.stage = stage
+    printer.stage, printer.kept = stage, kept
     return {
         "types": [printer.print_struct(struct) for struct in module.structs],
         "constants": [[line for constant in module.constants for line in printer.print_constant(constant)]],

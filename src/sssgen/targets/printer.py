@@ -398,7 +398,7 @@ def shortest(value: float, format: Format) -> str:
         text = f"{nearest:.{digits}g}"
         if format.rounded(float(text)) == nearest:
             break
-    mantissa, _, exponent = text.partition("e")
+    exponent = text.partition("e")[2]
     if exponent and -5 < int(exponent) < 8:
         text = f"{float(text):.{max(1, digits - int(exponent) - 1)}f}"
     return _with_point(text)
