@@ -322,6 +322,56 @@ def test_what_a_stage_cannot_have_is_refused() -> None:
         transpile(read_module(loose), "wgsl", "x", keep=True)
 
 
+def test_a_constant_that_is_no_number_is_refused_where_it_must_be() -> None:
+    text = "function float f() {\n    return (1.0 / 0.0);\n}\n"
+    assert "1.0 / 0.0" in whole(text, "glsl-330")
+    with pytest.raises(SssgenError, match="divided by 0"):
+        transpile(read_module(text), "wgsl", "x", keep=True)
+
+
+def test_a_vertex_shader_reads_textures_at_level_0() -> None:
+    read = "    set $uv += texture($map, $uv).xy;\n}\n"
+    text = "uniform sampler2D map\n" + VERTEX.removesuffix("}\n") + read
+    assert "texture(map, uv)" in whole(text, "glsl-330")
+    for target, level in (("wgsl", "textureSampleLevel(map, map_sampler, uv, 0.0)"), ("hlsl", "SampleLevel")):
+        made = whole(text, target)
+        assert level in made
+        found = check(Source(made, target, "vertex", "vertex_main"))
+        assert [str(one) for messages in found.values() for one in errors(messages)] == []
+
+
+def test_an_interpolation_that_a_target_has_not_is_told() -> None:
+    text = 'variable in vec2 uv [interpolation("noperspective")]\n' + OLD
+    assert "noperspective in vec2 uv;" in whole(text, "glsl-330")
+    assert "@interpolate(linear)" in whole(text, "wgsl")
+    made = transpile(read_module(text), "glsl-es-300", "x", keep=True)
+    assert "\nin vec2 uv;" in next(iter(made.files.values()))
+    assert "with perspective" in made.warnings[0].message
+
+
+def test_what_main_calls_alike_for_all_pixels_may_sample_in_a_loop() -> None:
+    """A function of a whole shader is judged by its calls: here the loop's bound is a constant."""
+    text = """uniform sampler2D map
+variable in vec2 uv
+variable out vec4 color
+function vec4 blurred(in int count) {
+    var vec4 sum = vec4{0.0};
+    for (var int i = 0; (i < count); set i += 1;) {
+        set sum += texture($map, ($uv * float{i}));
+    }
+    return sum;
+}
+function void main() {
+    set $color = $blurred(4);
+}
+"""
+    made = transpile(read_module(text), "wgsl", "x", keep=True)
+    assert made.warnings == []
+    shown = next(iter(made.files.values()))
+    found = check(Source(shown, "wgsl", "fragment", "fragment_main"))
+    assert [str(one) for messages in found.values() for one in errors(messages)] == [], shown
+
+
 def test_variables_of_a_library() -> None:
     """Without an entry they are declared, for whoever calls its functions."""
     assert "var<private> g: f32 = 1.0;" in whole(FUNCTIONS, "wgsl")

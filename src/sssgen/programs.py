@@ -46,6 +46,7 @@ from .passes.stage import (
 from .passes.undefined import undefined_constants
 from .passes.uniform_structs import Unreadable, uniform_structs
 from .passes.variables_to_parameters import variables_to_parameters
+from .passes.vertex_reads import with_levels
 from .targets import descriptor
 from .targets.descriptor import Target, Words
 from .targets.emit import About, Program, print_parts
@@ -96,21 +97,34 @@ def make_library(
         raise _refused(error.message, error.span, target) from None
     kind = stage_kind(module)
     kind = kind if kind in target.files else ""
-    turned = _turned(target)
+    notes: list[Note] = []
     if kind:
-        module = colors_in_use(module)
-    if kind and turned:
-        module = turned_derivatives(module)
+        module, notes = _prepared(module, kind, target)
     if keep:
-        module, notes, roots = _kept(module, target, called)
+        module, more, roots = _kept(module, target, called)
     else:
-        module, notes, roots = plain_module(module)
-    if kind:
-        known = target.table.get("stage_builtins")
-        notes = notes + ([Note(*one) for one in remarks(module, kind, known, turned)] if known is not None else [])
+        module, more, roots = plain_module(module)
+    notes += more
     guarded = guard(module, called or roots, guards, guard_source, polyfill, format_of(target), at, chained)
     middle = _Middle(guarded.module, {}, None, {}, {}, _warnings(notes), guarded=guarded)
     return _finish(middle, target, kind or "functions", keep)
+
+
+def _prepared(module: Module, kind: str, target: Target) -> tuple[Module, list[Note]]:
+    """A whole shader with the meaning that it has in GLSL, and what of that the target cannot give."""
+    module = colors_in_use(module)
+    if _turned(target):
+        module = turned_derivatives(module)
+    if kind == "vertex" and not target.can("implicit_levels"):
+        module = with_levels(module)
+    known = _stage_builtins(module, target)
+    return module, [Note(*one) for one in remarks(module, known, _turned(target), target.can)]
+
+
+def _stage_builtins(module: Module, target: Target) -> set[str]:
+    """The values that a stage of the target can be given and give; a descriptor that lists none has GLSL's own."""
+    own = {one.builtin for one in module.variables}
+    return set(target.table.get("stage_builtins", own))
 
 
 def _turned(target: Target) -> bool:
@@ -123,9 +137,16 @@ def _kept(module: Module, target: Target, called: Sequence[str] | None) -> tuple
     if called is not None:
         module = only(module, called)
     roots = [function.key for function in module.functions if function.body is not None]
+    if not target.can("undefined_constants"):
+        _refuse_undefined(module)
     if target.can("implicit_levels"):
         return module, [], roots
-    return *hoist(module, roots), roots
+    entry = entry_of(module)
+    if entry is None:
+        return *hoist(module, roots), roots
+    # what main() calls is only called from there
+    reached = {function.key for function in only(module, [entry.key]).functions}
+    return *hoist(module, [entry.key, *(key for key in roots if key not in reached)]), roots
 
 
 def sites_of(material: Material, target: Target, form: str) -> list[Site]:
@@ -223,11 +244,16 @@ def _build(material: Material, target: Target, form: str, guards: str) -> _Middl
 def _folded(module: Module, fixed: Mapping[str, tuple[float, ...]]) -> Module:
     """The folded module. Raises SssgenError for constants that are no numbers."""
     module = fold(module, fixed)
+    _refuse_undefined(module)
+    return module
+
+
+def _refuse_undefined(module: Module) -> None:
+    """Raises SssgenError for constants that are no numbers."""
     wrong = undefined_constants(module)
     if wrong:
         hint = "WGSL refuses it, and the others compute inf or NaN"
         raise SssgenError([Diagnostic("error", message, span, hint, source_line(span)) for message, span in wrong])
-    return module
 
 
 def _only_renames(function: Function) -> bool:
@@ -332,9 +358,7 @@ def _stage(module: Module, target: Target, form: str, renames: Mapping[str, str]
     if not _entry_name(target, form):
         return None
     main = renames.get(ENTRY) or renames.get("main", "main")
-    builtins = target.table.get("stage_builtins")
-    known = {one.builtin for one in module.variables} if builtins is None else set(builtins)
-    return interface(module, form, f"{main}()", known, _turned(target))
+    return interface(module, form, f"{main}()", _stage_builtins(module, target), _turned(target))
 
 
 def _uniform_style(target: Target) -> Any:

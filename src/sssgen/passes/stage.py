@@ -8,7 +8,7 @@ Place: what goes by the framebuffer before `hoist`, the interface last, as the n
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from typing import NamedTuple
 
 from ..ir.nodes import Expr, Function, Global, Index, Intrinsic, Literal, Module, Span, Unary, Variable
@@ -107,7 +107,7 @@ def turned_derivatives(module: Module) -> Module:
     """The module for a framebuffer whose y counts from the top: dFdy keeps its meaning, and is negated."""
 
     def change(expr: Expr) -> Expr:
-        if isinstance(expr, Intrinsic) and expr.name == "dFdy":
+        if isinstance(expr, Intrinsic) and expr.name.startswith("dFdy"):
             return Unary(expr.type, "-", expr, expr.span)
         return expr
 
@@ -138,16 +138,25 @@ def colors_in_use(module: Module) -> Module:
     return rewrite_module(module._replace(variables=variables), change)
 
 
-def remarks(module: Module, kind: str, builtins: Collection[str], turned: bool) -> list[tuple[str, Span]]:
-    """What differs from the source in a target's shader, with its place."""
+def remarks(
+    module: Module, builtins: Collection[str], turned: bool, can: Callable[[str], bool]
+) -> list[tuple[str, Span]]:
+    """What differs from the source in a target's whole shader, with its place."""
     found = []
     for variable in module.variables:
+        if variable.interpolation == "noperspective" and not can("noperspective"):
+            found.append(
+                (
+                    f"'{variable.name}' is interpolated with perspective here: this target has no other way",
+                    variable.span,
+                )
+            )
         if variable.builtin == "gl_FragCoord" and turned and not resolution_of(module):
             hint = f"with a uniform vec2 {RESOLUTION} it would be turned"
             found.append((f"gl_FragCoord.y counts from the top of the framebuffer here; {hint}", variable.span))
         elif variable.storage == "out" and variable.builtin and variable.builtin not in (*builtins, *COLORS):
             found.append((f"{variable.builtin} has no effect here: this target has nothing like it", variable.span))
-    return found if kind else []
+    return found
 
 
 def _slots(variables: Sequence[Variable]) -> tuple[Slot, ...]:

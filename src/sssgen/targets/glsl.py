@@ -25,7 +25,8 @@ class GlslPrinter(Printer):
             return []
         if variable.storage == "private":
             return super().print_variable(variable)
-        words = [variable.interpolation] if variable.interpolation else []
+        word = variable.interpolation
+        words = [word] if word and (word != "noperspective" or self.target.can(word)) else []
         text = " ".join([*words, variable.storage, self.variable(variable.type, variable.name)])
         return self.with_comments(variable, [Line(f"{self.layout(variable)}{text};", variable.span)])
 
