@@ -3,7 +3,8 @@
 A program around the text can then set what a function reads, call any function, `main` too, and read what it wrote.
 Only words at file scope change, so that the text may be given to a driver and to our own front end alike: `in`, `out`,
 `varying` and `attribute` go, and with them `layout(…)` and the words of interpolation; the stage's own variables
-(`gl_FragCoord`, …) get other names by macros. Uniforms stay.
+(`gl_FragCoord`, …) get other names by macros. Uniforms that are numbers, vectors, matrices or textures stay; arrays,
+structs and blocks of them become variables.
 """
 
 from __future__ import annotations
@@ -43,7 +44,10 @@ _PART = re.compile(
 )
 _VERSION = re.compile(r"^[ \t]*#[ \t]*version[ \t]+(\d+)[ \t]*(\w*)[^\n]*$", re.MULTILINE)
 _EXTENSION = re.compile(r"^[ \t]*#[ \t]*extension\b[^\n]*$", re.MULTILINE)
-_LAYOUT = re.compile(r"layout\s*\([^()]*\)(?!\s*(?:uniform|buffer)\b)")
+_LAYOUT = re.compile(r"layout\s*\([^()]*\)")
+_UNIFORM = re.compile(r"uniform\s+(?:(?:lowp|mediump|highp)\s+)?(\w+)\s+\w+\s*(\[?)")
+_BLOCK = re.compile(r"uniform\s+(\w+)\s*\{([^{}]*)\}\s*(\w*)\s*;")
+_BASIC = re.compile(r"float|u?int|bool|[iub]?vec[234]|mat[234](?:x[234])?|[iu]?sampler\w*")
 _DROPPED = frozenset(
     {"in", "out", "varying", "attribute", "flat", "smooth", "noperspective", "centroid", "sample", "invariant"}
 )
@@ -80,14 +84,12 @@ def plain(text: str) -> Plain:
     """The text as functions and variables."""
     version = _VERSION.search(text)
     body = _without_interface(_VERSION.sub("", text, count=1))
-    head = []
-    for name, (type_, new) in STAGE.items():
-        if _uses(body, name):
-            head += [f"{type_} {new};", f"#define {name} {new}"]
-    if _uses(body, "main"):
-        head.append(f"#define main {MAIN}")
-        body += "\n#undef main"
-    return Plain(f"{version[1]} {version[2]}".strip() if version else "", "\n".join([*head, body, ""]))
+    renamed = {name: new for name, (_, new) in STAGE.items() if _uses(body, name)}
+    head = [f"{STAGE[name][0]} {new};" for name, new in renamed.items()]
+    renamed |= {"main": MAIN} if _uses(body, "main") else {}
+    head += [f"#define {name} {new}" for name, new in renamed.items()]
+    tail = [f"#undef {name}" for name in renamed]  # what stands behind the text has a main of its own
+    return Plain(f"{version[1]} {version[2]}".strip() if version else "", "\n".join([*head, body, *tail, ""]))
 
 
 def _uses(text: str, name: str) -> bool:
@@ -106,9 +108,24 @@ def _without_interface(text: str) -> str:
         if match["mark"]:
             depth += 1 if match["mark"] in "{(" else -1
         elif match["name"] and depth == 0:
-            layout = _LAYOUT.match(text, match.start())
-            if layout or match["name"] in _DROPPED:
-                kept.append(text[done : match.start()])
-                done = layout.end() if layout else match.end()
+            found = _replaced(text, match)
+            if found is not None:
+                kept += [text[done : match.start()], found[0]]
+                done = found[1]
     kept.append(text[done:])
     return "".join(kept)
+
+
+def _replaced(text: str, name: re.Match[str]) -> tuple[str, int] | None:
+    """What stands instead of what begins with a name, and where that ends; None where it stays."""
+    if layout := _LAYOUT.match(text, name.start()):
+        return "", layout.end()
+    if name[0] in _DROPPED:
+        return "", name.end()
+    if block := _BLOCK.match(text, name.start()):
+        members = _LAYOUT.sub("", block[2])
+        return (f"struct {block[1]} {{{members}}} {block[3]};" if block[3] else members), block.end()
+    uniform = _UNIFORM.match(text, name.start())
+    if uniform and (not _BASIC.fullmatch(uniform[1]) or (uniform[2] and "sampler" not in uniform[1])):
+        return "", name.end()
+    return None

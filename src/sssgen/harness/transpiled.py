@@ -12,6 +12,7 @@ A uniform has one value in each of a few rounds. What cannot be run is in the li
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cache, partial
@@ -23,11 +24,12 @@ from ..compiler import transpile
 from ..diagnostics import SssgenError, failure
 from ..ir.nodes import Function, Module, Param
 from ..ir.types import Sampler
-from ..lang.loader import load_text
+from ..lang import shadertoy
+from ..lang.glsl import load_glsl_text
 from ..passes.parameters import uniforms_to_parameters
 from ..passes.prune import only
 from ..passes.variables_to_parameters import variables_to_parameters
-from ..targets.descriptor import load
+from ..targets import descriptor
 from ..targets.numpy_textures import Texture
 from .backends import Array, Bound, Call, CompilerMissing, Place, Text, calls
 from .deviation import DRAWS, GOAL, MARGIN, errors
@@ -48,15 +50,22 @@ VERSIONS = ("450 core", "330 core", "300 es")
 """What the driver is offered a text as, where the text does not say or says a version before 3.30."""
 
 
+def load(text: str, shown: str) -> Module:
+    """The module of a text of plain GLSL."""
+    return load_glsl_text(text, shown).module
+
+
 def verify(
-    text: str, shown: str, samples: int = SAMPLES, seed: int = 0, read: Callable[[str, str], Module] = load_text,
+    text: str, shown: str, samples: int = SAMPLES, seed: int = 0, entry: str = "",
+    read: Callable[[str, str], Module] = load,
 ) -> Report:  # fmt: skip
     """Every function of a text with its includes in it (`includes.expanded`), on `samples` random inputs.
 
-    `shown` is its name in messages; `read` makes a module of a text and that name. Raises SssgenError where the front
-    end refuses the text, and where OpenGL is not here: there is nothing to compare with.
+    `shown` is its name in messages; `entry` as in `load_glsl`; `read` makes a module of a text and that name.
+    Raises SssgenError where the front end refuses the text, and where OpenGL is not here: there is nothing to compare
+    with.
     """
-    written = plain(text)
+    written = plain(_scene(text) if entry == "shadertoy" else text)
     module = read(written.text, shown)
     functions = [one for one in module.functions if one.body is not None and one.span.file == shown]
     cases = probed(module, functions)
@@ -65,6 +74,13 @@ def verify(
     with _machines() as (machines, missing):
         rows = [_Case(case, written, whole, machines, samples, seed).row() for case in cases]
     return Report(rows, missing)
+
+
+def _scene(text: str) -> str:
+    """A Shadertoy scene with the uniforms that it names and does not declare, on its first line."""
+    named = [line for name, line in shadertoy.UNIFORMS.items() if re.search(rf"\b{name}\b", text)]
+    lines = [line.split("//")[0] for line in named if not re.search(rf"\buniform\s+{line.split(maxsplit=1)[1]}", text)]
+    return " ".join(lines) + text
 
 
 @contextmanager
@@ -166,17 +182,17 @@ class _Case:
         finite = _finite(original)
         if isinstance(oracle, dict):
             finite &= _finite(oracle)
-        blur = cache(lambda: self.blur(oracle) if isinstance(oracle, dict) else {})
-        found, blurred = {}, np.zeros(len(finite), np.bool_)
-        for name, outputs in given.items():
-            if isinstance(outputs, str):
-                found[name] = Found(None, error=outputs)
-            else:
-                found[name], excused = _judged(outputs, original, finite, blur)
-                blurred |= excused
-        reason = "" if finite.any() else "every result is infinity or NaN"
-        lanes, undefined = len(finite), int((~finite).sum())
-        return row._replace(lanes=lanes, undefined=undefined, blurred=int(blurred.sum()), found=found, reason=reason)
+        blur = cache(lambda: self.blur(oracle) if isinstance(oracle, dict) else dict[str, Array]())
+        found = {
+            name: Found(None, error=outputs) if isinstance(outputs, str) else _judged(outputs, original, finite, blur)
+            for name, outputs in given.items()
+        }
+        reason = ""
+        if not finite.any():
+            reason = "every result is infinity or NaN"
+        elif all(one.deviation is None and not one.error for one in found.values()):
+            reason = "rounding decides every result"
+        return row._replace(lanes=len(finite), undefined=int((~finite).sum()), found=found, reason=reason)
 
     def all_rounds(self, run: Callable[[_Inputs], list[Array]], rounds: Sequence[_Inputs] = ()) -> dict[str, Array]:
         """Each output of all rounds (or of those given), lanes first."""
@@ -205,7 +221,7 @@ class _Case:
         made = [
             self.call(probe, probe.name, [leaf.name for leaf in probe.leaves], inputs) for probe in self.case.probes
         ]
-        target = load("glsl-es-300" if version.endswith("es") else "glsl-330")
+        target = descriptor.load("glsl-es-300" if version.endswith("es") else "glsl-330")
         drawing, layout = calls.drawing(target, text, made, inputs.textures)
         uniforms = self.uniforms()
         bound = {name: Bound(inputs.textures[name], Place(0, 0)) for name in uniforms if name in inputs.textures}
@@ -276,25 +292,24 @@ def _moved(value: Array, rng: np.random.Generator) -> Array:
 
 
 def _judged(
-    got: Mapping[str, Array], wanted: Mapping[str, Array], counted: Array, blur: Callable[[], Mapping[str, Array]]
-) -> tuple[Found, Array]:
-    """The largest deviation of the lanes that count, and which lanes the blur excuses, (lanes,)."""
+    got: Mapping[str, Array], wanted: Mapping[str, Array], counted: Array, blur: Callable[[], dict[str, Array]]
+) -> Found:
+    """The largest deviation of the lanes that count, but for those that the blur excuses."""
     each = {name: np.where(counted, errors(got[name], right), 0.0) for name, right in wanted.items()}
-    excused = {name: np.zeros(len(counted), np.bool_) for name in wanted}
-    if any((apart > GOAL).any() for apart in each.values()):
-        limit = blur()
-        excused = {
-            name: (apart > GOAL) & (apart <= MARGIN * limit[name]) if name in limit else excused[name]
-            for name, apart in each.items()
-        }
-    found = Found(0.0)
+    beyond = np.any([apart > GOAL for apart in each.values()], axis=0)
+    limit = blur() if beyond.any() else {}
+    wrong = [(apart > GOAL) & ~(apart <= MARGIN * limit.get(name, 0.0)) for name, apart in each.items()]
+    excused = beyond & ~np.any(wrong, axis=0)
+    left = counted & ~excused
+    if not left.any():
+        return Found(None, int(excused.sum()))
+    found = Found(0.0, int(excused.sum()))
     for name, apart in each.items():
-        left = np.where(excused[name], 0.0, apart)
-        lane = int(np.argmax(left))
-        if left[lane] > (found.deviation or 0.0):
+        lane = int(np.argmax(np.where(left, apart, 0.0)))
+        if left[lane] and apart[lane] > (found.deviation or 0.0):
             at = f"{name}[{lane}]: {_shown(got[name][lane])}, the author's text gives {_shown(wanted[name][lane])}"
-            found = Found(float(left[lane]), at)
-    return found, np.any([*excused.values()], axis=0)
+            found = found._replace(deviation=float(apart[lane]), at=at)
+    return found
 
 
 def _shown(value: Array) -> str:

@@ -17,14 +17,22 @@ class Found(NamedTuple):
     """How far one text is from the author's."""
 
     deviation: float | None
-    """The largest, of the lanes that are not left out; None where it did not run."""
+    """The largest, of the lanes that are not left out; None where none is left, or where it did not run."""
+    blurred: int = 0
+    """Lanes that are left out, as the deviation there is no more than rounding explains."""
     at: str = ""
     """Where, what came, and what the author's text gives."""
     error: str = ""
 
     @property
     def ok(self) -> bool:
-        return self.deviation is not None and self.deviation <= GOAL
+        """Whether nothing speaks against it; where no lane is left, nothing speaks for it either."""
+        return not self.error and (self.deviation is None or self.deviation <= GOAL)
+
+    @property
+    def cell(self) -> str:
+        """The deviation for people."""
+        return "failed" if self.error else "–" if self.deviation is None else f"{self.deviation:.2g}"
 
 
 class Row(NamedTuple):
@@ -36,8 +44,6 @@ class Row(NamedTuple):
     lanes: int = 0
     undefined: int = 0
     """Lanes that are left out, as the author's text or the oracle gives infinity or NaN."""
-    blurred: int = 0
-    """Lanes that are left out, as some deviation there is no more than rounding explains."""
     found: Mapping[str, Found] = {}
     """By the keys of `BACKENDS`."""
     reason: str = ""
@@ -45,16 +51,15 @@ class Row(NamedTuple):
 
     @property
     def ok(self) -> bool:
-        """Whether it ran, and every text agrees within the goal."""
+        """Whether it ran, and every text agrees within the goal, as far as there are lanes to tell by."""
         return not self.reason and all(found.ok for found in self.found.values())
 
     def cells(self, names: list[str]) -> str:
         """The deviations of these, and the lanes, for people."""
-        cells = [self.found[name].deviation if name in self.found else None for name in names]
-        told = "".join([f"{'failed' if cell is None else f'{cell:.2g}':>9}" for cell in cells])
+        told = "".join([f"{self.found[name].cell if name in self.found else '':>9}" for name in names])
         left = [f"{self.undefined} undefined"] * bool(self.undefined)
-        left += [f"{self.blurred} where rounding decides"] * bool(self.blurred)
-        return f"{told}   {self.lanes}" + (f", but for {' and '.join(left)}" if left else "")
+        left += [f"{one.blurred} that rounding decides in {name}" for name, one in self.found.items() if one.blurred]
+        return f"{told}   {self.lanes}" + (f" but for {', '.join(left)}" if left else "")
 
     def as_json(self) -> dict[str, Any]:
         """The row for programs."""
@@ -62,12 +67,16 @@ class Row(NamedTuple):
         if self.reason:
             return told | {"not_run": self.reason}
         found = {
-            name: {"deviation": one.deviation if one.deviation is not None and np.isfinite(one.deviation) else None}
+            name: {
+                "deviation": one.deviation if one.deviation is not None and np.isfinite(one.deviation) else None,
+                "ok": one.ok,
+                "blurred": one.blurred,
+            }
             | ({"at": one.at} if one.at else {})
             | ({"error": one.error} if one.error else {})
             for name, one in self.found.items()
         }
-        return told | {"lanes": self.lanes, "undefined": self.undefined, "blurred": self.blurred, "texts": found}
+        return told | {"lanes": self.lanes, "undefined": self.undefined, "texts": found}
 
 
 class Report(NamedTuple):

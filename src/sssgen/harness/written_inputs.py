@@ -41,8 +41,8 @@ def numbers(name: str, type_: Type, lanes: int, seed: int) -> Array:
         return rng.random(shape) < 0.5
     if kind != "float":
         return rng.integers(0, MOST, shape).astype(np.int32 if kind == "int" else np.uint32)
-    if name in RANGES:
-        found = rng.uniform(*RANGES[name], shape)
+    if ends := RANGES.get(name):
+        found = rng.uniform(*ends, shape)
     else:
         chance = rng.random(shape)
         found = np.where(chance < WITHIN, rng.uniform(0.0, 1.0, shape), rng.uniform(-2.0, 2.0, shape))

@@ -1,0 +1,278 @@
+"""`sssgen transpile --verify`: functions as they are written against what is made of them, and what it is told."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from sssgen.diagnostics import SssgenError
+from sssgen.harness.backends import Backend
+from sssgen.harness.deviation import GOAL
+from sssgen.harness.includes import expanded
+from sssgen.harness.plain_text import plain
+from sssgen.harness.transpiled import load, verify
+from sssgen.harness.transpiled_report import BACKENDS, Found, Report, Row
+from sssgen.ir.nodes import Module
+
+SAMPLES = 200
+
+FUNCTIONS = """
+struct Lamp { vec3 color; float power; };
+
+vec3 lit(Lamp lamp, vec3 n) { return lamp.color * lamp.power * max(n.z, 0.0); }
+vec2 twice(vec2 p) { return 2.0 * p; }
+float twice(float x) { return 2.0 * x; }
+void split(float x, out float a, inout vec2 b) { a = x + x; b += x; }
+vec3 turned(mat3 m, vec3 v) { return m * v; }
+vec4 seen(sampler2D map, vec2 p) { return texture(map, p); }
+float weighted(float w[3]) { return w[0] + w[1] * 2.0 + w[2]; }
+bool both(bvec2 b) { return all(b); }
+int sum_below(int n) { int sum = 0; for (int i = 0; i < 8; i++) { if (i >= n) break; sum += i; } return sum; }
+float slope(vec2 p) { return dFdx(p.x) + dFdy(p.y); }
+float shown_where(float x) { if (x < 0.5) discard; return x; }
+"""
+
+
+@pytest.fixture(autouse=True)
+def _all_here(backend: Callable[[str], Backend]) -> None:
+    for name in BACKENDS.values():
+        backend(name)
+
+
+def rows(text: str, read: Callable[[str, str], Module] = load) -> dict[str, Row]:
+    """The rows by function."""
+    return {row.function: row for row in verify(text, "shader.glsl", SAMPLES, read=read).rows}
+
+
+def misread(*mistakes: tuple[str, str]) -> Callable[[str, str], Module]:
+    """A front end that reads something else than what is written."""
+
+    def read(text: str, shown: str) -> Module:
+        for right, wrong in mistakes:
+            assert text.count(right) == 1
+            text = text.replace(right, wrong)
+        return load(text, shown)
+
+    return read
+
+
+def test_every_function_runs_in_every_text() -> None:
+    found = rows(FUNCTIONS)
+    assert list(found) == [
+        "lit(Lamp,vec3)", "twice(vec2)", "twice(float)", "split(float,float,vec2)", "turned(mat3,vec3)",
+        "seen(sampler2D,vec2)", "weighted(float[3])", "both(bvec2)", "sum_below(int)", "slope(vec2)",
+        "shown_where(float)",
+    ]  # fmt: skip
+    for row in found.values():
+        assert row.ok, row
+        assert row.found.keys() == BACKENDS.keys()
+        assert (row.lanes, row.undefined) == (SAMPLES, 0)
+
+
+MISTAKES = [
+    ("max(n.z, 0.0)", "max(n.z, 0.01)"),
+    ("2.0 * p", "2.0 * p.yx"),
+    ("2.0 * x", "2.0002 * x"),
+    ("b += x", "b -= x"),
+    ("m * v", "v * m"),
+    ("texture(map, p)", "texture(map, p + 0.01)"),
+    ("w[1] * 2.0", "w[2] * 2.0"),
+    ("all(b)", "any(b)"),
+    ("i >= n", "i > n"),
+    ("dFdy(p.y)", "dFdy(p.x)"),
+    ("x < 0.5) discard", "x < 0.4) discard"),
+]
+"""One in each function."""
+
+
+def test_what_is_read_wrong_is_found_in_every_text() -> None:
+    found = rows(FUNCTIONS, misread(*MISTAKES))
+    assert len(found) == len(MISTAKES)
+    for row in found.values():
+        assert row.found.keys() == BACKENDS.keys()
+        for name, one in row.found.items():
+            assert one.deviation is not None and one.deviation > GOAL, (row.function, name)
+            assert not one.ok and "the author's text gives" in one.at
+
+
+def test_a_hash_is_compared_where_it_can_be_and_a_wrong_one_is_not_passed() -> None:
+    text = "float scatter(vec2 p) { return fract(sin(dot(p, vec2(12.9898, 78.233))) * 43758.5453); }"
+    row = rows(text)["scatter(vec2)"]
+    assert row.ok and row.found["glsl"] == Found(0.0)
+    assert row.found["oracle"] == Found(None, SAMPLES) and row.found["oracle"].cell == "–"
+    wrong = rows(text, misread(("78.233", "78.133")))["scatter(vec2)"]
+    assert not wrong.ok
+
+
+def test_an_edge_in_the_inputs_is_no_excuse_for_the_rest() -> None:
+    text = "float edge(float x) { return x < 0.7 ? 0.0 : fract(70000.0 * x); }"
+    assert rows(text)["edge(float)"].ok
+    assert not rows(text, misread(("0.7", "0.71")))["edge(float)"].ok
+
+
+def test_lanes_without_a_result_are_counted() -> None:
+    row = rows("float over(float x) { return 1.0 / x; }")["over(float)"]
+    assert row.ok and 0 < row.undefined < SAMPLES
+    row = rows("float root(float x) { return sqrt(-1.0 - x * x); }")["root(float)"]
+    assert not row.ok and row.reason == "every result is infinity or NaN"
+
+
+def test_a_text_that_ends_nowhere_costs_its_own_row() -> None:
+    long = ", ".join(f"float x{i}" for i in range(70))
+    text = f"float many({long}) {{ return x0; }}\nvoid nothing(float x) {{ }}\nfloat same(float x) {{ return x; }}"
+    found = rows(text)
+    assert "takes 70 numbers" in next(row.reason for name, row in found.items() if name.startswith("many"))
+    assert found["nothing(float)"].reason == "it gives nothing"
+    assert found["same(float)"].ok
+
+
+def test_a_uniform_has_several_values() -> None:
+    text = "uniform float size;\nuniform sampler2D map;\nvec4 f(vec2 p) { return size * texture(map, p); }"
+    assert rows(text)["f(vec2)"].ok
+    assert not rows(text, misread(("size * tex", "0.5 * tex")))["f(vec2)"].ok
+
+
+SHADER = """#version 330 core
+struct Lamp { vec3 color; float power; };
+layout(location = 0) in vec2 uv;
+flat in int kind;
+uniform float time;
+uniform Lamp lamps[2];
+uniform sampler2D map;
+out vec4 color;
+float level = 0.5;
+vec3 tint;
+float ring(vec2 p) { return abs(length(p) - level); }
+void keep(vec3 c) { tint = c * time; level += 1.0; }
+vec3 kept() { return tint * level * lamps[1].color; }
+void main() {
+    keep(vec3(uv, float(kind)));
+    color = vec4(kept(), ring(uv)) + texture(map, uv) + gl_FragCoord;
+}
+"""
+
+
+def test_a_whole_shader_is_run_function_by_function() -> None:
+    found = rows(SHADER)
+    assert list(found) == ["ring(vec2)", "keep(vec3)", "kept()", "main()"]
+    for row in found.values():
+        assert row.ok, row
+    wrong = misread(
+        ("(p) - level", "(p) + level"),
+        ("level += 1.0", "level += 1.1"),
+        ("level * lamps[1]", "level * lamps[0]"),
+        ("+ gl_FragCoord", "+ gl_FragCoord.yxzw"),
+    )
+    assert not any(row.ok for row in rows(SHADER, wrong).values())
+
+
+def test_old_glsl_runs_as_it_is_written() -> None:
+    text = """
+#ifdef GL_ES
+precision mediump float;
+#endif
+varying vec2 uv;
+uniform sampler2D map;
+uniform float u_time;
+void main() {
+    gl_FragColor = texture2D(map, uv) * sin(u_time);
+}
+"""
+    assert rows(text)["main()"].ok
+    assert not rows(text, misread(("sin(", "cos(")))["main()"].ok
+
+
+def test_a_scene_of_shadertoy_has_its_uniforms() -> None:
+    text = """void mainImage(out vec4 color, in vec2 at) {
+    color = vec4(at / iResolution.xy, sin(iTime), iChannelTime[1]) + texture(iChannel0, at / 64.0);
+}"""
+    report = verify(text, "scene.glsl", SAMPLES, entry="shadertoy")
+    assert [row.function for row in report.rows] == ["mainImage(vec4,vec2)"] and report.ok
+
+
+def test_what_a_driver_does_not_take_is_said() -> None:
+    text = "float f(sampler2DShadow map, vec3 p) { return texture(map, p); }"
+    text += "\nfloat g(float x) { return later(x); }\nfloat later(float x) { return x; }"
+    found = rows(text, misread(("later(x); }\nfloat", "x; }\nfloat")))
+    assert found["f(sampler2DShadow,vec3)"].reason == "it takes a sampler2DShadow, which cannot be given"
+    assert found["g(float)"].reason.startswith("the driver does not take it as it is written: gl: ")
+
+
+def test_the_same_seed_gives_the_same_rows() -> None:
+    once, again = (verify(FUNCTIONS, "shader.glsl", 50, seed) for seed in (3, 3))
+    assert once == again
+
+
+def test_the_report_says_it_all() -> None:
+    rows = [
+        Row("f(float)", 1, 100, 3, {"glsl": Found(0.0), "hlsl": Found(float("inf"), 2, "result[0]: nan")}),
+        Row("g(float)", 2, reason="it gives nothing"),
+        Row("h(float)", 3, 100, found={"glsl": Found(None, 100), "hlsl": Found(None, error="no such thing")}),
+    ]
+    report = Report(rows, {"webgpu": "pip install wgpu"})
+    lines = list(report.lines())
+    assert lines == [
+        "largest deviation     glsl     hlsl   oracle   of lanes (goal: 1e-05)",
+        "f(float)                 0      inf            100 but for 3 undefined, 2 that rounding decides in hlsl",
+        "    hlsl result[0]: nan",
+        "g(float)           not run: it gives nothing",
+        "h(float)                 –   failed            100 but for 100 that rounding decides in glsl",
+        "    hlsl does not run: no such thing",
+        "webgpu is missing: pip install wgpu",
+    ]
+    told = json.loads(json.dumps(report.as_json(), allow_nan=False))
+    assert [row["ok"] for row in told["functions"]] == [False, False, False] and not report.ok
+    assert told["functions"][1]["not_run"] == "it gives nothing"
+    assert told["functions"][0]["texts"]["hlsl"]["deviation"] is None
+
+
+def test_the_interface_of_a_stage_becomes_variables() -> None:
+    text = """#version 330 core
+#extension GL_ARB_gpu_shader5 : enable
+layout(location = 0) flat in vec2 uv; // in
+layout(std140) uniform Camera { layout(offset = 0) mat4 view; vec3 eye; };
+layout(std140) uniform Fog { float near; } fog;
+uniform highp float time;
+uniform vec3 points[4];
+uniform Lamp lamps[2];
+uniform sampler2D maps[2];
+#define varying in
+out vec4 color;
+float f(in float x, out float y) { y = x; return x; }
+void main() { color = vec4(gl_FragCoord.x); }
+"""
+    found = plain(text)
+    assert found.version == "330 core" and not found.is_es
+    assert found.text.split("\n") == [
+        "vec4 sssgen_coordinates;", "#define gl_FragCoord sssgen_coordinates", "#define main sssgen_written_main", "",
+        "#extension GL_ARB_gpu_shader5 : enable", "   vec2 uv; // in", "   mat4 view; vec3 eye; ",
+        " struct Fog { float near; } fog;", "uniform highp float time;", " vec3 points[4];", " Lamp lamps[2];",
+        "uniform sampler2D maps[2];", "#define varying in", " vec4 color;",
+        "float f(in float x, out float y) { y = x; return x; }",
+        "void main() { color = vec4(gl_FragCoord.x); }", "", "#undef gl_FragCoord", "#undef main", "",
+    ]  # fmt: skip
+    assert found.for_driver("450 core").split("\n")[:2] == [
+        "#version 450 core",
+        "#extension GL_ARB_gpu_shader5 : enable",
+    ]
+
+
+def test_old_names_are_renamed_for_the_driver_alone() -> None:
+    found = plain("varying vec2 uv;\nvec4 f(sampler2D s) { return texture2D(s, uv); }")
+    assert "#define texture2D texture\n" in found.for_driver("450 core")
+    assert "#define texture2D" not in found.text
+    assert "#define texture2D texture\n" not in plain("#define texture2D tex\nvec4 v = texture2D(a);").for_driver("330")
+
+
+def test_includes_are_written_out_once(tmp_path: Path) -> None:
+    (tmp_path / "lib").mkdir()
+    (tmp_path / "lib" / "a.glsl").write_text('#include "b.glsl"\nfloat a;\n')
+    (tmp_path / "lib" / "b.glsl").write_text('#include "a.glsl"\nfloat b;\n')
+    path = tmp_path / "main.glsl"
+    text = '#include "lib/a.glsl"\n// #include "none"\n#include <b.glsl>\nfloat c;\n'
+    assert expanded(text, path, [tmp_path / "lib"]) == '\nfloat b;\n\nfloat a;\n\n// #include "none"\n\nfloat c;\n'
+    with pytest.raises(SssgenError, match=r"cannot find 'lost\.glsl'"):
+        expanded('#include "lost.glsl"', path)
