@@ -263,3 +263,69 @@ def test_derivatives() -> None:
         assert rt.dFdx(2.0) == 0.0 and rt.dFdx(vec(1.0, 2.0)).shape == (2, 1)
         with pytest.raises(ValueError, match="lanes"):
             rt.dFdx(x[:7])
+
+
+# Textures with layers, of integers, that compare
+
+
+def test_layers_are_chosen_by_the_last_component() -> None:
+    layers = Texture(np.stack([np.full((2, 4, 1), value) for value in (1.0, 2.0, 5.0)]), layers=True)
+    assert (layers.dim, layers.size(), layers.axes) == ("2D", (4, 2), 2)
+    nearest = np.array([-3.0, 0.4, 0.6, 1.4, 9.0])
+    np.testing.assert_array_equal(rt.texture(layers, vec(0.3, 0.7, nearest))[0], [1, 1, 2, 2, 5])
+    np.testing.assert_array_equal(rt.textureLayer(layers, vec(0.3, 0.7), np.array([0, 1, 2]))[0], [1, 2, 5])
+    np.testing.assert_array_equal(rt.textureSize(layers, 0)[:, 0], [4, 2, 3])
+    place = np.array([[1, 1, 1], [0, 0, 2], [2, 3, 0]])
+    np.testing.assert_array_equal(rt.texelFetch(layers, place, 0)[0], [5, 0, 0])  # outside it is 0
+    cubes = Texture(np.arange(12.0).reshape(2, 6, 1, 1, 1) * np.ones((1, 1, 2, 2, 1)), dim="Cube", layers=True)
+    directions = np.array([[1.0, 0.0], [0.0, -1.0], [0.0, 0.0], [1.0, 0.0]])
+    np.testing.assert_array_equal(rt.textureLod(cubes, directions, 0.0)[0], [6, 3])
+    np.testing.assert_array_equal(rt.textureSize(cubes, 0)[:, 0], [2, 2, 2])
+
+
+def test_texels_of_integers_keep_all_their_bits() -> None:
+    numbers = np.array([[[-(2**31)], [2**31 - 1]]])
+    ints = Texture(numbers, kind="int")
+    got = rt.texelFetch(ints, np.array([[0, 1], [0, 0]]), 0)
+    assert got.dtype == np.int32
+    np.testing.assert_array_equal(got, [[-(2**31), 2**31 - 1], [0, 0], [0, 0], [1, 1]])
+    uints = Texture(np.array([[[2**32 - 1]]]), kind="uint")
+    assert rt.texelFetch(uints, np.array([[0], [0]]), 0)[0, 0] == 2**32 - 1
+
+
+def test_a_comparison_is_made_before_the_filter() -> None:
+    shade = Texture(np.array([[[0.25], [0.75]]]), wrap="clamp", compare=True)
+    reference = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
+    across = np.array([0.5] * 5)  # half way between the texels
+    np.testing.assert_array_equal(rt.texture(shade, vec(across, 0.5, reference)), [1, 1, 0.5, 0.5, 0])
+    np.testing.assert_array_equal(rt.textureCompare(shade, vec(0.0, 0.5), reference), [1, 1, 0, 0, 0])
+    np.testing.assert_array_equal(rt.textureLod(shade, vec(1.0, 0.5, reference), 0.0), [1, 1, 1, 1, 0])
+    shades = Texture(np.array([[[[0.25]]], [[[0.75]]]]), layers=True, compare=True)
+    np.testing.assert_array_equal(rt.texture(shades, vec(0.5, 0.5, np.array([0.0, 1.0]), 0.5)), [0, 1])
+
+
+def test_offsets_are_in_texels_of_each_level() -> None:
+    texture = Texture(np.arange(16.0).reshape(4, 4, 1), wrap="clamp", mipmaps=True)
+    middle = vec(0.375, 0.375)  # of texel (1, 1) of level 0
+    np.testing.assert_allclose(rt.textureLodOffset(texture, middle, 0.0, vec(1, 2))[0], 14.0)
+    np.testing.assert_allclose(rt.textureLodOffset(texture, middle, 0.0, vec(-1, 0))[0], 4.0)
+    half = vec(0.25, 0.25)  # of texel (0, 0) of level 1, whose texels are 2.5, 4.5, 10.5, 12.5
+    np.testing.assert_allclose(rt.textureLodOffset(texture, half, 1.0, vec(1, 0))[0], 4.5)
+    np.testing.assert_allclose(rt.textureLodOffset(texture, half, 1.0, vec(0, 1))[0], 10.5)
+    np.testing.assert_array_equal(rt.texelFetchOffset(texture, np.array([[1], [1]]), 0, vec(1, -1))[0], 2.0)
+
+
+def test_a_gather_gives_the_texels_of_the_linear_filter() -> None:
+    image = np.zeros((2, 3, 4))
+    image[..., 2] = np.arange(6.0).reshape(2, 3)
+    texture = Texture(image, wrap="clamp")
+    np.testing.assert_array_equal(rt.textureGather(texture, vec(0.4, 0.5), 2)[:, 0], [3, 4, 1, 0])
+    np.testing.assert_array_equal(rt.textureGatherOffset(texture, vec(0.4, 0.5), vec(1, 0), 2)[:, 0], [4, 5, 2, 1])
+    np.testing.assert_array_equal(rt.textureGather(texture, vec(0.4, 0.5))[:, 0], [0, 0, 0, 0])
+    assert rt.textureQueryLevels(texture) == 1
+
+
+@pytest.mark.parametrize("data", [np.zeros((2, 2, 1)), np.zeros((2, 2, 2, 2, 1))])
+def test_layers_are_an_axis_of_their_own(data: np.ndarray) -> None:
+    with pytest.raises(ValueError, match="see Texture"):
+        Texture(data, dim="2D", layers=True)

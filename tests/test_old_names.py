@@ -20,7 +20,9 @@ def arguments(old: str, new: str, count: int) -> list[Type]:
     """The types with which an old name was called."""
     dim = next(dim for dim in PLACES if dim in old)
     coord, texel, slope = PLACES[dim]
-    sampler = Sampler(dim.removesuffix("Array"), array=dim.endswith("Array"))
+    shadow = old.startswith("shadow")
+    sampler = Sampler(dim.removesuffix("Array"), array=dim.endswith("Array"), shadow=shadow)
+    coord = VEC3 if shadow else coord
     place = VEC4 if "Proj" in new else texel if "Fetch" in new else coord
     rest: list[Type] = [slope, slope] if "Grad" in new else [INT if "Fetch" in new else FLOAT]
     return [sampler, INT] if "Size" in new else [sampler, place, *rest][:count]

@@ -143,6 +143,34 @@ def test_projective_reads(name: str, backend: Callable[[str], Backend]) -> None:
         np.testing.assert_allclose(got, right, rtol=0.0, atol=2.0**-7, err_msg=str(read))
 
 
+@pytest.mark.parametrize("name", ["numpy", "gl", "gl-es", "webgpu", "browser", "hlsl"])
+def test_reads_that_compare(name: str, backend: Callable[[str], Backend]) -> None:
+    """A reference is right of all texels, of none, and of some of them; old GLSL has the result as a grey."""
+    map_ = textures()["shade"]
+    depths = map_.levels[0][..., 0].astype(np.float64)
+    shadow = Sampler("2D", shadow=True)
+    texts, calls = [], []
+    for builtin, place, result in (
+        ("textureProj", VEC4, FLOAT), ("shadow2DProj", VEC4, VEC4), ("shadow2D", VEC3, VEC4),
+    ):  # fmt: skip
+        source = out_builtin(builtin, [shadow, place])
+        assert source is not None
+        texts.append(
+            f"{source}{spell(result)} of_{builtin}(sampler2DShadow s, {spell(place)} P) {{ return {builtin}(s, P); }}\n"
+        )
+        coord = np.ones((place.size, 12), np.float32)
+        coord[:2] = np.array([[3.5 / 16.0], [2.5 / 8.0]])  # the middle of a texel
+        coord[2] = np.where(np.arange(12) % 2, depths[2, 3] - 1.0 / 512.0, depths[2, 3] + 1.0 / 512.0)
+        if place == VEC4:
+            coord *= 2.0
+        calls.append((f"of_{builtin}", [shadow, place], result, ("shade", coord)))
+    wanted = np.arange(12) % 2
+    for got in run(backend(name), "".join(texts), calls):
+        np.testing.assert_allclose(got if got.ndim == 1 else got[0], wanted, atol=2.0**-7)
+        if got.ndim == 2:
+            np.testing.assert_allclose(got[3], 1.0)
+
+
 # What there is
 
 

@@ -260,6 +260,57 @@ def test_sums_keep_the_part_that_is_known() -> None:
     )
 
 
+def test_an_offset_stays_and_a_layer_has_no_slope() -> None:
+    becomes(
+        """
+        uniform sampler2DArray layers;
+        vec4 f(vec3 at, float x) {
+            vec4 c = vec4(0.0);
+            for (int i = 0; float(i) < x && i < 9; i++) {
+                at += 0.1;
+                c += texture(layers, at) + textureOffset(map, at.xy, ivec2(1, -2), 1.0);
+            }
+            return c;
+        }
+        """,
+        """
+        uniform sampler2DArray layers;
+        vec4 f(vec3 at, float x) {
+            vec4 c = vec4(0.0);
+            vec2 at_dx = dFdx(at.xy); vec2 at_dy = dFdy(at.xy);
+            for (int i = 0; float(i) < x && i < 9; i++) {
+                at += 0.1;
+                c += textureGrad(layers, at, at_dx, at_dy)
+                    + textureGradOffset(map, at.xy, at_dx * exp2(1.0), at_dy * exp2(1.0), ivec2(1, -2));
+            }
+            return c;
+        }
+        """,
+        "'layers' is read here at the level that its coordinates had before",
+        "'map' is read here at the level that its coordinates had before",
+    )
+
+
+def test_a_comparison_is_made_at_level_0() -> None:
+    becomes(
+        """
+        uniform sampler2DShadow shade;
+        float f(vec3 at, float x) {
+            if (x > 0.0) { at += 0.1; return texture(shade, at); }
+            return 0.0;
+        }
+        """,
+        """
+        uniform sampler2DShadow shade;
+        float f(vec3 at, float x) {
+            if (x > 0.0) { at += 0.1; return textureLod(shade, at, 0.0); }
+            return 0.0;
+        }
+        """,
+        "'shade' is read at level 0 here",
+    )
+
+
 def test_what_cannot_be_known_before_gets_level_0() -> None:
     becomes(
         """

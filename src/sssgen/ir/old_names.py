@@ -38,6 +38,8 @@ _RENAMED = (
         (4,),
     ),
     ("texelFetch2D texelFetch3D texelFetch2DArray", "texelFetch", (3,)),
+    ("shadow2DEXT", "texture", (2,)),
+    ("shadow2DProjEXT", "textureProj", (2,)),
     ("textureSize2D textureSize3D textureSizeCube textureSize2DArray", "textureSize", (2,)),
 )
 """Old names; the new name; with how many arguments."""

@@ -1,14 +1,14 @@
-"""Builtins that are ordinary functions of our own language: those with out parameters, and the projective reads.
+"""Builtins that are ordinary functions of our own language: with out parameters, projective, or of old GLSL.
 
-A builtin of the intrinsic table gives one value and has no out parameter. These, and texture reads at a coordinate that
-is divided first, are written out instead: the front end puts the function into the module where a file first calls it,
-and every pass and target then treats it as one of the file's own.
+A builtin of the intrinsic table gives one value and has no out parameter. These, texture reads at a coordinate that is
+divided first, and the shadow reads of old GLSL, which gave a vec4, are written out instead: the front end puts the
+function into the module where a file first calls it, and every pass and target treats it as one of the file's own.
 
     out_builtin("modf", [VEC3, VEC3])    # the text of vec3 modf(vec3 x, out vec3 whole)
 
 The texts are generic as the table's signatures are (`genF`: float, vec2, vec3, vec4 alike). What GLSL leaves open:
 `modf` and `frexp` of an infinity or NaN give anything; `frexp` takes a subnormal number for 0, as GPUs do.
-Source: chapters 8.3, 8.8 and 8.9 of the GLSL 4.60 specification.
+Source: chapters 8.3, 8.8 and 8.9 of the GLSL 4.60 specification, and 8.7 of GLSL 1.20.
 """
 
 from __future__ import annotations
@@ -79,6 +79,7 @@ vec4 textureProj(sampler3D map, vec4 P) { return texture(map, P.xyz / P.w); }
 vec4 textureProj(sampler2D map, vec3 P, float bias) { return texture(map, P.xy / P.z, bias); }
 vec4 textureProj(sampler2D map, vec4 P, float bias) { return texture(map, P.xy / P.w, bias); }
 vec4 textureProj(sampler3D map, vec4 P, float bias) { return texture(map, P.xyz / P.w, bias); }
+float textureProj(sampler2DShadow map, vec4 P) { return texture(map, P.xyz / P.w); }
 """,
     "textureProjLod": """
 vec4 textureProjLod(sampler2D map, vec3 P, float level) { return textureLod(map, P.xy / P.z, level); }
@@ -89,6 +90,16 @@ vec4 textureProjLod(sampler3D map, vec4 P, float level) { return textureLod(map,
 vec4 textureProjGrad(sampler2D map, vec3 P, vec2 dx, vec2 dy) { return textureGrad(map, P.xy / P.z, dx, dy); }
 vec4 textureProjGrad(sampler2D map, vec4 P, vec2 dx, vec2 dy) { return textureGrad(map, P.xy / P.w, dx, dy); }
 vec4 textureProjGrad(sampler3D map, vec4 P, vec3 dx, vec3 dy) { return textureGrad(map, P.xyz / P.w, dx, dy); }
+""",
+    # the depth as a grey, as GLSL 1.20 has it
+    "shadow2D": """
+vec4 shadow2D(sampler2DShadow map, vec3 P) { return vec4(vec3(texture(map, P)), 1.0); }
+""",
+    "shadow2DLod": """
+vec4 shadow2DLod(sampler2DShadow map, vec3 P, float level) { return vec4(vec3(textureLod(map, P, level)), 1.0); }
+""",
+    "shadow2DProj": """
+vec4 shadow2DProj(sampler2DShadow map, vec4 P) { return vec4(vec3(texture(map, P.xyz / P.w)), 1.0); }
 """,
 }
 """Name → its definitions; each ends with the first brace at the end of a line."""
