@@ -5,7 +5,7 @@ A run collects every error it can find and raises them together as one `SssgenEr
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 from .ir.spans import NOWHERE, Span
@@ -96,10 +96,11 @@ def failure(message: str, hint: str = "", file: str = "") -> SssgenError:
 
 
 class Reporter:
-    """Collects the diagnostics of one source text."""
+    """Collects the diagnostics of one source text; `texts` are those of the files that it includes, by their names."""
 
-    def __init__(self, file: str, text: str) -> None:
+    def __init__(self, file: str, text: str, texts: Mapping[str, str] | None = None) -> None:
         self.file = file
+        self.texts = texts or {}
         self.lines = text.split("\n")  # as the parser counts them: other line ends are white space to it
         self.diagnostics: list[Diagnostic] = []
         self.seen: set[tuple[Span, str]] = set()
@@ -119,7 +120,9 @@ class Reporter:
 
     def line(self, span: Span) -> str:
         """The text of the line that the span begins on."""
-        return self.lines[span.line - 1].rstrip("\r") if 0 < span.line <= len(self.lines) else ""
+        own = span.file == self.file or span.file not in self.texts
+        lines = self.lines if own else self.texts[span.file].split("\n")
+        return lines[span.line - 1].rstrip("\r") if 0 < span.line <= len(lines) else ""
 
     def check(self) -> None:
         """Raises what has been collected, in source order, if there is any."""

@@ -3,33 +3,42 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from textwrap import dedent
 from typing import Any
 
+from ..ir.spans import Span
 from . import syntax as s
-
-Comment = tuple[int, int, str]
-"""The first line of a comment, its last line, and its text as written."""
+from .tokens import Comment
 
 _DOC = re.compile(r"///(?!/)|/\*\*(?![*/])")
+_EMPTY = re.compile(r"\s*(#.*)?$")
 
 
-def attach_docs(externals: Sequence[Any], comments: Sequence[Comment], lines: Sequence[str]) -> tuple[s.External, ...]:
-    """Gives each declaration the doc comment that ends on the line before it: a `/** */` block, or `///` lines."""
-    by_end = {
-        end: (first, text)
-        for first, end, text in comments
-        if _DOC.match(text) and lines[first - 1].lstrip().startswith(text[:3])
-    }
+def attach_docs(
+    externals: Sequence[Any],
+    comments: Mapping[str, Sequence[Comment]],
+    lines: Mapping[str, Sequence[str]],
+    plain: bool = False,
+) -> tuple[s.External, ...]:
+    """Gives each declaration the doc comment that ends on the line before it: a `/** */` block, or `///` lines.
+
+    In `plain` GLSL any comment counts that stands alone, and between it and the declaration there may be empty lines
+    and directives, as in files that guard against being included twice.
+    """
+    ends = {file: _by_end(found, lines[file], plain) for file, found in comments.items()}
     documented: list[s.External] = []
     for external in externals:
-        line = _first_line(external)
+        place = _first_place(external)
+        by_end = ends.get(place.file, {})
+        line = place.line
+        if plain and by_end:
+            line = _behind_comment(lines[place.file], line, by_end)
         parts: list[str] = []
         while line - 1 in by_end:
             line, text = by_end[line - 1]
             parts.append(text)
-            if text.startswith("/**"):
+            if not text.startswith("//"):
                 break
         if parts:
             doc = "\n".join(map(_words, reversed(parts))).strip("\n").rstrip()
@@ -38,20 +47,38 @@ def attach_docs(externals: Sequence[Any], comments: Sequence[Comment], lines: Se
     return tuple(documented)
 
 
-def _first_line(external: s.External) -> int:
-    """The line that a declaration begins on; 0 for what has no documentation."""
+def _by_end(comments: Sequence[Comment], lines: Sequence[str], plain: bool) -> dict[int, tuple[int, str]]:
+    """The comments that can document something: the line each begins on and its text, by the line it ends on."""
+    found = {}
+    for first, last, text in comments:
+        if (plain or _DOC.match(text)) and lines[first - 1].lstrip().startswith(text[:2]):
+            found[last] = first, text
+    return found
+
+
+def _behind_comment(lines: Sequence[str], line: int, by_end: Mapping[int, object]) -> int:
+    """The line behind the comment that stands before a declaration with nothing but directives between them."""
+    above = line
+    while above > 1 and above - 1 not in by_end and _EMPTY.match(lines[above - 2]):
+        above -= 1
+    return above if above - 1 in by_end else line
+
+
+def _first_place(external: s.External) -> Span:
+    """Where a declaration begins."""
     if isinstance(external, s.FunctionSyntax):
-        return external.result.span.line
-    if isinstance(external, s.UniformSyntax):
-        return external.type.span.line
-    return external.name.span.line if isinstance(external, s.StructSyntax) else 0
+        return external.result.span
+    if isinstance(external, s.GlobalSyntax):
+        qualified = external.declaration.qualifiers.span
+        return qualified if qualified.line else external.declaration.type.span
+    return external.name.span
 
 
 def _words(text: str) -> str:
     """The words of one comment: what stands behind the marks, its own indentation kept."""
-    if text.startswith("///"):
-        return text[3:].removeprefix(" ").rstrip()
-    first, *rest = [line.rstrip() for line in text[3:-2].split("\n")]
+    if text.startswith("//"):
+        return text[3 if text.startswith("///") else 2 :].removeprefix(" ").rstrip()
+    first, *rest = [line.rstrip() for line in text[2:-2].removeprefix("*").split("\n")]
     if all(line.lstrip().startswith("*") for line in rest if line.strip()):
         rest = [line.lstrip()[1:].removeprefix(" ") for line in rest]
         return "\n".join([first.strip(), *rest])

@@ -2,17 +2,22 @@
 
 Where something is wrong, it is reported and an `Untyped` goes up, which nothing complains about a second
 time.
+
+The IR's expressions have no side effect. What an expression does besides giving its value (an assignment in it, a
+step) goes into the `prelude`, the statements that run before it; operands that come before it in the source and that
+it changes are kept in variables first.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import operator
+from collections.abc import Callable, Sequence
+from typing import NamedTuple, TypeVar, get_args
 
 from ..diagnostics import Reporter, did_you_mean
 from ..ir import nodes as ir
-from ..ir.intrinsics import BUILTINS
 from ..ir.rules import FLOAT_MAX, element_type, operator_type, prefix_type, swizzle_type
-from ..ir.signatures import candidates, resolve
+from ..ir.signatures import candidates
 from ..ir.types import (
     BOOL,
     BY_NAME,
@@ -27,15 +32,16 @@ from ..ir.types import (
     Type,
     Vector,
     Void,
-    components,
     kind_of,
     spell,
-    vector_of,
 )
+from ..ir.walk import subexpressions
 from . import quantities as q
 from . import syntax as s
+from .conversions import as_kind, common_kind, converts, wrapped
+from .effects import depends, root_name, writes_of
 from .scope import GlobalValue, Scopes, Signature
-from .wording import a_type, constructor_hint, declared, mixed_hint, overload_hint, type_hint
+from .wording import a_type, mixed_hint, type_hint
 
 
 class Typed(NamedTuple):
@@ -49,20 +55,58 @@ class Untyped(Exception):
     """Unwinds to the statement after an error has been reported."""
 
 
+_T = TypeVar("_T")
+
+_WHOLE: dict[str, Callable[[int, int], int]] = {
+    "+": operator.add, "-": operator.sub, "*": operator.mul, "&": operator.and_, "|": operator.or_, "^": operator.xor,
+    "/": lambda x, y: abs(x) // y * (1 if x >= 0 else -1), "%": lambda x, y: x - abs(x) // y * (1 if x >= 0 else -1) * y,
+    "<<": operator.lshift, ">>": operator.rshift,
+}  # fmt: skip
+"""The operators of constant whole numbers; a divisor is above 0, a shift at most 64."""
+
+_NOT_HERE = {
+    **dict.fromkeys(
+        ("double", *(f"dvec{n}" for n in "234"), *(f"dmat{n}" for n in "234")), "WGSL has no 64-bit floats"
+    ),
+    **dict.fromkeys(
+        (f"{kind}image{dim}" for kind in ("", "i", "u") for dim in ("2D", "3D", "Cube", "2DArray", "Buffer")),
+        "images are written by compute shaders",
+    ),
+    **dict.fromkeys(
+        (
+            f"{kind}sampler{dim}"
+            for kind in ("", "i", "u")
+            for dim in ("1D", "2DRect", "Buffer", "2DMS", "1DArray", "2DMSArray")
+        ),
+        "WebGPU has no such texture that is sampled",
+    ),
+    **dict.fromkeys((f"mat{n}x{m}" for n in "234" for m in "234" if n != m), "matrices are square"),
+    "atomic_uint": "atomics belong to compute shaders",
+}
+
 _SWIZZLES = ("xyzw", "rgba", "stpq")
 
 
 class ExpressionChecker:
-    """Checks the expressions of one file; `scopes` is set for each function in turn."""
+    """Checks the expressions of one file; `scopes` is set for each function in turn.
 
-    def __init__(self, reporter: Reporter) -> None:
+    `plain`: the file is GLSL as people have it, where an int becomes a float by itself and loops end by themselves.
+    """
+
+    def __init__(self, reporter: Reporter, plain: bool = False) -> None:
         self.reporter = reporter
+        self.plain = plain
+        self.prelude: list[ir.Stmt] = []
+        """What runs before the expression at hand."""
         self.structs: dict[str, Struct] = {}
         self.functions: dict[str, list[Signature]] = {}
         self.globals: dict[str, GlobalValue] = {}
         self.faulty: set[str] = set()
         """What was declared with an error, so that nothing more is said about its use."""
+        self.instances: dict[str, dict[str, Typed]] = {}
+        """The members of the blocks that have an instance name, by that name."""
         self.scopes = Scopes()
+        self.methods = {kind: getattr(self, f"_{kind.__name__.lower()}") for kind in get_args(s.Expression)}
 
     def fail(self, span: ir.Span, message: str, hint: str = "") -> Untyped:
         self.reporter.error(span, message, hint)
@@ -84,23 +128,27 @@ class ExpressionChecker:
             type_ = BY_NAME[name.name]
         elif name.name in self.structs:
             type_ = self.structs[name.name]
-        elif name.name in q.QUANTITIES:
+        elif name.name in q.QUANTITIES and not self.plain:
             type_, quantity = q.QUANTITIES[name.name], name.name
+        elif name.name in _NOT_HERE:
+            raise self.fail(name.span, f"'{name.name}' is not in the language: {_NOT_HERE[name.name]}")
         else:
             raise self.unknown(name.span, "type", name.name, [*BY_NAME, *self.structs, *q.QUANTITIES])
-        if name.length is not None:
-            return self.array_of(type_, name.length), ""
+        if name.lengths:
+            return self.array_of(type_, name.lengths), ""
         return type_, quantity
 
-    def array_of(self, element: Type, length: s.Expression | None) -> Type:
-        """`element` itself without a length, else an array of that constant length."""
-        if length is None:
+    def array_of(self, element: Type, lengths: Sequence[s.Expression], items: int | None = None) -> Type:
+        """`element` itself without a length, else an array of that constant length; `items` says it for `[]`."""
+        if not lengths:
             return element
-        count = self.constant_int(length)
+        if len(lengths) > 1 or isinstance(element, Array | Sampler | Void):
+            of = f"there are no arrays of {'arrays' if len(lengths) > 1 else spell(element)}"
+            raise self.fail(lengths[0].span, of)
+        length = lengths[0]
+        count = items if isinstance(length, s.Unsized) else self.constant_int(length)
         if count is None or not 1 <= count <= 65536:
             raise self.fail(length.span, "an array's length is a constant from 1 to 65536")
-        if isinstance(element, Array | Sampler | Void):
-            raise self.fail(length.span, f"there are no arrays of {spell(element)}")
         return Array(element, count)
 
     def constant_int(self, expression: s.Expression) -> int | None:
@@ -108,48 +156,111 @@ class ExpressionChecker:
         if isinstance(expression, s.Number) and not expression.is_float:
             return _integer(expression.text)
         if isinstance(expression, s.Name):
+            local = self.scopes.find(expression.text)
+            if local is not None:
+                return local.value
             found = self.globals.get(expression.text)
-            return found.value if found is not None and self.scopes.find(expression.text) is None else None
-        if isinstance(expression, s.Prefix) and expression.op == "-":
+            return found.value if found is not None else None
+        if isinstance(expression, s.Prefix) and expression.op in "-+":
             value = self.constant_int(expression.operand)
-            return -value if value is not None else None
-        if isinstance(expression, s.Infix) and expression.op in ("+", "-", "*"):
+            return -value if value is not None and expression.op == "-" else value
+        if isinstance(expression, s.Infix) and expression.op in _WHOLE:
             left, right = self.constant_int(expression.left), self.constant_int(expression.right)
-            if left is None or right is None:
+            if left is None or right is None or (expression.op in "/%<<>>" and not 0 < right < 2**31):
                 return None
-            return {"+": left + right, "-": left - right, "*": left * right}[expression.op]
+            return wrapped(_WHOLE[expression.op](left, min(right, 64) if expression.op in ("<<", ">>") else right))
+        if isinstance(expression, s.CallOf) and isinstance(expression.callee, s.TypeName):
+            whole = expression.callee.name in ("int", "uint") and len(expression.args) == 1
+            return self.constant_int(expression.args[0]) if whole else None
         return None
 
     # Expressions
 
     def check(self, expression: s.Expression) -> Typed:
         """Checks an expression. Raises Untyped once its error is reported."""
-        method = getattr(self, f"_{type(expression).__name__.lower()}")
-        result: Typed = method(expression)
+        result: Typed = self.methods[expression.__class__](expression)
         return result
 
     def check_as(self, expression: s.Expression, type_: Type, quantity: str, what: str) -> ir.Expr:
         """Checks an expression that must have a type and a quantity."""
-        typed = self.check(expression)
-        self.require(typed, type_, quantity, expression.span, what)
-        return typed.expr
+        if isinstance(expression, s.Listed):
+            return self.listed_as(expression, type_, what)
+        return self.require(self.check(expression), type_, quantity, expression.span, what)
 
-    def require(self, typed: Typed, type_: Type, quantity: str, span: ir.Span, what: str) -> None:
-        """Reports unless `typed` fits."""
-        if typed.expr.type != type_:
-            raise self.fail(
-                span,
-                f"{what} wants {a_type(type_)}, but this is {a_type(typed.expr.type)}",
-                type_hint(typed.expr, type_),
-            )
+    def require(self, typed: Typed, type_: Type, quantity: str, span: ir.Span, what: str) -> ir.Expr:
+        """The expression as the type that is wanted; reports unless it fits."""
+        expr = typed.expr
+        if expr.type != type_:
+            if not self.plain or not converts(expr.type, type_):
+                message = f"{what} wants {a_type(type_)}, but this is {a_type(expr.type)}"
+                raise self.fail(span, message, type_hint(expr, type_))
+            expr = as_kind(expr, kind_of(type_))
+        if quantity or typed.quantity:
+            try:
+                q.check_assignable(typed.quantity, quantity)
+            except q.Mixup as mixup:
+                raise self.fail(span, mixup.message, mixup.hint) from None
+        return expr
+
+    def listed_as(self, listed: s.Listed, type_: Type, what: str) -> ir.Expr:
+        """`{…}` as the array, struct, matrix or vector that it stands for."""
+        wanted: list[Type]
+        if isinstance(type_, Struct):
+            wanted = [field.type for field in type_.fields]
+        else:
+            found = element_type(type_)
+            if found is None:
+                raise self.fail(listed.span, f"{what} wants {a_type(type_)}, which is not made of parts")
+            wanted = [found[0]] * found[1]
+        if len(wanted) != len(listed.items):
+            message = f"{what} wants {len(wanted)} parts for {a_type(type_)}, but gets {len(listed.items)}"
+            raise self.fail(listed.span, message)
+        parts = [self.check_as(item, part, "", what) for item, part in zip(listed.items, wanted, strict=True)]
+        return ir.Construct(type_, tuple(parts), listed.span)
+
+    def operands(self, parts: Sequence[s.Expression]) -> list[Typed]:
+        """Checks expressions that are evaluated one after the other."""
+        found: list[Typed] = []
+        for part in parts:
+            before = len(self.prelude)
+            found.append(self.check(part))
+            if len(self.prelude) > before:
+                self.keep_earlier(found, before)
+        return found
+
+    def keep_earlier(self, found: list[Typed], before: int) -> None:
+        """Keeps the values of all but the last of `found` that what was added to the prelude would change."""
+        written, calls = writes_of(self.prelude[before:])
+        for index, typed in enumerate(found[:-1]):
+            if depends(typed.expr, written, calls):
+                kept = self.temporary("before", typed.expr, before)
+                found[index] = Typed(kept, typed.quantity)
+                before += 1
+
+    def temporary(
+        self, name: str, value: ir.Expr | None, place: int | None = None, type_: Type | None = None
+    ) -> ir.Local:
+        """A new variable of about this name with this value, declared in the prelude."""
+        made = type_ if type_ is not None else value.type if value is not None else FLOAT
+        span = value.span if value is not None else ir.NOWHERE
+        label, count = name, 2
+        while self.scopes.find(label) is not None or (variable := self.scopes.declare(label, made, "", True)) is None:
+            label, count = f"{name}_{count}", count + 1
+        declared = ir.Declare(variable.ir_name, made, value, span)
+        self.prelude.insert(len(self.prelude) if place is None else place, declared)
+        return ir.Local(made, variable.ir_name, span)
+
+    def apart(self, expression: s.Expression, check: Callable[[s.Expression], _T]) -> tuple[_T, list[ir.Stmt]]:
+        """What `check` gives for an expression, and what runs before that alone."""
+        outer, self.prelude = self.prelude, []
         try:
-            q.check_assignable(typed.quantity, quantity)
-        except q.Mixup as mixup:
-            raise self.fail(span, mixup.message, mixup.hint) from None
+            return check(expression), self.prelude
+        finally:
+            self.prelude = outer
 
     def _number(self, number: s.Number) -> Typed:
         if number.is_float:
-            value = float(number.text.rstrip("fF"))
+            value = float(number.text.rstrip("fFlL"))
             if value > FLOAT_MAX:
                 raise self.fail(number.span, f"{number.text} does not fit in a float")
             return Typed(ir.Literal(FLOAT, value, number.span))
@@ -160,7 +271,7 @@ class ExpressionChecker:
         if whole > 0xFFFFFFFF or (whole > 0x7FFFFFFF and not unsigned and number.text[:2] not in ("0x", "0X")):
             shown = number.text if len(number.text) <= 40 else f"{number.text[:40]}…"
             raise self.fail(number.span, f"{shown} does not fit in {'a uint' if unsigned else 'an int'}")
-        return Typed(ir.Literal(UINT if unsigned else INT, whole if unsigned else _wrapped(whole), number.span))
+        return Typed(ir.Literal(UINT if unsigned else INT, whole if unsigned else wrapped(whole), number.span))
 
     def _boolean(self, boolean: s.Boolean) -> Typed:
         return Typed(ir.Literal(BOOL, boolean.value, boolean.span))
@@ -171,12 +282,29 @@ class ExpressionChecker:
             if variable.faulty:
                 raise Untyped
             return Typed(ir.Local(variable.type, variable.ir_name, name.span), variable.quantity)
-        value = self.globals.get(name.text)
+        value = self.globals.get(name.text) or self.builtin_variable(name)
         if value is not None:
+            if value.constant and name.text.startswith("gl_"):
+                return Typed(ir.Literal(INT, value.value or 0, name.span))
             return Typed(ir.Global(value.type, name.text, name.span), value.quantity)
+        if name.text in self.instances:
+            raise self.fail(name.span, f"'{name.text}' is a block; name one of its members")
         if name.text in self.functions or candidates(name.text):
             raise self.fail(name.span, f"'{name.text}' is a function; call it with (…)")
         raise self.unknown(name.span, "name", name.text, [*self.scopes.names(), *self.globals])
+
+    def builtin_variable(self, name: s.Name) -> GlobalValue | None:
+        """What a name such as gl_FragCoord stands for."""
+        return None
+
+    def _typename(self, name: s.TypeName) -> Typed:
+        raise self.fail(name.span, f"'{name.name}' is a type; make a value of it with (…)")
+
+    def _unsized(self, unsized: s.Unsized) -> Typed:
+        raise self.fail(unsized.span, "an index is missing between the brackets")
+
+    def _listed(self, listed: s.Listed) -> Typed:
+        raise self.fail(listed.span, "{…} stands only as the value of a declaration")
 
     def _prefix(self, prefix: s.Prefix) -> Typed:
         if prefix.op == "-" and isinstance(prefix.operand, s.Number):
@@ -184,7 +312,7 @@ class ExpressionChecker:
                 return Typed(ir.Literal(INT, -2147483648, prefix.span))
             literal = self._number(prefix.operand).expr
             if isinstance(literal, ir.Literal) and literal.type != UINT:
-                value = -literal.value if literal.type == FLOAT else _wrapped(-int(literal.value))
+                value = -literal.value if literal.type == FLOAT else wrapped(-int(literal.value))
                 return Typed(ir.Literal(literal.type, value, prefix.span))
         typed = self.check(prefix.operand)
         type_ = typed.expr.type
@@ -197,16 +325,40 @@ class ExpressionChecker:
         return Typed(ir.Unary(type_, prefix.op, typed.expr, prefix.span), typed.quantity if keeps else "")
 
     def _infix(self, infix: s.Infix) -> Typed:
-        left, right = self.check(infix.left), self.check(infix.right)
-        type_ = operator_type(infix.op, left.expr.type, right.expr.type)
+        left = self.check(infix.left)
+        before = len(self.prelude)
+        right = self.check(infix.right)
+        if len(self.prelude) > before:
+            if infix.op in ("&&", "||"):
+                return self.short_circuit(infix, left, right, before)
+            pair = [left, right]
+            self.keep_earlier(pair, before)
+            left = pair[0]
+        one, other = left.expr, right.expr
+        type_ = operator_type(infix.op, one.type, other.type)
+        if type_ is None and self.plain and infix.op not in ("<<", ">>"):
+            one, other = common_kind(one, other)
+            type_ = operator_type(infix.op, one.type, other.type)
         if type_ is None:
             raise self.fail(
                 infix.span,
                 f"'{infix.op}' is not defined for {a_type(left.expr.type)} and {a_type(right.expr.type)}",
                 mixed_hint(left.expr, right.expr, infix.op),
             )
-        quantity = self.combined(infix.op, left, right, infix.span)
-        return Typed(ir.Binary(type_, infix.op, left.expr, right.expr, infix.span), quantity)
+        quantity = self.combined(infix.op, left, right, infix.span) if left.quantity or right.quantity else ""
+        return Typed(ir.Binary(type_, infix.op, one, other, infix.span), quantity)
+
+    def short_circuit(self, infix: s.Infix, left: Typed, right: Typed, before: int) -> Typed:
+        """`left && right` whose right side does something, which it does only where the left one asks for it."""
+        inner = self.prelude[before:]
+        del self.prelude[before:]
+        for typed, part in ((left, infix.left), (right, infix.right)):
+            self.require(typed, BOOL, "", part.span, f"'{infix.op}'")
+        both = self.temporary("both" if infix.op == "&&" else "either", left.expr)
+        condition: ir.Expr = both if infix.op == "&&" else ir.Unary(BOOL, "!", both, infix.span)
+        then = (*inner, ir.Assign(both, "", right.expr, infix.span))
+        self.prelude.append(ir.If(condition, then, (), infix.span))
+        return Typed(both)
 
     def combined(self, op: str, left: Typed, right: Typed, span: ir.Span) -> str:
         """The quantity of `left op right`."""
@@ -218,7 +370,11 @@ class ExpressionChecker:
 
     def _conditional(self, conditional: s.Conditional) -> Typed:
         condition = self.check_as(conditional.condition, BOOL, "", "a condition")
-        yes, no = self.check(conditional.yes), self.check(conditional.no)
+        yes, before_yes = self.apart(conditional.yes, self.check)
+        no, before_no = self.apart(conditional.no, self.check)
+        if yes.expr.type != no.expr.type and self.plain:
+            one, other = common_kind(yes.expr, no.expr)
+            yes, no = yes._replace(expr=one), no._replace(expr=other)
         if yes.expr.type != no.expr.type:
             raise self.fail(
                 conditional.span,
@@ -231,11 +387,17 @@ class ExpressionChecker:
             message = f"the two arms differ: {q.words(yes.quantity)} and {q.words(no.quantity)}"
             raise self.fail(conditional.span, message, q.conversion(no.quantity, yes.quantity))
         quantity = yes.quantity if yes.quantity == no.quantity else ""
+        if before_yes or before_no:
+            span = conditional.span
+            chosen = self.temporary("chosen", None, type_=yes.expr.type)
+            then: ir.Block = (*before_yes, ir.Assign(chosen, "", yes.expr, span))
+            otherwise: ir.Block = (*before_no, ir.Assign(chosen, "", no.expr, span))
+            self.prelude.append(ir.If(condition, then, otherwise, span))
+            return Typed(chosen, quantity)
         return Typed(ir.Select(yes.expr.type, condition, yes.expr, no.expr, conditional.span), quantity)
 
     def _indexof(self, index: s.IndexOf) -> Typed:
-        value = self.check(index.value)
-        position = self.check(index.index)
+        value, position = self.operands((index.value, index.index))
         if position.expr.type not in (INT, UINT):
             raise self.fail(index.index.span, f"an index is an int, but this is {a_type(position.expr.type)}")
         type_ = value.expr.type
@@ -250,6 +412,14 @@ class ExpressionChecker:
         return Typed(ir.Index(result, value.expr, position.expr, index.span), quantity)
 
     def _memberof(self, member: s.MemberOf) -> Typed:
+        if isinstance(member.value, s.Name) and member.value.text in self.instances:
+            block, label = member.value.text, member.name
+            if self.scopes.find(block) is None:
+                if label.text not in self.instances[block]:
+                    hint = did_you_mean(label.text, self.instances[block])
+                    raise self.fail(label.span, f"block '{block}' has no member '{label.text}'", hint)
+                found = self.instances[block][label.text]
+                return found._replace(expr=found.expr._replace(span=member.span))
         value = self.check(member.value)
         type_, name = value.expr.type, member.name.text
         if isinstance(type_, Struct):
@@ -260,6 +430,8 @@ class ExpressionChecker:
             raise self.fail(
                 member.name.span, f"struct '{type_.name}' has no member '{name}'", did_you_mean(name, known)
             )
+        if isinstance(type_, Scalar) and self.plain and name in ("x", "r", "s"):
+            return value
         if not isinstance(type_, Vector):
             raise self.fail(member.name.span, f"{a_type(type_)} has no member '{name}'")
         for letters in _SWIZZLES:
@@ -271,157 +443,75 @@ class ExpressionChecker:
         letters = _SWIZZLES[0][: type_.size]
         raise self.fail(member.name.span, f"'{name}' is no swizzle of {a_type(type_)}", f"its components are {letters}")
 
-    # Calls
+    # Side effects
 
-    def _callof(self, call: s.CallOf) -> Typed:
-        callee = call.callee
-        args = [self.check(arg) for arg in call.args]
-        if isinstance(callee, s.TypeName):
-            type_, quantity = self.type_named(callee)
-            return self.construct(type_, quantity, args, call)
-        name = callee.text
-        if name in self.functions:
-            return self.call_function(name, args, call)
-        types = [arg.expr.type for arg in args]
-        if candidates(name):
-            return self.call_intrinsic(name, args, types, call)
-        if name in self.structs:
-            return self.construct(self.structs[name], "", args, call)
-        if name in q.QUANTITIES:
-            return self.construct(q.QUANTITIES[name], name, args, call)
-        known = [*self.functions, *self.structs, *q.QUANTITIES, *BUILTINS]
-        raise self.unknown(callee.span, "function", name, known)
+    def _comma(self, comma: s.Comma) -> Typed:
+        for part in comma.parts[:-1]:
+            self.effect(part)
+        return self.check(comma.parts[-1])
 
-    def call_function(self, name: str, args: list[Typed], call: s.CallOf) -> Typed:
-        """A call of one of the file's own functions; overloads are told apart by exact types."""
-        overloads = self.functions[name]
-        types = tuple(arg.expr.type for arg in args)
-        chosen = next((overload for overload in overloads if overload.types == types), None)
-        if chosen is None:
-            if name in self.faulty:
-                raise Untyped
-            if len(overloads) == 1:
-                chosen = overloads[0]
-                if len(chosen.types) != len(args):
-                    count, given = len(chosen.types), len(args)
-                    message = f"{name} takes {count} argument{'s' if count != 1 else ''}, but gets {given}"
-                    raise self.fail(call.span, message, f"it is declared as {declared(name, chosen)}")
-            else:
-                listed = ", ".join(declared(name, overload) for overload in overloads)
-                shown = ", ".join(map(spell, types))
-                raise self.fail(call.span, f"no overload of {name} takes ({shown})", f"there are: {listed}")
-        for index, (arg, written) in enumerate(zip(args, call.args, strict=True)):
-            direction, quantity = chosen.directions[index], chosen.quantities[index]
-            what = f"argument {index + 1} ('{chosen.names[index]}') of {name}"
-            if direction == "out" and arg.expr.type == chosen.types[index]:
-                pass  # its value is not read; its quantity is checked on the way out
-            else:
-                self.require(arg, chosen.types[index], quantity, written.span, what)
-            if direction != "in":
-                self.check_writable(arg.expr, written.span)
-                if arg.quantity and quantity != arg.quantity:
-                    message = f"{what} gives {q.words(quantity)}, but the variable holds {q.words(arg.quantity)}"
-                    raise self.fail(written.span, message, q.conversion(quantity, arg.quantity))
-        return Typed(ir.Call(chosen.result, chosen.key, tuple(arg.expr for arg in args), call.span), chosen.quantity)
+    def effect(self, expression: s.Expression) -> None:
+        """Adds what an expression does to the prelude, and drops its value."""
+        if isinstance(expression, s.Assignment):
+            self.prelude.append(self.assign(expression))
+        elif isinstance(expression, s.Comma):
+            for part in expression.parts:
+                self.effect(part)
+        elif isinstance(expression, s.Conditional):
+            condition = self.check_as(expression.condition, BOOL, "", "a condition")
+            _, yes = self.apart(expression.yes, self.effect)
+            _, no = self.apart(expression.no, self.effect)
+            if yes or no:
+                self.prelude.append(ir.If(condition, tuple(yes), tuple(no), expression.span))
+        else:
+            self.calls_of(self.check(expression).expr)
 
-    def call_intrinsic(self, name: str, args: list[Typed], types: list[Type], call: s.CallOf) -> Typed:
-        result = resolve(name, types)
-        if result is None:
-            given = ", ".join(map(spell, types))
-            raise self.fail(
-                call.span,
-                f"no overload of {name} takes ({given})",
-                overload_hint(name, [arg.expr for arg in args]),
+    def calls_of(self, value: ir.Expr) -> None:
+        """Adds the calls in a value that is dropped to the prelude: they may do something besides giving it."""
+        if isinstance(value, ir.Call):
+            self.prelude.append(ir.Evaluate(value, value.span))
+        elif any(isinstance(part, ir.Call) for part in subexpressions(value)):
+            self.temporary("dropped", value)
+
+    def _assignment(self, assignment: s.Assignment) -> Typed:
+        """An assignment inside an expression."""
+        made = self.assign(assignment)
+        if assignment.after:
+            name = root_name(made.target)
+            before = self.temporary(f"{name}_before", made.target)
+            self.prelude.append(made)
+            return Typed(before)
+        self.prelude.append(made)
+        return Typed(made.target)
+
+    def assign(self, assignment: s.Assignment) -> ir.Assign:
+        """The statement of an assignment; what its two sides do is in the prelude."""
+        target, span = self.check(assignment.target), assignment.span
+        self.check_writable(target.expr, assignment.target.span)
+        type_, op = target.expr.type, assignment.op
+        if not op:
+            assert assignment.value is not None
+            return ir.Assign(
+                target.expr, op, self.check_as(assignment.value, type_, target.quantity, "the assignment"), span
             )
-        try:
-            if isinstance(types[0], Sampler):
-                quantity = q.texel_of(args[0].quantity)
-                if len(args) > 1 and args[1].quantity == "uv_direction":
-                    message = f"a texture is read at a position, but this is {q.words(args[1].quantity)}"
-                    raise q.Mixup(message, q.conversion(args[1].quantity, "uv_position"))
-            else:
-                quantity = q.of_intrinsic(name, [arg.quantity for arg in args])
-        except q.Mixup as mixup:
-            raise self.fail(call.span, mixup.message, mixup.hint) from None
-        return Typed(ir.Intrinsic(result, name, tuple(arg.expr for arg in args), call.span), quantity)
-
-    def construct(self, type_: Type, quantity: str, args: list[Typed], call: s.CallOf) -> Typed:
-        """A constructor, with every argument brought to the type's own kind."""
-        if quantity and len(args) == 1:
-            try:
-                q.check_constructible(args[0].quantity, quantity)
-            except q.Mixup as mixup:
-                raise self.fail(call.span, mixup.message, mixup.hint) from None
-        values = tuple(arg.expr for arg in args)
-        wrong = self.constructor_error(type_, args, call)
-        if wrong:
-            raise self.fail(call.span, wrong, constructor_hint(type_))
-        if isinstance(type_, Array):
-            held = {arg.quantity for arg in args}
-            return Typed(ir.Construct(type_, values, call.span), held.pop() if len(held) == 1 else "")
-        kind, given = kind_of(type_), values[0].type
-        if isinstance(type_, Scalar) and isinstance(values[0], ir.Literal):
-            return Typed(self.literal_as(values[0], type_, call.span), quantity)
-        if isinstance(given, Vector) and len(values) == 1 and components(given) > components(type_):
-            letters = "xyzw"[: components(type_)]
-            values = (ir.Swizzle(vector_of(given.kind, len(letters)), values[0], letters, call.span),)
-        if kind and not (len(values) == 1 and components(values[0].type) == components(type_)):
-            values = tuple(self.to_kind(value, kind) for value in values)
-        if len(values) == 1 and values[0].type == type_:
-            return Typed(values[0], quantity)
-        return Typed(ir.Construct(type_, values, call.span), quantity)
-
-    def to_kind(self, value: ir.Expr, kind: str) -> ir.Expr:
-        """`value` with its components converted to `kind`."""
-        if kind_of(value.type) == kind:
-            return value
-        if isinstance(value, ir.Literal):
-            return self.literal_as(value, Scalar(kind), value.span)
-        return ir.Construct(vector_of(kind, components(value.type)), (value,), value.span)
-
-    def literal_as(self, literal: ir.Literal, type_: Scalar, span: ir.Span) -> ir.Literal:
-        """A literal converted: an int and a uint keep their bits, a float is cut towards zero."""
-        value = literal.value
-        if type_ == FLOAT:
-            return ir.Literal(type_, float(value), span)
-        if type_ == BOOL:
-            return ir.Literal(type_, bool(value), span)
-        whole = int(value)
-        low, high = (0, 2**32) if type_ == UINT else (-(2**31), 2**31)
-        if literal.type == FLOAT and not low <= whole < high:
-            raise self.fail(span, f"{value:g} does not fit in {a_type(type_)}")
-        return ir.Literal(type_, whole & 0xFFFFFFFF if type_ == UINT else _wrapped(whole), span)
-
-    def constructor_error(self, type_: Type, args: list[Typed], call: s.CallOf) -> str:
-        """What is wrong with a constructor's arguments, or ''."""
-        types = [arg.expr.type for arg in args]
-        name = spell(type_)
-        if isinstance(type_, Struct | Array):
-            fields = type_.fields if isinstance(type_, Struct) else ()
-            wanted = [field.type for field in fields] if fields else [type_.element] * type_.length  # type: ignore[union-attr]
-            if types != wanted:
-                return f"{name}(…) wants ({', '.join(map(spell, wanted))}), but gets ({', '.join(map(spell, types))})"
-            for arg, field, written in zip(args, fields, call.args, strict=False):
-                self.require(arg, field.type, field.quantity, written.span, f"member '{field.name}'")
-            return ""
-        if isinstance(type_, Sampler | Void):
-            return f"a {name} cannot be constructed"
-        if not types or any(not kind_of(given) for given in types):
-            return f"{name}(…) cannot be made from ({', '.join(map(spell, types))})"
-        if len(types) == 1:
-            given = types[0]
-            if isinstance(type_, Matrix):
-                fits = isinstance(given, Scalar | Matrix)
-            else:
-                fits = isinstance(given, Scalar) or components(given) >= components(type_)
-                fits = fits and not isinstance(given, Matrix)
-            return "" if fits else f"{name}(…) cannot be made from {a_type(given)}"
-        if isinstance(type_, Scalar) or any(isinstance(given, Matrix) for given in types):
-            return f"{name}(…) cannot be made from ({', '.join(map(spell, types))})"
-        count = sum(components(given) for given in types)
-        if count != components(type_):
-            return f"{name}(…) wants {components(type_)} components, but gets {count}"
-        return ""
+        if assignment.value is not None:
+            right = self.check(assignment.value)
+        elif isinstance(type_, Scalar | Vector | Matrix) and type_.kind != "bool":
+            number = FLOAT if type_.kind == "float" else Scalar(type_.kind)
+            right = Typed(ir.Literal(number, 1.0 if number == FLOAT else 1, span))
+        else:
+            raise self.fail(span, f"'{op * 2}' is not defined for {a_type(type_)}")
+        value = right.expr
+        if self.plain and op not in ("<<", ">>") and operator_type(op, type_, value.type) != type_:
+            value = as_kind(value, kind_of(type_)) if converts(value.type, type_, whole=False) else value
+        if operator_type(op, type_, value.type) != type_:
+            message = f"'{op}=' is not defined for {a_type(type_)} and {a_type(right.expr.type)}"
+            raise self.fail(span, message, mixed_hint(target.expr, right.expr, op))
+        if target.quantity or right.quantity:
+            quantity = self.combined(op, target, right, span)
+            if op not in ("*", "/") or not isinstance(value.type, Scalar):  # scaling in place keeps it
+                self.require(target._replace(quantity=quantity), type_, target.quantity, span, "the assignment")
+        return ir.Assign(target.expr, op, value, span)
 
     def check_writable(self, target: ir.Expr, span: ir.Span) -> None:
         """Reports unless `target` may be assigned to."""
@@ -430,6 +520,8 @@ class ExpressionChecker:
             if isinstance(inner, ir.Swizzle) and len(set(inner.components)) != len(inner.components):
                 raise self.fail(span, f"'.{inner.components}' names a component twice and cannot be assigned to")
             inner = inner.value
+        if isinstance(inner, ir.Global) and self.globals[inner.name].writable:
+            return
         if isinstance(inner, ir.Global) or isinstance(target.type, Sampler):
             name = inner.name if isinstance(inner, ir.Global | ir.Local) else "this"
             raise self.fail(span, f"'{name}' cannot be changed here; copy it to a local variable")
@@ -447,8 +539,3 @@ def _integer(text: str) -> int | None:
     if len(digits) > 1 and digits[0] == "0":
         return int(digits, 8) if set(digits) <= set("01234567") else None
     return int(digits)
-
-
-def _wrapped(value: int) -> int:
-    """An integer brought into the range of an int, as its 32 bits read."""
-    return (value + 2**31) % 2**32 - 2**31

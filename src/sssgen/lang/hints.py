@@ -33,7 +33,7 @@ HINTS = {
 
 
 def check_hints(
-    checker: ExpressionChecker, uniform: s.UniformSyntax, type_: Type, default: tuple[float, ...]
+    checker: ExpressionChecker, uniform: s.Declarator, type_: Type, default: tuple[float, ...]
 ) -> tuple[Hints, str]:
     """Checks a uniform's hints; returns them with the quantity that a texture holds ('' for none)."""
     found: dict[str, tuple[float | str, ...]] = {}

@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 import re
 import stat
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from .. import cache
 from ..diagnostics import Diagnostic, SssgenError, failure
@@ -79,6 +79,11 @@ def _includes(text: str, shown: str) -> dict[str, Span]:
             column = match.start(1) - text.rfind("\n", 0, match.start(1))
             found[match.group(1)] = Span(shown, line, column, line, column + len(match.group(1)))
     return found
+
+
+def keep_lines(texts: Mapping[str, str]) -> None:
+    """Has the texts of files at hand for what quotes their lines."""
+    _lines.update({name: text.split("\n") for name, text in texts.items()})
 
 
 def key_of(module: Module) -> str:

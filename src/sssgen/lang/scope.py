@@ -17,15 +17,18 @@ class Variable(NamedTuple):
     writable: bool
     faulty: bool = False
     """Its declaration has an error, so that nothing more is said about its use."""
+    value: int | None = None
+    """A constant's integer value, where it has one."""
 
 
 class GlobalValue(NamedTuple):
-    """A uniform, texture or constant; `value` is a constant's integer value where it has one."""
+    """A uniform, texture, constant or module variable; `value` is a constant's integer value where it has one."""
 
     type: Type
     quantity: str
     value: int | None = None
     constant: bool = False
+    writable: bool = False
 
 
 class Signature(NamedTuple):
@@ -71,14 +74,16 @@ class Scopes:
                 return scope[name]
         return None
 
-    def declare(self, name: str, type: Type, quantity: str, writable: bool, faulty: bool = False) -> Variable | None:
+    def declare(
+        self, name: str, type: Type, quantity: str, writable: bool, faulty: bool = False, value: int | None = None
+    ) -> Variable | None:
         """Adds a variable to the innermost scope; None if this scope has the name already."""
         if name in self.stack[-1]:
             return None
         ir_name, count = name, 2
         while ir_name in self.visible:
             ir_name, count = f"{name}_{count}", count + 1
-        variable = Variable(ir_name, type, quantity, writable, faulty)
+        variable = Variable(ir_name, type, quantity, writable, faulty, value)
         self.stack[-1][name] = self.visible[ir_name] = variable
         self.taken[-1].append(ir_name)
         return variable

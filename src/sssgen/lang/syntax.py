@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import NamedTuple, TypeAlias
 
-from ..ir.nodes import Span
+from ..ir.spans import NOWHERE, Span
 
 
 class Name(NamedTuple):
@@ -52,17 +52,24 @@ class Conditional(NamedTuple):
 
 
 class TypeName(NamedTuple):
-    """A type as written; `length` is the array length, if it is an array."""
+    """A type as written; `lengths` are those of an array (an Unsized for `[]`), `struct` is one declared on the spot."""
 
     name: str
-    length: Expression | None
+    lengths: tuple[Expression, ...]
+    span: Span
+    struct: StructSyntax | None = None
+
+
+class Unsized(NamedTuple):
+    """The length of `float[]`, which the value tells."""
+
     span: Span
 
 
 class CallOf(NamedTuple):
-    """A call of a function, or of a constructor when `callee` is a type."""
+    """A call of a function, of a constructor when `callee` is a type, or of a method when it is a member."""
 
-    callee: Name | TypeName
+    callee: Name | TypeName | MemberOf
     args: tuple[Expression, ...]
     span: Span
     depth: int
@@ -82,31 +89,85 @@ class MemberOf(NamedTuple):
     depth: int
 
 
-Expression: TypeAlias = Name | Number | Boolean | Prefix | Infix | Conditional | CallOf | IndexOf | MemberOf
-
-
-class Declarator(NamedTuple):
-    """One name of a declaration; `length` is an Empty for `[]`."""
-
-    name: Name
-    length: Expression | None
-    value: Expression | None
-
-
-class Declaration(NamedTuple):
-    const: bool
-    type: TypeName
-    declarators: tuple[Declarator, ...]
-    span: Span
-    depth: int = 0
-
-
 class Assignment(NamedTuple):
-    """`target op= value`; `++` and `--` arrive as `+= 1` and `-= 1` with a value of None."""
+    """`target op= value`; `++` and `--` are `+= 1` and `-= 1` with a value of None.
+
+    As an expression it has the target's value: of `x++` and `x--` (`after`) that from before.
+    """
 
     target: Expression
     op: str
     value: Expression | None
+    span: Span
+    depth: int = 0
+    after: bool = False
+
+
+class Comma(NamedTuple):
+    """Expressions one after the other; the last one is the value."""
+
+    parts: tuple[Expression, ...]
+    span: Span
+    depth: int
+
+
+class Listed(NamedTuple):
+    """`{1.0, 2.0}`, the value of an array or struct."""
+
+    items: tuple[Expression, ...]
+    span: Span
+    depth: int
+
+
+Expression: TypeAlias = (
+    Name
+    | Number
+    | Boolean
+    | Prefix
+    | Infix
+    | Conditional
+    | TypeName
+    | Unsized
+    | CallOf
+    | IndexOf
+    | MemberOf
+    | Assignment
+    | Comma
+    | Listed
+)
+
+
+class Qualifiers(NamedTuple):
+    """What stands before a type: its words, and the items of `layout(…)`."""
+
+    words: tuple[str, ...] = ()
+    layout: tuple[tuple[str, Expression | None], ...] = ()
+    span: Span = NOWHERE
+
+
+PLAIN = Qualifiers()
+
+
+class Hint(NamedTuple):
+    name: Name
+    args: tuple[float | str, ...]
+
+
+class Declarator(NamedTuple):
+    """One name of a declaration."""
+
+    name: Name
+    lengths: tuple[Expression, ...]
+    value: Expression | None
+    hints: tuple[Hint, ...] = ()
+
+
+class Declaration(NamedTuple):
+    """Variables, members or constants of one type; without declarators it declares the type's struct alone."""
+
+    qualifiers: Qualifiers
+    type: TypeName
+    declarators: tuple[Declarator, ...]
     span: Span
     depth: int = 0
 
@@ -134,7 +195,7 @@ class IfStatement(NamedTuple):
 class ForStatement(NamedTuple):
     init: Statement | None
     condition: Expression | None
-    step: Statement | None
+    step: Expression | None
     body: Statement
     span: Span
     depth: int
@@ -143,6 +204,28 @@ class ForStatement(NamedTuple):
 class WhileStatement(NamedTuple):
     condition: Expression
     body: Statement
+    span: Span
+    depth: int
+
+
+class DoStatement(NamedTuple):
+    body: Statement
+    condition: Expression
+    span: Span
+    depth: int
+
+
+class Label(NamedTuple):
+    """`case value:`, or `default:` without one."""
+
+    value: Expression | None
+    span: Span
+    depth: int = 0
+
+
+class SwitchStatement(NamedTuple):
+    value: Expression
+    body: Compound
     span: Span
     depth: int
 
@@ -157,7 +240,17 @@ class Jump(NamedTuple):
 
 
 Statement: TypeAlias = (
-    Declaration | Assignment | ExpressionStatement | Compound | IfStatement | ForStatement | WhileStatement | Jump
+    Declaration
+    | Assignment
+    | ExpressionStatement
+    | Compound
+    | IfStatement
+    | ForStatement
+    | WhileStatement
+    | DoStatement
+    | SwitchStatement
+    | Label
+    | Jump
 )
 
 
@@ -165,7 +258,8 @@ class Parameter(NamedTuple):
     direction: str
     type: TypeName
     name: Name | None
-    length: Expression | None
+    lengths: tuple[Expression, ...]
+    const: bool = False
 
 
 class FunctionSyntax(NamedTuple):
@@ -178,22 +272,22 @@ class FunctionSyntax(NamedTuple):
     doc: str
 
 
-class Hint(NamedTuple):
-    name: Name
-    args: tuple[float | str, ...]
+class GlobalSyntax(NamedTuple):
+    """Constants, uniforms, inputs, outputs and variables of the module, as their qualifiers say."""
 
-
-class UniformSyntax(NamedTuple):
-    type: TypeName
-    name: Name
-    length: Expression | None
-    hints: tuple[Hint, ...]
-    value: Expression | None
+    declaration: Declaration
     doc: str
 
 
-class ConstantSyntax(NamedTuple):
-    declaration: Declaration
+class BlockSyntax(NamedTuple):
+    """`uniform Camera { mat4 view; } camera;`; `instance` is None where its members are named alone."""
+
+    qualifiers: Qualifiers
+    name: Name
+    members: tuple[Declaration, ...]
+    instance: Name | None
+    lengths: tuple[Expression, ...]
+    doc: str
 
 
 class StructSyntax(NamedTuple):
@@ -202,12 +296,7 @@ class StructSyntax(NamedTuple):
     doc: str
 
 
-class IncludeSyntax(NamedTuple):
-    path: str
-    span: Span
-
-
-External: TypeAlias = FunctionSyntax | UniformSyntax | ConstantSyntax | StructSyntax | IncludeSyntax
+External: TypeAlias = FunctionSyntax | GlobalSyntax | BlockSyntax | StructSyntax
 
 
 class File(NamedTuple):
@@ -215,5 +304,3 @@ class File(NamedTuple):
 
     name: str
     externals: tuple[External, ...]
-    comments: tuple[tuple[int, int, str], ...]
-    """Every comment: its first line, its last line, its text as written."""

@@ -1,0 +1,110 @@
+"""Loads plain GLSL, as people have it (1.00 ES to 4.60): preprocessor, parser, checker, and nothing of techniques."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from ..diagnostics import Diagnostic, Reporter, SssgenError, did_you_mean, failure
+from ..ir.nodes import Module
+from ..ir.spans import Span
+from . import shadertoy
+from .check import check_plain
+from .loader import keep_lines, read_text
+from .parser import parse_tokens
+from .preprocessor import Preprocessed, preprocess
+from .tokens import Token
+
+ENTRIES = ("shadertoy",)
+"""The conventions by which a file may be entered, beside `main()`."""
+
+
+class Loaded(NamedTuple):
+    """A file of plain GLSL and what it was made from."""
+
+    module: Module
+    version: int
+    """What `#version` says, else 0."""
+    texts: dict[str, str]
+    """Every file that was read, as it is written."""
+    constants: list[str]
+    """The macros that became constants."""
+    ignored: list[str]
+    """The extensions and pragmas, which change nothing here."""
+
+
+def load_glsl(
+    path: str | os.PathLike[str],
+    shown: str = "",
+    roots: Sequence[str | os.PathLike[str]] = (),
+    defines: Mapping[str, str] | None = None,
+    entry: str = "",
+) -> Loaded:
+    """The checked module of a GLSL file and all it includes.
+
+    `shown` is the file's name in messages; `roots` are the folders in which included files are looked for after the
+    one that they are included from; `defines` are macros; `entry` is '' or `shadertoy`.
+    Raises SssgenError for a missing, unreadable, too large or faulty file.
+    """
+    name = shown or os.fspath(path)
+    return load_glsl_text(read_text(path, name), name, (os.path.dirname(path) or ".", *roots), defines, entry)
+
+
+def load_glsl_text(
+    text: str,
+    shown: str,
+    roots: Sequence[str | os.PathLike[str]] = (),
+    defines: Mapping[str, str] | None = None,
+    entry: str = "",
+) -> Loaded:
+    """The checked module of a GLSL text; see `load_glsl`."""
+    if entry and entry not in ENTRIES:
+        raise failure(f"unknown entry '{entry}'", did_you_mean(entry, ENTRIES) or f"entries: {', '.join(ENTRIES)}")
+    found = preprocess(text, shown, _Finder(roots).find, defines)
+    tokens = found.tokens
+    texts = dict(found.texts)
+    texts.setdefault(shown, text)
+    if entry == "shadertoy":
+        tokens, added = shadertoy.with_entry(tokens, shown)
+        texts[shadertoy.FILE] = added
+    keep_lines(texts)
+    reporter = Reporter(shown, text, texts)
+    file = parse_tokens(tokens, found.comments, reporter, plain=True)
+    module = check_plain(file, reporter, _is_vertex(tokens, shown))
+    ignored = [f"#extension {one}" for one in found.extensions] + [f"#pragma {one}" for one in found.pragmas]
+    return Loaded(module, found.version, texts, found.macros, ignored)
+
+
+def preprocessed(text: str, shown: str, roots: Sequence[str | os.PathLike[str]] = ()) -> Preprocessed:
+    """A text and what it includes as words; see `load_glsl`."""
+    return preprocess(text, shown, _Finder(roots).find)
+
+
+def _is_vertex(tokens: Sequence[Token], shown: str) -> bool:
+    """Whether a file is a vertex shader: by its name, else by what only such a one has."""
+    suffix = os.path.splitext(shown)[1]
+    if suffix in (".vert", ".vs", ".frag", ".fs"):
+        return suffix in (".vert", ".vs")
+    return any(token.text == "gl_Position" or token.type == "ATTRIBUTE" for token in tokens)
+
+
+class _Finder:
+    """Finds included files: beside the file that includes them, then in the folders given."""
+
+    def __init__(self, roots: Sequence[str | os.PathLike[str]]) -> None:
+        self.roots = [os.fspath(root) for root in roots]
+        self.folders: dict[str, str] = {}
+        """The folder of each file that was included, by its name in messages."""
+
+    def find(self, name: str, place: Span, angled: bool) -> tuple[str, str]:
+        own = self.folders.get(place.file, self.roots[0] if self.roots else ".")
+        for root in dict.fromkeys((own, *self.roots)):
+            path = os.path.join(root, name)
+            if os.path.isfile(path):
+                shown = os.path.normpath(os.path.relpath(path, self.roots[0])) if self.roots else name
+                shown = shown.replace(os.sep, "/")
+                self.folders[shown] = os.path.dirname(path)
+                return shown, read_text(path, shown)
+        hint = "it is looked for beside the file and in the folders of -I"
+        raise SssgenError([Diagnostic("error", f"cannot find '{name}' to include", place, hint)])
