@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import cache, partial
 from typing import NamedTuple
@@ -88,12 +89,17 @@ def _machines() -> Iterator[tuple[dict[str, Isolated], dict[str, str]]]:
     """The back ends, each in a process of its own, and what is missing."""
     machines: dict[str, Isolated] = {}
     missing: dict[str, str] = {}
+
+    def start(name: str) -> None:
+        try:
+            machines[name] = isolated(name, SECONDS)
+        except CompilerMissing as reason:
+            missing[name] = str(reason)
+
+    names = ("numpy-f32", *BACKENDS.values())
     try:
-        for name in ("numpy-f32", *BACKENDS.values()):
-            try:
-                machines[name] = isolated(name, SECONDS)
-            except CompilerMissing as reason:
-                missing[name] = str(reason)
+        with ThreadPoolExecutor(len(names)) as pool:
+            list(pool.map(start, names))
         if "gl" in missing:
             raise failure("OpenGL is missing, which runs the text as it is written", missing["gl"])
         yield machines, missing
@@ -171,13 +177,9 @@ class _Case:
 
     def compared(self, row: Row, original: Mapping[str, Array]) -> Row:
         """The row with what each text gives, against the original."""
-        given: dict[str, dict[str, Array] | str] = {}
-        for name, backend in BACKENDS.items():
-            if backend in self.machines:
-                try:
-                    given[name] = self.all_rounds(partial(self.transpiled, backend))
-                except SssgenError as error:
-                    given[name] = error.diagnostics[0].message
+        names = [name for name, backend in BACKENDS.items() if backend in self.machines]
+        with ThreadPoolExecutor(len(names)) as pool:  # each waits for a process of its own
+            given = dict(zip(names, pool.map(self.given, names), strict=True))
         oracle = given.get("oracle")
         finite = _finite(original)
         if isinstance(oracle, dict):
@@ -193,6 +195,13 @@ class _Case:
         elif all(one.deviation is None and not one.error for one in found.values()):
             reason = "rounding decides every result"
         return row._replace(lanes=len(finite), undefined=int((~finite).sum()), found=found, reason=reason)
+
+    def given(self, name: str) -> dict[str, Array] | str:
+        """What one text gives, or why it does not run."""
+        try:
+            return self.all_rounds(partial(self.transpiled, BACKENDS[name]))
+        except SssgenError as error:
+            return error.diagnostics[0].message
 
     def all_rounds(self, run: Callable[[_Inputs], list[Array]], rounds: Sequence[_Inputs] = ()) -> dict[str, Array]:
         """Each output of all rounds (or of those given), lanes first."""

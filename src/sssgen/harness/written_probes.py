@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from ..ir.nodes import Function, Module
-from ..ir.types import VOID, Array, Sampler, Struct, Type, spell
+from ..ir.types import FLOAT, VOID, Array, Sampler, Struct, Type, spell
 from ..passes.effects import NONE, effects
 
 MOST_INPUTS = 64
@@ -27,7 +27,7 @@ class Leaf(NamedTuple):
     name: str
     """The probe's parameter."""
     path: str
-    """Where it goes, as in `local_light.color` or `weights[2]`."""
+    """Where it goes, as in `local_light.color` or `weights[2]`; '' where that is nowhere."""
     type: Type
 
 
@@ -96,6 +96,8 @@ def _probed(function: Function, name: str, read: Mapping[str, Type], written: Ma
         return Probed(function, reason=reason)
     taken = [leaf for path, type_ in inputs for leaf in leaves(type_, path)]
     named = tuple([Leaf(f"given_{index}", path, type_) for index, (path, type_) in enumerate(taken)])
+    if not any(not isinstance(leaf.type, Sampler) for leaf in named):
+        named += (Leaf("given_lane", "", FLOAT),)  # there is one number at least: it tells how many lanes there are
     head = ", ".join([f"{spell(leaf.type)} {leaf.name}" for leaf in named])
     body = _body(function, local, named)
     probes: list[Probe] = []
@@ -112,7 +114,7 @@ def _body(function: Function, local: Mapping[str, str], named: tuple[Leaf, ...])
     textures = {leaf.path: leaf.name for leaf in named if isinstance(leaf.type, Sampler)}
     values = [param for param in function.params if not isinstance(param.type, Sampler)]
     lines = [f"    {declared(param.type, local[param.name])};" for param in values]
-    lines += [f"    {leaf.path} = {leaf.name};" for leaf in named if leaf.path not in textures]
+    lines += [f"    {leaf.path} = {leaf.name};" for leaf in named if leaf.path and leaf.path not in textures]
     args = ", ".join([textures.get(path, path) for path in local.values()])
     kept = "" if function.result == VOID else f"{declared(function.result, 'returned')} = "
     return [*lines, f"    {kept}{function.name}({args});"]
