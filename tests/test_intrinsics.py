@@ -54,7 +54,8 @@ OWN = {
     *("textureCompare", "textureCompareLod"),
 }
 REFUSED = {
-    ("textureSize", "hlsl"), ("texelFetch", "hlsl-dx9"), ("textureQueryLevels", "glsl"), ("textureQueryLevels", "hlsl"),
+    ("textureSize", "hlsl-dx9"), ("texelFetch", "hlsl-dx9"),
+    ("textureQueryLevels", "glsl"), ("textureQueryLevels", "hlsl"),
     ("textureQueryLod", "glsl"), ("textureQueryLod", "wgsl"), ("textureQueryLod", "hlsl-dx9"),
     ("textureOffset", "hlsl-dx9"), ("textureLodOffset", "hlsl-dx9"), ("textureGradOffset", "hlsl-dx9"),
 }  # fmt: skip

@@ -18,6 +18,7 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Module
 from sssgen.ir.signatures import overload, parse
+from sssgen.targets.descriptor import load
 from texts_of_glsl_4 import LATER
 from texts_of_reads import READS
 from validate import SAMPLERS, TARGETS, module_of, validate_all
@@ -458,12 +459,32 @@ def refusals(builtin: str, *targets: str) -> dict[str, str]:
     return {target: f"error: this target has no {builtin} ({TARGETS[target]})" for target in targets}
 
 
+def sized(name: str) -> str:
+    """The function that HLSL gets for a texture's size, and its call."""
+    spelt = load("hlsl").types[SAMPLERS[name]]
+    parts = "width, height" + ", depth" * ("3D" in spelt) + ", layers" * ("Array" in spelt)
+    size = f"int{parts.count(',') + 1}"
+    return f"""
+{size} texture_size({spelt} map, int level) {{
+    uint {parts}, levels;
+    map.GetDimensions(level, {parts}, levels);
+    return {size}({parts});
+}}
+
+return texture_size({name}, i);
+"""
+
+
 for name in SAMPLERS:
     size = "vec3i" if name.endswith(("volume", "layers", "cubes", "shades")) else "vec2i"
     read = f"{size}(textureDimensions({name}, i))"
     if name.endswith(("layers", "cubes", "shades")):
         read = f"vec3i(vec3u(textureDimensions({name}, i), textureNumLayers({name})))"
-    told = {"glsl": f"textureSize({name}, i)", "wgsl": read, **refusals("textureSize", "hlsl", "dx9", "urp")}
+    told = {"glsl": f"textureSize({name}, i)", "wgsl": read, "hlsl": sized(name), **refusals("textureSize", "dx9")}
+    if SAMPLERS[name] in load("unity-urp").types:
+        told["urp"] = told["hlsl"]
+    else:
+        told["urp"] = f"error: Unity, Universal Render Pipeline has no {SAMPLERS[name]}"
     if name == "cubes":
         told["glsl"] = "error: GLSL 3.30 (OpenGL 3.3 core) has no samplerCubeArray"
         told["glsl-es"] = "error: GLSL ES 3.00 (WebGL 2, OpenGL ES 3.0) has no samplerCubeArray"

@@ -13,6 +13,8 @@ from __future__ import annotations
 from ..ir import nodes as ir
 from ..ir.types import Array, Matrix, Scalar, Struct, Vector, kind_of
 from ..passes.blocks import block_type
+from . import hlsl_sizes
+from .descriptor import Target
 from .hlsl_entry import print_entry
 from .layout import Member
 from .printer import POSTFIX, PRIMARY, UNARY, Line, Printer, documented
@@ -26,6 +28,10 @@ class HlslPrinter(Printer):
 
     constant = "static const"
     private = "static "
+
+    def __init__(self, target: Target, module: ir.Module) -> None:
+        super().__init__(target, module)
+        self.sized: set[str] = set()
 
     @property
     def engine_matrices(self) -> bool:
@@ -54,6 +60,13 @@ class HlslPrinter(Printer):
         engine_matrix = self.engine_matrices and isinstance(value.type, Matrix)
         is_uniform = engine_matrix and any(uniform.name == value.name for uniform in self.module.uniforms)
         return f"transpose({value.name})" if is_uniform else value.name
+
+    def print_function(self, function: ir.Function) -> list[Line]:
+        """A function, behind those that give the sizes of the textures that it asks for."""
+        wanted = [texture for texture in hlsl_sizes.asked(function) if texture not in self.sized]
+        self.sized.update(wanted)
+        before = [line for texture in wanted for line in hlsl_sizes.definition(texture)]
+        return [*before, *super().print_function(function)]
 
     def statement(self, stmt: ir.Stmt, indent: int) -> list[Line]:
         """A statement; a loop with how it is to be compiled, as FXC would try to unroll a march of 64 steps."""

@@ -4,8 +4,8 @@ A coordinate of a texture with layers has the layer behind it, one of a texture 
 HLSL and WGSL want some of these as arguments of their own. So there are builtins of our own that have them so, named
 `…Layer…` and `…Compare…`, and the polyfills are written with them.
 
-Texels of integers are fetched only, as WGSL and HLSL filter none. HLSL asks for a texture's size in a statement, which
-no expression can say; so it is refused there.
+Texels of integers are fetched only, as WGSL and HLSL filter none. HLSL asks for a texture's size in a statement; its
+printer makes a function of that, `texture_size`. For how many levels there are it has no such function yet.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ ROWS = (
         "Size in texels of level y, and how many layers there are.",
         range="hull(0, 65536)", domain="the level exists",
         texts={
-            "hlsl": "", "wgsl": "{type}(textureDimensions({texture}, {1}))",
+            "hlsl": "texture_size({bare_texture}, {1})", "hlsl-dx9": "", "wgsl": "{type}(textureDimensions({texture}, {1}))",
             **{
                 f"wgsl/{sampler},int": "{type}(vec3u(textureDimensions({texture}, {1}), textureNumLayers({texture})))"
                 for sampler in ("sampler2DArray", "isampler2DArray", "usampler2DArray", "samplerCubeArray", "sampler2DArrayShadow")

@@ -1,0 +1,40 @@
+"""The size of a texture in HLSL, which has it in a statement only: each kind that is asked for gets a function.
+
+The intrinsic table calls that function `texture_size`; the descriptor keeps other names clear of it.
+"""
+
+from __future__ import annotations
+
+from ..ir import nodes as ir
+from ..ir.types import Sampler
+from ..ir.walk import all_expressions
+from .printer import Line
+
+
+def asked(function: ir.Function) -> list[str]:
+    """The types of the textures whose size a function asks for, as HLSL spells them, each once."""
+    found: dict[str, None] = {}
+    for expr in all_expressions(function.body or ()):
+        if isinstance(expr, ir.Intrinsic) and expr.name == "textureSize" and isinstance(expr.args[0].type, Sampler):
+            found[_spelled(expr.args[0].type)] = None
+    return list(found)
+
+
+def definition(texture: str) -> list[Line]:
+    """The function for a type of texture."""
+    parts = ["width", "height"]
+    parts += ["depth"] * texture.startswith("Texture3D") + ["layers"] * ("Array" in texture)
+    listed = ", ".join(parts)
+    return [
+        Line(f"int{len(parts)} texture_size({texture} map, int level) {{"),
+        Line(f"    uint {listed}, levels;"),
+        Line(f"    map.GetDimensions(level, {listed}, levels);"),
+        Line(f"    return int{len(parts)}({listed});"),
+        Line("}"),
+        Line(""),
+    ]
+
+
+def _spelled(type_: Sampler) -> str:
+    texels = "" if type_.kind == "float" else f"<{type_.kind}4>"
+    return f"Texture{type_.dim}{'Array' if type_.array else ''}{texels}"
