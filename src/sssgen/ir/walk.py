@@ -219,12 +219,44 @@ def all_expressions(block: Block) -> Iterator[Expr]:
             yield from subexpressions(expr)
 
 
+def builtins_of(module: Module) -> set[str]:
+    """The names of the builtins that the functions of a module call."""
+    found: set[str] = set()
+    for function in module.functions:
+        for stmt in statements(function.body or ()):
+            stack = list(expressions(stmt))
+            while stack:
+                node = stack.pop()
+                kind = type(node)
+                if kind is Local or kind is Literal or kind is Global:
+                    continue
+                if isinstance(node, Intrinsic):
+                    found.add(node.name)
+                stack += operands(node)
+    return found
+
+
+def calls_of(stmt: Stmt) -> list[Call]:
+    """The calls that stand in a statement's own expressions, in the order of the text."""
+    found: list[Call] = []
+    stack = list(reversed(expressions(stmt)))
+    while stack:
+        node = stack.pop()
+        kind = type(node)
+        if kind is Local or kind is Literal or kind is Global:
+            continue
+        if isinstance(node, Call):
+            found.append(node)
+        stack += operands(node)[::-1]
+    return found
+
+
 def callees(function: Function) -> list[str]:
     """The keys of the functions that `function` calls, each once, in the order of first call."""
     found: dict[str, None] = {}
-    for expr in all_expressions(function.body or ()):
-        if type(expr) is Call:
-            found[expr.function] = None
+    for stmt in statements(function.body or ()):
+        for call in calls_of(stmt):
+            found[call.function] = None
     return list(found)
 
 

@@ -6,11 +6,11 @@ writes it, nor before.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from ..ir.nodes import Assign, Call, Expr, Function, Global, Module, Stmt
-from ..ir.walk import expressions, statements, subexpressions, written_root
+from ..ir.nodes import Assign, Call, Expr, Function, Global, Literal, Local, Module
+from ..ir.walk import expressions, operands, statements, written_root
+from .scopes import outs_of
 
 
 class Effects(NamedTuple):
@@ -32,31 +32,10 @@ def effects(module: Module) -> dict[str, Effects]:
     return {key: effect for key, effect in found.items() if effect != NONE}
 
 
-def read_in(expr: Expr, variables: frozenset[str], known: Mapping[str, Effects]) -> frozenset[str]:
-    """Which of the module variables an expression reads, its calls included."""
-    found: set[str] = set()
-    for part in subexpressions(expr):
-        if isinstance(part, Global) and part.name in variables:
-            found.add(part.name)
-        elif isinstance(part, Call):
-            found |= known.get(part.function, NONE).reads
-    return frozenset(found)
-
-
-def stored(stmt: Stmt, functions: Mapping[str, Function]) -> Iterable[str]:
-    """The module variables that a statement writes by name: by an assignment, or as an out argument."""
-    targets = [stmt.target] if isinstance(stmt, Assign) else []
-    for expr in expressions(stmt):
-        for part in subexpressions(expr):
-            if isinstance(part, Call) and part.function in functions:
-                params = functions[part.function].params
-                targets += [arg for arg, param in zip(part.args, params, strict=True) if param.direction != "in"]
-    return [found.name for found in map(written_root, targets) if isinstance(found, Global)]
-
-
 class _Finder:
     def __init__(self, module: Module) -> None:
         self.functions = {function.key: function for function in module.functions}
+        self.outs = outs_of(module.functions)
         self.variables = frozenset(variable.name for variable in module.variables)
         self.found: dict[str, Effects] = {}
 
@@ -70,15 +49,27 @@ class _Finder:
 
     def function(self, function: Function) -> Effects:
         reads: set[str] = set()
-        writes: set[str] = set()
+        targets: list[Expr] = []
+        calls: set[str] = set()
         for stmt in statements(function.body or ()):
-            writes.update(stored(stmt, self.functions))
-            for expr in expressions(stmt):
-                for part in subexpressions(expr):
-                    if isinstance(part, Global) and part.name in self.variables:
-                        reads.add(part.name)
-                    elif isinstance(part, Call):
-                        called = self.of(part.function)
-                        reads |= called.reads
-                        writes |= called.writes
-        return Effects(frozenset(reads), frozenset(writes))
+            if type(stmt) is Assign:
+                targets.append(stmt.target)
+            stack = list(expressions(stmt))
+            while stack:
+                node = stack.pop()
+                kind = type(node)
+                if kind is Local or kind is Literal:
+                    continue
+                if isinstance(node, Global):
+                    reads.add(node.name)
+                    continue
+                if isinstance(node, Call):
+                    calls.add(node.function)
+                    targets += [node.args[index] for index in self.outs.get(node.function, ())]
+                stack += operands(node)
+        writes = {found.name for found in map(written_root, targets) if isinstance(found, Global)}
+        called = [self.of(key) for key in calls]
+        return Effects(
+            frozenset(reads & self.variables).union(*[effect.reads for effect in called]),
+            frozenset(writes).union(*[effect.writes for effect in called]),
+        )

@@ -40,8 +40,8 @@ from ..ir.nodes import (
     While,
 )
 from ..ir.types import FLOAT, Sampler, Scalar, Type, components, vector_of
-from ..ir.walk import all_expressions, operands, statements, subexpressions, with_operands, written_root
-from .divergence import Divergence, Site, Summary, joined, summaries
+from ..ir.walk import all_expressions, builtins_of, operands, statements, subexpressions, with_operands, written_root
+from .divergence import Divergence, Site, Summary, implicit, joined, summaries
 from .scopes import declared, fresh
 
 _LARGEST = 64
@@ -60,6 +60,8 @@ def hoist(module: Module, entries: Iterable[str]) -> tuple[Module, list[Note]]:
 
     `entries` are the keys of the functions that are called from outside, for each pixel with other values.
     """
+    if implicit().isdisjoint(builtins_of(module)):
+        return module, []
     known = summaries(module)
     functions = {function.key: function for function in module.functions}
     sites: dict[str, Site] = {}

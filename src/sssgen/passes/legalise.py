@@ -31,7 +31,7 @@ from ..ir.walk import operands, rewrite, subexpressions, with_operands
 from . import blocks
 from .effects import effects
 from .integers import counts_up, with_result
-from .lift_calls import awkward, lift
+from .lift_calls import Calls, awkward, lift
 from .scopes import assigned, declared, outs_of
 from .stores import is_dynamic_store, is_swizzle_store, parts_of, whole_store
 from .substitute import in_place, is_cheap
@@ -81,6 +81,7 @@ class _Legaliser:
         self.prelude: list[ir.Stmt] | None = None
         self.texts: dict[tuple[str, tuple[Type, ...]], str] = {}
         self.shared = effects(module)
+        self.calls = Calls(self.functions, self.shared)
         self.outs = outs_of(module.functions)
         self.writing = bool(self.shared or self.outs)
         """Whether any call can write anything."""
@@ -106,18 +107,17 @@ class _Legaliser:
         if not self.writing:
             return self.lifted(function)
         if not self.can("out_parameters"):
-            return self.lifted(lift(function, self.functions, self.shared))
-        stmts = awkward(function, self.functions, self.shared)
-        by_parameters = stmts and awkward(function, self.functions)
-        if by_parameters or (stmts and not self.can("operand_order")):
-            return self.lifted(lift(function, self.functions, self.shared))
+            return self.lifted(lift(function, self.calls))
+        stmts = awkward(function, self.calls)
+        if stmts and (not self.can("operand_order") or awkward(function, Calls(self.functions))):
+            return self.lifted(lift(function, self.calls))
         self.ordered = {id(stmt) for stmt in stmts}
         prelude, counters = self.prelude, list(self.counters)
         try:
             return self.lifted(function)
         except _OutOfOrder:
             self.ordered, self.prelude, self.counters = set(), prelude, counters
-            return self.lifted(lift(function, self.functions, self.shared))
+            return self.lifted(lift(function, self.calls))
 
     def lifted(self, function: ir.Function) -> ir.Function:
         """A function whose writing calls stand where they can."""

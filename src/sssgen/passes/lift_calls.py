@@ -38,8 +38,17 @@ from ..ir.nodes import (
     Unary,
     While,
 )
-from ..ir.types import BOOL, VOID, Type
-from ..ir.walk import callees, expressions, operands, statements, subexpressions, with_operands, written_root
+from ..ir.types import BOOL, Type
+from ..ir.walk import (
+    callees,
+    calls_of,
+    expressions,
+    operands,
+    statements,
+    subexpressions,
+    with_operands,
+    written_root,
+)
 from .effects import NONE, Effects
 from .scopes import declared, fresh
 
@@ -57,27 +66,51 @@ def lift_calls(module: Module) -> Module:
     for function in module.functions:
         new = _announce_discard(function, old, {other.key for other in module.functions})
         old[function.key] = new
-        lifted[new.key] = _Lifter(new, old).run()
+        lifted[new.key] = _Lifter(new, Calls(old)).run()
     return module._replace(functions=tuple(lifted.values()))
 
 
-def lift(function: Function, functions: Functions, shared: Mapping[str, Effects] = _NOTHING) -> Function:
-    """One function with its writing calls as statements; discarding stays as it is.
+class Calls:
+    """What the calls of a module's functions write; `shared` says which of them read and write module variables."""
 
-    `shared` says which functions read and write module variables.
-    """
-    return _Lifter(function, functions, shared).run()
+    def __init__(self, functions: Functions, shared: Mapping[str, Effects] = _NOTHING) -> None:
+        self.functions, self.shared = functions, shared
+        self.known: dict[str, bool] = {}
+
+    def change(self, key: str) -> bool:
+        """Whether a function writes through its parameters, or a module variable."""
+        known = self.known.get(key)
+        if known is None:
+            through = any(param.direction != "in" for param in self.functions[key].params)
+            known = self.known[key] = through or bool(self.shared.get(key, NONE).writes)
+        return known
+
+    def writing(self, expr: Expr) -> bool:
+        """Whether a call inside an expression changes something beside its result."""
+        stack = [expr]
+        while stack:
+            node = stack.pop()
+            kind = type(node)
+            if kind is Local or kind is Literal or kind is Global:
+                continue
+            if isinstance(node, Call) and self.change(node.function):
+                return True
+            stack += operands(node)
+        return False
 
 
-def awkward(function: Function, functions: Functions, shared: Mapping[str, Effects] = _NOTHING) -> list[Stmt]:
+def lift(function: Function, calls: Calls) -> Function:
+    """One function with its writing calls as statements; discarding stays as it is."""
+    return _Lifter(function, calls).run()
+
+
+def awkward(function: Function, calls: Calls) -> list[Stmt]:
     """The statements in which a writing call stands inside a larger expression.
 
     There languages differ in the order of evaluation, and in whether the right side of `&&` and both arms of a choice
     are always evaluated; and what other passes compute before the statement would be computed too early.
     """
-    lifter = _Lifter(function, functions, shared)
-    if not lifter.writes_in(function.body or ()):
-        return []
+    lifter = _Lifter(function, calls)
     found = []
     for stmt in statements(function.body or ()):
         for expr in expressions(stmt):
@@ -122,11 +155,12 @@ def _read(expr: Expr) -> list[str]:
 
 
 class _Lifter:
-    def __init__(self, function: Function, functions: Functions, shared: Mapping[str, Effects] = _NOTHING) -> None:
+    def __init__(self, function: Function, calls: Calls) -> None:
         self.function = function
-        self.functions = functions
-        self.shared = shared
-        self.names = set(declared(function))
+        self.calls = calls
+        self.functions, self.shared = calls.functions, calls.shared
+        self.names: set[str] = set()
+        """Those of the function, once one is to be chosen."""
         self.out: list[Stmt] = []
 
     def run(self) -> Function:
@@ -135,16 +169,13 @@ class _Lifter:
 
     def writes(self, expr: Expr | None) -> bool:
         """Whether a call inside the expression changes something beside its result."""
-        if expr is None:
-            return False
-        return any(isinstance(part, Call) and self.writes_itself(part) for part in subexpressions(expr))
+        return expr is not None and self.calls.writing(expr)
 
     def writes_in(self, body: Block) -> bool:
-        keys = callees(Function("", (), VOID, "", body, "", self.function.span))
-        evaluates = any(isinstance(stmt, Evaluate) for stmt in statements(body))
-        return evaluates or any(map(self.changes, keys))
+        return any(self.calls.change(call.function) for stmt in statements(body) for call in calls_of(stmt))
 
     def local(self, type: Type, name: str, span: Span) -> Local:
+        self.names = self.names or set(declared(self.function))
         name = fresh(name, self.names)
         self.names.add(name)
         return Local(type, name, span)
@@ -184,6 +215,9 @@ class _Lifter:
 
     def assign(self, stmt: Assign) -> None:
         value = stmt.value
+        if not self.writes(value) and not self.writes(stmt.target):
+            self.out.append(stmt)
+            return
         pinned = any(map(self.written(value).__contains__, _read(stmt.target)))
         target = self.expr(self.pinned(stmt.target) if pinned else stmt.target)
         alone = isinstance(target, Local | Global) and not stmt.op and not self.meets(stmt)
@@ -212,12 +246,7 @@ class _Lifter:
     # Expressions
 
     def writes_itself(self, call: Call) -> bool:
-        return self.changes(call.function)
-
-    def changes(self, key: str) -> bool:
-        """Whether a function writes through its parameters, or a module variable."""
-        wrote = key in self.shared and bool(self.shared[key].writes)
-        return wrote or any(param.direction != "in" for param in self.functions[key].params)
+        return self.calls.change(call.function)
 
     def meets(self, stmt: Assign) -> bool:
         """Whether an assignment's value also writes what the assignment writes."""
@@ -244,7 +273,7 @@ class _Lifter:
     def written(self, expr: Expr) -> set[str]:
         """The variables that the calls in an expression change, the module's as `$name`."""
         found: set[str] = set()
-        for part in subexpressions(expr):
+        for part in subexpressions(expr) if self.writes(expr) else ():
             if isinstance(part, Call):
                 params = self.functions[part.function].params
                 outs = [arg for arg, param in zip(part.args, params, strict=False) if param.direction != "in"]
@@ -266,7 +295,7 @@ class _Lifter:
 
     def before(self, expr: Expr, others: tuple[Expr, ...]) -> Expr:
         """An expression's value, read before those that are evaluated later can change it."""
-        later = {name for other in others for name in self.written(other)}
+        later = {name for other in others if self.writes(other) for name in self.written(other)}
         value = self.expr(expr)
         if later and later & self.read(value):
             kept = self.local(value.type, "before", value.span)

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from ..ir import nodes as ir
 from ..ir.types import kind_of
-from ..ir.walk import root, statements
+from ..ir.walk import calls_of, root, statements
 from .intervals import INF, Range, clip
 from .range_expressions import Expressions
 from .range_state import Loop, State
-from .shapes import calls_in, scalars
+from .shapes import scalars
 from .vectors import Value, length_of
 
 _ROUNDS = 3
@@ -177,7 +177,7 @@ class Loops(Expressions):
         """The variables that a statement's calls write through out parameters."""
         return {
             variable.name
-            for call in calls_in(stmt)
+            for call in calls_of(stmt)
             for param, arg in zip(self.functions[call.function].params, call.args, strict=True)
             if param.direction != "in" and (variable := root(arg)) is not None
         }

@@ -30,7 +30,7 @@ from ..ir.nodes import (
     Stmt,
     While,
 )
-from ..ir.walk import expressions, inner_statements, operands, rewrite, root, statements, subexpressions, with_operands
+from ..ir.walk import calls_of, expressions, inner_statements, operands, rewrite, root, statements, with_operands
 
 _NONE: Mapping[str, str] = {}
 
@@ -87,11 +87,8 @@ def assigned(function: Function, outs: Mapping[str, tuple[int, ...]]) -> set[str
     for stmt in statements(function.body or ()):
         if type(stmt) is Assign:
             targets.append(stmt.target)
-        if outs:
-            for expr in expressions(stmt):
-                for part in subexpressions(expr):
-                    if type(part) is Call and part.function in outs:
-                        targets += [part.args[index] for index in outs[part.function]]
+        for call in calls_of(stmt) if outs else ():
+            targets += [call.args[index] for index in outs.get(call.function, ())]
     return {variable.name for variable in map(root, targets) if variable is not None}
 
 

@@ -4,15 +4,8 @@ from __future__ import annotations
 
 from typing import cast
 
-from ..ir import nodes as ir
 from ..ir.types import Array, Matrix, Scalar, Struct, Type, components, kind_of
-from ..ir.walk import expressions, subexpressions
 from .intervals import ANY, INF, Range, widened
-
-
-def calls_in(stmt: ir.Stmt) -> list[ir.Call]:
-    """The calls that stand directly in a statement."""
-    return [part for expr in expressions(stmt) for part in subexpressions(expr) if isinstance(part, ir.Call)]
 
 
 def scalars(type_: Type) -> int:

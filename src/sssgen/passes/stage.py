@@ -14,8 +14,8 @@ from typing import NamedTuple
 from ..ir.nodes import Expr, Function, Global, Index, Intrinsic, Literal, Module, Span, Unary, Variable
 from ..ir.rules import element_type
 from ..ir.types import VOID, Array, Matrix, Struct, Type, Vector
-from ..ir.walk import all_expressions, operands, rewrite_module, statements
-from .effects import stored
+from ..ir.walk import all_expressions, builtins_of, operands, rewrite_module
+from .effects import effects
 
 ENTRY = "main()"
 """The key of the function that a stage begins with."""
@@ -71,12 +71,8 @@ def stage_kind(module: Module) -> str:
     if entry_of(module) is None:
         return ""
     positions = {variable.name for variable in module.variables if variable.builtin == "gl_Position"}
-    functions = {function.key: function for function in module.functions}
-    for function in functions.values() if positions else ():
-        for stmt in statements(function.body or ()):
-            if not positions.isdisjoint(stored(stmt, functions)):
-                return "vertex"
-    return "fragment"
+    written = [effect.writes for effect in effects(module).values()] if positions else []
+    return "fragment" if all(map(positions.isdisjoint, written)) else "vertex"
 
 
 def interface(module: Module, kind: str, function: str, builtins: Collection[str], turned: bool) -> Stage:
@@ -111,7 +107,8 @@ def turned_derivatives(module: Module) -> Module:
             return Unary(expr.type, "-", expr, expr.span)
         return expr
 
-    return rewrite_module(module, change)
+    turned = any(name.startswith("dFdy") for name in builtins_of(module))
+    return rewrite_module(module, change) if turned else module
 
 
 def colors_in_use(module: Module) -> Module:

@@ -17,9 +17,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ..ir.nodes import Declare, Function, Module, Param, Stmt
-from .effects import NONE, effects
+from .effects import effects
 from .initial_values import set_at_start
-from .lift_calls import lift
+from .lift_calls import Calls, lift
 from .parameters import Closer
 
 
@@ -38,11 +38,11 @@ def variables_to_parameters(module: Module, entry: str = "") -> Handed:
     if entry:
         module = set_at_start(module, entry, all_of_them=True)
     shared = effects(module)
-    functions = {function.key: function for function in module.functions}
+    calls = Calls({function.key: function for function in module.functions}, shared)
     # a call that writes stands alone from here on, so that an argument that is a variable is not passed twice
-    module = module._replace(functions=tuple([lift(one, functions, shared) for one in module.functions]))
+    module = module._replace(functions=tuple([lift(one, calls) for one in module.functions]))
     handed = {one.name: Param(one.name, one.type, "in", "", one.span) for one in module.variables}
-    closer = Closer(module, handed, {key: shared.get(key, NONE).writes for key in functions})
+    closer = Closer(module, handed, {key: effect.writes for key, effect in shared.items()})
     added: dict[str, tuple[Param, ...]] = {}
     made = []
     for old, new in zip(module.functions, closer.run(), strict=True):
