@@ -58,9 +58,11 @@ class Overload(NamedTuple):
 
 
 def _overloads() -> dict[Type, list[Overload]]:
-    """The builtins by their result."""
+    """The builtins by their result; those that want constants are left out."""
     found: dict[Type, dict[Overload, None]] = {}
     for name, row in BUILTINS.items():
+        if row.constant:
+            continue
         for signature in row.signatures:
             for size in (1, 2, 3, 4):
                 _, *params = (instantiate(type_name, size) for type_name in parse(signature))
