@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ..ir import nodes as ir
-from ..ir.types import BOOL, Matrix, Scalar, Vector
+from ..ir.types import BOOL, Matrix, Scalar, Vector, components, kind_of, vector_of
 
 Keep = Callable[[ir.Expr, str], ir.Expr]
 """Gives what is cheap to repeat in the place of an expression: itself, or a variable of about this name."""
@@ -92,7 +92,31 @@ def _wider(place: ir.Expr, value: ir.Expr, keep: Keep) -> tuple[ir.Expr, ir.Expr
         for number in range(type_.size):
             hit = ir.Binary(BOOL, "==", place.index, ir.Literal(place.index.type, number, span), span)
             parts[number] = ir.Select(one, hit, value, parts[number], span)
-    return whole, ir.Construct(type_, tuple(parts), span)
+    return whole, ir.Construct(type_, tuple(_joined(parts)), span)
+
+
+def _joined(parts: list[ir.Expr]) -> list[ir.Expr]:
+    """The components of a vector, with neighbours of one vector taken together: `v.x, v.y, w.z` as `v, w.z`."""
+    found: list[ir.Expr] = []
+    for part in parts:
+        last = found[-1] if found else None
+        if not isinstance(part, ir.Swizzle) or not isinstance(last, ir.Swizzle) or part.value is not last.value:
+            found.append(part)
+            continue
+        letters = last.components + part.components
+        found[-1] = part._replace(type=vector_of(kind_of(part.type), len(letters)), components=letters)
+    return [_whole(part) for part in found]
+
+
+def _whole(part: ir.Expr) -> ir.Expr:
+    """A vector itself where all of its components are named in their order."""
+    if (
+        isinstance(part, ir.Swizzle)
+        and part.type == part.value.type
+        and part.components == "xyzw"[: components(part.type)]
+    ):
+        return part.value
+    return part
 
 
 def _component(value: ir.Expr, number: int, type_: Scalar | Vector) -> ir.Expr:
