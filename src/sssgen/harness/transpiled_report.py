@@ -23,11 +23,18 @@ class Found(NamedTuple):
     at: str = ""
     """Where, what came, and what the author's text gives."""
     error: str = ""
+    inexact: tuple[str, ...] = ()
+    """Of the oracle: the function's builtins that drivers may give with errors beyond the goal."""
+
+    @property
+    def close(self) -> bool:
+        """Whether it is within the goal, as far as there are lanes to tell by."""
+        return self.deviation is None or self.deviation <= GOAL
 
     @property
     def ok(self) -> bool:
         """Whether nothing speaks against it; where no lane is left, nothing speaks for it either."""
-        return not self.error and (self.deviation is None or self.deviation <= GOAL)
+        return not self.error and (self.close or bool(self.inexact))
 
     @property
     def cell(self) -> str:
@@ -110,7 +117,8 @@ class Report(NamedTuple):
             for name, found in row.found.items():
                 if found.error:
                     yield f"    {name} does not run: {found.error}"
-                elif not found.ok and not row.reason:
-                    yield f"    {name} {found.at}"
+                elif not found.close and not row.reason:
+                    inexact = f" (drivers give {', '.join(found.inexact)} roughly)" if found.inexact else ""
+                    yield f"    {name} {found.at}{inexact}"
         for name, how in self.missing.items():
             yield f"{name} is missing: {how}"
