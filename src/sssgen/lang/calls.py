@@ -70,8 +70,9 @@ class CallChecker(ExpressionChecker):
         from ..ir import old_names, out_builtins
 
         renamed = old_names.new_name(name, len(args))
-        if renamed is not None:
+        if renamed is not None and candidates(renamed):
             return self.call_intrinsic(renamed, args, call)
+        name = renamed or name
         types = [arg.expr.type for arg in args]
         source = out_builtins.out_builtin(name, types)
         if source is None and out_builtins.is_out_builtin(name):
@@ -173,7 +174,7 @@ class CallChecker(ExpressionChecker):
             given = ", ".join(spell(arg.expr.type) for arg in args)
             message = f"no overload of {name} takes ({given})"
             raise self.fail(call.span, message, overload_hint(name, [arg.expr for arg in args]))
-        if not any([arg.quantity for arg in args]):
+        if not any(arg.quantity for arg in args):
             return Typed(ir.Intrinsic(result, name, values, call.span))
         try:
             if isinstance(values[0].type, Sampler):

@@ -18,7 +18,7 @@ from .expressions import Untyped
 from .hints import check_hints
 from .interface import BUILTIN_VARIABLES, Interface
 from .scope import GlobalValue, Scopes, Signature
-from .statements import StatementChecker, items_of, zero
+from .statements import StatementChecker, zero
 from .wording import a_type
 
 # GLSL ES 3.00, section 3.8: what GLSL itself keeps for later. Names that only other targets reserve are renamed there.
@@ -262,7 +262,7 @@ class _FileChecker(StatementChecker):
     def constant(self, declaration: s.Declaration) -> list[ir.Constant]:
         found = []
         of_macro = declaration.type.name == "auto"
-        type_, quantity = (VOID, "") if of_macro else self.type_named(declaration.type)
+        type_, quantity = (VOID, "") if of_macro else self.type_named(declaration.type._replace(lengths=()))
         for declarator in declaration.declarators:
             name = self.new_name(declarator.name)
             if declarator.value is None:
@@ -271,7 +271,7 @@ class _FileChecker(StatementChecker):
                 value = self.check(declarator.value).expr
                 declared = value.type
             else:
-                declared = self.array_of(type_, declarator.lengths, items_of(declarator.value))
+                declared = self.declared_type(type_, declaration.type, declarator)
                 value = self.check_as(declarator.value, declared, quantity, f"'{name}'")
             if any(self.varies(part) for part in subexpressions(value)):
                 message = f"the value of const '{name}' is not constant"

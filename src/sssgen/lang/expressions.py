@@ -41,7 +41,7 @@ from . import syntax as s
 from .conversions import as_kind, common_kind, converts, wrapped
 from .effects import depends, root_name, writes_of
 from .scope import GlobalValue, Scopes, Signature
-from .wording import a_type, mixed_hint, type_hint
+from .wording import a_type, mixed_hint, type_hint, why_not
 
 
 class Typed(NamedTuple):
@@ -58,31 +58,11 @@ class Untyped(Exception):
 _T = TypeVar("_T")
 
 _WHOLE: dict[str, Callable[[int, int], int]] = {
-    "+": operator.add, "-": operator.sub, "*": operator.mul, "&": operator.and_, "|": operator.or_, "^": operator.xor,
-    "/": lambda x, y: abs(x) // y * (1 if x >= 0 else -1), "%": lambda x, y: x - abs(x) // y * (1 if x >= 0 else -1) * y,
-    "<<": operator.lshift, ">>": operator.rshift,
+    "+": operator.add, "-": operator.sub, "*": operator.mul, "<<": operator.lshift, ">>": operator.rshift,
+    "&": operator.and_, "|": operator.or_, "^": operator.xor, "/": lambda x, y: abs(x) // y * (1 if x >= 0 else -1),
+    "%": lambda x, y: abs(x) % y * (1 if x >= 0 else -1),
 }  # fmt: skip
 """The operators of constant whole numbers; a divisor is above 0, a shift at most 64."""
-
-_NOT_HERE = {
-    **dict.fromkeys(
-        ("double", *(f"dvec{n}" for n in "234"), *(f"dmat{n}" for n in "234")), "WGSL has no 64-bit floats"
-    ),
-    **dict.fromkeys(
-        (f"{kind}image{dim}" for kind in ("", "i", "u") for dim in ("2D", "3D", "Cube", "2DArray", "Buffer")),
-        "images are written by compute shaders",
-    ),
-    **dict.fromkeys(
-        (
-            f"{kind}sampler{dim}"
-            for kind in ("", "i", "u")
-            for dim in ("1D", "2DRect", "Buffer", "2DMS", "1DArray", "2DMSArray")
-        ),
-        "WebGPU has no such texture that is sampled",
-    ),
-    **dict.fromkeys((f"mat{n}x{m}" for n in "234" for m in "234" if n != m), "matrices are square"),
-    "atomic_uint": "atomics belong to compute shaders",
-}
 
 _SWIZZLES = ("xyzw", "rgba", "stpq")
 
@@ -130,8 +110,8 @@ class ExpressionChecker:
             type_ = self.structs[name.name]
         elif name.name in q.QUANTITIES and not self.plain:
             type_, quantity = q.QUANTITIES[name.name], name.name
-        elif name.name in _NOT_HERE:
-            raise self.fail(name.span, f"'{name.name}' is not in the language: {_NOT_HERE[name.name]}")
+        elif self.plain and (why := why_not(name.name)):
+            raise self.fail(name.span, f"'{name.name}' cannot be translated: {why}")
         else:
             raise self.unknown(name.span, "type", name.name, [*BY_NAME, *self.structs, *q.QUANTITIES])
         if name.lengths:

@@ -10,7 +10,6 @@ from ..ir.walk import subexpressions
 from . import syntax as s
 from .expressions import Typed
 from .scope import GlobalValue
-from .statements import items_of
 from .wording import a_type
 
 if TYPE_CHECKING:
@@ -59,14 +58,14 @@ class Interface:
             message = "storage buffers and shared memory belong to compute shaders"
             raise checker.fail(declaration.qualifiers.span, message)
         storage = self.storage(words)
-        element, quantity = checker.type_named(declaration.type)
+        element, quantity = checker.type_named(declaration.type._replace(lengths=()))
         for declarator in declaration.declarators:
             name, span = declarator.name.text, declarator.name.span
             if name in BUILTIN_VARIABLES:
                 self.builtin(declarator.name)  # declared again for its qualifiers
                 continue
             checker.new_name(declarator.name)
-            type_ = checker.array_of(element, declarator.lengths, items_of(declarator.value))
+            type_ = checker.declared_type(element, declaration.type, declarator)
             if type_ == VOID or isinstance(type_, Sampler):
                 hint = "write uniform before it" if isinstance(type_, Sampler) else ""
                 raise checker.fail(declaration.type.span, f"a variable cannot be {a_type(type_)}", hint)

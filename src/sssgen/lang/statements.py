@@ -11,7 +11,7 @@ from typing import Any
 from ..diagnostics import Reporter
 from ..ir import nodes as ir
 from ..ir.rules import element_type
-from ..ir.types import BOOL, FLOAT, INT, UINT, VOID, Array, Sampler, Struct, Type, kind_of, spell
+from ..ir.types import BOOL, FLOAT, INT, UINT, VOID, Array, Sampler, Scalar, Struct, Type, kind_of, spell
 from ..ir.walk import all_expressions, statements, subexpressions
 from . import syntax as s
 from .bounded import ends, skips
@@ -83,14 +83,14 @@ class StatementChecker(CallChecker):
             self.local_struct(declaration.type.struct)
         if not declaration.declarators:
             return []
-        type_, quantity = self.type_named(declaration.type)
+        type_, quantity = self.type_named(declaration.type._replace(lengths=()))
         if type_ == VOID or isinstance(type_, Sampler):
             raise self.fail(declaration.type.span, f"a variable cannot be {a_type(type_)}")
         const = "const" in declaration.qualifiers.words
         for declarator in declaration.declarators:
             name = declarator.name
             self.allowed(name)
-            declared = self.array_of(type_, declarator.lengths, items_of(declarator.value))
+            declared = self.declared_type(type_, declaration.type, declarator)
             value, whole = None, None
             if declarator.value is not None:
                 value = self.check_as(declarator.value, declared, quantity, f"'{name.text}'")
@@ -104,6 +104,11 @@ class StatementChecker(CallChecker):
             span = ir.Span(name.span.file, declaration.span.line, declaration.span.column, *name.span[3:])
             self.prelude.append(ir.Declare(variable.ir_name, declared, value, span))
         return []
+
+    def declared_type(self, element: Type, type_: s.TypeName, declarator: s.Declarator) -> Type:
+        """The type of one name of a declaration, whose element type is known."""
+        lengths = (*declarator.lengths, *type_.lengths)
+        return self.array_of(element, lengths, items_of(declarator.value)) if lengths else element
 
     def local_struct(self, struct: s.StructSyntax) -> None:
         """A struct that a function declares for itself."""
@@ -336,9 +341,8 @@ def zero(type_: Type, span: ir.Span) -> ir.Expr:
     if isinstance(type_, Array):
         return ir.Construct(type_, (zero(type_.element, span),) * type_.length, span)
     kind = kind_of(type_)
-    number = ir.Literal(
-        {"float": FLOAT, "int": INT, "uint": UINT, "bool": BOOL}[kind], {"float": 0.0, "bool": False}.get(kind, 0), span
-    )
+    none: float | int = 0.0 if kind == "float" else 0
+    number = ir.Literal(Scalar(kind), False if kind == "bool" else none, span)
     return number if element_type(type_) is None else ir.Construct(type_, (number,), span)
 
 
@@ -360,9 +364,9 @@ def _split(found: list[ir.Stmt], counted: set[str]) -> tuple[list[ir.Stmt], ir.S
         return found, None
     for stmt in simple:
         others = [other for other in found if other is not stmt]
-        if _touched(stmt) & counted and not any(_touched(stmt) & _mentions(other) for other in others):
-            if not any(_touched(other) & _mentions(stmt) for other in others):
-                return others, stmt
+        apart = not any(_touched(stmt) & _mentions(other) or _touched(other) & _mentions(stmt) for other in others)
+        if apart and _touched(stmt) & counted:
+            return others, stmt
     if found[-1] in simple:
         return found[:-1], found[-1]
     return found, None

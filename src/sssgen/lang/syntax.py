@@ -52,7 +52,7 @@ class Conditional(NamedTuple):
 
 
 class TypeName(NamedTuple):
-    """A type as written; `lengths` are those of an array (an Unsized for `[]`), `struct` is one declared on the spot."""
+    """A type as written; `lengths` are an array's (an Unsized for `[]`), `struct` is one declared on the spot."""
 
     name: str
     lengths: tuple[Expression, ...]

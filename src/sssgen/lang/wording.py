@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from ..ir import nodes as ir
 from ..ir.signatures import candidates, resolve
 from ..ir.types import FLOAT, INT, Scalar, Struct, Type, Vector, components, kind_of, spell, vector_of
@@ -59,3 +61,17 @@ def overload_hint(name: str, args: list[ir.Expr]) -> str:
     known = {"gen": "float, vec2, vec3 or vec4 alike", "vec": "vec2, vec3 or vec4 alike"}
     families = [f"{family}F is {words}" for family, words in known.items() if f"{family}F" in listed]
     return "; ".join([f"there are: {listed}", *families])
+
+
+_NOT_HERE = (
+    (r"double|d(vec|mat)[234](x[234])?", "WGSL has no floats of 64 bits"),
+    (r"[iu]?image\w+", "images are what compute shaders write"),
+    (r"[iu]?sampler(1D|2DRect|Buffer|2DMS)\w*", "WebGPU samples no such texture"),
+    (r"mat[234]x[234]", "matrices are square here"),
+    (r"atomic_uint", "atomics are of compute shaders"),
+)
+
+
+def why_not(name: str) -> str:
+    """Why a type of GLSL is not among ours; '' for what is no type of GLSL."""
+    return next((why for pattern, why in _NOT_HERE if re.fullmatch(pattern, name)), "")
