@@ -50,7 +50,7 @@ def operands(expr: Expr) -> tuple[Expr, ...]:
     if kind is Binary:
         return (expr.left, expr.right)  # type: ignore[union-attr]  # it is a Binary
     if kind is Swizzle or kind is Member:
-        return (expr.value,)  # type: ignore[union-attr]  # one of the two
+        return (expr.value,)  # type: ignore[union-attr, return-value]  # one of the two
     if isinstance(expr, Unary):
         return (expr.operand,)
     if isinstance(expr, Select):
