@@ -100,13 +100,41 @@ def parser() -> argparse.ArgumentParser:
     check.add_argument("--compiler", metavar="NAME", action="append", help="only this compiler; may be repeated")
     check.add_argument("--unity-includes", metavar="DIR", help="the folder of Unity's own headers")
 
-    transpile = command("transpile", "transpile", "translate functions in plain GLSL to a target's language")
-    transpile.add_argument("FILE", help="a GLSL file of the subset (functions and uniforms; no main)")
-    transpile.add_argument("--target", "-t", metavar="T", required=True, help="a target of `sssgen list targets`")
+    transpile = command(
+        "transpile",
+        "transpile",
+        "translate plain GLSL, functions or whole shaders, to a target's language",
+        "examples:\n"
+        "  sssgen transpile noise.glsl --target wgsl -o noise.wgsl\n"
+        "  sssgen transpile scene.glsl --entry shadertoy --target hlsl\n"
+        "  sssgen transpile library/fbm.glsl -I library -D OCTAVES=5 --prune --target unity-urp\n"
+        "  sssgen transpile noise.glsl --verify\n"
+        "  sssgen transpile noise.glsl --as technique --function snoise\n"
+        "What is taken: docs/transpile.md. Exit status 1: --verify found a difference.",
+    )
+    transpile.add_argument("FILE", help="a file of GLSL 1.00 ES to 4.60: functions, or a fragment or vertex shader")
+    transpile.add_argument("--target", "-t", metavar="T", help="a target of `sssgen list targets`")
+    transpile.add_argument(
+        "--include", "-I", metavar="DIR", action="append", default=[], help="look here for #include, too; repeatable"
+    )
+    transpile.add_argument(
+        "--define", "-D", metavar="NAME[=VALUE]", action="append", default=[], help="define a macro; repeatable"
+    )
+    transpile.add_argument("--entry", choices=("shadertoy",), default="", help="how the file is entered: by main")
+    transpile.add_argument("--prune", action="store_true", help="leave out functions that the file itself never calls")
     transpile.add_argument(
         "--guards", choices=GUARDS, default="none", help="make safe what may fail: nowhere (default), auto, or all"
     )
     transpile.add_argument("-o", "--output", metavar="FILE", help="the file to write, and its reflection beside it")
+    transpile.add_argument(
+        "--verify", action="store_true", help="run every function as written and as translated, and tell the difference"
+    )
+    transpile.add_argument("--samples", type=int, default=1000, metavar="N", help="random inputs of --verify (1000)")
+    transpile.add_argument("--seed", type=int, default=0, metavar="N", help="of the random inputs (0)")
+    transpile.add_argument(
+        "--as", dest="as_", choices=("technique",), help="write a function as a technique's file, to be filled in"
+    )
+    transpile.add_argument("--function", metavar="NAME", default="", help="which one (the file's last)")
 
     lint = command(
         "lint",

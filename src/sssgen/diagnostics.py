@@ -103,6 +103,7 @@ class Reporter:
         self.texts = texts or {}
         self.lines = text.split("\n")  # as the parser counts them: other line ends are white space to it
         self.diagnostics: list[Diagnostic] = []
+        self.warnings: list[Diagnostic] = []
         self.seen: set[tuple[Span, str]] = set()
 
     def error(self, span: Span, message: str, hint: str = "") -> None:
@@ -117,6 +118,10 @@ class Reporter:
                 Diagnostic("error", f"more than {MAX_ERRORS} errors; the rest is not looked at", span)
             )
             self.check()
+
+    def warn(self, span: Span, message: str, hint: str = "") -> None:
+        """Notes what does not stop anything."""
+        self.warnings.append(Diagnostic("warning", _cut(message), span, _cut(hint), self.line(span)))
 
     def line(self, span: Span) -> str:
         """The text of the line that the span begins on."""

@@ -127,6 +127,10 @@ class _FileChecker(StatementChecker):
         """The functions that have a body, each after those that it calls, otherwise as they stand."""
         if self.reporter.diagnostics:
             return functions
+        called = {callee for function in functions.values() for callee in callees(function)}
+        for key in called:
+            if functions[key].body is None:
+                functions[key] = self.stand_in(functions[key])
         found: dict[str, ir.Function] = {}
         for start in functions:
             pending = [start]
@@ -134,18 +138,26 @@ class _FileChecker(StatementChecker):
                 key = pending[-1]
                 function = functions[key]
                 missing = [callee for callee in callees(function) if callee not in found]
-                without = next((callee for callee in missing if functions[callee].body is None), None)
-                if without is not None:
-                    name = functions[without].name
-                    message = f"'{name}' is declared but has no body in this file"
-                    self.reporter.error(functions[without].span, message, "no other language can do without: add it")
-                    return functions
                 if not missing:
                     pending.pop()
                     if function.body is not None:
                         found[key] = function
                 pending += missing
         return found
+
+    def stand_in(self, function: ir.Function) -> ir.Function:
+        """A function that the file expects from whoever includes it: it gives zeros, and the author is told."""
+        span = function.span
+        message = f"'{function.name}' is declared and called, but has no body in this file: it gives zeros"
+        hint = "write its body in the translation, or give the file that has it"
+        self.reporter.warn(span, message, hint)
+        outs = [param for param in function.params if param.direction == "out"]
+        body: list[ir.Stmt] = [
+            ir.Assign(ir.Local(param.type, param.name, span), "", zero(param.type, span), span) for param in outs
+        ]
+        if function.result != VOID:
+            body.append(ir.Return(zero(function.result, span), span))
+        return function._replace(body=tuple(body), doc=function.doc or "Write this: the file only declares it.")
 
     def limit_calls(self, functions: dict[str, ir.Function]) -> None:
         """Reports the first function whose calls go too deep; a function stands after those it calls."""
@@ -224,7 +236,8 @@ class _FileChecker(StatementChecker):
             self.struct(declaration.type.struct)
         if "uniform" in words:
             for declarator in declaration.declarators:
-                self.interface.uniforms.append(self.uniform(declaration, declarator, external.doc))
+                for one in self.interface.textures(declaration, declarator):
+                    self.interface.uniforms.append(self.uniform(declaration, one, external.doc))
             return []
         if "const" in words:
             return self.constant(declaration)

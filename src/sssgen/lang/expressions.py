@@ -85,6 +85,8 @@ class ExpressionChecker:
         """What was declared with an error, so that nothing more is said about its use."""
         self.instances: dict[str, dict[str, Typed]] = {}
         """The members of the blocks that have an instance name, by that name."""
+        self.texture_arrays: dict[str, list[str]] = {}
+        """The textures that stand for an array of them, by the array's name."""
         self.scopes = Scopes()
         self.methods = {kind: getattr(self, f"_{kind.__name__.lower()}") for kind in get_args(s.Expression)}
 
@@ -377,6 +379,8 @@ class ExpressionChecker:
         return Typed(ir.Select(yes.expr.type, condition, yes.expr, no.expr, conditional.span), quantity)
 
     def _indexof(self, index: s.IndexOf) -> Typed:
+        if isinstance(index.value, s.Name) and index.value.text in self.texture_arrays:
+            return self.texture_of(index.value, index)
         value, position = self.operands((index.value, index.index))
         if position.expr.type not in (INT, UINT):
             raise self.fail(index.index.span, f"an index is an int, but this is {a_type(position.expr.type)}")
@@ -390,6 +394,16 @@ class ExpressionChecker:
             raise self.fail(index.index.span, f"index {constant} is outside {spell(type_)}: 0 to {length - 1}")
         quantity = value.quantity if isinstance(type_, Array) else ""
         return Typed(ir.Index(result, value.expr, position.expr, index.span), quantity)
+
+    def texture_of(self, name: s.Name, index: s.IndexOf) -> Typed:
+        """One texture of an array of them, which are textures of their own."""
+        found = self.texture_arrays[name.text]
+        place = self.constant_int(index.index)
+        if place is None or not 0 <= place < len(found):
+            message = f"a texture of '{name.text}' is chosen by a constant from 0 to {len(found) - 1}"
+            raise self.fail(index.index.span, message, "WebGPU has no arrays of textures: write the cases out")
+        value = self.globals[found[place]]
+        return Typed(ir.Global(value.type, found[place], index.span), value.quantity)
 
     def _memberof(self, member: s.MemberOf) -> Typed:
         if isinstance(member.value, s.Name) and member.value.text in self.instances:

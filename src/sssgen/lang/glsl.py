@@ -32,6 +32,7 @@ class Loaded(NamedTuple):
     """The macros that became constants."""
     ignored: list[str]
     """The extensions and pragmas, which change nothing here."""
+    warnings: list[Diagnostic]
 
 
 def load_glsl(
@@ -73,7 +74,7 @@ def load_glsl_text(
     file = parse_tokens(tokens, found.comments, reporter, plain=True)
     module = check_plain(file, reporter, _is_vertex(tokens, shown))
     ignored = [f"#extension {one}" for one in found.extensions] + [f"#pragma {one}" for one in found.pragmas]
-    return Loaded(module, found.version, texts, found.macros, ignored)
+    return Loaded(module, found.version, texts, found.macros, ignored, reporter.warnings)
 
 
 def preprocessed(text: str, shown: str, roots: Sequence[str | os.PathLike[str]] = ()) -> Preprocessed:

@@ -87,6 +87,19 @@ class Interface:
             self.variables[name] = ir.Variable(name, type_, storage, value, "", interpolation, location, doc, span)
             checker.globals[name] = GlobalValue(type_, quantity, writable=storage != "in")
 
+    def textures(self, declaration: s.Declaration, declarator: s.Declarator) -> list[s.Declarator]:
+        """A uniform as it is, but an array of textures as a uniform for each."""
+        checker, name = self.checker, declarator.name
+        lengths = (*declarator.lengths, *declaration.type.lengths)
+        if not checker.plain or len(lengths) != 1 or "sampler" not in declaration.type.name:
+            return [declarator]
+        count = checker.constant_int(lengths[0])
+        if count is None or not 1 <= count <= 64:
+            raise checker.fail(lengths[0].span, "an array of textures has a constant length from 1 to 64")
+        names = [self.free(f"{name.text}_{index}") for index in range(count)]
+        checker.texture_arrays[name.text] = names
+        return [declarator._replace(name=name._replace(text=one), lengths=()) for one in names]
+
     def storage(self, words: tuple[str, ...]) -> str:
         """private, in or out: what an attribute and a varying are depends on the stage."""
         if "attribute" in words:
