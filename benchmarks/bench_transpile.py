@@ -6,7 +6,7 @@
 A file counts where glslang takes it (see `public_code`). It passes where it comes out in every target and every
 compiler takes that: WGSL in naga and Tint, HLSL in glslang and DXC, GLSL in glslang. The table has the shares for each
 kind; below it stand the commonest reasons, with names and numbers blanked out. `--naga` asks naga's own front end for
-GLSL about the same files, preprocessed for it; it reads GLSL as Vulkan has it, with textures apart from samplers.
+GLSL about the same files, preprocessed and freed from what Vulkan wants of uniforms; it has no combined samplers.
 `--speed` times the stages on a text of our own (see `transpile_speed`). The code itself is none of this project's.
 """
 

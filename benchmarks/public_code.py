@@ -22,6 +22,7 @@ from sssgen.harness.compilers.calls import glsl_entry
 from sssgen.harness.compilers.gl import with_version
 from sssgen.harness.handwritten import hand_written
 from sssgen.harness.includes import expanded
+from sssgen.harness.plain_text import without_interface
 from sssgen.lang.glsl import load_glsl
 from sssgen.lang.loader import read_text
 
@@ -112,13 +113,18 @@ def _with_entry(source: Source) -> str:
 
 
 def preprocessed(code: Code) -> str:
-    """The whole program without directives, as 4.50: what a front end without a preprocessor is given."""
+    """The whole program without directives, as 4.50, for a front end that wants Vulkan's GLSL.
+
+    What Vulkan wants of an interface is no part of the code: what a stage is given and gives, and uniforms but for
+    textures, become variables.
+    """
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"whole.{code.stage}"
         path.write_text(_whole(code, own_version=False), "utf-8")
         command = ["glslangValidator", "-E", str(path)]
         done = subprocess.run(command, capture_output=True, encoding="utf-8", errors="replace", timeout=SECONDS)
     body = "\n".join(line for line in done.stdout.splitlines() if not line.lstrip().startswith("#"))
+    body = re.sub(r"\buniform\s+(?!(?:(?:low|medium|high)p\s+)?[iu]?sampler)", "", without_interface(body))
     return f"#version 450\n{body}\n"
 
 

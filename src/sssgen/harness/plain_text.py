@@ -83,7 +83,7 @@ _ES_PRECISION = [
 def plain(text: str) -> Plain:
     """The text as functions and variables."""
     version = _VERSION.search(text)
-    body = _without_interface(_VERSION.sub("", text, count=1))
+    body = without_interface(_VERSION.sub("", text, count=1))
     renamed = {name: new for name, (_, new) in STAGE.items() if _uses(body, name)}
     head = [f"{STAGE[name][0]} {new};" for name, new in renamed.items()]
     renamed |= {"main": MAIN} if _uses(body, "main") else {}
@@ -98,8 +98,8 @@ def _uses(text: str, name: str) -> bool:
     return defined is None and re.search(rf"\b{name}\b", text) is not None
 
 
-def _without_interface(text: str) -> str:
-    """Without the words that tie declarations at file scope to a stage."""
+def without_interface(text: str) -> str:
+    """A text without the words that tie declarations at file scope to a stage."""
     kept: list[str] = []
     depth = done = 0
     for match in _PART.finditer(text):

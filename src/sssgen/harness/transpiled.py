@@ -7,9 +7,9 @@ hash, the lane is left out and counted: `deviation` says how that is measured, b
 units in the last place, for nothing is known of the functions. Left out, too, are lanes where the author's text or the
 oracle gives infinity or NaN: there the languages promise nothing.
 
-What deviates from the oracle alone is told, but not held against a function whose builtins drivers give only roughly:
-the table of builtins says how roughly. A uniform has one value in each of a few rounds. What cannot be run is in the
-list, with the reason.
+WGSL and the oracle are not computed by the driver that has the author's text. Where a function has builtins that
+drivers give only roughly, these two may deviate by what the table of builtins grants, and it is told. A uniform has one
+value in each of a few rounds. What cannot be run is in the list, with the reason.
 """
 
 from __future__ import annotations
@@ -50,6 +50,8 @@ ROUNDS = 4
 """How many values a uniform has."""
 STEPS = 8
 """How far inputs move, in units in the last place."""
+ELSEWHERE = {"wgsl", "oracle"}
+"""What another driver computes than the one that has the author's text."""
 SECONDS = 30.0
 """How long one function may take on one back end, and how long it is asked how far rounding takes it."""
 _SCREEN = "void main() { gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0); }"
@@ -197,8 +199,9 @@ class _Case:
             name: Found(None, error=outputs) if isinstance(outputs, str) else _judged(outputs, original, finite, blur)
             for name, outputs in given.items()
         }
-        if "oracle" in found and (inexact := _inexact(self.module)):
-            found["oracle"] = found["oracle"]._replace(inexact=inexact)
+        inexact, granted = _inexact(self.module)
+        for name in ELSEWHERE & found.keys():
+            found[name] = found[name]._replace(inexact=inexact, limit=max(GOAL, MARGIN * granted))
         reason = ""
         if not finite.any():
             reason = "every result is infinity or NaN"
@@ -346,15 +349,15 @@ def _finite(outputs: Mapping[str, Array]) -> Array:
     return found
 
 
-def _inexact(module: Module) -> tuple[str, ...]:
-    """The builtins in a module that drivers may give with larger errors than the goal."""
+def _inexact(module: Module) -> tuple[tuple[str, ...], float]:
+    """The builtins in a module that drivers may give with larger errors than the goal, and the largest of these."""
     used = {
-        part.name
+        part.name: BUILTINS[part.name].absolute
         for function in module.functions
         for part in all_expressions(function.body or ())
-        if isinstance(part, Intrinsic)
+        if isinstance(part, Intrinsic) and BUILTINS[part.name].absolute > GOAL
     }
-    return tuple(sorted([name for name in used if BUILTINS[name].absolute > GOAL]))
+    return tuple(sorted(used)), max(used.values(), default=0.0)
 
 
 def _title(function: Function) -> str:

@@ -24,7 +24,9 @@ class Found(NamedTuple):
     """Where, what came, and what the author's text gives."""
     error: str = ""
     inexact: tuple[str, ...] = ()
-    """Of the oracle: the function's builtins that drivers may give with errors beyond the goal."""
+    """The function's builtins that drivers may give with errors beyond the goal, where another driver computes."""
+    limit: float = GOAL
+    """How far it may be: the goal, or what such builtins explain."""
 
     @property
     def close(self) -> bool:
@@ -34,7 +36,7 @@ class Found(NamedTuple):
     @property
     def ok(self) -> bool:
         """Whether nothing speaks against it; where no lane is left, nothing speaks for it either."""
-        return not self.error and (self.close or bool(self.inexact))
+        return not self.error and (self.deviation is None or self.deviation <= self.limit)
 
     @property
     def cell(self) -> str:
@@ -118,7 +120,7 @@ class Report(NamedTuple):
                 if found.error:
                     yield f"    {name} does not run: {found.error}"
                 elif not found.close and not row.reason:
-                    inexact = f" (drivers give {', '.join(found.inexact)} roughly)" if found.inexact else ""
+                    inexact = f" (drivers give {', '.join(found.inexact)} roughly)" if found.ok else ""
                     yield f"    {name} {found.at}{inexact}"
         for name, how in self.missing.items():
             yield f"{name} is missing: {how}"
