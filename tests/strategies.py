@@ -45,7 +45,8 @@ BINARY = ("+", "-", "*", "/", "%", "<<", ">>", "<", ">", "<=", ">=", "==", "!=",
 ASSIGNED = ("+", "-", "*", "/", "%", "<<", ">>", "&", "|", "^")
 
 floats32 = st.floats(width=32, allow_nan=False, allow_infinity=False)
-_lines = st.text("ab \"\\'*é→\x00\x1b", max_size=8).map(str.rstrip)
+# no \\ at a line's end: there it joins the next line on
+_lines = st.text("ab \"\\'*é→\x00\x1b", max_size=8).map(lambda line: line.rstrip().rstrip("\\").rstrip())
 docs = st.lists(_lines, max_size=3).map("\n".join).map(lambda doc: doc.strip("\n").rstrip())
 spans = st.builds(
     ir.Span, st.sampled_from(["a.sss", "b c/d.sss", 'odd "name"\n']), *(st.integers(1, 9) for _ in range(4))

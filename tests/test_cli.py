@@ -35,6 +35,10 @@ class Compiled(NamedTuple):
     files: dict[str, str]
     warnings: list[Diagnostic]
 
+    @property
+    def reflection(self) -> dict[str, object]:
+        return {}
+
 
 class Target(NamedTuple):
     title: str
@@ -62,7 +66,7 @@ class FakeCompiler(types.ModuleType):
         files = {name: f"{self.text}\n", f"{material.name}.{target}.reflection.json": "{}\n"}
         return Compiled(files, self.warnings)
 
-    def transpile(self, module: Module, target: str, name: str, guards: str) -> Compiled:
+    def transpile(self, module: Module, target: str, name: str, guards: str, **kept: object) -> Compiled:
         text = f"// {name}: {', '.join(function.name for function in module.functions)}\n"
         return Compiled({f"{name}.{target}.txt": text, f"{name}.{target}.reflection.json": "{}\n"}, [])
 
@@ -444,12 +448,13 @@ def test_transpile(run: Run, compiler: FakeCompiler) -> None:
 
 BAD_GLSL = {
     "recursion": "float f(float x);\nfloat g(float x) { return f(x); }\nfloat f(float x) { return g(x); }\n",
-    "unbounded_loop": "float f(float x) {\n    while (x > 0.0) { x *= 0.5; }\n    return x;\n}\n",
-    "reserved_names": "float half(float x) { return x; }\nfloat f(float sample) { return sample; }\n",
+    "reserved_names": "float gl_half(float x) { return x; }\nfloat f(float gl_x) { return gl_x; }\n",
+    "not_translated": "double f(double x) { return x; }\nuniform image2D picture;\n",
     "misspelt_names": "float f(vec2 uv) {\n    float x = distanse(uv, uv);\n    return length(uvv);\n}\n",
     "several_syntax_errors": "float f( { return 1.0; }\nfloat g() { return 2.0 }\n",
     "nesting_10000_deep": "float f() {\n    return " + "(" * 10_000 + "1.0" + ")" * 10_000 + ";\n}\n",
-    "implicit_conversion": "float f() {\n    return 1;\n}\n",
+    "no_conversion": "int f() {\n    return 1.0;\n}\n",
+    "in_a_macro": "#define HALF(x) (0.5 * undefined_name * (x))\nfloat f(float y) {\n    return 1.0 + HALF(y);\n}\n",
     "missing_include": '#include "nothing.sss"\nfloat f() { return 1.0; }\n',
 }
 

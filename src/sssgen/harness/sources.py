@@ -31,13 +31,19 @@ def sources(files: Mapping[str, str]) -> list[Source]:
 
 
 def outputs(name: str) -> list[tuple[descriptor.Target, str, descriptor.OutputFile]]:
-    """(target, material, its file entry) of a file name; the longest pattern wins."""
+    """(target, material, its file entry) of a file name; the longest pattern wins.
+
+    A material's stage and a whole shader's of plain GLSL are files of one name and one kind: one entry stands for both.
+    """
     matches = []
+    known: set[tuple[str, str]] = set()
     base = name.rpartition("/")[2]
     for target in map(descriptor.load, descriptor.names()):
         for output in (entry for entries in target.files.values() for entry in entries):
             pattern = re.escape(output.name).replace(re.escape("{material}"), r"(\w+)")
-            if match := re.fullmatch(pattern, base):
+            match = re.fullmatch(pattern, base)
+            if match and (target.name, output.name) not in known:
+                known.add((target.name, output.name))
                 matches.append((len(output.name), target, match[1], output))
     longest = max((length for length, *_ in matches), default=0)
     return [(target, material, output) for length, target, material, output in matches if length == longest]

@@ -127,8 +127,8 @@ class _FileChecker(StatementChecker):
         """The functions that have a body, each after those that it calls, otherwise as they stand."""
         if self.reporter.diagnostics:
             return functions
-        called = {callee for function in functions.values() for callee in callees(function)}
-        for key in called:
+        calls = {key: callees(function) for key, function in functions.items()}
+        for key in {callee for found in calls.values() for callee in found}:
             if functions[key].body is None:
                 functions[key] = self.stand_in(functions[key])
         found: dict[str, ir.Function] = {}
@@ -137,7 +137,7 @@ class _FileChecker(StatementChecker):
             while pending:
                 key = pending[-1]
                 function = functions[key]
-                missing = [callee for callee in callees(function) if callee not in found]
+                missing = [callee for callee in calls[key] if callee not in found]
                 if not missing:
                     pending.pop()
                     if function.body is not None:

@@ -74,7 +74,8 @@ def tables(grammar: str) -> Tables:
     for state in table.states:
         acts: dict[str, Action] = {}
         nexts: dict[str, int] = {}
-        for name, (kind, argument) in table.states[state].items():
+        for terminal, (kind, argument) in table.states[state].items():
+            name = str(terminal)  # lark's own are of a class that compares slowly
             if kind.name == "Reduce":
                 acts[name] = _reduction(argument)
             elif name[0].isupper() or name[0] == "$" or name.startswith("__ANON"):
@@ -88,7 +89,7 @@ def tables(grammar: str) -> Tables:
 
 def _reduction(rule: Any) -> Action:
     """What lark's tree builder would do for a rule, as data."""
-    name = rule.origin.name
+    name = str(rule.origin.name)
     options = rule.options
     absent = [0] * (len(rule.expansion) + 1)
     if options.empty_indices:
@@ -106,7 +107,7 @@ def _reduction(rule: Any) -> Action:
         if len(rule.expansion) == 1:
             return str(name)
         return Reduction(len(rule.expansion), name, "only", tuple(children), 0)
-    return Reduction(len(rule.expansion), name, "" if helper else rule.alias or name, tuple(children), pending)
+    return Reduction(len(rule.expansion), name, "" if helper else str(rule.alias or name), tuple(children), pending)
 
 
 def run(found: Tables, tokens: Sequence[Token], methods: dict[str, Callable[[list[Any]], Any]]) -> Any:
