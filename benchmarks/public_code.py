@@ -25,6 +25,7 @@ from sssgen.harness.includes import expanded
 from sssgen.harness.plain_text import without_interface
 from sssgen.lang.glsl import load_glsl
 from sssgen.lang.loader import read_text
+from sssgen.lang.shadertoy import UNIFORMS
 
 BATCH = 40
 """Texts to a process of glslang."""
@@ -44,15 +45,6 @@ BATCHED = {("glslang", "glsl-330"), ("glslang", "glsl-es-300")}
 _STAGES = {"vertex": "vert", "fragment": "frag", "library": "frag"}
 _COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
 _VERSION = re.compile(r"^\s*#\s*version[^\n]*\n?", re.MULTILINE)
-_SCENE = """
-uniform vec3 iResolution;
-uniform float iTime, iTimeDelta, iFrameRate, iSampleRate, iGlobalTime;
-uniform int iFrame;
-uniform vec4 iMouse, iDate;
-uniform float iChannelTime[4];
-uniform vec3 iChannelResolution[4];
-uniform sampler2D iChannel0, iChannel1, iChannel2, iChannel3;
-"""
 _SCENE_MAIN = "\nvoid main() { vec4 color; mainImage(color, gl_FragCoord.xy); gl_FragColor = color; }\n"
 
 
@@ -125,7 +117,9 @@ def preprocessed(code: Code) -> str:
         done = subprocess.run(command, capture_output=True, encoding="utf-8", errors="replace", timeout=SECONDS)
     body = "\n".join(line for line in done.stdout.splitlines() if not line.lstrip().startswith("#"))
     body = re.sub(r"\buniform\s+(?!(?:(?:low|medium|high)p\s+)?[iu]?sampler)", "", without_interface(body))
-    return f"#version 450\n{body}\n"
+    color = "vec4 color_given;\n" if "gl_FragColor" in body else ""
+    body = re.sub(r"\bgl_FragColor\b", "color_given", body)
+    return f"#version 450\n{color}{body}\n"
 
 
 def _whole(code: Code, own_version: bool) -> str:
@@ -135,7 +129,14 @@ def _whole(code: Code, own_version: bool) -> str:
     text = _VERSION.sub("\n", code.text, count=1)
     scene = code.is_scene
     tail = _SCENE_MAIN if scene else "" if _has_main(_COMMENT.sub(" ", text)) else "\nvoid main() {}\n"
-    return head + (_SCENE if scene else "") + text + tail
+    return head + (_scene_uniforms(text) if scene else "") + text + tail
+
+
+def _scene_uniforms(text: str) -> str:
+    """Those that a scene names and does not declare."""
+    named = [line for name, line in UNIFORMS.items() if re.search(rf"\b{name}\b", text)]
+    lines = [line.split(";")[0] for line in named]
+    return "".join(f"{line};\n" for line in lines if not re.search(rf"{re.escape(line)}\s*;", text))
 
 
 def _has_main(bare: str) -> bool:
