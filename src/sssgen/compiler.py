@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from . import cache, library
+from .collection import paused
 from .data import place
 from .diagnostics import Diagnostic
 from .emitted import installation
@@ -106,12 +107,12 @@ def _copy(made: Compiled) -> Compiled:
 
 def transpile(
     module: Module, target: str, name: str, guards: str = "none", called: Sequence[str] | None = None,
-    at: Callable[[Site], str] | None = None, chained: bool = False, keep: bool = False,
+    at: Callable[[Site], str] | None = None, chained: bool = False, keep: bool = False, head: Sequence[str] = (),
 ) -> Compiled:  # fmt: skip
     """The functions form of a module of plain functions (no chain), or a whole shader where it has a `void main()`.
 
     It is what `sssgen transpile` writes. With `keep` the text stays as it was written, but for what the target cannot
-    say, and `called` only leaves functions out.
+    say, and `called` only leaves functions out. `head` is what its author says at its head.
 
     `called` are the keys of the functions that are called from outside, with any argument that they allow; None: all.
     `chained`: they are techniques, whose parameters have the meaning of their names. `at` is that of
@@ -121,8 +122,10 @@ def transpile(
 
     _check_guards(guards)
     chosen = descriptor.load(target)
-    program = make_library(module, chosen, guards, called, at, chained, keep)._replace(about=About(name, name))
-    return _finish(program, chosen, program.stage.kind if program.stage else "functions", None)
+    about = About(name, name, head=tuple(head))
+    with paused():
+        program = make_library(module, chosen, guards, called, at, chained, keep)._replace(about=about)
+        return _finish(program, chosen, program.stage.kind if program.stage else "functions", None)
 
 
 def guarded_sites(material: Material, target: str = "glsl-330", form: str = "shader") -> list[Site]:

@@ -13,7 +13,7 @@ from .diagnostics import Diagnostic, SssgenError
 from .ir.formats import FLOAT16, FLOAT32, Format
 from .ir.nodes import Function, Local, Module, Return, Span
 from .ir.types import Struct
-from .lang.loader import comments_before, source_line
+from .lang.loader import comment_behind, comments_before, source_line
 from .lang.polyfills import guard as guard_source
 from .lang.polyfills import polyfill
 from .material import Material
@@ -309,7 +309,7 @@ def _finish(middle: _Middle, target: Target, form: str, keep: bool = False) -> P
         stage = _stage(module, target, form, renames)
     except StageError as error:
         raise _refused(error.message, error.span, target) from None
-    parts = print_parts(target, module, comments_before, stage, main, keep)
+    parts = print_parts(target, module, comments_before, stage, main, keep, comment_behind)
     module = module._replace(functions=tuple([function._replace(body=()) for function in module.functions]))
     entries = {}
     for kind, entry in middle.entries.items():

@@ -86,12 +86,13 @@ def _translate(arguments: Namespace, module: Module, loaded: Loaded | None, targ
     if arguments.prune:
         called = [function.key for function in module.functions if function.span.file == path.as_posix()]
         called = [key for key in called if key == "main()"] or called
-    options = {"keep": True, "called": called} if loaded is not None else {"called": called} if called else {}
+    options: dict[str, Any] = {"called": called} if called else {}
+    if loaded is not None:  # a technique's text is made shorter, an author's is kept
+        options |= {"keep": True, "head": loaded.head}
     compiled = transpile(module, target, _title(path), arguments.guards, **options)
-    reflection = compiled.reflection
     renamed = [
-        {"from": old, "to": new, "why": _why(old, new, reflection)}
-        for old, new in reflection.get("renames", {}).items()
+        {"from": old, "to": new, "why": _why(old, target)}
+        for old, new in compiled.reflection.get("renames", {}).items()
     ]
     warnings = [*(loaded.warnings if loaded else []), *compiled.warnings]
     _print(arguments, compiled.files, warnings, renamed, loaded.constants if loaded else [])

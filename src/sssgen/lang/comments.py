@@ -29,6 +29,9 @@ def attach_docs(
     ends = {file: _by_end(found, lines[file], plain) for file, found in comments.items()}
     documented: list[s.External] = []
     for external in externals:
+        if isinstance(external, s.GlobalSyntax) and external.declaration.type.name == "auto":
+            documented.append(external)  # it was a macro
+            continue
         place = _first_place(external)
         by_end = ends.get(place.file, {})
         line = place.line
@@ -41,7 +44,7 @@ def attach_docs(
             if not text.startswith("//"):
                 break
         if parts:
-            doc = "\n".join(map(_words, reversed(parts))).strip("\n").rstrip()
+            doc = "\n".join(map(words_of, reversed(parts))).strip("\n").rstrip()
             external = external._replace(doc=doc)
         documented.append(external)
     return tuple(documented)
@@ -74,7 +77,7 @@ def _first_place(external: s.External) -> Span:
     return external.name.span
 
 
-def _words(text: str) -> str:
+def words_of(text: str) -> str:
     """The words of one comment: what stands behind the marks, its own indentation kept."""
     if text.startswith("//"):
         return text[3 if text.startswith("///") else 2 :].removeprefix(" ").rstrip()

@@ -3,21 +3,29 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+from ..collection import paused
 from ..diagnostics import Diagnostic, Reporter, SssgenError, did_you_mean, failure
 from ..ir.nodes import Module
 from ..ir.spans import Span
 from . import shadertoy
 from .check import check_plain
+from .comments import words_of
 from .loader import keep_lines, read_text
 from .parser import parse_tokens
 from .preprocessor import Preprocessed, preprocess
+from .syntax import File
 from .tokens import Token
 
 ENTRIES = ("shadertoy",)
 """The conventions by which a file may be entered, beside `main()`."""
+
+
+_OURS = re.compile("Made by sssgen for |Paste it below the #version")
+"""The lines of our own head, between which that of the author stands in what was translated before."""
 
 
 class Loaded(NamedTuple):
@@ -33,6 +41,8 @@ class Loaded(NamedTuple):
     ignored: list[str]
     """The extensions and pragmas, which change nothing here."""
     warnings: list[Diagnostic]
+    head: list[str]
+    """The lines of the comment that the file begins with, where it documents nothing: a licence, say."""
 
 
 def load_glsl(
@@ -62,7 +72,12 @@ def load_glsl_text(
     """The checked module of a GLSL text; see `load_glsl`."""
     if entry and entry not in ENTRIES:
         raise failure(f"unknown entry '{entry}'", did_you_mean(entry, ENTRIES) or f"entries: {', '.join(ENTRIES)}")
-    found = preprocess(text, shown, _Finder(roots).find, defines)
+    with paused():
+        return _loaded(text, shown, preprocess(text, shown, _Finder(roots).find, defines), entry)
+
+
+def _loaded(text: str, shown: str, found: Preprocessed, entry: str) -> Loaded:
+    """What the rest of the front end makes of a text whose directives are carried out."""
     tokens = found.tokens
     texts = dict(found.texts)
     texts.setdefault(shown, text)
@@ -74,7 +89,24 @@ def load_glsl_text(
     file = parse_tokens(tokens, found.comments, reporter, plain=True)
     module = check_plain(file, reporter, _is_vertex(tokens, shown))
     ignored = [f"#extension {one}" for one in found.extensions] + [f"#pragma {one}" for one in found.pragmas]
-    return Loaded(module, found.version, texts, found.macros, ignored, reporter.warnings)
+    return Loaded(module, found.version, texts, found.macros, ignored, reporter.warnings, _head(file, found, shown))
+
+
+def _head(file: File, found: Preprocessed, shown: str) -> list[str]:
+    """The words of the comments on a file's first lines, but for those that stand in a function's documentation."""
+    lines: list[str] = []
+    last = 0
+    for first, end, text in found.comments.get(shown, []):
+        if last and first > last + 1:
+            break
+        if not last and any(line.strip() for line in found.texts[shown].split("\n")[: first - 1]):
+            break
+        lines += words_of(text).split("\n")
+        last = end
+    ours = [index for index, line in enumerate(lines) if _OURS.match(line)]
+    said = "\n".join(lines[ours[0] + 1 : ours[1] if len(ours) > 1 else None] if ours else lines).strip("\n")
+    documented = any(said in external.doc for external in file.externals)
+    return said.split("\n") if said and not documented else []
 
 
 def preprocessed(text: str, shown: str, roots: Sequence[str | os.PathLike[str]] = ()) -> Preprocessed:

@@ -104,6 +104,17 @@ def comments_before(file: str, line: int) -> list[str]:
     return found
 
 
+_BEHIND = re.compile(r"\S.*?[ \t]//+[ \t]?(.*\S)[ \t]*$")
+
+
+def comment_behind(file: str, line: int) -> str:
+    """The `//` comment that stands behind the code on a line of a loaded file, without its marks; '' for none."""
+    lines = _lines.get(file, [])
+    text = lines[line - 1].strip() if 0 < line <= len(lines) else ""
+    found = _BEHIND.match(text) if "//" in text and not text.startswith(("//", "*", "/*")) else None
+    return found.group(1) if found is not None else ""
+
+
 def source_line(span: Span) -> str:
     """The line that a span of a loaded file begins on, or ''."""
     lines = _lines.get(span.file, [])

@@ -7,7 +7,7 @@ that it came from, wherever the template put it.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from ..diagnostics import Diagnostic, failure
@@ -34,6 +34,8 @@ class About(NamedTuple):
     alpha_mode: str = "opaque"
     raymarched: bool = False
     """Whether the chain makes its own geometry, so that the shell needs no mesh."""
+    head: tuple[str, ...] = ()
+    """What the author says at the head of the file: a licence, say."""
 
 
 class Program(NamedTuple):
@@ -96,7 +98,13 @@ def printer_for(target: Target, module: Module) -> Printer:
 
 
 def print_parts(
-    target: Target, module: Module, comments: Comments, stage: Stage | None = None, entry: str = "", kept: bool = False
+    target: Target,
+    module: Module,
+    comments: Comments,
+    stage: Stage | None = None,
+    entry: str = "",
+    kept: bool = False,
+    behind: Callable[[str, int], str] | None = None,
 ) -> dict[str, list[list[Line]]]:
     """Prints all of a legal module but its uniforms; of a whole shader the function `entry` that it begins with.
 
@@ -105,6 +113,8 @@ def print_parts(
     printer = printer_for(target, module)
     printer.comments = comments
     printer.stage, printer.kept = stage, kept
+    if behind is not None:
+        printer.behind = behind
     return {
         "types": [printer.print_struct(struct) for struct in module.structs],
         "constants": [[line for constant in module.constants for line in printer.print_constant(constant)]],
@@ -194,7 +204,8 @@ def _header(target: Target, program: Program) -> list[str]:
     words = f"{about.title}: {about.doc}" if about.doc else about.title
     what = "the material" if program.entries else "the source"
     made = f"Made by sssgen for {target.title}. Change {what} and emit it again rather than this file."
-    return [comment_text(line) for line in textwrap.wrap(words, 100)] + [made]
+    own = ["", *map(comment_text, about.head)] if about.head else []
+    return [comment_text(line) for line in textwrap.wrap(words, 100)] + [made, *own]
 
 
 def _entry(target: Target, printer: Printer, kind: str, function: Function, inputs: tuple[str, ...]) -> dict[str, Any]:

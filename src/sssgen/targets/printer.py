@@ -18,7 +18,7 @@ from ..ir.formats import FLOAT32, Format
 from ..ir.intrinsics import BUILTINS
 from ..ir.operators import PRECEDENCE
 from ..ir.rules import FLOAT_MAX
-from ..ir.types import FLOAT, INT, UINT, Array, Sampler, Struct, Type, spell
+from ..ir.types import FLOAT, INT, UINT, Array, Sampler, Struct, Type, components, spell
 from ..passes.stage import Stage
 from .descriptor import Target
 from .layout import Member
@@ -64,10 +64,12 @@ class Printer:
         self.by_key = {function.key: function for function in module.functions}
         self.function: ir.Function | None = None
         self.comments: Comments = no_comments
+        self.behind: Callable[[str, int], str] = lambda file, line: ""
+        """Gives the author's comment behind the code of a line."""
         self.told: set[tuple[str, int]] = set()
         """The lines of the source whose comments stand in the function at hand."""
         self.kept = False
-        """Whether numbers have the digits that they were written with."""
+        """Whether the text is the author's: numbers have their digits, and every comment stays."""
         self.texts: dict[tuple[str, tuple[Type, ...]], str] = {}
         self.stage: Stage | None = None
         """The interface of a whole shader."""
@@ -124,7 +126,8 @@ class Printer:
             return self.binary(expr)
         if isinstance(expr, ir.Swizzle):
             letters = expr.components
-            if isinstance(expr.value, ir.Intrinsic) and BUILTINS[expr.value.name].kind == "fetch":
+            texel = isinstance(expr.value, ir.Intrinsic) and BUILTINS[expr.value.name].kind == "fetch"
+            if texel and components(expr.value.type) == 4:  # a size is none
                 letters = letters.translate(_COLOR_LETTERS)  # a texel's channels are colours to a reader
             return f"{self.expr(expr.value, POSTFIX)}.{letters}", POSTFIX
         if isinstance(expr, ir.Global):
@@ -232,12 +235,19 @@ class Printer:
         lines: list[Line] = []
         for stmt in block:
             place = (stmt.span.file, stmt.span.line)
+            behind = ""
             if place not in self.told:
                 self.told.add(place)
                 lines += [
                     Line(f"{'    ' * indent}// {comment_text(text)}", stmt.span) for text in self.comments(*place)
                 ]
-            lines.extend(self.statement(stmt, indent))
+                behind = comment_text(self.behind(*place)) if self.kept else ""
+            printed = self.statement(stmt, indent)
+            if behind and len(printed[0].text) + len(behind) + 5 <= WIDTH:
+                printed[0] = printed[0]._replace(text=f"{printed[0].text}  // {behind}")
+            elif behind:
+                lines.append(Line(f"{'    ' * indent}// {behind}", stmt.span))
+            lines.extend(printed)
         return lines
 
     def statement(self, stmt: ir.Stmt, indent: int) -> list[Line]:
@@ -321,11 +331,18 @@ class Printer:
         body = function.body or ()
         self.function = function
         self.told = {(function.span.file, function.span.line)}
-        lines = [Line(f"// {text}", function.span) for text in summary(function.doc)]
+        lines = [Line(f"// {text}", function.span) for text in self.doc_of(function)]
         lines += wrap(f"{self.signature(function)} {{", function.span)
         lines += self.block(body, 1)
         lines.append(Line("}"))
         return lines
+
+    def doc_of(self, function: ir.Function) -> list[str]:
+        """What is said of a function before it: its author's words, or the first sentence."""
+        if not self.kept:
+            return summary(function.doc)
+        lines = [comment_text(line.rstrip()) for line in function.doc.strip("\n").split("\n")]
+        return lines if any(lines) else []
 
     def print_struct(self, struct: ir.StructDecl) -> list[Line]:
         assert isinstance(struct.type, Struct)
