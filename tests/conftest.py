@@ -2,36 +2,18 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
-from typing import TypeVar
 
 import pytest
 from hypothesis import settings
 
+from skips import compiler_or_skip, or_skip
 from sssgen.harness import backends, compilers
 from sssgen.harness.backends import Backend
-from sssgen.harness.compilers import Compiler, CompilerMissing, Source, errors
+from sssgen.harness.compilers import Compiler, Source, errors
 
 settings.register_profile("steady", deadline=None, derandomize=True)
 settings.load_profile("steady")
-
-
-Found = TypeVar("Found")
-
-
-def or_skip(get: Callable[[str], Found], name: str) -> Found:
-    """The compiler or back end of that name. Where it is missing the test is skipped; with CI set it fails."""
-    try:
-        return get(name)
-    except CompilerMissing as reason:
-        if os.environ.get("CI", "") not in ("", "0", "false"):
-            pytest.fail(f"{name} is missing: {reason}")
-        pytest.skip(f"{name} is missing: {reason}")
-
-
-def compiler_or_skip(name: str) -> Compiler:
-    return or_skip(compilers.get, name)
 
 
 @pytest.fixture(scope="session")

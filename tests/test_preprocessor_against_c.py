@@ -8,8 +8,8 @@ import subprocess
 
 import pytest
 
-from conftest import or_skip
 from preprocessed import run
+from skips import or_skip
 from sssgen.diagnostics import SssgenError
 from sssgen.harness.compilers import CompilerMissing
 from sssgen.lang.lexer import scan

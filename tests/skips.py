@@ -1,0 +1,28 @@
+"""What is skipped where a compiler or a back end is missing."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import TypeVar
+
+import pytest
+
+from sssgen.harness import compilers
+from sssgen.harness.compilers import Compiler, CompilerMissing
+
+Found = TypeVar("Found")
+
+
+def or_skip(get: Callable[[str], Found], name: str) -> Found:
+    """The compiler or back end of that name. Where it is missing the test is skipped; with CI set it fails."""
+    try:
+        return get(name)
+    except CompilerMissing as reason:
+        if os.environ.get("CI", "") not in ("", "0", "false"):
+            pytest.fail(f"{name} is missing: {reason}")
+        pytest.skip(f"{name} is missing: {reason}")
+
+
+def compiler_or_skip(name: str) -> Compiler:
+    return or_skip(compilers.get, name)
