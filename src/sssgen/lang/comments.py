@@ -35,7 +35,7 @@ def attach_docs(
         place = _first_place(external)
         by_end = ends.get(place.file, {})
         line = place.line
-        if plain and by_end:
+        if by_end and plain and not isinstance(external, s.GlobalSyntax):
             line = _behind_comment(lines[place.file], line, by_end)
         parts: list[str] = []
         while line - 1 in by_end:

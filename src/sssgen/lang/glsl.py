@@ -17,8 +17,7 @@ from .comments import words_of
 from .loader import keep_lines, read_text
 from .parser import parse_tokens
 from .preprocessor import Preprocessed, preprocess
-from .syntax import File
-from .tokens import Token
+from .tokens import Comment, Token
 
 ENTRIES = ("shadertoy",)
 """The conventions by which a file may be entered, beside `main()`."""
@@ -86,27 +85,31 @@ def _loaded(text: str, shown: str, found: Preprocessed, entry: str) -> Loaded:
         texts[shadertoy.FILE] = added
     keep_lines(texts)
     reporter = Reporter(shown, text, texts)
-    file = parse_tokens(tokens, found.comments, reporter, plain=True)
+    head, rest, ours = _head(found, shown)
+    comments = found.comments | {shown: rest} if ours else found.comments
+    file = parse_tokens(tokens, comments, reporter, plain=True)
+    if not ours and any("\n".join(head) in external.doc for external in file.externals):
+        head = []  # it documents something, and stands there
     module = check_plain(file, reporter, _is_vertex(tokens, shown))
     ignored = [f"#extension {one}" for one in found.extensions] + [f"#pragma {one}" for one in found.pragmas]
-    return Loaded(module, found.version, texts, found.macros, ignored, reporter.warnings, _head(file, found, shown))
+    return Loaded(module, found.version, texts, found.macros, ignored, reporter.warnings, head)
 
 
-def _head(file: File, found: Preprocessed, shown: str) -> list[str]:
-    """The words of the comments on a file's first lines, but for those that stand in a function's documentation."""
-    lines: list[str] = []
-    last = 0
-    for first, end, text in found.comments.get(shown, []):
-        if last and first > last + 1:
+def _head(found: Preprocessed, shown: str) -> tuple[list[str], list[Comment], bool]:
+    """The words of the comments on a file's first lines, the comments behind them, and whether we wrote those first."""
+    comments = found.comments.get(shown, [])
+    above = found.texts[shown].split("\n")[: comments[0].first - 1] if comments else []
+    count = 0
+    while count < len(comments) and not any(line.strip() for line in above):
+        if count and comments[count].first > comments[count - 1].last + 1:
             break
-        if not last and any(line.strip() for line in found.texts[shown].split("\n")[: first - 1]):
-            break
-        lines += words_of(text).split("\n")
-        last = end
+        count += 1
+    lines = [line for comment in comments[:count] for line in words_of(comment.text).split("\n")]
     ours = [index for index, line in enumerate(lines) if _OURS.match(line)]
-    said = "\n".join(lines[ours[0] + 1 : ours[1] if len(ours) > 1 else None] if ours else lines).strip("\n")
-    documented = any(said in external.doc for external in file.externals)
-    return said.split("\n") if said and not documented else []
+    if ours:
+        lines = lines[ours[0] + 1 : ours[1] if len(ours) > 1 else None]
+    said = "\n".join(lines).strip("\n")
+    return (said.split("\n") if said else []), comments[count:], bool(ours)
 
 
 def preprocessed(text: str, shown: str, roots: Sequence[str | os.PathLike[str]] = ()) -> Preprocessed:
