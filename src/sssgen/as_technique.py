@@ -41,7 +41,7 @@ def technique_file(module: Module, shown: str, wanted: str = "") -> tuple[str, s
     text = last[last.index(f" {function.name}(") :]
     start = last.rindex("\n", 0, last.index(text)) + 1 if "\n" in last[: last.index(text)] else 0
     blocks.append(_doc(function) + last[start:])
-    made = "\n\n".join(blocks) + "\n"
+    made = "\n\n".join(filter(None, blocks)) + "\n"
     load_text(made, f"{function.name}.sss")  # what a technique cannot do is said now
     return function.name, made
 

@@ -17,6 +17,8 @@ from ..ir.formats import FLOAT32
 from ..ir.nodes import Function, Module
 from ..ir.types import Matrix, Scalar, Vector, Void
 from ..ir.walk import operands
+from ..lang.bounded import endless
+from ..lang.glsl import load_glsl
 from ..lang.loader import load_file, source_line
 from ..material import examples, load_material
 from ..passes.guards import remedy
@@ -120,9 +122,12 @@ def lint(name: str, with_examples: bool = True) -> list[Finding]:
 
 def _plain(path: str, with_examples: bool) -> list[Finding]:
     """Functions as they are: nothing guards them."""
-    module = load_file(path, path, (library.TECHNIQUES,))
+    if path.endswith(".sss"):
+        module = load_file(path, path, (library.TECHNIQUES,))
+    else:
+        module = load_glsl(path, path).module
     specimens = []
-    if with_examples:
+    if with_examples and not any(map(endless, module.functions)):
         specimens = [_technique(f"{path}:{one.name}") for one in module.functions if _evaluable(module, one)]
     return _found(library_sites(module), specimens, guarded=False)
 
@@ -130,7 +135,7 @@ def _plain(path: str, with_examples: bool) -> list[Finding]:
 def _evaluable(module: Module, function: Function) -> bool:
     """Whether inputs can be drawn for a function: numbers, vectors and matrices."""
     types = [param.type for param in function.params] + [uniform.type for uniform in module.uniforms]
-    plain = all(isinstance(type_, Scalar | Vector | Matrix) for type_ in types)
+    plain = all(isinstance(type_, Scalar | Vector | Matrix) for type_ in types) and not module.variables
     return function.body is not None and plain and isinstance(function.result, Scalar | Vector | Matrix | Void)
 
 

@@ -14,6 +14,7 @@ from ..data import stem
 from ..diagnostics import did_you_mean, failure
 from ..ir.nodes import Call, Declare, Evaluate, Function, Local, Module, Param, Return, Stmt, Uniform
 from ..ir.types import VOID, Type
+from ..lang.glsl import load_glsl
 from ..lang.loader import load_file
 from ..passes.fold import fold
 from ..passes.hoist import hoist
@@ -98,7 +99,10 @@ def _technique(name: str) -> tuple[Module, Function, str]:
     if not _is_function(name):
         found = library.load(name)
         return found.module, found.function, found.role
-    module = load_file(file, library.shown_name(file), (library.TECHNIQUES,))
+    if file.endswith(".sss"):
+        module = load_file(file, library.shown_name(file), (library.TECHNIQUES,))
+    else:
+        module = load_glsl(file, library.shown_name(file)).module
     named = {function.name: function for function in module.functions if function.body is not None}
     if inner not in named:
         raise failure(f"{file} has no function '{inner}'", did_you_mean(inner, named) or f"it has: {', '.join(named)}")

@@ -20,6 +20,20 @@ def ends(condition: ir.Expr, steps: ir.Block, body: ir.Block, out_args: OutArgs)
     return _fails(condition, steps, writes((*steps, *body, ir.Return(condition, condition.span)), out_args))
 
 
+def endless(function: ir.Function) -> bool:
+    """Whether a function has a loop that is not seen to end; any argument of a call counts as written."""
+    for stmt in statements(function.body or ()):
+        if isinstance(stmt, ir.For):
+            steps = (stmt.step,) if stmt.step is not None else ()
+            if stmt.condition is None or not ends(stmt.condition, steps, stmt.body, lambda call: call.args):
+                return True
+        elif isinstance(stmt, ir.While) and (
+            skips(stmt.body) or not ends(stmt.condition, stmt.body, (), lambda call: call.args)
+        ):
+            return True
+    return False
+
+
 def _fails(condition: ir.Expr, steps: ir.Block, written: list[str]) -> bool:
     """Whether a condition fails at last, where the loop writes `written`."""
     if not isinstance(condition, ir.Binary):

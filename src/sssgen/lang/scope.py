@@ -53,15 +53,24 @@ class Scopes:
         """The variables of all scopes by their names in the IR."""
         self.taken: list[list[str]] = [[]]
         """The names in the IR of each scope's variables."""
+        self.counters: list[dict[str, Type]] = [{}]
+        """Of each scope, the variables of the loops in it: HLSL has those in the scope around the loop."""
 
     def push(self) -> None:
         self.stack.append({})
         self.taken.append([])
+        self.counters.append({})
 
-    def pop(self, dissolve: bool = False) -> None:
-        """Leaves a scope. `dissolve`: it is none in the IR, so that its names stay taken in the one around it."""
-        self.stack.pop()
+    def pop(self, dissolve: bool = False, loop: bool = False) -> None:
+        """Leaves a scope. `dissolve`: it is none in the IR, so that its names stay taken in the one around it.
+
+        `loop`: it was that of a loop's head.
+        """
+        left = self.stack.pop()
         names = self.taken.pop()
+        self.counters.pop()
+        if loop:
+            self.counters[-1] |= {one.ir_name: one.type for one in left.values()}
         if dissolve:
             self.taken[-1] += names
         else:
@@ -81,7 +90,7 @@ class Scopes:
         if name in self.stack[-1]:
             return None
         ir_name, count = name, 2
-        while ir_name in self.visible:
+        while ir_name in self.visible or self.counters[-1].get(ir_name, type) != type:
             ir_name, count = f"{name}_{count}", count + 1
         variable = Variable(ir_name, type, quantity, writable, faulty, value)
         self.stack[-1][name] = self.visible[ir_name] = variable

@@ -52,7 +52,7 @@ def result(name: str, args: tuple[Value, ...], size: int, format: Format) -> Who
     error = _ERRORS.get(name)
     parts = []
     for index in range(size):
-        at = [arg.parts[index if len(arg.parts) > 1 else 0] for arg in args]
+        at = [arg.parts[index if len(arg.parts) > 1 else 0] if arg.parts else ANY for arg in args]  # a texture has none
         part = evaluated(text, format, at)
         parts.append(part if error is None else error(part, format, *at))
     return parts, ANY
