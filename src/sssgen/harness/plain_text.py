@@ -45,6 +45,7 @@ _PART = re.compile(
 _VERSION = re.compile(r"^[ \t]*#[ \t]*version[ \t]+(\d+)[ \t]*(\w*)[^\n]*$", re.MULTILINE)
 _EXTENSION = re.compile(r"^[ \t]*#[ \t]*extension\b[^\n]*$", re.MULTILINE)
 _LAYOUT = re.compile(r"layout\s*\([^()]*\)")
+_REQUALIFIED = re.compile(r"(?:invariant|precise)\s+\w+(?:\s*,\s*\w+)*\s*;")
 _UNIFORM = re.compile(r"uniform\s+(?:(?:lowp|mediump|highp)\s+)?(\w+)\s+\w+\s*(\[?)")
 _BLOCK = re.compile(r"uniform\s+(\w+)\s*\{([^{}]*)\}\s*(\w*)\s*;")
 _BASIC = re.compile(r"float|u?int|bool|[iub]?vec[234]|mat[234](?:x[234])?|[iu]?sampler\w*")
@@ -120,6 +121,8 @@ def _replaced(text: str, name: re.Match[str]) -> tuple[str, int] | None:
     """What stands instead of what begins with a name, and where that ends; None where it stays."""
     if layout := _LAYOUT.match(text, name.start()):
         return "", layout.end()
+    if again := _REQUALIFIED.match(text, name.start()):
+        return "", again.end()
     if name[0] in _DROPPED:
         return "", name.end()
     if block := _BLOCK.match(text, name.start()):

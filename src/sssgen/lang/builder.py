@@ -19,6 +19,7 @@ class Builder:
         self.too_deep: Span | None = None
         self.wrong: list[tuple[Span, str]] = []
         """What the grammar lets pass, with its message."""
+        self.unnamed_structs = 0
         self.methods: dict[str, Callable[[list[Any]], Any]] = {
             name: getattr(self, name) for name in vars(Builder) if not name.startswith("__")
         }
@@ -115,8 +116,13 @@ class Builder:
 
     def struct(self, children: list[Any]) -> s.TypeName:
         keyword, name, _, *members, _ = children
-        label = s.Name(name.text, name.span) if name is not None else s.Name("", keyword.span)
+        label = s.Name(name.text, name.span) if name is not None else s.Name(self.unnamed(), keyword.span)
         return s.TypeName(label.text, (), label.span, s.StructSyntax(label, tuple(members), ""))
+
+    def unnamed(self) -> str:
+        """A name for a struct that has none: every other language wants one."""
+        self.unnamed_structs += 1
+        return "Unnamed" if self.unnamed_structs == 1 else f"Unnamed_{self.unnamed_structs}"
 
     def member(self, children: list[Any]) -> s.Declaration:
         qualifiers, type_, declarators = children

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from ..ir import nodes as ir
 from ..ir.intrinsics import BUILTINS
+from ..ir.out_builtins import out_builtin
 from ..ir.rules import element_type
 from ..ir.signatures import candidates, resolve
 from ..ir.types import (
@@ -54,7 +55,7 @@ class CallChecker(ExpressionChecker):
         builtin = candidates(name)
         if builtin and (not own or (self.plain and resolve(name, types) is not None)):
             return self.call_intrinsic(name, args, call)
-        if own:
+        if own and not (self.plain and out_builtin(name, types)):
             return self.call_function(name, self.overload(name, args, call), args, call)
         if name in q.QUANTITIES and not self.plain:
             return self.construct(q.QUANTITIES[name], name, args, call)

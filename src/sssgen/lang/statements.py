@@ -108,7 +108,13 @@ class StatementChecker(CallChecker):
     def declared_type(self, element: Type, type_: s.TypeName, declarator: s.Declarator) -> Type:
         """The type of one name of a declaration, whose element type is known."""
         lengths = (*declarator.lengths, *type_.lengths)
-        return self.array_of(element, lengths, items_of(declarator.value)) if lengths else element
+        if not lengths:
+            return element
+        items = items_of(declarator.value)
+        if items is None and declarator.value is not None and isinstance(lengths[0], s.Unsized):
+            value, _ = self.apart(declarator.value, self.check)
+            items = value.expr.type.length if isinstance(value.expr.type, Array) else None
+        return self.array_of(element, lengths, items)
 
     def local_struct(self, struct: s.StructSyntax) -> None:
         """A struct that a function declares for itself."""
@@ -193,7 +199,7 @@ class StatementChecker(CallChecker):
             condition, tested = self.apart(statement.condition, self.condition)
         steps = self.apart(statement.step, self.effect)[1] if statement.step is not None else []
         body = self.loop_body(statement.body)
-        self.scopes.pop(dissolve=len(before) > 1)
+        self.scopes.pop(dissolve=len(before) > 1, loop=True)
         if len(self.reporter.diagnostics) > errors:
             return []
         counted = (
@@ -236,7 +242,10 @@ class StatementChecker(CallChecker):
         if not self.plain:
             hint = "write for (int i = 0; i < N; i++)"
             raise self.fail(statement.span, "this loop cannot be seen to end", hint)
-        last = [*tested, _leave_unless(condition)]
+        if isinstance(condition, ir.Literal):  # while (false): but once
+            last = tested if condition.value else [*tested, ir.Break(condition.span)]
+        else:
+            last = [*tested, _leave_unless(condition)]
         body = (*_before_continues(body, last), *last)
         return [ir.While(ir.Literal(BOOL, True, statement.span), body, statement.span)]
 
@@ -386,11 +395,13 @@ def _mentions(stmt: ir.Stmt) -> set[str]:
 
 
 def _before_continues(body: ir.Block, added: list[ir.Stmt]) -> ir.Block:
-    """A loop's body with statements before each `continue` that goes on with it."""
+    """A loop's body with statements before each `continue` that goes on with it, or instead of it if they leave."""
     result: list[ir.Stmt] = []
     for stmt in body:
         if isinstance(stmt, ir.Continue):
             result += added
+            if added and isinstance(added[-1], ir.Break):
+                continue
         elif isinstance(stmt, ir.If):
             then, otherwise = _before_continues(stmt.then, added), _before_continues(stmt.otherwise, added)
             stmt = stmt._replace(then=then, otherwise=otherwise)

@@ -32,6 +32,7 @@ from . import blocks
 from .effects import effects
 from .integers import counts_up, with_result
 from .lift_calls import Calls, awkward, lift
+from .matrices import by_whole_columns, needs_columns
 from .scopes import assigned, declared, outs_of
 from .stores import is_dynamic_store, is_swizzle_store, parts_of, whole_store
 from .substitute import in_place, is_cheap
@@ -327,6 +328,8 @@ class _Legaliser:
         ):
             zero = _widened(ir.Literal(UINT, 0, expr.span), components(expr.type))
             return ir.Binary(expr.type, "-", zero, expr.operand, expr.span)
+        if isinstance(expr, ir.Unary) and isinstance(expr.type, Matrix) and not self.can("matrix_scalar_arithmetic"):
+            return ir.Binary(expr.type, "*", expr.operand, ir.Literal(FLOAT, -1.0, expr.span), expr.span)
         if isinstance(expr, ir.Global) and expr.name in self.uniforms:
             value = blocks.read(expr, self.can)
             return value if value is expr or not isinstance(value, ir.Construct) else self.construct(value)
@@ -389,6 +392,9 @@ class _Legaliser:
         type_, args, span = construct.type, construct.args, construct.span
         if isinstance(type_, Matrix) and len(args) == 1 and not self.can("matrix_conversions"):
             return self.matrix_from(type_, args[0], span)
+        if isinstance(type_, Matrix) and needs_columns(type_, args) and not self.can("mixed_columns"):
+            kept = [arg if is_cheap(arg) or isinstance(arg.type, Scalar) else self.keep(arg, "part") for arg in args]
+            return by_whole_columns(type_, kept, span)
         if isinstance(type_, Struct) and not self.can("struct_constructors"):
             return self.keep(construct, type_.name[0].lower() + type_.name[1:])
         if isinstance(type_, Array) and not self.can("array_constructors"):

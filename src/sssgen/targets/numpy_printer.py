@@ -111,7 +111,8 @@ class NumpyPrinter(NumpyExpressions):
             params = self.by_key[value.function].params
             outs = [arg for arg, param in zip(value.args, params, strict=True) if param.direction != "in"]
             names = names + [arg.name for arg in outs if isinstance(arg, ir.Local)]
-        return f"{', '.join(names)} = {self.typed(value)[0]}"
+        given = self.typed(value)[0]
+        return f"{', '.join(names)} = {given}" if names else given
 
     def store(self, target: ir.Expr, value: str) -> str:
         """The assignment that puts a new value into a variable or a part of one."""

@@ -7,12 +7,15 @@ from __future__ import annotations
 
 from ..ir import nodes as ir
 from ..ir.types import VOID, Array, Sampler, Struct, Type
+from ..ir.walk import subexpressions
 from ..passes.blocks import block_type
 from ..passes.scopes import assigned, outs_of
 from .descriptor import Target
 from .layout import Member
 from .printer import PRIMARY, UNARY, Line, Printer, documented, wrap
 from .wgsl_entry import print_entry
+
+_TYPED = (ir.Local, ir.Global, ir.Call, ir.Construct)
 
 
 class WgslPrinter(Printer):
@@ -48,6 +51,14 @@ class WgslPrinter(Printer):
     def global_value(self, value: ir.Global) -> str:
         in_block = value.name in self.uniforms and not isinstance(value.type, Sampler)
         return f"material.{value.name}" if in_block else value.name
+
+    def intrinsic(self, call: ir.Intrinsic) -> tuple[str, int]:
+        """A builtin; naga cannot compute these two where all arguments are bare numbers, unless one has a type."""
+        text, binding = super().intrinsic(call)
+        if call.name in ("mix", "smoothstep") and not any(isinstance(part, _TYPED) for part in subexpressions(call)):
+            first = self.expr(call.args[0])
+            text = text.replace(first, f"f32({first})", 1)
+        return text, binding
 
     def select(self, select: ir.Select) -> tuple[str, int]:
         return f"select({self.arguments((select.no, select.yes, select.condition))})", PRIMARY

@@ -1,0 +1,152 @@
+// loops
+// Made by sssgen for GLSL 3.30 (OpenGL 3.3 core). Change the source and emit it again rather than this file.
+// Paste it below the #version of your own shader.
+
+// Loops of all kinds, with what their heads may hold.
+int do_with_continue(int start) {
+    int i = start;
+    int sum = 0;
+    while (true) {
+        i++;
+        if ((i & 1) == 1) {
+            if (!(i < 12)) {
+                break;
+            }
+            continue;
+        }
+        sum += i;
+        if (sum > 40) {
+            break;
+        }
+        if (!(i < 12)) {
+            break;
+        }
+    }
+    return sum;
+}
+
+int assignment_in_the_condition(int start) {
+    int left = start & 31;
+    int last = 0;
+    int rounds = 0;
+    while (true) {
+        last = left - 3;
+        if (!(last > 0)) {
+            break;
+        }
+        left = last;
+        rounds++;
+    }
+    return rounds * 100 + last;
+}
+
+int counts_down(int n) {
+    int sum = 0;
+    int left = n & 15;
+    while (true) {
+        int left_before = left;
+        left--;
+        if (!(left_before > 0)) {
+            break;
+        }
+        if (left == 4) {
+            continue;
+        }
+        sum += left;
+    }
+    return sum;
+}
+
+float two_counters(float x) {
+    float sum = 0.0;
+    int j = 10;
+    for (int i = 0; i < j; i++) {
+        if (i == 1) {
+            j -= 2;
+            continue;
+        }
+        sum += x * float(i + j);
+        j -= 2;
+    }
+    return sum;
+}
+
+int no_head(int n) {
+    int i = 0;
+    for (; ; ) {
+        i++;
+        if (i > (n & 7)) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+float fractional_steps(float x) {
+    float sum = 0.0;
+    float weight = 1.0;
+    for (float t = 0.0; t < 1.0; t += 0.25) {
+        sum += weight * (x - t);
+        weight *= 0.5;
+    }
+    return sum;
+}
+
+int keeps_the_condition(int n) {
+    int left = n & 7;
+    int sum = 0;
+    bool more;
+    while (true) {
+        more = left > 2;
+        if (!more) {
+            break;
+        }
+        left--;
+        sum += more ? left : 0;
+    }
+    return sum;
+}
+
+int nested_leaves(int n) {
+    int hits = 0;
+    for (int i = 0; i < 5; i++) {
+        for (int j = 0; j < 5; j++) {
+            if (j > i) {
+                break;
+            }
+            if (i == (n & 3)) {
+                continue;
+            }
+            hits += i * j;
+        }
+        if (hits > 30) {
+            return -hits;
+        }
+    }
+    return hits;
+}
+
+void do_once(inout vec2 p) {
+    while (true) {
+        p = p.yx * 0.5;
+        break;
+    }
+}
+
+int once_or_for_ever(int n) {
+    int sum = 0;
+    while (true) {
+        if (n > 3) {
+            break;
+        }
+        sum++;
+        break;
+    }
+    while (true) {
+        if (sum > 5) {
+            break;
+        }
+        sum += 2;
+    }
+    return sum;
+}
