@@ -19,7 +19,7 @@ from ..ir.types import Matrix, Scalar, Vector, Void
 from ..ir.walk import operands
 from ..lang.bounded import endless
 from ..lang.glsl import load_glsl
-from ..lang.loader import load_file, source_line
+from ..lang.loader import source_line
 from ..material import examples, load_material
 from ..passes.guards import remedy
 from ..passes.sites import Site
@@ -122,10 +122,7 @@ def lint(name: str, with_examples: bool = True) -> list[Finding]:
 
 def _plain(path: str, with_examples: bool) -> list[Finding]:
     """Functions as they are: nothing guards them."""
-    if path.endswith(".sss"):
-        module = load_file(path, path, (library.TECHNIQUES,))
-    else:
-        module = load_glsl(path, path).module
+    module = load_glsl(path, path).module
     specimens = []
     if with_examples and not any(map(endless, module.functions)):
         specimens = [_technique(f"{path}:{one.name}") for one in module.functions if _evaluable(module, one)]
