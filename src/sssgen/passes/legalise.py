@@ -48,11 +48,11 @@ _EVERYWHERE = frozenset(("+", "-", "*", "<", ">", "<=", ">=", "&&", "||"))
 
 
 class Unsupported(Exception):
-    """Something that the target has no way to say."""
+    """Something that the target has no way to say; `more` are those of other functions."""
 
-    def __init__(self, message: str, span: ir.Span) -> None:
+    def __init__(self, message: str, span: ir.Span, more: Sequence[Unsupported] = ()) -> None:
         super().__init__(message)
-        self.message, self.span = message, span
+        self.message, self.span, self.more = message, span, tuple(more)
 
 
 class _OutOfOrder(Exception):
@@ -90,7 +90,14 @@ class _Legaliser:
         """The statements, by id, before which nothing of theirs may be computed."""
 
     def run(self) -> ir.Module:
-        functions = [self.function(function) for function in self.module.functions]
+        functions, refused = list[ir.Function](), list[Unsupported]()
+        for function in self.module.functions:
+            try:
+                functions.append(self.function(function))
+            except Unsupported as error:
+                refused.append(error)
+        if refused:
+            raise Unsupported(refused[0].message, refused[0].span, refused[1:])
         constants = tuple(constant._replace(value=self.initial(constant.value)) for constant in self.module.constants)
         variables = tuple([self.variable(variable) for variable in self.module.variables])
         functions = [*self.helpers.values(), *functions]
