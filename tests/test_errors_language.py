@@ -14,6 +14,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import test_errors_glsl
 from ir_sample import SAMPLE
 from snapshot import check_snapshot
 from sssgen import diagnostics, lang
@@ -78,7 +79,7 @@ def test_error_text(name: str) -> None:
 
 
 def test_every_error_has_a_snapshot(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each place in the front end that reports an error is reached by one of the cases above."""
+    """Each place in the front end that reports an error is reached by one of the cases above, or of plain GLSL's."""
     reached: set[tuple[str, int]] = set()
 
     def note() -> None:
@@ -99,11 +100,13 @@ def test_every_error_has_a_snapshot(monkeypatch: pytest.MonkeyPatch) -> None:
             note()
             super().__init__(message, hint)
 
-    monkeypatch.setattr("sssgen.lang.check.Reporter", Noted)
-    monkeypatch.setattr("sssgen.lang.parser.Reporter", Noted)
+    for module in ("check", "parser", "glsl", "preprocessor", "lexer"):
+        monkeypatch.setattr(f"sssgen.lang.{module}.Reporter", Noted)
     monkeypatch.setattr("sssgen.lang.quantities.Mixup", NotedMixup)
     for source in (*CASES.values(), f"float x = {'(' * 500}", f"uniform float x = 1.0{'+1.0' * 2000};", unary(500)):
         errors_of(source)
+    for source in (*test_errors_glsl.CASES.values(), *test_errors_glsl.LONG.values()):
+        test_errors_glsl.errors_of(source)
     missed = [
         f"{name}:{first}" for name, first, last in sites() if not reached & {(name, n) for n in range(first, last + 1)}
     ]

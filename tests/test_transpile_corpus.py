@@ -1,4 +1,4 @@
-"""Plain GLSL of every construct (tests/transpile): its translations are as kept, compile, are stable, and compute the same.
+"""Plain GLSL of every construct (tests/transpile): what is made of it is kept, compiles, is stable, computes the same.
 
 UPDATE_SNAPSHOTS=1 keeps what is made now.
 """
