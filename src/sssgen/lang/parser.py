@@ -9,6 +9,7 @@ import re
 from collections.abc import Mapping, Sequence
 
 from .. import cache
+from ..collection import paused
 from ..diagnostics import Diagnostic, Reporter, SssgenError
 from . import syntax as s
 from .builder import Builder
@@ -45,11 +46,12 @@ def parse(text: str, file: str) -> s.File:
 
     Its only directives are `#include "file"`, which the loader follows, and `#version`, which says nothing here.
     """
-    try:
-        tokens, comments = scan(_DIRECTIVE.sub(lambda found: " " * len(found.group()), text), file)
-    except SssgenError as error:
-        raise SssgenError([_without_directives(found) for found in error.diagnostics]) from None
-    return parse_tokens(tokens, {file: comments}, Reporter(file, text))
+    with paused():
+        try:
+            tokens, comments = scan(_DIRECTIVE.sub(lambda found: " " * len(found.group()), text), file)
+        except SssgenError as error:
+            raise SssgenError([_without_directives(found) for found in error.diagnostics]) from None
+        return parse_tokens(tokens, {file: comments}, Reporter(file, text))
 
 
 def _without_directives(found: Diagnostic) -> Diagnostic:
