@@ -23,6 +23,7 @@ from sssgen.compiler import compile, transpile
 from sssgen.diagnostics import Diagnostic, SssgenError
 from sssgen.harness import images, inputs, probes, shader_files
 from sssgen.harness.evaluate import fitted
+from sssgen.harness.includes import expanded
 from sssgen.harness.scenes import scene
 from sssgen.harness.scenes.mesh import Mesh
 from sssgen.harness.testing import ci
@@ -30,6 +31,7 @@ from sssgen.ir.nodes import Span
 from sssgen.ir.reader import TextError, read_module
 from sssgen.ir.text import print_module
 from sssgen.lab import situation
+from sssgen.lang.glsl import load_glsl
 from sssgen.lang.loader import load_file, load_text, read_text
 from sssgen.library import TECHNIQUES, load_path
 from sssgen.material import load_material
@@ -38,6 +40,9 @@ from watchdog import bounded
 
 NAME = "fuzzed"
 """What the files are called, before their suffix."""
+
+CORPUS = Path(__file__).parent.parent / "transpile"
+"""Plain GLSL of every construct."""
 
 
 class FrontEnd(NamedTuple):
@@ -55,6 +60,12 @@ def _source(path: Path) -> None:
     module = load_file(path, path.name, (TECHNIQUES,))
     for target in ("wgsl", "numpy"):  # those two are rewritten the most
         transpile(module, target, "fuzzed")
+
+
+def _plain(path: Path) -> None:
+    module = load_glsl(path, path.name).module
+    for target in ("wgsl", "hlsl"):
+        transpile(module, target, "fuzzed", keep=True)
 
 
 def _material(path: Path) -> None:
@@ -111,6 +122,12 @@ def _examples(pattern: str, but: str = "") -> list[bytes]:
 def _sources() -> list[bytes]:
     own = sorted(Path(TECHNIQUES).rglob("*.sss"), key=lambda path: (path.stat().st_size, path.name))
     return [SAMPLE.encode(), *(path.read_bytes() for path in own[::6])]
+
+
+def _plain_sources() -> list[bytes]:
+    """The corpus of plain GLSL, each file with its includes in it."""
+    files = [path for path in sorted(CORPUS.iterdir()) if path.is_file() and ".shadertoy." not in path.name]
+    return [expanded(path.read_text("utf-8"), path).encode() for path in files if path.name != "array_results.glsl"]
 
 
 def _techniques() -> list[bytes]:
@@ -205,6 +222,7 @@ def _meshes(kind: str) -> Callable[[], list[bytes]]:
 FRONT_ENDS = {
     "technique": FrontEnd(".sss", lambda path: load_path(str(path)), _techniques),
     "source": FrontEnd(".glsl", _source, _sources),
+    "plain glsl": FrontEnd(".glsl", _plain, _plain_sources),
     "material": FrontEnd(".toml", _material, lambda: _examples("*/[!s]*.toml", but="lab")),
     "scene": FrontEnd(".toml", lambda path: scene.load(path), lambda: _examples("*/scene*.toml")),
     "measured scene": FrontEnd(".toml", lambda path: situation.load(str(path)), lambda: _examples("lab/*.toml")),

@@ -112,7 +112,6 @@ class _Run:
         self.included = self.characters = 0
         self.depth = self.depth_at = 0  # how many brackets are open, and how many words were counted for that
         self.reporters: dict[str, Reporter] = {}
-        self.not_found: list[Diagnostic] = []
         self.expander.macros |= builtin_macros(0, "")
         for name, value in defines.items():
             shown = f"the definition of {name}"
@@ -129,7 +128,7 @@ class _Run:
 
     def check(self) -> None:
         """Raises what was noted, in every file."""
-        found = list(self.not_found)
+        found: list[Diagnostic] = []
         for reporter in self.reporters.values():
             found += sorted(reporter.diagnostics, key=lambda one: one.span[1:3])
         if found:
@@ -290,7 +289,8 @@ class _Run:
         try:
             shown, text = self.find(match[group], where, angled)
         except SssgenError as error:
-            self.not_found += error.diagnostics
+            for found in error.diagnostics:
+                self.error(found.span, found.message, found.hint)
             return
         if shown in self.once:
             return
