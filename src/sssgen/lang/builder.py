@@ -299,7 +299,7 @@ class Builder:
         callee, arguments, end = children
         if isinstance(callee, s.IndexOf):
             callee = as_type(callee)
-        args = arguments or ()
+        args: tuple[Any, ...] = arguments or ()
         if len(args) == 1 and isinstance(args[0], s.TypeName) and args[0].name == "void":
             args = ()
         span = _join(callee.span, end.span)
