@@ -5,7 +5,7 @@ A run collects every error it can find and raises them together as one `SssgenEr
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any, NamedTuple
 
 from .ir.spans import NOWHERE, Span
@@ -101,6 +101,8 @@ class Reporter:
     def __init__(self, file: str, text: str, texts: Mapping[str, str] | None = None) -> None:
         self.file = file
         self.texts = texts or {}
+        self.macros: Collection[str] = ()
+        """The macros whose uses stand in the text: what is wrong there may stand in their definitions."""
         self.lines = text.split("\n")  # as the parser counts them: other line ends are white space to it
         self.diagnostics: list[Diagnostic] = []
         self.warnings: list[Diagnostic] = []
@@ -109,6 +111,8 @@ class Reporter:
     def error(self, span: Span, message: str, hint: str = "") -> None:
         """Notes an error; the same message at the same place is noted once. Raises when there are too many."""
         message, hint = _cut(message), _cut(hint)
+        if self.macros and (written := self.line(span)[span.column - 1 : span.end_column - 1]) in self.macros:
+            message = f"{message}, in what the macro {written} stands for"
         if (span, message) in self.seen:
             return
         self.seen.add((span, message))

@@ -149,7 +149,8 @@ class _Case:
         closed = {function.name: function.params for function in uniforms_to_parameters(self.module).functions}
         self.params: dict[str, tuple[Param, ...]] = {name: closed[name] for name in names if name in closed}
         rounds = ROUNDS if self.uniforms() else 1
-        self.inputs = [self.draw(samples // rounds, number) for number in range(rounds)] if case.probes else []
+        lanes = -(-samples // rounds // 4) * 4  # derivatives are of whole quads
+        self.inputs = [self.draw(lanes, number) for number in range(rounds)] if case.probes else []
 
     def uniforms(self) -> dict[str, Param]:
         """What the function reads of the text's uniforms."""

@@ -28,13 +28,14 @@ from ..ir.types import (
 )
 from . import quantities as q
 from . import syntax as s
+from .assignments import AssignmentChecker
 from .conversions import as_kind, converts, literal_as
-from .expressions import ExpressionChecker, Typed, Untyped
+from .expressions import Typed, Untyped
 from .scope import Signature
 from .wording import a_type, constructor_hint, declared, overload_hint
 
 
-class CallChecker(ExpressionChecker):
+class CallChecker(AssignmentChecker):
     """Checks the calls of one file."""
 
     def _callof(self, call: s.CallOf) -> Typed:

@@ -85,6 +85,7 @@ def _loaded(text: str, shown: str, found: Preprocessed, entry: str) -> Loaded:
         texts[shadertoy.FILE] = added
     keep_lines(texts)
     reporter = Reporter(shown, text, texts)
+    reporter.macros = found.expanded
     head, rest, ours = _head(found, shown)
     comments = found.comments | {shown: rest} if ours else found.comments
     file = parse_tokens(tokens, comments, reporter, plain=True)

@@ -56,6 +56,8 @@ class Preprocessed(NamedTuple):
     macros: list[str]
     """The macros that became constants."""
     pragmas: list[str]
+    expanded: frozenset[str]
+    """The macros that are text, as far as they are defined at the end."""
 
 
 def preprocess(text: str, file: str, find: Find, defines: Mapping[str, str] | None = None) -> Preprocessed:
@@ -190,8 +192,9 @@ class _Run:
         for shown in self.repeated & comments.keys():
             comments[shown] = sorted(dict.fromkeys(comments[shown]), key=lambda comment: comment.first)
         return Preprocessed(
-            tokens, comments, self.version, self.profile, self.texts, self.extensions, constants, self.pragmas
-        )
+            tokens, comments, self.version, self.profile, self.texts, self.extensions, constants, self.pragmas,
+            frozenset(self.expander.macros) - set(constants),
+        )  # fmt: skip
 
     # Directives
 
