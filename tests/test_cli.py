@@ -497,3 +497,28 @@ def test_transpile_for_every_target(run: Run) -> None:
         ran = run("transpile", "twice.glsl", "-t", target)
         assert (ran.status, ran.err) == (0, "")
         assert "twice" in ran.out
+
+
+def test_what_was_included_is_not_overwritten(run: Run) -> None:
+    Path("lib.glsl").write_text("float twice(float x) { return x + x; }\n", encoding="utf-8")
+    Path("own.glsl").write_text('#include "lib.glsl"\nfloat f(float x) { return twice(x); }\n', encoding="utf-8")
+    ran = run("transpile", "own.glsl", "-t", "glsl-330", "-o", "lib.glsl")
+    assert (ran.status, ran.out) == (2, "")
+    assert "the output is what was read" in ran.err
+    assert Path("lib.glsl").read_text(encoding="utf-8").startswith("float twice")
+
+
+def test_prune_keeps_what_is_reached(run: Run) -> None:
+    text = "uniform float far;\nconst float A = 1.0;\nstruct S { float x; };\nfloat g;\nfloat f() { return 1.0; }\n"
+    Path("lib.glsl").write_text(text, encoding="utf-8")
+    Path("own.glsl").write_text('#include "lib.glsl"\nfloat h(float x) { return x; }\n', encoding="utf-8")
+    out = run("transpile", "own.glsl", "-t", "glsl-330", "--prune").out
+    assert "float h(float x)" in out
+    assert not any(word in out for word in ("far", "const", "struct", "float g", "float f("))
+
+
+def test_renamed_is_what_the_language_reserves(run: Run) -> None:
+    Path("own.glsl").write_text("float half4(float half) { return half; }\n", encoding="utf-8")
+    assert "renamed: half4 → half4_ (hlsl reserves it)" in run("transpile", "own.glsl", "-t", "unity-urp").err
+    assert "float half4_(float half_)" in run("transpile", "own.glsl", "-t", "unity-urp").out
+    assert run("transpile", "own.glsl", "-t", "glsl-330").out.count("half4_") == 0

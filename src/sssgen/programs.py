@@ -29,7 +29,7 @@ from .passes.link import LinkError, LinkStage, link
 from .passes.names import rename
 from .passes.parameters import uniforms_to_parameters
 from .passes.predicate import predicate
-from .passes.prune import only, prune
+from .passes.prune import only, prune, used
 from .passes.ranges import analyse
 from .passes.sites import Site, report
 from .passes.stage import (
@@ -135,7 +135,7 @@ def _turned(target: Target) -> bool:
 def _kept(module: Module, target: Target, called: Sequence[str] | None) -> tuple[Module, list[Note], list[str]]:
     """A module as it was written, with its derivatives where the target can have them."""
     if called is not None:
-        module = only(module, called)
+        module = used(only(module, called))
     roots = [function.key for function in module.functions if function.body is not None]
     if not target.can("undefined_constants"):
         _refuse_undefined(module)
@@ -306,7 +306,7 @@ def _finish(middle: _Middle, target: Target, form: str, keep: bool = False) -> P
         _reserved(target, main, keep),
         _uniform_style(target),
         not target.can("overloads"),
-        target.folded if keep else descriptor.reserved_everywhere()[1] | target.folded,
+        (descriptor.reserved_of(target.language) if keep else descriptor.reserved_everywhere())[1] | target.folded,
     )
     try:
         stage = _stage(module, target, form, renames)
@@ -344,13 +344,11 @@ def _entry_name(target: Target, form: str) -> str:
 def _reserved(target: Target, entry: str, keep: bool) -> Words:
     """The words that are not free for names.
 
-    Kept names keep clear of the target's own words alone. A shader whose entry is the author's has that name, and no
-    shell of ours around it.
+    Kept names keep clear of the words of the target's language alone. A shader whose entry is the author's has that
+    name, and no shell of ours around it.
     """
-    exact, _, prefixes = descriptor.reserved_everywhere()
-    words, prefixes = (
-        (target.reserved, target.prefixes) if keep else (exact | target.reserved, prefixes + target.prefixes)
-    )
+    exact, _, prefixes = descriptor.reserved_of(target.language) if keep else descriptor.reserved_everywhere()
+    words, prefixes = exact | target.reserved, prefixes + target.prefixes
     if entry == "main":
         return Words(words - {"main", *target.table.get("names", {}).get("shell", "").split()}, prefixes)
     return Words(words | {"main"}, prefixes)

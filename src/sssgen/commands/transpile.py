@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import keyword
 import os
 import re
 import sys
@@ -29,10 +30,8 @@ def run(arguments: Namespace) -> int:
     wrong: list[Diagnostic] = []
     names = _targets(arguments, wrong)
     path = Path(arguments.FILE)
-    if arguments.output is not None and os.path.realpath(arguments.output) == os.path.realpath(path):
-        wrong += failure(
-            "the output is the input: it would be lost", "write -o with another name", path.as_posix()
-        ).diagnostics
+    if arguments.output == "-":
+        arguments.output = None  # the text is printed
     module, loaded = None, None
     try:
         if path.suffix == ".sss":
@@ -42,6 +41,11 @@ def run(arguments: Namespace) -> int:
             module = loaded.module
     except SssgenError as error:
         wrong += error.diagnostics
+    for read in (path, *map(Path, loaded.paths if loaded is not None else ())):
+        if arguments.output is not None and os.path.realpath(arguments.output) == os.path.realpath(read):
+            message = "the output is what was read: it would be lost"
+            wrong += failure(message, "write -o with another name", read.as_posix()).diagnostics
+            break
     if wrong or module is None:
         raise SssgenError(wrong)
     if arguments.verify:
@@ -93,6 +97,7 @@ def _translate(arguments: Namespace, module: Module, loaded: Loaded | None, targ
     renamed = [
         {"from": old, "to": new, "why": _why(old, target)}
         for old, new in compiled.reflection.get("renames", {}).items()
+        if _concerns(old, new, loaded, compiled.files)
     ]
     warnings = [*(loaded.warnings if loaded else []), *compiled.warnings]
     _print(arguments, compiled.files, warnings, renamed, loaded.constants if loaded else [])
@@ -105,16 +110,35 @@ def _title(path: Path) -> str:
     return name if name[:1].isalpha() else f"file_{name}"
 
 
+def _concerns(old: str, new: str, loaded: Loaded | None, files: dict[str, str]) -> bool:
+    """Whether a name is one of the author's, and stands changed in the output."""
+    bare = _bare(old)
+    if bare in ("main", "mainImage") or bare.startswith("gl_"):
+        return False
+    output = [text for name, text in files.items() if not name.endswith(REFLECTION)]
+    written = loaded is None or any(re.search(rf"\b{bare}\b", text) for text in loaded.texts.values())
+    return written and any(re.search(rf"\b{re.escape(new)}\b", text) for text in output)
+
+
+def _bare(old: str) -> str:
+    """A name without the function or struct that it is in, and without a function's parameters."""
+    return old.partition("(")[0].rpartition(".")[2]
+
+
 def _why(old: str, target: str) -> str:
     """Why a name was changed, in a few words."""
     from ..targets.descriptor import load, names
 
-    bare = re.sub(r".*\.", "", old.partition("(")[0])
+    bare = _bare(old)
     if "(" in old:
         return "overloads need names of their own there"
-    reserving = [name for name in names() if name != "numpy" and bare in load(name).reserved]
+    language = load(target).language
+    near = sorted(names(), key=lambda name: (name != target, load(name).language != language))
+    reserving = [name for name in near if bare in load(name).reserved]
+    if target == "numpy" and keyword.iskeyword(bare):
+        return "Python reserves it"
     if reserving:
-        return f"{target if target in reserving else reserving[0]} reserves it"
+        return f"{reserving[0]} reserves it"
     if "__" in bare or bare.startswith("gl_"):
         return "no other language has such a name"
     return "something else has this name there"

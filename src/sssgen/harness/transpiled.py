@@ -89,7 +89,9 @@ def _scene(text: str) -> str:
     """A Shadertoy scene with the uniforms that it names and does not declare, on its first line."""
     named = [line for name, line in shadertoy.UNIFORMS.items() if re.search(rf"\b{name}\b", text)]
     lines = [line.split("//")[0] for line in named if not re.search(rf"\buniform\s+{line.split(maxsplit=1)[1]}", text)]
-    return " ".join(lines) + text
+    version = re.match(r"\s*#\s*version[^\n]*\n", text)
+    start = version.end() if version is not None else 0
+    return text[:start] + " ".join(lines) + "\n" + text[start:]
 
 
 @contextmanager

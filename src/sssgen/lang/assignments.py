@@ -11,7 +11,7 @@ from ..ir.types import BOOL, FLOAT, Matrix, Sampler, Scalar, Vector, kind_of
 from ..ir.walk import subexpressions
 from . import syntax as s
 from .conversions import as_kind, converts
-from .effects import root_name
+from .effects import depends, root_name, writes_of
 from .expressions import ExpressionChecker, Typed
 from .wording import a_type, mixed_hint
 
@@ -58,6 +58,26 @@ class AssignmentChecker(ExpressionChecker):
         self.prelude.append(made)
         return Typed(made.target)
 
+    def pinned(self, target: ir.Expr, value: ir.Expr, before: int) -> ir.Expr:
+        """The place of an assignment as it is before its right side runs, which may change what an index is made of."""
+        if not isinstance(target, ir.Index | ir.Swizzle | ir.Member):
+            return target
+        inner = self.pinned(target.value, value, before)
+        if inner is not target.value:
+            target = target._replace(value=inner)
+        if not isinstance(target, ir.Index) or isinstance(target.index, ir.Literal):
+            return target
+        calls = [part for part in subexpressions(value) if isinstance(part, ir.Call)]
+        written, called = writes_of(self.prelude[before:])
+        written |= {root_name(arg) for call in calls for arg in self.out_args(call)}
+        if not depends(target.index, written, called or bool(calls)):
+            return target
+        return target._replace(index=self.temporary("place", target.index, before))
+
+    def out_args(self, call: ir.Call) -> list[ir.Expr]:
+        """The arguments of a call that it writes to."""
+        raise NotImplementedError
+
     def assign(self, assignment: s.Assignment) -> ir.Assign:
         """The statement of an assignment; what its two sides do is in the prelude."""
         target, span = self.check(assignment.target), assignment.span
@@ -65,11 +85,13 @@ class AssignmentChecker(ExpressionChecker):
         type_, op = target.expr.type, assignment.op
         if not op:
             assert assignment.value is not None
-            return ir.Assign(
-                target.expr, op, self.check_as(assignment.value, type_, target.quantity, "the assignment"), span
-            )
+            before = len(self.prelude)
+            whole = self.check_as(assignment.value, type_, target.quantity, "the assignment")
+            return ir.Assign(self.pinned(target.expr, whole, before), op, whole, span)
         if assignment.value is not None:
+            before = len(self.prelude)
             right = self.check(assignment.value)
+            target = target._replace(expr=self.pinned(target.expr, right.expr, before))
         elif isinstance(type_, Scalar | Vector | Matrix) and type_.kind != "bool":
             number = FLOAT if type_.kind == "float" else Scalar(type_.kind)
             right = Typed(ir.Literal(number, 1.0 if number == FLOAT else 1, span))

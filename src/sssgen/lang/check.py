@@ -321,7 +321,7 @@ class _FileChecker(StatementChecker):
         self.declare_function(made, name, function.body is not None)
         if function.body is None:
             return made
-        self.result, self.loops = (result, quantity), 0
+        self.result, self.loops, self.fallen = (result, quantity), 0, 0
         errors = len(self.reporter.diagnostics)
         if self.plain:
             self.scopes.push()  # older GLSL lets a variable hide a parameter

@@ -35,6 +35,7 @@ from ..ir.types import (
     spell,
 )
 from . import quantities as q
+from . import shadertoy
 from . import syntax as s
 from .conversions import as_kind, common_kind, converts, wrapped
 from .effects import depends, writes_of
@@ -74,6 +75,8 @@ class ExpressionChecker:
     def __init__(self, reporter: Reporter, plain: bool = False) -> None:
         self.reporter = reporter
         self.plain = plain
+        self.fallen = 0
+        """How many statements the cases of the function at hand have, with those that they fall through to."""
         self.prelude: list[ir.Stmt] = []
         """What runs before the expression at hand."""
         self.structs: dict[str, Struct] = {}
@@ -96,7 +99,10 @@ class ExpressionChecker:
         """Reports a name that nothing has declared."""
         if name in self.faulty:
             return Untyped()
-        return self.fail(span, f"unknown {what} '{name}'", did_you_mean(name, known))
+        hint = did_you_mean(name, known)
+        if self.plain and name in shadertoy.UNIFORMS:
+            hint = "it is Shadertoy's: write --entry shadertoy"
+        return self.fail(span, f"unknown {what} '{name}'", hint)
 
     # Types
 

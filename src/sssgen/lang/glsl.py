@@ -40,6 +40,8 @@ class Loaded(NamedTuple):
     ignored: list[str]
     """The extensions and pragmas, which change nothing here."""
     warnings: list[Diagnostic]
+    paths: list[str]
+    """Where these files lie, but for the first."""
     head: list[str]
     """The lines of the comment that the file begins with, where it documents nothing: a licence, say."""
 
@@ -71,8 +73,10 @@ def load_glsl_text(
     """The checked module of a GLSL text; see `load_glsl`."""
     if entry and entry not in ENTRIES:
         raise failure(f"unknown entry '{entry}'", did_you_mean(entry, ENTRIES) or f"entries: {', '.join(ENTRIES)}")
+    finder = _Finder(roots)
     with paused():
-        return _loaded(text, shown, preprocess(text, shown, _Finder(roots).find, defines), entry)
+        loaded = _loaded(text, shown, preprocess(text, shown, finder.find, defines), entry)
+    return loaded._replace(paths=finder.paths)
 
 
 def _loaded(text: str, shown: str, found: Preprocessed, entry: str) -> Loaded:
@@ -93,7 +97,7 @@ def _loaded(text: str, shown: str, found: Preprocessed, entry: str) -> Loaded:
         head = []  # it documents something, and stands there
     module = check_plain(file, reporter, _is_vertex(tokens, shown))
     ignored = [f"#extension {one}" for one in found.extensions] + [f"#pragma {one}" for one in found.pragmas]
-    return Loaded(module, found.version, texts, found.macros, ignored, reporter.warnings, head)
+    return Loaded(module, found.version, texts, found.macros, ignored, reporter.warnings, [], head)
 
 
 def _head(found: Preprocessed, shown: str) -> tuple[list[str], list[Comment], bool]:
@@ -133,6 +137,7 @@ class _Finder:
         self.roots = [os.fspath(root) for root in roots]
         self.folders: dict[str, str] = {}
         """The folder of each file that was included, by its name in messages."""
+        self.paths: list[str] = []
 
     def find(self, name: str, place: Span, angled: bool) -> tuple[str, str]:
         own = self.folders.get(place.file, self.roots[0] if self.roots else ".")
@@ -142,6 +147,7 @@ class _Finder:
                 shown = os.path.normpath(os.path.relpath(path, self.roots[0])) if self.roots else name
                 shown = shown.replace(os.sep, "/")
                 self.folders[shown] = os.path.dirname(path)
+                self.paths.append(path)
                 return shown, read_text(path, shown)
         hint = "it is looked for beside the file and in the folders of -I"
         raise SssgenError([Diagnostic("error", f"cannot find '{name}' to include", place, hint)])

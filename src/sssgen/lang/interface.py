@@ -62,6 +62,9 @@ class Interface:
         for declarator in declaration.declarators:
             name, span = declarator.name.text, declarator.name.span
             if name in BUILTIN_VARIABLES:
+                if any(item == "origin_upper_left" for item, _ in declaration.qualifiers.layout):
+                    hint = "take the picture's height minus it"
+                    raise checker.fail(span, "gl_FragCoord cannot be made to count from the top", hint)
                 self.builtin(declarator.name)  # declared again for its qualifiers
                 continue
             checker.new_name(declarator.name)

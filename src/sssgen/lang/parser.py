@@ -90,6 +90,13 @@ def parse_tokens(
     return s.File(reporter.file, attach_docs(externals, comments, lines, plain))
 
 
+_BEGINNING = frozenset(
+    "IF FOR WHILE DO SWITCH RETURN BREAK CONTINUE DISCARD CONST UNIFORM STRUCT RBRACE".split()  # noqa: SIM905
+)
+"""What a statement or a declaration begins with, or what stands behind the last one."""
+_ENDING = frozenset("NAME INT FLOAT BOOL RPAR RSQB INCDEC RETURN BREAK CONTINUE DISCARD".split())  # noqa: SIM905
+"""What a statement ends with, before its semicolon."""
+
 _OPENED = frozenset(("LPAR", "LSQB", "LBRACE"))
 _CLOSED = frozenset(("RPAR", "RSQB", "RBRACE"))
 _OPERATORS = frozenset(("OPERATOR", "PLUSMINUS", "NOT", "ASSIGN", "QMARK"))
@@ -168,7 +175,9 @@ def _report(error: Unexpected, tokens: list[Token], reporter: Reporter) -> None:
         reporter.error(place, "the file ends too early", "is a '}' or ';' missing?")
         return
     token = tokens[index]
-    if "SEMICOLON" in accepted and "LBRACE" not in accepted and before and before.end_line < token.span.line:
+    whole = index > 0 and tokens[index - 1].type in _ENDING
+    ended = before is not None and (before.end_line < token.span.line or (whole and token.type in _BEGINNING))
+    if before is not None and ended and "SEMICOLON" in accepted and "LBRACE" not in accepted:
         end = before._replace(line=before.end_line, column=before.end_column, end_column=before.end_column + 1)
         reporter.error(end, "a ';' is missing here")
         return

@@ -206,7 +206,7 @@ class StatementChecker(CallChecker):
             {part.name for part in subexpressions(condition) if isinstance(part, ir.Local)} if condition else set()
         )
         before, init = _split(before, counted)
-        others, step = _split(steps, counted)
+        others, step = _split(steps, counted) if all(map(_is_plain, steps)) else (steps, None)
         if others:
             body = (*_before_continues(body, others), *others)
         span = statement.span
@@ -361,6 +361,11 @@ def _sets(stmt: ir.Stmt, flag: ir.Local) -> bool:
 
 def _leave_unless(condition: ir.Expr) -> ir.Stmt:
     return ir.If(ir.Unary(BOOL, "!", condition, condition.span), (ir.Break(condition.span),), (), condition.span)
+
+
+def _is_plain(stmt: ir.Stmt) -> bool:
+    """Whether a step can stand in a loop's head: an assignment that calls nothing."""
+    return isinstance(stmt, ir.Assign) and not any(isinstance(part, ir.Call) for part in all_expressions((stmt,)))
 
 
 def _split(found: list[ir.Stmt], counted: set[str]) -> tuple[list[ir.Stmt], ir.Stmt | None]:

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from .expressions import ExpressionChecker
 
 MAX_STATEMENTS = 2000
-"""How many statements the cases of one switch may have, once each has those that it falls through to."""
+"""How many statements the cases of one function's switches may have, once each has those that it falls through to."""
 
 
 class Case(NamedTuple):
@@ -34,11 +34,11 @@ def cases_of(checker: ExpressionChecker, switch: s.SwitchStatement) -> list[Case
             raise checker.fail(statement.span, "a switch begins with a case")
         else:
             groups[-1][1].append(statement)
-    found, default, total = list[Case](), None, 0
+    found, default = list[Case](), None
     for index, (labels, _) in enumerate(groups):
         body = _runs([statements for _, statements in groups[index:]])
-        total += len(body)
-        if total > MAX_STATEMENTS:
+        checker.fallen += len(body)
+        if checker.fallen > MAX_STATEMENTS:
             hint = "end the cases with break"
             raise checker.fail(labels[0].span, "these cases fall through to too many statements", hint)
         case = Case(tuple(labels), body, labels[0].span)

@@ -47,7 +47,7 @@ from ..ir.nodes import (
     While,
 )
 from ..ir.types import BOOL, VOID, Type
-from ..ir.walk import expressions, root, statements
+from ..ir.walk import all_expressions, expressions, root, statements
 from .lift_calls import DISCARDED, Functions, lift_calls, out_arguments
 from .masks import Mask, negated, renumber, settle, tidy, zero
 from .scopes import declared, fresh, separate
@@ -326,7 +326,9 @@ class _Converter:
         outer, span = self.frame, loop.span
         init, step = (loop.init, loop.step) if isinstance(loop, For) else (None, None)
         if isinstance(init, Declare):
-            self.depths[init.name] = self.depth + 1
+            # lanes that are done with the loop need no counter any more, but those do that go on with the next round
+            steps = "continue" in jumps and _writes(loop.body, init.name)
+            self.depths[init.name] = self.depth + (0 if steps else 1)
             if masked:
                 self.out.append(init)
         elif init is not None:
@@ -488,3 +490,12 @@ def _jumps_inside(block: Block) -> bool:
     return any(
         isinstance(inner, jumps) for stmt in block if not isinstance(stmt, jumps) for inner in statements((stmt,))
     )
+
+
+def _writes(block: Block, name: str) -> bool:
+    """Whether a block may change a variable: it assigns to it, or hands it to a function."""
+    for stmt in statements(block):
+        if isinstance(stmt, Assign) and (place := root(stmt.target)) is not None and place.name == name:
+            return True
+    calls = (expr for expr in all_expressions(block) if isinstance(expr, Call))
+    return any((place := root(arg)) is not None and place.name == name for call in calls for arg in call.args)

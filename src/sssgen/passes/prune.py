@@ -44,7 +44,7 @@ from ..ir.nodes import (
     While,
 )
 from ..ir.types import Array, Struct, Type
-from ..ir.walk import callees, root
+from ..ir.walk import all_expressions, callees, root, statements, subexpressions
 
 if TYPE_CHECKING:
     from typing import TypeVar
@@ -114,6 +114,31 @@ def only(module: Module, roots: Iterable[str]) -> Module:
             reached.add(key)
             pending += callees(functions[key])
     return module._replace(functions=tuple([one for key, one in functions.items() if key in reached]))
+
+
+def used(module: Module) -> Module:
+    """The module with the declarations alone that its functions mention, themselves or through others."""
+    names: set[str] = set()
+    pending = [expr for function in module.functions for expr in all_expressions(function.body or ())]
+    values = {one.name: one.value for one in (*module.constants, *module.variables) if one.value is not None}
+    types: set[Type] = set()
+    for function in module.functions:
+        types |= {function.result, *(param.type for param in function.params)}
+        types |= {stmt.type for stmt in statements(function.body or ()) if isinstance(stmt, Declare)}
+    while pending:
+        expr = pending.pop()
+        types.add(expr.type)
+        if isinstance(expr, Global) and expr.name not in names:
+            names.add(expr.name)
+            if expr.name in values:
+                pending += subexpressions(values[expr.name])
+    structs = set(_structs(types))
+    return module._replace(
+        structs=tuple([one for one in module.structs if one.type in structs]),
+        constants=tuple([one for one in module.constants if one.name in names]),
+        uniforms=tuple([one for one in module.uniforms if one.name in names]),
+        variables=tuple([one for one in module.variables if one.name in names]),
+    )
 
 
 def _same(old: tuple[_T, ...], new: list[_T]) -> tuple[_T, ...]:

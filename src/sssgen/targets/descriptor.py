@@ -219,8 +219,22 @@ class Words:
 @functools.cache
 def reserved_everywhere() -> tuple[frozenset[str], frozenset[str], tuple[str, ...]]:
     """What the project's own targets reserve: words, words in any case, prefixes. Names keep clear of all of it."""
-    own = [load(name) for name in names() if os.path.isfile(os.path.join(place("targets"), f"{name}.toml"))]
-    shaders = [target for target in own if target.language != "python"]
+    return _reserved([target for target in _own() if target.language != "python"])
+
+
+@functools.cache
+def reserved_of(language: str) -> tuple[frozenset[str], frozenset[str], tuple[str, ...]]:
+    """What a language reserves by itself, without engines: the first of the project's own targets says it."""
+    own = [target for target in _own() if target.language == language]
+    return _reserved(own[:1])
+
+
+def _own() -> list[Target]:
+    """The project's own targets, in the order of their names."""
+    return [load(name) for name in names() if os.path.isfile(os.path.join(place("targets"), f"{name}.toml"))]
+
+
+def _reserved(shaders: list[Target]) -> tuple[frozenset[str], frozenset[str], tuple[str, ...]]:
     exact = frozenset().union(*(target.reserved for target in shaders))
     folded = frozenset().union(*(target.folded for target in shaders))
     return exact, folded, tuple(sorted({prefix for target in shaders for prefix in target.prefixes}))

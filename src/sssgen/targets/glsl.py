@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..ir import nodes as ir
+from ..ir.types import Scalar, Vector, kind_of
 from ..passes.stage import COLORS
 from .descriptor import Target
 from .layout import Member
@@ -43,9 +44,20 @@ class GlslPrinter(Printer):
     def print_uniforms(self, members: list[Member]) -> list[Line]:
         """The uniform declarations, one a line."""
         return [
-            documented(f"uniform {self.variable(member.uniform.type, member.uniform.name)};", member.uniform)
-            for member in members
+            documented(f"uniform {self.variable(one.type, one.name)}{self.default(one)};", one)
+            for one in (member.uniform for member in members)
         ]
+
+    def default(self, uniform: ir.Uniform) -> str:
+        """The value that an author gave a uniform, where the version has such."""
+        plain = isinstance(uniform.type, Scalar | Vector) and uniform.type.kind != "bool"
+        if not self.kept or not plain or not any(uniform.default) or not self.target.can("uniform_values"):
+            return ""
+        number = Scalar(kind_of(uniform.type))
+        whole = number.kind != "float"
+        parts = [ir.Literal(number, int(one) if whole else one, uniform.span) for one in uniform.default]
+        texts = ", ".join(map(self.literal, parts))
+        return f" = {texts if len(parts) == 1 else f'{self.type(uniform.type)}({texts})'}"
 
     def print_textures(self, textures: list[ir.Uniform]) -> list[Line]:
         """The samplers, one a line; ES has no default precision for all of them."""

@@ -18,7 +18,7 @@ from ..ir.formats import FLOAT32, Format
 from ..ir.intrinsics import BUILTINS
 from ..ir.operators import PRECEDENCE
 from ..ir.rules import FLOAT_MAX
-from ..ir.types import FLOAT, INT, UINT, Array, Sampler, Struct, Type, components, spell
+from ..ir.types import FLOAT, INT, UINT, Array, Sampler, Scalar, Struct, Type, components, spell
 from ..passes.stage import Stage
 from .descriptor import Target
 from .layout import Member
@@ -288,7 +288,7 @@ class Printer:
         if isinstance(stmt, ir.Assign):
             target = self.target_of(stmt.target)
             one = isinstance(stmt.value, ir.Literal) and stmt.value.value == 1 and stmt.value.type in (INT, UINT)
-            if one and stmt.op in ("+", "-"):
+            if one and stmt.op in ("+", "-") and isinstance(stmt.target.type, Scalar):
                 return f"{target}{stmt.op * 2}"
             return f"{target} {stmt.op}= {self.expr(stmt.value)}"
         if isinstance(stmt, ir.Return):
