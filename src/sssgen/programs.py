@@ -312,7 +312,7 @@ def _finish(middle: _Middle, target: Target, form: str, keep: bool = False) -> P
         stage = _stage(module, target, form, renames)
     except StageError as error:
         raise _refused(error.message, error.span, target) from None
-    parts = print_parts(target, module, comments_before, stage, main, keep, comment_behind)
+    parts = print_parts(target, module, comments_before, stage, main, keep, comment_behind, source_line)
     module = module._replace(functions=tuple([function._replace(body=()) for function in module.functions]))
     entries = {}
     for kind, entry in middle.entries.items():

@@ -105,6 +105,7 @@ def print_parts(
     entry: str = "",
     kept: bool = False,
     behind: Callable[[str, int], str] | None = None,
+    source: Callable[[Span], str] | None = None,
 ) -> dict[str, list[list[Line]]]:
     """Prints all of a legal module but its uniforms; of a whole shader the function `entry` that it begins with.
 
@@ -115,6 +116,8 @@ def print_parts(
     printer.stage, printer.kept = stage, kept
     if behind is not None:
         printer.behind = behind
+    if source is not None:
+        printer.source = source
     return {
         "types": [printer.print_struct(struct) for struct in module.structs],
         "constants": [[line for constant in module.constants for line in printer.print_constant(constant)]],

@@ -66,6 +66,8 @@ class Printer:
         self.comments: Comments = no_comments
         self.behind: Callable[[str, int], str] = lambda file, line: ""
         """Gives the author's comment behind the code of a line."""
+        self.source: Callable[[ir.Span], str] = lambda span: ""
+        """Gives the line that a span begins on."""
         self.told: set[tuple[str, int]] = set()
         """The lines of the source whose comments stand in the function at hand."""
         self.kept = False
@@ -126,6 +128,11 @@ class Printer:
             return self.binary(expr)
         if isinstance(expr, ir.Swizzle):
             letters = expr.components
+            if self.kept and expr.span.line == expr.span.end_line:
+                end = expr.span.end_column - 1
+                written = self.source(expr.span)[end - len(letters) : end]
+                if written == letters.translate(_COLOR_LETTERS):
+                    return f"{self.expr(expr.value, POSTFIX)}.{written}", POSTFIX
             texel = isinstance(expr.value, ir.Intrinsic) and BUILTINS[expr.value.name].kind == "fetch"
             if texel and components(expr.value.type) == 4:  # a size is none
                 letters = letters.translate(_COLOR_LETTERS)  # a texel's channels are colours to a reader

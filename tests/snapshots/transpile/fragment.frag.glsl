@@ -24,7 +24,7 @@ void main() {
     vec4 texel = texture(map, uv);
     vec2 slope = vec2(dFdx(texel.x), dFdy(texel.x));
     float sharp = edge(along);
-    if (texel.w < 0.5) {
+    if (texel.a < 0.5) {
         discard;
     }
     motion = slope;
@@ -34,7 +34,7 @@ void main() {
         return;
     }
     vec3 facing = gl_FrontFacing ? normal : -normal;
-    color.xyz = normalize(facing) * 0.5 + 0.5;
-    color.w = sharp;
+    color.rgb = normalize(facing) * 0.5 + 0.5;
+    color.a = sharp;
     color *= shade;
 }

@@ -29,7 +29,7 @@ void main_() {
     float4 texel = map.Sample(map_sampler, uv);
     float2 slope = float2(ddx(texel.x), -ddy(texel.x));
     float sharp = edge(along);
-    if (texel.w < 0.5) {
+    if (texel.a < 0.5) {
         discard;
     }
     motion = slope;
@@ -39,8 +39,8 @@ void main_() {
         return;
     }
     float3 facing = FrontFacing ? normal : -normal;
-    color.xyz = normalize(facing) * 0.5 + 0.5;
-    color.w = sharp;
+    color.rgb = normalize(facing) * 0.5 + 0.5;
+    color.a = sharp;
     color *= shade;
 }
 

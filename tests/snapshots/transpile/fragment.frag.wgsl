@@ -30,7 +30,7 @@ fn main_() {
     let texel = textureSample(map, map_sampler, uv);
     let slope = vec2f(dpdx(texel.x), -dpdy(texel.x));
     let sharp = edge(along);
-    if (texel.w < 0.5) {
+    if (texel.a < 0.5) {
         discard;
     }
     motion = slope;
@@ -42,7 +42,7 @@ fn main_() {
     let facing = select(-normal, normal, FrontFacing);
     let color_xyz = normalize(facing) * 0.5 + 0.5;
     color = vec4f(color_xyz, color.w);
-    color.w = sharp;
+    color.a = sharp;
     color *= shade;
 }
 

@@ -26,6 +26,6 @@ void main() {
     base += texture(u_map, v_uv * 2.0, 1.0) + textureProj_(u_map, vec3(v_uv, 2.0));
     vec3 sky = texture(u_sky, reflect(vec3(0.0, 0.0, -1.0), n)).rgb;
     float lines = length(dFdx(v_uv)) + grain(v_uv);
-    FragColor = vec4(base.xyz * sky, base.w);
-    FragColor.w *= lines;
+    FragColor = vec4(base.rgb * sky, base.a);
+    FragColor.a *= lines;
 }

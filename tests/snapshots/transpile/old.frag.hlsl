@@ -30,8 +30,8 @@ void main_() {
         + textureProj(u_map, u_map_sampler, float3(v_uv, 2.0));
     float3 sky = u_sky.Sample(u_sky_sampler, reflect(float3(0.0, 0.0, -1.0), n)).rgb;
     float lines = length(ddx(v_uv)) + grain(v_uv);
-    FragColor = float4(base.xyz * sky, base.w);
-    FragColor.w *= lines;
+    FragColor = float4(base.rgb * sky, base.a);
+    FragColor.a *= lines;
 }
 
 float4 fragment_main(float2 v_uv_in : TEXCOORD0, float3 v_normal_in : TEXCOORD1) : SV_Target0 {

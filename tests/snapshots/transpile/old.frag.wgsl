@@ -31,8 +31,8 @@ fn main_() {
         + textureProj(u_map, u_map_sampler, vec3f(v_uv, 2.0));
     let sky = textureSample(u_sky, u_sky_sampler, reflect(vec3f(0.0, 0.0, -1.0), n)).rgb;
     let lines = length(dpdx(v_uv)) + grain(v_uv);
-    FragColor = vec4f(base.xyz * sky, base.w);
-    FragColor.w *= lines;
+    FragColor = vec4f(base.rgb * sky, base.a);
+    FragColor.a *= lines;
 }
 
 @fragment

@@ -52,7 +52,7 @@ void mainImage(out vec4 O, vec2 F) {
     O = vec4(0.0);
     if (d < 20.0) {
         vec3 n = normal(p);
-        O.xyz = texture(iChannel0, n.xy * 0.5 + 0.5).rgb * max(dot(n, normalize(vec3(mouse, -1.0))), 0.0);
+        O.rgb = texture(iChannel0, n.xy * 0.5 + 0.5).rgb * max(dot(n, normalize(vec3(mouse, -1.0))), 0.0);
     }
     O = pow(O + float(iFrame % 2) * 0.01, vec4(1.0 / 2.2));
 }

@@ -57,7 +57,7 @@ void mainImage(out float4 O, float2 F) {
     float4 iChannel0_sample = iChannel0.Sample(iChannel0_sampler, normal(p).xy * 0.5 + 0.5);
     if (d < 20.0) {
         float3 n = normal(p);
-        O.xyz = iChannel0_sample.xyz * max(dot(n, normalize(float3(mouse, -1.0))), 0.0);
+        O.rgb = iChannel0_sample.rgb * max(dot(n, normalize(float3(mouse, -1.0))), 0.0);
     }
     O = pow(O + float(iFrame % 2) * 0.01, (float4)(1.0 / 2.2));
 }

@@ -59,7 +59,7 @@ fn mainImage(O: ptr<function, vec4f>, F: vec2f) {
     let iChannel0_sample = textureSample(iChannel0, iChannel0_sampler, normal(p).xy * 0.5 + 0.5);
     if (d < 20.0) {
         let n = normal(p);
-        let O_xyz = iChannel0_sample.xyz * max(dot(n, normalize(vec3f(mouse, -1.0))), 0.0);
+        let O_xyz = iChannel0_sample.rgb * max(dot(n, normalize(vec3f(mouse, -1.0))), 0.0);
         *O = vec4f(O_xyz, (*O).w);
     }
     *O = pow(*O + f32(material.iFrame % 2) * 0.01, vec4f(1.0 / 2.2));

@@ -16,7 +16,7 @@ struct Hit {
 vec4 swizzles(vec4 v, float x) {
     v.xy = v.yx;
     v.zw *= 2.0;
-    v.z += x;
+    v.b += x;
     v.wx -= vec2(x, 1.0);
     v.xyz = v.zxy;
     v[2] = x;

@@ -17,7 +17,7 @@ struct Hit {
 float4 swizzles(float4 v, float x) {
     v.xy = v.yx;
     v.zw *= 2.0;
-    v.z += x;
+    v.b += x;
     v.wx -= float2(x, 1.0);
     v.xyz = v.zxy;
     v[2] = x;

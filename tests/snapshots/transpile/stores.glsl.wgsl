@@ -17,7 +17,7 @@ fn swizzles(v_in: vec4f, x: f32) -> vec4f {
     v = vec4f(v.yx, v.zw);
     let v_zw = v.zw * 2.0;
     v = vec4f(v.xy, v_zw);
-    v.z += x;
+    v.b += x;
     let v_wx = v.wx - vec2f(x, 1.0);
     v = vec4f(v_wx.y, v.yz, v_wx.x);
     v = vec4f(v.zxy, v.w);

@@ -45,7 +45,7 @@ float surface(Sea sea, vec2 p) {
         Wave wave = sea.waves[i];
         sum += wave.height * sin(dot(sea.frame * p, wave.towards) / (abs(wave.length_) + 1.0));
     }
-    return sum + sea.foam.amount * sea.foam.color.y;
+    return sum + sea.foam.amount * sea.foam.color.g;
 }
 
 Sea calm(float x) {

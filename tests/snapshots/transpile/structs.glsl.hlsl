@@ -47,7 +47,7 @@ float surface(Sea sea, float2 p) {
         Wave wave = sea.waves[i];
         sum += wave.height * sin(dot(mul(p, sea.frame), wave.towards) / (abs(wave.length_) + 1.0));
     }
-    return sum + sea.foam.amount * sea.foam.color.y;
+    return sum + sea.foam.amount * sea.foam.color.g;
 }
 
 Sea calm(float x) {

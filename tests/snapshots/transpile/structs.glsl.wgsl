@@ -44,7 +44,7 @@ fn surface(sea: Sea, p: vec2f) -> f32 {
         let wave = sea.waves[i];
         sum += wave.height * sin(dot(sea.frame * p, wave.towards) / (abs(wave.length_) + 1.0));
     }
-    return sum + sea.foam.amount * sea.foam.color.y;
+    return sum + sea.foam.amount * sea.foam.color.g;
 }
 
 fn calm(x: f32) -> Sea {

@@ -55,6 +55,6 @@ void main() {
     sum += vec4(texelFetch(numbers, ivec2(3, 4), 0)) + textureGatherOffset_(map, uv, ivec2(0));
     sum.xy += vec2(textureSize(sky, 0)) + vec2(textureSize(fog, 1).xy);
     sum += from(map, uv * 2.0);
-    sum.xyz += blurred(map, uv, 2.0);
+    sum.rgb += blurred(map, uv, 2.0);
     color = sum;
 }

@@ -76,7 +76,7 @@ void main_() {
     sum += (float4)numbers.Load(int3(int2(3, 4), 0)) + map.GatherRed(map_sampler, uv);
     sum.xy += (float2)texture_size(sky, 0) + (float2)texture_size(fog, 1).xy;
     sum += from(map, map_sampler, uv * 2.0);
-    sum.xyz += blurred(map, map_sampler, uv, 2.0);
+    sum.rgb += blurred(map, map_sampler, uv, 2.0);
     color = sum;
 }
 

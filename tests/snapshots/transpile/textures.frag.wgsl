@@ -63,7 +63,7 @@ fn main_() {
         + (vec2f(vec2i(textureDimensions(sky, 0))) + vec2f(vec3i(textureDimensions(fog, 1)).xy));
     sum = vec4f(sum_xy, sum.zw);
     sum += from_(map, map_sampler, uv * 2.0);
-    let sum_xyz = sum.xyz + blurred(map, map_sampler, uv, 2.0);
+    let sum_xyz = sum.rgb + blurred(map, map_sampler, uv, 2.0);
     sum = vec4f(sum_xyz, sum.w);
     color = sum;
 }
