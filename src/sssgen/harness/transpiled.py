@@ -59,14 +59,18 @@ VERSIONS = ("450 core", "330 core", "300 es")
 """What the driver is offered a text as, where the text does not say or says a version before 3.30."""
 
 
-def load(text: str, shown: str) -> Module:
-    """The module of a text of plain GLSL."""
-    return load_glsl_text(text, shown).module
+def load(text: str, shown: str, version: str = "") -> Module:
+    """The module of a text of plain GLSL without its `#version`, which is given: `330`, `300 es`."""
+    number = version.split(" ")[0]
+    defines = {"__VERSION__": number} if number else {}
+    if number == "100" or version.endswith("es"):
+        defines["GL_ES"] = "1"
+    return load_glsl_text(text, shown, defines=defines).module
 
 
 def verify(
     text: str, shown: str, samples: int = SAMPLES, seed: int = 0, entry: str = "",
-    read: Callable[[str, str], Module] = load,
+    read: Callable[[str, str], Module] | None = None,
 ) -> Report:  # fmt: skip
     """Every function of a text with its includes in it (`includes.expanded`), on `samples` random inputs.
 
@@ -75,6 +79,7 @@ def verify(
     with.
     """
     written = plain(_scene(text) if entry == "shadertoy" else text)
+    read = read or partial(load, version=written.version)
     module = read(written.text, shown)
     functions = [one for one in module.functions if one.body is not None and one.span.file == shown]
     cases = probed(module, functions)
