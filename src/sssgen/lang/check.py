@@ -322,13 +322,14 @@ class _FileChecker(StatementChecker):
         if function.body is None:
             return made
         self.result, self.loops, self.fallen = (result, quantity), 0, 0
-        errors = len(self.reporter.diagnostics)
+        errors, faults = len(self.reporter.diagnostics), self.faults
         if self.plain:
             self.scopes.push()  # older GLSL lets a variable hide a parameter
         body = self.statements(function.body.statements)
         if result != VOID and self.plain and not returns(body):
             body = (*body, ir.Return(zero(result, name.span), name.span))  # what it gives there is undefined
-        if result != VOID and not returns(body) and len(self.reporter.diagnostics) == errors:
+        whole = len(self.reporter.diagnostics) == errors and self.faults == faults
+        if result != VOID and not returns(body) and whole:
             message = f"{name.text} can end without returning {a_type(result)}"
             self.reporter.error(name.span, message, "add a return at its end")
         return made._replace(body=body)

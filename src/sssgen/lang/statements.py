@@ -29,6 +29,8 @@ class StatementChecker(CallChecker):
         super().__init__(reporter, plain)
         self.result: tuple[Type, str] = (VOID, "")
         self.loops = 0
+        self.faults = 0
+        """How many statements were left out for their errors."""
         self.switches: list[ir.Local | None] = []
         """Of each switch around the statement, inside the innermost loop: the variable that says to go on with that
         loop's next round, where the switch is a loop of its own; None where it is none."""
@@ -59,6 +61,7 @@ class StatementChecker(CallChecker):
             result: list[ir.Stmt] = self.statement_methods[statement.__class__](statement)
             return [*self.prelude, *result] if self.prelude else result
         except Untyped:
+            self.faults += 1
             if isinstance(statement, s.Declaration):
                 self.declare_anyway(statement)
             return []
