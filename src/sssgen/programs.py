@@ -307,6 +307,7 @@ def _finish(middle: _Middle, target: Target, form: str, keep: bool = False) -> P
         _uniform_style(target),
         not target.can("overloads"),
         (descriptor.reserved_of(target.language) if keep else descriptor.reserved_everywhere())[1] | target.folded,
+        target.can("matrix_overloads"),
     )
     try:
         stage = _stage(module, target, form, renames)

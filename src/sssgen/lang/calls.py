@@ -203,6 +203,9 @@ class CallChecker(AssignmentChecker):
         if self.plain and len(values) == 1 and isinstance(values[0].type, Matrix) and isinstance(type_, Vector):
             values = self.columns(values[0], components(type_))
             args = [Typed(value) for value in values]
+        if len(values) == 1 and type_ == Matrix(2) and components(values[0].type) == 4 and kind_of(values[0].type):
+            values = self.halves(values[0])
+            args = [Typed(value) for value in values]
         wrong = self.constructor_error(type_, args, call)
         if wrong:
             raise self.fail(call.span, wrong, constructor_hint(type_))
@@ -231,6 +234,14 @@ class CallChecker(AssignmentChecker):
             for column in range(-(-count // size))
         ]
         return tuple([typed.expr for typed in _cut(made, count)])
+
+    def halves(self, given: ir.Expr) -> tuple[ir.Expr, ...]:
+        """The halves of a vec4 as the columns of a mat2."""
+        if not isinstance(given.type, Vector):
+            return (given,)
+        kept = given if isinstance(given, ir.Local | ir.Global) else self.temporary("columns", given)
+        half = Vector(given.type.kind, 2)
+        return tuple([ir.Swizzle(half, kept, letters, given.span) for letters in ("xy", "zw")])
 
     def literal(self, literal: ir.Literal, type_: Scalar, span: ir.Span) -> ir.Literal:
         """A literal converted by a constructor. Reports a float that no int or uint can hold."""

@@ -30,7 +30,7 @@ from ..ir.nodes import (
     Variable,
     function_key,
 )
-from ..ir.types import Array, Field, Struct, Type, spell
+from ..ir.types import VEC4, Array, Field, Matrix, Struct, Type, spell
 from ..ir.walk import all_expressions, rewrite, rewrite_block, statements
 from .scopes import Renamer, declared, rename_locals
 
@@ -41,15 +41,17 @@ def rename(
     uniform_name: Callable[[str], str],
     mangle_overloads: bool,
     reserved_folded: Container[str] = frozenset(),
+    matrix_overloads: bool = True,
 ) -> tuple[Module, dict[str, str]]:
     """The module with legal names, and what was renamed, as old → new.
 
     `reserved` holds the target's words, `reserved_folded` those it reserves in any case, in lower case.
     `uniform_name` gives a uniform's name in the target's style. With `mangle_overloads` each function of an
-    overloaded name gets its parameters' types into its name. In the result, overloads that were told apart
-    stand under their key (as in `box(vec3)`), local names under `function.name`, members under `struct.name`.
+    overloaded name gets its parameters' types into its name; without `matrix_overloads` those of a name whose overloads
+    differ in a vec4 and a mat2 alone. In the result, overloads that were told apart stand under their key (as in
+    `box(vec3)`), local names under `function.name`, members under `struct.name`.
     """
-    return _Namer(module, reserved, uniform_name, mangle_overloads, reserved_folded).run()
+    return _Namer(module, reserved, uniform_name, mangle_overloads, reserved_folded, matrix_overloads).run()
 
 
 class _Namer:
@@ -60,11 +62,13 @@ class _Namer:
         uniform_name: Callable[[str], str],
         mangle_overloads: bool,
         reserved_folded: Container[str],
+        matrix_overloads: bool,
     ) -> None:
         self.module = module
         self.keyed = [(function.key, function) for function in module.functions]
         self.reserved, self.reserved_folded = reserved, reserved_folded
         self.uniform_name, self.mangle_overloads = uniform_name, mangle_overloads
+        self.matrix_overloads = matrix_overloads
         self.known: dict[str, bool] = {}
         """Whether a name is legal."""
         self.renamed: dict[str, str] = {}
@@ -139,7 +143,7 @@ class _Namer:
         wanted |= {("global", constant.name): constant.name for constant in module.constants}
         wanted |= {("global", uniform.name): self.uniform_name(uniform.name) for uniform in module.uniforms}
         wanted |= {("global", variable.name): variable.name for variable in module.variables}
-        mangled = self.mangled() if self.mangle_overloads else {}
+        mangled = self.mangled()
         for key, function in self.keyed:
             if key in mangled:
                 wanted["key", key] = mangled[key]
@@ -171,7 +175,7 @@ class _Namer:
             overloads.setdefault(function.name, []).append((key, function))
         result: dict[str, str] = {}
         for name, functions in overloads.items():
-            if len(functions) > 1:
+            if len(functions) > 1 and (self.mangle_overloads or self.confused([one for _, one in functions])):
                 types = [[_word(param.type) for param in function.params] for _, function in functions]
                 for count in range(1, max(map(len, types)) + 1):
                     words = ["_".join([name, *some[:count]]) for some in types]
@@ -179,6 +183,13 @@ class _Namer:
                         break
                 result |= {key: word for (key, _), word in zip(functions, words, strict=True)}
         return result
+
+    def confused(self, overloads: list[Function]) -> bool:
+        """Whether the target cannot tell these apart: a vec4 from a mat2, to HLSL."""
+        if self.matrix_overloads:
+            return False
+        shapes = [[VEC4 if param.type == Matrix(2) else param.type for param in one.params] for one in overloads]
+        return any(shape in shapes[:place] for place, shape in enumerate(shapes))
 
     def name_structs(self, names: Mapping[tuple[str, str], str]) -> None:
         """Finds the structs that change: by name, by a member's name, or by a member's type."""
