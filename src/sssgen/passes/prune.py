@@ -120,7 +120,8 @@ def used(module: Module) -> Module:
     """The module with the declarations alone that its functions mention, themselves or through others."""
     names: set[str] = set()
     pending = [expr for function in module.functions for expr in all_expressions(function.body or ())]
-    values = {one.name: one.value for one in (*module.constants, *module.variables) if one.value is not None}
+    values = {constant.name: constant.value for constant in module.constants}
+    values |= {one.name: one.value for one in module.variables if one.value is not None}
     types: set[Type] = set()
     for function in module.functions:
         types |= {function.result, *(param.type for param in function.params)}
