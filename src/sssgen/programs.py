@@ -293,8 +293,8 @@ def _finish(middle: _Middle, target: Target, form: str, keep: bool = False) -> P
             module = uniforms_to_parameters(module)
         module = legalise(module, target.dialect, _can_keeping(target) if keep else target.can, polyfill)
     except Unsupported as error:
-        found = [_refused(one.message, one.span, target).diagnostics[0] for one in (error, *error.more)]
-        raise SssgenError(found) from None
+        refused = [_refused(one.message, one.span, target).diagnostics[0] for one in (error, *error.more)]
+        raise SssgenError(refused) from None
     except NoEntry as error:
         raise _refused(error.message, error.span, target) from None
     if not target.can("lane_control_flow"):

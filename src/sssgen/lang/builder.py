@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from ..ir.operators import PRECEDENCE
@@ -332,7 +333,7 @@ def as_type(expression: Any) -> Any:
         lengths.insert(0, inner.index)
         inner = inner.value
     if isinstance(inner, s.TypeName):
-        return inner._replace(lengths=inner.lengths + tuple(lengths))
+        return replace(inner, lengths=inner.lengths + tuple(lengths))
     if isinstance(inner, s.Name):
         return s.TypeName(inner.text, tuple(lengths), inner.span)
     return expression

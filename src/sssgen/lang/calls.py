@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from ..ir import nodes as ir
 from ..ir.intrinsics import BUILTINS
@@ -104,7 +105,7 @@ class CallChecker(AssignmentChecker):
 
     def constructor(self, callee: s.TypeName, call: s.CallOf) -> Typed:
         if callee.lengths:
-            element, _ = self.type_named(callee._replace(lengths=()))
+            element, _ = self.type_named(replace(callee, lengths=()))
             type_ = self.array_of(element, callee.lengths, len(call.args))
             return self.construct(type_, "", self.arguments(call, type_), call)
         type_, quantity = self.type_named(callee)

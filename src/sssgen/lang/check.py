@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 
 from ..diagnostics import Reporter
 from ..ir import nodes as ir
@@ -275,7 +276,7 @@ class _FileChecker(StatementChecker):
     def constant(self, declaration: s.Declaration) -> list[ir.Constant]:
         found = []
         of_macro = declaration.type.name == "auto"
-        type_, quantity = (VOID, "") if of_macro else self.type_named(declaration.type._replace(lengths=()))
+        type_, quantity = (VOID, "") if of_macro else self.type_named(replace(declaration.type, lengths=()))
         for declarator in declaration.declarators:
             name = self.new_name(declarator.name)
             if declarator.value is None:

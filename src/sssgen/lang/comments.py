@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from textwrap import dedent
 from typing import Any
 
@@ -45,7 +46,7 @@ def attach_docs(
                 break
         if parts:
             doc = "\n".join(map(words_of, reversed(parts))).strip("\n").rstrip()
-            external = external._replace(doc=doc)
+            external = replace(external, doc=doc)
         documented.append(external)
     return tuple(documented)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ..ir import nodes as ir
@@ -58,7 +59,7 @@ class Interface:
             message = "storage buffers and shared memory belong to compute shaders"
             raise checker.fail(declaration.qualifiers.span, message)
         storage = self.storage(words)
-        element, quantity = checker.type_named(declaration.type._replace(lengths=()))
+        element, quantity = checker.type_named(replace(declaration.type, lengths=()))
         for declarator in declaration.declarators:
             name, span = declarator.name.text, declarator.name.span
             if name in BUILTIN_VARIABLES:
@@ -101,7 +102,7 @@ class Interface:
             raise checker.fail(lengths[0].span, "an array of textures has a constant length from 1 to 64")
         names = [self.free(f"{name.text}_{index}") for index in range(count)]
         checker.texture_arrays[name.text] = names
-        return [declarator._replace(name=name._replace(text=one), lengths=()) for one in names]
+        return [replace(declarator, name=replace(name, text=one), lengths=()) for one in names]
 
     def storage(self, words: tuple[str, ...]) -> str:
         """private, in or out: what an attribute and a varying are depends on the stage."""
@@ -138,13 +139,13 @@ class Interface:
             for declarator in member.declarators:
                 label = declarator.name
                 if block.instance is not None:
-                    label = label._replace(text=self.free(f"{block.instance.text}_{label.text}"))
+                    label = replace(label, text=self.free(f"{block.instance.text}_{label.text}"))
                 members[declarator.name.text] = label
-                renamed.append(declarator._replace(name=label))
+                renamed.append(replace(declarator, name=label))
             own = [word for word in member.qualifiers.words if word not in words]
             location = member.qualifiers.layout or block.qualifiers.layout
             qualifiers = s.Qualifiers((*words, *own), location, block.qualifiers.span)
-            declaration = member._replace(qualifiers=qualifiers, declarators=tuple(renamed))
+            declaration = replace(member, qualifiers=qualifiers, declarators=tuple(renamed))
             checker.global_(s.GlobalSyntax(declaration, block.doc))
         if block.instance is not None:
             checker.instances[block.instance.text] = {

@@ -6,6 +6,7 @@ An expression's side effects become statements before the one that it stands in 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from ..diagnostics import Reporter
@@ -86,7 +87,7 @@ class StatementChecker(CallChecker):
             self.local_struct(declaration.type.struct)
         if not declaration.declarators:
             return []
-        type_, quantity = self.type_named(declaration.type._replace(lengths=()))
+        type_, quantity = self.type_named(replace(declaration.type, lengths=()))
         if type_ == VOID or isinstance(type_, Sampler):
             raise self.fail(declaration.type.span, f"a variable cannot be {a_type(type_)}")
         const = "const" in declaration.qualifiers.words

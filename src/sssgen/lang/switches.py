@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..ir.spans import Span
@@ -70,7 +71,7 @@ def _end(statement: s.Statement) -> tuple[s.Statement, ...] | None:
     if isinstance(statement, s.Compound) and statement.statements:
         last = _end(statement.statements[-1])
         if last is not None:
-            return (statement._replace(statements=(*statement.statements[:-1], *last)),)
+            return (replace(statement, statements=(*statement.statements[:-1], *last)),)
     return None
 
 

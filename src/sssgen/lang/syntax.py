@@ -1,21 +1,24 @@
-"""The syntax tree: what was written, before names and types are resolved.
+"""The syntax tree: what was written, before names and types are resolved. Nothing changes a node once it is made.
 
 `depth` on what nests counts the levels below, so that the checker can refuse what would exhaust its stack.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple, TypeAlias
+from dataclasses import dataclass
+from typing import TypeAlias
 
 from ..ir.spans import NOWHERE, Span
 
 
-class Name(NamedTuple):
+@dataclass(slots=True)
+class Name:
     text: str
     span: Span
 
 
-class Number(NamedTuple):
+@dataclass(slots=True)
+class Number:
     """An integer or float literal as written."""
 
     text: str
@@ -23,19 +26,22 @@ class Number(NamedTuple):
     span: Span
 
 
-class Boolean(NamedTuple):
+@dataclass(slots=True)
+class Boolean:
     value: bool
     span: Span
 
 
-class Prefix(NamedTuple):
+@dataclass(slots=True)
+class Prefix:
     op: str
     operand: Expression
     span: Span
     depth: int
 
 
-class Infix(NamedTuple):
+@dataclass(slots=True)
+class Infix:
     op: str
     left: Expression
     right: Expression
@@ -43,7 +49,8 @@ class Infix(NamedTuple):
     depth: int
 
 
-class Conditional(NamedTuple):
+@dataclass(slots=True)
+class Conditional:
     condition: Expression
     yes: Expression
     no: Expression
@@ -51,7 +58,8 @@ class Conditional(NamedTuple):
     depth: int
 
 
-class TypeName(NamedTuple):
+@dataclass(slots=True)
+class TypeName:
     """A type as written; `lengths` are an array's (an Unsized for `[]`), `struct` is one declared on the spot."""
 
     name: str
@@ -60,13 +68,15 @@ class TypeName(NamedTuple):
     struct: StructSyntax | None = None
 
 
-class Unsized(NamedTuple):
+@dataclass(slots=True)
+class Unsized:
     """The length of `float[]`, which the value tells."""
 
     span: Span
 
 
-class CallOf(NamedTuple):
+@dataclass(slots=True)
+class CallOf:
     """A call of a function, of a constructor when `callee` is a type, or of a method when it is a member."""
 
     callee: Name | TypeName | MemberOf
@@ -75,21 +85,24 @@ class CallOf(NamedTuple):
     depth: int
 
 
-class IndexOf(NamedTuple):
+@dataclass(slots=True)
+class IndexOf:
     value: Expression
-    index: Expression  # type: ignore[assignment]  # hides tuple.index, which nothing here asks for
+    index: Expression
     span: Span
     depth: int
 
 
-class MemberOf(NamedTuple):
+@dataclass(slots=True)
+class MemberOf:
     value: Expression
     name: Name
     span: Span
     depth: int
 
 
-class Assignment(NamedTuple):
+@dataclass(slots=True)
+class Assignment:
     """`target op= value`; `++` and `--` are `+= 1` and `-= 1` with a value of None.
 
     As an expression it has the target's value: of `x++` and `x--` (`after`) that from before.
@@ -103,7 +116,8 @@ class Assignment(NamedTuple):
     after: bool = False
 
 
-class Comma(NamedTuple):
+@dataclass(slots=True)
+class Comma:
     """Expressions one after the other; the last one is the value."""
 
     parts: tuple[Expression, ...]
@@ -111,7 +125,8 @@ class Comma(NamedTuple):
     depth: int
 
 
-class Listed(NamedTuple):
+@dataclass(slots=True)
+class Listed:
     """`{1.0, 2.0}`, the value of an array or struct."""
 
     items: tuple[Expression, ...]
@@ -137,7 +152,8 @@ Expression: TypeAlias = (
 )
 
 
-class Qualifiers(NamedTuple):
+@dataclass(slots=True)
+class Qualifiers:
     """What stands before a type: its words, and the items of `layout(…)`."""
 
     words: tuple[str, ...] = ()
@@ -148,12 +164,14 @@ class Qualifiers(NamedTuple):
 PLAIN = Qualifiers()
 
 
-class Hint(NamedTuple):
+@dataclass(slots=True)
+class Hint:
     name: Name
     args: tuple[float | str, ...]
 
 
-class Declarator(NamedTuple):
+@dataclass(slots=True)
+class Declarator:
     """One name of a declaration."""
 
     name: Name
@@ -162,7 +180,8 @@ class Declarator(NamedTuple):
     hints: tuple[Hint, ...] = ()
 
 
-class Declaration(NamedTuple):
+@dataclass(slots=True)
+class Declaration:
     """Variables, members or constants of one type; without declarators it declares the type's struct alone."""
 
     qualifiers: Qualifiers
@@ -172,19 +191,22 @@ class Declaration(NamedTuple):
     depth: int = 0
 
 
-class ExpressionStatement(NamedTuple):
+@dataclass(slots=True)
+class ExpressionStatement:
     value: Expression
     span: Span
     depth: int = 0
 
 
-class Compound(NamedTuple):
+@dataclass(slots=True)
+class Compound:
     statements: tuple[Statement, ...]
     span: Span
     depth: int
 
 
-class IfStatement(NamedTuple):
+@dataclass(slots=True)
+class IfStatement:
     condition: Expression
     then: Statement
     otherwise: Statement | None
@@ -192,7 +214,8 @@ class IfStatement(NamedTuple):
     depth: int
 
 
-class ForStatement(NamedTuple):
+@dataclass(slots=True)
+class ForStatement:
     init: Statement | None
     condition: Expression | None
     step: Expression | None
@@ -201,21 +224,24 @@ class ForStatement(NamedTuple):
     depth: int
 
 
-class WhileStatement(NamedTuple):
+@dataclass(slots=True)
+class WhileStatement:
     condition: Expression
     body: Statement
     span: Span
     depth: int
 
 
-class DoStatement(NamedTuple):
+@dataclass(slots=True)
+class DoStatement:
     body: Statement
     condition: Expression
     span: Span
     depth: int
 
 
-class Label(NamedTuple):
+@dataclass(slots=True)
+class Label:
     """`case value:`, or `default:` without one."""
 
     value: Expression | None
@@ -223,14 +249,16 @@ class Label(NamedTuple):
     depth: int = 0
 
 
-class SwitchStatement(NamedTuple):
+@dataclass(slots=True)
+class SwitchStatement:
     value: Expression
     body: Compound
     span: Span
     depth: int
 
 
-class Jump(NamedTuple):
+@dataclass(slots=True)
+class Jump:
     """return (perhaps with a value), break, continue or discard."""
 
     kind: str
@@ -254,7 +282,8 @@ Statement: TypeAlias = (
 )
 
 
-class Parameter(NamedTuple):
+@dataclass(slots=True)
+class Parameter:
     direction: str
     type: TypeName
     name: Name | None
@@ -262,7 +291,8 @@ class Parameter(NamedTuple):
     const: bool = False
 
 
-class FunctionSyntax(NamedTuple):
+@dataclass(slots=True)
+class FunctionSyntax:
     """A function; a prototype has no body."""
 
     result: TypeName
@@ -272,14 +302,16 @@ class FunctionSyntax(NamedTuple):
     doc: str
 
 
-class GlobalSyntax(NamedTuple):
+@dataclass(slots=True)
+class GlobalSyntax:
     """Constants, uniforms, inputs, outputs and variables of the module, as their qualifiers say."""
 
     declaration: Declaration
     doc: str
 
 
-class BlockSyntax(NamedTuple):
+@dataclass(slots=True)
+class BlockSyntax:
     """`uniform Camera { mat4 view; } camera;`; `instance` is None where its members are named alone."""
 
     qualifiers: Qualifiers
@@ -290,7 +322,8 @@ class BlockSyntax(NamedTuple):
     doc: str
 
 
-class StructSyntax(NamedTuple):
+@dataclass(slots=True)
+class StructSyntax:
     name: Name
     members: tuple[Declaration, ...]
     doc: str
@@ -299,7 +332,8 @@ class StructSyntax(NamedTuple):
 External: TypeAlias = FunctionSyntax | GlobalSyntax | BlockSyntax | StructSyntax
 
 
-class File(NamedTuple):
+@dataclass(slots=True)
+class File:
     """A parsed source file."""
 
     name: str
