@@ -70,6 +70,7 @@ def test_includes_that_multiply_are_refused() -> None:
     ],
     ids=range(14),
 )
+@pytest.mark.slow
 def test_hostile_texts_take_no_long(text: str) -> None:
     began = time.process_time()
     try:

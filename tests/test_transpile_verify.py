@@ -99,6 +99,7 @@ def test_what_is_read_wrong_is_found_in_every_text() -> None:
         assert not row.ok
 
 
+@pytest.mark.slow
 def test_a_hash_is_compared_where_it_can_be_and_a_wrong_one_is_not_passed() -> None:
     text = "float scatter(vec2 p) { return fract(sin(dot(p, vec2(12.9898, 78.233))) * 43758.5453); }"
     row = rows(text)["scatter(vec2)"]
@@ -109,12 +110,14 @@ def test_a_hash_is_compared_where_it_can_be_and_a_wrong_one_is_not_passed() -> N
     assert not wrong.ok
 
 
+@pytest.mark.slow
 def test_an_edge_in_the_inputs_is_no_excuse_for_the_rest() -> None:
     text = "float edge(float x) { return x < 0.7 ? 0.0 : fract(70000.0 * x); }"
     assert rows(text)["edge(float)"].ok
     assert not rows(text, misread(("0.7", "0.71")))["edge(float)"].ok
 
 
+@pytest.mark.slow
 def test_lanes_without_a_result_are_counted() -> None:
     row = rows("float over(float x) { return 1.0 / x; }")["over(float)"]
     assert row.ok and 0 < row.undefined < SAMPLES
@@ -131,6 +134,7 @@ def test_a_text_that_ends_nowhere_costs_its_own_row() -> None:
     assert found["same(float)"].ok
 
 
+@pytest.mark.slow
 def test_a_uniform_has_several_values() -> None:
     text = "uniform float size;\nuniform sampler2D map;\nvec4 f(vec2 p) { return size * texture(map, p); }"
     assert rows(text)["f(vec2)"].ok
@@ -157,6 +161,7 @@ void main() {
 """
 
 
+@pytest.mark.slow
 def test_a_whole_shader_is_run_function_by_function() -> None:
     found = rows(SHADER)
     assert list(found) == ["ring(vec2)", "keep(vec3)", "kept()", "main()"]
@@ -187,6 +192,7 @@ void main() {
     assert not rows(text, misread(("sin(", "cos(")))["main()"].ok
 
 
+@pytest.mark.slow
 def test_what_drivers_give_roughly_is_no_excuse_for_more_than_that() -> None:
     text = "float f(float x) { return asin(clamp(x, -1.0, 1.0)); }"
     row = rows(text)["f(float)"]
@@ -200,6 +206,7 @@ def test_what_a_variable_begins_with_needs_no_main() -> None:
     assert rows(text)["next(float)"].ok
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("version", ["300 es", "330", "410 core", "450", "120", ""])
 def test_every_version_of_glsl_runs(version: str) -> None:
     head = f"#version {version}\n" if version else ""
@@ -223,6 +230,7 @@ def test_what_a_driver_does_not_take_is_said() -> None:
     assert found["g(float)"].reason.startswith("the driver does not take it as it is written: gl: ")
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_rows() -> None:
     once, again = (verify(FUNCTIONS, "shader.glsl", 50, seed) for seed in (3, 3))
     assert once == again

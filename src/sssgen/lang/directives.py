@@ -8,11 +8,11 @@ from collections.abc import Iterator
 from ..ir.spans import Span
 from .lexer import BLOCK_COMMENT, LINE_COMMENT, NEWLINE, OPEN_COMMENT, TEXT
 
-BLANK = rf"(?:[^\S\n]|{NEWLINE}|{BLOCK_COMMENT})*+"
+BLANK = rf"(?>(?:[^\S\n]|{NEWLINE}|{BLOCK_COMMENT})*)"
 _DIRECTIVE = re.compile(
     rf"""
     ^{BLANK}(?P<mark>\#){BLANK}(?P<name>\w*+)
-        (?P<rest>(?:[^\n\\/"]++|{NEWLINE}|{LINE_COMMENT}|{BLOCK_COMMENT}|{TEXT}|\\|/(?!\*))*+)
+        (?P<rest>(?>(?:[^\n\\/"]++|{NEWLINE}|{LINE_COMMENT}|{BLOCK_COMMENT}|{TEXT}|\\|/(?!\*))*))
     | {LINE_COMMENT} | {BLOCK_COMMENT} | {OPEN_COMMENT} | {TEXT}
     """,
     re.VERBOSE | re.MULTILINE,

@@ -70,7 +70,7 @@ _SIGNS = {
 _BLANKS = " \t\n\r\f\v"
 
 NEWLINE = r"\\\r?\n"  # a line that goes on in the next
-LINE_COMMENT = r"//[^\n\\]*+(?:\\(?:\r?\n)?[^\n\\]*+)*+"
+LINE_COMMENT = r"//[^\n\\]*+(?>(?:\\(?:\r?\n)?[^\n\\]*+)*)"  # no (…)*+: Python 3.11.2 does not match that right
 BLOCK_COMMENT = r"/\*[\s\S]*?\*/"
 OPEN_COMMENT = r"/\*[\s\S]*+"
 TEXT = r'"[^"\n]*+"?'
@@ -78,11 +78,11 @@ TEXT = r'"[^"\n]*+"?'
 _PIECE = re.compile(
     rf"""
     (?: [A-Za-z_]\w*+                                             # a name
-      | 0[xX]\w*+ | (?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d++)?+\w*+  # a number, with all that sticks to it
+      | 0[xX]\w*+ | (?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d++)?\w*+  # a number, with all that sticks to it
       | [{{}}()\[\],;:?~.]
       | <<=? | >>=? | && | \|\| | \^\^ | \+\+ | -- | [-+*%&|^<>=!]=? | /(?![/*])=? | \#\#
     )[ \t]*+
-    | (?:\s|{NEWLINE})++
+    | (?>(?:\s|{NEWLINE})+)
     | {LINE_COMMENT} | {BLOCK_COMMENT} | {OPEN_COMMENT} | {TEXT}
     | [^\x00-\x7f]++ | .
     """,
