@@ -522,3 +522,19 @@ def test_renamed_is_what_the_language_reserves(run: Run) -> None:
     assert "renamed: half4 → half4_ (hlsl reserves it)" in run("transpile", "own.glsl", "-t", "unity-urp").err
     assert "float half4_(float half_)" in run("transpile", "own.glsl", "-t", "unity-urp").out
     assert run("transpile", "own.glsl", "-t", "glsl-330").out.count("half4_") == 0
+
+
+def test_a_technique_has_the_name_that_its_text_has(run: Run) -> None:
+    text = "// Half of it.\nfloat half(float x) { return x * 0.5; }\nfloat g(float x) { return half(x); }\n"
+    Path("own.glsl").write_text(text, encoding="utf-8")
+    ran = run("transpile", "own.glsl", "--as", "technique", "--function", "half", "-o", ".")
+    assert (ran.status, ran.out) == (0, "wrote half_.sss\n")
+    written = Path("half_.sss").read_text(encoding="utf-8")
+    assert " * Half of it.\n" in written
+    assert written.endswith("float half_(float x) {\n    return x * 0.5;\n}\n")
+
+
+def test_what_a_void_return_does_is_done_once(run: Run) -> None:
+    text = "void add(int k);\nvoid add(int k) {}\nvoid f(inout int k) { return add(k++); }\n"
+    Path("own.glsl").write_text(text, encoding="utf-8")
+    assert run("transpile", "own.glsl", "-t", "glsl-330").out.count("k++") == 1

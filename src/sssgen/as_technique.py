@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import dropwhile
+
 from .diagnostics import did_you_mean, failure
 from .ir.nodes import Function, Module, Uniform
 from .ir.types import FLOAT, VEC2, VEC3, Array, Matrix, Sampler, Struct, Type, components, kind_of, spell
@@ -33,17 +35,15 @@ def technique_file(module: Module, shown: str, wanted: str = "") -> tuple[str, s
         name = program.module.variables[0].name
         hint = "hand it to the function as a parameter"
         raise failure(f"'{name}' is a variable outside of the function, which a technique has not", hint, shown)
-    parts = {
-        kind: ["\n".join([line.text for line in block]) for block in blocks] for kind, blocks in program.parts.items()
-    }
-    blocks = [*parts["types"], *parts["constants"], *map(_uniform, program.module.uniforms), *parts["functions"]]
-    last = blocks.pop()
-    text = last[last.index(f" {function.name}(") :]
-    start = last.rindex("\n", 0, last.index(text)) + 1 if "\n" in last[: last.index(text)] else 0
-    blocks.append(_doc(function) + last[start:])
-    made = "\n\n".join(filter(None, blocks)) + "\n"
-    load_text(made, f"{function.name}.sss")  # what a technique cannot do is said now
-    return function.name, made
+    name = program.module.functions[-1].name  # it stands behind what it calls; GLSL may reserve what it was called
+    parts = {kind: [[line.text for line in block] for block in blocks] for kind, blocks in program.parts.items()}
+    own = "\n".join(dropwhile(lambda line: line.startswith("//"), parts["functions"].pop()))
+    blocks = ["\n".join(block) for kind in ("types", "constants") for block in parts[kind]]
+    blocks += map(_uniform, program.module.uniforms)
+    blocks += ["\n".join(block) for block in parts["functions"]]
+    made = "\n\n".join([*filter(None, blocks), _doc(function) + own]) + "\n"
+    load_text(made, f"{name}.sss")  # what a technique cannot do is said now
+    return name, made
 
 
 def _chosen(module: Module, shown: str, wanted: str) -> Function:

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from ..ir import nodes as ir
+from ..ir import old_names, out_builtins
 from ..ir.intrinsics import BUILTINS
-from ..ir.out_builtins import out_builtin
 from ..ir.rules import element_type
 from ..ir.signatures import candidates, resolve
 from ..ir.types import (
@@ -57,7 +57,7 @@ class CallChecker(AssignmentChecker):
         builtin = candidates(name)
         if builtin and (not own or (self.plain and resolve(name, types) is not None)):
             return self.call_intrinsic(name, args, call)
-        if own and not (self.plain and out_builtin(name, types)):
+        if own and not (self.plain and out_builtins.out_builtin(name, types)):
             return self.call_function(name, self.overload(name, args, call), args, call)
         if name in q.QUANTITIES and not self.plain:
             return self.construct(q.QUANTITIES[name], name, args, call)
@@ -70,8 +70,6 @@ class CallChecker(AssignmentChecker):
 
     def plain_builtin(self, name: str, args: list[Typed], call: s.CallOf) -> Typed | None:
         """What only plain GLSL has: the names of old versions, builtins with out parameters."""
-        from ..ir import old_names, out_builtins
-
         renamed = old_names.new_name(name, len(args))
         if renamed is not None and candidates(renamed):
             return self.call_intrinsic(renamed, args, call)

@@ -129,7 +129,7 @@ class _FileChecker(StatementChecker):
         if self.reporter.diagnostics:
             return functions
         calls = {key: callees(function) for key, function in functions.items()}
-        for key in {callee for found in calls.values() for callee in found}:
+        for key in dict.fromkeys(callee for found in calls.values() for callee in found):
             if functions[key].body is None:
                 functions[key] = self.stand_in(functions[key])
         found: dict[str, ir.Function] = {}
@@ -176,12 +176,12 @@ class _FileChecker(StatementChecker):
     def bring_builtin(self, name: str, source: str) -> None:
         from .parser import parse
 
-        outer = self.scopes, self.result, self.loops, self.prelude
+        outer = self.scopes, self.result, self.loops, self.fallen, self.prelude
         for external in parse(source, f"intrinsics/{name}").externals:
             assert isinstance(external, s.FunctionSyntax)
             function = self.function(external)
             self.brought[function.key] = function
-        self.scopes, self.result, self.loops, self.prelude = outer
+        self.scopes, self.result, self.loops, self.fallen, self.prelude = outer
 
     # Declarations
 

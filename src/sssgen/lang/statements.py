@@ -173,8 +173,9 @@ class StatementChecker(CallChecker):
                     raise self.fail(jump.span, f"this function returns {spell(type_)}", "write return value;")
                 return [ir.Return(None, jump.span)]
             if type_ == VOID:
-                if self.plain and self.check(jump.value).expr.type == VOID:  # return f();
-                    self.effect(jump.value)
+                value = self.check(jump.value).expr if self.plain else None
+                if value is not None and value.type == VOID:  # return f();
+                    self.calls_of(value)
                     return [ir.Return(None, jump.span)]
                 raise self.fail(jump.span, "this function returns nothing")
             return [ir.Return(self.check_as(jump.value, type_, quantity, "the return"), jump.span)]
