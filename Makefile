@@ -1,5 +1,5 @@
 # make demo   emit every example for every target into out/ and compile all of it
-# make test   the tests, but the slow ones (make test-long)      make lint   ruff and mypy
+# make test   the tests, but the slow ones (make test-long)      make lint   ruff, mypy, import contracts
 # make gallery  the example scenes' pictures, and docs/gallery.md
 # make stability  what fails in the published techniques and holds in ours: docs/stability.md
 # make bake   bakes two meshes, and docs/bake.md with pictures beside the exact reference
@@ -45,6 +45,7 @@ lint: setup
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy --strict src
+	$(BIN)/lint-imports
 
 bench: setup
 	for file in $(wildcard benchmarks/bench_*.py); do $(BIN)/python $$file || exit 1; done

@@ -24,8 +24,8 @@ import igl
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.bake.distance import distances, inside
-from sssgen.bake.grid import Grid, around
+from sssgen.bake.voxel_distance import distances, inside
+from sssgen.bake.voxel_grid import Grid, around
 from sssgen.harness.scenes.mesh import Mesh
 from sssgen.harness.scenes.mesh_distance import MeshDistance
 

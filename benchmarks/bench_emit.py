@@ -19,9 +19,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import sssgen
-from sssgen.lang.check import check
-from sssgen.lang.parser import parse
-from sssgen.material import Material, examples, parse_material
+from sssgen.lang.check.module_checker import check
+from sssgen.lang.syntax.parser import parse
+from sssgen.material.material_loading import examples, parse_material
+from sssgen.material.model import Material
 
 ROOT = Path(__file__).parent.parent
 MATERIALS = ("paper_lantern", "ice")

@@ -13,12 +13,14 @@ import sys
 import time
 from collections.abc import Callable
 
-from sssgen.harness import backends, evaluate, render
+from sssgen.harness import backends
 from sssgen.harness.backends import DrawingBackend
-from sssgen.harness.probes import subject
-from sssgen.harness.samples import samples
-from sssgen.harness.scenes import scene
-from sssgen.material import examples
+from sssgen.harness.evaluate import evaluation as evaluate
+from sssgen.harness.evaluate.probes import subject
+from sssgen.harness.evaluate.random_inputs import samples
+from sssgen.harness.render import scene_render as render
+from sssgen.harness.scenes import scene_loading
+from sssgen.material.material_loading import examples
 
 TECHNIQUES = ("lobe_gdc2011", "standard", "thinness_uniform")
 ROUNDS = 7
@@ -72,7 +74,7 @@ def frames(names: list[str]) -> None:
     print(f"{'':14} " + "  ".join(f"{one.name:>16}" for one in machines))
     first: dict[str, float] = {}
     for name in examples():
-        shown = render.with_samples(scene.load(name), 1)
+        shown = render.with_samples(scene_loading.load(name), 1)
         cells = []
         for machine in machines:
             render.render(shown, machine, size=(64, 36))  # compiles

@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 
 from public_code import BATCHED, COMPILERS, Code, Made, accepted, blank, glslang, naga_glsl, preprocessed, read
 
-from sssgen.harness.process import LostError, Process
+from sssgen.support.worker_process import LostError, Process
 
 SECONDS = 60.0
 """How long one file may take."""

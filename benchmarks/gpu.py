@@ -16,13 +16,14 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import sssgen
-from sssgen import library
-from sssgen.harness.compare import compare
-from sssgen.harness.scenes import scene
-from sssgen.lab import gpu_cost, gpu_programs
-from sssgen.lab.gpu_cost import Measured, Program, Spread
-from sssgen.material import examples
-from sssgen.slots import needs
+from sssgen.harness.pictures.picture_difference import compare
+from sssgen.harness.scenes import scene_loading
+from sssgen.lab.gpu import gpu_timing as gpu_cost
+from sssgen.lab.gpu import timed_programs as gpu_programs
+from sssgen.lab.gpu.gpu_timing import Measured, Program, Spread
+from sssgen.material import library
+from sssgen.material.material_loading import examples
+from sssgen.material.slots import needs
 
 BY_HAND = Path(__file__).parent / "by_hand"
 TIME = 1.2
@@ -117,7 +118,7 @@ def by_technique(size: tuple[int, int], rounds: int, evaluations: int) -> tuple[
 
 def by_example(size: tuple[int, int], rounds: int) -> tuple[Table, Measured, dict[str, Any]]:
     """The examples' materials in their scenes."""
-    scenes = {name: scene.load(name) for name in examples()}
+    scenes = {name: scene_loading.load(name) for name in examples()}
     chosen = [gpu_programs.Point(name, one.material, one) for name, one in scenes.items()]
     found = gpu_programs.costs(chosen, size, rounds)
     rows = [

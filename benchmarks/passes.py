@@ -9,16 +9,16 @@ from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter
 
-from sssgen import compiler
 from sssgen.ir.nodes import Module
 from sssgen.ir.walk import all_expressions, rewrite_module
-from sssgen.material import load_material
+from sssgen.material.material_loading import load_material
 from sssgen.passes.fold import fold
 from sssgen.passes.hoist import hoist
 from sssgen.passes.inline import inline
 from sssgen.passes.names import rename
-from sssgen.passes.parameters import uniforms_to_parameters
 from sssgen.passes.prune import prune
+from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
+from sssgen.pipeline import compiler
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 

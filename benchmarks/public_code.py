@@ -14,18 +14,18 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from sssgen.compiler import transpile
-from sssgen.diagnostics import SssgenError
 from sssgen.harness import compilers
+from sssgen.harness.check.handwritten import hand_written
 from sssgen.harness.compilers import Source, errors
-from sssgen.harness.compilers.calls import glsl_entry
-from sssgen.harness.compilers.gl import with_version
-from sssgen.harness.handwritten import hand_written
-from sssgen.harness.includes import expanded
-from sssgen.harness.plain_text import without_interface
-from sssgen.lang.glsl import load_glsl
+from sssgen.harness.compilers.calling_entry import glsl_entry
+from sssgen.harness.compilers.gl_driver import with_version
+from sssgen.harness.verify.inline_includes import expanded
+from sssgen.harness.verify.stage_variables import without_interface
 from sssgen.lang.loader import read_text
+from sssgen.lang.plain_glsl import load_glsl
 from sssgen.lang.shadertoy import UNIFORMS
+from sssgen.pipeline.compiler import transpile
+from sssgen.support.diagnostics import SssgenError
 
 BATCH = 40
 """Texts to a process of glslang."""

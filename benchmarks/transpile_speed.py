@@ -12,12 +12,12 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import TypeVar
 
-from sssgen.collection import paused
-from sssgen.compiler import transpile
-from sssgen.diagnostics import Reporter
-from sssgen.lang.check import check_plain
-from sssgen.lang.glsl import preprocessed
-from sssgen.lang.parser import parse_tokens
+from sssgen.lang.check.module_checker import check_plain
+from sssgen.lang.plain_glsl import preprocessed
+from sssgen.lang.syntax.parser import parse_tokens
+from sssgen.pipeline.compiler import transpile
+from sssgen.support.diagnostics import Reporter
+from sssgen.support.gc_pause import paused
 
 Made = TypeVar("Made")
 

@@ -16,10 +16,13 @@ from typing import Any
 
 import pick_trial
 
-from sssgen.lab import chart, chart_gpu, drawing, situation
-from sssgen.lab.chart import Settings
-from sssgen.lab.progress import Bar
-from sssgen.output import write_files
+from sssgen.lab.chart import charting as chart
+from sssgen.lab.chart import drawing
+from sssgen.lab.chart.charting import Settings
+from sssgen.lab.gpu import chart_times as chart_gpu
+from sssgen.lab.scene import measured_scene as situation
+from sssgen.support.file_writer import write_files
+from sssgen.support.progress import Bar
 
 HERE = Path(__file__).parent
 FOLDER = HERE / "accuracy"

@@ -18,12 +18,12 @@ from typing import Any
 import bake_reference
 import numpy as np
 
-from sssgen.cli import main as sssgen
-from sssgen.harness import images
-from sssgen.harness.compare import compare
-from sssgen.harness.extras import need
+from sssgen.cli.main import main as sssgen
+from sssgen.harness.pictures import images
+from sssgen.harness.pictures.picture_difference import compare
 from sssgen.harness.scenes.mesh import Mesh
-from sssgen.output import write_files
+from sssgen.support.extras import need
+from sssgen.support.file_writer import write_files
 from sssgen.targets.numpy_textures import Texture
 
 HERE = Path(__file__).parent

@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 
 from sssgen.bake.atlas import filled
-from sssgen.bake.output import write_picture
+from sssgen.bake.baked_files import write_picture
 from sssgen.harness.scenes.geometry import Mesh
 from sssgen.harness.scenes.light_view import from_place
-from sssgen.harness.scenes.scene import Scene, load
-from sssgen.lab.intervals import intervals, thickness
+from sssgen.harness.scenes.scene import Scene
+from sssgen.harness.scenes.scene_loading import load
+from sssgen.lab.reference.inside_lengths import intervals, thickness
 from sssgen.targets.texture_import import import_settings
 
 SIZE = 1024

@@ -13,15 +13,16 @@ from textwrap import wrap
 from typing import Any
 
 import sssgen
-from sssgen.arguments import add_where
+from sssgen.cli.arguments import add_where
 from sssgen.harness import backends
 from sssgen.harness.backends import Backend
-from sssgen.lab.executor import Item, failures, run
-from sssgen.lab.progress import Bar
-from sssgen.lab.rendering import Apart
-from sssgen.lab.store import Store
-from sssgen.material import Material, load_material
-from sssgen.output import write_files
+from sssgen.lab.jobs.executor import Item, failures, run
+from sssgen.lab.jobs.render_items import Apart
+from sssgen.lab.jobs.result_store import Store
+from sssgen.material.material_loading import load_material
+from sssgen.material.model import Material
+from sssgen.support.file_writer import write_files
+from sssgen.support.progress import Bar
 
 PAGE = Path(__file__).with_name("gallery.md")
 PICTURES = Path(__file__).with_name("gallery")
@@ -63,10 +64,11 @@ SHOWN = {
 
 def items() -> list[Item]:
     """Of each scene its picture; then the differences of its small pictures; then of large ones, one sample a pixel."""
-    drawn = [Item("sssgen.lab.rendering:picture", (name,), name) for name in CAPTIONS]
+    drawn = [Item("sssgen.lab.jobs.render_items:picture", (name,), name) for name in CAPTIONS]
     for what, size, samples in (("small", SMALL, None), ("one sample", None, 1)):
         drawn += [
-            Item("sssgen.lab.rendering:apart", (name, BACKENDS, size, samples), f"{name}, {what}") for name in CAPTIONS
+            Item("sssgen.lab.jobs.render_items:apart", (name, BACKENDS, size, samples), f"{name}, {what}")
+            for name in CAPTIONS
         ]
     return drawn
 

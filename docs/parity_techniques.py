@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from sssgen.harness import backends
 from sssgen.harness.backends import Backend
-from sssgen.harness.deviation import DRAWS, GOAL, MARGIN, Deviation
+from sssgen.harness.evaluate.deviation import DRAWS, GOAL, MARGIN, Deviation
 from sssgen.harness.parity_techniques import BACKENDS, BOUND_LANES, KNOWN, LANES, SEED, Known, cases, excess, measure
 
 PAGE = Path(__file__).with_name("parity_techniques.md")
@@ -43,8 +43,8 @@ def page(present: list[Backend], found: dict[str, Row]) -> str:
     texts = [
         "Measured by `python docs/parity_techniques.py`; `tests/test_parity_techniques.py` holds it. "
         f"Each technique has {LANES:,} random inputs (seed {SEED}), in the declared meaning of each parameter "
-        f"(`src/sssgen/harness/samples.py`), and again {BOUND_LANES:,} for each other function of the library that "
-        "fits one of its slots. The oracle is what the `numpy` target emits, in float64.",
+        f"(`src/sssgen/harness/evaluate/random_inputs.py`), and again {BOUND_LANES:,} for each other function of "
+        "the library that fits one of its slots. The oracle is what the `numpy` target emits, in float64.",
         "A deviation is |got − wanted| over the larger of |wanted| and 1, both over a value's components. The goal is "
         f"{_number(GOAL)}; what is beyond it is in bold.",
         "*Blurred* lanes are beyond the goal where float32 itself is: where a technique decides, or subtracts nearly "

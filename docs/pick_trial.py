@@ -14,10 +14,11 @@ import numpy as np
 from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Geometry, Torus, Union
 from sssgen.harness.scenes.scene import Light
-from sssgen.lab import chart, media
-from sssgen.lab.chart import Settings
-from sssgen.lab.pick import allowed, chosen, cost_of
-from sssgen.lab.situation import Situation
+from sssgen.lab.chart import charting as chart
+from sssgen.lab.chart.charting import Settings
+from sssgen.lab.chart.picking import allowed, chosen, cost_of
+from sssgen.lab.scene import media
+from sssgen.lab.scene.measured_scene import Situation
 
 SCENES = 5
 LIMITS = 8

@@ -10,13 +10,13 @@ from collections import Counter
 from pathlib import Path
 from textwrap import wrap
 
-from sssgen.compiler import guarded_sites
 from sssgen.harness.safety import Safety, safety
-from sssgen.harness.stress import dangerous
+from sssgen.harness.stress import dangerous_inputs as dangerous
 from sssgen.harness.stress.mutants import Mutant, mutants
-from sssgen.harness.stress.run import Machines, Settings, stress
-from sssgen.harness.stress.specimen import Specimen, specimens
-from sssgen.material import examples, load_material
+from sssgen.harness.stress.stress_run import Machines, Settings, stress
+from sssgen.harness.stress.subject import Specimen, specimens
+from sssgen.material.material_loading import examples, load_material
+from sssgen.pipeline.compiler import guarded_sites
 
 PAGE = Path(__file__).with_name("safety.md")
 BACKENDS = ("numpy-f32", "gl", "webgpu", "hlsl", "browser")

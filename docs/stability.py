@@ -21,9 +21,9 @@ from PIL import Image
 from sssgen.harness import backends
 from sssgen.harness.backends import Backend
 from sssgen.harness.errata import BACKENDS, CHAPTERS, OPEN, UNSHOWN, Erratum, Right, as_mended, as_published, maps
-from sssgen.harness.render import render
-from sssgen.harness.scenes.scene import load
-from sssgen.output import write_files
+from sssgen.harness.render.scene_render import render
+from sssgen.harness.scenes.scene_loading import load
+from sssgen.support.file_writer import write_files
 
 PAGE = Path(__file__).with_name("stability.md")
 FOLDER = Path(__file__).with_name("stability")

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.diagnostics import failure
+from sssgen.support.diagnostics import failure
 
 
 class Measured(NamedTuple):

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from sssgen.harness.backends import Array
-from sssgen.harness.evaluate import shape_of
+from sssgen.harness.evaluate.evaluation import shape_of
 from sssgen.harness.parity import Case, cases, oracle
 from sssgen.harness.parity_inputs import FEW, INTERVALS, UNIT, evaluated, widened
 from sssgen.ir.types import Matrix, Type, kind_of

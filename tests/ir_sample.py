@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from sssgen.ir import nodes as ir
-from sssgen.lang.check import check
-from sssgen.lang.parser import parse
+from sssgen.lang.check.module_checker import check
+from sssgen.lang.syntax.parser import parse
 
 SAMPLE = """\
 /** What a body is made of. */

@@ -10,10 +10,10 @@ from ir_interpreter import Discarded, Interpreter
 from sssgen.ir.nodes import Function, Module
 from sssgen.ir.types import Array, Matrix, Struct, Type, Vector, kind_of
 from sssgen.ir.verify import verify
-from sssgen.lang.check import check
-from sssgen.lang.parser import parse
+from sssgen.lang.check.module_checker import check
+from sssgen.lang.syntax.parser import parse
 from sssgen.passes.names import rename
-from sssgen.passes.predicate import predicate
+from sssgen.passes.numpy.predicate import predicate
 from sssgen.targets.descriptor import load
 from sssgen.targets.numpy_printer import print_functions
 from sssgen.targets.numpy_values import Record, precision

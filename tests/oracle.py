@@ -20,16 +20,16 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from sssgen import library
-from sssgen.compiler import transpile
 from sssgen.ir.nodes import Function, Module
 from sssgen.ir.types import VOID, Matrix, Sampler, Type, Vector, components, kind_of
-from sssgen.lang.check import check
+from sssgen.lang.check.module_checker import check
 from sssgen.lang.loader import load_file
-from sssgen.lang.parser import parse
-from sssgen.library import TECHNIQUES
+from sssgen.lang.syntax.parser import parse
+from sssgen.material import library
+from sssgen.material.library import TECHNIQUES
+from sssgen.material.slots import find
 from sssgen.passes.link import LinkStage, link
-from sssgen.slots import find
+from sssgen.pipeline.compiler import transpile
 from sssgen.targets.numpy_textures import Texture
 from sssgen.targets.numpy_values import precision
 

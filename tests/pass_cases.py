@@ -5,8 +5,8 @@ from __future__ import annotations
 from sssgen.ir.nodes import Module
 from sssgen.ir.text import print_module
 from sssgen.ir.verify import verify
-from sssgen.lang.check import check
-from sssgen.lang.parser import parse
+from sssgen.lang.check.module_checker import check
+from sssgen.lang.syntax.parser import parse
 
 
 def module_of(source: str) -> Module:

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 
 import pytest
 
-from sssgen.diagnostics import SssgenError, failure
 from sssgen.ir.spans import Span
-from sssgen.lang.lexer import scan
-from sssgen.lang.preprocessor import Preprocessed, preprocess
+from sssgen.lang.preprocess.preprocessor import Preprocessed, preprocess
+from sssgen.lang.syntax.lexer import scan
+from sssgen.support.diagnostics import SssgenError, failure
 
 
 def run(text: str, files: Mapping[str, str] | None = None, **defines: str) -> Preprocessed:

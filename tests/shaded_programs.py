@@ -7,11 +7,11 @@ from random import Random
 from hypothesis import assume, reject
 
 from random_programs import Programs
-from sssgen.diagnostics import SssgenError
 from sssgen.ir.nodes import Module
 from sssgen.ir.verify import verify
-from sssgen.lang.check import check
-from sssgen.lang.parser import parse
+from sssgen.lang.check.module_checker import check
+from sssgen.lang.syntax.parser import parse
+from sssgen.support.diagnostics import SssgenError
 
 UNIFORMS = """
 uniform sampler2D map; uniform float level = 2.0; uniform int mode = 1; uniform vec3 tint = vec3(0.5, 1.0, 2.0);

@@ -33,7 +33,7 @@ from sssgen.ir.types import (
     vector_of,
 )
 from sssgen.ir.walk import rewrite
-from sssgen.lang.quantities import QUANTITIES
+from sssgen.lang.check.quantities import QUANTITIES
 
 T = TypeVar("T")
 NOWHERE = ir.NOWHERE

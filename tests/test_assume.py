@@ -9,27 +9,28 @@ import numpy as np
 import pytest
 
 from pass_cases import assert_is, key, module_of
-from sssgen import library
-from sssgen.compiler import GUARDS, transpile
-from sssgen.diagnostics import SssgenError
-from sssgen.harness.backends import Array, calls
-from sssgen.harness.backends.reference import namespace
-from sssgen.harness.evaluate import Inputs, fitted
-from sssgen.harness.probes import Subject, subject
-from sssgen.harness.samples import samples
+from sssgen.harness.backends import Array
+from sssgen.harness.backends import call_program as calls
+from sssgen.harness.backends.numpy_reference import namespace
+from sssgen.harness.evaluate.evaluation import Inputs, fitted
+from sssgen.harness.evaluate.probes import Subject, subject
+from sssgen.harness.evaluate.random_inputs import samples
 from sssgen.ir import nodes as ir
-from sssgen.ir.reader import read_module
 from sssgen.ir.text import print_module
+from sssgen.ir.text_reader import read_module
 from sssgen.ir.types import BOOL, FLOAT, Matrix, Sampler
 from sssgen.ir.verify import verify
 from sssgen.ir.walk import rewrite_module, statements
-from sssgen.lang.check import check
-from sssgen.lang.parser import parse
+from sssgen.lang.check.module_checker import check
+from sssgen.lang.syntax.parser import parse
+from sssgen.material import library
 from sssgen.passes.fold import fold
 from sssgen.passes.hoist import hoist
 from sssgen.passes.inline import inline
 from sssgen.passes.names import rename
 from sssgen.passes.prune import prune
+from sssgen.pipeline.compiler import GUARDS, transpile
+from sssgen.support.diagnostics import SssgenError
 from sssgen.targets import descriptor
 from sssgen.targets.numpy_values import grid, precision
 

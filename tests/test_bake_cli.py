@@ -17,7 +17,7 @@ import pytest
 
 import bake_meshes as meshes
 from bake_meshes import Made, write
-from sssgen.cli import main
+from sssgen.cli.main import main
 
 pytest.importorskip("trimesh", reason="trimesh is missing: pip install 'sssgen[bake]'")
 pytest.importorskip("igl", reason="libigl is missing: pip install 'sssgen[bake]'")
@@ -27,16 +27,16 @@ pytest.importorskip("xatlas", reason="xatlas is missing: pip install 'sssgen[bak
 pytest.importorskip("psutil", reason="psutil is missing: pip install 'sssgen[bake]'")
 pytest.importorskip("OpenEXR", reason="OpenEXR is missing: pip install 'sssgen[bake]'")
 
-from sssgen.bake.encoding import ENCODINGS
-from sssgen.compiler import compile
-from sssgen.diagnostics import SssgenError
-from sssgen.harness import images
+from sssgen.bake.distance_encoding import ENCODINGS
 from sssgen.harness.backends import Backend
-from sssgen.harness.scene_values import shell_of
-from sssgen.harness.scenes.scene import load
-from sssgen.harness.shell import Shell
-from sssgen.lab import progress
-from sssgen.material import load_material
+from sssgen.harness.pictures import images
+from sssgen.harness.render.scene_values import shell_of
+from sssgen.harness.render.shell_values import Shell
+from sssgen.harness.scenes.scene_loading import load
+from sssgen.material.material_loading import load_material
+from sssgen.pipeline.compiler import compile
+from sssgen.support import progress
+from sssgen.support.diagnostics import SssgenError
 
 SHEET = Made(np.array([[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1]], float), np.array([[0, 2, 1], [0, 3, 2]]))
 
@@ -71,8 +71,8 @@ def idle(monkeypatch: pytest.MonkeyPatch) -> None:
     def working(*_: Any, **__: Any) -> None:
         raise AssertionError("the work began")
 
-    monkeypatch.setattr("sssgen.bake.sdf.distances", working)
-    monkeypatch.setattr("sssgen.bake.thickness._measured", working)
+    monkeypatch.setattr("sssgen.bake.distance_texture.distances", working)
+    monkeypatch.setattr("sssgen.bake.thickness_map._measured", working)
     monkeypatch.setattr("sssgen.harness.scenes.mesh_rays.MeshRays.nearest", working)
 
 
@@ -353,7 +353,7 @@ def test_an_interrupt_leaves_nothing(monkeypatch: pytest.MonkeyPatch, arguments:
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr("sssgen.output._write_bytes", half)
+        patch.setattr("sssgen.support.file_writer._write_bytes", half)
         assert main(["bake", *arguments]) == 130
     assert there() == before
 

@@ -13,11 +13,11 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from sssgen.bake.sheet import columns_and_rows
+from sssgen.bake.slice_sheet import columns_and_rows
 from sssgen.bake.volume_files import FORMATS, encoded, layout
-from sssgen.diagnostics import SssgenError
-from sssgen.harness import images
-from sssgen.harness.volumes import read
+from sssgen.harness.pictures import images
+from sssgen.harness.pictures.volumes import read
+from sssgen.support.diagnostics import SssgenError
 from sssgen.version import VERSION
 
 TYPES = ["uint8", "uint16", "float16", "float32"]

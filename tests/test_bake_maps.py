@@ -11,14 +11,14 @@ import pytest
 from oracle import Array, close, technique
 from sssgen.bake import cells
 from sssgen.bake.cells import scale, voronoi
-from sssgen.bake.normals import from_height
-from sssgen.bake.packing import Source, load, pack, parse
-from sssgen.diagnostics import SssgenError
+from sssgen.bake.channel_packing import Source, load, pack, parse
+from sssgen.bake.normal_map import from_height
+from sssgen.support.diagnostics import SssgenError
 from sssgen.targets.numpy_textures import Texture
 
 pytest.importorskip("PIL", reason="Pillow is missing: pip install 'sssgen[render]'")
 
-from sssgen.harness.images import png_bytes, read, write_png
+from sssgen.harness.pictures.images import png_bytes, read, write_png
 
 
 def failing(call: Any, *arguments: Any, **named: Any) -> str:

@@ -13,13 +13,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sssgen.cli import main
-from sssgen.compiler import compile
-from sssgen.diagnostics import SssgenError
+from sssgen.cli.main import main
 from sssgen.harness import backends
 from sssgen.harness.backends import Backend
-from sssgen.harness.render import Rendered, render
-from sssgen.harness.scenes.scene import load
+from sssgen.harness.render.scene_render import Rendered, render
+from sssgen.harness.scenes.scene_loading import load
+from sssgen.pipeline.compiler import compile
+from sssgen.support.diagnostics import SssgenError
 
 for package in ("trimesh", "igl", "embreex", "xatlas", "scipy", "psutil"):
     pytest.importorskip(package, reason=f"{package} is missing: pip install 'sssgen[bake]'")

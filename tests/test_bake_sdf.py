@@ -12,19 +12,19 @@ import pytest
 import bake_meshes as meshes
 from bake_meshes import SPOT, SUZANNE, Array, Made, joined, needs_meshes, write
 from oracle import technique
-from sssgen.diagnostics import SssgenError
+from sssgen.support.diagnostics import SssgenError
 
 pytest.importorskip("trimesh", reason="trimesh is missing: pip install 'sssgen[bake]'")
 pytest.importorskip("igl", reason="libigl is missing: pip install 'sssgen[bake]'")
 pytest.importorskip("embreex", reason="embreex is missing: pip install 'sssgen[bake]'")
 
-from sssgen.bake.distance import distances, inside
-from sssgen.bake.encoding import ENCODINGS
-from sssgen.bake.grid import Grid, around
-from sssgen.bake.sdf import Volume, sdf
+from sssgen.bake.distance_encoding import ENCODINGS
+from sssgen.bake.distance_texture import Volume, sdf
+from sssgen.bake.voxel_distance import distances, inside
+from sssgen.bake.voxel_grid import Grid, around
 from sssgen.harness.scenes.mesh import Mesh
 from sssgen.harness.scenes.mesh_distance import INSIDE, MeshDistance
-from sssgen.lab.intervals import thickness
+from sssgen.lab.reference.inside_lengths import thickness
 from sssgen.targets.numpy_textures import Texture
 
 

@@ -12,7 +12,7 @@ import pytest
 import bake_meshes as meshes
 from bake_meshes import SPOT, SUZANNE, Array, Made, needs_meshes, write
 from oracle import technique
-from sssgen.diagnostics import SssgenError
+from sssgen.support.diagnostics import SssgenError
 
 pytest.importorskip("trimesh", reason="trimesh is missing: pip install 'sssgen[bake]'")
 pytest.importorskip("embreex", reason="embreex is missing: pip install 'sssgen[bake]'")
@@ -20,14 +20,14 @@ pytest.importorskip("scipy", reason="SciPy is missing: pip install 'sssgen[bake]
 pytest.importorskip("xatlas", reason="xatlas is missing: pip install 'sssgen[bake]'")
 pytest.importorskip("psutil", reason="psutil is missing: pip install 'sssgen[bake]'")
 
-from sssgen.bake import unwrap
+from sssgen.bake import texture_unwrap as unwrap
 from sssgen.bake.atlas import Atlas, atlas
-from sssgen.bake.chords import Chords, inward
-from sssgen.bake.depth import depth_map
-from sssgen.bake.light import BakeLight
-from sssgen.bake.thickness import Map, Request, thickness_map, warnings
+from sssgen.bake.bake_light import BakeLight
+from sssgen.bake.chord_lengths import Chords, inward
+from sssgen.bake.depth_map import depth_map
+from sssgen.bake.thickness_map import Map, Request, thickness_map, warnings
 from sssgen.harness.scenes.mesh import Mesh
-from sssgen.lab.executor import Failure, run
+from sssgen.lab.jobs.executor import Failure, run
 from sssgen.targets.numpy_textures import Texture
 
 

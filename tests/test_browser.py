@@ -15,11 +15,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sssgen.diagnostics import SssgenError
 from sssgen.harness.backends import Backend, Block, Bound, Call, CompilerMissing, Drawing, Place, Stage, Text
 from sssgen.harness.backends.browser import Browser
 from sssgen.ir.types import BY_NAME, FLOAT, INT, VEC2, VEC3, VEC4
 from sssgen.lang.loader import load_text
+from sssgen.support.diagnostics import SssgenError
 from sssgen.targets.numpy_textures import Texture
 from validate import code
 

@@ -11,18 +11,18 @@ import numpy as np
 import pytest
 
 from pass_cases import module_of
-from sssgen.compiler import transpile
 from sssgen.harness.backends import Array, Backend, Call, Text
 from sssgen.harness.parity_inputs import DTYPES, EDGES, INTERVALS, UNIT, evaluated, widened
 from sssgen.ir import nodes as ir
 from sssgen.ir import signatures
 from sssgen.ir.formats import FLOAT32
+from sssgen.ir.intervals import Range, rounded
 from sssgen.ir.intrinsics import BUILTINS, Builtin
 from sssgen.ir.types import Scalar, Type, Vector, components, kind_of, spell
-from sssgen.passes import builtin_ranges
-from sssgen.passes.intervals import Range, rounded
-from sssgen.passes.ranges import _Analysis
-from sssgen.passes.vectors import Value
+from sssgen.passes.ranges import builtin_ranges
+from sssgen.passes.ranges.range_pass import _Analysis
+from sssgen.passes.ranges.vector_ranges import Value
+from sssgen.pipeline.compiler import transpile
 from sssgen.targets import numpy_runtime as runtime
 
 BOXES, LANES = 40, 48

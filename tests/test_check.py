@@ -11,12 +11,12 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from sssgen import cli
-from sssgen.harness import check
+from sssgen.cli import main as cli
+from sssgen.harness.check import compile_check as check
+from sssgen.harness.check.shader_files import of_files, of_material, read
 from sssgen.harness.compilers import Compiler, Source
-from sssgen.harness.shader_files import of_files, of_material, read
-from sssgen.harness.worker import Worker
-from sssgen.output import write_files
+from sssgen.harness.compilers.compiler_process import Worker
+from sssgen.support.file_writer import write_files
 
 STANDIN = Path(__file__).parent / "unity_standin"
 FRAGMENT = "in vec2 v_uv;\nout vec4 color;\nvoid main() {\n    color = vec4(v_uv, 0.0, 1.0);\n}\n"
@@ -68,7 +68,7 @@ def write(files: dict[str, str]) -> None:
 
 
 def emitted(target: str, form: str = "shader") -> dict[str, str]:
-    from sssgen.compiler import compile
+    from sssgen.pipeline.compiler import compile
 
     return compile("ice", target, form).files
 

@@ -12,14 +12,14 @@ from typing import Any
 
 import pytest
 
-from sssgen import cli
-from sssgen.diagnostics import SssgenError
+from sssgen.cli import main as cli
 from sssgen.harness.backends import Backend
-from sssgen.harness.isolated import Isolated
+from sssgen.harness.backends.isolated import Isolated
 from sssgen.harness.testing import junit
-from sssgen.harness.testing.ci import Case, Ran, Run, cases
 from sssgen.harness.testing.outcome import Outcome
-from sssgen.output import write_files
+from sssgen.harness.testing.project_run import Case, Ran, Run, cases
+from sssgen.support.diagnostics import SssgenError
+from sssgen.support.file_writer import write_files
 
 MATERIAL = '[material]\nname = "lamp"\ndoc = "A lamp."\nshading = "lit"\n[[surface]]\ntechnique = "base_color"\n'
 SCENE = 'material = "lamp.toml"\nsize = [24, 18]\n[geometry]\nkind = "ball"\n'

@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sssgen.harness import images
 from sssgen.harness.backends import Backend
-from sssgen.material import examples
+from sssgen.harness.pictures import images
+from sssgen.material.material_loading import examples
 
 pytest.importorskip("flip_evaluator", reason="flip-evaluator is missing: pip install 'sssgen[render]'")
 

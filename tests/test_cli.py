@@ -14,11 +14,14 @@ from typing import Any, NamedTuple
 import pytest
 
 from snapshot import check_snapshot
-from sssgen import cli, emitted, output
-from sssgen.diagnostics import Diagnostic, SssgenError, failure
+from sssgen.cli import main as cli
 from sssgen.ir.nodes import Module, Span
-from sssgen.material import Material, load_material
-from sssgen.output import write_files
+from sssgen.material.material_loading import load_material
+from sssgen.material.model import Material
+from sssgen.pipeline import emitted_cache as emitted
+from sssgen.support import file_writer as output
+from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
+from sssgen.support.file_writer import write_files
 
 WAX = """\
 [material]
@@ -48,7 +51,7 @@ class FakeCompiler(types.ModuleType):
     """A compiler that writes down what it was asked, so that these tests are about the command line alone."""
 
     def __init__(self) -> None:
-        super().__init__("sssgen.compiler")
+        super().__init__("sssgen.pipeline.compiler")
         self.asked: list[tuple[str, str, str, Path | None]] = []
         self.text = "text 1"
         self.name = "{}.{}.txt"
@@ -74,7 +77,7 @@ class FakeCompiler(types.ModuleType):
 @pytest.fixture
 def compiler(monkeypatch: pytest.MonkeyPatch) -> FakeCompiler:
     fake = FakeCompiler()
-    monkeypatch.setitem(sys.modules, "sssgen.compiler", fake)
+    monkeypatch.setitem(sys.modules, "sssgen.pipeline.compiler", fake)
     monkeypatch.setattr(emitted, "recall", lambda *_: None)
     monkeypatch.setattr(emitted, "remember", lambda *_: None)
     return fake
@@ -179,7 +182,7 @@ def fail(error: BaseException) -> Callable[[Any], int]:
 
 
 def test_an_internal_error_is_one_line(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    from sssgen.commands import show
+    from sssgen.cli import show
 
     monkeypatch.setattr(show, "run", fail(ZeroDivisionError("one\ntwo")))
     ran = run("show", "sphere")
@@ -191,7 +194,7 @@ def test_an_internal_error_is_one_line(run: Run, monkeypatch: pytest.MonkeyPatch
 
 
 def test_ctrl_c(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    from sssgen.commands import show
+    from sssgen.cli import show
 
     monkeypatch.setattr(show, "run", fail(KeyboardInterrupt()))
     assert run("show", "sphere") == (130, "", "interrupted\n")
@@ -224,7 +227,7 @@ def test_a_terminal_without_unicode() -> None:
 
 
 def test_list_techniques(run: Run) -> None:
-    from sssgen import library
+    from sssgen.material import library
 
     rows = json.loads(run("list", "techniques", "--json").out)["techniques"]
     assert {row["name"] for row in rows} == set(library.index())
@@ -248,7 +251,7 @@ def test_show(name: str, run: Run) -> None:
 
 
 def test_show_every_technique(run: Run) -> None:
-    from sssgen import library
+    from sssgen.material import library
 
     for name in library.index():
         facts = json.loads(run("show", name, "--json").out)
@@ -478,7 +481,7 @@ def test_a_file_that_is_no_text(run: Run, compiler: FakeCompiler) -> None:
 
 
 def test_the_starter_emits_for_every_target(run: Run) -> None:
-    from sssgen.compiler import all_targets
+    from sssgen.pipeline.compiler import all_targets
 
     assert run("new", "wood").status == 0
     ran = run("emit", "wood.toml", "--target", "all", "-o", "out", "--json")
@@ -490,7 +493,7 @@ def test_the_starter_emits_for_every_target(run: Run) -> None:
 
 
 def test_transpile_for_every_target(run: Run) -> None:
-    from sssgen.compiler import all_targets
+    from sssgen.pipeline.compiler import all_targets
 
     Path("twice.glsl").write_text(GLSL, encoding="utf-8")
     for target in all_targets():

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sssgen.diagnostics import SssgenError
-from sssgen.harness.compare import compare
+from sssgen.harness.pictures.picture_difference import compare
+from sssgen.support.diagnostics import SssgenError
 
 pytest.importorskip("flip_evaluator", reason="flip-evaluator is missing: pip install 'sssgen[render]'")
 

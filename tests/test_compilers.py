@@ -9,8 +9,19 @@ from pathlib import Path
 import pytest
 
 from sssgen.harness import compilers
-from sssgen.harness.compilers import Compiler, Source, calls, errors, shaderlab, surface
-from sssgen.harness.sources import sources
+from sssgen.harness.check.compiler_inputs import sources
+from sssgen.harness.compilers import (
+    Compiler,
+    Source,
+    errors,
+    shaderlab,
+)
+from sssgen.harness.compilers import (
+    calling_entry as calls,
+)
+from sssgen.harness.compilers import (
+    surface_shader as surface,
+)
 
 SAMPLES = Path(__file__).parent / "unity_standin" / "samples"
 GLSL = "in vec2 v_uv;\nout vec4 color;\nuniform sampler2D t;\nvoid main() {\n    color = texture(t, v_uv);\n}"

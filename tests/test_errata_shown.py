@@ -7,7 +7,6 @@ from collections.abc import Callable
 
 import pytest
 
-from sssgen import library
 from sssgen.harness.backends import Backend
 from sssgen.harness.errata import (
     BACKENDS,
@@ -22,6 +21,7 @@ from sssgen.harness.errata import (
     holds,
     shows,
 )
+from sssgen.material import library
 
 Get = Callable[[str], Backend]
 

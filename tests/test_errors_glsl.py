@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from snapshot import FOLDER, check_snapshot
-from sssgen.diagnostics import SssgenError
-from sssgen.lang import glsl
-from sssgen.lang.glsl import load_glsl_text
-from sssgen.lang.switches import MAX_STATEMENTS
+from sssgen.lang import plain_glsl as glsl
+from sssgen.lang.check.switch_cases import MAX_STATEMENTS
+from sssgen.lang.plain_glsl import load_glsl_text
+from sssgen.support.diagnostics import SssgenError
 
 FILE = "errors_glsl.glsl"
 

@@ -17,13 +17,14 @@ from hypothesis import strategies as st
 import test_errors_glsl
 from ir_sample import SAMPLE
 from snapshot import check_snapshot
-from sssgen import diagnostics, lang
-from sssgen.diagnostics import Diagnostic, Reporter, SssgenError, did_you_mean
+from sssgen import lang
 from sssgen.ir.nodes import Span
 from sssgen.ir.verify import verify
-from sssgen.lang import quantities
-from sssgen.lang.check import check
-from sssgen.lang.parser import MAX_DEPTH, parse
+from sssgen.lang.check import quantities
+from sssgen.lang.check.module_checker import check
+from sssgen.lang.syntax.parser import MAX_DEPTH, parse
+from sssgen.support import diagnostics
+from sssgen.support.diagnostics import Diagnostic, Reporter, SssgenError, did_you_mean
 
 LANG = Path(inspect.getfile(lang)).parent
 
@@ -102,7 +103,7 @@ def test_every_error_has_a_snapshot(monkeypatch: pytest.MonkeyPatch) -> None:
 
     for module in ("check", "parser", "glsl", "preprocessor", "lexer"):
         monkeypatch.setattr(f"sssgen.lang.{module}.Reporter", Noted)
-    monkeypatch.setattr("sssgen.lang.quantities.Mixup", NotedMixup)
+    monkeypatch.setattr("sssgen.lang.check.quantities.Mixup", NotedMixup)
     for source in (*CASES.values(), f"float x = {'(' * 500}", f"uniform float x = 1.0{'+1.0' * 2000};", unary(500)):
         errors_of(source)
     for source in (*test_errors_glsl.CASES.values(), *test_errors_glsl.LONG.values()):

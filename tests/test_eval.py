@@ -14,15 +14,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sssgen.cli import main
-from sssgen.diagnostics import SssgenError
-from sssgen.harness import backends, compilers, inputs
+from sssgen.cli.main import main
+from sssgen.harness import backends, compilers
 from sssgen.harness.backends import Backend
-from sssgen.harness.deviation import deviation, errors
-from sssgen.harness.evaluate import evaluate
-from sssgen.harness.images import write_exr, write_png
-from sssgen.harness.isolated import isolated
-from sssgen.harness.probes import subject
+from sssgen.harness.backends.isolated import isolated
+from sssgen.harness.evaluate import input_files as inputs
+from sssgen.harness.evaluate.deviation import deviation, errors
+from sssgen.harness.evaluate.evaluation import evaluate
+from sssgen.harness.evaluate.probes import subject
+from sssgen.harness.pictures.images import write_exr, write_png
+from sssgen.support.diagnostics import SssgenError
 from sssgen.targets.numpy_textures import Texture
 
 LOBE: dict[str, Any] = {"V": [0, 0, 1], "N": [0, 0, 1], "L": [[0, 0, -1], [0.6, 0, -0.8]], "through": 0.5}
@@ -305,7 +306,7 @@ def test_no_driver_on_this_machine(tmp_path: Path) -> None:
 
 
 def test_textures_are_shared_as_half_floats() -> None:
-    from sssgen.harness.evaluate import half
+    from sssgen.harness.evaluate.evaluation import half
 
     texture = Texture(np.full((2, 2, 3), 0.1))
     assert half(texture).levels[0].dtype == np.float16 and half(texture) is half(texture)

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 import sssgen
+from sssgen.harness.check.compiler_inputs import sources
 from sssgen.harness.compilers import Source
-from sssgen.harness.sources import sources
-from sssgen.material import examples
+from sssgen.material.material_loading import examples
 
 FORMS = ("shader", "functions")
 CASES = [(name, form) for name in examples() for form in FORMS]

@@ -22,19 +22,9 @@ from against_numpy import (
 )
 from against_numpy import drawn as drawn_freely
 from sssgen.harness.backends import Backend, Block, Call, DrawingBackend, Place, Text
-from sssgen.harness.backends.calls import drawing, results
-from sssgen.harness.evaluate import shape_of
-from sssgen.ir.types import (
-    BY_NAME,
-    VEC2,
-    VEC4,
-    Matrix,
-    Sampler,
-    Type,
-    Vector,
-    components,
-    kind_of,
-)
+from sssgen.harness.backends.call_program import drawing, results
+from sssgen.harness.evaluate.evaluation import shape_of
+from sssgen.ir.types import BY_NAME, VEC2, VEC4, Matrix, Sampler, Type, Vector, components, kind_of
 from sssgen.lang.loader import load_file
 from test_pitfalls import program as pitfalls
 

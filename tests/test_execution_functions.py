@@ -12,7 +12,7 @@ import pytest
 from against_numpy import Array, Draw, arguments, differences
 from random_programs import HELPERS, Programs
 from sssgen.harness.backends import Backend, Call
-from sssgen.harness.probes import probes_of
+from sssgen.harness.evaluate.probes import probes_of
 from sssgen.ir.nodes import Function, Module, Param
 from sssgen.ir.types import kind_of
 from sssgen.lang.loader import load_text

@@ -14,7 +14,7 @@ import pytest
 
 from ir_interpreter import Interpreter
 from oracle import Array, rng, technique, unit, units
-from sssgen.harness.probes import subject
+from sssgen.harness.evaluate.probes import subject
 from sssgen.harness.scenes.geometry import Ball, Box, Geometry, Slab, Torus
 from sssgen.ir import nodes as ir
 from sssgen.ir.nodes import Module

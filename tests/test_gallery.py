@@ -14,11 +14,12 @@ import numpy.typing as npt
 import pytest
 from PIL import Image
 
-from sssgen.harness import backends, images
+from sssgen.harness import backends
 from sssgen.harness.backends import Backend
-from sssgen.harness.render import Rendered, render
-from sssgen.harness.scenes.scene import load
-from sssgen.material import examples
+from sssgen.harness.pictures import images
+from sssgen.harness.render.scene_render import Rendered, render
+from sssgen.harness.scenes.scene_loading import load
+from sssgen.material.material_loading import examples
 
 ROOT = Path(__file__).parents[1]
 SMALL = (64, 48)

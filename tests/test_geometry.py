@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sssgen.diagnostics import SssgenError
 from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
+from sssgen.support.diagnostics import SssgenError
 
 MESHES = Path(__file__).parents[2] / "shared" / "data" / "meshes"
 

@@ -10,21 +10,22 @@ import numpy as np
 import pytest
 
 from half_cases import half_cases, wrong_lanes
-from sssgen import cli, library
-from sssgen.compiler import transpile
-from sssgen.diagnostics import SssgenError
+from sssgen.cli import main as cli
 from sssgen.harness import backends
 from sssgen.harness.backends import Array, Backend, Call, CompilerMissing, Text
-from sssgen.harness.backends.calls import drawing
+from sssgen.harness.backends.call_program import drawing
 from sssgen.harness.backends.webgpu import WebGPU
 from sssgen.harness.compilers import Compiler, Source, errors
-from sssgen.harness.evaluate import fitted, run
+from sssgen.harness.evaluate.evaluation import fitted, run
+from sssgen.harness.evaluate.probes import Subject, subject
+from sssgen.harness.evaluate.random_inputs import samples
 from sssgen.harness.parity import run as run_cases
 from sssgen.harness.parity import supported
-from sssgen.harness.probes import Subject, subject
-from sssgen.harness.samples import samples
 from sssgen.ir.types import FLOAT, INT, Type
 from sssgen.lang.loader import load_text
+from sssgen.material import library
+from sssgen.pipeline.compiler import transpile
+from sssgen.support.diagnostics import SssgenError
 from sssgen.targets import descriptor
 from sssgen.targets.wgsl_half import half_text
 

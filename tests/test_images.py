@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sssgen.diagnostics import SssgenError
-from sssgen.harness import png16
-from sssgen.harness.extras import need
-from sssgen.harness.images import encode_srgb, png_bytes, read, write_exr, write_png
+from sssgen.harness.pictures import png16
+from sssgen.harness.pictures.images import encode_srgb, png_bytes, read, write_exr, write_png
 from sssgen.harness.scenes.camera import Camera
+from sssgen.support.diagnostics import SssgenError
+from sssgen.support.extras import need
 
 Image = pytest.importorskip("PIL.Image", reason="Pillow is missing: pip install 'sssgen[render]'")
 pytest.importorskip("OpenEXR", reason="OpenEXR is missing: pip install 'sssgen[render]'")

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from sssgen.ir import intervals
 from sssgen.ir.formats import FLOAT16, FLOAT32, Format
-from sssgen.passes import intervals
-from sssgen.passes.intervals import INF, Range
+from sssgen.ir.intervals import INF, Range
 
 ROUNDS, MEMBERS = 400, 24
 ENDS = (0.0, 1.0, -1.0, 0.5, 2.0, 3.0, 1e-30, 1e-3, 1e6, 1e30, 0.1, 255.0, -1e-30, -0.1, -7.5, -1e6, -1e30)

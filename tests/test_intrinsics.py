@@ -17,21 +17,7 @@ import pytest
 from sssgen.ir import signatures
 from sssgen.ir.intrinsics import BUILTINS, Builtin
 from sssgen.ir.signatures import candidates, overload, parse, resolve, text
-from sssgen.ir.types import (
-    BOOL,
-    FLOAT,
-    INT,
-    UINT,
-    VEC2,
-    VEC3,
-    VEC4,
-    Matrix,
-    Sampler,
-    Scalar,
-    Type,
-    Vector,
-    kind_of,
-)
+from sssgen.ir.types import BOOL, FLOAT, INT, UINT, VEC2, VEC3, VEC4, Matrix, Sampler, Scalar, Type, Vector, kind_of
 from sssgen.targets import numpy_runtime as rt
 
 # Chapter 8 of GLSL ES 1.00 to GLSL 4.60: what is computed by a function without out parameters.

@@ -10,16 +10,23 @@ from typing import Any
 
 import pytest
 
-from sssgen import cache
-from sssgen.cli import main
-from sssgen.commands.chart import summary
-from sssgen.diagnostics import SssgenError
+from sssgen.cli.chart import summary
+from sssgen.cli.main import main
 from sssgen.harness.backends import Backend
-from sssgen.lab import candidates, chart, chart_gpu, executor, measure, references, situation, work
-from sssgen.lab.chart import Settings
-from sssgen.lab.drawing.record import checked, hypervolume, to_csv, to_json
-from sssgen.lab.executor import Failure
-from sssgen.lab.situation import Situation
+from sssgen.lab.chart import charting as chart
+from sssgen.lab.chart.charting import Settings
+from sssgen.lab.chart.record import checked, hypervolume, to_csv, to_json
+from sssgen.lab.gpu import chart_times as chart_gpu
+from sssgen.lab.jobs import executor
+from sssgen.lab.jobs import work_items as work
+from sssgen.lab.jobs.executor import Failure
+from sssgen.lab.measure import candidates
+from sssgen.lab.measure import measurement as measure
+from sssgen.lab.measure import scene_references as references
+from sssgen.lab.scene import measured_scene as situation
+from sssgen.lab.scene.measured_scene import Situation
+from sssgen.support import cache
+from sssgen.support.diagnostics import SssgenError
 
 pytest.importorskip("scipy")
 pytest.importorskip("mitsuba")

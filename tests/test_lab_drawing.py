@@ -19,14 +19,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sssgen.diagnostics import SssgenError
 from sssgen.harness.backends.browser_page import find
-from sssgen.lab import drawing
-from sssgen.lab.drawing import figure
-from sssgen.lab.drawing.layout import LONGEST_NOTE, NOTE, Chart, chart, series, styles
-from sssgen.lab.drawing.record import checked, front, hypervolume, measures, to_csv, to_json
-from sssgen.lab.drawing.scale import number, scale, tick
-from sssgen.lab.drawing.summary import medians
+from sssgen.lab.chart import drawing
+from sssgen.lab.chart.drawing import figure
+from sssgen.lab.chart.drawing.layout import LONGEST_NOTE, NOTE, Chart, chart, series, styles
+from sssgen.lab.chart.drawing.scale import number, scale, tick
+from sssgen.lab.chart.drawing.summary import medians
+from sssgen.lab.chart.record import checked, front, hypervolume, measures, to_csv, to_json
+from sssgen.support.diagnostics import SssgenError
 
 SCENES = {"slab": "A slab <b>&", "ball": "Ball, lit from behind", "cube": "Marble $x^2$ cube"}
 OURS = ("march_light", "thinness_uniform", "thinness_hemisphere", "constant_thickness", "thickness_map")

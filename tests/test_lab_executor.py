@@ -17,17 +17,18 @@ import numpy as np
 import pytest
 
 from executor_items import runs
-from sssgen import cli
-from sssgen.diagnostics import SssgenError
-from sssgen.harness.stress.report import Report, as_json
-from sssgen.harness.stress.run import Machines, Settings, stress
-from sssgen.harness.stress.specimen import specimens
-from sssgen.lab import cluster, work
-from sssgen.lab.executor import Failure, Item, failures, run
-from sssgen.lab.progress import Bar
-from sssgen.lab.store import Store, decoded, encoded
-from sssgen.lab.stressing import spread
-from sssgen.lab.work import execute, task
+from sssgen.cli import main as cli
+from sssgen.harness.stress.stress_report import Report, as_json
+from sssgen.harness.stress.stress_run import Machines, Settings, stress
+from sssgen.harness.stress.subject import specimens
+from sssgen.lab.jobs import dask_cluster as cluster
+from sssgen.lab.jobs import work_items as work
+from sssgen.lab.jobs.executor import Failure, Item, failures, run
+from sssgen.lab.jobs.result_store import Store, decoded, encoded
+from sssgen.lab.jobs.stress_items import spread
+from sssgen.lab.jobs.work_items import execute, task
+from sssgen.support.diagnostics import SssgenError
+from sssgen.support.progress import Bar
 
 
 @pytest.fixture(autouse=True)
@@ -89,7 +90,7 @@ def test_keys() -> None:
     one = Item("executor_items:echo", (1,), "one")
     assert task(one).key == task(one._replace(name="another name")).key
     others = [one._replace(arguments=(2,)), one._replace(function="executor_items:fail")]
-    others += [one._replace(function="sssgen.lab.progress:Bar")]
+    others += [one._replace(function="sssgen.support.progress:Bar")]
     assert len({task(other).key for other in [one, *others]}) == 4
 
 
@@ -122,8 +123,8 @@ def test_damaged_entries_are_made_again(tmp_path: Path) -> None:
 
 
 def test_no_cache_folder_is_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("sssgen.cache._folder", "")
-    monkeypatch.setattr("sssgen.cache._known", True)
+    monkeypatch.setattr("sssgen.support.cache._folder", "")
+    monkeypatch.setattr("sssgen.support.cache._known", True)
     store = Store()
     run([Item("executor_items:echo", (1,))], processes=0, store=store)
     assert not store.folder and len(store.memory) == 1
@@ -321,7 +322,7 @@ def test_the_command_shares_out(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_pictures_apart_are_the_same_when_they_are_shared_out() -> None:
-    todo = [Item("sssgen.lab.rendering:apart", ("resin_inlay", ("numpy-f32", "numpy"), (32, 24), 1))]
+    todo = [Item("sssgen.lab.jobs.render_items:apart", ("resin_inlay", ("numpy-f32", "numpy"), (32, 24), 1))]
     [[single, same]] = here = run(todo, processes=0, store=Store(""))
     assert 0.0 < single.worst < 1.0 and single.beyond == 0 and same == (0.0, 0)
     assert as_bytes(run(todo, processes=1, store=Store(""))) == as_bytes(here)

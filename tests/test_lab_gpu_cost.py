@@ -11,16 +11,19 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from sssgen.diagnostics import SssgenError
-from sssgen.harness import backends, evaluate, render
+from sssgen.harness import backends
 from sssgen.harness.backends import Backend
-from sssgen.harness.compare import compare
-from sssgen.harness.images import decode_srgb
-from sssgen.harness.probes import subject
-from sssgen.harness.scenes import scene
+from sssgen.harness.evaluate import evaluation as evaluate
+from sssgen.harness.evaluate.probes import subject
+from sssgen.harness.pictures.images import decode_srgb
+from sssgen.harness.pictures.picture_difference import compare
+from sssgen.harness.render import scene_render as render
+from sssgen.harness.scenes import scene_loading
 from sssgen.harness.scenes.camera import Camera
-from sssgen.lab import gpu_cost, gpu_programs
-from sssgen.lab.gpu_cost import Measured, Program
+from sssgen.lab.gpu import gpu_timing as gpu_cost
+from sssgen.lab.gpu import timed_programs as gpu_programs
+from sssgen.lab.gpu.gpu_timing import Measured, Program
+from sssgen.support.diagnostics import SssgenError
 
 SIZE = (64, 36)
 LOOP = """#version 330 core
@@ -141,7 +144,7 @@ def test_evaluations_add_up() -> None:
 
 def test_a_material_has_its_scene_s_colours(opengl: Backend) -> None:
     """The pass over points stretches what the camera sees, so that only the mean is that of the picture."""
-    shown = render.with_samples(scene.load("paper_lantern"), 1)
+    shown = render.with_samples(scene_loading.load("paper_lantern"), 1)
     points = gpu_programs.surface_points(shown, SIZE)
     made = gpu_cost.picture(gpu_programs.of_material("lantern", shown.material, shown, points), SIZE)[..., :3]
     picture = render.render(shown, opengl, size=SIZE)
@@ -150,7 +153,7 @@ def test_a_material_has_its_scene_s_colours(opengl: Backend) -> None:
 
 
 def test_a_material_with_its_own_camera_draws_its_picture(opengl: Backend) -> None:
-    shown = dataclasses.replace(render.with_samples(scene.load("jelly_cubes"), 1), size=SIZE)
+    shown = dataclasses.replace(render.with_samples(scene_loading.load("jelly_cubes"), 1), size=SIZE)
     points = gpu_programs.surface_points(shown, SIZE)
     made = gpu_cost.picture(gpu_programs.of_material("cubes", shown.material, shown, points), SIZE)[::-1, :, :3]
     picture = render.render(shown, opengl)
@@ -158,14 +161,14 @@ def test_a_material_with_its_own_camera_draws_its_picture(opengl: Backend) -> No
 
 
 def test_costs_of_materials() -> None:
-    cheap, dear = (scene.load(name) for name in ("resin_inlay", "wax_suzanne"))
+    cheap, dear = (scene_loading.load(name) for name in ("resin_inlay", "wax_suzanne"))
     points = [gpu_programs.Point(one.material, one.material, one) for one in (cheap, dear)]
     found = gpu_programs.costs(points, size=SIZE, rounds=3)
     assert found.ratio("wax_suzanne", "resin_inlay").median > 3.0
 
 
 def test_a_camera_that_sees_nothing() -> None:
-    shown = scene.load("wax_suzanne")
+    shown = scene_loading.load("wax_suzanne")
     away = Camera(position=shown.camera.position, target=(0.0, 100.0, 0.0), field_of_view=1.0)
     with pytest.raises(SssgenError, match="sees nothing"):
         gpu_programs.surface_points(dataclasses.replace(shown, camera=away), SIZE)

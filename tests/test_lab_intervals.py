@@ -11,7 +11,7 @@ import numpy.typing as npt
 import pytest
 
 from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
-from sssgen.lab.intervals import intervals, merged, thickness
+from sssgen.lab.reference.inside_lengths import intervals, merged, thickness
 
 Array = npt.NDArray[np.float64]
 

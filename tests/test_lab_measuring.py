@@ -12,26 +12,42 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from sssgen import cache
-from sssgen.compiler import all_targets, compile
-from sssgen.diagnostics import SssgenError
 from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Ball, Box, Union
 from sssgen.harness.scenes.scene import Light
-from sssgen.lab import candidates, fit, measure, problem, references, situation, supply
-from sssgen.lab.body import body
-from sssgen.lab.candidates import Candidate
-from sssgen.lab.chain import Chain, Stage, material_of, material_text
-from sssgen.lab.emission import material_files, stages_of
-from sssgen.lab.fit import Fitted
-from sssgen.lab.intervals import thickness
-from sssgen.lab.measure import View
-from sssgen.lab.media import Medium
-from sssgen.lab.pick import Pick
-from sssgen.lab.points import points
-from sssgen.lab.problem import Problem, Seen
-from sssgen.lab.situation import Situation
-from sssgen.material import parse_material
+from sssgen.lab.chart.picked_material import material_files, stages_of
+from sssgen.lab.chart.picking import Pick
+from sssgen.lab.measure import (
+    candidates,
+    problem,
+)
+from sssgen.lab.measure import (
+    fitting as fit,
+)
+from sssgen.lab.measure import (
+    measurement as measure,
+)
+from sssgen.lab.measure import (
+    scene_inputs as supply,
+)
+from sssgen.lab.measure import (
+    scene_references as references,
+)
+from sssgen.lab.measure.candidates import Candidate
+from sssgen.lab.measure.fitting import Fitted
+from sssgen.lab.measure.measured_chain import Chain, Stage, material_of, material_text
+from sssgen.lab.measure.measurement import View
+from sssgen.lab.measure.problem import Problem, Seen
+from sssgen.lab.reference.inside_lengths import thickness
+from sssgen.lab.scene import measured_scene as situation
+from sssgen.lab.scene.measured_scene import Situation
+from sssgen.lab.scene.media import Medium
+from sssgen.lab.scene.scene_body import body
+from sssgen.lab.scene.view_points import points
+from sssgen.material.material_loading import parse_material
+from sssgen.pipeline.compiler import all_targets, compile
+from sssgen.support import cache
+from sssgen.support.diagnostics import SssgenError
 
 pytest.importorskip("scipy")
 pytest.importorskip("flip_evaluator")

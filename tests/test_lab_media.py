@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sssgen.diagnostics import SssgenError
-from sssgen.lab.media import Medium, media, preset
+from sssgen.lab.scene.media import Medium, media, preset
+from sssgen.support.diagnostics import SssgenError
 
 # The diffuse reflectance that the same table gives beside the coefficients.
 REFLECTANCES = {

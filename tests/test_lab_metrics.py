@@ -7,7 +7,7 @@ from math import isnan, sqrt
 import numpy as np
 import pytest
 
-from sssgen.lab.metrics import EPSILON, compare, flip
+from sssgen.lab.measure.error_metric import EPSILON, compare, flip
 
 
 def test_by_hand() -> None:

@@ -12,11 +12,14 @@ from typing import Any
 
 import pytest
 
-from sssgen.cli import main
-from sssgen.diagnostics import SssgenError
-from sssgen.lab import candidates, chart, executor, situation
-from sssgen.lab.chart import Settings
-from sssgen.lab.pick import Pick, allowed, chosen, limit_of, pick
+from sssgen.cli.main import main
+from sssgen.lab.chart import charting as chart
+from sssgen.lab.chart.charting import Settings
+from sssgen.lab.chart.picking import Pick, allowed, chosen, limit_of, pick
+from sssgen.lab.jobs import executor
+from sssgen.lab.measure import candidates
+from sssgen.lab.scene import measured_scene as situation
+from sssgen.support.diagnostics import SssgenError
 
 
 def point(chain: Sequence[str], cost: float, error: float, role: str = "material", **more: Any) -> dict[str, Any]:
@@ -143,7 +146,7 @@ def test_a_scene_without_points() -> None:
 @pytest.fixture
 def charted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     """A small chart of a plate in a cache of its own; the cache's folder."""
-    from sssgen import cache
+    from sssgen.support import cache
 
     folder = tmp_path / "cache"
     monkeypatch.setenv("SSSGEN_CACHE", str(folder))
@@ -155,7 +158,7 @@ def charted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 
 @pytest.fixture(autouse=True)
 def known_anew() -> Any:
-    from sssgen import cache
+    from sssgen.support import cache
 
     yield
     cache._known = False
@@ -241,6 +244,6 @@ def test_a_process_of_its_own_answers_from_the_cache(charted: str) -> None:
     )  # fmt: skip
     assert made.returncode == 0, made.stderr
     # what measures is not even loaded
-    assert "sssgen.lab.pick" in made.stderr
+    assert "sssgen.lab.chart.picking" in made.stderr
     for heavy in ("scipy", "mitsuba", "embreex", "flip_evaluator"):
         assert f" {heavy}\n" not in made.stderr, heavy

@@ -9,9 +9,9 @@ import pytest
 
 from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Ball, Box, Geometry, Slab
-from sssgen.lab.points import points
-from sssgen.lab.refraction import plane_offset, refracted, seen
-from sssgen.lab.situation import Inlay, Situation
+from sssgen.lab.reference.inlay_refraction import plane_offset, refracted, seen
+from sssgen.lab.scene.measured_scene import Inlay, Situation
+from sssgen.lab.scene.view_points import points
 
 ANGLES = np.radians([15.0, 30.0, 45.0, 60.0, 75.0, 85.0])
 PUBLISHED = {

@@ -11,14 +11,17 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from sssgen.cli import main
-from sssgen.diagnostics import SssgenError
-from sssgen.harness.evaluate import half
+from sssgen.cli.main import main
+from sssgen.harness.evaluate.evaluation import half
 from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
-from sssgen.harness.scenes.scene import parse_scene
-from sssgen.lab import body, media, references, situation
-from sssgen.lab.points import points
-from sssgen.lab.situation import Inlay, Situation
+from sssgen.harness.scenes.scene_loading import parse_scene
+from sssgen.lab.measure import scene_references as references
+from sssgen.lab.scene import measured_scene as situation
+from sssgen.lab.scene import media
+from sssgen.lab.scene import scene_body as body
+from sssgen.lab.scene.measured_scene import Inlay, Situation
+from sssgen.lab.scene.view_points import points
+from sssgen.support.diagnostics import SssgenError
 from sssgen.targets.numpy_textures import Texture
 
 BALL = '[geometry]\nkind = "ball"\n'

@@ -10,16 +10,23 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from sssgen import cache
-from sssgen.diagnostics import SssgenError
 from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Ball, Box, Distance, Geometry, Slab, Torus
-from sssgen.lab import transport
-from sssgen.lab.closed_forms import ball_once, h_function, half_space, henyey_greenstein, slab_once, unscattered
-from sssgen.lab.media import Medium, preset
-from sssgen.lab.shapes_mesh import mesh_of
-from sssgen.lab.transport import Light, Transport, radiance, radiance_along
-from sssgen.lab.transport_mitsuba import Renderer
+from sssgen.lab.reference import transport
+from sssgen.lab.reference.closed_forms import (
+    ball_once,
+    h_function,
+    half_space,
+    henyey_greenstein,
+    slab_once,
+    unscattered,
+)
+from sssgen.lab.reference.geometry_mesh import mesh_of
+from sssgen.lab.reference.transport import Light, Transport, radiance, radiance_along
+from sssgen.lab.reference.transport_mitsuba import Renderer
+from sssgen.lab.scene.media import Medium, preset
+from sssgen.support import cache
+from sssgen.support.diagnostics import SssgenError
 
 pytest.importorskip("mitsuba")
 iadpython = pytest.importorskip("iadpython")

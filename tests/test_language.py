@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from sssgen.diagnostics import SssgenError
 from sssgen.ir import nodes as ir
 from sssgen.ir.operators import PRECEDENCE
 from sssgen.ir.text import print_module
 from sssgen.ir.verify import verify
-from sssgen.lang.check import check
-from sssgen.lang.parser import parse
+from sssgen.lang.check.module_checker import check
+from sssgen.lang.syntax.parser import parse
+from sssgen.support.diagnostics import SssgenError
 
 
 def checked(source: str, included: ir.Module | None = None) -> ir.Module:

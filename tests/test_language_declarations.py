@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from sssgen.diagnostics import SssgenError
 from sssgen.ir import nodes as ir
+from sssgen.support.diagnostics import SssgenError
 from test_language import checked, text_of
 
 

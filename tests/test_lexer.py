@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sssgen.diagnostics import MAX_ERRORS, SssgenError
 from sssgen.ir.operators import PRECEDENCE
-from sssgen.lang.lexer import MAX_WORDS, scan
-from sssgen.lang.tokens import Comment
+from sssgen.lang.syntax.lexer import MAX_WORDS, scan
+from sssgen.lang.syntax.tokens import Comment
+from sssgen.support.diagnostics import MAX_ERRORS, SssgenError
 
 
 def types(text: str) -> list[str]:

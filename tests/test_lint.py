@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from sssgen.cli import main
-from sssgen.diagnostics import SssgenError
-from sssgen.harness.lint import MAY_FAIL, PROVEN, UNKNOWN, lint
+from sssgen.cli.main import main
+from sssgen.harness.lint_findings import MAY_FAIL, PROVEN, UNKNOWN, lint
+from sssgen.support.diagnostics import SssgenError
 
 HAZARDS = """\
 uniform float share : hint_range(0.0, 1.0) = 0.5;

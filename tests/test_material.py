@@ -11,11 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from snapshot import check_snapshot
-from sssgen import roles
-from sssgen.diagnostics import MAX_ERRORS, SssgenError
-from sssgen.material import Material, examples, load_material, parse_material
-from sssgen.passes.chain import DEFAULTS, INPUTS
-from sssgen.toml_source import MAX_CHARACTERS, parse
+from sssgen.material import roles
+from sssgen.material.chain_assembly import DEFAULTS, INPUTS
+from sssgen.material.material_loading import examples, load_material, parse_material
+from sssgen.material.model import Material
+from sssgen.support.diagnostics import MAX_ERRORS, SssgenError
+from sssgen.support.toml_source import MAX_CHARACTERS, parse
 
 HEAD = '[material]\nname = "wax"\n'
 CHAIN = """
@@ -156,7 +157,7 @@ def test_two_stages_of_one_technique_have_their_own_parameters_but_share_those_o
 
 @pytest.mark.parametrize("name", sorted({*INPUTS, *DEFAULTS}))
 def test_the_quantities_of_chain_values_are_those_of_their_types(name: str) -> None:
-    from sssgen.lang.quantities import QUANTITIES
+    from sssgen.lang.check.quantities import QUANTITIES
 
     type_ = INPUTS[name] if name in INPUTS else DEFAULTS[name][0]
     quantity = roles.VALUE_QUANTITIES.get(name)
@@ -165,7 +166,7 @@ def test_the_quantities_of_chain_values_are_those_of_their_types(name: str) -> N
 
 
 def test_every_technique_of_the_library_keeps_to_its_role() -> None:
-    from sssgen.library import load_all
+    from sssgen.material.library import load_all
 
     assert [wrong for technique in load_all() if (wrong := roles.wrong_result(technique))] == []
 

@@ -8,7 +8,7 @@ import pytest
 
 from sssgen.ir.nodes import NOWHERE, Uniform
 from sssgen.ir.types import BY_NAME, Array
-from sssgen.material_values import WrongValue, linear, read_value
+from sssgen.material.values import WrongValue, linear, read_value
 
 
 def uniform(type_: str, *hints: tuple[str, tuple[float | str, ...]], length: int = 0) -> Uniform:

@@ -12,7 +12,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ir_interpreter import Interpreter
-from sssgen.compiler import transpile
 from sssgen.ir.nodes import Module
 from sssgen.ir.text import print_module, read_module
 from sssgen.ir.verify import check_module, verify
@@ -20,10 +19,11 @@ from sssgen.lang.polyfills import polyfill
 from sssgen.passes.fold import fold
 from sssgen.passes.hoist import hoist
 from sssgen.passes.inline import inline
-from sssgen.passes.legalise import legalise
+from sssgen.passes.legal.legalise import legalise
 from sssgen.passes.prune import prune
-from sssgen.passes.variables_to_parameters import variables_to_parameters
-from sssgen.programs import plain_module
+from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
+from sssgen.pipeline.compiler import transpile
+from sssgen.pipeline.programs import plain_module
 from sssgen.targets import descriptor
 from sssgen.targets import numpy_runtime as rt
 from whole_shaders import FRAGMENT, OLD, SEVERAL, VERTEX

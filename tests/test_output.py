@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from snapshot import check_snapshot
-from sssgen.diagnostics import SssgenError
-from sssgen.output import check_names, write_files
+from sssgen.support.diagnostics import SssgenError
+from sssgen.support.file_writer import check_names, write_files
 
 
 @pytest.fixture(autouse=True)

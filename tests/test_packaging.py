@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from sssgen.data import folder
-from sssgen.material import examples
+from sssgen.material.material_loading import examples
+from sssgen.support.paths import folder
 from sssgen.version import VERSION
 
 ROOT = Path(__file__).parents[1]

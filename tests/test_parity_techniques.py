@@ -10,14 +10,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sssgen import cli, library
+from sssgen.cli import main as cli
 from sssgen.harness import backends
 from sssgen.harness.backends import Backend
-from sssgen.harness.deviation import GOAL, MARGIN, blur, compared, deviation
-from sssgen.harness.evaluate import fitted, run
+from sssgen.harness.evaluate.deviation import GOAL, MARGIN, blur, compared, deviation
+from sssgen.harness.evaluate.evaluation import fitted, run
+from sssgen.harness.evaluate.probes import subject
+from sssgen.harness.evaluate.random_inputs import samples
 from sssgen.harness.parity_techniques import BACKENDS, BOUND_LANES, KNOWN, LANES, cases, excess, measure
-from sssgen.harness.probes import subject
-from sssgen.harness.samples import samples
+from sssgen.material import library
 from sssgen.targets.numpy_textures import Texture
 
 PAGE = Path(__file__).parent.parent / "docs" / "parity_techniques.md"

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 
 from pass_cases import assert_is, module_of, text
 from shaded_programs import module_for
-from sssgen.compiler import transpile
-from sssgen.diagnostics import SssgenError
 from sssgen.harness.compilers import Compiler, Source, errors
-from sssgen.harness.compilers.calls import functions
+from sssgen.harness.compilers.calling_entry import functions
 from sssgen.passes.hoist import hoist
+from sssgen.pipeline.compiler import transpile
+from sssgen.support.diagnostics import SssgenError
 
 HEAD = """
     uniform sampler2D map; uniform sampler2D other; uniform float depth = 1.0; uniform int steps = 4;

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pass_cases import assert_is, key, module_of
 from sssgen.ir.verify import verify
-from sssgen.passes.parameters import uniforms_to_parameters
+from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
 
 SOURCE = """
     uniform sampler2D map; uniform float depth = 1.0; uniform vec3 tint = vec3(1.0); const float HALF = 0.5;

@@ -19,8 +19,8 @@ from sssgen.passes.fold import fold
 from sssgen.passes.hoist import hoist
 from sssgen.passes.inline import inline
 from sssgen.passes.names import rename
-from sssgen.passes.parameters import uniforms_to_parameters
 from sssgen.passes.prune import prune
+from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
 
 SEEDS = st.integers(0, 1 << 32)
 VALUES = {"map": None, "level": 2.0, "mode": 1, "tint": (0.5, 1.0, 2.0)}

@@ -17,10 +17,10 @@ from typing import NamedTuple
 import pytest
 
 import sssgen
-from sssgen.compiler import transpile
 from sssgen.harness.compilers import Source
 from sssgen.ir.nodes import Function, Module
 from sssgen.lang.loader import merge
+from sssgen.pipeline.compiler import transpile
 from validate import TARGETS, module_of, printed, validate_all
 
 FOLDER = Path(__file__).parent / "pitfalls"

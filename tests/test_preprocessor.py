@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from preprocessed import faults, run, spaced, words
-from sssgen.diagnostics import SssgenError
-from sssgen.lang.lexer import scan
-from sssgen.lang.preprocessor import MAX_INCLUDED
+from sssgen.lang.preprocess.preprocessor import MAX_INCLUDED
+from sssgen.lang.syntax.lexer import scan
+from sssgen.support.diagnostics import SssgenError
 
 # Macros
 

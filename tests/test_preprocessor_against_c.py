@@ -10,10 +10,10 @@ import pytest
 
 from preprocessed import run
 from skips import or_skip
-from sssgen.diagnostics import SssgenError
 from sssgen.harness.compilers import CompilerMissing
-from sssgen.lang.lexer import scan
-from sssgen.lang.tokens import Token
+from sssgen.lang.syntax.lexer import scan
+from sssgen.lang.syntax.tokens import Token
+from sssgen.support.diagnostics import SssgenError
 
 MACROS, FUNCTIONS = "ABCD", "fgh"
 VALUES = ["1", "-2", "(1)", "(A + 1)", "(B * 2)", "A", "vec2(A)", "vec2(1, 2)"]

@@ -7,8 +7,8 @@ import time
 import pytest
 
 from preprocessed import faults, run, words
-from sssgen.diagnostics import SssgenError
-from sssgen.lang.preprocessor import MAX_CONDITIONALS
+from sssgen.lang.preprocess.preprocessor import MAX_CONDITIONALS
+from sssgen.support.diagnostics import SssgenError
 
 DOUBLED = "".join(f"#define a{n} a{n - 1} a{n - 1}\n" for n in range(1, 21))
 

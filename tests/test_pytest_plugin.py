@@ -11,10 +11,10 @@ from pathlib import Path
 
 import pytest
 
-# pytester forgets the modules that a run was the first to import, and their classes would then be there twice
-from sssgen.harness import render  # noqa: F401
 from sssgen.harness.backends import Backend
-from sssgen.harness.testing import agreement, compiles, golden, started  # noqa: F401
+
+# pytester forgets the modules that a run was the first to import, and their classes would then be there twice
+from sssgen.harness.render import scene_render as render  # noqa: F401
 
 pytest.importorskip("flip_evaluator", reason="flip-evaluator is missing: pip install 'sssgen[render]'")
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from sssgen.diagnostics import SssgenError
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import FLOAT, VEC3, Type, spell
 from sssgen.ir.verify import verify
-from sssgen.lang import quantities as q
-from sssgen.lang.check import check
-from sssgen.lang.parser import parse
-from sssgen.lang.quantities import QUANTITIES
+from sssgen.lang.check import quantities as q
+from sssgen.lang.check.module_checker import check
+from sssgen.lang.check.quantities import QUANTITIES
+from sssgen.lang.syntax.parser import parse
+from sssgen.support.diagnostics import SssgenError
 
 
 def checked(source: str) -> None:

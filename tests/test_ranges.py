@@ -9,12 +9,12 @@ import pytest
 from pass_cases import key, module_of
 from range_programs import Checker as CheckedRun
 from range_programs import RangePrograms, inputs, recorded
-from sssgen.diagnostics import SssgenError
 from sssgen.ir import nodes as ir
+from sssgen.ir.intervals import Range
 from sssgen.ir.types import Array, Matrix, Struct
 from sssgen.ir.walk import all_expressions, statements
-from sssgen.passes.intervals import Range
-from sssgen.passes.ranges import analyse
+from sssgen.passes.ranges.range_pass import analyse
+from sssgen.support.diagnostics import SssgenError
 
 PROGRAMS, RUNS = 250, 3
 

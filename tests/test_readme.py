@@ -72,7 +72,7 @@ def test_the_table_of_targets() -> None:
 
 
 def test_every_command_is_in_the_readme() -> None:
-    from sssgen.cli import parser
+    from sssgen.cli.main import parser
 
     text = read(README).partition("\n## The command line\n")[2].partition("\n## ")[0]
     (commands,) = [action for action in parser()._actions if action.dest == "COMMAND"]
@@ -181,7 +181,7 @@ def test_the_webgpu_page_draws_every_example(tmp_path: Path, compiler: Callable[
     """Its modules, in Dawn without a GPU: every binding, offset and attribute is checked against the shader."""
     tint = compiler("tint")
     from sssgen import compile
-    from sssgen.material import examples
+    from sssgen.material.material_loading import examples
 
     for name in examples():
         for file, text in compile(name, "wgsl").files.items():

@@ -11,14 +11,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sssgen.cli import main
-from sssgen.diagnostics import SssgenError
-from sssgen.harness import backends, dice, images
+from sssgen.cli.main import main
+from sssgen.harness import backends
 from sssgen.harness.backends import Backend
-from sssgen.harness.render import Rendered, render
+from sssgen.harness.pictures import images
+from sssgen.harness.render import pixel_mesh as dice
+from sssgen.harness.render.scene_render import Rendered, render
 from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Ball
-from sssgen.harness.scenes.scene import load
+from sssgen.harness.scenes.scene_loading import load
+from sssgen.support.diagnostics import SssgenError
 
 DRAWING = ["gl", "gl-es", "webgpu", "browser", "hlsl", "hlsl-glslang"]
 LAMP = """

@@ -12,14 +12,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sssgen.cli import main
-from sssgen.diagnostics import SssgenError
-from sssgen.harness import backends, images
+from sssgen.cli.main import main
+from sssgen.harness import backends
 from sssgen.harness.backends import Backend, Text
-from sssgen.harness.backends.unity import UnityHLSL
-from sssgen.harness.isolated import isolated
-from sssgen.harness.render import Rendered, render
-from sssgen.harness.scenes.scene import Scene, parse_scene
+from sssgen.harness.backends.isolated import isolated
+from sssgen.harness.backends.unity_backend import UnityHLSL
+from sssgen.harness.pictures import images
+from sssgen.harness.render.scene_render import Rendered, render
+from sssgen.harness.scenes.scene import Scene
+from sssgen.harness.scenes.scene_loading import parse_scene
+from sssgen.support.diagnostics import SssgenError
 from test_render import BALL, LAMP, SIZE, apart
 
 UNITY = ["unity", "unity-urp"]

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from sssgen import library
-from sssgen.harness.probes import subject
+from sssgen.harness.evaluate.probes import subject
 from sssgen.harness.safety import Safety, safety
-from sssgen.harness.stress.specimen import technique
-from sssgen.harness.stress.witness import sites, witness
+from sssgen.harness.stress.guard_witness import sites, witness
+from sssgen.harness.stress.subject import technique
+from sssgen.material import library
 
 PAGE = Path(__file__).parents[1] / "docs" / "safety.md"
 NAMES = [name for name, path in library.index().items() if library.folder_of(path) != "baselines"]

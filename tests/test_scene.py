@@ -7,10 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sssgen.diagnostics import SssgenError
 from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Ball, Box, Distance, Mesh, Slab, Torus
-from sssgen.harness.scenes.scene import DistanceTexture, Light, Picture, Scene, load, parse_scene
+from sssgen.harness.scenes.scene import DistanceTexture, Light, Picture, Scene
+from sssgen.harness.scenes.scene_loading import load, parse_scene
+from sssgen.support.diagnostics import SssgenError
 from sssgen.targets.numpy_textures import Texture
 
 HEAD = 'material = "paper_lantern"\n'

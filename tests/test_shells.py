@@ -14,15 +14,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sssgen.compiler import Compiled, all_targets, compile
 from sssgen.harness.backends import Array, Backend, Call, Text
-from sssgen.harness.backends.unity import UnityHLSL
+from sssgen.harness.backends.unity_backend import UnityHLSL
+from sssgen.harness.check.compiler_inputs import sources
 from sssgen.harness.compilers import Source
-from sssgen.harness.shade import shade
-from sssgen.harness.shell import Shell
-from sssgen.harness.sources import sources
+from sssgen.harness.render.shade import shade
+from sssgen.harness.render.shell_values import Shell
 from sssgen.ir.types import VEC3
-from sssgen.material import examples, load_material
+from sssgen.material.material_loading import examples, load_material
+from sssgen.pipeline.compiler import Compiled, all_targets, compile
 
 PLAIN = ["numpy", "numpy-f32", "gl", "gl-es", "webgpu", "hlsl", "hlsl-glslang"]
 DRAWN = [*((name, probe) for name in [*PLAIN, "unity-urp"] for probe in ("lit", "unlit")), ("unity", "unlit")]
@@ -164,7 +164,7 @@ def test_hostile_points(
     machine, (points, shell) = backend(name), HOSTILE[case]
     if name.startswith("numpy"):  # without triangles, and with smaller numbers: the points may be one
         points = np.where(np.abs(points) < 1e-20, 0.0, points)
-    picture = shade(made(probe, machine.target.name), shell, machine, SIZE, points)
+    picture = shade(machine, made(probe, machine.target.name), shell, SIZE, points)
     assert_numbers(picture)
     if case != "model 0":  # which draws nothing
         assert inner(picture)[..., :3].min() > 0.05
@@ -176,7 +176,7 @@ def test_rays_of_a_matrix_of_0(
 ) -> None:
     machine = backend(name)
     shell = dataclasses.replace(SHELL, view_projection=np.zeros((4, 4)))
-    assert_numbers(shade(made("rays", machine.target.name), shell, machine, SIZE, None))
+    assert_numbers(shade(machine, made("rays", machine.target.name), shell, SIZE, None))
 
 
 @pytest.mark.parametrize("name", ["unity", "unity-urp"])
@@ -185,7 +185,7 @@ def test_rays_from_the_surface(
 ) -> None:
     """In Unity a ray ends on the mesh that it is drawn on."""
     machine, (points, shell) = backend(name), HOSTILE["camera at the surface"]
-    picture = shade(made("rays", machine.target.name), shell, machine, SIZE, points)
+    picture = shade(machine, made("rays", machine.target.name), shell, SIZE, points)
     assert_numbers(picture)
     assert inner(picture)[..., :3].min() > 0.05
 
@@ -196,7 +196,7 @@ def test_examples_on_hostile_points(material: str, name: str, backend: Callable[
     machine = backend(name)
     compiled = compile(load_material(material), machine.target.name)
     for points, shell in HOSTILE.values():
-        assert_numbers(shade(compiled, shell, machine, SIZE, points))
+        assert_numbers(shade(machine, compiled, shell, SIZE, points))
 
 
 @pytest.mark.parametrize("name", ["gl", "gl-es", "webgpu", "hlsl", "unity-urp", "numpy-f32"])
@@ -207,7 +207,7 @@ def test_a_short_normal_is_no_sharp_mirror(name: str, backend: Callable[[str], B
     brightest = []
     for length in (1.0, 1e-4, 1e-8, 1e-12, 1e-18, 1e-25, 0.0):
         points = grid(normal=length * np.array([0.3, 0.0, 0.954]))
-        brightest.append(inner(shade(compiled, SHELL, machine, SIZE, points))[..., :3].max())
+        brightest.append(inner(shade(machine, compiled, SHELL, SIZE, points))[..., :3].max())
     np.testing.assert_allclose(brightest[1:4], brightest[0], rtol=0.05)
     np.testing.assert_allclose(brightest[4:], SHELL.ambient[0], rtol=1e-3)
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import sssgen
-from sssgen.material import examples
+from sssgen.material.material_loading import examples
 
 FOLDER = Path(__file__).parent / "snapshots" / "emitted"
 DOCS = Path(__file__).parent.parent / "docs"

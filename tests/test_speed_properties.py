@@ -11,10 +11,14 @@ from pathlib import Path
 
 import pytest
 
-from sssgen import cache, cli, compiler, emitted, programs
+from sssgen.cli import main as cli
 from sssgen.ir.types import Sampler, kind_of
-from sssgen.material import Material, Stage, examples, load_material, parse_material
-from sssgen.targets import emit
+from sssgen.material.material_loading import examples, load_material, parse_material
+from sssgen.material.model import Material, Stage
+from sssgen.pipeline import compiler, programs
+from sssgen.pipeline import emitted_cache as emitted
+from sssgen.support import cache
+from sssgen.targets import assemble as emit
 
 TARGETS = list(compiler.all_targets())
 LANTERN = Path(examples()["paper_lantern"]).read_text(encoding="utf-8")
@@ -54,19 +58,30 @@ def loaded(code: str, kept: Path, *names: str) -> set[str]:
 
 
 def test_the_command_line_loads_nothing_heavy(tmp_path: Path) -> None:
-    heavy = ("numpy", "lark", "jinja2", "json", "tomllib", "argparse", "pathlib", "sssgen.compiler")
+    heavy = ("numpy", "lark", "jinja2", "json", "tomllib", "argparse", "pathlib", "sssgen.pipeline.compiler")
     assert loaded("import sssgen.cli, sssgen.commands.emit", tmp_path, *heavy) == set()
 
 
 def test_what_an_emit_with_warm_caches_loads(tmp_path: Path) -> None:
     source, kept = tmp_path / "lantern.toml", tmp_path / "cache"
-    heavy = ("numpy", "lark", "jinja2", "tomllib", "pathlib", "sssgen.programs", "sssgen.lang.check", "sssgen.material")
+    heavy = (
+        "numpy",
+        "lark",
+        "jinja2",
+        "tomllib",
+        "pathlib",
+        "sssgen.pipeline.programs",
+        "sssgen.lang.check.module_checker",
+        "sssgen.material.model",
+    )
     emit_all = f"from sssgen.cli import main; main(['emit', {str(source)!r}, '-t', 'all', '-o', {str(tmp_path)!r}])"
     source.write_text(LANTERN, encoding="utf-8")
-    assert {"lark", "jinja2", "sssgen.programs"} <= loaded(emit_all, kept, *heavy)
+    assert {"lark", "jinja2", "sssgen.pipeline.programs"} <= loaded(emit_all, kept, *heavy)
     assert loaded(emit_all, kept, *heavy) == set()
     source.write_text(LANTERN.replace(*EDITED), encoding="utf-8")
-    assert not {"numpy", "lark", "sssgen.programs", "sssgen.lang.check"} & loaded(emit_all, kept, *heavy)
+    assert not {"numpy", "lark", "sssgen.pipeline.programs", "sssgen.lang.check.module_checker"} & loaded(
+        emit_all, kept, *heavy
+    )
 
 
 # What is kept in the process

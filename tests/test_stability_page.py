@@ -14,9 +14,9 @@ import numpy.typing as npt
 import pytest
 from PIL import Image
 
-from sssgen.harness import images
 from sssgen.harness.backends import Backend
 from sssgen.harness.errata import ERRATA, OPEN, UNSHOWN, as_mended, as_published
+from sssgen.harness.pictures import images
 
 DOCS = Path(__file__).parents[1] / "docs"
 FOLDER = DOCS / "stability"

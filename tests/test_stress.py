@@ -17,16 +17,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sssgen.cli import main
+from sssgen.cli.main import main
 from sssgen.harness.backends import Backend
-from sssgen.harness.evaluate import Inputs
-from sssgen.harness.render import render
-from sssgen.harness.scenes import scene
-from sssgen.harness.stress import boundaries, dangerous, energy, jumps
-from sssgen.harness.stress.draw import contract, drawn
-from sssgen.harness.stress.judge import judged, non_finite
-from sssgen.harness.stress.run import Fault, Machines, Settings, exact, stress
-from sssgen.harness.stress.specimen import Specimen, specimens, technique
+from sssgen.harness.evaluate.evaluation import Inputs
+from sssgen.harness.render.scene_render import render
+from sssgen.harness.scenes import scene_loading
+from sssgen.harness.stress import boundaries, energy, jumps
+from sssgen.harness.stress import dangerous_inputs as dangerous
+from sssgen.harness.stress.contract_inputs import contract, drawn
+from sssgen.harness.stress.result_checks import judged, non_finite
+from sssgen.harness.stress.stress_run import Fault, Machines, Settings, exact, stress
+from sssgen.harness.stress.subject import Specimen, specimens, technique
 from sssgen.harness.stress.trial import RANDOM, Trial
 
 QUICK = ("numpy-f32", "gl")
@@ -110,8 +111,8 @@ def test_dangerous_row_meshes(tmp_path: Path) -> None:
     reason = "a mesh's distance needs libigl and trimesh: pip install 'sssgen[render]'"
     pytest.importorskip("igl", reason=reason)
     trimesh = pytest.importorskip("trimesh", reason=reason)
-    from sssgen.diagnostics import SssgenError
     from sssgen.harness.scenes.mesh import Mesh
+    from sssgen.support.diagnostics import SssgenError
 
     box = trimesh.creation.box()
     box.update_faces(np.arange(len(box.faces)) > 0)
@@ -130,7 +131,7 @@ def test_dangerous_row_lamp_at_surface_in_the_shell(backend: Callable[[str], Bac
         "[[light]]\nposition = [0.0, 0.0, 1.0]\ncolor = [100.0, 100.0, 100.0]\n",
         encoding="utf-8",
     )
-    picture = render(scene.load(str(tmp_path / "lamp.toml")), backend("gl")).linear
+    picture = render(scene_loading.load(str(tmp_path / "lamp.toml")), backend("gl")).linear
     assert not non_finite(picture).any() and picture.max() > 0.0
 
 

@@ -12,12 +12,12 @@ from collections.abc import Callable
 
 import pytest
 
-from sssgen.compiler import transpile
 from sssgen.harness.compilers import Source
 from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Module
 from sssgen.ir.signatures import overload, parse
+from sssgen.pipeline.compiler import transpile
 from sssgen.targets.descriptor import load
 from texts_of_glsl_4 import LATER
 from texts_of_reads import READS

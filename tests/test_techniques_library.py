@@ -9,18 +9,19 @@ from pathlib import Path
 
 import pytest
 
-from sssgen import library
-from sssgen.compiler import FORMS, Compiled
-from sssgen.compiler import compile as compile_material
 from sssgen.harness import compilers
+from sssgen.harness.check.compiler_inputs import sources
 from sssgen.harness.compilers import Compiler, errors
-from sssgen.harness.sources import sources
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Matrix, Sampler, Scalar
 from sssgen.lang.loader import load_file
-from sssgen.library import Technique
-from sssgen.material import Material, parse_material
-from sssgen.slots import candidates
+from sssgen.material import library
+from sssgen.material.library import Technique
+from sssgen.material.material_loading import parse_material
+from sssgen.material.model import Material
+from sssgen.material.slots import candidates
+from sssgen.pipeline.compiler import FORMS, Compiled
+from sssgen.pipeline.compiler import compile as compile_material
 from sssgen.targets import descriptor
 
 TESTS = Path(__file__).parent

@@ -14,15 +14,15 @@ import pytest
 
 from skips import compiler_or_skip
 from snapshot import FOLDER, check_snapshot
-from sssgen.compiler import transpile
-from sssgen.diagnostics import SssgenError
-from sssgen.harness import transpiled
 from sssgen.harness.backends import Backend
 from sssgen.harness.compilers import Source, errors, readers
-from sssgen.harness.includes import expanded
-from sssgen.harness.transpiled_report import BACKENDS
+from sssgen.harness.verify import verification as transpiled
+from sssgen.harness.verify.inline_includes import expanded
+from sssgen.harness.verify.verification_report import BACKENDS
 from sssgen.ir.text import print_module
-from sssgen.lang.glsl import load_glsl, load_glsl_text
+from sssgen.lang.plain_glsl import load_glsl, load_glsl_text
+from sssgen.pipeline.compiler import transpile
+from sssgen.support.diagnostics import SssgenError
 
 CORPUS = Path(__file__).parent / "transpile"
 FILES = sorted(path.name for path in CORPUS.iterdir() if path.is_file())

@@ -8,14 +8,14 @@ from pathlib import Path
 
 import pytest
 
-from sssgen.diagnostics import SssgenError
 from sssgen.harness.backends import Backend
-from sssgen.harness.deviation import GOAL
-from sssgen.harness.includes import expanded
-from sssgen.harness.plain_text import plain
-from sssgen.harness.transpiled import load, verify
-from sssgen.harness.transpiled_report import BACKENDS, Found, Report, Row
+from sssgen.harness.evaluate.deviation import GOAL
+from sssgen.harness.verify.inline_includes import expanded
+from sssgen.harness.verify.stage_variables import plain
+from sssgen.harness.verify.verification import load, verify
+from sssgen.harness.verify.verification_report import BACKENDS, Found, Report, Row
 from sssgen.ir.nodes import Module
+from sssgen.support.diagnostics import SssgenError
 
 SAMPLES = 200
 

@@ -9,7 +9,7 @@ import pytest
 from ir_interpreter import Interpreter
 from sssgen.ir.text import read_module
 from sssgen.ir.verify import check_module
-from sssgen.passes.uniform_structs import uniform_structs
+from sssgen.passes.stage.uniform_structs import uniform_structs
 from whole_shaders import TARGETS, whole, wrong
 
 LIGHTS = """struct Fall {

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from sssgen.compiler import transpile
-from sssgen.diagnostics import SssgenError
 from sssgen.harness.compilers import Source, check, errors
 from sssgen.ir.text import read_module
+from sssgen.pipeline.compiler import transpile
+from sssgen.support.diagnostics import SssgenError
 from test_module_variables import FUNCTIONS
 from whole_shaders import FRAGMENT, OLD, SEVERAL, STAGES, TARGETS, VERTEX, whole, wrong
 

@@ -17,11 +17,11 @@ import re
 from collections.abc import Mapping
 from textwrap import dedent
 
-from sssgen.compiler import transpile
-from sssgen.diagnostics import SssgenError
 from sssgen.ir import nodes as ir
 from sssgen.ir.types import BY_NAME, Type, spell, vector_of
 from sssgen.lang.loader import load_text
+from sssgen.pipeline.compiler import transpile
+from sssgen.support.diagnostics import SssgenError
 
 TARGETS = {
     "glsl": "glsl-330",

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from sssgen.compiler import transpile
 from sssgen.harness.compilers import Source, Stage, check, errors
 from sssgen.ir.text import read_module
 from sssgen.ir.verify import check_module
+from sssgen.pipeline.compiler import transpile
 
 FRAGMENT = """uniform vec3 iResolution = (1.0, 1.0, 1.0)
 uniform sampler2D map

@@ -14,13 +14,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from .version import VERSION as __version__
+from sssgen.version import VERSION as __version__
 
 if TYPE_CHECKING:
-    from .compiler import Compiled, all_targets, compile
-    from .diagnostics import SssgenError
-    from .library import load as load_technique
-    from .material import Material, load_material
+    from sssgen.material.library import load as load_technique
+    from sssgen.material.material_loading import load_material
+    from sssgen.material.model import Material
+    from sssgen.pipeline.compiler import Compiled, all_targets, compile
+    from sssgen.support.diagnostics import SssgenError
 
 __all__ = [
     "Compiled",
@@ -34,13 +35,13 @@ __all__ = [
 ]
 
 _PLACES = {
-    "Compiled": ("compiler", "Compiled"),
-    "compile": ("compiler", "compile"),
-    "all_targets": ("compiler", "all_targets"),
-    "SssgenError": ("diagnostics", "SssgenError"),
-    "load_technique": ("library", "load"),
-    "Material": ("material", "Material"),
-    "load_material": ("material", "load_material"),
+    "Compiled": ("pipeline.compiler", "Compiled"),
+    "compile": ("pipeline.compiler", "compile"),
+    "all_targets": ("pipeline.compiler", "all_targets"),
+    "SssgenError": ("support.diagnostics", "SssgenError"),
+    "load_technique": ("material.library", "load"),
+    "Material": ("material.model", "Material"),
+    "load_material": ("material.material_loading", "load_material"),
 }
 
 

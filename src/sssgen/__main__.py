@@ -1,6 +1,6 @@
 """`python -m sssgen` is `sssgen`."""
 
-from .cli import main
+from sssgen.cli.main import main
 
 if __name__ == "__main__":
     raise SystemExit(main())

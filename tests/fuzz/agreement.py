@@ -7,15 +7,15 @@ from functools import cache
 
 import numpy as np
 
-from sssgen.compiler import transpile
 from sssgen.harness.backends import Array, Backend, get
+from sssgen.harness.check.compiler_inputs import sources
 from sssgen.harness.compilers import Source
-from sssgen.harness.deviation import errors
-from sssgen.harness.evaluate import DTYPES, Inputs, run
-from sssgen.harness.probes import Probe, Subject
-from sssgen.harness.sources import sources
+from sssgen.harness.evaluate.deviation import errors
+from sssgen.harness.evaluate.evaluation import DTYPES, Inputs, run
+from sssgen.harness.evaluate.probes import Probe, Subject
 from sssgen.ir.nodes import Module
 from sssgen.lang.loader import load_text
+from sssgen.pipeline.compiler import transpile
 
 LANES = 48
 TOLERANCE = 1e-3

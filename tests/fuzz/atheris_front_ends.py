@@ -17,7 +17,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 with atheris.instrument_imports(include=["sssgen"]):
     from front_ends import FRONT_ENDS, survives
-    from sssgen import cache
+    from sssgen.support import cache
 
 
 def main() -> None:

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from amounts import COUNTED
-from sssgen import cache
+from sssgen.support import cache
 
 
 @pytest.fixture(autouse=True)

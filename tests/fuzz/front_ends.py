@@ -16,25 +16,29 @@ from PIL import Image
 
 from amounts import COUNTED
 from ir_sample import SAMPLE
-from sssgen import baked, data
-from sssgen.bake import light
+from sssgen.bake import bake_light as light
 from sssgen.bake.volume_files import encoded
-from sssgen.compiler import compile, transpile
-from sssgen.diagnostics import Diagnostic, SssgenError
-from sssgen.harness import images, inputs, probes, shader_files
-from sssgen.harness.evaluate import fitted
-from sssgen.harness.includes import expanded
-from sssgen.harness.scenes import scene
+from sssgen.harness.check import shader_files
+from sssgen.harness.evaluate import input_files as inputs
+from sssgen.harness.evaluate import probes
+from sssgen.harness.evaluate.evaluation import fitted
+from sssgen.harness.pictures import images
+from sssgen.harness.scenes import scene_loading
 from sssgen.harness.scenes.mesh import Mesh
-from sssgen.harness.testing import ci
+from sssgen.harness.testing import project_run as ci
+from sssgen.harness.verify.inline_includes import expanded
 from sssgen.ir.nodes import Span
-from sssgen.ir.reader import TextError, read_module
 from sssgen.ir.text import print_module
-from sssgen.lab import situation
-from sssgen.lang.glsl import load_glsl
+from sssgen.ir.text_reader import TextError, read_module
+from sssgen.lab.scene import measured_scene as situation
 from sssgen.lang.loader import load_file, load_text, read_text
-from sssgen.library import TECHNIQUES, load_path
-from sssgen.material import load_material
+from sssgen.lang.plain_glsl import load_glsl
+from sssgen.material import baked
+from sssgen.material.library import TECHNIQUES, load_path
+from sssgen.material.material_loading import load_material
+from sssgen.pipeline.compiler import compile, transpile
+from sssgen.support import paths as data
+from sssgen.support.diagnostics import Diagnostic, SssgenError
 from sssgen.targets.texture_import import import_settings
 from watchdog import bounded
 
@@ -224,7 +228,7 @@ FRONT_ENDS = {
     "source": FrontEnd(".glsl", _source, _sources),
     "plain glsl": FrontEnd(".glsl", _plain, _plain_sources),
     "material": FrontEnd(".toml", _material, lambda: _examples("*/[!s]*.toml", but="lab")),
-    "scene": FrontEnd(".toml", lambda path: scene.load(path), lambda: _examples("*/scene*.toml")),
+    "scene": FrontEnd(".toml", lambda path: scene_loading.load(path), lambda: _examples("*/scene*.toml")),
     "measured scene": FrontEnd(".toml", lambda path: situation.load(str(path)), lambda: _examples("lab/*.toml")),
     "ci table": FrontEnd(".eval.json", _ci, _tables),
     "ci folder": FrontEnd(".toml", _ci_folder, lambda: _examples("ci/*/*.toml")),

@@ -13,7 +13,7 @@ from amounts import examples
 from front_ends import FRONT_ENDS, survives, taken
 from hostile import HOSTILE
 from mutations import mutated
-from sssgen import data
+from sssgen.support import paths as data
 
 TEXTS = [name for name, front_end in FRONT_ENDS.items() if front_end.is_text]
 

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from front_ends import FRONT_ENDS, NAME, taken
-from sssgen.diagnostics import SssgenError
 from sssgen.lang import loader
 from sssgen.lang.loader import load_file
+from sssgen.support.diagnostics import SssgenError
 from watchdog import bounded
 
 BESIDE = ("ci folder", "reflection", "ci table", "baked")

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from front_ends import CORPUS
-from sssgen.diagnostics import SssgenError
-from sssgen.harness.includes import expanded
-from sssgen.lang.glsl import load_glsl, load_glsl_text
-from sssgen.lang.lexer import scan
+from sssgen.harness.verify.inline_includes import expanded
+from sssgen.lang.plain_glsl import load_glsl, load_glsl_text
+from sssgen.lang.syntax.lexer import scan
+from sssgen.support.diagnostics import SssgenError
 
 DEEP = 10_000
 SECONDS = 3.0

@@ -9,7 +9,7 @@ import pytest
 
 import sssgen
 from amounts import COUNTED
-from sssgen.diagnostics import SssgenError
+from sssgen.support.diagnostics import SssgenError
 from sssgen.targets import descriptor, sandbox
 from watchdog import bounded, roomy
 

@@ -7,13 +7,13 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..data import posix
-from ..diagnostics import failure
-from ..harness.extras import need
-from ..harness.scenes.mesh import Triangles, barycentric
-from ..harness.scenes.mesh_rays import MeshRays
-from .distance import BLOCK
-from .grid import Array
+from sssgen.bake.voxel_distance import BLOCK
+from sssgen.bake.voxel_grid import Array
+from sssgen.harness.scenes.mesh import Triangles, barycentric
+from sssgen.harness.scenes.mesh_rays import MeshRays
+from sssgen.support.diagnostics import failure
+from sssgen.support.extras import need
+from sssgen.support.paths import posix
 
 Indices: TypeAlias = npt.NDArray[np.int64]
 

@@ -11,8 +11,8 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..diagnostics import did_you_mean, failure
-from ..harness.images import LARGEST_SIDE
+from sssgen.harness.pictures.images import LARGEST_SIDE
+from sssgen.support.diagnostics import did_you_mean, failure
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Bits: TypeAlias = npt.NDArray[np.uint32]

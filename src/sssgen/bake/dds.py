@@ -10,7 +10,14 @@ from typing import Any
 
 import numpy.typing as npt
 
-from sssgen.harness.volumes import DDPF_FOURCC, DDS_HEADER, DDS_HEADER_DX10, DDS_TEXTURE3D, DDSD_DEPTH, Encoding
+from sssgen.harness.pictures.volumes import (
+    DDPF_FOURCC,
+    DDS_HEADER,
+    DDS_HEADER_DX10,
+    DDS_TEXTURE3D,
+    DDSD_DEPTH,
+    Encoding,
+)
 
 _DDSD_CAPS, _DDSD_HEIGHT, _DDSD_WIDTH, _DDSD_PITCH, _DDSD_PIXELFORMAT = 0x1, 0x2, 0x4, 0x8, 0x1000
 _DDSCAPS_COMPLEX, _DDSCAPS_TEXTURE = 0x8, 0x1000

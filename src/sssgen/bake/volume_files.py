@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.diagnostics import did_you_mean, failure
-from sssgen.harness import images
-from sssgen.harness.volumes import ENCODINGS, Encoding
-
-from .dds import dds_bytes
-from .ktx2 import ORIENTATION, ktx2_bytes
-from .sheet import columns_and_rows, sheet
+from sssgen.bake.dds import dds_bytes
+from sssgen.bake.ktx2 import ORIENTATION, ktx2_bytes
+from sssgen.bake.slice_sheet import columns_and_rows, sheet
+from sssgen.harness.pictures import images
+from sssgen.harness.pictures.volumes import ENCODINGS, Encoding
+from sssgen.support.diagnostics import did_you_mean, failure
 
 FORMATS = {"npy": ".npy", "dds": ".dds", "ktx2": ".ktx2", "exr-slices": ".exr", "raw+json": ".raw"}
 """The formats and their files' endings."""

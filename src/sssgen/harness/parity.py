@@ -23,18 +23,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compiler import transpile
-from ..ir import signatures
-from ..ir.intrinsics import Builtin
-from ..ir.nodes import Intrinsic
-from ..ir.types import Type, Vector, kind_of, spell
-from ..ir.walk import all_expressions
-from ..lang.loader import load_text
-from ..lang.polyfills import polyfill
-from ..targets import numpy_runtime as runtime
-from .backends import Array, Backend, Call, Text
-from .backends.calls import grid
-from .parity_inputs import FEW, MAX, MIN, Case, cases, evaluated, textures, widened
+from sssgen.harness.backends import Array, Backend, Call, Text
+from sssgen.harness.backends.call_program import grid
+from sssgen.harness.parity_inputs import FEW, MAX, MIN, Case, cases, evaluated, textures, widened
+from sssgen.ir import signatures
+from sssgen.ir.intrinsics import Builtin
+from sssgen.ir.nodes import Intrinsic
+from sssgen.ir.types import Type, Vector, kind_of, spell
+from sssgen.ir.walk import all_expressions
+from sssgen.lang.loader import load_text
+from sssgen.lang.polyfills import polyfill
+from sssgen.pipeline.compiler import transpile
+from sssgen.targets import numpy_runtime as runtime
 
 __all__ = ["BACKENDS", "FULL", "Case", "Figure", "cases", "measure", "oracle", "run", "supported"]
 

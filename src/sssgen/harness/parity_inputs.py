@@ -13,14 +13,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..ir import signatures
-from ..ir.intrinsics import BUILTINS, Builtin
-from ..ir.types import BY_NAME, INT, Matrix, Sampler, Scalar, Type, Vector, components, kind_of, spell
-from ..targets import numpy_runtime as runtime
-from ..targets.numpy_textures import Texture
-from .backends import Array
-from .backends.calls import grid
-from .evaluate import shape_of
+from sssgen.harness.backends import Array
+from sssgen.harness.backends.call_program import grid
+from sssgen.harness.evaluate.evaluation import shape_of
+from sssgen.ir import signatures
+from sssgen.ir.intrinsics import BUILTINS, Builtin
+from sssgen.ir.types import BY_NAME, INT, Matrix, Sampler, Scalar, Type, Vector, components, kind_of, spell
+from sssgen.targets import numpy_runtime as runtime
+from sssgen.targets.numpy_textures import Texture
 
 FEW = 12
 """Lanes of the texture reads and derivatives."""

@@ -12,12 +12,12 @@ from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from .. import library, slots
-from .backends import Array, Backend, get
-from .deviation import GOAL, Deviation, blur, deviation
-from .evaluate import Inputs, fitted, run
-from .probes import Subject, subject
-from .samples import samples
+from sssgen.harness.backends import Array, Backend, get
+from sssgen.harness.evaluate.deviation import GOAL, Deviation, blur, deviation
+from sssgen.harness.evaluate.evaluation import Inputs, fitted, run
+from sssgen.harness.evaluate.probes import Subject, subject
+from sssgen.harness.evaluate.random_inputs import samples
+from sssgen.material import library, slots
 
 BACKENDS = ("gl", "gl-es", "webgpu", "browser", "hlsl", "hlsl-glslang", "unity", "unity-urp")
 LANES, SEED = 10_000, 1

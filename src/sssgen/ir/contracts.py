@@ -11,9 +11,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from .formats import FLOAT32, Format
-from .nodes import Param, Uniform
-from .types import FLOAT, VEC3, VEC4, Array, Matrix, Sampler, kind_of
+from sssgen.ir.formats import FLOAT32, Format
+from sssgen.ir.nodes import Param, Uniform
+from sssgen.ir.types import FLOAT, VEC3, VEC4, Array, Matrix, Sampler, kind_of
 
 
 class Contract(NamedTuple):

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from typing import NamedTuple, TypeAlias
 
-from .spans import NOWHERE as NOWHERE
-from .spans import Span as Span
-from .types import Type
+from sssgen.ir.spans import NOWHERE as NOWHERE
+from sssgen.ir.spans import Span as Span
+from sssgen.ir.types import Type
 
 # Expressions
 
@@ -314,6 +314,6 @@ class Module(NamedTuple):
 
 def function_key(name: str, types: list[Type]) -> str:
     """The key under which a function with these parameter types is called."""
-    from .types import spell
+    from sssgen.ir.types import spell
 
     return f"{name}({','.join(map(spell, types))})"

@@ -17,8 +17,8 @@ import functools
 import re
 from collections.abc import Sequence
 
-from .signatures import instantiate
-from .types import Type, components, spell
+from sssgen.ir.signatures import instantiate
+from sssgen.ir.types import Type, components, spell
 
 OUT_BUILTINS: dict[str, str] = {
     "modf": """

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 
-from .nodes import Binary, Block, Discard, Expr, If, Index, Intrinsic, Member, Return, Select, Swizzle, Unary
-from .signatures import resolve
-from .types import (
+from sssgen.ir.nodes import Binary, Block, Discard, Expr, If, Index, Intrinsic, Member, Return, Select, Swizzle, Unary
+from sssgen.ir.signatures import resolve
+from sssgen.ir.types import (
     BOOL,
     INT,
     UINT,

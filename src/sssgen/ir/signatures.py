@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from .intrinsics import BUILTINS
-from .types import BY_NAME, Matrix, Type, vector_of
+from sssgen.ir.intrinsics import BUILTINS
+from sssgen.ir.types import BY_NAME, Matrix, Type, vector_of
 
 _KINDS = {"F": "float", "I": "int", "U": "uint", "B": "bool"}
 

@@ -26,7 +26,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import isfinite
 
-from .nodes import (
+from sssgen.ir.nodes import (
     NOWHERE,
     Assign,
     Assume,
@@ -58,8 +58,8 @@ from .nodes import (
     Variable,
     While,
 )
-from .reader import TextError, read_module
-from .types import BOOL, FLOAT, UINT, Struct, spell
+from sssgen.ir.text_reader import TextError, read_module
+from sssgen.ir.types import BOOL, FLOAT, UINT, Struct, spell
 
 __all__ = ["TextError", "print_module", "read_module"]
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from math import isfinite
 
-from .nodes import (
+from sssgen.ir.nodes import (
     Assign,
     Assume,
     Binary,
@@ -41,9 +41,9 @@ from .nodes import (
     Variable,
     While,
 )
-from .rules import FLOAT_MAX, constructs, element_type, inferred, is_type, operator_type, returns
-from .types import BOOL, FLOAT, INT, UINT, VOID, Array, Sampler, Struct, Type, components, kind_of, spell
-from .walk import callees, operands, subexpressions
+from sssgen.ir.rules import FLOAT_MAX, constructs, element_type, inferred, is_type, operator_type, returns
+from sssgen.ir.types import BOOL, FLOAT, INT, UINT, VOID, Array, Sampler, Struct, Type, components, kind_of, spell
+from sssgen.ir.walk import callees, operands, subexpressions
 
 _READS_SURROUNDINGS = ("texture", "texel", "dF", "fwidth")
 """How the builtins begin that no constant can use."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TypeAlias, cast
 
-from .nodes import (
+from sssgen.ir.nodes import (
     Assign,
     Assume,
     Binary,

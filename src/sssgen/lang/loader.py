@@ -10,10 +10,11 @@ import re
 import stat
 from collections.abc import Mapping, Sequence
 
-from .. import cache
-from ..diagnostics import Diagnostic, SssgenError, failure
-from ..ir.nodes import Module, Span
-from ..watch import note
+from sssgen.ir.nodes import Module, Span
+from sssgen.lang.front_end_stamp import front_end_stamp
+from sssgen.support import cache
+from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
+from sssgen.support.file_memo import note
 
 MAX_BYTES = 4 << 20
 """The largest source file that is read. Shader libraries of thousands of functions stay below 1 MB."""
@@ -26,7 +27,6 @@ _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"([^"\n]*)"', re.MULTILINE)
 _memory: dict[str, Module] = {}
 _keys: dict[int, str] = {}
 _lines: dict[str, list[str]] = {}
-_stamp = ""
 
 
 def load_file(path: str | os.PathLike[str], shown: str, roots: Sequence[str | os.PathLike[str]] = ()) -> Module:
@@ -60,8 +60,8 @@ def _load(
     key = cache.digest("\0".join(parts))
     known = _memory.get(key) or cache.unpickled(cache.read(f"{key}.ir"))
     if not isinstance(known, Module):
-        from .check import check
-        from .parser import parse
+        from sssgen.lang.check.module_checker import check
+        from sssgen.lang.syntax.parser import parse
 
         known = check(parse(text, shown), text, included)
         cache.write(f"{key}.ir", cache.pickled(known))
@@ -191,12 +191,3 @@ def _include(
         note(path)
     hint = "it is looked for beside the file and in the technique library"
     raise SssgenError([Diagnostic("error", f"cannot find '{name}' to include", place, hint, line)])
-
-
-def front_end_stamp() -> str:
-    """Tells one state of the project's own sources from another, so that no stale result is used."""
-    global _stamp
-    if not _stamp:
-        here = os.path.dirname(__file__)
-        _stamp = repr([cache.stamp(folder) for folder in (here, os.path.join(os.path.dirname(here), "ir"))])
-    return _stamp

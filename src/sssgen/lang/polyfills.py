@@ -6,11 +6,11 @@ import functools
 import re
 from collections.abc import Sequence
 
-from ..ir.formats import Format
-from ..ir.intrinsics import BUILTINS, Guard, with_constants
-from ..ir.nodes import Module
-from ..ir.signatures import instantiate, overload
-from ..ir.types import Matrix, Scalar, Type, components, spell
+from sssgen.ir.formats import Format
+from sssgen.ir.intrinsics import BUILTINS, Guard, with_constants
+from sssgen.ir.nodes import Module
+from sssgen.ir.signatures import instantiate, overload
+from sssgen.ir.types import Matrix, Scalar, Type, components, spell
 
 _GENERIC = re.compile(r"\b(?:(?:gen|vec)[FIUB]|mat)\b")
 
@@ -25,7 +25,7 @@ def polyfill(name: str, types: Sequence[Type]) -> Module:
 
 @functools.cache
 def _polyfill(name: str, types: tuple[Type, ...]) -> Module:
-    from .loader import load_text
+    from sssgen.lang.loader import load_text
 
     found = overload(name, types)
     if found is None:
@@ -64,7 +64,7 @@ def guard(
 
 @functools.cache
 def _guard(text: str, name: str) -> Module:
-    from .loader import load_text
+    from sssgen.lang.loader import load_text
 
     return load_text(text, f"guards/{name}")
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..diagnostics import failure
-from .lexer import scan
-from .tokens import Token
+from sssgen.lang.syntax.lexer import scan
+from sssgen.lang.syntax.tokens import Token
+from sssgen.support.diagnostics import failure
 
 FILE = "shadertoy"
 """What the lines that stand around a file's own are called in messages."""

@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import NamedTuple
 
-from ..ir import nodes as ir
-from ..ir.intrinsics import BUILTINS
-from ..ir.types import Matrix, components
-from ..ir.walk import expressions, subexpressions
+from sssgen.ir import nodes as ir
+from sssgen.ir.intrinsics import BUILTINS
+from sssgen.ir.types import Matrix, components
+from sssgen.ir.walk import expressions, subexpressions
 
 UNKNOWN_TRIPS = 16
 

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping
 from functools import cache
 from typing import Any, NamedTuple
 
-from ..ir.nodes import (
+from sssgen.ir.nodes import (
     Assign,
     Binary,
     Block,
@@ -37,14 +37,14 @@ from ..ir.nodes import (
     Stmt,
     While,
 )
-from ..ir.walk import expressions, operands, root, statements
-from .effects import NONE, Effects, effects
+from sssgen.ir.walk import expressions, operands, root, statements
+from sssgen.passes.variable_effects import NONE, Effects, effects
 
 
 @cache
 def implicit() -> frozenset[str]:
     """The builtins that want uniform control flow, as the intrinsic table says."""
-    from ..ir.intrinsics import BUILTINS
+    from sssgen.ir.intrinsics import BUILTINS
 
     return frozenset(name for name, row in BUILTINS.items() if row.domain == "uniform control flow")
 
@@ -52,7 +52,7 @@ def implicit() -> frozenset[str]:
 @cache
 def varying_builtins() -> frozenset[str]:
     """The builtins whose results differ from pixel to pixel whatever they are given."""
-    from ..ir.intrinsics import BUILTINS
+    from sssgen.ir.intrinsics import BUILTINS
 
     kinds = ("fetch", "derivative")
     return frozenset(name for name, row in BUILTINS.items() if row.kind in kinds and name != "textureSize")

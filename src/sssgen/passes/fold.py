@@ -16,7 +16,7 @@ from collections.abc import Mapping
 from math import copysign
 from typing import Any
 
-from ..ir.nodes import (
+from sssgen.ir.nodes import (
     Assign,
     Assume,
     Binary,
@@ -45,12 +45,12 @@ from ..ir.nodes import (
     Variable,
     While,
 )
-from ..ir.rules import element_type
-from ..ir.types import BOOL, Array, Matrix, Scalar, Struct, Type, Vector, components, kind_of, vector_of
-from ..ir.walk import operands, rewrite, subexpressions, with_operands
-from . import arithmetic
-from .arithmetic import Number, Numbers
-from .scopes import separate
+from sssgen.ir.rules import element_type
+from sssgen.ir.types import BOOL, Array, Matrix, Scalar, Struct, Type, Vector, components, kind_of, vector_of
+from sssgen.ir.walk import operands, rewrite, subexpressions, with_operands
+from sssgen.passes import constant_arithmetic as arithmetic
+from sssgen.passes.constant_arithmetic import Number, Numbers
+from sssgen.passes.scopes import separate
 
 
 def fold(module: Module, fixed: Mapping[str, tuple[float, ...]] = {}) -> Module:

@@ -11,14 +11,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
-from ..ir import nodes as ir
-from ..ir.formats import FLOAT32, Format
-from ..ir.intrinsics import Guard, with_constants
-from ..ir.types import BOOL, FLOAT, UINT, Matrix, Type, components, kind_of, spell, vector_of
-from ..ir.walk import operands, rewrite_function, rewrite_module, statements, with_operands
-from .ranges import Findings, analyse
-from .sites import BOUNDS, DIVISION, Site
-from .substitute import in_place, widened_bound
+from sssgen.ir import nodes as ir
+from sssgen.ir.formats import FLOAT32, Format
+from sssgen.ir.intrinsics import Guard, with_constants
+from sssgen.ir.types import BOOL, FLOAT, UINT, Matrix, Type, components, kind_of, spell, vector_of
+from sssgen.ir.walk import operands, rewrite_function, rewrite_module, statements, with_operands
+from sssgen.passes.ranges.range_pass import Findings, analyse
+from sssgen.passes.ranges.sites import BOUNDS, DIVISION, Site
+from sssgen.passes.substitute import in_place, widened_bound
 
 Source = Callable[[Guard, str, Sequence[Type], Type, Format, tuple[float, float]], tuple[ir.Module, str]]
 """Gives the module of a guard's function, and the letters of the arguments that it takes."""

@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from ..ir.nodes import (
+from sssgen.ir.nodes import (
     Assign,
     Assume,
     Binary,
@@ -39,10 +39,18 @@ from ..ir.nodes import (
     Swizzle,
     While,
 )
-from ..ir.types import FLOAT, Sampler, Scalar, Type, components, vector_of
-from ..ir.walk import all_expressions, builtins_of, operands, statements, subexpressions, with_operands, written_root
-from .divergence import Divergence, Site, Summary, implicit, joined, summaries
-from .scopes import declared, fresh
+from sssgen.ir.types import FLOAT, Sampler, Scalar, Type, components, vector_of
+from sssgen.ir.walk import (
+    all_expressions,
+    builtins_of,
+    operands,
+    statements,
+    subexpressions,
+    with_operands,
+    written_root,
+)
+from sssgen.passes.divergence import Divergence, Site, Summary, implicit, joined, summaries
+from sssgen.passes.scopes import declared, fresh
 
 _LARGEST = 64
 """How many nodes an expression may have that is put in a variable's place."""

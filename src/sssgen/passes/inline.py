@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from ..ir.nodes import (
+from sssgen.ir.nodes import (
     Assign,
     Assume,
     Binary,
@@ -39,9 +39,9 @@ from ..ir.nodes import (
     Swizzle,
     While,
 )
-from ..ir.walk import expressions, operands, rewrite, subexpressions, with_operands
-from .divergence import Summary, implicit, summaries
-from .scopes import declared, fresh, substitute
+from sssgen.ir.walk import expressions, operands, rewrite, subexpressions, with_operands
+from sssgen.passes.divergence import Summary, implicit, summaries
+from sssgen.passes.scopes import declared, fresh, substitute
 
 
 class _Body(NamedTuple):

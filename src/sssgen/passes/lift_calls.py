@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ..ir.nodes import (
+from sssgen.ir.nodes import (
     Assign,
     Binary,
     Block,
@@ -38,8 +38,8 @@ from ..ir.nodes import (
     Unary,
     While,
 )
-from ..ir.types import BOOL, Type
-from ..ir.walk import (
+from sssgen.ir.types import BOOL, Type
+from sssgen.ir.walk import (
     callees,
     calls_of,
     expressions,
@@ -49,8 +49,8 @@ from ..ir.walk import (
     with_operands,
     written_root,
 )
-from .effects import NONE, Effects
-from .scopes import declared, fresh
+from sssgen.passes.scopes import declared, fresh
+from sssgen.passes.variable_effects import NONE, Effects
 
 Functions = Mapping[str, Function]
 

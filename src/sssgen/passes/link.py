@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import NamedTuple
 
-from ..ir.nodes import Call, Constant, Expr, Function, Global, Module, Span, StructDecl, Uniform
-from ..ir.types import Struct
-from ..ir.walk import all_expressions, rewrite, rewrite_function, subexpressions
+from sssgen.ir.nodes import Call, Constant, Expr, Function, Global, Module, Span, StructDecl, Uniform
+from sssgen.ir.types import Struct
+from sssgen.ir.walk import all_expressions, rewrite, rewrite_function, subexpressions
 
 Bound = tuple[Module, Function]
 

@@ -14,7 +14,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Container, Mapping
 
-from ..ir.nodes import (
+from sssgen.ir.nodes import (
     Block,
     Call,
     Constant,
@@ -30,9 +30,9 @@ from ..ir.nodes import (
     Variable,
     function_key,
 )
-from ..ir.types import VEC4, Array, Field, Matrix, Struct, Type, spell
-from ..ir.walk import all_expressions, rewrite, rewrite_block, statements
-from .scopes import Renamer, declared, rename_locals
+from sssgen.ir.types import VEC4, Array, Field, Matrix, Struct, Type, spell
+from sssgen.ir.walk import all_expressions, rewrite, rewrite_block, statements
+from sssgen.passes.scopes import Renamer, declared, rename_locals
 
 
 def rename(
@@ -247,7 +247,7 @@ class _Namer:
 
     def hidden(self, function: Function, names: set[str]) -> set[str]:
         """The names of a function's variables that are also those of declarations or builtins it uses."""
-        from ..ir.intrinsics import BUILTINS
+        from sssgen.ir.intrinsics import BUILTINS
 
         names = {name for name in names if name in self.taken or name in BUILTINS}
         return names & self.used(function) if names else names

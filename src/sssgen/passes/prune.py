@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..ir.nodes import (
+from sssgen.ir.nodes import (
     Assign,
     Assume,
     Binary,
@@ -43,8 +43,8 @@ from ..ir.nodes import (
     Unary,
     While,
 )
-from ..ir.types import Array, Struct, Type
-from ..ir.walk import all_expressions, callees, root, statements, subexpressions
+from sssgen.ir.types import Array, Struct, Type
+from sssgen.ir.walk import all_expressions, callees, root, statements, subexpressions
 
 if TYPE_CHECKING:
     from typing import TypeVar

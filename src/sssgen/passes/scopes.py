@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Container, Iterable, Mapping
 from typing import Any
 
-from ..ir.nodes import (
+from sssgen.ir.nodes import (
     Assign,
     Assume,
     Binary,
@@ -30,7 +30,7 @@ from ..ir.nodes import (
     Stmt,
     While,
 )
-from ..ir.walk import calls_of, expressions, inner_statements, operands, rewrite, root, statements, with_operands
+from sssgen.ir.walk import calls_of, expressions, inner_statements, operands, rewrite, root, statements, with_operands
 
 _NONE: Mapping[str, str] = {}
 

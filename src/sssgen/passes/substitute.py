@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..ir import nodes as ir
-from ..ir.walk import rewrite, subexpressions
+from sssgen.ir import nodes as ir
+from sssgen.ir.walk import rewrite, subexpressions
 
 _OURS = ("intrinsics/", "guards/")
 

@@ -13,9 +13,9 @@ import os
 import sys
 from typing import Any, NamedTuple
 
-from .. import cache
-from ..data import place, stem
-from ..diagnostics import SssgenError, did_you_mean, failure
+from sssgen.support import cache
+from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
+from sssgen.support.paths import place, stem
 
 
 class OutputFile(NamedTuple):

@@ -12,10 +12,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from ..ir import nodes as ir
-from ..ir.types import INT, UINT, Struct, Type
-from ..passes.scopes import fresh
-from ..passes.stage import Slot, Stage
+from sssgen.ir import nodes as ir
+from sssgen.ir.types import INT, UINT, Struct, Type
+from sssgen.passes.scopes import fresh
+from sssgen.passes.stage.stage_interface import Slot, Stage
 
 
 class Given(NamedTuple):

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from ..ir import nodes as ir
-from ..ir.types import Scalar, Vector, kind_of
-from ..passes.stage import COLORS
-from .descriptor import Target
-from .layout import Member
-from .printer import Line, Printer, documented
+from sssgen.ir import nodes as ir
+from sssgen.ir.types import Scalar, Vector, kind_of
+from sssgen.passes.stage.stage_interface import COLORS
+from sssgen.targets.descriptor import Target
+from sssgen.targets.printer import Line, Printer, documented
+from sssgen.targets.uniform_layout import Member
 
 
 class GlslPrinter(Printer):

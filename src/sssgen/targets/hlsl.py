@@ -10,14 +10,14 @@ transposed where it is read.
 
 from __future__ import annotations
 
-from ..ir import nodes as ir
-from ..ir.types import Array, Matrix, Scalar, Struct, Vector, kind_of
-from ..passes.blocks import block_type
-from . import hlsl_sizes
-from .descriptor import Target
-from .hlsl_entry import print_entry
-from .layout import Member
-from .printer import POSTFIX, PRIMARY, UNARY, Line, Printer, documented
+from sssgen.ir import nodes as ir
+from sssgen.ir.types import Array, Matrix, Scalar, Struct, Vector, kind_of
+from sssgen.passes.uniform_blocks import block_type
+from sssgen.targets import hlsl_sizes
+from sssgen.targets.descriptor import Target
+from sssgen.targets.hlsl_entry import print_entry
+from sssgen.targets.printer import POSTFIX, PRIMARY, UNARY, Line, Printer, documented
+from sssgen.targets.uniform_layout import Member
 
 LONGEST_UNROLLED = 8
 """Loops of more rounds than this stay loops."""

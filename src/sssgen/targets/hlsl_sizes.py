@@ -5,10 +5,10 @@ The intrinsic table calls that function `texture_size`; the descriptor keeps oth
 
 from __future__ import annotations
 
-from ..ir import nodes as ir
-from ..ir.types import Sampler
-from ..ir.walk import all_expressions
-from .printer import Line
+from sssgen.ir import nodes as ir
+from sssgen.ir.types import Sampler
+from sssgen.ir.walk import all_expressions
+from sssgen.targets.printer import Line
 
 
 def asked(function: ir.Function) -> list[str]:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from ..ir import nodes as ir
-from ..ir.types import INT, UINT, Array, Matrix, Scalar, Struct, Vector, components, kind_of
-from .descriptor import Target
-from .numpy_numbers import Numbers, nonzero
-from .printer import POSTFIX, PRIMARY, UNARY, Printer
+from sssgen.ir import nodes as ir
+from sssgen.ir.types import INT, UINT, Array, Matrix, Scalar, Struct, Vector, components, kind_of
+from sssgen.targets.descriptor import Target
+from sssgen.targets.numpy_numbers import Numbers, nonzero
+from sssgen.targets.printer import POSTFIX, PRIMARY, UNARY, Printer
 
 _OPERATORS = {"||": "|", "^^": "^", "&&": "&"}
 PYTHON_PRECEDENCE = {

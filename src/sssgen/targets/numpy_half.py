@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .descriptor import Target, load
+from sssgen.targets.descriptor import Target, load
 
 
 def target() -> Target:

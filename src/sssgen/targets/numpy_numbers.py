@@ -9,10 +9,10 @@ ints.
 
 from __future__ import annotations
 
-from ..ir import nodes as ir
-from ..ir.types import INT, UINT, Scalar, kind_of
-from ..ir.walk import expressions, statements, subexpressions
-from ..passes.uniformity import count
+from sssgen.ir import nodes as ir
+from sssgen.ir.types import INT, UINT, Scalar, kind_of
+from sssgen.ir.walk import expressions, statements, subexpressions
+from sssgen.passes.numpy.uniformity import count
 
 
 class Numbers:

@@ -9,15 +9,15 @@ that uses them, as their element type is that of `with precision(…)` around th
 
 from __future__ import annotations
 
-from ..ir import nodes as ir
-from ..ir.types import VOID, Scalar, Struct
-from ..ir.walk import all_expressions, subexpressions
-from ..passes.uniformity import count
-from .descriptor import Target, load
-from .layout import Member
-from .numpy_expressions import PYTHON_PRECEDENCE, NumpyExpressions
-from .printer import POSTFIX, Line, summary
-from .python_text import texture_text, value_text, wrap
+from sssgen.ir import nodes as ir
+from sssgen.ir.types import VOID, Scalar, Struct
+from sssgen.ir.walk import all_expressions, subexpressions
+from sssgen.passes.numpy.uniformity import count
+from sssgen.targets.descriptor import Target, load
+from sssgen.targets.numpy_expressions import PYTHON_PRECEDENCE, NumpyExpressions
+from sssgen.targets.printer import POSTFIX, Line, summary
+from sssgen.targets.python_text import texture_text, value_text, wrap
+from sssgen.targets.uniform_layout import Member
 
 
 def print_functions(module: ir.Module) -> str:

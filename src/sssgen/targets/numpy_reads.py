@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .numpy_textures import Texture
-from .numpy_values import Value, arrays, image_shape, working
+from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.numpy_values import Value, arrays, image_shape, working
 
 __all__ = [
     "dFdx",

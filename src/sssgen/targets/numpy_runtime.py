@@ -11,11 +11,11 @@ from math import pi
 
 import numpy as np
 
-from .numpy_bits import *
-from .numpy_reads import *
-from .numpy_textures import Texture as Texture
-from .numpy_values import *
-from .numpy_values import Value, silent
+from sssgen.targets.numpy_bits import *
+from sssgen.targets.numpy_reads import *
+from sssgen.targets.numpy_textures import Texture as Texture
+from sssgen.targets.numpy_values import *
+from sssgen.targets.numpy_values import Value, silent
 
 # 8.1 and 8.2 Trigonometry and exponentials: NumPy's own functions, outside their domain NaN or infinite
 

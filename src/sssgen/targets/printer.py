@@ -11,17 +11,17 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import NamedTuple
 
-from ..diagnostics import failure
-from ..ir import nodes as ir
-from ..ir import signatures
-from ..ir.formats import FLOAT32, Format
-from ..ir.intrinsics import BUILTINS
-from ..ir.operators import PRECEDENCE
-from ..ir.rules import FLOAT_MAX
-from ..ir.types import FLOAT, INT, UINT, Array, Sampler, Scalar, Struct, Type, components, spell
-from ..passes.stage import Stage
-from .descriptor import Target
-from .layout import Member
+from sssgen.ir import nodes as ir
+from sssgen.ir import signatures
+from sssgen.ir.formats import FLOAT32, Format
+from sssgen.ir.intrinsics import BUILTINS
+from sssgen.ir.operators import PRECEDENCE
+from sssgen.ir.rules import FLOAT_MAX
+from sssgen.ir.types import FLOAT, INT, UINT, Array, Sampler, Scalar, Struct, Type, components, spell
+from sssgen.passes.stage.stage_interface import Stage
+from sssgen.support.diagnostics import failure
+from sssgen.targets.descriptor import Target
+from sssgen.targets.uniform_layout import Member
 
 _COLOR_LETTERS = str.maketrans("xyzw", "rgba")
 

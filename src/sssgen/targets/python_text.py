@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 
-from ..ir.nodes import Span, Uniform
-from ..ir.types import Array, Matrix, Sampler, Scalar, Type, components, kind_of
-from .printer import WIDTH, Line
+from sssgen.ir.nodes import Span, Uniform
+from sssgen.ir.types import Array, Matrix, Sampler, Scalar, Type, components, kind_of
+from sssgen.targets.printer import WIDTH, Line
 
 _TEXELS = {
     "default_white": "[1.0, 1.0, 1.0, 1.0]",

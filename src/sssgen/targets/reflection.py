@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..ir.nodes import Uniform
-from ..ir.types import Sampler, spell
-from .descriptor import Target
-from .emit import Emitted, Program
-from .texture_import import import_settings
+from sssgen.ir.nodes import Uniform
+from sssgen.ir.types import Sampler, spell
+from sssgen.targets.assemble import Emitted, Program
+from sssgen.targets.descriptor import Target
+from sssgen.targets.texture_import import import_settings
 
 VERSION = 1
 """The format's version; it grows when a reader of an older file would be wrong."""

@@ -8,10 +8,10 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any
 
-from .. import cache
-from ..data import place, posix
-from ..diagnostics import MAX_MESSAGE, Diagnostic, SssgenError
-from ..ir.spans import Span
+from sssgen.ir.spans import Span
+from sssgen.support import cache
+from sssgen.support.diagnostics import MAX_MESSAGE, Diagnostic, SssgenError
+from sssgen.support.paths import place, posix
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -30,7 +30,7 @@ def render(template: str, context: dict[str, Any], templates: str | None, beside
     if templates is not None:
         from copy import deepcopy
 
-        from .sandbox import begin
+        from sssgen.targets.sandbox import begin
 
         begin()
         context = deepcopy(context)  # what a template does to it is not done to the target
@@ -69,7 +69,7 @@ def _environment(templates: str | None, beside: str) -> Environment:
         from jinja2 import FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
 
         if templates is not None:
-            from .sandbox import Sandbox as Chosen
+            from sssgen.targets.sandbox import Sandbox as Chosen
         else:
             from jinja2 import Environment as Chosen  # type: ignore[assignment]  # the same without a bound
         places = [templates] if templates is not None else []

@@ -5,15 +5,15 @@ Out parameters are pointers; what is never written after its declaration is a `l
 
 from __future__ import annotations
 
-from ..ir import nodes as ir
-from ..ir.types import VOID, Array, Sampler, Struct, Type
-from ..ir.walk import subexpressions
-from ..passes.blocks import block_type
-from ..passes.scopes import assigned, outs_of
-from .descriptor import Target
-from .layout import Member
-from .printer import PRIMARY, UNARY, Line, Printer, documented, wrap
-from .wgsl_entry import print_entry
+from sssgen.ir import nodes as ir
+from sssgen.ir.types import VOID, Array, Sampler, Struct, Type
+from sssgen.ir.walk import subexpressions
+from sssgen.passes.scopes import assigned, outs_of
+from sssgen.passes.uniform_blocks import block_type
+from sssgen.targets.descriptor import Target
+from sssgen.targets.printer import PRIMARY, UNARY, Line, Printer, documented, wrap
+from sssgen.targets.uniform_layout import Member
+from sssgen.targets.wgsl_entry import print_entry
 
 _TYPED = (ir.Local, ir.Global, ir.Call, ir.Construct)
 

@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
-from ..ir.nodes import NOWHERE
-from ..ir.types import INT, kind_of
-from ..passes.stage import Slot, Stage
-from .entry_points import adjusted, depth_halved, given_type, is_count, member, names_of, parameters, place_text
-from .printer import Line, Printer, wrap
+from sssgen.ir.nodes import NOWHERE
+from sssgen.ir.types import INT, kind_of
+from sssgen.passes.stage.stage_interface import Slot, Stage
+from sssgen.targets.entry_points import (
+    adjusted,
+    depth_halved,
+    given_type,
+    is_count,
+    member,
+    names_of,
+    parameters,
+    place_text,
+)
+from sssgen.targets.printer import Line, Printer, wrap
 
 _INTERPOLATION = {"flat": "flat", "noperspective": "linear", "centroid": "perspective, centroid"}
 

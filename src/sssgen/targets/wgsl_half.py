@@ -7,15 +7,15 @@ from __future__ import annotations
 
 import math
 
-from ..diagnostics import Diagnostic, SssgenError, failure
-from ..ir import nodes as ir
-from ..ir.formats import FLOAT16
-from ..ir.intrinsics import BUILTINS
-from ..ir.types import FLOAT, Sampler, kind_of
-from .descriptor import OutputFile, Target, load
-from .layout import Member
-from .printer import PRIMARY, Line, shortest
-from .wgsl import WgslPrinter
+from sssgen.ir import nodes as ir
+from sssgen.ir.formats import FLOAT16
+from sssgen.ir.intrinsics import BUILTINS
+from sssgen.ir.types import FLOAT, Sampler, kind_of
+from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
+from sssgen.targets.descriptor import OutputFile, Target, load
+from sssgen.targets.printer import PRIMARY, Line, shortest
+from sssgen.targets.uniform_layout import Member
+from sssgen.targets.wgsl import WgslPrinter
 
 _BITS = frozenset(("floatBitsToInt", "floatBitsToUint", "intBitsToFloat", "uintBitsToFloat")) | {
     f"{way}{form}"

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from sssgen.ir import nodes as ir
 from sssgen.targets.glsl import GlslPrinter
-from sssgen.targets.layout import Member
 from sssgen.targets.printer import Line, documented
+from sssgen.targets.uniform_layout import Member
 
 DESCRIPTOR = Path(__file__).with_name("vulkan.toml")
 """What the entry point names. The templates lie beside it."""

@@ -10,10 +10,21 @@ from __future__ import annotations
 
 from functools import cache
 
-from ...diagnostics import did_you_mean, failure
-from ..compilers import CompilerMissing
-from .base import Array, Backend, Block, Bound, Call, Drawing, Place, Stage, Text, emitted
-from .drawing import DrawingBackend
+from sssgen.harness.backends.backend_interface import (
+    Array,
+    Backend,
+    Block,
+    Bound,
+    Call,
+    Drawing,
+    Place,
+    Stage,
+    Text,
+    emitted,
+)
+from sssgen.harness.backends.draw_backend import DrawingBackend
+from sssgen.harness.compilers import CompilerMissing
+from sssgen.support.diagnostics import did_you_mean, failure
 
 __all__ = [
     "HALF", "NAMES", "Array", "Backend", "Block", "Bound", "Call", "CompilerMissing", "Drawing", "DrawingBackend",
@@ -94,25 +105,25 @@ def _find(name: str) -> Backend | str:
 def _start(name: str) -> Backend:
     """Imports come late: each back end needs packages of its own."""
     if name.startswith("numpy"):
-        from .reference import Reference
+        from sssgen.harness.backends.numpy_reference import Reference
 
         return Reference(name, {"numpy-f32": "float32", "numpy-f16": "float16"}.get(name, "float64"))
     if name in ("gl", "gl-es"):
-        from .opengl import OpenGL
+        from sssgen.harness.backends.opengl import OpenGL
 
         return OpenGL(name, "glsl-330" if name == "gl" else "glsl-es-300")
     if name in ("webgpu", "webgpu-f16"):
-        from .webgpu import WebGPU
+        from sssgen.harness.backends.webgpu import WebGPU
 
         return WebGPU(name, "wgsl" if name == "webgpu" else "wgsl-f16")
     if name == "browser":
-        from .browser import Browser
+        from sssgen.harness.backends.browser import Browser
 
         return Browser(name)
     if name.startswith("unity"):
-        from .unity import UnityHLSL
+        from sssgen.harness.backends.unity_backend import UnityHLSL
 
         return UnityHLSL(name, *(("unity-urp", "dxc") if name == "unity-urp" else ("unity-builtin", "dx9")))
-    from .hlsl import HLSL
+    from sssgen.harness.backends.hlsl_spirv import HLSL
 
     return HLSL(name, "hlsl", "glslang" if name == "hlsl-glslang" else "dxc")

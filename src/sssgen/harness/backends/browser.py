@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from ..compilers import CompilerMissing, Message
-from .base import Array, Drawing, gave_up, refused
-from .browser_page import START, LostError, Page, find
-from .calls import FRAGMENT
-from .drawing import DrawingBackend
-from .webgpu_plan import ATTRIBUTE_PLAN, STRIDE, Plan, layout_entries, plan
+from sssgen.harness.backends.backend_interface import Array, Drawing, gave_up, refused
+from sssgen.harness.backends.browser_page import START, LostError, Page, find
+from sssgen.harness.backends.call_program import FRAGMENT
+from sssgen.harness.backends.draw_backend import DrawingBackend
+from sssgen.harness.backends.webgpu_plan import ATTRIBUTE_PLAN, STRIDE, Plan, layout_entries, plan
+from sssgen.harness.compilers import CompilerMissing, Message
 
 SECONDS = 60.0
 """How long a small draw may take; a large one gets more, see `_extra`."""

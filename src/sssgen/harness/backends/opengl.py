@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from ...targets.numpy_textures import Texture
-from .. import compilers
-from ..compilers.gl import DriverGL, messages
-from .base import ATTRIBUTES, Array, Block, Drawing, Text, gave_up, refused
-from .drawing import DrawingBackend
+from sssgen.harness import compilers
+from sssgen.harness.backends.backend_interface import ATTRIBUTES, Array, Block, Drawing, Text, gave_up, refused
+from sssgen.harness.backends.draw_backend import DrawingBackend
+from sssgen.harness.compilers.gl_driver import DriverGL, messages
+from sssgen.targets.numpy_textures import Texture
 
 _HEADS = {
     "glsl-330": "#version 330 core\n#line 1\n",

@@ -14,10 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from ...targets.numpy_textures import Texture
-from ..compilers import Message, unity
-from .base import Array, Block, Bound, Drawing, Place, Stage, refused
-from .hlsl import HLSL, compiled, crossed
+from sssgen.harness.backends.backend_interface import Array, Block, Bound, Drawing, Place, Stage, refused
+from sssgen.harness.backends.hlsl_spirv import HLSL, compiled, crossed
+from sssgen.harness.compilers import Message
+from sssgen.harness.compilers import unity_compiler as unity
+from sssgen.targets.numpy_textures import Texture
 
 _BINDING = re.compile(r"layout\(binding = \d+(?:, )?")
 """Each stage is numbered for itself, and a block of both must not differ: moderngl numbers them anew."""

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from .. import compilers
-from ..compilers import CompilerMissing
-from ..compilers.naga import Naga, find
-from .base import Array, Drawing, gave_up, refused
-from .drawing import DrawingBackend
-from .webgpu_plan import ATTRIBUTE_PLAN, STRIDE, Plan, TexturePlan, layout_entries, plan
+from sssgen.harness import compilers
+from sssgen.harness.backends.backend_interface import Array, Drawing, gave_up, refused
+from sssgen.harness.backends.draw_backend import DrawingBackend
+from sssgen.harness.backends.webgpu_plan import ATTRIBUTE_PLAN, STRIDE, Plan, TexturePlan, layout_entries, plan
+from sssgen.harness.compilers import CompilerMissing
+from sssgen.harness.compilers.naga import Naga, find
 
 _KEPT = 64
 _TO_TEXTURE, _FROM_TEXTURE, _BOUND, _TARGET = 0x2, 0x1, 0x4, 0x10

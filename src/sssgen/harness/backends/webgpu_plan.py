@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...targets.numpy_textures import Texture
-from .base import ATTRIBUTES, Array, Bound, Drawing
+from sssgen.harness.backends.backend_interface import ATTRIBUTES, Array, Bound, Drawing
+from sssgen.targets.numpy_textures import Texture
 
 _WRAP = {"repeat": "repeat", "clamp": "clamp-to-edge", "mirror": "mirror-repeat"}
 

@@ -9,7 +9,15 @@ from __future__ import annotations
 
 from functools import cache
 
-from sssgen.harness.compilers.base import LANGUAGES, Compiler, CompilerMissing, Message, Source, Stage, errors
+from sssgen.harness.compilers.compiler_interface import (
+    LANGUAGES,
+    Compiler,
+    CompilerMissing,
+    Message,
+    Source,
+    Stage,
+    errors,
+)
 
 __all__ = [
     "LANGUAGES",
@@ -55,13 +63,16 @@ def check(source: Source) -> dict[str, list[Message]]:
     return {c.name: c.check(source) for c in map(_find, readers(source.language)) if isinstance(c, Compiler)}
 
 
+_MODULES = {"gl": "gl_driver", "python": "python_syntax", "unity": "unity_compiler"}
+
+
 @cache
 def _find(name: str) -> Compiler | str:
     """The compiler of that name, started once a process, or how to get it."""
     from importlib import import_module
 
     try:
-        found: Compiler = import_module(f"sssgen.harness.compilers.{name}").find()
+        found: Compiler = import_module(f"sssgen.harness.compilers.{_MODULES.get(name, name)}").find()
     except CompilerMissing as reason:
         return str(reason)
     return found

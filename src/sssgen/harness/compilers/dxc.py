@@ -10,10 +10,10 @@ import re
 from collections.abc import Callable
 from functools import cache
 
-from sssgen.harness.compilers.base import LANGUAGES, Compiler, CompilerMissing, Message, Severity, Source
-from sssgen.harness.compilers.calls import hlsl_entry
+from sssgen.harness.compilers.calling_entry import hlsl_entry
+from sssgen.harness.compilers.compiler_interface import LANGUAGES, Compiler, CompilerMissing, Message, Severity, Source
 from sssgen.harness.compilers.glslang import LIBRARY_ENTRY
-from sssgen.harness.process import LostError, Process
+from sssgen.support.worker_process import LostError, Process
 
 _PROFILES = {"vertex": "vs_6_0", "fragment": "ps_6_0", "library": "ps_6_0"}
 _OWN = ("", "hlsl.hlsl")  # what the text is called where no #line names it

@@ -6,9 +6,9 @@ import re
 from pathlib import Path
 from subprocess import CompletedProcess
 
-from sssgen.harness.compilers.base import LANGUAGES, Compiler, CompilerMissing, Message, Severity, Source
-from sssgen.harness.compilers.calls import glsl_entry, hlsl_entry
-from sssgen.harness.compilers.gl import with_version
+from sssgen.harness.compilers.calling_entry import glsl_entry, hlsl_entry
+from sssgen.harness.compilers.compiler_interface import LANGUAGES, Compiler, CompilerMissing, Message, Severity, Source
+from sssgen.harness.compilers.gl_driver import with_version
 
 _STAGES = {"vertex": "vert", "fragment": "frag", "library": "frag"}
 _OWN = (None, "0", "stdin")  # what the text is called where no #line names it

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from sssgen.harness.compilers.base import LANGUAGES, Compiler, CompilerMissing, Message, Source
-from sssgen.harness.compilers.calls import wgsl_entry
+from sssgen.harness.compilers.calling_entry import wgsl_entry
+from sssgen.harness.compilers.compiler_interface import LANGUAGES, Compiler, CompilerMissing, Message, Source
 
 
 class Naga(Compiler):

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 
-from sssgen.harness.compilers.base import Message
+from sssgen.harness.compilers.compiler_interface import Message
 
 _BLOCK = re.compile(r"^[ \t]*(CG|HLSL)(PROGRAM|INCLUDE)\b[ \t]*\n(.*?)^[ \t]*END(CG|HLSL)\b", re.DOTALL | re.MULTILINE)
 _STRAY = re.compile(r"^[ \t]*(?:CG|HLSL)(?:PROGRAM|INCLUDE)\b|^[ \t]*END(?:CG|HLSL)\b", re.MULTILINE)

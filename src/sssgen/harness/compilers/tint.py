@@ -6,8 +6,8 @@ import json
 from pathlib import Path
 from typing import Any
 
-from sssgen.harness.compilers.base import LANGUAGES, Compiler, CompilerMissing, Message, Source
-from sssgen.harness.compilers.calls import wgsl_entry
+from sssgen.harness.compilers.calling_entry import wgsl_entry
+from sssgen.harness.compilers.compiler_interface import LANGUAGES, Compiler, CompilerMissing, Message, Source
 
 # One process answers for all checks. Dawn prints warnings there as well, so a reply begins with "@@".
 _SERVER = """
@@ -107,7 +107,7 @@ def find() -> Tint:
     import os
     import shutil
 
-    from sssgen.data import folder
+    from sssgen.support.paths import folder
 
     node = shutil.which("node") or shutil.which("nodejs")
     if node is None:

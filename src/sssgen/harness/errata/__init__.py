@@ -10,13 +10,13 @@ docs/errata.md says it in words, docs/stability.md shows it; `UNSHOWN` has what 
 
 from __future__ import annotations
 
-from .absorption import ABSORPTION
-from .distance_fields import OPEN, SEED_0
-from .erratum import Erratum, Measure, Right, as_mended, as_published, holds, shows
-from .lobes import SEED_1, SEED_3
-from .marches import SEED_2
-from .parallax import SEED_4
-from .unshown import UNSHOWN, Unshown
+from sssgen.harness.errata.absorption import ABSORPTION
+from sssgen.harness.errata.distance_fields import OPEN, SEED_0
+from sssgen.harness.errata.erratum import Erratum, Measure, Right, as_mended, as_published, holds, shows
+from sssgen.harness.errata.lobes import SEED_1, SEED_3
+from sssgen.harness.errata.marches import SEED_2
+from sssgen.harness.errata.parallax import SEED_4
+from sssgen.harness.errata.unshown import UNSHOWN, Unshown
 
 __all__ = [
     "BACKENDS", "CHAPTERS", "ERRATA", "OPEN", "UNSHOWN", "Erratum", "Measure", "Right", "Unshown", "as_mended",

@@ -10,9 +10,9 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from ..backends import Array, Backend
-from ..evaluate import evaluate
-from ..probes import Subject, subject
+from sssgen.harness.backends import Array, Backend
+from sssgen.harness.evaluate.evaluation import evaluate
+from sssgen.harness.evaluate.probes import Subject, subject
 
 Outputs: TypeAlias = Mapping[str, Array]
 Figures: TypeAlias = tuple[float, ...]

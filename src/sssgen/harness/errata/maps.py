@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from ... import library
-from ..backends import Array, Backend
-from ..evaluate import evaluate
-from ..images import encode_srgb
-from ..scenes.camera import Camera
-from ..scenes.geometry import Ball
-from .erratum import subject_of
+from sssgen.harness.backends import Array, Backend
+from sssgen.harness.errata.erratum import subject_of
+from sssgen.harness.evaluate.evaluation import evaluate
+from sssgen.harness.pictures.images import encode_srgb
+from sssgen.harness.scenes.camera import Camera
+from sssgen.harness.scenes.geometry import Ball
+from sssgen.material import library
 
 NO_NUMBER = (1.0, 0.0, 1.0)
 SIZE = (320, 240)

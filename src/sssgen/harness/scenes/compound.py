@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .placed import Array, Geometry, Hits, planar, spherical, spread, tangent_of, unit
+from sssgen.harness.scenes.placed import Array, Geometry, Hits, planar, spherical, spread, tangent_of, unit
 
 
 @dataclass(frozen=True)

@@ -13,18 +13,17 @@ from typing import Any
 
 import numpy as np
 
-from sssgen import library, slots
-from sssgen.compiler import transpile
-from sssgen.diagnostics import SssgenError, did_you_mean, failure
+from sssgen.harness.scenes.placed import Array, Bools, Geometry, Hits, planar, spherical, spread, tangent_of, unit
 from sssgen.ir.nodes import Function, Module, Uniform
 from sssgen.ir.types import Sampler
-from sssgen.lang.check import check
-from sssgen.lang.parser import parse
-from sssgen.material_values import WrongValue, read_value
+from sssgen.lang.check.module_checker import check
+from sssgen.lang.syntax.parser import parse
+from sssgen.material import library, slots
+from sssgen.material.values import WrongValue, read_value
 from sssgen.passes.fold import fold
 from sssgen.passes.link import LinkStage, link
-
-from .placed import Array, Bools, Geometry, Hits, planar, spherical, spread, tangent_of, unit
+from sssgen.pipeline.compiler import transpile
+from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 
 PROJECTIONS = {"spherical": spherical, "planar": planar}
 """Points (n, 3) → their uv (n, 2) and the gradients of u and of v, (n, 3) each, up to a positive factor."""

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from .compound import Capsule, Union
-from .distance_field import Distance
-from .mesh import Mesh
-from .placed import Geometry, Hits
-from .solids import Ball, Box, Slab, Torus
+from sssgen.harness.scenes.compound import Capsule, Union
+from sssgen.harness.scenes.distance_field import Distance
+from sssgen.harness.scenes.mesh import Mesh
+from sssgen.harness.scenes.placed import Geometry, Hits
+from sssgen.harness.scenes.solids import Ball, Box, Slab, Torus
 
 __all__ = ["Ball", "Box", "Capsule", "Distance", "Geometry", "Hits", "Mesh", "Slab", "Torus", "Union"]

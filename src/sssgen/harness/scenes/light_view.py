@@ -6,9 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sssgen.diagnostics import failure
-
-from .placed import Array
+from sssgen.harness.scenes.placed import Array
+from sssgen.support.diagnostics import failure
 
 MARGIN = 1.1
 """How much wider the map is than the body."""

@@ -9,14 +9,13 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.data import posix
-from sssgen.diagnostics import failure
-
-from . import mesh_files
-from .mesh_distance import MeshDistance, is_inside_out
-from .mesh_rays import MeshRays
-from .placed import Array, Geometry, Hits, any_tangent, spherical, spread, tangent_of, unit
-from .table import ANY
+from sssgen.harness.scenes import mesh_files
+from sssgen.harness.scenes.mesh_distance import MeshDistance, is_inside_out
+from sssgen.harness.scenes.mesh_rays import MeshRays
+from sssgen.harness.scenes.placed import Array, Geometry, Hits, any_tangent, spherical, spread, tangent_of, unit
+from sssgen.harness.scenes.toml_table import ANY
+from sssgen.support.diagnostics import failure
+from sssgen.support.paths import posix
 
 Indices: TypeAlias = npt.NDArray[np.int64]
 

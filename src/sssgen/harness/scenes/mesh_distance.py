@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from ..extras import need
-from .placed import Array
+from sssgen.harness.scenes.placed import Array
+from sssgen.support.extras import need
 
 INSIDE = 0.5
 """The winding number beyond which a point is inside: half of a turn, which is what closes an open mesh's holes."""

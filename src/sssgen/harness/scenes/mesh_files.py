@@ -8,11 +8,10 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.data import posix
-from sssgen.diagnostics import did_you_mean, failure
-
-from ..extras import need
-from .placed import Array
+from sssgen.harness.scenes.placed import Array
+from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.support.extras import need
+from sssgen.support.paths import posix
 
 Indices: TypeAlias = npt.NDArray[np.int64]
 

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..extras import need
-from .placed import Array, unit
+from sssgen.harness.scenes.placed import Array, unit
+from sssgen.support.extras import need
 
 Indices: TypeAlias = npt.NDArray[np.int64]
 

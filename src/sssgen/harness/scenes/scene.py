@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
@@ -10,16 +9,11 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.data import posix
-from sssgen.diagnostics import did_you_mean, failure
+from sssgen.harness.pictures.images import read
+from sssgen.harness.scenes.camera import Camera
+from sssgen.harness.scenes.geometry import Geometry
 from sssgen.ir.spans import Span
-from sssgen.lang.loader import read_text
-from sssgen.material import examples
-from sssgen.toml_source import Document, parse
-
-from ..images import read
-from .camera import Camera
-from .geometry import Geometry
+from sssgen.support.toml_source import Document
 
 Vector: TypeAlias = tuple[float, float, float]
 
@@ -124,22 +118,3 @@ class Scene:
             for key in getattr(self, section):
                 found[f"{section}.{key}"] = self.document.place(section, key).key
         return found
-
-
-def load(path: str | os.PathLike[str]) -> Scene:
-    """The scene of a TOML file, or of an example by its name. Raises SssgenError with all that is wrong with it."""
-    text = os.fspath(path)
-    if not text.endswith(".toml") and "/" not in text and "\\" not in text and not os.path.isfile(text):
-        known = examples()
-        if text not in known:
-            hint = did_you_mean(text, known) or f"give a path that ends in .toml, or one of: {', '.join(known)}"
-            raise failure(f"unknown scene '{text}'", hint)
-        path = os.path.join(os.path.dirname(known[text]), "scene.toml")
-    return parse_scene(read_text(os.fspath(path), posix(path)), path)
-
-
-def parse_scene(text: str, path: str | os.PathLike[str]) -> Scene:
-    """The scene that a TOML text describes; files that it names are looked for beside `path`. Raises SssgenError."""
-    from .reader import read_scene
-
-    return read_scene(parse(text, posix(path)), os.path.dirname(os.fspath(path)))

@@ -6,7 +6,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .placed import Array, Bools, Geometry, Hits, Vector, any_tangent, spherical, spread, tangent_of, unit
+from sssgen.harness.scenes.placed import (
+    Array,
+    Bools,
+    Geometry,
+    Hits,
+    Vector,
+    any_tangent,
+    spherical,
+    spread,
+    tangent_of,
+    unit,
+)
 
 
 @dataclass(frozen=True)

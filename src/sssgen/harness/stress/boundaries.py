@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from ...ir.formats import FLOAT32, Format
-from ...ir.types import Matrix, Sampler, kind_of
-from ...targets.numpy_textures import Texture
-from ..backends import Array
-from ..evaluate import Inputs, shape_of
-from .draw import contract, drawn, fixed, is_direction, opaque, texture, whole_range
-from .specimen import Specimen
-from .trial import BEYOND, BOUNDARY, Trial
+from sssgen.harness.backends import Array
+from sssgen.harness.evaluate.evaluation import Inputs, shape_of
+from sssgen.harness.stress.contract_inputs import contract, drawn, fixed, is_direction, opaque, texture, whole_range
+from sssgen.harness.stress.subject import Specimen
+from sssgen.harness.stress.trial import BEYOND, BOUNDARY, Trial
+from sssgen.ir.formats import FLOAT32, Format
+from sssgen.ir.types import Matrix, Sampler, kind_of
+from sssgen.targets.numpy_textures import Texture
 
 MIXED = 4096
 """Lanes of which every input has a boundary value."""

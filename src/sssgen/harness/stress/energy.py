@@ -6,12 +6,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...ir.formats import FLOAT32, Format
-from ..evaluate import Inputs
-from .draw import contract, drawn
-from .judge import growing_input
-from .specimen import Specimen
-from .trial import ENERGY, Trial
+from sssgen.harness.evaluate.evaluation import Inputs
+from sssgen.harness.stress.contract_inputs import contract, drawn
+from sssgen.harness.stress.result_checks import growing_input
+from sssgen.harness.stress.subject import Specimen
+from sssgen.harness.stress.trial import ENERGY, Trial
+from sssgen.ir.formats import FLOAT32, Format
 
 PAIRS = 4096
 

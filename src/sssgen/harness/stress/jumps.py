@@ -8,15 +8,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...ir.types import Sampler, kind_of
-from ..backends import Array
-from ..deviation import errors
-from ..evaluate import Inputs, fitted
-from ..samples import samples
-from .draw import fixed
-from .judge import JUMP
-from .shrink import lane
-from .specimen import Specimen
+from sssgen.harness.backends import Array
+from sssgen.harness.evaluate.deviation import errors
+from sssgen.harness.evaluate.evaluation import Inputs, fitted
+from sssgen.harness.evaluate.random_inputs import samples
+from sssgen.harness.stress.contract_inputs import fixed
+from sssgen.harness.stress.result_checks import JUMP
+from sssgen.harness.stress.shrink import lane
+from sssgen.harness.stress.subject import Specimen
+from sssgen.ir.types import Sampler, kind_of
 
 LANES = 1024
 STEP = 1e-4

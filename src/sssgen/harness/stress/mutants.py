@@ -11,15 +11,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...diagnostics import SssgenError
-from ...passes.sites import Site
-from ..backends import Array, Backend
-from ..deviation import errors
-from ..evaluate import run as evaluated
-from .judge import non_finite
-from .run import Machines
-from .specimen import Specimen
-from .witness import Witness, only, sites, witness
+from sssgen.harness.backends import Array, Backend
+from sssgen.harness.evaluate.deviation import errors
+from sssgen.harness.evaluate.evaluation import run as evaluated
+from sssgen.harness.stress.guard_witness import Witness, only, sites, witness
+from sssgen.harness.stress.result_checks import non_finite
+from sssgen.harness.stress.stress_run import Machines
+from sssgen.harness.stress.subject import Specimen
+from sssgen.passes.ranges.sites import Site
+from sssgen.support.diagnostics import SssgenError
 
 CHANGED = 1e-3
 """A result that differs by more than this, relative to the larger of its size and 1, is another one."""

@@ -7,20 +7,20 @@ from typing import Any
 
 import numpy as np
 
-from ...ir.types import kind_of
-from ...targets.numpy_textures import Texture
-from ..backends import Array
-from .draw import TEXELS
-from .given import angles, mixed, plain
-from .specimen import Specimen
-from .trial import Trial
+from sssgen.harness.backends import Array
+from sssgen.harness.stress.base_inputs import angles, mixed, plain
+from sssgen.harness.stress.contract_inputs import TEXELS
+from sssgen.harness.stress.subject import Specimen
+from sssgen.harness.stress.trial import Trial
+from sssgen.ir.types import kind_of
+from sssgen.targets.numpy_textures import Texture
 
 _FIELDS = ("distance_texture", "distance_texture_world")
 
 
 def _bound(specimen: Specimen, *functions: str) -> Specimen | None:
     """The technique with the first of the functions that fits its slot."""
-    from ... import slots
+    from sssgen.material import slots
 
     for name in specimen.slots:
         declared = next(slot for slot in _slots(specimen) if slot.name == name)
@@ -32,7 +32,7 @@ def _bound(specimen: Specimen, *functions: str) -> Specimen | None:
 
 
 def _slots(specimen: Specimen) -> Any:
-    from ... import library
+    from sssgen.material import library
 
     return library.load(specimen.technique).slots
 

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from ...ir.formats import FLOAT16
-from .draw import outside
-from .given import angles, calls, directions, mixed, plain, samplers, scalars
-from .specimen import Specimen
-from .trial import Trial
+from sssgen.harness.stress.base_inputs import angles, calls, directions, mixed, plain, samplers, scalars
+from sssgen.harness.stress.contract_inputs import outside
+from sssgen.harness.stress.subject import Specimen
+from sssgen.harness.stress.trial import Trial
+from sssgen.ir.formats import FLOAT16
 
 AXES = [(0, 0, 1), (0, 0, -1), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0.6, 0, 0.8), (-0.6, 0, -0.8)]
 _EPS = 2.0**-21

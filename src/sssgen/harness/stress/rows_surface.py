@@ -7,15 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from ...ir.types import Sampler
-from ...targets.numpy_textures import Texture
-from ..backends import Array, get
-from ..evaluate import run
-from .draw import TEXELS
-from .given import angles, mixed, plain, samplers
-from .rows_light import AXES
-from .specimen import Specimen
-from .trial import Trial
+from sssgen.harness.backends import Array, get
+from sssgen.harness.evaluate.evaluation import run
+from sssgen.harness.stress.base_inputs import angles, mixed, plain, samplers
+from sssgen.harness.stress.contract_inputs import TEXELS
+from sssgen.harness.stress.rows_light import AXES
+from sssgen.harness.stress.subject import Specimen
+from sssgen.harness.stress.trial import Trial
+from sssgen.ir.types import Sampler
+from sssgen.targets.numpy_textures import Texture
 
 UV = np.array([0.3, 0.6], np.float32)
 _NANS = (0x7E00, 0x7C01, 0xFE00, 0xFFFF, 0x7C00, 0xFC00)

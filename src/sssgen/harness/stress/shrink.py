@@ -11,12 +11,12 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from ...ir.types import kind_of, spell
-from ...targets.numpy_textures import Texture
-from ..backends import Array
-from ..evaluate import Inputs, default_texture
-from .draw import contract, fixed, opaque, whole_range
-from .specimen import Specimen
+from sssgen.harness.backends import Array
+from sssgen.harness.evaluate.evaluation import Inputs, default_texture
+from sssgen.harness.stress.contract_inputs import contract, fixed, opaque, whole_range
+from sssgen.harness.stress.subject import Specimen
+from sssgen.ir.types import kind_of, spell
+from sssgen.targets.numpy_textures import Texture
 
 Fails = Callable[[Inputs], Array]
 """Whether inputs fail: (lanes,) bool."""

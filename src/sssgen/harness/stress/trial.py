@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from ...ir.formats import FLOAT32
-from ..backends import Array
-from ..evaluate import Inputs
-from .specimen import Specimen
+from sssgen.harness.backends import Array
+from sssgen.harness.evaluate.evaluation import Inputs
+from sssgen.harness.stress.subject import Specimen
+from sssgen.ir.formats import FLOAT32
 
 RANDOM, BOUNDARY, BEYOND = "random", "boundary values", "beyond the contract"
 ENERGY, STEPS = "thickness grows", "small steps"

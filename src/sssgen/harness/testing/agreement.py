@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from ...diagnostics import failure
-from .. import evaluate
-from ..backends import Array, Backend, get
-from ..deviation import GOAL, blur, deviation, errors
-from ..evaluate import Inputs
-from ..probes import Subject
-from .outcome import Outcome
+from sssgen.harness.backends import Array, Backend, get
+from sssgen.harness.evaluate import evaluation as evaluate
+from sssgen.harness.evaluate.deviation import GOAL, blur, deviation, errors
+from sssgen.harness.evaluate.evaluation import Inputs
+from sssgen.harness.evaluate.probes import Subject
+from sssgen.harness.testing.outcome import Outcome
+from sssgen.support.diagnostics import failure
 
 
 def check_tolerance(given: Any) -> float:

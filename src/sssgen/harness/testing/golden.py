@@ -13,13 +13,13 @@ import os
 import numpy as np
 import numpy.typing as npt
 
-from ...data import posix
-from ...diagnostics import SssgenError, failure
-from ...output import check_names
-from .. import images
-from ..compare import compare
-from ..images import Array
-from .outcome import Outcome
+from sssgen.harness.pictures import images
+from sssgen.harness.pictures.images import Array
+from sssgen.harness.pictures.picture_difference import compare
+from sssgen.harness.testing.outcome import Outcome
+from sssgen.support.diagnostics import SssgenError, failure
+from sssgen.support.file_writer import check_names
+from sssgen.support.paths import posix
 
 FLIP = 0.005
 """The largest mean of FLIP that passes, unless another one is given.

@@ -7,10 +7,10 @@ import xml.etree.ElementTree as ET
 from collections import Counter
 from collections.abc import Sequence
 
-from ...data import posix
-from ...diagnostics import visible
-from ...output import write_files
-from .ci import Ran
+from sssgen.harness.testing.project_run import Ran
+from sssgen.support.diagnostics import visible
+from sssgen.support.file_writer import write_files
+from sssgen.support.paths import posix
 
 SUITE = "sssgen ci"
 

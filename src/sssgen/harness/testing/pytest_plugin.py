@@ -17,11 +17,11 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import pytest
 
 if TYPE_CHECKING:
-    from ..backends import Array, Backend
-    from ..render import Rendered
-    from ..scenes.scene import Scene
-    from .outcome import Outcome
-    from .started import Started
+    from sssgen.harness.backends import Array, Backend
+    from sssgen.harness.render.scene_render import Rendered
+    from sssgen.harness.scenes.scene import Scene
+    from sssgen.harness.testing.outcome import Outcome
+    from sssgen.harness.testing.running_backends import Started
 
 Found = TypeVar("Found")
 
@@ -48,10 +48,10 @@ def pytest_configure(config: pytest.Config) -> None:
     if flip is not None and not 0.0 <= flip <= 1.0:
         raise pytest.UsageError(f"--sssgen-flip {flip}: it is from 0, which is the same, to 1")
     if given := config.getoption("sssgen_backend"):
-        from ...diagnostics import SssgenError
+        from sssgen.support.diagnostics import SssgenError
 
         try:
-            from ..backends import chosen
+            from sssgen.harness.backends import chosen
         except ImportError:  # without NumPy: the fixtures say so
             return
         try:
@@ -77,7 +77,7 @@ def sssgen_backend(request: pytest.FixtureRequest) -> str:
 def _sssgen_started() -> Iterator[Started]:
     """The back ends, each in a process of its own: a driver that crashes fails one test."""
     _need("numpy")
-    from .started import Started
+    from sssgen.harness.testing.running_backends import Started
 
     started = Started()
     yield started
@@ -94,7 +94,7 @@ def sssgen_compile(request: pytest.FixtureRequest) -> Callable[..., None]:
 
     def compile(material: str | os.PathLike[str], targets: str | Iterable[str] = "all") -> None:
         __tracebackhide__ = True
-        from .compiles import compiled
+        from sssgen.harness.testing.compile_outcome import compiled
 
         _end(_guarded(lambda: compiled(_place(request, material), targets)))
 
@@ -165,7 +165,7 @@ def sssgen_golden(request: pytest.FixtureRequest, sssgen_backend: str, _sssgen_s
         __tracebackhide__ = True
         for module in ("PIL", "flip_evaluator"):
             _need(module)
-        from ..scenes.scene import Scene
+        from sssgen.harness.scenes.scene import Scene
 
         if isinstance(picture, str | os.PathLike | Scene):
             scene, backend = picture, _backend(_sssgen_started, sssgen_backend)
@@ -176,8 +176,8 @@ def sssgen_golden(request: pytest.FixtureRequest, sssgen_backend: str, _sssgen_s
 
 
 def _golden(request: pytest.FixtureRequest, picture: Any, name: str, flip: float | None, backend: str) -> Outcome:
-    from ..render import Rendered
-    from . import golden
+    from sssgen.harness.render.scene_render import Rendered
+    from sssgen.harness.testing import golden
 
     encoded = picture.encoded if isinstance(picture, Rendered) else picture
     config, names = request.config, _names(request.config)
@@ -198,8 +198,9 @@ def _render(
     size: tuple[int, int] | None = None,
     time: float | None = None,
 ) -> Rendered:
-    from ..render import render
-    from ..scenes.scene import Scene, load
+    from sssgen.harness.render.scene_render import render
+    from sssgen.harness.scenes.scene import Scene
+    from sssgen.harness.scenes.scene_loading import load
 
     read = scene if isinstance(scene, Scene) else load(_place(request, scene))
     return render(read, backend, size, time)
@@ -208,9 +209,9 @@ def _render(
 def _run(
     technique: str, bind: Mapping[str, str], inputs: Mapping[str, Any], backend: Backend, tolerance: float
 ) -> tuple[dict[str, Array], Outcome]:
-    from ..evaluate import fitted
-    from ..probes import subject
-    from .agreement import against_oracle, check_tolerance
+    from sssgen.harness.evaluate.evaluation import fitted
+    from sssgen.harness.evaluate.probes import subject
+    from sssgen.harness.testing.agreement import against_oracle, check_tolerance
 
     check_tolerance(tolerance)
     chosen = subject(technique, bind)
@@ -224,7 +225,7 @@ def _names(config: pytest.Config) -> list[str]:
 
 
 def _place(request: pytest.FixtureRequest, path: str | os.PathLike[str]) -> str:
-    from .outcome import beside
+    from sssgen.harness.testing.outcome import beside
 
     return beside(os.fspath(path), [str(request.path.parent), str(request.config.rootpath)])
 
@@ -232,8 +233,8 @@ def _place(request: pytest.FixtureRequest, path: str | os.PathLike[str]) -> str:
 def _backend(started: Started, name: str) -> Backend:
     """The back end; a skip where this machine lacks it, with CI set a failure."""
     __tracebackhide__ = True
-    from ..compilers import CompilerMissing
-    from .outcome import lacking
+    from sssgen.harness.compilers import CompilerMissing
+    from sssgen.harness.testing.outcome import lacking
 
     try:
         return _guarded(lambda: started.get(name))
@@ -248,7 +249,7 @@ def _need(module: str) -> None:
     __tracebackhide__ = True
     from importlib import import_module
 
-    from .outcome import lacking
+    from sssgen.harness.testing.outcome import lacking
 
     try:
         import_module(module)
@@ -262,7 +263,7 @@ def _need(module: str) -> None:
 def _guarded(call: Callable[[], Found]) -> Found:
     """What the call gives. An error of its input is shown at the test's own line, not at ours."""
     __tracebackhide__ = True
-    from ...diagnostics import SssgenError
+    from sssgen.support.diagnostics import SssgenError
 
     try:
         return call()

@@ -35,11 +35,10 @@ more than 4 ulp, WGSL means its section "Accuracy of Concrete Floating Point Exp
 
 from __future__ import annotations
 
-from . import (
+from sssgen.ir.intrinsics import (
     common,
     derivatives,
     exponential,
-    geometry,
     integers,
     matrices,
     packing,
@@ -47,7 +46,10 @@ from . import (
     textures,
     trigonometry,
 )
-from .table import FINITE, NONZERO, Builtin, Guard, with_constants
+from sssgen.ir.intrinsics import (
+    geometric as geometry,
+)
+from sssgen.ir.intrinsics.table import FINITE, NONZERO, Builtin, Guard, with_constants
 
 __all__ = ["BUILTINS", "FINITE", "NONZERO", "Builtin", "Guard", "with_constants"]
 

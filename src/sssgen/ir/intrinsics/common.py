@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .table import F1, FINITE, INF, NAN, NONZERO, Builtin, Guard
+from sssgen.ir.intrinsics.table import F1, FINITE, INF, NAN, NONZERO, Builtin, Guard
 
 _PLAIN = F1[0], "genI(genI)"
 _ONES = ("float", "int", "uint")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .table import F1, Builtin
+from sssgen.ir.intrinsics.table import F1, Builtin
 
 _HOW = {"Fine": "for each pair of pixels by itself", "Coarse": "perhaps one for each quad of pixels"}
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .table import F1, F2, Builtin, Guard
+from sssgen.ir.intrinsics.table import F1, F2, Builtin, Guard
 
 _LOG = "WGSL, Vulkan: 3 ulp, but an absolute error of 2^-21 for x in [0.5, 2]"
 _EXP = "WGSL, Vulkan: 3 + 2·|x| ulp; taken at |x| = 88"

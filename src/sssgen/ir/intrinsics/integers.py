@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .table import Builtin
+from sssgen.ir.intrinsics.table import Builtin
 
 _BOTH = ("genI(genI)", "genI(genU)")
 _FIELD = "y >= 0, z >= 0, and y + z <= 32"

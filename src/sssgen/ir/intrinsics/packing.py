@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .table import FINITE, Builtin, Guard
+from sssgen.ir.intrinsics.table import FINITE, Builtin, Guard
 
 # A table: several fields to a line.
 # fmt: off

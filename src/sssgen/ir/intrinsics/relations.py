@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .table import Builtin
+from sssgen.ir.intrinsics.table import Builtin
 
 
 def _relation(name: str, op: str, below: bool, same: bool, above: bool) -> Builtin:

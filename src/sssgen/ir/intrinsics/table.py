@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import NamedTuple
 
-from ..formats import Format
+from sssgen.ir.formats import Format
 
 
 class Guard(NamedTuple):

@@ -10,7 +10,7 @@ printer makes a function of that, `texture_size`. For how many levels there are 
 
 from __future__ import annotations
 
-from .table import Builtin
+from sssgen.ir.intrinsics.table import Builtin
 
 _SAMPLE = ("vec4(sampler2D, vec2", "vec4(sampler3D, vec3", "vec4(samplerCube, vec3")
 _LAYERS = ("vec4(sampler2DArray, vec3", "vec4(samplerCubeArray, vec4")

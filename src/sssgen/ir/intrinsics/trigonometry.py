@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .table import F1, HALF_PI, PI, Builtin, Guard
+from sssgen.ir.intrinsics.table import F1, HALF_PI, PI, Builtin, Guard
 
 _HYPERBOLIC = "WGSL, Vulkan: that of the formula with exp, 3 + 2·|x| ulp, which cancels near 0"
 _TRIG = "WGSL, Vulkan: absolute error of 2^-11 in [-pi, pi]; D3D: 0.0008"

@@ -1,0 +1,124 @@
+"""Writes baked textures, each with its JSON beside it, whole or not at all."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from sssgen.bake.volume_files import FORMATS, encoded, layout
+from sssgen.harness.pictures import images
+from sssgen.material import baked
+from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.support.file_writer import check_names, write_files
+from sssgen.support.paths import posix
+from sssgen.version import VERSION
+
+PICTURES = images.SUFFIXES
+
+
+def volume_format(path: str, named: str | None) -> str:
+    """The format of a volume's file: the one named, or that of its ending. Told before the work starts.
+
+    Raises SssgenError for an unknown one, and where no such file can be written.
+    """
+    _check_place(path)
+    suffix = os.path.splitext(path)[1].lower()
+    if named is None:
+        found = [name for name, ending in FORMATS.items() if ending == suffix]
+        if not found:
+            hint = did_you_mean(suffix, FORMATS.values()) or f"end it in {', '.join(FORMATS.values())}"
+            raise failure(f"'{suffix}' is no volume file's ending", f"{hint}, or name a --format", posix(path))
+        return found[0]
+    if named not in FORMATS:
+        raise failure(f"unknown format '{named}'", did_you_mean(named, FORMATS) or f"one of: {', '.join(FORMATS)}")
+    if suffix != FORMATS[named]:
+        raise failure(f"a file of the format {named} ends in {FORMATS[named]}", "", posix(path))
+    return named
+
+
+def write_volume(path: str, texels: npt.NDArray[Any], format: str, facts: Mapping[str, Any]) -> list[str]:
+    """Writes a volume and its JSON; the paths."""
+    return _write(
+        path, encoded(texels, format), {**facts, "file": {"name": os.path.basename(path), **layout(texels, format)}}
+    )
+
+
+def picture_suffix(path: str, known: tuple[str, ...] = PICTURES) -> str:
+    """A picture file's ending, told before the work starts.
+
+    Raises SssgenError where it is none of those known, and where no such file can be written.
+    """
+    _check_place(path)
+    suffix = images.check_suffix(path)
+    if suffix not in known:
+        raise failure(f"this is not written as '{suffix}'", f"end it in {' or '.join(known)}", posix(path))
+    return suffix
+
+
+def write_picture(
+    path: str,
+    values: npt.NDArray[np.float64],
+    facts: Mapping[str, Any],
+    bits: int = 16,
+    beside: Mapping[str, str] | None = None,
+) -> list[str]:
+    """Writes a picture (h, w) or (h, w, channels), row 0 at the top, its JSON, and texts `beside` it; the paths.
+
+    .png: values 0..1 in so many bits. .exr: as they are. .npy: as they are, in float32, row 0 at the bottom, as
+    sssgen reads arrays.
+    """
+    suffix = picture_suffix(path)
+    layers = values if values.ndim == 3 else values[..., None]
+    if suffix == ".npy":
+        buffer = io.BytesIO()
+        np.save(buffer, np.flipud(layers).astype("<f4"), allow_pickle=False)
+        data, encoding = buffer.getvalue(), "r32f"
+    elif suffix == ".exr":
+        data, encoding = images.exr_bytes(layers), "r32f"
+    else:
+        data, encoding = images.png_bytes(layers, bits), f"unorm{bits}"  # each number is half a step off at most
+    height, width = layers.shape[:2]
+    about = {
+        "name": os.path.basename(path), "size": {"x": width, "y": height}, "channels": layers.shape[2],
+        "encoding": encoding,
+    }  # fmt: skip
+    return _write(path, data, {**facts, "file": about}, beside)
+
+
+def check_apart(path: str, sources: Iterable[str]) -> None:
+    """Raises SssgenError where a file that would be written, at the path or beside it, is one that is read."""
+    for written in (path, baked.sidecar(path), mesh_beside(path)):
+        for source in sources:
+            if os.path.exists(written) and os.path.exists(source) and os.path.samefile(written, source):
+                raise failure("this would overwrite what it is made from", "name another file with -o", posix(written))
+
+
+def mesh_beside(path: str) -> str:
+    """The file of a mesh that got texture coordinates for a map."""
+    return f"{path}.obj"
+
+
+def _check_place(path: str) -> None:
+    """Raises SssgenError where a folder has the file's name, or a file that of its folder."""
+    folder, name = os.path.split(path)
+    check_names([name])
+    if os.path.isdir(path):
+        raise failure("cannot write the file: a folder has its name", file=posix(path))
+    while folder and not os.path.exists(folder):
+        folder = os.path.dirname(folder)
+    if folder and not os.path.isdir(folder):
+        raise failure("cannot write the file: this is no folder", "choose another one, with -o", posix(folder))
+
+
+def _write(path: str, data: bytes, facts: Mapping[str, Any], beside: Mapping[str, str] | None = None) -> list[str]:
+    folder, name = os.path.split(path)
+    said = {"format": baked.FORMAT, "made_by": f"sssgen {VERSION}", **facts}
+    lines = [f" {json.dumps(key)}: {json.dumps(value)}" for key, value in said.items()]
+    text = "{\n" + ",\n".join(lines) + "\n}\n"
+    return [one.path for one in write_files(folder, {name: data, baked.sidecar(name): text, **(beside or {})})]

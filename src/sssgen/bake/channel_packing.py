@@ -1,0 +1,104 @@
+"""Several pictures' channels in one texture: engines sample it once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from sssgen.harness.pictures import images
+from sssgen.support.diagnostics import failure
+from sssgen.support.paths import posix
+
+Array: TypeAlias = npt.NDArray[np.float64]
+
+_NAMES = {1: "r", 2: "ra", 3: "rgb", 4: "rgba"}
+"""A picture's channels, by how many it has."""
+
+
+class Source(NamedTuple):
+    """What a channel is filled from: a picture's channel, or a constant where there is no picture."""
+
+    file: str = ""
+    channel: str = ""
+    """r, g, b, a or 0..3; '' is the first"""
+    inverted: bool = False
+    """One minus it"""
+    constant: float = 0.0
+    """0..1"""
+
+
+def parse(text: str) -> Source:
+    """A source from the command line: FILE, FILE:CHANNEL, 1-FILE, 1-FILE:CHANNEL, or a number from 0 to 1.
+
+    CHANNEL is r, g, b, a, or counted from 0; without one it is the first, which is a gray picture's only. 1-FILE is one
+    minus it; a file whose own name begins so is written ./1-FILE. Raises SssgenError for what is none of these.
+    """
+    try:
+        constant = float(text)
+    except ValueError:
+        pass
+    else:
+        if not 0.0 <= constant <= 1.0:
+            raise failure(f"a channel cannot be filled with {text}", "a number from 0 to 1")
+        return Source(constant=constant)
+    inverted = text.startswith("1-")
+    file, colon, channel = text.removeprefix("1-").rpartition(":")
+    if not colon or set("./\\") & set(channel):  # a drive's colon, as in C:\ice.png
+        file, channel = text.removeprefix("1-"), ""
+    elif channel.lower() not in tuple("rgba0123"):
+        raise failure(f"'{channel}' is no channel", "r, g, b or a, or 0 to 3", posix(file))
+    if not file:
+        raise failure(f"'{text}' names no picture", "FILE, FILE:CHANNEL, 1-FILE, or a number from 0 to 1")
+    return Source(file, channel.lower(), inverted)
+
+
+def load(sources: Sequence[Source | None]) -> list[Array | float | None]:
+    """The channels that sources name, each (height, width) as stored, or a number; None stays None.
+
+    Raises SssgenError for pictures that cannot be read, and where a picture has no such channel.
+    """
+    files = {source.file for source in sources if source is not None and source.file}
+    pictures = {file: images.upright(file) for file in sorted(files)}
+    return [None if source is None else _channel(source, pictures) for source in sources]
+
+
+def _channel(source: Source, pictures: Mapping[str, Array]) -> Array | float:
+    if not source.file:
+        return source.constant
+    picture, shown = pictures[source.file], posix(source.file)
+    names = _NAMES[picture.shape[-1]]
+    at = int(source.channel) if source.channel.isdigit() else names.find(source.channel)  # '' is found at 0
+    if not 0 <= at < len(names):
+        raise failure(f"the picture has no channel {source.channel}", f"it has {', '.join(names)}", shown)
+    values: Array = picture[..., at]
+    return 1.0 - values if source.inverted else values
+
+
+def pack(channels: Sequence[Array | float | None]) -> Array:
+    """Up to four channels in one texture, (height, width, 1, 3 or 4): arrays (height, width), or constants.
+
+    None is 0 where another channel follows. Two channels become three, the third 0: picture files take two as gray and
+    alpha. Raises SssgenError where the sizes differ, there is no array to tell the size, or more than four channels.
+    """
+    if len(channels) > 4:
+        raise failure(f"{len(channels)} channels do not fit in a texture", "four at most")
+    sized = {name: values for name, values in zip("rgba", channels, strict=False) if isinstance(values, np.ndarray)}
+    if not sized:
+        raise failure("no picture to pack", "name one for a channel at least: it tells the size")
+    (first, array), *others = sized.items()
+    for name, other in others:
+        if other.shape != array.shape:
+            hint = f"{first} is {_size(array)}, {name} is {_size(other)}"
+            raise failure("pictures of different sizes do not fit in a texture", hint)
+    count = max(at for at, values in enumerate(channels, start=1) if values is not None)
+    texture = np.zeros((*array.shape, 3 if count == 2 else count))
+    for at, values in enumerate(channels[:count]):
+        texture[..., at] = 0.0 if values is None else values
+    return texture
+
+
+def _size(array: Array) -> str:
+    return f"{array.shape[1]} x {array.shape[0]}"

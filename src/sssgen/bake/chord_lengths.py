@@ -1,0 +1,77 @@
+"""How long a body is below places of its surface: the work of a thickness map, in blocks."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from sssgen.bake.voxel_grid import Array
+from sssgen.harness.scenes.mesh import Mesh
+from sssgen.lab.reference.inside_lengths import thickness
+
+
+class Chords(NamedTuple):
+    """What is known of places; arrays are (n,)."""
+
+    value: Array
+    error: Array
+    """The value's standard error; 0 where it is exact"""
+    lost: Array
+    """The share of rays that never leave the body, through a hole; they do not count"""
+
+
+@lru_cache(2)
+def _mesh(path: str, digest: str) -> Mesh:
+    """The mesh, read once in a process; another content is another mesh."""
+    return Mesh(path=path)
+
+
+def along(path: str, digest: str, places: Array, ways: Array, attenuation: float) -> Chords:
+    """The length inside the mesh from places on along unit ways, (n, 3) each; or exp(−length / attenuation)."""
+    length = thickness(_mesh(path, digest), places, ways)
+    value = np.exp(-length / attenuation) if attenuation else length
+    return Chords(value, np.zeros(len(length)), np.zeros(len(length)))
+
+
+def inward(
+    path: str, digest: str, places: Array, flat: Array, rays: int, attenuation: float, seed: tuple[int, int]
+) -> Chords:
+    """The mean over inward directions, weighted by their cosine to −`flat`.
+
+    The unit square of directions has rays / 2 cells, and each cell two rays by chance: their difference gives an
+    unbiased standard error of the stratified mean (Cochran, Sampling Techniques, 1977, 5A.11).
+    """
+    cells = rays // 2
+    count, rng = len(places), np.random.Generator(np.random.Philox(key=[seed[0], seed[1]]))
+    wide = max(side for side in range(1, math.isqrt(cells) + 1) if cells % side == 0)
+    cell = np.arange(cells)
+    u, v = rng.random((2, 2, count, cells))
+    u, v = (cell % wide + u) / wide, (cell // wide + v) / (cells // wide)
+    radius, angle = np.sqrt(u), 2.0 * np.pi * v
+    side, up = _frame(flat)
+    parts = radius * np.cos(angle), radius * np.sin(angle), -np.sqrt(np.maximum(1.0 - u, 0.0))
+    ways = sum(part[..., None] * axis[:, None] for part, axis in zip(parts, (side, up, flat), strict=True))
+    starts = np.broadcast_to(places[:, None], ways.shape)
+    length = thickness(_mesh(path, digest), starts.reshape(-1, 3), np.ascontiguousarray(ways.reshape(-1, 3)))
+    length = length.reshape(2, count, cells)
+    left = length > 0.0
+    value = np.exp(-length / attenuation) if attenuation else length
+    number = left.sum(axis=(0, 2))
+    mean = np.where(left, value, 0.0).sum(axis=(0, 2)) / np.maximum(number, 1)
+    pairs = left.all(axis=0)
+    spread = np.where(pairs, (value[0] - value[1]) ** 2, 0.0).sum(axis=1)
+    error = np.sqrt(spread) / (2.0 * np.maximum(pairs.sum(axis=1), 1))
+    return Chords(mean, error, 1.0 - number / (2 * cells))
+
+
+def _frame(normals: Array) -> tuple[Array, Array]:
+    """Unit axes across unit normals (n, 3) (Duff et al., Building an Orthonormal Basis, Revisited, 2017)."""
+    x, y, z = normals.T
+    sign = np.where(z < 0.0, -1.0, 1.0)
+    a = -1.0 / (sign + z)
+    b = x * y * a
+    side = np.stack([1.0 + sign * x * x * a, sign * b, -sign * x], axis=1)
+    return side, np.stack([b, sign + y * y * a, -y], axis=1)

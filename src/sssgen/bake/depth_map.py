@@ -1,0 +1,48 @@
+"""Depth maps: how far each place is from a light's plane where the light first meets a mesh."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from sssgen.bake import memory_check as memory
+from sssgen.bake.bake_light import BakeLight
+from sssgen.bake.voxel_distance import BLOCK
+from sssgen.bake.voxel_grid import Array
+from sssgen.harness.scenes.mesh import Mesh
+from sssgen.lab.jobs.executor import Progress
+from sssgen.targets.texture_import import import_settings
+
+
+def depth_map(
+    path: str, light: BakeLight, size: tuple[int, int], told: Progress = lambda *_: None
+) -> tuple[Array, dict[str, Any]]:
+    """The map of a mesh, (height, width), row 0 at the top, in units of the mesh; and the facts for its JSON.
+
+    `size` is (width, height). What the light meets nothing at is far behind the mesh. Raises SssgenError for a mesh
+    that cannot be read, and for a light within it.
+    """
+    width, height = size
+    memory.check(width * height * 100.0, "take a smaller --size")
+    mesh = Mesh(path=path)
+    low, high = mesh.bounds()
+    view = light.view(mesh.triangles.places, size)
+    away = np.maximum(np.linalg.norm(view.origins - 0.5 * (low + high), axis=1) - np.linalg.norm(high - low), 0.0)
+    starts = view.origins + away[:, None] * view.directions  # Embree counts in 32 bits: near the mesh there are more
+    depth = np.empty(len(starts))
+    for start in range(0, len(starts), BLOCK):
+        part = slice(start, start + BLOCK)
+        met, t = mesh.rays.nearest(starts[part], view.directions[part])
+        depth[part] = np.where(met >= 0, (away[part] + t) * view.slopes[part], view.far)
+        told(min(start + BLOCK, len(starts)), len(starts), "depths")
+    reached = depth[depth < view.far]
+    facts = {
+        "kind": "depth", "holds": None, "light": light.facts(), "unit": "of the mesh",
+        "formula": "texel = distance from the light's plane to the first surface",
+        "range": [float(reached.min(initial=view.far)), float(reached.max(initial=0.0))], "nothing": view.far,
+        "covered": round(len(reached) / len(depth), 6),
+        "parameters": {"light_matrix": [float(value) for value in view.matrix.T.ravel()]},
+        "import": import_settings(wrap="clamp", mipmaps=False),
+    }  # fmt: skip
+    return np.flipud(depth.reshape(height, width)), facts

@@ -1,0 +1,31 @@
+"""Distances as a texture's numbers, and how far off these are."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from sssgen.bake.voxel_distance import Distances
+from sssgen.harness.pictures import volumes
+from sssgen.harness.pictures.volumes import Encoding
+from sssgen.harness.scenes.scene import stored
+
+ENCODINGS = {one.name: one for one in volumes.ENCODINGS if one.channels == 1}
+"""By the names of the command line: unsigned normalised integers, and floats."""
+
+
+def encode(distance: Distances, inside: npt.NDArray[np.bool_], reach: float, encoding: Encoding) -> npt.NDArray[Any]:
+    """The texels of unsigned distances, (z, y, x)."""
+    texels = np.empty(distance.shape, encoding.dtype)
+    for layer in range(len(distance)):  # a layer at a time, as this goes through float64
+        value = stored(np.where(inside[layer], -1.0, 1.0) * distance[layer], reach)
+        texels[layer] = np.rint(value * encoding.one) if encoding.dtype.kind == "u" else value
+    return texels
+
+
+def error_at_texels(reach: float, encoding: Encoding, diagonal: float) -> float:
+    """The largest error of a decoded distance within the reach: half a step, and the distances' own rounding."""
+    step = 1.0 / encoding.one if encoding.dtype.kind == "u" else 0.5 * float(np.finfo(encoding.dtype).eps)
+    return reach * step + 2.0**-23 * diagonal

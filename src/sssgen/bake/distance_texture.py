@@ -1,0 +1,131 @@
+"""Distance textures of meshes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from sssgen.bake import memory_check as memory
+from sssgen.bake.distance_encoding import ENCODINGS, encode, error_at_texels
+from sssgen.bake.voxel_distance import BLOCK, distances, inside
+from sssgen.bake.voxel_grid import Array, Grid, around
+from sssgen.harness.scenes.mesh import Mesh
+from sssgen.harness.scenes.mesh_distance import mixed_sides
+from sssgen.lab.jobs.executor import Progress
+from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.support.paths import posix
+from sssgen.targets.texture_import import import_settings
+
+SHEET = 1e-5
+"""A mesh that is flatter than this share of its size is a sheet, without an inside."""
+A_POINT = 200
+"""Bytes that a query takes for each point."""
+A_TRIANGLE = 800
+"""Bytes that its trees take for each triangle."""
+
+
+class Volume(NamedTuple):
+    """A baked distance texture."""
+
+    texels: npt.NDArray[Any]
+    """(z, y, x), as they are stored"""
+    grid: Grid
+    reach: float
+    """The distance that the largest number stands for"""
+    facts: dict[str, Any]
+    """For the JSON beside it"""
+
+
+def sdf(
+    path: str,
+    resolution: Sequence[int] = (64,),
+    padding: float = 0.05,
+    encoding: str = "r16",
+    reach: float | None = None,
+    thin: float | None = None,
+    told: Progress = lambda *_: None,
+) -> Volume:
+    """The signed distance to a mesh, in its own space and units, negative inside.
+
+    `resolution`, `padding`: see `grid.around`. `reach`: the distance where the numbers end; without, the largest that
+    there is. `thin`: take the mesh as a sheet so thick, without an inside of its own. Raises SssgenError for a mesh
+    that has no inside, and for a grid that there is no memory for.
+    """
+    if encoding not in ENCODINGS:
+        hint = did_you_mean(encoding, ENCODINGS) or f"one of: {', '.join(ENCODINGS)}"
+        raise failure(f"unknown encoding '{encoding}'", hint)
+    mesh, form = Mesh(path=path), ENCODINGS[encoding]
+    low, high = mesh.bounds()
+    for name, value in (("range", reach), ("thin", thin)):
+        if value is not None and not 1e-9 < value < 1e9:
+            raise failure(f"--{name} {value:g} is no length", "units of the mesh, more than 0")
+    places = mesh.triangles.places
+    if thin is None and _is_flat(places):
+        hint = "give it a thickness with --thin, in units of the mesh"
+        raise failure("the mesh is a flat sheet: it has no inside", hint, posix(path))
+    extra = 0.5 * (thin or 0.0)
+    grid = around(low - extra, high + extra, resolution, padding)
+    across, up, deep = grid.counts
+    size = np.dtype(form.dtype).itemsize
+    wanted = (
+        across * up * deep * (4 + 2 + 2 * size)
+        + max(4 * BLOCK, across * up) * A_POINT
+        + len(mesh.triangles.corners) * A_TRIANGLE
+    )
+    memory.check(wanted, "take a lower --resolution")
+    solid = mesh.solid
+    unsigned = distances(solid, grid, told)
+    if thin is None:
+        within = inside(solid, grid, unsigned)
+    else:
+        within = unsigned < extra
+        unsigned = np.abs(unsigned - np.float32(extra))
+    if not within.any():
+        _without_inside(path, solid.rim > 0.0, thin, grid)
+    reach = float(unsigned.max()) if reach is None else reach
+    texels = encode(unsigned, within, reach, form)
+    facts = {
+        "kind": "distance", "holds": None,
+        "mesh": {
+            "triangles": len(mesh.triangles.corners), "closed": solid.rim == 0.0, "inside_out": solid.inside_out,
+            "mixed_sides": mixed_sides(mesh.triangles.corners),
+            "box_min": _told(low), "box_max": _told(high),
+        },
+        "texels": list(grid.counts), "voxel": _told(grid.voxel),
+        "box_min": _told(grid.low), "box_max": _told(grid.high),
+        "encoding": encoding, "formula": "distance = (2 texel - 1) * range, texel from 0 to 1",
+        "range": reach, "beyond_range": round(float((unsigned > reach).mean()), 6),
+        "sign": f"negative within {thin:g} / 2 of the sheet" if thin else
+                "negative where the generalised winding number is more than 0.5",
+        "error": {
+            "at_texels": error_at_texels(reach, form, grid.diagonal),
+            "between_texels": 0.5 * float(np.linalg.norm(grid.voxel)),
+            **({"but": "not across its holes, where the sign jumps"} if solid.rim and thin is None else {}),
+        },
+        "inside": round(float(within.mean()), 6),
+        "parameters": {"box_min": _told(grid.low), "box_max": _told(grid.high), "distance_range": reach},
+        "import": import_settings("3D", "clamp", mipmaps=False),
+    }  # fmt: skip
+    return Volume(texels, grid, reach, facts)
+
+
+def _is_flat(places: Array) -> bool:
+    """Whether all vertices lie in a plane."""
+    spread = np.linalg.svd(np.cov((places - places.mean(axis=0)).T), compute_uv=False)
+    return bool(np.sqrt(spread[-1]) <= SHEET * np.sqrt(spread[0]))
+
+
+def _without_inside(path: str, is_open: bool, thin: float | None, grid: Grid) -> None:
+    voxel = float(grid.voxel.max())
+    if is_open and thin is None:
+        hint = "give a sheet its thickness with --thin; close a body's holes, or raise --resolution for thin walls"
+        raise failure(f"no voxel of {voxel:.3g} units lies inside the mesh, which is open", hint, posix(path))
+    hint = f"raise --resolution (a voxel is {voxel:.3g} units), or take its walls as a sheet with --thin"
+    raise failure("no voxel lies inside the mesh: its walls are thinner than a voxel", hint, posix(path))
+
+
+def _told(vector: Array) -> list[float]:
+    return [float(value) for value in vector]

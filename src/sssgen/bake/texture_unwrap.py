@@ -1,0 +1,69 @@
+"""New texture coordinates for meshes, by xatlas."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from sssgen.bake.atlas import Indices
+from sssgen.bake.voxel_grid import Array
+from sssgen.harness.scenes.mesh import Triangles
+from sssgen.lab.jobs.executor import Failure, Item, Progress, run
+from sssgen.lab.jobs.result_store import Store
+from sssgen.support.diagnostics import failure
+from sssgen.support.extras import need
+
+PADDING = 4
+"""Texels between charts, on a map of RESOLUTION."""
+RESOLUTION = 1024
+
+
+def unwrapped(mesh: Triangles, told: Progress = lambda *_: None) -> Array:
+    """New texture coordinates, (f, 3, 2), in 0..1, without overlaps.
+
+    xatlas crashes on some faultless meshes, so it works in a process of its own; what it cannot do whole it does in six
+    pieces, by the axis that triangles face most. Raises SssgenError where it can neither, and without it.
+    """
+    need("xatlas", extra="bake")
+    low, high = mesh.places.min(axis=0), mesh.places.max(axis=0)
+    places = ((mesh.places - low) / float((high - low).max())).astype(np.float32)  # it counts in 32 bits
+    axis = np.abs(mesh.flat).argmax(axis=1)
+    facing = 2 * axis + (mesh.flat[np.arange(len(axis)), axis] < 0.0)
+    result: Any = None
+    for parts in (np.zeros(len(axis), np.int64), facing):
+        item = Item("sssgen.bake.texture_unwrap:charts", (places, mesh.corners, parts), "texture coordinates")
+        (result,) = run([item], processes=1, store=Store(""), progress=told)
+        if not isinstance(result, Failure):
+            return np.asarray(result, np.float64)
+    hint = "give the mesh texture coordinates in a program for meshes"
+    raise failure(f"xatlas finds no texture coordinates for this mesh: {result.message}", hint)
+
+
+def charts(places: npt.NDArray[np.float32], corners: Indices, parts: Indices) -> npt.NDArray[np.float32]:
+    """The texture coordinates (f, 3, 2) of triangles whose parts, (f,), are laid out each by itself."""
+    xatlas = need("xatlas", extra="bake")
+    atlas = xatlas.Atlas()
+    faces = [np.flatnonzero(parts == part) for part in np.unique(parts)]
+    for some in faces:
+        used, own = np.unique(corners[some], return_inverse=True)
+        atlas.add_mesh(places[used], own.reshape(-1, 3).astype(np.uint32))
+    pack = xatlas.PackOptions()
+    pack.padding, pack.bilinear, pack.resolution = PADDING, True, RESOLUTION
+    atlas.generate(xatlas.ChartOptions(), pack)
+    found = np.zeros((len(corners), 3, 2), np.float32)
+    for number, some in enumerate(faces):
+        _, own, uv = atlas[number]
+        found[some] = uv[own.astype(np.int64)]
+    return found
+
+
+def obj(mesh: Triangles, uv: Array) -> str:
+    """The mesh as a Wavefront file with these texture coordinates."""
+    turns, turn_of = np.unique(uv.reshape(-1, 2), axis=0, return_inverse=True)
+    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in mesh.places]
+    lines += [f"vt {u:.9g} {v:.9g}" for u, v in turns]
+    for face, own in zip(mesh.corners + 1, turn_of.reshape(-1, 3) + 1, strict=True):
+        lines.append("f " + " ".join(f"{place}/{turn}" for place, turn in zip(face, own, strict=True)))
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,107 @@
+"""The signed distance to a mesh at the voxels of a grid, in layers, so that memory stays bounded."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from sssgen.bake.voxel_grid import Array, Grid
+from sssgen.harness.scenes.mesh_distance import INSIDE, MeshDistance
+from sssgen.lab.jobs.executor import Progress
+
+Distances: TypeAlias = npt.NDArray[np.float32]
+
+BLOCK = 2**18
+"""Points of one query, at about a hundred bytes each."""
+TILE = 4
+"""Voxels along a side of what is asked for in a row."""
+SPLIT = 3
+"""What a block's sides are divided by: an odd number, as a block's middle is a voxel then."""
+COARSEST = SPLIT**3
+"""Voxels along a side of the blocks whose sign is asked for first."""
+SLACK = 0.05
+"""How far a fast winding number may be from the true one, five times over."""
+
+
+def distances(body: MeshDistance, grid: Grid, told: Progress = lambda *_: None) -> Distances:
+    """The unsigned distances, exact but for the rounding to float32: (z, y, x)."""
+    across, up, deep = grid.counts
+    found = np.empty((deep, up, across), np.float32)
+    layers = min(deep, max(1, BLOCK // (across * up * TILE)) * TILE)
+    order = _in_tiles((layers, up, across))
+    for start in range(0, deep, layers):
+        end = min(start + layers, deep)
+        if end - start < layers:
+            order = _in_tiles((end - start, up, across))
+        block = np.empty(len(order))
+        block[order] = body.unsigned(grid.slab(start, end)[order])
+        found[start:end] = block.reshape(end - start, up, across)
+        told(end, deep, "distances")
+    return found
+
+
+def _in_tiles(shape: tuple[int, int, int]) -> npt.NDArray[np.int64]:
+    """The order of voxels tile by tile: neighbours walk the same branches of a tree."""
+    z, y, x = (at.ravel() // TILE for at in np.indices(shape, np.int32))
+    return np.lexsort((x, y, z))
+
+
+def inside(body: MeshDistance, grid: Grid, unsigned: Distances) -> npt.NDArray[np.bool_]:
+    """Which voxels lie inside the mesh, by the winding number: (z, y, x).
+
+    It is asked for at the middle of blocks, large ones first, and stands for the whole of a block, or for the middle of
+    the next smaller ones, where it cannot cross one half on the way: see `_change`.
+    """
+    shape = np.array(unsigned.shape)
+    size = COARSEST
+    state = np.zeros(-(-shape // size), np.int8)
+    before: npt.NDArray[np.float32] | None = None
+    rounding = 1e-6 * grid.diagonal  # what touches a triangle is not clear of it
+    while True:
+        turns = np.zeros(state.shape, np.float32)
+        reach = float(np.linalg.norm(size // 2 * grid.voxel))
+        todo = np.argwhere(state == 0)
+        for start in range(0, len(todo), BLOCK):
+            block = todo[start : start + BLOCK]
+            middle = _middle(block, size, shape)
+            clear = unsigned[tuple(middle.T)].astype(np.float64)
+            within = _change(body.rim, reach, clear - reach - rounding) if size > 1 else np.zeros(len(block))
+            value, sure = np.zeros(len(block)), np.zeros(len(block), np.bool_)
+            if before is not None:  # what is known of the block that this is a part of may do
+                whole = block // SPLIT
+                there = _middle(whole, size * SPLIT, shape)
+                way = np.linalg.norm((middle - there)[:, ::-1] * grid.voxel, axis=1)
+                # the balls around both middles cover the way between them, so much is left beside it
+                nearest = 0.5 * (clear + unsigned[tuple(there.T)] - way) - rounding
+                value = before[tuple(whole.T)].astype(np.float64)
+                sure = np.abs(value - INSIDE) > within + _change(body.rim, way, nearest) + SLACK
+            z, y, x = middle[~sure].astype(np.float64).T
+            value[~sure] = body.winding(grid.centers(x, y, z))
+            sure |= (np.abs(value - INSIDE) > within + SLACK) | (size == 1)
+            state[tuple(block[sure].T)] = np.where(value[sure] > INSIDE, 1, -1)
+            turns[tuple(block.T)] = value
+        if size == 1:
+            return state > 0
+        size //= SPLIT
+        finer = tuple(slice(0, side) for side in -(-shape // size))
+        state = state.repeat(SPLIT, axis=0).repeat(SPLIT, axis=1).repeat(SPLIT, axis=2)[finer]
+        before = turns
+
+
+def _middle(block: npt.NDArray[np.int64], size: int, shape: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+    """The voxel in the middle of blocks, (n, 3)."""
+    middle: npt.NDArray[np.int64] = np.minimum(block * size + size // 2, shape - 1)
+    return middle
+
+
+def _change(rim: float, way: float | Array, nearest: Array) -> Array:
+    """How much the winding number can change along ways, (n,), that no triangle is nearer to than `nearest`.
+
+    Off the triangles it changes only by the view of the mesh's rims: it is the solid angle that they span, and its
+    gradient at most rim / (4π distance²) (Biot and Savart's law). Of a closed mesh it is constant there; through a
+    triangle it may be anything.
+    """
+    change: Array = way * rim / (4.0 * np.pi * np.maximum(nearest, 1e-30) ** 2)
+    return np.where(nearest > 0.0, change, np.inf)

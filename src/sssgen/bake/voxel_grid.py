@@ -1,0 +1,96 @@
+"""The box of a volume and its voxels: where the texels of a distance texture stand."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from sssgen.support.diagnostics import failure
+
+Array: TypeAlias = npt.NDArray[np.float64]
+
+LEAST = 4
+"""Voxels along each axis: fewer have no slope to interpolate."""
+MOST = 2048
+"""Voxels along an axis that every engine takes (WebGPU's limit)."""
+FLAT = 1e-3
+"""A side is at least this share of the box's diagonal, as in the technique's box_size."""
+TOLD_APART = 2.0**20
+"""Voxels between the origin and the box, beyond which float32 coordinates blur them."""
+
+
+class Grid(NamedTuple):
+    """Voxels that fill a box, in the mesh's own space."""
+
+    counts: tuple[int, int, int]
+    """Along x, y and z"""
+    low: Array
+    """(3,), the box's smallest corner"""
+    high: Array
+    """(3,), the largest"""
+
+    @property
+    def voxel(self) -> Array:
+        """(3,), a voxel's sides."""
+        side: Array = (self.high - self.low) / np.array(self.counts)
+        return side
+
+    @property
+    def diagonal(self) -> float:
+        """The box's."""
+        return float(np.linalg.norm(self.high - self.low))
+
+    def centers(self, x: Array, y: Array, z: Array) -> Array:
+        """The centres of voxels by their indices (n,) along each axis: (n, 3)."""
+        found: Array = self.low + (np.stack([x, y, z], axis=-1) + 0.5) * self.voxel
+        return found
+
+    def slab(self, start: int, end: int) -> Array:
+        """The centres of the layers `start` to `end` along z, x fastest: (n, 3)."""
+        across, up, _ = self.counts
+        found = np.empty((end - start, up, across, 3))
+        for axis, (first, last) in enumerate(((0, across), (0, up), (start, end))):
+            along = self.low[axis] + (np.arange(first, last) + 0.5) * self.voxel[axis]
+            found[..., axis] = along.reshape([-1 if axis == 2 - at else 1 for at in range(3)])
+        return found.reshape(-1, 3)
+
+
+def around(low: Array, high: Array, resolution: Sequence[int], padding: float) -> Grid:
+    """The grid around what lies between two corners (3,).
+
+    `resolution` is the count along the longest side, with voxels that are cubes, or three counts. `padding` is added
+    on every side, in parts of the longest, and where there is any, at least a voxel. Raises SssgenError for a
+    resolution or padding that makes no grid.
+    """
+    if len(resolution) not in (1, 3) or not all(LEAST <= count <= MOST for count in resolution):
+        told = ",".join(map(str, resolution))
+        raise failure(f"'{told}' is no resolution", f"N or X,Y,Z, each from {LEAST} to {MOST}")
+    if not 0.0 <= padding <= 10.0:
+        raise failure(f"{padding:g} is no padding", "a part of the longest side, from 0 to 10, as 0.05")
+    size, middle = high - low, 0.5 * (low + high)
+    size = np.maximum(size + 2.0 * _margin(size, resolution, padding), FLAT * np.linalg.norm(size))
+    if len(resolution) == 1:
+        voxel = float(size.max()) / resolution[0]
+        counts = [max(LEAST, math.ceil(side / voxel * (1.0 - 1e-9))) for side in size]
+        size = voxel * np.array(counts)
+    else:
+        counts = list(resolution)
+    grid = Grid((counts[0], counts[1], counts[2]), middle - 0.5 * size, middle + 0.5 * size)
+    far = float(np.abs([grid.low, grid.high]).max() / grid.voxel.min())
+    if far > TOLD_APART:
+        raise failure("the mesh stands too far from its origin for shaders' 32-bit numbers", "move it nearer")
+    return grid
+
+
+def _margin(size: Array, resolution: Sequence[int], padding: float) -> Array | float:
+    """What is added on every side: the padding, and a voxel at least, so that there is an outside."""
+    if not padding:
+        return 0.0
+    between = np.array(resolution) - 2  # voxels that are left for the mesh
+    voxel = size / between if len(resolution) == 3 else size.max() / between[0]
+    margin: Array = np.maximum(padding * size.max(), voxel)
+    return margin

@@ -1,0 +1,80 @@
+"""`sssgen chart`: error against cost, of every technique and baseline, on scenes of which it is known what is right."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from sssgen.cli.main import OK, print_json
+from sssgen.support.diagnostics import did_you_mean, failure
+
+if TYPE_CHECKING:
+    from sssgen.lab.chart.charting import Settings
+
+MOST_SAMPLES = 1 << 16
+
+
+def run(arguments: Namespace) -> int:
+    """Measures, draws, and says what stands on the fronts."""
+    settings = settings_of(arguments)
+    from sssgen.lab.chart import charting as chart
+    from sssgen.lab.chart import drawing
+    from sssgen.lab.scene import measured_scene as situation
+
+    situations = [situation.load(name) for name in arguments.SCENE or chart.DEFAULTS]
+    names = [one.name for one in situations]
+    for name in names:
+        if names.count(name) > 1:
+            raise failure(f"two scenes are called '{name}'", "a scene is called as its file: rename one")
+    record = chart.charted(situations, settings)
+    if arguments.cost == "gpu":
+        from sssgen.lab.gpu.chart_times import by_gpu, with_gpu_cost
+
+        record = by_gpu(with_gpu_cost(record, situations))
+    files = drawing.write(record, arguments.output) if arguments.output else []
+    if arguments.json:
+        print_json({"ok": True, "files": files, **record})
+        return OK
+    print(summary(record))
+    for file in files:
+        print(f"wrote {file}")
+    return OK
+
+
+def settings_of(arguments: Namespace) -> Settings:
+    """How to measure, from a command's options. Raises SssgenError."""
+    from sssgen.lab.chart.charting import Settings
+    from sssgen.lab.measure import candidates
+    from sssgen.support.progress import Bar
+
+    if not 2 <= arguments.samples <= MOST_SAMPLES:
+        raise failure(f"--samples {arguments.samples} is not a number of samples", f"from 2 to {MOST_SAMPLES}")
+    if arguments.seed < 0:
+        raise failure(f"--seed {arguments.seed} is below 0")
+    roles = tuple(arguments.role.split(",")) if getattr(arguments, "role", None) else candidates.ROLES
+    for role in roles:
+        if role not in candidates.ROLES:
+            hint = did_you_mean(role, candidates.ROLES) or f"roles: {', '.join(candidates.ROLES)}"
+            raise failure(f"no chart has the role '{role}'", hint)
+    if "material" in roles and "thickness" not in roles:
+        roles = ("thickness", *roles)
+    return Settings(arguments.samples, arguments.seed, roles, arguments.scheduler, arguments.processes, Bar)
+
+
+def summary(record: Mapping[str, Any]) -> str:
+    """The fronts, as text."""
+    lines: list[str] = []
+    for volume in record["hypervolume"]:
+        scene, role = volume["scene"], volume["role"]
+        of_it = [point for point in record["points"] if (point["scene"], point["role"]) == (scene, role)]
+        best = sorted((point for point in of_it if point["front"]), key=lambda point: float(point["cost"]["value"]))
+        failed = sum(bool(point["failed"]) for point in of_it)
+        lines += ["", f"{scene}, {role}: {len(of_it)} points" + (f", {failed} failed" if failed else "")]
+        lines += [
+            f"  {point['error']['value']:8.4f}  {point['cost']['value']:8.4g}  {point['label']}"
+            + ("  (published)" if point["baseline"] else "")
+            for point in best
+        ]
+        lines.append(f"  hypervolume {volume['ours']:.3f}, of the baselines {volume['baselines']:.3f}")
+    return "\n".join(["   error      cost", *lines[1:]])

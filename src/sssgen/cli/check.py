@@ -1,0 +1,107 @@
+"""`sssgen check`: shaders → what the compilers of this machine say of them."""
+
+from __future__ import annotations
+
+import os
+from argparse import Namespace
+
+from sssgen.cli.emit import chosen_targets
+from sssgen.cli.main import CHECK_FAILED, OK, print_json
+from sssgen.harness.check import compile_check as check
+from sssgen.harness.check.compile_check import Report, Result
+from sssgen.harness.check.shader_files import Shader, read
+from sssgen.harness.compilers import LANGUAGES, readers
+from sssgen.ir.spans import Span
+from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean, failure, visible
+
+SHOWN = 8
+"""How many messages of one compiler on one file are shown; the first ones make the others."""
+
+
+def run(arguments: Namespace) -> int:
+    """Compiles everything, and prints one line for each file and compiler."""
+    wrong: list[Diagnostic] = []
+    targets = chosen_targets(",".join(arguments.target), wrong) if arguments.target else []
+    compilers = _compilers(arguments.compiler or [], wrong)
+    if wrong:
+        raise SssgenError(wrong)
+    shaders = read(arguments.FILE, targets)
+    report = check.run(shaders, compilers, arguments.unity_includes)
+    if arguments.json:
+        print_json(check.as_json(report))
+    else:
+        _print(report, shaders)
+    return OK if _passed(report, shaders) else CHECK_FAILED
+
+
+def _compilers(names: list[str], wrong: list[Diagnostic]) -> list[str]:
+    found = [name.strip() for text in names for name in text.split(",")]
+    for name in found:
+        if name not in LANGUAGES:
+            hint = did_you_mean(name, LANGUAGES) or f"compilers: {', '.join(LANGUAGES)}"
+            wrong += failure(f"unknown compiler '{name}'", hint).diagnostics
+    return found
+
+
+def _passed(report: Report, shaders: list[Shader]) -> bool:
+    """No error, and something was compiled; in CI, by every compiler that there is."""
+    in_ci = os.environ.get("CI", "") not in ("", "0", "false")
+    return all(result.ok for result in report.results) and bool(report.results) and not (in_ci and report.missing)
+
+
+def _print(report: Report, shaders: list[Shader]) -> None:
+    for name, version in report.versions.items():
+        print(f"{name:8} {visible(version)}")
+    for name, how in report.missing.items():
+        print(f"{name:8} not found: {visible(how)}")
+    print()
+    cells: dict[tuple[str, str], list[Result]] = {}
+    for result in report.results:
+        cells.setdefault((result.shader.name, result.compiler), []).append(result)
+    width = max((len(shader.name) for shader in shaders), default=0)
+    for (name, compiler), results in cells.items():
+        word = "ok  " if all(result.ok for result in results) else "FAIL"
+        print(f"{word} {visible(name):{width}}  {compiler}")
+        _print_messages(results)
+    done = {result.shader.name for result in report.results}
+    for shader in shaders:
+        if shader.name not in done:
+            language = shader.sources[0].language
+            print(f"--   {visible(shader.name):{width}}  not compiled: {_why_not(language, report)}")
+    failed = sum(not result.ok for result in report.results)
+    print(f"\n{len(shaders)} files, {len(report.results)} compilations, {failed} failed")
+
+
+def _why_not(language: str, report: Report) -> str:
+    names = readers(language)
+    if not names:
+        return f"no compiler here is known to read {language}"
+    return f"{' and '.join(names)} not found" if report.missing.keys() & set(names) else "not by these compilers"
+
+
+def _print_messages(results: list[Result]) -> None:
+    """What one compiler says of one file, each message once: with its line, and the technique's line behind that."""
+    result = results[0]
+    lines = result.shader.text.split("\n")
+    messages = list(dict.fromkeys(message for one in results for message in one.messages))
+    for message in messages[:SHOWN]:
+        print(f"  {message.severity}: {visible(' '.join(message.text.split()))}")
+        if message.line:
+            place = f"{message.line}:{message.column}" if message.column else str(message.line)
+            print(f"    --> {visible(result.shader.name)}:{place}")
+            _print_line(lines[message.line - 1], message.line, message.column)
+        if origin := result.origin(message):
+            print(f"    from {visible(origin)}")
+            _, line, column = origin.rsplit(":", 2)
+            _print_line(check.source_line(origin), int(line), int(column))
+    if len(messages) > SHOWN:
+        print(f"  and {len(messages) - SHOWN} more")
+
+
+def _print_line(text: str, line: int, column: int) -> None:
+    """A line of a text with a caret below its column, as in the errors of sssgen."""
+    if text.strip():
+        rendered = Diagnostic("", "", Span("", line, column, line, column + 1), source_line=text).render()
+        shown = rendered.split("\n")[1:]
+        for row in shown if column else shown[:1]:
+            print(f"   {row}")

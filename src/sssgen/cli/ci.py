@@ -1,0 +1,76 @@
+"""`sssgen ci`: a folder's materials, scenes and numbers, checked in one run."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from collections import Counter
+
+from sssgen.cli.main import CHECK_FAILED, OK, print_json
+from sssgen.harness.testing import junit
+from sssgen.harness.testing import project_run as ci
+from sssgen.harness.testing.project_run import Case, Ran
+from sssgen.support.diagnostics import visible
+
+WORDS = {"passed": "ok  ", "failed": "FAIL", "skipped": "skip"}
+
+
+def run(arguments: Namespace) -> int:
+    """Checks everything, one line a case; 0 where nothing failed and something passed."""
+    found = ci.cases(arguments.DIR, _backends(arguments.backend))
+    flip = _limit(arguments.flip)
+    if arguments.junit:
+        junit.write(arguments.junit, [])  # where it cannot be written that is said now, not after minutes
+    width = max(len(case.name) for case in found)
+    results: list[Ran] = []
+    try:
+        with ci.Run(arguments.update, flip) as check:
+            for case in found:
+                results.append(check(case))
+                if not arguments.json:
+                    _print(results[-1], width)
+    finally:
+        if arguments.junit:
+            junit.write(arguments.junit, results)
+    count = Counter(ran.outcome.state for ran in results)
+    good = not count["failed"] and count["passed"] > 0
+    if arguments.json:
+        print_json({"ok": good, "cases": [_as_json(ran) for ran in results]})
+    else:
+        told = [f"{count[state]} {state}" for state in ("passed", "failed", "skipped") if count[state]]
+        print(f"\n{len(results)} cases in {sum(ran.seconds for ran in results):.1f} s: {', '.join(told)}")
+        if not good and not count["failed"]:
+            print("nothing was checked")
+    return OK if good else CHECK_FAILED
+
+
+def _backends(text: str | None) -> list[str]:
+    if text is None:
+        return []
+    from sssgen.harness.backends import chosen
+
+    return chosen(text)
+
+
+def _limit(flip: float | None) -> float | None:
+    if flip is None:
+        return None
+    from sssgen.harness.testing.golden import check_limit
+
+    return check_limit(flip)
+
+
+def _print(ran: Ran, width: int) -> None:
+    case, outcome = ran.case, ran.outcome
+    name = f"{visible(case.name):{width}}"
+    print(f"{WORDS[outcome.state]} {case.kind:7} {name} {ran.seconds:6.2f} s  {visible(outcome.told)}", flush=True)
+    if outcome.state == "failed":
+        for line in outcome.detail.split("\n") if outcome.detail else []:
+            print(f"       {visible(line)}")
+
+
+def _as_json(ran: Ran) -> dict[str, object]:
+    case: Case = ran.case
+    return {
+        "kind": case.kind, "file": case.path, "backends": list(case.backends), "outcome": ran.outcome.state,
+        "seconds": round(ran.seconds, 3), "told": ran.outcome.told, "detail": ran.outcome.detail,
+    }  # fmt: skip

@@ -1,0 +1,140 @@
+"""`sssgen emit`: materials × targets → files."""
+
+from __future__ import annotations
+
+import os
+import sys
+from typing import TYPE_CHECKING
+
+from sssgen.cli.main import OK, print_json
+from sssgen.pipeline import emitted_cache as emitted
+from sssgen.pipeline.emitted_cache import Made
+from sssgen.support import file_memo as watch
+from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean, failure
+from sssgen.support.file_writer import write_files
+from sssgen.support.paths import posix
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+
+    from sssgen.material.model import Material
+    from sssgen.pipeline.compiler import Compiled
+
+
+def run(arguments: Namespace) -> int:
+    """Compiles everything, then writes everything: where one text fails, none is written."""
+    made = _recalled_or_made(arguments)
+    written = write_files(arguments.output, made.files)
+    if arguments.json:
+        rows = [
+            {"file": posix(one.path), "material": material, "target": target, "changed": one.changed}
+            for one, (material, target) in zip(written, made.sources.values(), strict=True)
+        ]
+        diagnostics = [one.as_json() for one in made.warnings]
+        print_json({"ok": True, "form": arguments.form, "files": rows, "diagnostics": diagnostics})
+        return OK
+    print_warnings(made.warnings)
+    for one in written:
+        print(f"{'wrote' if one.changed else 'kept '} {posix(one.path)}")
+    return OK
+
+
+def _recalled_or_made(arguments: Namespace) -> Made:
+    """What the same command made before, where nothing has changed since; with templates of one's own, always anew."""
+    if arguments.templates is not None:
+        return _made(arguments)
+    command = (arguments.MATERIAL, arguments.target, arguments.form, arguments.guards)
+    known = emitted.recall(*command)
+    if known is not None:
+        return known
+    made, files = watch.watched(lambda: _made(arguments))
+    emitted.remember(*command, made, files)
+    return made
+
+
+def _made(arguments: Namespace) -> Made:
+    """Compiles every material for every target. Raises SssgenError with all that is wrong."""
+    from sssgen.pipeline.compiler import compile
+
+    wrong: list[Diagnostic] = []
+    names = chosen_targets(arguments.target, wrong)
+    templates = _templates(arguments.templates, wrong)
+    materials = _materials(arguments.MATERIAL, wrong)
+    files: dict[str, str] = {}
+    sources: dict[str, tuple[str, str]] = {}
+    warnings: list[Diagnostic] = []
+    for material in materials:
+        for name in names:
+            try:
+                compiled = compile(material, name, arguments.form, templates, arguments.guards)
+            except SssgenError as error:
+                wrong += error.diagnostics
+            else:
+                _collect(compiled, (material.name, name), files, sources, wrong)
+                warnings += compiled.warnings
+    if wrong:
+        raise SssgenError(dict.fromkeys(wrong))
+    return Made(files, sources, list(dict.fromkeys(warnings)))
+
+
+def chosen_targets(text: str, wrong: list[Diagnostic]) -> list[str]:
+    """The targets that `T,T` or `all` names, each once; unknown ones are added to `wrong`."""
+    from sssgen.pipeline.compiler import all_targets
+
+    known = list(all_targets())
+    names = [name.strip() for name in text.split(",") if name.strip()]
+    if not names:
+        wrong += failure("no target is named", f"targets: {', '.join(known)}, or all").diagnostics
+    for name in names:
+        if name not in (*known, "all"):
+            hint = did_you_mean(name, [*known, "all"]) or f"targets: {', '.join(known)}, or all"
+            wrong += failure(f"unknown target '{name}'", hint).diagnostics
+    return known if "all" in names else [name for name in dict.fromkeys(names) if name in known]
+
+
+def print_warnings(warnings: list[Diagnostic]) -> None:
+    """Warnings go beside the result, not into it."""
+    for warning in warnings:
+        print(f"{warning.render()}\n", file=sys.stderr)
+
+
+def _templates(folder: str | None, wrong: list[Diagnostic]) -> str | None:
+    if folder is None:
+        return None
+    if not os.path.isdir(folder):
+        wrong += failure(
+            "no such folder of templates", "give the folder that holds TARGET/*.j2", posix(folder)
+        ).diagnostics
+    return folder
+
+
+def _materials(arguments: list[str], wrong: list[Diagnostic]) -> list[Material]:
+    from sssgen.material.material_loading import load_material
+
+    found: dict[str, Material] = {}
+    for argument in arguments:
+        try:
+            material = load_material(argument)
+        except SssgenError as error:
+            wrong += error.diagnostics
+            continue
+        other = found.setdefault(material.name, material)
+        if other is not material:
+            message = f"two materials are called '{material.name}': their files would have the same names"
+            wrong += failure(message, f"the other one is {posix(other.file)}", posix(material.file)).diagnostics
+    return list(found.values())
+
+
+def _collect(
+    compiled: Compiled,
+    source: tuple[str, str],
+    files: dict[str, str],
+    sources: dict[str, tuple[str, str]],
+    wrong: list[Diagnostic],
+) -> None:
+    """Adds the files of one text; two sources of one file are an error."""
+    for name, text in compiled.files.items():
+        if name in files:
+            message = f"'{name}' comes from {' for '.join(sources[name])} and from {' for '.join(source)}"
+            wrong += failure(message, "give the target's files other names").diagnostics
+        files[name], sources[name] = text, source

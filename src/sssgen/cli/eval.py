@@ -1,0 +1,124 @@
+"""`sssgen eval`: a technique on arrays of inputs, on one back end or on all of them against the oracle."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from collections.abc import Mapping
+from typing import Any
+
+from sssgen.cli.main import CHECK_FAILED, OK, print_json
+from sssgen.support.diagnostics import failure
+
+SHOWN = 12
+"""How many lanes a person is shown."""
+MOST_SAMPLES = 1_000_000
+
+
+def run(arguments: Namespace) -> int:
+    """Prints the outputs, and with several back ends how far each is from the oracle."""
+    try:
+        from sssgen.harness.evaluate import input_files as inputs
+    except ImportError as error:
+        raise failure(f"sssgen eval needs NumPy: {error}", "pip install 'sssgen[numpy]'") from None
+    from sssgen.harness.evaluate.probes import subject
+
+    names = _backends(arguments.backend, arguments.precision)
+    chosen = subject(arguments.TECHNIQUE, inputs.bindings(arguments.bind))
+    given = inputs.read(arguments.inputs, chosen) if arguments.inputs else {}
+    sampled = arguments.samples is not None
+    if sampled:
+        given = _sampled(chosen, arguments.samples, arguments.seed) | given
+    from sssgen.harness.evaluate.evaluation import fitted
+
+    fit = fitted(chosen, given)
+    if len(names) == 1:
+        return _one(chosen, fit, names[0], arguments.json, arguments.guards)
+    return _several(chosen, fit, names, arguments.json, not sampled, arguments.guards)
+
+
+def _sampled(chosen: Any, count: int, seed: int) -> dict[str, Any]:
+    """Random inputs, for what the file does not have."""
+    if not 1 <= count <= MOST_SAMPLES:
+        raise failure(f"--samples {count} is not a number of samples", f"from 1 to {MOST_SAMPLES}")
+    if seed < 0:
+        raise failure(f"--seed {seed} is below 0")
+    from sssgen.harness.evaluate.random_inputs import samples
+
+    return samples(chosen, count, seed)
+
+
+def _backends(given: str, precision: str | None) -> list[str]:
+    """The back ends that are meant; the oracle comes first."""
+    from sssgen.harness.backends import HALF, NAMES, chosen, in_half
+
+    names = list(NAMES) if given == "all" else chosen(given)
+    if precision is None:
+        return names
+    if precision == "f16":
+        return list(HALF.values()) if given == "all" else in_half(names)
+    wanted = {"f64": "numpy", "f32": "numpy-f32"}[precision]
+    if "numpy" in names:
+        return [wanted if name == "numpy" else name for name in names if name not in ("numpy-f32", *HALF.values())]
+    if precision == "f64" or not set(HALF.values()).isdisjoint(names):
+        raise failure(f"{names[0]} computes in its own precision, not in {precision}", "--backend numpy")
+    return names
+
+
+def _one(subject: Any, fit: Any, name: str, as_json: bool, guards: str) -> int:
+    from sssgen.harness.backends import needed
+    from sssgen.harness.evaluate.evaluation import run as evaluated
+
+    backend = needed(name)
+    outputs = evaluated(subject, fit, backend, guards)
+    if as_json:
+        plain = {key: _plain(value) for key, value in outputs.items()}
+        print_json({"ok": True, "backend": name, "device": backend.device(), "lanes": fit.lanes, "outputs": plain})
+        return OK
+    print(f"{subject.name} on {name} ({backend.device()}), {fit.lanes} lane{'s' * (fit.lanes != 1)}")
+    _print_outputs(outputs)
+    return OK
+
+
+def _several(subject: Any, fit: Any, names: list[str], as_json: bool, listed: bool, guards: str) -> int:
+    from sssgen.harness.evaluate.deviation import GOAL, compared
+    from sssgen.harness.testing.outcome import in_ci
+
+    oracle, rows = compared(subject, fit, names, guards)
+    here = [row for row in rows if not row.missing]
+    good = bool(here) and all(row.ok for row in rows) and not (in_ci() and len(here) < len(rows))
+    if as_json:
+        found = [row.as_json() for row in rows]
+        plain = {key: _plain(value) for key, value in oracle.items()} if listed else {}
+        print_json({"ok": good, "lanes": fit.lanes, "goal": GOAL, "backends": found, "outputs": plain})
+        return OK if good else CHECK_FAILED
+    print(f"{subject.name}, {fit.lanes} lane{'s' * (fit.lanes != 1)}, against the oracle in float64")
+    if listed:
+        _print_outputs(oracle)
+    width = max(len(row.name) for row in rows)
+    print(f"\n{'':{width}}  largest deviation (goal: {GOAL:g})")
+    for row in rows:
+        print(f"{row.name:{width}}  {row.told}")
+    return OK if good else CHECK_FAILED
+
+
+def _plain(value: Any) -> Any:
+    """Numbers for JSON, which has no NaN."""
+    import numpy as np
+
+    finite = np.isfinite(value) if value.dtype.kind == "f" else np.array(True)
+    return np.array(np.where(finite, value.astype(object), None)).tolist()
+
+
+def _print_outputs(outputs: Mapping[str, Any]) -> None:
+    import numpy as np
+
+    for name, value in outputs.items():
+        lanes = value if value.ndim else value[None]
+        print(f"{name}:")
+        for lane, one in enumerate(lanes[:SHOWN]):
+            shown = np.array2string(np.asarray(one), precision=7, separator=", ", suppress_small=False)
+            print(f"  {lane:4}  {shown}")
+        if len(lanes) > SHOWN:
+            print(f"  … {len(lanes) - SHOWN} more, of all: from {lanes.min():.7g} to {lanes.max():.7g}")
+        if value.dtype.kind == "f" and (bad := int((~np.isfinite(lanes.reshape(len(lanes), -1))).any(axis=1).sum())):
+            print(f"  {bad} of {len(lanes)} lanes are NaN or infinite")

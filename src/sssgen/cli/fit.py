@@ -1,0 +1,46 @@
+"""`sssgen fit`: the parameters with which techniques come nearest to a scene's medium."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from collections.abc import Mapping
+from typing import Any
+
+from sssgen.cli.chart import settings_of
+from sssgen.cli.main import OK, print_json
+from sssgen.support.diagnostics import did_you_mean, failure
+
+
+def run(arguments: Namespace) -> int:
+    """Fits on balls and slabs of the medium, and says how far that holds on the scene itself."""
+    settings = settings_of(arguments)._replace(roles=("coordinates", "translucency"))
+    from sssgen.lab.chart import charting as chart
+    from sssgen.lab.measure import candidates
+    from sssgen.lab.scene import measured_scene as situation
+
+    one = situation.load(arguments.SCENE)
+    wanted = set(arguments.TECHNIQUE)
+    known = {technique.name for role in settings.roles for technique in candidates.of_role(role)}
+    for name in sorted(wanted - known):
+        hint = did_you_mean(name, known) or f"techniques: {', '.join(sorted(known))}"
+        raise failure(f"no technique of light that comes through is called '{name}'", hint)
+    points = chart.charted([one], settings)["points"]
+    points = [point for point in points if point["name"] != "none" and (not wanted or point["name"] in wanted)]
+    if arguments.json:
+        print_json({"ok": True, "scene": one.name, "points": points})
+        return OK
+    print(f"{one.title}: fitted after the exact thickness, on balls and slabs of the same medium")
+    print("  fit: relative error on these; scene: on this scene, and from the side")
+    for point in sorted(points, key=lambda point: float(point["error"]["value"])):
+        print(_shown(point))
+    return OK
+
+
+def _shown(point: Mapping[str, Any]) -> str:
+    given = dict(point["parameters"])
+    if point["factor"]:
+        given[f"{point['factor']} ×"] = point["scale"]
+    told = ", ".join(f"{name} {' '.join(f'{one:.3g}' for one in value)}" for name, value in given.items())
+    views = " ".join(f"{view['value']:.3f}" for view in point["views"].values())
+    failed = f"  {point['failed']}" if point["failed"] else ""
+    return f"  {point['label']:28} fit {point['training_error']:.3f}  scene {views}  {told}{failed}"

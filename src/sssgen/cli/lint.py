@@ -1,0 +1,40 @@
+"""`sssgen lint`: what may go wrong in techniques, materials and plain GLSL, and what is proven not to."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from collections import Counter
+
+from sssgen.cli.main import CHECK_FAILED, OK, print_json
+from sssgen.support.diagnostics import Diagnostic, SssgenError
+
+
+def run(arguments: Namespace) -> int:
+    """Prints what is not proven; 1 where a plain function has no guard against it."""
+    from sssgen.harness.lint_findings import MAY_FAIL, PROVEN, UNKNOWN, Finding, lint
+
+    wrong: list[Diagnostic] = []
+    rows: list[tuple[str, list[Finding]]] = []
+    for name in dict.fromkeys(arguments.NAME):
+        try:
+            rows.append((name, lint(name, not arguments.no_examples)))
+        except SssgenError as error:
+            wrong += error.diagnostics
+    if wrong:
+        raise SssgenError(wrong)
+    bare = any(not one.guarded and one.verdict != PROVEN for _, found in rows for one in found)
+    if arguments.json:
+        listed = [{"name": name, "findings": [one.as_json() for one in found]} for name, found in rows]
+        print_json({"ok": not bare, "results": listed})
+        return CHECK_FAILED if bare else OK
+    for name, found in rows:
+        for one in found:
+            if one.verdict != PROVEN or arguments.all:
+                print(f"{one.render()}\n")
+        counts = Counter(one.verdict for one in found)
+        unseen = "not proven" if arguments.no_examples else UNKNOWN
+        print(
+            f"{name}: {len(found)} operation{'s' * (len(found) != 1)} with a domain: {counts[PROVEN]} proven safe, "
+            f"{counts[MAY_FAIL]} may fail, {counts[UNKNOWN]} {unseen}"
+        )
+    return CHECK_FAILED if bare else OK

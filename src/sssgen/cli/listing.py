@@ -1,0 +1,72 @@
+"""`sssgen list`: the techniques, the targets, the example materials."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from typing import Any
+
+from sssgen.cli.main import OK, print_json
+from sssgen.material import library
+from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.support.paths import posix
+
+
+def run(arguments: Namespace) -> int:
+    """Prints one list, as a table or as JSON."""
+    kind = arguments.KIND
+    if arguments.role is not None:
+        if kind != "techniques":
+            raise failure(f"{kind} have no role", "write: sssgen list techniques --role R")
+        if arguments.role not in library.ROLES:
+            hint = did_you_mean(arguments.role, library.ROLES) or f"roles: {', '.join(library.ROLES)}"
+            raise failure(f"unknown role '{arguments.role}'", hint)
+    rows = {"techniques": _techniques, "targets": _targets, "materials": _materials}[kind]()
+    if arguments.role is not None:
+        rows = [row for row in rows if row["role"] == arguments.role]
+    if arguments.json:
+        print_json({"ok": True, kind: rows})
+        return OK
+    width = max((len(row["name"]) for row in rows), default=0)
+    role = ""
+    for row in rows:
+        if row.get("role", "") != role:
+            print(f"{chr(10) if role else ''}{row['role']}")
+            role = row["role"]
+        print(f"  {row['name']:{width}}  {row['summary']}".rstrip())
+    return OK
+
+
+def _techniques() -> list[dict[str, Any]]:
+    found = sorted(library.load_all(), key=lambda one: (library.ROLES.index(one.role), one.baseline, one.name))
+    return [
+        {
+            "name": one.name,
+            "role": one.role,
+            "summary": one.doc.get("summary", ""),
+            "baseline": one.baseline,
+            "file": library.shown_name(one.path),
+        }
+        for one in found
+    ]
+
+
+def _targets() -> list[dict[str, Any]]:
+    from sssgen.pipeline.compiler import all_targets
+
+    return [{"name": name, "summary": target.title} for name, target in all_targets().items()]
+
+
+def _materials() -> list[dict[str, Any]]:
+    from sssgen.material.material_loading import examples, load_material
+
+    loaded = [load_material(name) for name in examples()]
+    return [
+        {
+            "name": one.name,
+            "title": one.title,
+            "summary": one.doc,
+            "shading": one.shading,
+            "file": posix(one.file),
+        }
+        for one in loaded
+    ]

@@ -1,0 +1,88 @@
+"""`sssgen pick`: the cheapest chain of techniques that a scene can do with, and what more or less would cost."""
+
+from __future__ import annotations
+
+import os
+from argparse import Namespace
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from sssgen.cli.chart import settings_of
+from sssgen.cli.main import CHECK_FAILED, OK, print_json
+from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
+
+if TYPE_CHECKING:
+    from sssgen.lab.chart.picking import Pick
+    from sssgen.lab.scene.measured_scene import Situation
+
+
+def run(arguments: Namespace) -> int:
+    """Measures if need be, picks, and says why."""
+    for name in ("max_error", "max_cost"):
+        value = getattr(arguments, name)
+        if value is not None and not 0.0 < value < float("inf"):
+            raise failure(f"--{name.replace('_', '-')} {value:g} is no limit", "a number above 0")
+    settings = settings_of(arguments)
+    from sssgen.lab.chart import charting as chart
+    from sssgen.lab.chart.picking import pick
+    from sssgen.lab.scene import measured_scene as situation
+
+    one = situation.load(arguments.SCENE)
+    record = chart.charted([one], settings)
+    picked = pick(record, one.name, arguments.max_error, arguments.max_cost)
+    files = _emitted(one, picked, arguments.emit, arguments.target) if arguments.emit else []
+    if arguments.json:
+        told = {**picked._asdict(), "roles": [role._asdict() for role in picked.roles]}
+        print_json({"ok": picked.met, "files": files, **told})
+    else:
+        print(shown(one, picked, arguments.max_error, arguments.max_cost))
+        for file in files:
+            print(f"wrote {file}")
+    return OK if picked.met else CHECK_FAILED
+
+
+def _emitted(one: Situation, picked: Pick, folder: str, targets: str) -> list[str]:
+    """Writes the material and its shaders. Raises SssgenError."""
+    from sssgen.cli.emit import chosen_targets
+    from sssgen.lab.chart.picked_material import material_files
+    from sssgen.material.material_loading import parse_material
+    from sssgen.pipeline.compiler import compile
+    from sssgen.support.file_writer import write_files
+
+    name = "".join(character if character.isalnum() and character.isascii() else "_" for character in one.name)
+    name = name if name[:1].isalpha() else f"m_{name}"
+    files = material_files(one, picked, name)
+    wrong: list[Diagnostic] = []
+    chosen = chosen_targets(targets, wrong)
+    if wrong:
+        raise SssgenError(wrong)
+    write_files(folder, files)
+    material = parse_material(files[f"{name}.toml"], os.path.join(folder, f"{name}.toml"))
+    for target in chosen:
+        files |= compile(material, target).files
+    write_files(folder, files)
+    return [os.path.join(folder, file) for file in files]
+
+
+def shown(one: Situation, picked: Pick, max_error: float | None, max_cost: float | None) -> str:
+    """The choice, as text."""
+    limit = f"an error of at most {max_error:g}" if max_error is not None else f"a cost of at most {max_cost:g}"
+    lines = [f"{one.title}: {limit}" + ("" if picked.met else ", which nothing keeps; this is the nearest")]
+    lines += [f"  {role.role:13} {role.technique:24} {role.why}".rstrip() for role in picked.roles]
+    main = picked.chain or picked.coordinates
+    assert main is not None
+    lines.append(f"  picked        {_point(main)}")
+    for what, other in (("next cheaper", picked.cheaper), ("next better", picked.better)):
+        lines.append(f"  {what:13} {_point(other) if other is not None else 'there is none'}")
+    return "\n".join(lines)
+
+
+def _point(point: Mapping[str, Any]) -> str:
+    from sssgen.lab.chart.picking import cost_of, limit_of
+
+    error = point["error"]
+    low, high = error["low"], error["high"]
+    return (
+        f"{point['label']}: error {error['value']:.3g} ({low:.3g} to {high:.3g}), within {limit_of(point):.3g} "
+        f"on any view measured; cost {cost_of(point):.0f}"
+    )

@@ -1,0 +1,145 @@
+"""`sssgen stress`: techniques on dangerous, boundary and random inputs, on several back ends."""
+
+from __future__ import annotations
+
+import os
+from argparse import Namespace
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from sssgen.cli.main import CHECK_FAILED, OK, print_json
+from sssgen.support.diagnostics import failure
+
+if TYPE_CHECKING:
+    from sssgen.harness.stress.stress_report import Report
+    from sssgen.harness.stress.stress_run import Settings
+    from sssgen.harness.stress.subject import Specimen
+
+DEFAULT = {None: "numpy-f32,gl,webgpu,browser,hlsl", "f32": "numpy-f32,gl,webgpu,browser,hlsl", "f16": "numpy,webgpu"}
+"""The back ends for each precision."""
+MOST_SAMPLES = 10**9
+
+
+def run(arguments: Namespace) -> int:
+    """Stresses what is named, and prints what is wrong; 1 where something that counts is."""
+    try:
+        from sssgen.harness.stress import dangerous_inputs as dangerous
+        from sssgen.harness.stress import stress_report as report
+    except ImportError as error:
+        raise failure(f"sssgen stress needs NumPy: {error}", "pip install 'sssgen[numpy]'") from None
+    from sssgen.harness.stress.stress_run import Settings
+    from sssgen.harness.stress.subject import specimens
+    from sssgen.harness.testing.outcome import in_ci
+
+    if not 1 <= arguments.samples <= MOST_SAMPLES:
+        raise failure(f"--samples {arguments.samples} is not a number of samples", f"from 1 to {MOST_SAMPLES}")
+    if arguments.seed < 0:
+        raise failure(f"--seed {arguments.seed} is below 0")
+    suffix = _suffix(arguments.output, report.SUFFIXES) if arguments.output else ""
+    half = arguments.precision == "f16"
+    rows = dangerous.chosen(arguments.row)
+    settings = Settings(arguments.samples, arguments.seed, arguments.guards, half, rows)
+    names = _backends(arguments.backend or DEFAULT[arguments.precision], half)
+    named = specimens(arguments.NAME)
+    _check_rows(rows, named)
+    if arguments.scheduler or arguments.processes is not None:
+        from sssgen.lab.jobs.stress_items import spread
+
+        made = spread(named, names, settings, arguments.scheduler, arguments.processes)
+    else:
+        made = _stressed(named, names, settings)
+    if arguments.output:
+        _write(arguments.output, suffix, made)
+    if arguments.json:
+        print_json(report.as_json(made))
+    else:
+        _print(made, arguments.output)
+    return OK if made.ok and not (in_ci() and made.missing) else CHECK_FAILED
+
+
+def _check_rows(rows: Sequence[str], named: Sequence[Specimen]) -> None:
+    """Raises SssgenError for a row that concerns none of what is named: it would pass unseen."""
+    from sssgen.harness.stress import dangerous_inputs as dangerous
+
+    told = {row.name: row.elsewhere for row in dangerous.ROWS}
+    for row in rows:
+        if not any(True for one in named for _ in dangerous.trials(one, (row,))):
+            raise failure(f"the row '{row}' concerns none of these", told[row] or "leave --row out for all that do")
+
+
+def _backends(given: str, half: bool) -> list[str]:
+    """The back ends that are meant. Raises SssgenError for unknown ones, and ones of the other precision."""
+    from sssgen.harness.backends import HALF, NAMES, chosen, in_half
+
+    halves = set(HALF.values())
+    names = [name for name in NAMES if name != "numpy" and name not in halves] if given == "all" else chosen(given)
+    if not half:
+        wrong = [name for name in names if name in halves]
+        if wrong:
+            raise failure(f"{wrong[0]} computes in half precision", "--precision f16 --backend numpy,webgpu")
+        return names
+    return list(HALF.values()) if given == "all" else in_half(names)
+
+
+def _stressed(chosen: list[Specimen], names: list[str], settings: Settings) -> Report:
+    """Everything, with a progress line; a technique at a time on all back ends."""
+    from sssgen.harness.stress.stress_progress import Progress
+    from sssgen.harness.stress.stress_report import Report
+    from sssgen.harness.stress.stress_run import Machines, stress
+
+    with Machines(names) as machines, Progress(len(chosen)) as progress:
+        rows = []
+        for one in chosen:
+
+            def told(what: str, done: int, title: str = one.title) -> None:
+                progress(title, what, done / settings.samples)
+
+            rows.append(stress(one, machines, settings, told))
+        devices = {name: backend.device() for name, backend in machines.here.items()}
+    return Report(settings, devices, machines.missing, rows)
+
+
+def _suffix(path: str, known: tuple[str, ...]) -> str:
+    """The report's kind. What cannot be written is said now, not after minutes. Raises SssgenError."""
+    suffix = os.path.splitext(path)[1].lower()
+    if suffix not in known:
+        raise failure(f"a report is no '{suffix}' file", f"it is one of {', '.join(known)}", path)
+    folder = os.path.dirname(path) or "."
+    there = os.path.exists(folder)
+    if os.path.isdir(path) or (there and not (os.path.isdir(folder) and os.access(folder, os.W_OK))):
+        raise failure("cannot write the report here", "name a file in a folder that you may write to", path)
+    return suffix
+
+
+def _write(path: str, suffix: str, made: Report) -> None:
+    """The report's file, whole or not at all."""
+    import json
+
+    from sssgen.harness.stress import stress_report as report
+    from sssgen.support.file_writer import write_files
+
+    text = report.as_markdown(made)
+    if suffix == ".json":
+        text = json.dumps(report.as_json(made), indent=2, ensure_ascii=False) + "\n"
+    folder, name = os.path.split(path)
+    write_files(folder or ".", {name: text})
+
+
+def _print(made: Report, written: str | None) -> None:
+    from sssgen.harness.stress import stress_report as report
+    from sssgen.harness.testing.outcome import in_ci
+
+    for line in report.summary(made):
+        print(line)
+    told = [line for row in made.rows for line in report.faults(row)]
+    if told:
+        print()
+    for line in told:
+        print(line)
+    print(f"\n{report.total(made)}")
+    if written:
+        print(f"wrote {written}")
+    if not made.devices:
+        print("nothing was run: none of these back ends is here")
+    elif made.missing and in_ci():
+        print(f"with CI set a missing back end is a failure: {', '.join(made.missing)}")

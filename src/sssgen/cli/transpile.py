@@ -1,0 +1,219 @@
+"""`sssgen transpile`: plain GLSL → a target's language, and what became of its names."""
+
+from __future__ import annotations
+
+import keyword
+import os
+import re
+import sys
+from argparse import Namespace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from sssgen.cli.emit import chosen_targets, print_warnings
+from sssgen.cli.main import CHECK_FAILED, OK, print_json
+from sssgen.lang.loader import load_file, read_text
+from sssgen.lang.plain_glsl import Loaded, load_glsl
+from sssgen.material.library import TECHNIQUES
+from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
+from sssgen.support.file_writer import write_files
+from sssgen.support.paths import posix
+
+if TYPE_CHECKING:
+    from sssgen.ir.nodes import Module
+
+REFLECTION = ".reflection.json"
+
+
+def run(arguments: Namespace) -> int:
+    """Prints the translation, or writes it with its reflection beside it; or what `--verify` found."""
+    wrong: list[Diagnostic] = []
+    names = _targets(arguments, wrong)
+    path = Path(arguments.FILE)
+    if arguments.output == "-":
+        arguments.output = None  # the text is printed
+    module, loaded = None, None
+    try:
+        if path.suffix == ".sss":
+            module = load_file(path, path.as_posix(), (TECHNIQUES,))
+        else:
+            loaded = load_glsl(path, path.as_posix(), arguments.include, _macros(arguments.define), arguments.entry)
+            module = loaded.module
+    except SssgenError as error:
+        wrong += error.diagnostics
+    for read in (path, *map(Path, loaded.paths if loaded is not None else ())):
+        if arguments.output is not None and os.path.realpath(arguments.output) == os.path.realpath(read):
+            message = "the output is what was read: it would be lost"
+            wrong += failure(message, "write -o with another name", read.as_posix()).diagnostics
+            break
+    if wrong or module is None:
+        raise SssgenError(wrong)
+    if arguments.verify:
+        return _verify(arguments, path)
+    if arguments.as_ == "technique":
+        return _technique(arguments, module, path)
+    return _translate(arguments, module, loaded, names[0], path)
+
+
+def _targets(arguments: Namespace, wrong: list[Diagnostic]) -> list[str]:
+    """The one target that is wanted; none where nothing is translated."""
+    if arguments.verify or arguments.as_:
+        if arguments.target is not None:
+            message = "--target goes with neither --verify nor --as"
+            wrong.append(Diagnostic("error", message, hint="leave one of them out"))
+        return []
+    if arguments.target is None:
+        wrong.append(Diagnostic("error", "which target?", hint="write --target wgsl; there are: sssgen list targets"))
+        return []
+    names = chosen_targets(arguments.target, wrong)
+    if len(names) > 1:
+        message = "transpile takes one target"
+        wrong.append(Diagnostic("error", message, hint=f"write --target {names[0]}"))
+    return names
+
+
+def _macros(given: list[str]) -> dict[str, str]:
+    """What `-D NAME=VALUE` says; without a value it is 1, as for C's compilers."""
+    macros = {}
+    for text in given:
+        name, sign, value = text.partition("=")
+        if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
+            raise failure(f"-D {text}: '{name}' is no name of a macro", "write -D NAME or -D NAME=VALUE")
+        macros[name] = value if sign else "1"
+    return macros
+
+
+def _translate(arguments: Namespace, module: Module, loaded: Loaded | None, target: str, path: Path) -> int:
+    from sssgen.pipeline.compiler import transpile
+
+    called = None
+    if arguments.prune:
+        called = [function.key for function in module.functions if function.span.file == path.as_posix()]
+        called = [key for key in called if key == "main()"] or called
+    options: dict[str, Any] = {"called": called} if called else {}
+    if loaded is not None:  # a technique's text is made shorter, an author's is kept
+        options |= {"keep": True, "head": loaded.head}
+    compiled = transpile(module, target, _title(path), arguments.guards, **options)
+    renamed = [
+        {"from": old, "to": new, "why": _why(old, target)}
+        for old, new in compiled.reflection.get("renames", {}).items()
+        if _concerns(old, new, loaded, compiled.files)
+    ]
+    warnings = [*(loaded.warnings if loaded else []), *compiled.warnings]
+    _print(arguments, compiled.files, warnings, renamed, loaded.constants if loaded else [])
+    return OK
+
+
+def _title(path: Path) -> str:
+    """A file's name as the name of what is made of it."""
+    name = re.sub(r"\W", "_", path.stem, flags=re.ASCII)
+    return name if name[:1].isalpha() else f"file_{name}"
+
+
+def _concerns(old: str, new: str, loaded: Loaded | None, files: dict[str, str]) -> bool:
+    """Whether a name is one of the author's, and stands changed in the output."""
+    bare = _bare(old)
+    if bare in ("main", "mainImage") or bare.startswith("gl_"):
+        return False
+    output = [text for name, text in files.items() if not name.endswith(REFLECTION)]
+    written = loaded is None or any(re.search(rf"\b{bare}\b", text) for text in loaded.texts.values())
+    return written and any(re.search(rf"\b{re.escape(new)}\b", text) for text in output)
+
+
+def _bare(old: str) -> str:
+    """A name without the function or struct that it is in, and without a function's parameters."""
+    return old.partition("(")[0].rpartition(".")[2]
+
+
+def _why(old: str, target: str) -> str:
+    """Why a name was changed, in a few words."""
+    from sssgen.targets.descriptor import load, names
+
+    bare = _bare(old)
+    if "(" in old:
+        return "overloads need names of their own there"
+    language = load(target).language
+    near = sorted(names(), key=lambda name: (name != target, load(name).language != language))
+    reserving = [name for name in near if bare in load(name).reserved]
+    if target == "numpy" and keyword.iskeyword(bare):
+        return "Python reserves it"
+    if reserving:
+        return f"{reserving[0]} reserves it"
+    if "__" in bare or bare.startswith("gl_"):
+        return "no other language has such a name"
+    return "something else has this name there"
+
+
+def _print(
+    arguments: Namespace,
+    files: dict[str, str],
+    warnings: list[Diagnostic],
+    renamed: list[dict[str, str]],
+    constants: list[str],
+) -> None:
+    """The text to the output, or both files to where `-o` says; what there is to know beside it."""
+    texts = [text for name, text in files.items() if not name.endswith(REFLECTION)]
+    reflections = [text for name, text in files.items() if name.endswith(REFLECTION)]
+    told: dict[str, Any] = {
+        "renamed": renamed, "constants": constants, "diagnostics": [one.as_json() for one in warnings],
+    }  # fmt: skip
+    if arguments.output is not None:
+        path = Path(arguments.output)
+        outputs = {path.name: "\n".join(texts)}
+        if reflections:
+            outputs[f"{path.name}{REFLECTION}"] = reflections[0]
+        written = write_files(os.fspath(path.parent), outputs)
+        if arguments.json:
+            rows = [{"file": posix(one.path), "changed": one.changed} for one in written]
+            print_json({"ok": True, "files": rows, **told})
+    elif arguments.json:
+        print_json({"ok": True, "texts": files, **told})
+    else:
+        print("\n".join(texts), end="")
+    if not arguments.json:
+        print_warnings(warnings)
+        for row in renamed:
+            print(f"renamed: {row['from']} → {row['to']} ({row['why']})", file=sys.stderr)
+
+
+def _verify(arguments: Namespace, path: Path) -> int:
+    """Runs each function as it is written and as it is translated, and prints how far they are apart."""
+    try:
+        from sssgen.harness.verify import inline_includes as includes
+        from sssgen.harness.verify import verification as transpiled
+    except ImportError as error:
+        raise failure(f"--verify needs the harness: {error}", "pip install 'sssgen[harness]'") from None
+    if arguments.define:
+        raise failure("-D does not go with --verify", "write the #define into the file")
+    text = includes.expanded(read_text(path, path.as_posix()), path, arguments.include)
+    report = transpiled.verify(text, path.as_posix(), arguments.samples, arguments.seed, arguments.entry)
+    if arguments.json:
+        print_json({"ok": report.ok, **report.as_json()})
+    else:
+        for line in report.lines():
+            print(line)
+    return OK if report.ok else CHECK_FAILED
+
+
+def _technique(arguments: Namespace, module: Module, path: Path) -> int:
+    """A function of the file as a technique's file, its doc comment to be filled in."""
+    from sssgen.pipeline.as_technique import technique_file
+
+    name, text = technique_file(module, path.as_posix(), arguments.function)
+    if arguments.output is None:
+        if arguments.json:
+            print_json({"ok": True, "texts": {f"{name}.sss": text}})
+        else:
+            print(text, end="")
+        return OK
+    target = Path(arguments.output)
+    if target.is_dir():
+        target /= f"{name}.sss"
+    if target.exists():
+        raise failure("the file is there already", "choose another name, or remove it first", target.as_posix())
+    write_files(os.fspath(target.parent), {target.name: text})
+    if arguments.json:
+        print_json({"ok": True, "file": target.as_posix()})
+    else:
+        print(f"wrote {target.as_posix()}")
+    return OK

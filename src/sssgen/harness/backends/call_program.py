@@ -1,0 +1,274 @@
+"""The program around emitted functions: it reads arguments from a texture, calls, and writes results as pixels.
+
+Arguments are data, so no compiler computes with them beforehand. Each pixel is one lane of one call. The lanes stand in
+an even number of rows, so that there are whole quads of 2×2 pixels, which derivatives need.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from sssgen.harness.backends.backend_interface import Array, Bound, Call, Drawing, Place, Stage, Text
+from sssgen.ir.types import Matrix, Sampler, Scalar, Type, Vector, components, kind_of, spell, vector_of
+from sssgen.targets.descriptor import Target, load
+from sssgen.targets.numpy_textures import Texture
+
+WIDTH = 4096
+"""The most lanes to a row; every driver takes pictures twice as wide."""
+
+FRAGMENT, CORNER = "sssgen_main", "sssgen_corner"
+"""The entry points that we add, where a language lets us name them."""
+
+DTYPES = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.uint32}
+
+
+class Language(NamedTuple):
+    """How the program around the functions is written."""
+
+    declare: str
+    bits: Mapping[str, str]
+    """Kind → how its bits become it; `{0}` has the components, `{type}` is the type."""
+    words: Mapping[str, str]
+    """Kind → how it becomes its bits."""
+    fetch: str
+    main: str
+
+
+LANGUAGES = {
+    "glsl": Language(
+        "{type} {name} = {value};",
+        {"float": "uintBitsToFloat({0})", "int": "{type}({0})", "uint": "{0}", "bool": "notEqual({0}, {zero})"},
+        {"float": "floatBitsToUint({0})", "int": "{unsigned}({0})", "uint": "{0}", "bool": "{unsigned}({0})"},
+        "texelFetch(sssgen_data, ivec2(lane.x, lane.y + {row}), 0)",
+        """
+{textures}
+uniform highp usampler2D sssgen_data;
+out highp uvec4 sssgen_words;
+void main() {{
+    ivec2 lane = ivec2(int(gl_FragCoord.x), int(gl_FragCoord.y) % {rows});
+    int slot = int(gl_FragCoord.y) / {rows};
+    uvec4 words = uvec4(0u);
+{body}
+    sssgen_words = words;
+}}
+""",
+    ),
+    "hlsl": Language(
+        "{type} {name} = {value};",
+        {"float": "asfloat({0})", "int": "asint({0})", "uint": "{0}", "bool": "({0} != 0u)"},
+        {"float": "asuint({0})", "int": "asuint({0})", "uint": "{0}", "bool": "({unsigned})({0})"},
+        "sssgen_data.Load(int3(lane.x, lane.y + {row}, 0))",
+        """
+{textures}
+Texture2D<uint4> sssgen_data;
+uint4 sssgen_main(float4 place : SV_Position) : SV_Target0 {{
+    int2 lane = int2(int(place.x), int(place.y) % {rows});
+    int slot = int(place.y) / {rows};
+    uint4 words = uint4(0u, 0u, 0u, 0u);
+{body}
+    return words;
+}}
+""",
+    ),
+    "wgsl": Language(
+        "let {name}: {type} = {value};",
+        {"float": "bitcast<{type}>({0})", "int": "bitcast<{type}>({0})", "uint": "{0}", "bool": "({0} != {zero})"},
+        {
+            "float": "bitcast<{unsigned}>({0})",
+            "int": "bitcast<{unsigned}>({0})",
+            "uint": "{0}",
+            "bool": "{unsigned}({0})",
+        },
+        "textureLoad(sssgen_data, vec2i(lane.x, lane.y + {row}), 0)",
+        """
+{textures}
+@group(0) @binding(0) var sssgen_data: texture_2d<u32>;
+@vertex fn sssgen_corner(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {{
+    return vec4f(vec2f(f32(index % 2u), f32(index / 2u)) * 4.0 - 1.0, 0.0, 1.0);
+}}
+@fragment fn sssgen_main(@builtin(position) place: vec4f) -> @location(0) vec4u {{
+    let lane = vec2i(i32(place.x), i32(place.y) % {rows});
+    let slot = i32(place.y) / {rows};
+    var words = vec4u(0u);
+{body}
+    return words;
+}}
+""",
+    ),
+}
+_HALF = {
+    "bits": {"float": "{type}(bitcast<{single}>({0}))"},
+    "words": {"float": "bitcast<{unsigned}>({single}({0}))"},
+}
+"""WGSL in half precision: both ends are float32, which holds every half, infinity and NaN; `{single}` is that type."""
+
+_TEXTURES = {
+    "glsl": "uniform highp {type} {name};",
+    "hlsl": "{type} {name};\n{sampler_type} {sampler};",
+    "hlsl-dx9": "{type} {name};",
+    "wgsl": "@group(0) @binding({first}) var {name}: {type};\n"
+    "@group(0) @binding({second}) var {sampler}: {sampler_type};",
+}
+
+
+class Grid(NamedTuple):
+    """How lanes stand in the picture: row by row."""
+
+    width: int
+    rows: int
+
+
+def grid(lanes: int) -> Grid:
+    """The grid for that many lanes; `rows` is even."""
+    rows = 2 * -(-lanes // (2 * WIDTH))
+    return Grid(-(-lanes // rows), rows)
+
+
+class Layout(NamedTuple):
+    """Where results lie in the picture."""
+
+    lanes: int
+    grid: Grid
+    places: list[tuple[int, int]]
+    """The first slot of each call's result, and how many it takes; a slot is `rows` rows of pixels."""
+
+
+def drawing(
+    target: Target, text: Text, calls: Sequence[Call], textures: Mapping[str, Texture]
+) -> tuple[Drawing, Layout]:
+    """The draw that runs the calls. Its program has `text` in front, so that line numbers stay true."""
+    lanes = max(np.shape(arg)[-1] for call in calls for arg in call.args if not isinstance(arg, str))
+    used = {arg for call in calls for arg in call.args if isinstance(arg, str)}
+    bound = {name: Bound(texture, Place(0, 2 * i + 1, 2 * i + 2)) for i, (name, texture) in enumerate(
+        (name, texture) for name, texture in textures.items() if name in used
+    )}  # fmt: skip
+    writer = _Writer(target, grid(lanes))
+    for number, call in enumerate(calls):
+        writer.call(number, call)
+    declared = [_declared(target, name, one) for name, one in bound.items()]
+    body = "\n".join(f"    {line}" for line in writer.body)
+    main = writer.language.main.format(textures="\n".join(declared), body=body, rows=writer.grid.rows)
+    rows = writer.data or [np.zeros((writer.grid.rows * writer.grid.width, 4), np.uint32)]
+    bound["sssgen_data"] = Bound(np.concatenate(rows).reshape(-1, writer.grid.width, 4), Place(0, 0))
+    stage = Stage(Text(text.text + main, text.origin), "main" if _family(target) == "glsl" else FRAGMENT)
+    vertex = Stage(stage.text, CORNER) if _family(target) == "wgsl" else None
+    size = writer.grid.width, writer.slots * writer.grid.rows
+    return Drawing(size, stage, vertex, textures=bound), Layout(lanes, writer.grid, writer.places)
+
+
+def results(calls: Sequence[Call], layout: Layout, picture: Array) -> list[Array]:
+    """The results in a picture of (height, width, 4) uint32."""
+    words = picture.reshape(-1, layout.grid.rows * layout.grid.width, 4)
+    return [
+        _result(call.result, words[first : first + count], layout.lanes)
+        for call, (first, count) in zip(calls, layout.places, strict=True)
+    ]
+
+
+class _Writer:
+    """Writes one branch a call: whole quads take it, so derivatives and implicit levels are defined in it."""
+
+    def __init__(self, target: Target, grid: Grid) -> None:
+        self.target, self.grid = target, grid
+        self.language = LANGUAGES[_family(target)]
+        self.half = target.table.get("precision") == "half"
+        self.single = load(target.table["single"]).types if self.half else target.types
+        if self.half:
+            bits, words = {**self.language.bits, **_HALF["bits"]}, {**self.language.words, **_HALF["words"]}
+            self.language = self.language._replace(bits=bits, words=words)
+        self.data: list[Array] = []
+        self.body: list[str] = []
+        self.places: list[tuple[int, int]] = []
+        self.slots = 0
+
+    def call(self, number: int, call: Call) -> None:
+        before, args = [], []
+        for index, (type_, arg) in enumerate(zip(call.params, call.args, strict=True)):
+            name = f"a{number}_{index}"
+            if isinstance(arg, str):
+                args.append(self.target.textures.get("argument", "{name}").format(name=arg, sampler=f"{arg}_sampler"))
+                continue
+            before.append(self._declare(type_, name, self._read(type_, len(self.data) * self.grid.rows)))
+            args.append(name)
+            self.data += _rows(type_, self._rounded(np.asarray(arg)), self.grid)
+        result = f"r{number}"
+        before.append(self._declare(call.result, result, f"{call.function}({', '.join(args)})"))
+        columns = call.result.size if isinstance(call.result, Matrix) else 1
+        for column in range(columns):
+            part = f"{result}[{column}]" if isinstance(call.result, Matrix) else result
+            before.append(f"if (slot == {self.slots + column}) {{ words = {self._words(call.result, part)}; }}")
+        inside = f"if (slot >= {self.slots} && slot < {self.slots + columns}) {{"
+        self.body += [inside, *before, "}"]
+        self.places.append((self.slots, columns))
+        self.slots += columns
+
+    def _rounded(self, arg: Array) -> Array:
+        """An argument in the numbers that the target computes in."""
+        if not self.half or arg.dtype.kind != "f":
+            return arg
+        with np.errstate(over="ignore"):
+            return arg.astype(np.float16)
+
+    def _declare(self, type_: Type, name: str, value: str) -> str:
+        return self.language.declare.format(type=self.target.types[spell(type_)], name=name, value=value)
+
+    def _read(self, type_: Type, row: int) -> str:
+        if isinstance(type_, Matrix):
+            columns = [self._read(Vector("float", type_.size), row + self.grid.rows * i) for i in range(type_.size)]
+            return f"{self.target.types[spell(type_)]}({', '.join(columns)})"
+        size = components(type_)
+        fetched = f"{self.language.fetch.format(row=row)}.{'xyzw'[:size]}"
+        unsigned = self.target.types["uint" if size == 1 else f"uvec{size}"]
+        pattern = self.language.bits[kind_of(type_)]
+        if pattern.startswith("notEqual") and size == 1:
+            pattern = "({0} != {zero})"
+        zero = f"{unsigned}(0u)" if size > 1 else "0u"
+        types = {"type": self.target.types[spell(type_)], "single": self.single[spell(type_)]}
+        return pattern.format(fetched, **types, zero=zero)
+
+    def _words(self, type_: Type, value: str) -> str:
+        """Four words, the value's in front."""
+        size = type_.size if isinstance(type_, Matrix | Vector) else 1
+        unsigned = self.target.types["uint" if size == 1 else f"uvec{size}"]
+        single = self.single[spell(vector_of(kind_of(type_), size))]
+        bits = self.language.words[kind_of(type_)].format(value, unsigned=unsigned, single=single)
+        return f"{self.target.types['uvec4']}({', '.join([bits, *['0u'] * (4 - size)])})"
+
+
+def _family(target: Target) -> str:
+    """The language that the target's dialect is one of: glsl, hlsl, wgsl."""
+    return target.dialect.partition("-")[0]
+
+
+def _declared(target: Target, name: str, bound: Bound) -> str:
+    assert isinstance(bound.data, Texture)
+    pattern = _TEXTURES.get(target.dialect) or _TEXTURES[_family(target)]
+    data = bound.data
+    type_ = target.types[spell(Sampler(data.dim, data.kind, data.layers, data.compare))].removeprefix("highp ")
+    sampler_type = target.types.get("samplerShadow" if data.compare else "sampler", "SamplerState")
+    places = {"first": bound.place.binding, "second": bound.place.sampler}
+    return pattern.format(name=name, sampler=f"{name}_sampler", type=type_, sampler_type=sampler_type, **places)
+
+
+def _rows(type_: Type, value: Array, grid: Grid) -> list[Array]:
+    """An argument as rows of four words a lane."""
+    if isinstance(type_, Matrix):
+        return [row for column in value for row in _rows(Vector("float", type_.size), column, grid)]
+    words = np.zeros((grid.rows * grid.width, 4), np.uint32)
+    with np.errstate(over="ignore", invalid="ignore"):
+        whole = value.reshape(components(type_), -1).astype(DTYPES[kind_of(type_)])
+    words[: whole.shape[-1] if whole.shape[-1] > 1 else None, : len(whole)] = whole.T.view(np.uint32)
+    return [words]
+
+
+def _result(type_: Type, words: Array, lanes: int) -> Array:
+    """The value in the layout of `numpy_values`."""
+    size = type_.size if isinstance(type_, Matrix | Vector) else 1
+    values: Array = np.ascontiguousarray(words[:, :lanes, :size]).view(DTYPES[kind_of(type_)])
+    if kind_of(type_) == "bool":
+        values = values != 0
+    values = np.moveaxis(values, 1, 2)
+    return values if isinstance(type_, Matrix) else values[0, 0] if isinstance(type_, Scalar) else values[0]

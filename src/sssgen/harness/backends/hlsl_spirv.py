@@ -1,0 +1,121 @@
+"""HLSL, run in OpenGL: a compiler makes SPIR-V of it, spirv-val looks at that, and spirv-cross makes GLSL."""
+
+from __future__ import annotations
+
+import subprocess
+import tempfile
+from collections.abc import Collection
+from functools import cache, lru_cache
+from pathlib import Path
+from typing import Any
+
+from sssgen.harness.backends.backend_interface import ATTRIBUTES, Drawing, Stage, Text, refused
+from sssgen.harness.backends.opengl import _HEADS, _SCREEN, OpenGL
+from sssgen.harness.compilers import CompilerMissing, Message, dxc, glslang
+
+_ENDINGS = {
+    "position": ("POSITION", "_position", "_vertex"),
+    "normal": ("NORMAL", "_normal"),
+    "tangent": ("TANGENT", "_tangent"),
+    "uv": ("TEXCOORD0", "_uv", "_texcoord"),
+}
+_TIMEOUT = 120.0
+
+
+class HLSL(OpenGL):
+    """Compiles with `compiler`: DXC or glslang, or glslang with the samplers of Direct3D 9."""
+
+    def __init__(self, name: str, target: str, compiler: str) -> None:
+        super().__init__(name, target)
+        self.compiler = compiler
+        _tools()  # where they are missing this back end is
+        self.found = dxc.find() if compiler == "dxc" else glslang.find()
+
+    def device(self) -> str:
+        return f"{self.found.version()}, spirv-cross, {super().device()}"
+
+    def stages(self, drawing: Drawing) -> tuple[str, str]:
+        fragment = self.glsl(drawing.fragment, "fragment")
+        return self.glsl(drawing.vertex, "vertex") if drawing.vertex else _HEADS["glsl-330"] + _SCREEN, fragment
+
+    def glsl(self, stage: Stage, kind: str) -> str:
+        """The GLSL that comes of a stage."""
+        text = self.prepared(stage.text)
+        module, log = compiled(text.text, stage.entry, kind, self.compiler)
+        if not module:
+            raise refused(self.name, stage.text, self.messages(log))
+        glsl, log = crossed(module)
+        if not glsl:
+            raise refused(self.name, stage.text, [Message("error", 0, 0, log)])
+        return glsl
+
+    def owner(self, member: str, names: Collection[str]) -> str:
+        """DXC writes `type_` before a block's name; spirv-cross joins a texture's name with its sampler's."""
+        for plain in (member, member.removeprefix("type_")):
+            if plain in names:
+                return plain
+        joined = member.removeprefix("SPIRV_Cross_Combined")
+        if joined == member:
+            return ""
+        for name in names:
+            if joined.startswith((f"{name}sampler", f"{name}SPIRV_Cross_DummySampler", f"{name}{name}_sampler")):
+                return name
+        return ""
+
+    def prepared(self, text: Text) -> Text:
+        """What the compiler is given: Unity's text is preprocessed first."""
+        return text
+
+    def messages(self, log: str) -> list[Message]:
+        """What the compiler said."""
+        return dxc.messages(log) if self.compiler == "dxc" else glslang.messages(log)
+
+    def attribute(self, program: Any, name: str) -> str:
+        """Vertex inputs are called after their semantics by DXC, after their structure's members by glslang."""
+        members = (member for member in program if member.endswith(_ENDINGS[name]) and not member.startswith("gl_"))
+        return next((member for member in members if type(program[member]).__name__ == "Attribute"), "")
+
+
+@lru_cache(64)
+def compiled(text: str, entry: str, stage: str, compiler: str) -> tuple[bytes, str]:
+    """SPIR-V from HLSL by `dxc`, `glslang` or `dx9` (glslang), checked by spirv-val; or nothing and the log."""
+    try:
+        if compiler == "dxc":
+            module = dxc.find().spirv(text, stage, entry)
+        else:
+            module = glslang.find().spirv(text, stage, entry, dx9_samplers=compiler == "dx9")
+    except ValueError as error:
+        return b"", str(error)
+    done = _process([_tools()["spirv-val"], "--target-env", "vulkan1.1"], module)
+    return (b"", f"spirv-val: {done.stderr.decode(errors='replace').strip()}") if done.returncode else (module, "")
+
+
+@lru_cache(64)
+def crossed(module: bytes, *options: str) -> tuple[str, str]:
+    """GLSL from SPIR-V by spirv-cross (with `options`, another language), or nothing and the log."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "in.spv"
+        path.write_bytes(module)
+        done = _process([_tools()["spirv-cross"], str(path), *(options or ("--version", "430", "--no-es"))], b"")
+    return ("", done.stderr.decode(errors="replace")) if done.returncode else (done.stdout.decode(), "")
+
+
+def _process(command: list[str], data: bytes) -> subprocess.CompletedProcess[bytes]:
+    try:
+        return subprocess.run(command, input=data, capture_output=True, check=False, timeout=_TIMEOUT)
+    except subprocess.TimeoutExpired:
+        return subprocess.CompletedProcess(command, 1, b"", f"{command[0]} took longer than {_TIMEOUT} s".encode())
+
+
+@cache
+def _tools() -> dict[str, str]:
+    """Where the two programs are. Raises CompilerMissing."""
+    import shutil
+
+    found = {name: shutil.which(name) for name in ("spirv-val", "spirv-cross")}
+    if lacking := [name for name, path in found.items() if path is None]:
+        raise CompilerMissing(f"{' and '.join(lacking)} (Debian: spirv-tools spirv-cross · elsewhere: the Vulkan SDK)")
+    return {name: str(path) for name, path in found.items()}
+
+
+assert set(_ENDINGS) == set(ATTRIBUTES)

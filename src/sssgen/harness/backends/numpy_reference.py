@@ -1,0 +1,63 @@
+"""The numpy target: the oracle in float64, and the same formulas in float32 and float16."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from sssgen.harness.backends import call_program as programs
+from sssgen.harness.backends.backend_interface import Array, Backend, Call, Text, gave_up
+from sssgen.targets import descriptor
+from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.numpy_values import grid, precision
+
+
+class Reference(Backend):
+    """Runs emitted Python; `dtype` is float64, float32 or float16."""
+
+    def __init__(self, name: str, dtype: str = "float64") -> None:
+        self.name, self.dtype = name, dtype
+        self.target = descriptor.load("numpy-f16" if dtype == "float16" else "numpy")
+
+    def device(self) -> str:
+        return f"NumPy {np.__version__}, {self.dtype}"
+
+    def run(self, text: Text, calls: Sequence[Call], textures: Mapping[str, Texture] | None = None) -> list[Array]:
+        functions = namespace(text.text)
+        return [self.call(functions, call, textures or {}) for call in calls]
+
+    def call(self, functions: Mapping[str, Any], call: Call, textures: Mapping[str, Texture]) -> Array:
+        """One call, on the grid of pixels that the other back ends have, so that derivatives have their neighbours."""
+        lanes = max((np.shape(arg)[-1] for arg in call.args if not isinstance(arg, str)), default=1)
+        shape = programs.grid(lanes)
+        filled = shape.width * shape.rows
+        args = [textures[arg] if isinstance(arg, str) else self._lanes(np.asarray(arg), filled) for arg in call.args]
+        try:
+            with precision(self.dtype), grid(shape.rows, shape.width):
+                found = functions[call.function](*args)
+                value, gone = found if isinstance(found, tuple) else (found, None)
+                value = value if gone is None else np.where(gone, np.zeros_like(value), value)
+        except MemoryError:
+            raise gave_up(self.name, f"no memory for {lanes} evaluations of {call.function}") from None
+        value = np.asarray(value)
+        inner = value.shape[:-1] if value.ndim else ()
+        return np.broadcast_to(value, (*inner, filled))[..., :lanes]
+
+    def _lanes(self, value: Array, lanes: int) -> Array:
+        """An argument in the working precision; the grid's last lanes are as empty as in a picture: zeros."""
+        with np.errstate(over="ignore"):
+            value = value.astype(self.dtype) if value.dtype.kind == "f" else value
+        if value.shape[-1] == 1:
+            return value
+        return np.pad(value, [(0, 0)] * (value.ndim - 1) + [(0, lanes - value.shape[-1])])
+
+
+@lru_cache(64)
+def namespace(text: str) -> Mapping[str, Any]:
+    """What emitted Python defines."""
+    names: dict[str, Any] = {}
+    exec(compile(text, "<emitted>", "exec"), names)
+    return names

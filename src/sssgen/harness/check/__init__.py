@@ -1,0 +1,1 @@
+"""`sssgen check`: shader files and the compilers that read them."""

@@ -1,0 +1,165 @@
+"""Shader texts through every compiler for their language; what these say, with the technique's own line."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from sssgen.harness.check.shader_files import Shader
+from sssgen.harness.compilers import LANGUAGES, CompilerMissing, Message, Source, errors, readers
+from sssgen.harness.compilers.compiler_process import Worker
+from sssgen.lang.loader import read_text
+from sssgen.material.library import TECHNIQUES
+from sssgen.support.diagnostics import SssgenError, failure
+from sssgen.support.paths import place, posix
+
+
+@dataclass(frozen=True)
+class Result:
+    """What one compiler says of one source."""
+
+    shader: Shader
+    source: Source
+    compiler: str
+    messages: list[Message]
+
+    @property
+    def ok(self) -> bool:
+        """Whether it compiles."""
+        return not errors(self.messages)
+
+    def origin(self, message: Message) -> str:
+        """`file:line:column` of the technique behind a message, or ''."""
+        return self.shader.origins.get(str(message.line), "")
+
+
+@dataclass(frozen=True)
+class Report:
+    """A run: compiler → version, missing compiler → how to get it, and the results by file, then by compiler."""
+
+    versions: dict[str, str]
+    missing: dict[str, str]
+    results: list[Result]
+
+
+def run(shaders: Sequence[Shader], names: Sequence[str] = (), unity_includes: str | None = None) -> Report:
+    """Every shader through every compiler for its language, or those in `names` only; each in a process of its own.
+
+    Raises SssgenError where one in `names` is missing, or where none of them reads any of the shaders.
+    """
+    from concurrent.futures import ThreadPoolExecutor
+    from threading import Event
+
+    programs = [(shader, source) for shader in shaders for source in shader.sources]
+    languages = sorted({source.language for _, source in programs})
+    chosen = [name for name in LANGUAGES if name in (names or LANGUAGES) and LANGUAGES[name].intersection(languages)]
+    if not chosen:
+        who = " or ".join(names) or "compiler here"
+        those = sorted({name for language in languages for name in readers(language)})
+        hint = f"compilers that do: {', '.join(those)}" if those else ""
+        raise failure(f"no {who} reads {', '.join(languages)}", hint)
+    environment = {"SSSGEN_UNITY_INCLUDES": _headers(unity_includes)} if unity_includes is not None else {}
+    stop = Event()
+
+    def work(name: str) -> tuple[str, bool, list[Result]]:
+        """(version or how to get it, whether it is there, results)."""
+        worker = Worker(name, environment)
+        try:
+            version = worker.version()
+            results = [
+                Result(shader, source, name, _within(shader, worker.check(source)))
+                for shader, source in programs
+                if name in readers(source.language) and not stop.is_set()
+            ]
+        except CompilerMissing as how:
+            return str(how), False, []
+        finally:
+            worker.close()
+        return version, True, results
+
+    with ThreadPoolExecutor(len(chosen)) as pool:
+        try:
+            told = dict(zip(chosen, pool.map(work, chosen), strict=True))
+        finally:
+            stop.set()
+    missing = {name: text for name, (text, there, _) in told.items() if not there}
+    if lacking := [name for name in names if name in missing]:
+        raise SssgenError(
+            [found for name in lacking for found in failure(f"{name} is not here", missing[name]).diagnostics]
+        )
+    order = {id(shader): number for number, shader in enumerate(shaders)}
+    results = [result for _, _, own in told.values() for result in own]
+    return Report(
+        {name: text for name, (text, there, _) in told.items() if there},
+        missing,
+        sorted(results, key=lambda result: order[id(result.shader)]),
+    )
+
+
+def _within(shader: Shader, messages: list[Message]) -> list[Message]:
+    """Messages with places that are in the file: behind its end stand the calls that make a program of a library."""
+    count = shader.text.count("\n") + 1
+    return [
+        replace(m, line=0, column=0, text=f"in the calls of every function that the check adds: {m.text}")
+        if m.line > count
+        else m
+        for m in messages
+    ]
+
+
+def _headers(folder: str) -> str:
+    from pathlib import Path
+
+    from sssgen.harness.compilers import unity_compiler as unity
+
+    path = Path(folder).expanduser()
+    if not path.is_dir():
+        raise failure("no such folder of Unity's headers", f"it holds {unity.HEADERS}", posix(folder))
+    if not unity.holds_headers(path):
+        raise failure("the folder has none of Unity's headers", f"it holds {unity.HEADERS}", posix(folder))
+    return str(path.resolve())
+
+
+def source_line(origin: str) -> str:
+    """The line of a technique or material that `file:line:column` names, where this machine has the file; else ''."""
+    file, line, _ = origin.rsplit(":", 2)
+    for path in (os.path.join(TECHNIQUES, file), file, os.path.join(os.path.dirname(place("examples")), file)):
+        if os.path.isfile(path):
+            try:
+                lines = read_text(path, file).split("\n")
+            except SssgenError:
+                return ""
+            return lines[int(line) - 1] if line.isdigit() and 0 < int(line) <= len(lines) else ""
+    return ""
+
+
+def as_json(report: Report) -> dict[str, Any]:
+    """The report for programs."""
+    return {
+        "compilers": [{"name": name, "version": version} for name, version in report.versions.items()],
+        "missing": [{"name": name, "how": how} for name, how in report.missing.items()],
+        "results": [
+            {
+                "file": result.shader.name,
+                "stage": result.source.stage,
+                "compiler": result.compiler,
+                "ok": result.ok,
+                "messages": [_message_as_json(result, message) for message in result.messages],
+            }
+            for result in report.results
+        ],
+    }
+
+
+def _message_as_json(result: Result, message: Message) -> dict[str, Any]:
+    told: dict[str, Any] = {
+        "severity": message.severity,
+        "line": message.line,
+        "column": message.column,
+        "text": message.text,
+    }
+    if origin := result.origin(message):
+        told["source"] = origin
+    return told

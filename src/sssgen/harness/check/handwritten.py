@@ -1,0 +1,70 @@
+"""What a compiler is given of a file that no target of ours is known to have written: told by its ending and text."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from sssgen.harness.compilers import Source, Stage
+from sssgen.harness.compilers.calling_entry import functions
+
+_GLSL = ("glsl-330", "glsl-es-300")
+LANGUAGES_OF: dict[str, tuple[str, ...]] = {
+    ".vert": _GLSL,
+    ".frag": _GLSL,
+    ".glsl": _GLSL,
+    ".wgsl": ("wgsl",),
+    ".hlsl": ("hlsl", "unity-urp", "unity-builtin", "unity-shadergraph"),
+    ".cginc": ("unity-builtin",),
+    ".shader": ("unity-builtin", "unity-urp"),
+    ".py": ("numpy",),
+}
+"""What a file's ending says of its language; where that is not one, the first is what it is for want of better."""
+
+_SIGNS = {
+    "glsl-es-300": r"^\s*#\s*version\s+\d+\s+es\b",
+    "unity-urp": r"Packages/com\.unity\.render-pipelines|\"RenderPipeline\"\s*=\s*\"UniversalPipeline\"",
+}
+_COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+
+
+def language_of(ending: str, text: str, wanted: Sequence[str]) -> str:
+    """The language among those `wanted` (all, where there are none); '' where it is none of them, or not known."""
+    possible = [name for name in LANGUAGES_OF.get(ending, ()) if not wanted or name in wanted]
+    signed = [name for name in possible if name in _SIGNS and re.search(_SIGNS[name], text, re.MULTILINE)]
+    return next(iter([*signed, *possible]), "")
+
+
+def hand_written(text: str, language: str, name: str) -> list[Source]:
+    """The sources in a text: one for each entry point that HLSL has, else one; without an entry, a library."""
+    bare = _COMMENT.sub("", text)
+    if language == "hlsl":
+        return [Source(text, language, stage, entry, name) for stage, entry in _hlsl_entries(bare)]
+    return [Source(text, language, _stage(bare, language, name), name=name)]
+
+
+def _stage(text: str, language: str, name: str) -> Stage:
+    if language in _GLSL:
+        if name.endswith(".vert") or re.search(r"\bgl_Position\b", text):
+            return "vertex"
+        return "fragment" if name.endswith(".frag") or re.search(r"\bvoid\s+main\s*\(", text) else "library"
+    if language == "wgsl":
+        found = re.search(r"@(vertex|fragment)\b", text)
+        return "library" if found is None else "vertex" if found[1] == "vertex" else "fragment"
+    return "fragment" if name.endswith(".shader") else "library"
+
+
+def _hlsl_entries(text: str) -> list[tuple[Stage, str]]:
+    """The functions that nobody calls and that return SV_Target or SV_Position, themselves or in a struct."""
+    entries: list[tuple[Stage, str]] = []
+    for function in functions(text):
+        semantic = re.search(rf"\b{function.name}\s*\([^()]*\)\s*:\s*(\w+)", text)
+        struct = re.search(rf"\bstruct\s+{function.returns}\s*\{{([^{{}}]*)\}}", text)
+        told = (semantic[1] if semantic else struct[1] if struct else "").upper()
+        if len(re.findall(rf"\b{function.name}\s*\(", text)) > 1:
+            continue
+        if "SV_TARGET" in told:
+            entries.append(("fragment", function.name))
+        elif "SV_POSITION" in told:
+            entries.append(("vertex", function.name))
+    return entries or [("library", "main")]

@@ -1,0 +1,188 @@
+"""What `sssgen check` is given, as shaders: files, folders of them, materials, examples."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from sssgen.harness.check.compiler_inputs import outputs, sources
+from sssgen.harness.check.handwritten import LANGUAGES_OF, hand_written, language_of
+from sssgen.harness.compilers import Source, readers
+from sssgen.lang.loader import read_text
+from sssgen.material.material_loading import load_material
+from sssgen.pipeline.compiler import FORMS, compile
+from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
+from sssgen.support.paths import posix
+from sssgen.targets import descriptor
+
+REFLECTION = "reflection.json"
+
+
+@dataclass(frozen=True)
+class Shader:
+    """One file: the sources in it, and `file:line:column` of the technique behind each line (its number as text)."""
+
+    name: str
+    text: str
+    sources: tuple[Source, ...]
+    origins: Mapping[str, str] = field(default_factory=dict)
+
+
+def read(arguments: Sequence[str], targets: Sequence[str]) -> list[Shader]:
+    """The shaders that files, folders, materials and examples hold, for `targets` only where there are any.
+
+    Raises SssgenError with all that is wrong with the input, and where there is nothing to check.
+    """
+    wrong: list[Diagnostic] = []
+    shaders: list[Shader] = []
+    files: dict[str, str] = {}
+    asked: set[str] = set()
+    for argument in dict.fromkeys(arguments):
+        try:
+            if os.path.isdir(argument):
+                files |= _read_folder(argument)
+            elif _is_material(argument):
+                shaders += of_material(argument, targets)
+            else:
+                shown = posix(argument)
+                files[shown] = _read_file(argument, shown)
+                asked.add(shown)
+        except SssgenError as error:
+            wrong += error.diagnostics
+    try:
+        shaders = [*of_files(files, asked, targets), *shaders]
+    except SssgenError as error:
+        wrong += error.diagnostics
+    if wrong:
+        raise SssgenError(dict.fromkeys(wrong))
+    if not shaders:
+        for_targets = f" for {', '.join(targets)}" if targets else ""
+        hint = f"a shader is what `sssgen emit` writes, or ends in {', '.join(LANGUAGES_OF)}"
+        raise failure(f"nothing to compile{for_targets}", hint, ", ".join(map(posix, arguments)))
+    return shaders
+
+
+def of_material(argument: str, targets: Sequence[str]) -> list[Shader]:
+    """Both forms of a material for each target; all that a compiler reads, where none is named."""
+    material = load_material(argument)
+    found: list[Shader] = []
+    for target in targets or [name for name in descriptor.names() if readers(name)]:
+        for form in FORMS:
+            made = compile(material, target, form)
+            found += _shaders(made.files, sources(made.files), made.reflection["source_map"])
+    return found
+
+
+def of_files(files: Mapping[str, str], asked: set[str], targets: Sequence[str]) -> list[Shader]:
+    """The shaders among `files` (path → text). Raises SssgenError for one of those `asked` for that is none."""
+    emitted: dict[str, str] = {}
+    wrong: list[Diagnostic] = []
+    found: list[Source] = []
+    for path, text in files.items():
+        target = _emitted_for(path, text)
+        if target and (not targets or target in targets):
+            emitted[path] = text
+        elif target:
+            if path in asked:
+                hint = f"write --target {target}, or leave --target out"
+                wrong += failure(f"the file is for {target}", hint, path).diagnostics
+        elif language := _language(path, text, path in asked, targets):
+            found += hand_written(text, language, path)
+        elif path in asked:
+            hint = f"say it with --target T: {', '.join(descriptor.names())}"
+            wrong += failure("the language of the file cannot be told", hint, path).diagnostics
+    if wrong:
+        raise SssgenError(wrong)
+    return _shaders(files, [*sources(emitted), *found], {path: _origins(path) for path in files})
+
+
+def _shaders(
+    files: Mapping[str, str], found: Sequence[Source], origins: Mapping[str, Mapping[str, str]]
+) -> list[Shader]:
+    """One for each file that has sources."""
+    by_name: dict[str, list[Source]] = {}
+    for source in found:
+        by_name.setdefault(source.name, []).append(source)
+    return [Shader(name, files[name], tuple(by_name[name]), origins.get(name, {})) for name in files if name in by_name]
+
+
+def _is_material(argument: str) -> bool:
+    if argument.endswith(".toml"):
+        return True
+    ending = os.path.splitext(argument)[1]
+    return not os.path.exists(argument) and "/" not in argument and os.sep not in argument and not ending
+
+
+def _read_folder(folder: str) -> dict[str, str]:
+    """The shaders of a folder and of those below it, but for hidden ones. Raises SssgenError for what is no text."""
+    wrong: list[Diagnostic] = []
+    files: dict[str, str] = {}
+    for path in _walk(folder):
+        shown = posix(path)
+        ending = os.path.splitext(path)[1]
+        # Python is code like any other, unless a reflection says that it is ours
+        try:
+            if (ending != ".py" and (ending in LANGUAGES_OF or outputs(shown))) or _origins(shown):
+                files[shown] = _read_file(path, shown)
+        except SssgenError as error:
+            wrong += error.diagnostics
+    if wrong:
+        raise SssgenError(wrong)
+    return files
+
+
+def _walk(folder: str) -> Iterator[str]:
+    def refuse(error: OSError) -> None:
+        raise failure(f"cannot read the folder: {error.strerror}", file=posix(error.filename or folder))
+
+    for parent, folders, names in os.walk(folder, onerror=refuse):
+        folders[:] = sorted(name for name in folders if not name.startswith(".") and name != "node_modules")
+        yield from (os.path.join(parent, name) for name in sorted(names) if not name.startswith("."))
+
+
+def _read_file(path: str, shown: str) -> str:
+    text = read_text(path, shown)
+    if not text.strip():
+        raise failure("the file is empty", "emit it again, or leave it out", shown)
+    return text
+
+
+def _emitted_for(path: str, text: str) -> str:
+    """The target that wrote a file, or ''. A name alone does not always tell: `my.hlsl` may be anybody's."""
+    for target, _, output in outputs(path):
+        named = f".{target.name}." in output.name
+        if named or _origins(path) or all(entry in text for entry in output.stages.values()):
+            return target.name
+    return ""
+
+
+def _language(path: str, text: str, asked: bool, targets: Sequence[str]) -> str:
+    if asked and len(targets) == 1:
+        return targets[0]
+    return language_of(os.path.splitext(path)[1], text, targets)
+
+
+def _origins(path: str) -> dict[str, str]:
+    """The source map of an emitted file, from the reflection beside it; empty where there is none."""
+    folder, base = os.path.split(path)
+    names = [f"{base}.{REFLECTION}"]  # `sssgen transpile` names it so, and the text in it otherwise
+    for target, material, _ in outputs(path):
+        names += [f"{material}.{target.name}.{form}{REFLECTION}" for form in ("", "functions.")]
+    for name in dict.fromkeys(names):
+        if os.path.isfile(beside := os.path.join(folder, name)):
+            maps = _source_map(beside)
+            if base in maps:
+                return maps[base]
+            if name == names[0] and len(maps) == 1:
+                return next(iter(maps.values()))
+    return {}
+
+
+def _source_map(path: str) -> dict[str, dict[str, str]]:
+    try:
+        maps = json.loads(read_text(path, posix(path)))["source_map"]
+        return {str(file): {str(line): str(span) for line, span in lines.items()} for file, lines in maps.items()}
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        raise failure("this is not a reflection of sssgen's", "emit it again, or remove it", posix(path)) from None

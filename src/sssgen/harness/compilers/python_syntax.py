@@ -1,0 +1,29 @@
+"""The text of the numpy target, compiled by Python itself; running it is the tests' matter."""
+
+from __future__ import annotations
+
+from sssgen.harness.compilers.compiler_interface import LANGUAGES, Compiler, Message, Source
+
+
+class Python(Compiler):
+    """Compiles and does not run."""
+
+    name = "python"
+    languages = LANGUAGES["python"]
+
+    def version(self) -> str:
+        import platform
+
+        return f"Python {platform.python_version()}"
+
+    def check(self, source: Source) -> list[Message]:
+        try:
+            compile(source.text, source.name, "exec")
+        except SyntaxError as error:
+            return [Message("error", error.lineno or 0, error.offset or 0, error.msg)]
+        return []
+
+
+def find() -> Python:
+    """Always there."""
+    return Python()

@@ -1,0 +1,306 @@
+"""Unity's shaders, compiled outside Unity: preprocessed with Unity's headers, then given to glslang or DXC.
+
+The headers are Unity's and no part of this project. SSSGEN_UNITY_INCLUDES names a folder that holds
+`CGIncludes/` and `Packages/com.unity.render-pipelines.{core,universal}/` (an installed Unity has both);
+without it the project's own stand-in headers serve, which declare only what is used. `version()` says
+which.
+
+Built-in pipeline: HLSL with DX9 samplers, so glslang reads it. URP and Shader Graph: DXC.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from sssgen.harness.compilers import dxc, glslang, shaderlab
+from sssgen.harness.compilers import surface_shader as surface
+from sssgen.harness.compilers.calling_entry import Opaque, hlsl_entry
+from sssgen.harness.compilers.compiler_interface import LANGUAGES, Compiler, CompilerMissing, Message, Source, Stage
+
+_TEXT = "sssgen-text"
+"""What the text is called in `#line`. A name of the user's could hold a quote, or be a header's."""
+
+HEADERS = "CGIncludes/ and Packages/com.unity.render-pipelines.*/"
+
+_URP = "Packages/com.unity.render-pipelines.universal/ShaderLibrary/"
+_CORE = "Packages/com.unity.render-pipelines.core/ShaderLibrary/"
+_GRAPH = "Packages/com.unity.shadergraph/ShaderGraphLibrary/"
+
+# What the editor includes by itself: in CGPROGRAM, and around a surface function.
+_CG_HEADERS = ("HLSLSupport.cginc", "UnityShaderVariables.cginc", "UnityShaderUtilities.cginc")
+_SURFACE_HEADERS = ("UnityCG.cginc", "Lighting.cginc", "UnityPBSLighting.cginc", "AutoLight.cginc")
+_LIBRARY_HEADERS = {
+    "unity-builtin": (*_CG_HEADERS, *_SURFACE_HEADERS),
+    "unity-urp": (_URP + "Core.hlsl", _URP + "Lighting.hlsl"),
+    # in a graph's own pass, and in the preview on a node
+    "unity-shadergraph": (
+        *(_CORE + name for name in ("Color.hlsl", "Texture.hlsl")),
+        *(_URP + name for name in ("Core.hlsl", "Lighting.hlsl", "ShaderGraphFunctions.hlsl")),
+    ),
+    "preview": (
+        *(f"{_CORE}{name}.hlsl" for name in ("Common", "Packing", "Color", "Texture", "UnityInstancing")),
+        *(f"{_GRAPH}{name}.hlsl" for name in ("ShaderVariables", "ShaderVariablesFunctions", "Functions")),
+    ),
+}  # fmt: skip
+# glslang takes the float1 of Unity's fog coordinate for a float, whose .x it will not assign to.
+_BUILTIN_MACROS = (
+    "SHADER_API_D3D11=1", "SHADER_TARGET=30", "UNITY_VERSION=201940", "UNITY_PBS_USE_BRDF1=1", "float1=float2",
+)  # fmt: skip
+_URP_MACROS = ("SHADER_API_D3D11=1", "SHADER_TARGET=45", "UNITY_VERSION=202120", "UNITY_COMPILER_DXC=1")
+# Unity's preprocessor expands a macro's arguments before it joins them with ##; C's does not, so that the
+# instanced matrices come out under this name. The built-in pipeline's headers cannot be helped like that:
+# its shaders are compiled without instancing.
+_INSTANCED = "UNITY_BUILTINS_WITH_WORLDTOOBJECTARRAYArray=unity_Builtins0Array"
+# The passes of a surface shader that is lit forward, without and with shadows.
+_SURFACE_PASSES = (
+    ("UNITY_PASS_FORWARDBASE=1", "DIRECTIONAL=1"),
+    ("UNITY_PASS_FORWARDBASE=1", "DIRECTIONAL=1", "SHADOWS_SCREEN=1", "LIGHTPROBE_SH=1"),
+    ("UNITY_PASS_FORWARDADD=1", "POINT=1"),
+)
+_GRAPH_TEXTURES: dict[str, Opaque] = {
+    kind: (
+        f"{macro}({{0}}); SAMPLER(sampler{{0}}); float4 {{0}}_TexelSize; float4 {{0}}_ST;",
+        f"{build}({{0}})",
+    )
+    for kind, macro, build in (
+        ("UnityTexture2D", "TEXTURE2D", "UnityBuildTexture2DStruct"),
+        ("UnityTexture3D", "TEXTURE3D", "UnityBuildTexture3DStruct"),
+        ("UnityTextureCube", "TEXTURECUBE", "UnityBuildTextureCubeStruct"),
+    )
+} | {"UnitySamplerState": ("SAMPLER(sampler{0});", "UnityBuildSamplerStateStruct(sampler{0})")}
+
+
+@dataclass(frozen=True)
+class _Job:
+    """One text for the preprocessor and then a compiler."""
+
+    what: str
+    headers: tuple[str, ...]
+    macros: tuple[str, ...]
+    code: str
+    stage: Stage
+    entry: str
+    builtin: bool
+
+
+class Unity(Compiler):
+    """Preprocesses with `root`'s headers and compiles every pass, stage and end of the keyword lists."""
+
+    name = "unity"
+    languages = LANGUAGES["unity"]
+
+    def __init__(self, root: Path, real: bool, preprocess: Callable[[str, list[str], list[Path]], str]) -> None:
+        self.root = root
+        self.real = real
+        self._preprocess = preprocess
+        self._glslang = glslang.find()
+        self._dxc = dxc.find()
+
+    def version(self) -> str:
+        return f"{self.headers()}, {self._glslang.version()}, {self._dxc.version()}"
+
+    def headers(self) -> str:
+        """Whose headers these are."""
+        return f"Unity's own headers in {self.root}" if self.real else "the project's stand-in headers"
+
+    def preprocessed(self, text: str, language: str) -> str:
+        """Functions of `language` behind the engine's headers, with line numbers of their own.
+
+        Raises ValueError with the preprocessor's words.
+        """
+        builtin = language == "unity-builtin"
+        macros = (*_BUILTIN_MACROS, *_SURFACE_PASSES[0], "SHADER_STAGE_FRAGMENT=1") if builtin else _URP_MACROS
+        head = "".join(f'#include "{header}"\n' for header in _LIBRARY_HEADERS[language])
+        return self._preprocess(f"{head}#line 1\n{text}", list(macros), self._roots(builtin))
+
+    def forward(self, text: str, language: str, stage: Stage, keywords: Sequence[str]) -> tuple[str, str]:
+        """A stage of an emitted shader's first pass, which is the forward one, preprocessed; and its entry.
+
+        `keywords` are macros, `NAME=1`; of a surface shader its pass is one. Raises ValueError with what is wrong.
+        """
+        shader = shaderlab.parse(text, _TEXT)
+        if shader.messages:
+            raise ValueError(shader.messages[0].text)
+        program = shader.programs[0]
+        if (asked := program.pragma("surface")) is not None:
+            job = _surface_job(program, asked, stage, tuple(keywords))
+        else:
+            job = _pass_job(program, stage, tuple(keywords), language == "unity-builtin")
+        return self._text(job), job.entry
+
+    def check(self, source: Source) -> list[Message]:
+        if not re.search(r'^\s*Shader\s*"', source.text, re.MULTILINE):
+            return self._run(_library_jobs(source, self._has_preview()))
+        shader = shaderlab.parse(source.text, _TEXT)
+        if shader.messages:
+            return shader.messages
+        try:
+            jobs = [job for program in shader.programs for job in _program_jobs(program, source.language)]
+        except surface.SurfaceError as error:
+            return [Message("error", 0, 0, str(error))]
+        messages = self._run(iter(jobs))
+        if source.language == "unity-urp" and not messages:
+            messages += _check_batcher(shader)
+        return messages
+
+    def _has_preview(self) -> bool:
+        return (self.root / _GRAPH / "ShaderVariables.hlsl").is_file()
+
+    def _run(self, jobs: Iterator[_Job]) -> list[Message]:
+        found: dict[tuple[int, int, str], Message] = {}
+        done: set[tuple[str, str]] = set()
+        for job in jobs:
+            try:
+                text = self._text(job)
+            except ValueError as error:
+                return [located(_preprocessing_error(str(error)), job.what)]
+            if (text, job.entry) in done:
+                continue
+            done.add((text, job.entry))
+            if job.builtin:
+                messages = self._glslang.check_hlsl(text, job.stage, job.entry, dx9_samplers=True)
+            else:
+                messages = self._dxc.check_hlsl(text, job.stage, job.entry)
+            for m in messages:
+                found.setdefault((m.line, m.column, m.text), located(m, job.what))
+        return list(found.values())
+
+    def _text(self, job: _Job) -> str:
+        """Raises ValueError with the preprocessor's words."""
+        head = "".join(f'#include "{header}"\n' for header in job.headers)
+        prelude = surface.PRELUDE if job.entry.startswith("sssgen_") and job.builtin else ""
+        return self._preprocess(head + prelude + job.code, list(job.macros), self._roots(job.builtin))
+
+    def _roots(self, builtin: bool) -> list[Path]:
+        return [self.root / "CGIncludes", self.root] if builtin else [self.root]
+
+
+def located(message: Message, what: str) -> Message:
+    """A message with the job it is of; its place only where that is in the text, else in words."""
+    if message.file in ("", _TEXT):
+        return replace(message, text=f"{what}: {message.text}", file="")
+    place = f"{message.file}:{message.line}"
+    return Message(message.severity, 0, 0, f"{what}: {place}: {message.text}", message.file)
+
+
+def _library_jobs(source: Source, preview: bool) -> Iterator[_Job]:
+    """Functions to paste, called once each; a Shader Graph include also as the node's preview compiles it."""
+    language = source.language
+    builtin = language == "unity-builtin"
+    code = f'#line 1 "{_TEXT}"\n' + hlsl_entry(source.text, opaque=_GRAPH_TEXTURES)
+    macros: tuple[str, ...] = (*_BUILTIN_MACROS, *_SURFACE_PASSES[0]) if builtin else _URP_MACROS
+    if language == "unity-shadergraph":
+        macros += ("SHADERGRAPH_TARGET=1", "_MAIN_LIGHT_SHADOWS=1", "_ADDITIONAL_LIGHTS=1")
+    entry = glslang.LIBRARY_ENTRY
+    yield _Job("functions", _LIBRARY_HEADERS[language], macros, code, "fragment", entry, builtin)
+    if language == "unity-shadergraph" and preview:
+        macros = (*_URP_MACROS, "SHADERGRAPH_PREVIEW=1")
+        yield _Job("preview", _LIBRARY_HEADERS["preview"], macros, code, "fragment", entry, builtin)
+
+
+def _program_jobs(program: shaderlab.Program, language: str) -> Iterator[_Job]:
+    builtin = language == "unity-builtin"
+    stages: tuple[Stage, ...] = ("vertex", "fragment")
+    asked = program.pragma("surface")
+    if asked is not None:
+        for macros in _SURFACE_PASSES:
+            for stage in stages:
+                yield _surface_job(program, asked, stage, macros)
+        return
+    for stage in stages:
+        for keywords in program.keyword_sets(stage):
+            on = tuple(f"{word}=1" for word in keywords if not (builtin and word == "INSTANCING_ON"))
+            yield _pass_job(program, stage, on, builtin)
+
+
+def _surface_job(program: shaderlab.Program, asked: str, stage: Stage, macros: tuple[str, ...]) -> _Job:
+    """A stage of one of the passes that the editor makes of a surface shader; `macros[0]` names the pass."""
+    code = f'{program.code}#line 1 "surface entries"\n{surface.entries(program.code, asked)}'
+    what = macros[0].removeprefix("UNITY_PASS_").partition("=")[0]
+    every = (*_BUILTIN_MACROS, *macros, f"SHADER_STAGE_{stage.upper()}=1")
+    return _Job(what, (*_CG_HEADERS, *_SURFACE_HEADERS), every, code, stage, f"sssgen_{stage}", True)
+
+
+def _pass_job(program: shaderlab.Program, stage: Stage, on: tuple[str, ...], builtin: bool) -> _Job:
+    """A stage of a pass with vertex and fragment programs of its own. Raises SurfaceError."""
+    entry = program.pragma(stage)
+    if entry is None:
+        raise surface.SurfaceError(f"{program.name}: no #pragma {stage}")
+    included = _CG_HEADERS if program.dialect == "CG" else ()
+    common = _BUILTIN_MACROS if builtin else (*_URP_MACROS, _INSTANCED)
+    defines = (*common, f"SHADER_STAGE_{stage.upper()}=1", *on)
+    return _Job(f"{program.name} {stage}", included, defines, program.code, stage, entry, builtin)
+
+
+def _check_batcher(shader: shaderlab.Shader) -> list[Message]:
+    """The SRP batcher wants the same UnityPerMaterial in every pass, with every property but the textures."""
+    buffers = {}
+    for program in shader.programs:
+        found = re.search(r"CBUFFER_START\s*\(UnityPerMaterial\)(.*?)CBUFFER_END", program.code, re.DOTALL)
+        buffers[program.name] = " ".join(re.sub(r"//[^\n]*", "", found[1]).split()) if found else ""
+    messages = []
+    if len(set(buffers.values())) > 1:
+        text = f"UnityPerMaterial differs between the passes {', '.join(buffers)}"
+        messages.append(Message("error", 0, 0, text))
+    first = next(iter(buffers.values()), "")
+    for name in shader.scalar_properties():
+        if not re.search(rf"\b{name}\b", first):
+            text = f"property {name} is not in UnityPerMaterial: the SRP batcher skips it"
+            messages.append(Message("error", 0, 0, text))
+    return messages
+
+
+def find() -> Unity:
+    """The headers, a C preprocessor, glslang and DXC. Raises CompilerMissing where one of them is lacking."""
+    import os
+
+    from sssgen.support.paths import folder
+
+    named = os.environ.get("SSSGEN_UNITY_INCLUDES")
+    standin = folder("tests") / "unity_standin"
+    root = Path(named).expanduser() if named else standin
+    if not holds_headers(root):
+        where = "" if named else "without a checkout of the project, "
+        raise CompilerMissing(f"{where}SSSGEN_UNITY_INCLUDES must name a folder with {HEADERS}")
+    return Unity(root.resolve(), root.resolve() != standin.resolve(), _preprocessor())
+
+
+def holds_headers(root: Path) -> bool:
+    """Whether a folder has Unity's headers, of the built-in pipeline and of URP."""
+    return (root / "CGIncludes" / "UnityCG.cginc").is_file() and (root / _URP / "Core.hlsl").is_file()
+
+
+def _preprocessor() -> Callable[[str, list[str], list[Path]], str]:
+    """A C preprocessor: gcc's or clang's."""
+    import shutil
+
+    program = next(filter(None, map(shutil.which, ("gcc", "clang", "cc"))), None)
+    if program is None:
+        raise CompilerMissing("a C preprocessor (Debian: gcc · elsewhere: clang)")
+    command = [program, "-E", "-x", "c", "-undef", "-nostdinc", "-w"]
+
+    def preprocess(text: str, macros: list[str], folders: list[Path]) -> str:
+        import subprocess
+
+        options = [f"-D{macro}" for macro in macros]
+        for folder in folders:
+            options += ["-I", str(folder)]
+        whole = [*command, *options, "-"]
+        done = subprocess.run(whole, input=text, capture_output=True, encoding="utf-8", check=False)
+        if done.returncode:
+            raise ValueError(done.stderr.strip())
+        kept = re.sub(r"^[ \t]*#pragma.*$", "", done.stdout, flags=re.MULTILINE)
+        return re.sub(r'^# (\d+) "((?:[^"\\]|\\.)*)".*$', r'#line \1 "\2"', kept, flags=re.MULTILINE)
+
+    return preprocess
+
+
+def _preprocessing_error(log: str) -> Message:
+    """The first error of the C preprocessor, which says `file:line:column: fatal error: …`."""
+    match = re.search(r"^(.*?):(\d+):(\d+): (?:fatal )?error: (.*)", log, re.MULTILINE)
+    if match is None:
+        return Message("error", 0, 0, log)
+    return Message("error", int(match[2]), int(match[3]), match[4], match[1])

@@ -1,0 +1,210 @@
+"""Evaluates a technique on arrays of inputs, on one back end or on several.
+
+    found = evaluate(subject("lobe_gdc2011"), {"V": v, "N": n, "L": l, "through": 0.5}, backends.get("gl"))
+    found["result"]                                                      # (lanes, 3)
+
+Here arrays are as people write them: lanes first, (lanes,) for a float, (lanes, 3) for a vec3, and for a matrix (lanes,
+column, row). The back ends have lanes last.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from sssgen.harness.backends import Array, Backend, Call, Text, emitted
+from sssgen.harness.evaluate.probes import Subject
+from sssgen.ir.nodes import Param
+from sssgen.ir.types import Array as ArrayType
+from sssgen.ir.types import Matrix, Sampler, Type, Vector, components, kind_of, spell
+from sssgen.passes.ranges.sites import Site
+from sssgen.pipeline.compiler import transpile
+from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.targets.numpy_textures import Texture
+
+DTYPES: dict[str, Any] = {"float": np.float64, "int": np.int32, "uint": np.uint32, "bool": np.bool_}
+
+
+class Inputs(NamedTuple):
+    """Inputs that fit a subject."""
+
+    values: dict[str, Array]
+    """Lanes last; one lane where the input is the same for all."""
+    textures: dict[str, Texture]
+    lanes: int
+
+
+def evaluate(subject: Subject, given: Mapping[str, Any], backend: Backend, guards: str = "auto") -> dict[str, Array]:
+    """The outputs by name (`result` is the return value), lanes first.
+
+    `given` has numbers, arrays and `Texture`s by the name of the technique's parameter or uniform; uniforms left out
+    have their defaults; `guards` as in `compile`. Raises SssgenError for inputs that do not fit and for a back end that
+    refuses.
+    """
+    return run(subject, fitted(subject, given), backend, guards)
+
+
+def run(
+    subject: Subject, inputs: Inputs, backend: Backend, guards: str = "auto", at: Callable[[Site], str] | None = None
+) -> dict[str, Array]:
+    """The outputs, lanes first; `at` is that of `passes.guards.guard`."""
+    text, names = _emitted(subject, backend.target.name, guards, at)
+    calls = [
+        Call(
+            names.get(probe.function, probe.function),
+            tuple(param.type for param in probe.params),
+            probe.result,
+            tuple(_argument(param, inputs) for param in probe.params),
+        )
+        for probe in subject.probes
+    ]
+    found = backend.run(text, calls, inputs.textures)
+    return {
+        probe.output: np.moveaxis(value, -1, 0) if value.ndim else value
+        for probe, value in zip(subject.probes, found, strict=True)
+    }
+
+
+def _argument(param: Param, inputs: Inputs) -> Any:
+    if isinstance(param.type, Sampler):
+        return param.name
+    value = inputs.values[param.name]
+    return np.broadcast_to(value, (*value.shape[:-1], inputs.lanes))
+
+
+_texts: dict[tuple[object, ...], tuple[Subject, Text, dict[str, str]]] = {}
+
+
+def _emitted(
+    subject: Subject, target: str, guards: str, at: Callable[[Site], str] | None
+) -> tuple[Text, dict[str, str]]:
+    """The functions form of a subject for a target, and what was renamed in it."""
+    key = (id(subject.module), target, guards, at)
+    kept = _texts.get(key)
+    if kept is None or kept[0].module is not subject.module:
+        made = transpile(subject.module, target, "evaluated", guards, subject.called, at, subject.chained)
+        file, reflection = next(name for name in made.files if not name.endswith(".json")), made.reflection
+        if len(_texts) >= 256:
+            _texts.clear()
+        kept = _texts[key] = subject, emitted(made, reflection, file), reflection["renames"]
+    return kept[1], kept[2]
+
+
+def fitted(subject: Subject, given: Mapping[str, Any]) -> Inputs:
+    """Inputs as the subject's parameters want them, in float32's numbers, which all back ends share.
+
+    Raises SssgenError for a name it does not have, a missing one, a wrong shape, NaN and infinity.
+    """
+    params = subject.params
+    for name in given:
+        if name not in params:
+            hint = did_you_mean(name, params) or f"it takes: {', '.join(params)}"
+            raise failure(f"{subject.name} has no input '{name}'", hint)
+    values: dict[str, Array] = {}
+    textures: dict[str, Texture] = {}
+    for name, param in params.items():
+        if isinstance(param.type, Sampler):
+            textures[name] = _texture(subject, name, param.type, given.get(name))
+        elif name in given:
+            values[name] = _value(name, param.type, given[name])
+        elif name in subject.uniforms and subject.uniforms[name].default:
+            default = np.array(subject.uniforms[name].default, np.float64)
+            values[name] = _value(name, param.type, default.reshape(shape_of(param.type)))
+        else:
+            missing = [
+                f"{name} ({spell(one.type)})"
+                for name, one in params.items()
+                if name not in given and not isinstance(one.type, Sampler) and name not in subject.uniforms
+            ]
+            raise failure(f"{subject.name} needs more inputs: {', '.join(missing or [name])}")
+    counts = {name: value.shape[-1] for name, value in values.items() if value.shape[-1] != 1}
+    if len(set(counts.values())) > 1:
+        told = ", ".join(f"{name} has {count}" for name, count in counts.items())
+        raise failure(f"the inputs have different numbers of values: {told}", "one value stands for all")
+    return Inputs(values, textures, next(iter(counts.values()), 1))
+
+
+def shape_of(type_: Type) -> tuple[int, ...]:
+    """A value's axes without its lanes."""
+    if isinstance(type_, Matrix):
+        return type_.size, type_.size
+    return (type_.size,) if isinstance(type_, Vector) else ()
+
+
+def _value(name: str, type_: Type, given: Any) -> Array:
+    """An input, lanes last."""
+    if isinstance(type_, ArrayType):
+        raise failure(f"input '{name}' is an array of {spell(type_.element)}: a technique with one cannot be evaluated")
+    shape, wanted = shape_of(type_), spell(type_)
+    try:
+        array = np.asarray(given)
+    except ValueError:
+        raise failure(f"input '{name}': its rows have different lengths", f"a list of {wanted}") from None
+    if array.dtype.kind not in "fiub" or (kind_of(type_) == "bool") != (array.dtype.kind == "b"):
+        raise failure(f"input '{name}' is no {wanted}", "true or false" if kind_of(type_) == "bool" else "numbers")
+    if array.shape[array.ndim - len(shape) :] != shape or array.ndim > len(shape) + 1 or array.ndim < len(shape):
+        each = ("a number", f"{components(type_)} numbers", f"{components(type_)} numbers in columns")[len(shape)]
+        raise failure(
+            f"input '{name}' has the shape {'×'.join(map(str, array.shape)) or 'of one number'}, which is no {wanted}",
+            f"{each}, or a list of such",
+        )
+    if array.ndim > len(shape) and not len(array):
+        raise failure(f"input '{name}' is an empty list")
+    if array.dtype.kind == "f" and not np.isfinite(array).all():
+        bad = int(np.flatnonzero(~np.isfinite(array.reshape(-1, *shape)).all(axis=tuple(range(1, len(shape) + 1))))[0])
+        raise failure(f"input '{name}' is NaN or infinite at number {bad}", "a shader's inputs are finite")
+    kind = kind_of(type_)
+    if kind in ("int", "uint"):
+        info = np.iinfo(DTYPES[kind])
+        if (array != np.floor(array)).any() or (array < info.min).any() or (array > info.max).any():
+            raise failure(f"input '{name}' is no {wanted}", f"whole numbers from {info.min} to {info.max}")
+    elif kind == "float":
+        with np.errstate(over="ignore"):
+            array = array.astype(np.float32)
+        if not np.isfinite(array).all():
+            raise failure(f"input '{name}' is too large for a 32-bit float")
+    array = array.astype(DTYPES[kind]).reshape(-1, *shape)
+    return np.moveaxis(array, 0, -1)
+
+
+_DEFAULTS = {"white": (1.0, 1.0, 1.0), "black": (0.0, 0.0, 0.0), "gray": (0.5, 0.5, 0.5), "bump": (0.5, 0.5, 1.0)}
+
+
+def default_texture(type_: str, color: str) -> Texture:
+    """One texel of `white`, `black`, `gray` or `bump`; `type_` as the language spells it: `sampler2D`, …"""
+    dim = type_.removeprefix("sampler")
+    data = np.ones((*{"2D": (1, 1), "3D": (1, 1, 1), "Cube": (6, 1, 1)}[dim], 4))
+    data[..., :3] = _DEFAULTS[color]
+    return Texture(data, dim=dim)
+
+
+def _texture(subject: Subject, name: str, type_: Sampler, given: Any) -> Texture:
+    """A texture in float16's numbers, which all back ends share; one texel of the default where none is given."""
+    if given is None:
+        hints = [hint.removeprefix("default_") for hint, _ in subject.uniforms[name].hints]
+        given = default_texture(spell(type_), next((hint for hint in hints if hint in _DEFAULTS), "white"))
+    if not isinstance(given, Texture):
+        try:
+            given = Texture(np.asarray(given), dim=type_.dim)
+        except ValueError as error:
+            raise failure(f"texture '{name}': {error}", "(height, width, channels), in 3-D (depth, …)") from None
+    if given.dim != type_.dim:
+        raise failure(f"texture '{name}' is {given.dim}, and {subject.name} takes a {spell(type_)}")
+    if not all(np.isfinite(level).all() for level in given.levels):
+        raise failure(f"texture '{name}' has NaN or infinity in it")
+    return half(given)
+
+
+@lru_cache(64)
+def half(texture: Texture) -> Texture:
+    """The texture in float16's numbers. Raises SssgenError where these do not hold it."""
+    with np.errstate(over="ignore"):
+        levels = [level.astype(np.float16) for level in texture.levels]
+    if not all(np.isfinite(level).all() for level in levels):
+        raise failure("a texture has NaN, infinity or numbers beyond 65504 in it", "these are no texels of 16 bits")
+    made = Texture(levels[0], texture.filter, texture.wrap, texture.dim)
+    made.levels = levels
+    return made

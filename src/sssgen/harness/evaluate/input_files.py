@@ -1,0 +1,89 @@
+"""Inputs from files: numbers in JSON, textures as pictures or arrays."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sssgen.harness.evaluate.probes import Subject
+from sssgen.harness.pictures import images
+from sssgen.lang.loader import MAX_BYTES, refuse_special
+from sssgen.support import json_source
+from sssgen.support.diagnostics import failure
+from sssgen.targets.numpy_textures import Texture
+
+
+def bindings(given: Sequence[str]) -> dict[str, str]:
+    """`SLOT=FUNCTION` texts as slot → function. Raises SssgenError."""
+    found: dict[str, str] = {}
+    for text in given:
+        slot, equals, function = text.partition("=")
+        if not (equals and slot and function):
+            raise failure(f"'{text}' binds nothing", "--bind SLOT=FUNCTION or SLOT=FILE:FUNCTION")
+        if slot in found:
+            raise failure(f"'{slot}' is bound twice")
+        found[slot] = function
+    return found
+
+
+def read(path: str, subject: Subject) -> dict[str, Any]:
+    """The inputs of a JSON file, or of the standard input for `-`.
+
+    They are name → number, list or, for a texture, a `Texture` from a file beside it.
+
+    A texture is `"wood.png"`, or `{"file": "wood.png", "wrap": "clamp", "filter": "nearest"}`; a .png of colours, which
+    the technique calls `source_color`, is decoded. Raises SssgenError with the place of what is wrong.
+    """
+    file = Path(path)
+    try:
+        if path == "-":
+            text = sys.stdin.buffer.read(MAX_BYTES).decode("utf-8")
+        else:
+            refuse_special(path, path)
+            text = file.read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        raise failure("the inputs are no UTF-8 text", "numbers by name, in JSON", path) from None
+    except OSError as error:
+        raise failure(f"cannot read the inputs: {error.strerror}", file=path) from None
+    except ValueError:
+        raise failure("no file can have this name", file=path) from None
+    data = json_source.parse(text, path)
+    if not isinstance(data, dict):
+        raise failure("the inputs are no object", 'for instance {"N": [[0, 0, 1]], "power": 4.0}', path)
+    colors = {name for name, uniform in subject.uniforms.items() if "source_color" in dict(uniform.hints)}
+    return {
+        name: _texture(name, value, file, name in colors) if isinstance(value, str | dict) else value
+        for name, value in data.items()
+    }
+
+
+def _texture(name: str, given: str | dict[str, Any], beside: Path, srgb: bool) -> Texture:
+    known = {"file", "wrap", "filter"}
+    options = {"file": given} if isinstance(given, str) else given
+    if "file" not in options or options.keys() - known or not all(isinstance(one, str) for one in options.values()):
+        raise failure(
+            f"texture '{name}' is given in a way that is not understood",
+            'a file name, or {"file": …, "wrap": …, "filter": …}',
+            str(beside),
+        )
+    path, wrap, filter = str(beside.parent / options["file"]), options.get("wrap", "repeat"), options.get("filter")
+    return texture(path, wrap, filter or "linear", srgb)
+
+
+def texture(path: str, wrap: str = "repeat", filter: str = "linear", srgb: bool = False) -> Texture:
+    """A texture from a file; the lowest row of a .png or .exr is at v = 0, the first one of others. Raises SssgenError.
+
+    With `srgb` the colours of a .png are decoded to linear light, as an engine's sRGB textures are.
+    """
+    data = images.read(path)
+    if srgb and path.lower().endswith(".png"):
+        data = np.concatenate([images.decode_srgb(data[..., :3]), data[..., 3:]], axis=-1)
+    picture = path.lower().endswith((".png", ".exr"))
+    try:
+        return Texture(np.flipud(data) if picture else data[..., None] if data.ndim == 2 else data, filter, wrap)
+    except ValueError as error:
+        raise failure(f"this is no texture: {error}", "(height, width, channels), in 3-D (depth, …)", path) from None

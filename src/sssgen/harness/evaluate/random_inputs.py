@@ -1,0 +1,168 @@
+"""Random inputs for a technique, in the declared meaning of each of its parameters.
+
+Each parameter has numbers of its own, which depend on its name and the seed alone: directions are unit vectors (some
+lie nearly along or against one another), a scalar quantity is in its range (with exactly 0 and 1 among it), a uniform
+goes over its `hint_range`, or around its default where it has none. Textures hold float16 numbers, smooth on one half
+and hard on the other; 3-D ones are distance fields.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+from zlib import crc32
+
+import numpy as np
+
+from sssgen.harness.backends import Array
+from sssgen.harness.evaluate.evaluation import shape_of
+from sssgen.harness.evaluate.probes import Subject
+from sssgen.ir.nodes import Param, Uniform
+from sssgen.ir.types import Matrix, Sampler, Scalar, Vector, kind_of
+from sssgen.targets.numpy_textures import Texture
+
+ENDS = 0.04
+"""The share of numbers that stand exactly at an end of their range."""
+ALIGNED = 0.2
+"""The share of directions that lie nearly along one line."""
+AIMED = 0.9
+"""The share of rays that go towards the middle of the scene."""
+TEXELS = 16
+"""Texels along each side of a texture."""
+
+RANGES = {
+    "uv_position": (-1.0, 2.0), "world_position": (-2.0, 2.0), "object_position": (-1.0, 1.0), "thickness": (0.0, 2.0),
+    "thinness": (0.0, 1.0), "transmittance": (0.0, 1.0), "time": (0.0, 60.0), "light_color": (0.0, 4.0),
+}  # fmt: skip
+"""Of parameters, by quantity or name: a scene of a few units, a texture that repeats, a minute. All others: 0 to 1."""
+
+LIMITS = {
+    # the technique's own `limits`: no pow(0, 0), no 0 / 0, no half vector of length 0
+    ("gltf_volume", "attenuation_color"): (0.01, 1.0),
+    ("gltf_volume", "attenuation_distance"): (0.01, 10.0),
+    ("seed1_lobe", "concentration"): (0.01, 32.0),
+    ("three_js_port", "thickness_power"): (0.01, 32.0),
+    ("seed4_parallax", "eta"): (0.3, 0.99),
+    ("", "distortion"): (0.0, 0.99),
+    ("", "thickness_distortion"): (0.0, 0.99),
+    # "about one texel", of the textures here
+    ("", "texel_size"): (0.5 / TEXELS, 0.1),
+    # what the texture's 1 stands for, so that its ball is a distance field, and the scale that goes with the matrix
+    ("", "distance_range"): (0.25, 1.5),
+    ("", "object_scale"): (0.5, 1.0),
+    # a body in a scene of a few units
+    ("", "radius"): (0.2, 1.0),
+    ("", "ring_radius"): (0.5, 1.5),
+    ("", "tube_radius"): (0.1, 0.4),
+    # the techniques that stand alone, or only multiply by it, take it all
+    ("sphere", "radius"): (0.001, 100.0),
+    ("capsule", "radius"): (0.001, 100.0),
+    ("torus", "ring_radius"): (0.001, 100.0),
+    ("torus", "tube_radius"): (0.001, 100.0),
+    ("distance_texture", "distance_range"): (0.001, 100.0),
+    ("march_distance_texture", "object_scale"): (0.001, 1000.0),
+}
+"""Where less than a uniform's `hint_range` makes sense: (technique, or "" for all, and uniform) → lowest, highest."""
+
+
+def samples(subject: Subject, count: int, seed: int = 0) -> dict[str, Any]:
+    """`count` inputs, lanes first, as `evaluate.fitted` takes them; what it does not take (arrays) is left out."""
+    found: dict[str, Any] = {}
+    for name, param in subject.params.items():
+        if isinstance(param.type, Sampler):
+            found[name] = texture(param.type.dim, _rng(name, seed))
+        elif isinstance(param.type, Scalar | Vector | Matrix):
+            uniform = subject.uniforms.get(name)
+            found[name] = _uniform(subject, uniform, count, seed) if uniform else _parameter(param, count, seed)
+    return found
+
+
+def texture(dim: str, rng: np.random.Generator) -> Texture:
+    """A texture of float16's numbers: a smooth half and a hard one; in 3-D the distance field of a ball."""
+    at = (np.arange(TEXELS) + 0.5) / TEXELS
+    if dim == "3D":
+        z, y, x = np.meshgrid(at, at, at, indexing="ij")
+        distance = np.sqrt((x - 0.45) ** 2 + (y - 0.5) ** 2 + (z - 0.55) ** 2) - 0.3
+        return Texture((0.5 + 0.5 * distance)[..., None].astype(np.float16), wrap="clamp")
+    size = (6, TEXELS, TEXELS, 4) if dim == "Cube" else (TEXELS, TEXELS, 4)
+    waves = 0.5 + 0.5 * np.sin(2.0 * np.pi * (at[:, None, None] + at[:, None] + rng.random(4)))
+    hard = rng.choice([0.0, 1.0, 0.25, 0.7], size)
+    return Texture(np.where(at[:, None] < 0.5, waves, hard).astype(np.float16), dim=dim)
+
+
+def _parameter(param: Param, count: int, seed: int) -> Array:
+    name, quantity, shape = param.name, param.quantity, shape_of(param.type)
+    if quantity.endswith("_direction") or (shape == (3,) and name in ("N", "V", "L", "T", "B")):
+        return _direction(name, quantity, (count, *shape), seed)
+    rng = _rng(name, seed)
+    if kind_of(param.type) == "bool":
+        return rng.random((count, *shape)) < 0.5
+    if kind_of(param.type) != "float":
+        return rng.integers(0, 10, (count, *shape))
+    return _within(rng, (count, *shape), *RANGES.get(quantity or name, (0.0, 1.0)))
+
+
+def _direction(name: str, quantity: str, size: tuple[int, ...], seed: int) -> Array:
+    """Unit vectors. T and B stand about square to N, as a mesh has them; a normal in tangent space looks outwards."""
+    rng, each = _rng(name, seed), (size[0], 1)
+    if name in ("T", "B"):
+        normal = _direction("N", quantity, size, seed)
+        tangent = np.cross(normal, np.roll(normal, 1, axis=1) * [1.0, -1.0, 1.0])
+        sign = np.where(_rng("handedness", seed).random(each) < 0.3, -1.0, 1.0)
+        square = tangent if name == "T" else sign * np.cross(normal, tangent)
+        return _unit(_unit(square) + rng.uniform(-0.2, 0.2, size))
+    anywhere = rng.normal(size=size)
+    if name == "ray_direction":
+        origin = _within(_rng("ray_origin", seed), size, *RANGES["world_position"])
+        aimed = rng.random(each) < AIMED
+        return _unit(np.where(aimed, rng.uniform(-0.25, 0.25, size) - origin, anywhere))
+    line = _unit(_rng("line", seed).normal(size=size)) * rng.choice([-1.0, 1.0], each)
+    aligned = _rng("aligned", seed).random(each) < ALIGNED
+    found = _unit(np.where(aligned, line + 10.0 ** rng.uniform(-4.0, -0.5, each) * anywhere, anywhere))
+    if quantity == "tangent_direction":
+        found[:, -1] = np.abs(found[:, -1])
+    return found
+
+
+def _uniform(subject: Subject, uniform: Uniform, count: int, seed: int) -> Array:
+    rng, hints = _rng(uniform.name, seed), dict(uniform.hints)
+    size = (count, *shape_of(uniform.type))
+    default = np.array(uniform.default, np.float64).reshape(size[1:])
+    ends = LIMITS.get((subject.name, uniform.name)) or LIMITS.get(("", uniform.name)) or hints.get("hint_range")
+    if ends or "source_color" in hints:
+        low, high = (float(end) for end in (ends or (0.0, 1.0))[:2])
+    kind = kind_of(uniform.type)
+    if kind == "bool":
+        return rng.random(size) < 0.5
+    if kind != "float":
+        # twice the steps cost twice as much; more than that shows nothing new
+        most = max(low, min(high, 2.0 * float(default.max()))) if ends else 9.0
+        return rng.integers(int(low) if ends else 0, int(most) + 1, size)
+    if ends or "source_color" in hints:
+        return _within(rng, size, low, high)
+    if isinstance(uniform.type, Matrix):
+        moved = default + rng.uniform(-0.1, 0.1, size)
+        moved[..., -1] = default[..., -1]  # the last row stays, so that no point lies at infinity
+        return moved
+    spread = min(0.5 * np.abs(default).max(), 0.25) or 0.25
+    return np.asarray(default + rng.uniform(-spread, spread, size))
+
+
+def _within(rng: np.random.Generator, size: tuple[int, ...], low: float, high: float) -> Array:
+    """Numbers over a range, some at its ends. A range over several powers of ten is drawn by its logarithm."""
+    if low > 0.0 and high >= 100.0 * low:
+        drawn = np.exp(rng.uniform(np.log(low), np.log(high), size))
+    else:
+        drawn = rng.uniform(low, high, size)
+    chance = rng.random(size)
+    found: Array = np.where(chance < 0.5 * ENDS, low, np.where(chance > 1.0 - 0.5 * ENDS, high, drawn))
+    return found
+
+
+def _unit(vectors: Array) -> Array:
+    lengths: Array = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    found: Array = vectors / lengths
+    return found
+
+
+def _rng(name: str, seed: int) -> np.random.Generator:
+    return np.random.default_rng([seed, crc32(name.encode())])

@@ -1,0 +1,173 @@
+"""What may go wrong in a program: each operation with a domain, what is known of it, and an input that shows it.
+
+for finding in lint("lobe_gdc2011"):
+    print(finding.render())
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from typing import Any, NamedTuple
+
+from sssgen.ir.formats import FLOAT32
+from sssgen.ir.nodes import Function, Module
+from sssgen.ir.types import Matrix, Scalar, Vector, Void
+from sssgen.ir.walk import operands
+from sssgen.lang.check.termination import endless
+from sssgen.lang.loader import source_line
+from sssgen.lang.plain_glsl import load_glsl
+from sssgen.material import library
+from sssgen.material.material_loading import examples, load_material
+from sssgen.passes.guards import remedy
+from sssgen.passes.ranges.sites import Site
+from sssgen.pipeline.compiler import guarded_sites
+from sssgen.pipeline.programs import library_sites
+from sssgen.support.diagnostics import Diagnostic, did_you_mean, failure
+from sssgen.targets import descriptor
+
+LONGEST = 40
+"""Characters of an operand that are shown in place of its letter."""
+PROVEN, MAY_FAIL, UNKNOWN = "proven", "may fail", "unknown"
+
+
+class Finding(NamedTuple):
+    """An operation with a domain."""
+
+    site: Site
+    verdict: str
+    """`proven`, `may fail` (there is an example) or `unknown`."""
+    example: str = ""
+    """The command that shows it."""
+    guarded: bool = True
+    """Whether what is emitted has a guard there."""
+    searched: bool = True
+    """Whether an input was looked for."""
+
+    @property
+    def message(self) -> str:
+        """What may happen."""
+        if self.verdict == PROVEN:
+            return f"{self.site.what}: proven safe"
+        unseen = "not proven, and no input found that does it" if self.searched else "not proven"
+        return f"{self.site.what}: {self.site.guard.says}{f' ({unseen})' if self.verdict == UNKNOWN else ''}"
+
+    @property
+    def severity(self) -> str:
+        """A warning where nothing guards it."""
+        return "note" if self.verdict == PROVEN or self.guarded else "warning"
+
+    def diagnostic(self, hint: str = "") -> Diagnostic:
+        """As other messages: what, and its place."""
+        span = self.site.node.span
+        return Diagnostic(self.severity, self.message, span, hint, source_line(span))
+
+    def render(self) -> str:
+        """For a terminal: the place, the ranges found, an example, the remedy."""
+        lines = [self.diagnostic().render()]
+        if self.site.found:
+            lines.append(f"  found: {self.told(self.site.found)}")
+        if self.example:
+            lines.append(f"  example: {self.example}")
+        if self.verdict != PROVEN:
+            lines.append(f"  {'emitted' if self.guarded else 'write'}: {self.told(remedy(self.site, FLOAT32))}")
+        return "\n".join(lines)
+
+    def told(self, text: str) -> str:
+        """A text with the operands' names in their letters' places, or, where they are no names, behind it."""
+        if self.site.guard.replaces == "result":
+            return text
+        written = {}
+        for letter, arg in zip("xyz", operands(self.site.node), strict=False):
+            span, line = arg.span, source_line(arg.span)
+            one = line[span.column - 1 : span.end_column - 1].strip()
+            if span.line == span.end_line and 0 < len(one) <= LONGEST and re.search(rf"\b{letter}\b", text):
+                written[letter] = one
+        if all(re.fullmatch(r"[\w.]+", one) for one in written.values()):
+            return re.sub(r"\b[xyz]\b", lambda found: written.get(found[0], found[0]), text)
+        return f"{text}; {', '.join(f'{letter} is {one}' for letter, one in written.items())}"
+
+    def as_json(self) -> dict[str, Any]:
+        """For editors."""
+        site = self.site
+        return self.diagnostic(self.told(remedy(self.site, FLOAT32)) if self.verdict != PROVEN else "").as_json() | {
+            "verdict": self.verdict,
+            "operation": site.what,
+            "found": self.told(site.found),
+            "example": self.example or None,
+            "guarded": self.guarded and self.verdict != PROVEN,
+        }
+
+
+def lint(name: str, with_examples: bool = True) -> list[Finding]:
+    """The findings of a technique, a material, an example or a file of functions, in the order of the source.
+
+    A material is judged as a whole, as its shader is emitted; a technique for all its inputs; a file of plain functions
+    for every argument, with no guard to help it. Raises SssgenError.
+    """
+    if name.endswith(".toml") or name in examples():
+        return _found(guarded_sites(load_material(name)), _stages(name) if with_examples else [])
+    if name.endswith(".sss") or name in library.index():
+        made = _technique(name)
+        sites = library_sites(made.subject.module, made.subject.called, made.subject.chained)
+        return _found(sites, [made] if with_examples else [])
+    if name.endswith((".glsl", ".frag", ".vert", ".inc")) or os.path.isfile(name):
+        return _plain(name, with_examples)
+    known = [*library.index(), *examples()]
+    raise failure(
+        f"'{name}' is neither a technique nor a material nor a file",
+        did_you_mean(name, known) or "see: sssgen list techniques, sssgen list materials",
+    )
+
+
+def _plain(path: str, with_examples: bool) -> list[Finding]:
+    """Functions as they are: nothing guards them."""
+    module = load_glsl(path, path).module
+    specimens = []
+    if with_examples and not any(map(endless, module.functions)):
+        specimens = [_technique(f"{path}:{one.name}") for one in module.functions if _evaluable(module, one)]
+    return _found(library_sites(module), specimens, guarded=False)
+
+
+def _evaluable(module: Module, function: Function) -> bool:
+    """Whether inputs can be drawn for a function: numbers, vectors and matrices."""
+    types = [param.type for param in function.params] + [uniform.type for uniform in module.uniforms]
+    plain = all(isinstance(type_, Scalar | Vector | Matrix) for type_ in types) and not module.variables
+    return function.body is not None and plain and isinstance(function.result, Scalar | Vector | Matrix | Void)
+
+
+def _technique(name: str) -> Any:
+    from sssgen.harness.stress.subject import technique
+
+    return technique(name)
+
+
+def _stages(name: str) -> list[Any]:
+    from sssgen.harness.stress.subject import named
+
+    return [*named(name), _technique(descriptor.load("glsl-330").lighting)]
+
+
+def _found(sites: list[Site], specimens: list[Any], guarded: bool = True) -> list[Finding]:
+    found = []
+    for site in sorted(sites, key=lambda site: (site.node.span, site.what)):
+        if site.proven:
+            found.append(Finding(site, PROVEN))
+            continue
+        example = _example(site, specimens)
+        found.append(Finding(site, MAY_FAIL if example else UNKNOWN, example, guarded, bool(specimens)))
+    return found
+
+
+def _example(site: Site, specimens: list[Any]) -> str:
+    """A command that shows that an operation fails; '' where none is found."""
+    if not specimens:
+        return ""
+    from sssgen.harness.stress.guard_witness import sites, witness
+
+    for specimen in specimens:
+        if any((one.what, one.place) == (site.what, site.place) and not one.proven for one in sites(specimen)):
+            seen = witness(specimen, site)
+            if seen is not None:
+                return seen.command
+    return ""

@@ -1,0 +1,1 @@
+"""Picture and volume files as arrays, and the difference of two pictures."""

@@ -1,0 +1,30 @@
+"""A whole emitted program, shaded on any back end: each kind has its own shell around it."""
+
+from __future__ import annotations
+
+from sssgen.harness.backends import Array, Backend, DrawingBackend
+from sssgen.harness.backends.isolated import Isolated
+from sssgen.harness.backends.numpy_reference import Reference
+from sssgen.harness.backends.unity_backend import UnityHLSL
+from sssgen.harness.render import pixel_mesh, shade_numpy, unity_values
+from sssgen.harness.render.shell_values import Shell, drawing
+from sssgen.pipeline.compiler import Compiled
+
+
+def shade(backend: Backend, compiled: Compiled, shell: Shell, size: tuple[int, int], points: Array | None) -> Array:
+    """The picture, (height, width, 4), row 0 at the bottom.
+
+    `points` are the vertices of `pixel_mesh`; None means the screen.
+    Raises SssgenError where the back end refuses or gives up.
+    """
+    if isinstance(backend, Isolated):
+        picture: Array = backend.apply(shade, compiled, shell, size, points)
+        return picture
+    if isinstance(backend, Reference):
+        return shade_numpy.shade(compiled, shell, size, points, backend.dtype)
+    if isinstance(backend, UnityHLSL):
+        return unity_values.shade(compiled, shell, backend, size, points)
+    assert isinstance(backend, DrawingBackend)
+    triangles = None if points is None else pixel_mesh.triangles(size)
+    drawn = backend.draw(drawing(compiled, shell, size, points, triangles))
+    return drawn[::-1] if backend.top_first else drawn

@@ -1,0 +1,161 @@
+"""What Unity's engine gives an emitted shader (see `shell` for the other languages): passes, keywords, variables.
+
+A forward renderer without shadows, fog, probes and lightmaps. The first light from afar is the main light. In URP the
+others are additional lights of the same pass; in the built-in pipeline each is a ForwardAdd pass, whose picture is
+added. An unlit shader has the main light at most. Ambient light is the same from all sides, and nothing is mirrored.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from sssgen.harness.backends import Array, Bound, Drawing, Place, emitted
+from sssgen.harness.backends.unity_backend import UnityHLSL
+from sssgen.harness.render import pixel_mesh as dice
+from sssgen.harness.render.shell_values import Shell, inverse, textures
+from sssgen.ir.types import BY_NAME, Matrix, Vector
+from sssgen.pipeline.compiler import Compiled
+from sssgen.targets.numpy_textures import Texture
+
+_BASE = ("UNITY_PASS_FORWARDBASE=1", "DIRECTIONAL=1", "LIGHTPROBE_SH=1")
+_ADD = {0.0: ("UNITY_PASS_FORWARDADD=1", "DIRECTIONAL=1"), 1.0: ("UNITY_PASS_FORWARDADD=1", "POINT=1")}
+"""By a light position's w."""
+_FALLOFF = 8192
+"""Texels of the table of a point light's falloff."""
+_NEAREST = 0.01
+"""The shortest reach of a light, as of the falloff in our other shells."""
+_LARGEST = 6e4
+"""What a texel of float16 can hold."""
+_MOST_LIGHTS = 8
+"""Additional lights of an object, in URP."""
+
+
+def shade(compiled: Compiled, shell: Shell, backend: UnityHLSL, size: tuple[int, int], points: Array | None) -> Array:
+    """The picture, (height, width, 4), row 0 at the bottom. `points` are the vertices of `dice`; None: the screen."""
+    if points is None:
+        points, triangles = _screen(shell), np.array([[0, 1, 2]], np.uint32)
+    else:
+        triangles = dice.triangles(size)
+    pictures = [
+        backend.whole.draw(drawing._replace(vertices=points, triangles=triangles))
+        for drawing in _passes(compiled, shell, backend, size, points)
+    ]
+    total: Array = np.stack(pictures).sum(axis=0)
+    return total
+
+
+def _screen(shell: Shell) -> Array:
+    """One triangle over the whole picture, in object space, as `dice` has its vertices."""
+    corners = np.array([[-1.0, -1.0], [3.0, -1.0], [-1.0, 3.0]])
+    clip = np.concatenate([corners, np.full((3, 1), 0.5), np.ones((3, 1))], axis=1)
+    placed = clip @ inverse(shell.view_projection @ shell.model).T
+    vertices = np.zeros((3, 12))
+    vertices[:, :3] = placed[:, :3] / np.where(placed[:, 3:] == 0.0, 1.0, placed[:, 3:])
+    vertices[:, 3:10] = [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0]
+    vertices[:, 10:] = 0.5 * corners + 0.5
+    return vertices.astype(np.float32)
+
+
+def _passes(
+    compiled: Compiled, shell: Shell, backend: UnityHLSL, size: tuple[int, int], points: Array
+) -> list[Drawing]:
+    """The draws whose pictures add up."""
+    reflection = compiled.reflection
+    (name,) = (file["name"] for file in reflection["files"])
+    shader, own = emitted(compiled, reflection, name), textures(reflection, shell)
+    values = _engine(shell, size) | _properties(reflection, shell)
+
+    def drawing(keywords: tuple[str, ...], light: dict[str, Array], falloff: Texture | None = None) -> Drawing:
+        vertex, fragment = (backend.forward(shader, stage, keywords) for stage in ("vertex", "fragment"))
+        bound = own | ({"_LightTexture0": Bound(falloff, Place(0, 0))} if falloff else {})
+        return Drawing(size, fragment, vertex, floats=True, textures=bound, values=values | light)
+
+    lights = list(zip(shell.light_positions, shell.light_colors, strict=True))
+    main = next((light for light in lights if light[0][3] == 0.0), (np.array([0.0, 1.0, 0.0, 0.0]), np.zeros(3)))
+    others = [light for light in lights if light is not main]
+    if backend.target.name == "unity-urp":
+        return [drawing(("_ADDITIONAL_LIGHTS=1",) if others else (), _urp_lights(main, others))]
+    if reflection["shading"] != "lit":
+        return [drawing((), _builtin_light(*main))]
+    passes = [drawing(_BASE, _builtin_light(*main))]
+    for position, color in others:
+        reach = _reach(shell, position, points)
+        light = _builtin_light(position, color if position[3] == 0.0 else color / reach**2, reach)
+        passes.append(drawing(_ADD[float(position[3])], light, _falloff()))
+    return passes
+
+
+def _engine(shell: Shell, size: tuple[int, int]) -> dict[str, Array]:
+    """The variables that the engine sets for every pass; a matrix as its columns."""
+    one, (width, height) = np.ones(4), size
+    screen = np.array([width, height, 1.0 + 1.0 / width, 1.0 + 1.0 / height])
+    values = {
+        "unity_ObjectToWorld": shell.model.T,
+        "unity_WorldToObject": inverse(shell.model).T,
+        "unity_WorldTransformParams": one * np.sign(np.linalg.det(shell.model[:3, :3])),
+        "unity_MatrixVP": shell.view_projection.T,
+        "unity_MatrixInvVP": inverse(shell.view_projection).T,
+        "_WorldSpaceCameraPos": np.array(shell.camera_position),
+        "_Time": shell.time * np.array([0.05, 1.0, 2.0, 3.0]),
+        "_ProjectionParams": np.array([1.0, 0.1, 100.0, 0.01]),
+        "_ScreenParams": screen,
+        "_ScaledScreenParams": screen,
+    }
+    for channel, ambient in zip("rgb", shell.ambient, strict=True):
+        values[f"unity_SHA{channel}"] = np.array([0.0, 0.0, 0.0, ambient])
+    return values
+
+
+def _properties(reflection: Mapping[str, Any], shell: Shell) -> dict[str, Array]:
+    """The material's: of each the vectors, which are an array's elements or a matrix's columns."""
+    found = {}
+    for uniform in reflection["uniforms"]:
+        type_ = BY_NAME[uniform["type"].partition("[")[0]]
+        size = type_.size if isinstance(type_, Matrix | Vector) else 1
+        given = shell.parameters.get(uniform["source_name"], uniform["default"])
+        found[uniform["name"]] = np.asarray(given).reshape(-1, size)
+    return found
+
+
+def _builtin_light(position: Array, color: Array, reach: float = 1.0) -> dict[str, Array]:
+    """A light of one pass. `reach` is the distance at which a point light's falloff table ends."""
+    to_light = np.eye(4)
+    to_light[:3, 3] = -position[:3]
+    to_light[:3] /= reach
+    return {
+        "_WorldSpaceLightPos0": position,
+        "_LightColor0": np.append(color, 1.0),
+        "unity_WorldToLight": to_light.T,
+    }
+
+
+def _reach(shell: Shell, position: Array, points: Array) -> float:
+    """The largest distance of a point from a light, which all may stand in."""
+    placed = points[:, :3] @ shell.model[:3, :3].T + shell.model[:3, 3]
+    return max(1.01 * float(np.linalg.norm(placed - position[:3], axis=1).max()), _NEAREST)
+
+
+def _falloff() -> Texture:
+    """1/x over x = (distance / reach)²: light falls off as in our other shells. The engine has a table of its own."""
+    x = (np.arange(_FALLOFF) + 0.5) / _FALLOFF
+    return Texture(np.repeat(np.minimum(1.0 / x, _LARGEST)[None, :, None], 4, axis=2), wrap="clamp")
+
+
+def _urp_lights(main: tuple[Array, Array], others: list[tuple[Array, Array]]) -> dict[str, Array]:
+    """The main light, and the additional ones, which have no end (the engine fades them out at their range)."""
+    shown = others[:_MOST_LIGHTS]
+    count = float(len(shown))
+    return {
+        "_MainLightPosition": main[0],
+        "_MainLightColor": np.append(main[1], 1.0),
+        "_AdditionalLightsCount": np.array([count, 0.0, 0.0, 0.0]),
+        "_AdditionalLightsPosition": np.array([where for where, _ in shown]).reshape(-1, 4),
+        "_AdditionalLightsColor": np.array([np.append(shade, 1.0) for _, shade in shown]).reshape(-1, 4),
+        "_AdditionalLightsAttenuation": np.tile([0.0, 1.0, 0.0, 1.0], (len(shown), 1)),
+        "unity_LightData": np.array([0.0, count, 1.0, 0.0]),
+        "unity_LightIndices": np.arange(8.0).reshape(2, 4),
+        "unity_ProbesOcclusion": np.ones(4),
+    }

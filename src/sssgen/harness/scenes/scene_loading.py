@@ -1,0 +1,30 @@
+"""Loads scenes: from a TOML file, from a TOML text, or an example by its name."""
+
+from __future__ import annotations
+
+import os
+
+from sssgen.harness.scenes.scene import Scene
+from sssgen.harness.scenes.scene_reader import read_scene
+from sssgen.lang.loader import read_text
+from sssgen.material.material_loading import examples
+from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.support.paths import posix
+from sssgen.support.toml_source import parse
+
+
+def load(path: str | os.PathLike[str]) -> Scene:
+    """The scene of a TOML file, or of an example by its name. Raises SssgenError with all that is wrong with it."""
+    text = os.fspath(path)
+    if not text.endswith(".toml") and "/" not in text and "\\" not in text and not os.path.isfile(text):
+        known = examples()
+        if text not in known:
+            hint = did_you_mean(text, known) or f"give a path that ends in .toml, or one of: {', '.join(known)}"
+            raise failure(f"unknown scene '{text}'", hint)
+        path = os.path.join(os.path.dirname(known[text]), "scene.toml")
+    return parse_scene(read_text(os.fspath(path), posix(path)), path)
+
+
+def parse_scene(text: str, path: str | os.PathLike[str]) -> Scene:
+    """The scene that a TOML text describes; files that it names are looked for beside `path`. Raises SssgenError."""
+    return read_scene(parse(text, posix(path)), os.path.dirname(os.fspath(path)))

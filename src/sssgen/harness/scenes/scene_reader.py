@@ -1,0 +1,341 @@
+"""From a scene's TOML to the scene, with every error at its place."""
+
+from __future__ import annotations
+
+import math
+import os
+from typing import Any
+
+from sssgen.harness.pictures import images
+from sssgen.harness.scenes import mesh_files
+from sssgen.harness.scenes.camera import Camera
+from sssgen.harness.scenes.distance_field import PROJECTIONS
+from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
+from sssgen.harness.scenes.scene import DistanceTexture, Light, Picture, Scene
+from sssgen.harness.scenes.toml_table import ANY, NOT_NEGATIVE, POSITIVE, Table
+from sssgen.material.material_loading import examples
+from sssgen.support.diagnostics import SssgenError, did_you_mean
+from sssgen.support.paths import posix
+from sssgen.support.toml_source import Document, Path
+
+MEASURED = ("title", "medium", "inlay")
+"""What says of a scene what is physically there: for measuring materials, not for drawing one."""
+
+_KEYS = (
+    "material", "size", "samples", "time", "background", "ambient", "exposure",
+    "geometry", "camera", "light", "parameters", "textures", *MEASURED,
+)  # fmt: skip
+_PLACE = ("position", "rotation", "scale")
+_SHAPES = {
+    "ball": ("radius",),
+    "box": ("size",),
+    "slab": ("width", "height", "thickness"),
+    "torus": ("major", "minor"),
+    "capsule": ("radius", "length"),
+    "union": ("part", "projection"),
+    "mesh": ("file",),
+    "distance": ("technique", "parameters", "reach", "projection"),
+}
+MAX_LIGHTS = 4
+MAX_PARTS = 64
+MAX_SIDE = 8192
+MAX_COUNT = 2**24
+"""Samples of a picture: what is known of each takes a few hundred bytes."""
+MAX_SAMPLES = 8
+MAX_TEXELS = 256
+
+
+def read_scene(document: Document, folder: str) -> Scene:
+    """The scene of a document; files are relative to `folder`. Raises SssgenError with all that is wrong."""
+    reader = _Reader(document, folder)
+    scene = reader.scene()
+    document.reporter.check()
+    return scene
+
+
+class _Reader:
+    def __init__(self, document: Document, folder: str) -> None:
+        self.document, self.folder = document, folder
+
+    def scene(self) -> Scene:
+        top = Table(self.document, (), self.document.data, _KEYS)
+        size = top.wholes("size", (640, 480), (1, MAX_SIDE))
+        samples = top.whole("samples", 2, (1, MAX_SAMPLES))
+        if size[0] * size[1] * samples**2 > MAX_COUNT:
+            count = f"{size[0]} × {size[1]} pixels of {samples} × {samples} samples are too many"
+            top.error("size", count, f"at most {MAX_COUNT / 1e6:.0f} million samples in all: take fewer")
+        geometry = self.geometry(top.content.get("geometry"))
+        return Scene(
+            self.material(top),
+            size,
+            samples,
+            top.number("time", 0.0),
+            self.background(top),
+            top.vector("ambient", (0.0, 0.0, 0.0), NOT_NEGATIVE),
+            top.number("exposure", 1.0, POSITIVE),
+            geometry,
+            self.camera(top.content.get("camera", {})),
+            self.lights(top),
+            self.parameters(top.content.get("parameters", {})),
+            self.textures(top.content.get("textures", {}), "geometry" in top.content),
+            self.document,
+            top.text("title", ""),
+            {key: top.content[key] for key in ("medium", "inlay") if key in top.content},
+        )
+
+    def material(self, top: Table) -> str:
+        if "material" not in top.content and ("medium" in top.content or "inlay" in top.content):
+            return ""
+        if "material" not in top.content:
+            self.document.error(self.document.place().key, "the scene has no material", 'add: material = "…"')
+            return ""
+        name = top.text("material", "")
+        if not name.endswith(".toml"):
+            if name not in examples():
+                hint = did_you_mean(name, examples()) or f"a path that ends in .toml, or: {', '.join(examples())}"
+                top.error("material", f"unknown material '{name}'", hint)
+            return name
+        return self.file(("material",), name)
+
+    def background(self, top: Table) -> Any:
+        raw = top.content.get("background", [0.0, 0.0, 0.0])
+        if not (isinstance(raw, list) and raw and all(isinstance(part, list) for part in raw)):
+            color = top.vector("background", (0.0, 0.0, 0.0), NOT_NEGATIVE)
+            return color, color
+        if len(raw) != 2:
+            top.error("background", "'background' takes one colour, or two", "write [bottom, top], each [r, g, b]")
+            return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+        ends = []
+        for index, part in enumerate(raw):
+            inner = _Element(self.document, ("background",), index, part)
+            ends.append(inner.vector("background", (0.0, 0.0, 0.0), NOT_NEGATIVE))
+        return tuple(ends)
+
+    def camera(self, content: Any) -> Camera:
+        usual = Camera()
+        table = Table(self.document, ("camera",), content, ("position", "target", "field_of_view"))
+        camera = Camera(
+            table.vector("position", usual.position),
+            table.vector("target", usual.target),
+            table.number("field_of_view", usual.field_of_view, (1.0, 170.0)),
+        )
+        if math.dist(camera.position, camera.target) < 1e-6:
+            table.error("target", "the camera stands at its target", "move one of the two")
+        return camera
+
+    def lights(self, top: Table) -> tuple[Light, ...]:
+        content = top.content.get("light", [])
+        if not isinstance(content, list):
+            top.error("light", "lights are a list of tables", "write [[light]], once for each")
+            return ()
+        if len(content) > MAX_LIGHTS:
+            hint = f"at most {MAX_LIGHTS} are lit"
+            self.document.error(
+                self.document.place("light", MAX_LIGHTS).value, f"the scene has {len(content)} lights", hint
+            )
+        return tuple(self.light(("light", at), one) for at, one in enumerate(content[:MAX_LIGHTS]))
+
+    def light(self, path: Path, content: Any) -> Light:
+        table = Table(self.document, path, content, ("position", "direction", "color"))
+        color = table.vector("color", (1.0, 1.0, 1.0), NOT_NEGATIVE)
+        if ("position" in table.content) == ("direction" in table.content):
+            hint = "position: a point light; direction: towards a light from afar"
+            span = self.document.place(*path).value
+            self.document.error(span, "a light has a position or a direction, just one of them", hint)
+        if "direction" not in table.content:
+            return Light(table.vector("position", (0.0, 1.0, 0.0)), None, color)
+        x, y, z = table.vector("direction", (0.0, 1.0, 0.0))
+        length = math.hypot(x, y, z)
+        if length < 1e-6:
+            table.error("direction", "this direction has no length", "it leads towards the light")
+            length = 1.0
+        return Light(None, (x / length, y / length, z / length), color)
+
+    # Geometry
+
+    def geometry(self, content: Any, path: Path = ("geometry",)) -> Geometry | None:
+        if content is None:
+            return None
+        kind = content.get("kind") if isinstance(content, dict) else None
+        own = _SHAPES.get(kind, ()) if isinstance(kind, str) else ()
+        known = ("kind", *_PLACE, *(own or {key for keys in _SHAPES.values() for key in keys}))
+        table = Table(self.document, path, content, known)
+        if not isinstance(content, dict):
+            return None
+        if kind is None:
+            span = self.document.place(*path).value
+            self.document.error(span, "the geometry has no kind", f"write kind = one of: {', '.join(_SHAPES)}")
+            return None
+        place: dict[str, Any] = {
+            "position": table.vector("position", (0.0, 0.0, 0.0)),
+            "rotation": table.vector("rotation", (0.0, 0.0, 0.0)),
+            "scale": table.number("scale", 1.0, POSITIVE),
+        }
+        return self.shape(table, table.text("kind", "", _SHAPES), place)
+
+    def shape(self, table: Table, kind: str, place: dict[str, Any]) -> Geometry | None:
+        if kind == "ball":
+            return Ball(table.number("radius", 1.0, POSITIVE), **place)
+        if kind == "box":
+            return Box(size=table.vector("size", (1.0, 1.0, 1.0), POSITIVE), **place)
+        if kind == "slab":
+            width, height = table.number("width", 2.0, POSITIVE), table.number("height", 2.0, POSITIVE)
+            return Slab(width, height, table.number("thickness", 0.1, POSITIVE), **place)
+        if kind == "torus":
+            torus = Torus(table.number("major", 1.0, POSITIVE), table.number("minor", 0.4, POSITIVE), **place)
+            if torus.minor >= torus.major:
+                table.error("minor", "'minor' must be less than 'major'", f"major is {torus.major:g}")
+            return torus
+        if kind == "capsule":
+            return Capsule(table.number("radius", 0.25, POSITIVE), table.number("length", 1.0, NOT_NEGATIVE), **place)
+        if kind == "union":
+            return self.union(table, place)
+        if kind == "mesh":
+            return self.mesh(table, place)
+        return self.distance(table, place) if kind == "distance" else None
+
+    def union(self, table: Table, place: dict[str, Any]) -> Union | None:
+        content = table.content.get("part")
+        if not isinstance(content, list) or not 1 <= len(content) <= MAX_PARTS:
+            table.error("part", f"a union has from 1 to {MAX_PARTS} parts", "write [[geometry.part]], once for each")
+            return None
+        parts = [self.geometry(one, (*table.path, "part", at)) for at, one in enumerate(content)]
+        projection = table.text("projection", "parts", ("parts", "planar"))
+        return Union(tuple(part for part in parts if part is not None), projection, **place)
+
+    def mesh(self, table: Table, place: dict[str, Any]) -> Mesh | None:
+        name = table.text("file", "")
+        if not name:
+            table.error(
+                "file", "the mesh has no file", f"write file = one that ends in {', '.join(mesh_files.SUFFIXES)}"
+            )
+            return None
+        try:
+            mesh_files.check_suffix(name)
+        except SssgenError as wrong:
+            self.pass_on(wrong, (*table.path, "file"))
+            return None
+        return Mesh(path=self.file((*table.path, "file"), name), **place)
+
+    def distance(self, table: Table, place: dict[str, Any]) -> Distance:
+        parameters = table.content.get("parameters", {})
+        if not isinstance(parameters, dict):
+            table.error("parameters", "'parameters' takes a table", "write parameters = { radius = 1.0 }")
+            parameters = {}
+        shape = Distance(
+            table.text("technique", "sphere"),
+            self.folder,
+            parameters,
+            table.number("reach", 4.0, POSITIVE),
+            table.text("projection", "spherical", PROJECTIONS),
+            **place,
+        )
+        if "technique" not in table.content:
+            table.error("technique", "the geometry has no technique", 'write technique = "sphere", or FILE:FUNCTION')
+        try:
+            _ = shape.function  # it is compiled here, so that its errors come with the scene's
+        except SssgenError as wrong:
+            named = next((key for key in parameters if f"'{key}'" in wrong.diagnostics[0].message), "")
+            self.pass_on(wrong, (*table.path, "parameters", named) if named else (*table.path, "technique"))
+        return shape
+
+    # What the material takes
+
+    def parameters(self, content: Any) -> dict[str, object]:
+        if not isinstance(content, dict):
+            self.document.error(self.document.place("parameters").value, "'parameters' is a table", "[parameters]")
+            return {}
+        for key, raw in content.items():
+            if not _is_value(raw):
+                hint = "numbers, true or false, a colour as text, or a list of these"
+                span = self.document.place("parameters", key).value
+                self.document.error(span, f"'{key}' is no parameter's value", hint)
+        return dict(content)
+
+    def textures(self, content: Any, has_geometry: bool) -> dict[str, Picture | DistanceTexture]:
+        if not isinstance(content, dict):
+            self.document.error(self.document.place("textures").value, "'textures' is a table", "write [textures]")
+            return {}
+        found: dict[str, Picture | DistanceTexture] = {}
+        for key, raw in content.items():
+            path = ("textures", key)
+            if isinstance(raw, dict) and "distance_of_geometry" in raw:
+                found[key] = self.distance_texture(path, raw, has_geometry)
+            elif isinstance(raw, dict):
+                table = Table(self.document, path, raw, ("file", "wrap"))
+                place = (*path, "file") if "file" in raw else path
+                found[key] = Picture(
+                    self.picture(place, table.text("file", "")), table.text("wrap", "", ("repeat", "clamp"))
+                )
+            elif isinstance(raw, str):
+                found[key] = Picture(self.picture(path, raw))
+            else:
+                span = self.document.place(*path).value
+                self.document.error(span, f"'{key}' takes a picture file", 'write "x.png" or { file = "x.png" }')
+        return found
+
+    def distance_texture(self, path: Path, raw: dict[str, Any], has_geometry: bool) -> DistanceTexture:
+        table = Table(self.document, path, raw, ("distance_of_geometry", "box_min", "box_max", "range"))
+        made = DistanceTexture(
+            table.wholes("distance_of_geometry", (64, 64, 64), (1, MAX_TEXELS)),
+            table.vector("box_min", (-1.0, -1.0, -1.0)),
+            table.vector("box_max", (1.0, 1.0, 1.0)),
+            table.number("range", 1.0, (0.001, 100.0)),
+        )
+        if not has_geometry:
+            table.error("distance_of_geometry", "the scene has no geometry to measure", "add [geometry]")
+        sides = [high - low for low, high in zip(made.box_min, made.box_max, strict=True)]
+        if min(sides) < 0.0 or max(sides) == 0.0:
+            table.error("box_max", "the box has no inside", "no number of box_max is below that of box_min")
+        return made
+
+    # Files
+
+    def picture(self, path: Path, name: str) -> str:
+        if not name:
+            self.document.error(self.document.place(*path).value, "the texture has no file", 'write "x.png"')
+            return name
+        try:
+            images.check_suffix(name, images.TEXTURES)
+        except SssgenError as wrong:
+            self.pass_on(wrong, path)
+            return name
+        return self.file(path, name)
+
+    def file(self, path: Path, name: str) -> str:
+        """The path of a file that the scene names."""
+        found = os.path.join(self.folder, name)
+        if "\0" in found or not os.path.isfile(found):
+            span = self.document.place(*path).value
+            hint = f"it is looked for beside the scene, in {posix(self.folder or '.')}"
+            self.document.error(span, f"cannot find the file '{name}'", hint)
+        return found
+
+    def pass_on(self, wrong: SssgenError, path: Path) -> None:
+        """Notes errors that were found elsewhere: those of another file keep their places."""
+        span = self.document.place(*path).value
+        for one in wrong.diagnostics:
+            if one.span.line:
+                self.document.reporter.diagnostics.append(one)
+            else:
+                self.document.error(span, one.message, one.hint)
+
+
+class _Element(Table):
+    """One list of a list, read as a table's value is."""
+
+    def __init__(self, document: Document, path: Path, index: int, content: Any) -> None:
+        super().__init__(document, path, {str(path[-1]): content}, (str(path[-1]),))
+        self.index = index
+
+    def error(self, key: str, message: str, hint: str = "", index: int | None = None) -> None:
+        path = (*self.path, self.index) if index is None else (*self.path, self.index, index)
+        self.document.error(self.document.place(*path).value, message, hint)
+
+
+def _is_value(raw: object) -> bool:
+    if isinstance(raw, list):
+        return bool(raw) and all(map(_is_value, raw))
+    if isinstance(raw, bool | str):
+        return True
+    return isinstance(raw, int | float) and ANY[0] * 1e29 <= raw <= ANY[1] * 1e29

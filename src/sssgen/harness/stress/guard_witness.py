@@ -1,0 +1,113 @@
+"""Inputs that show why a guard is there: with NaN in place of what the guard would change, the result is NaN.
+
+A shading language may compute anything outside a builtin's domain, so NaN stands for all of it. What no input of the
+stress test reaches is told as unknown: neither proven nor seen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import cache, partial
+from typing import NamedTuple
+
+import numpy as np
+
+from sssgen.harness.backends import Array, get
+from sssgen.harness.evaluate.evaluation import Inputs
+from sssgen.harness.evaluate.evaluation import run as evaluated
+from sssgen.harness.stress import boundaries
+from sssgen.harness.stress import dangerous_inputs as dangerous
+from sssgen.harness.stress.contract_inputs import drawn
+from sssgen.harness.stress.result_checks import non_finite
+from sssgen.harness.stress.shrink import lane, line, shrunk
+from sssgen.harness.stress.subject import Specimen
+from sssgen.harness.stress.trial import BEYOND, RANDOM, Trial
+from sssgen.ir.formats import FLOAT32
+from sssgen.passes.ranges.sites import Site
+from sssgen.pipeline.programs import library_sites
+
+SAMPLES = 20_000
+"""Random inputs, after the table's and the boundary values."""
+MORE = 64
+"""Inputs of a trial that a witness keeps."""
+
+
+class Witness(NamedTuple):
+    """An input with which an unguarded operation leaves its domain, and the result with it."""
+
+    trial: str
+    inputs: Inputs
+    """The simplest one found."""
+    output: str
+    command: str
+    """The `sssgen eval` line that computes it without guards."""
+    specimen: Specimen
+    """With the functions that the trial bound to its slots."""
+    more: Inputs
+    """Some of those that the trial had."""
+
+
+def sites(specimen: Specimen) -> list[Site]:
+    """The operations with a domain of a technique, in the order of the source."""
+    found = library_sites(specimen.subject.module, specimen.subject.called, specimen.subject.chained)
+    return sorted(found, key=lambda site: site.node.span)
+
+
+def witness(specimen: Specimen, site: Site, seed: int = 0) -> Witness | None:
+    """The simplest input found that needs the guard of this operation, on NumPy in float32; None: none was found."""
+    poison = only(site.what, site.place, "poison")
+    for trial in _trials(specimen, seed):
+        broken = _broken(trial.specimen, trial.inputs, poison)
+        for output, lanes in broken.items():
+            if lanes.any():
+                start = lane(trial.inputs, int(np.argmax(lanes)))
+                small = shrunk(trial.specimen, start, partial(_fails, trial.specimen, poison, output))
+                command = line(trial.specimen, small, "numpy-f32").replace(
+                    "sssgen eval", "sssgen eval --guards none", 1
+                )
+                return Witness(trial.name, small, output, command, trial.specimen, _some(trial.inputs, lanes))
+    return None
+
+
+def _some(inputs: Inputs, lanes: Array) -> Inputs:
+    """The first of the lanes that fail."""
+    at = np.flatnonzero(lanes)[:MORE]
+    values = {name: value if value.shape[-1] == 1 else value[..., at] for name, value in inputs.values.items()}
+    return Inputs(values, inputs.textures, len(at))
+
+
+def _fails(specimen: Specimen, change: Callable[[Site], str], output: str, inputs: Inputs) -> Array:
+    return _broken(specimen, inputs, change)[output]
+
+
+@cache
+def only(what: str, place: str, change: str) -> Callable[[Site], str]:
+    """What becomes of guards: `change` of the one named, `keep` of all others."""
+    return lambda site: change if (site.what, site.place) == (what, place) else "keep"
+
+
+def _trials(specimen: Specimen, seed: int) -> Iterator[Trial]:
+    """The table's rows and the boundary values, then random inputs."""
+    rows = dangerous.trials(specimen) if specimen.subject.chained else ()
+    every = [*rows, *boundaries.trials(specimen, seed)]
+    yield from (trial for trial in every if trial.counts or trial.name == BEYOND)
+    rng = np.random.default_rng([seed, 4])
+    yield Trial(RANDOM, specimen, drawn(specimen, SAMPLES, rng, FLOAT32))
+
+
+def _broken(specimen: Specimen, inputs: Inputs, change: Callable[[Site], str]) -> dict[str, Array]:
+    """Lanes of each output that are no number with the change, and are one with every guard."""
+    numpy = get("numpy-f32")
+    with np.errstate(all="ignore"):
+        changed = evaluated(specimen.subject, inputs, numpy, "auto", change)
+        found = {name: _lanes(value, inputs.lanes) for name, value in changed.items() if value.dtype.kind == "f"}
+        if any(bad.any() for bad in found.values()):
+            whole = evaluated(specimen.subject, inputs, numpy, "auto")
+            found = {name: bad & ~_lanes(whole[name], inputs.lanes) for name, bad in found.items()}
+    return found
+
+
+def _lanes(value: Array, count: int) -> Array:
+    value = np.broadcast_to(value, (count, *value.shape[1:])) if value.ndim else np.broadcast_to(value, (count,))
+    bad: Array = np.asarray(non_finite(np.ascontiguousarray(value)).reshape(count, -1).any(axis=1))
+    return bad

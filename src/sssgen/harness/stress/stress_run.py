@@ -1,0 +1,319 @@
+"""Runs the trials of techniques on back ends, and gathers what is wrong."""
+
+from __future__ import annotations
+
+import contextlib
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cached_property
+from time import perf_counter
+from types import TracebackType
+from typing import NamedTuple
+
+import numpy as np
+
+from sssgen.harness.backends import Array, Backend, CompilerMissing, get
+from sssgen.harness.backends.isolated import started
+from sssgen.harness.evaluate.deviation import GOAL, MARGIN, blur, errors
+from sssgen.harness.evaluate.evaluation import Inputs
+from sssgen.harness.evaluate.evaluation import run as evaluated
+from sssgen.harness.stress import boundaries, energy, jumps
+from sssgen.harness.stress import dangerous_inputs as dangerous
+from sssgen.harness.stress.contract_inputs import drawn
+from sssgen.harness.stress.result_checks import JUMP, KINDS, Found, judged
+from sssgen.harness.stress.shrink import lane, line, shrunk
+from sssgen.harness.stress.subject import Specimen
+from sssgen.harness.stress.trial import RANDOM, STEPS, Trial
+from sssgen.ir.formats import FLOAT16, FLOAT32, Format
+from sssgen.support.diagnostics import SssgenError
+
+CHUNK = 1 << 16
+"""Lanes at a time: more is slower, since they leave the cache."""
+COMPARED = 1000
+"""Random lanes that are held against the oracle."""
+SHOWN = 3
+"""Faults of one technique on one back end that are reduced to their simplest input."""
+
+
+class Settings(NamedTuple):
+    """What is asked for."""
+
+    samples: int
+    seed: int = 0
+    guards: str = "auto"
+    """Which guards the emitted functions have: auto, all or none."""
+    half: bool = False
+    """Whether the back ends compute in half precision, whose contract is narrower."""
+    rows: tuple[str, ...] = ()
+    """Only these rows of the dangerous table, and nothing else; empty for all."""
+
+    @property
+    def format(self) -> Format:
+        """The numbers that are computed with."""
+        return FLOAT16 if self.half else FLOAT32
+
+
+class Fault(NamedTuple):
+    """Faults of one kind in one output, of one trial on one back end."""
+
+    trial: str
+    kind: str
+    output: str
+    counts: bool
+    """Whether it is a failure; else the inputs were beyond the contract."""
+    lanes: int
+    of: int
+    """Lanes that failed, and that were tried."""
+    inputs: Inputs
+    """The first that failed."""
+    got: Array
+    command: str = ""
+    """The line that shows the simplest input found; '' where it was not looked for."""
+
+
+class Column(NamedTuple):
+    """What came of one technique on one back end."""
+
+    backend: str
+    evaluations: int
+    seconds: float
+    faults: tuple[Fault, ...]
+    jump: float
+    """The largest step of an output where the oracle's own is small, for small steps of each input."""
+    deviation: float
+    """The largest difference to the oracle that rounding does not explain."""
+    error: str = ""
+    """Why there is nothing more: the driver refused, crashed or hung."""
+
+    @property
+    def ok(self) -> bool:
+        """Whether nothing that counts is wrong."""
+        return not self.error and not any(fault.counts for fault in self.faults)
+
+
+class Row(NamedTuple):
+    """What came of one technique."""
+
+    specimen: Specimen
+    columns: tuple[Column, ...]
+    model_jumps: tuple[jumps.ModelJump, ...]
+    """Where the formula itself jumps."""
+
+    @property
+    def ok(self) -> bool:
+        """Whether nothing that counts is wrong on any back end."""
+        return all(column.ok for column in self.columns)
+
+
+class Machines:
+    """Back ends, each in a process of its own but NumPy; a context that ends them."""
+
+    def __init__(self, names: Sequence[str]) -> None:
+        self.here: dict[str, Backend] = {}
+        self.missing: dict[str, str] = {}
+        for name in names:
+            try:
+                self.here[name] = started(name)
+            except CompilerMissing as reason:
+                self.missing[name] = str(reason)
+            except SssgenError as error:
+                self.missing[name] = error.diagnostics[0].message
+
+    def __enter__(self) -> Machines:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        for backend in self.here.values():
+            if (close := getattr(backend, "close", None)) is not None:
+                close()
+
+
+Told = Callable[[str, int], None]
+"""Hears of progress: what is done now, and how many evaluations are done of it."""
+
+
+def stress(specimen: Specimen, machines: Machines, settings: Settings, told: Told = lambda *_: None) -> Row:
+    """Everything, for one technique on all back ends."""
+    gathered = [_Gathered(name, backend, specimen, settings) for name, backend in machines.here.items()]
+    for trial in _trials(specimen, settings):
+        told(trial.name, 0)
+        reference = _Reference(trial, settings)
+        for one in gathered:
+            one.take(trial, reference)
+    if not settings.rows:
+        for one in gathered:
+            told("small steps", 0)
+            one.step()
+        done = 0
+        for trial in _random(specimen, settings):
+            for one in gathered:
+                one.take(trial, None)
+            done += trial.inputs.lanes
+            told(RANDOM, done)
+    model = jumps.of_model(specimen, exact(specimen, settings)) if not settings.rows else ()
+    return Row(specimen, tuple(one.column() for one in gathered), model)
+
+
+def _trials(specimen: Specimen, settings: Settings) -> Iterator[Trial]:
+    yield from dangerous.trials(specimen, settings.rows, settings.format)
+    if settings.rows:
+        return
+    yield from boundaries.trials(specimen, settings.seed, settings.format)
+    yield from energy.trials(specimen, settings.seed, settings.format)
+    rng = np.random.default_rng([settings.seed, 2])
+    yield Trial(RANDOM, specimen, drawn(specimen, min(COMPARED, settings.samples), rng, settings.format), compared=True)
+
+
+def _random(specimen: Specimen, settings: Settings) -> Iterator[Trial]:
+    """The same for each back end, and as far as they go for every number of samples."""
+    for number, first in enumerate(range(0, settings.samples, CHUNK)):
+        rng = np.random.default_rng([settings.seed, 3, number])
+        lanes = min(CHUNK, settings.samples - first)
+        yield Trial(RANDOM, specimen, drawn(specimen, lanes, rng, settings.format))
+
+
+def evaluate(specimen: Specimen, inputs: Inputs, backend: Backend, settings: Settings) -> dict[str, Array]:
+    """The outputs, lanes first. Raises SssgenError where the back end refuses."""
+    return evaluated(specimen.subject, inputs, backend, settings.guards)
+
+
+def exact(specimen: Specimen, settings: Settings) -> Callable[[Inputs], dict[str, Array]]:
+    """The oracle's outputs for inputs."""
+    return lambda inputs: evaluate(specimen, inputs, get("numpy"), settings)
+
+
+class _Reference:
+    """The oracle's outputs for a trial, and how far rounding alone takes them: made when they are asked for."""
+
+    def __init__(self, trial: Trial, settings: Settings) -> None:
+        self.trial, self.settings = trial, settings
+
+    @cached_property
+    def outputs(self) -> dict[str, Array]:
+        """The oracle's, lanes first."""
+        return exact(self.trial.specimen, self.settings)(self.trial.inputs)
+
+    @cached_property
+    def blur(self) -> dict[str, Array]:
+        """See `deviation.blur`."""
+        with np.errstate(over="ignore"):  # beyond the largest number there is no next one
+            return blur(self.trial.specimen.subject, self.trial.inputs, self.outputs)
+
+
+class _Gathered:
+    """What one back end has shown of one technique."""
+
+    def __init__(self, name: str, backend: Backend, specimen: Specimen, settings: Settings) -> None:
+        self.name, self.backend, self.specimen, self.settings = name, backend, specimen, settings
+        self.faults: dict[tuple[str, str, str, bool], Fault] = {}
+        self.trials: dict[tuple[str, str, str, bool], Trial] = {}
+        self.lanes: Counter[tuple[str, bool]] = Counter()
+        self.evaluations, self.seconds, self.deviation, self.jump = 0, 0.0, 0.0, 0.0
+        self.error = ""
+
+    def run(self, specimen: Specimen, inputs: Inputs) -> dict[str, Array]:
+        """The outputs of one evaluation, which is counted."""
+        start = perf_counter()
+        outputs = evaluate(specimen, inputs, self.backend, self.settings)
+        self.seconds += perf_counter() - start
+        self.evaluations += inputs.lanes
+        return outputs
+
+    def take(self, trial: Trial, reference: _Reference | None) -> None:
+        """One trial; nothing once the back end has failed."""
+        if self.error:
+            return
+        trial = trial._replace(epsilon=self.settings.format.epsilon)
+        try:
+            outputs = self.run(trial.specimen, trial.inputs)
+        except SssgenError as error:
+            self.error = error.diagnostics[0].message
+            return
+        self.lanes[trial.name, trial.counts] += trial.inputs.lanes
+        steady = reference.outputs if reference is not None and trial.path else None
+        found = judged(trial, outputs, steady)
+        if reference is not None and trial.compared and not self.settings.half:
+            found += self.compare(trial, outputs, reference)
+        for one in found:
+            self.add(trial, one, outputs[one.output])
+
+    def add(self, trial: Trial, found: Found, value: Array) -> None:
+        """Faults; the first of their kind is kept."""
+        # with any input of the contract float32 may decide otherwise; with a row of the table it may not
+        counts = trial.counts and (found.kind != "disagreement" or trial.name != RANDOM)
+        key = (trial.name, found.kind, found.output, counts)
+        count = int(found.bad.sum())
+        if key in self.faults:
+            old = self.faults[key]
+            self.faults[key] = old._replace(lanes=old.lanes + count)
+            return
+        at = int(np.argmax(found.bad))
+        got = np.array(value[at] if value.ndim else value)
+        self.trials[key] = trial
+        self.faults[key] = Fault(
+            trial.name, found.kind, found.output, counts, count, trial.inputs.lanes, lane(trial.inputs, at), got
+        )
+
+    def compare(self, trial: Trial, outputs: Mapping[str, Array], reference: _Reference) -> Iterator[Found]:
+        """Where finite outputs are further from the oracle's than rounding takes them."""
+        for name, wanted in reference.outputs.items():
+            got = outputs[name]
+            if got.dtype.kind != "f" or not got.ndim:
+                continue
+            apart = errors(got, wanted)
+            apart[~np.isfinite(apart)] = 0.0  # that is a fault of its own
+            bad = apart > GOAL
+            if bad.any():
+                bad &= apart > MARGIN * reference.blur[name]
+                self.deviation = max(self.deviation, float(apart[bad].max(initial=0.0)))
+                if bad.any():
+                    yield Found("disagreement", name, bad)
+            else:
+                self.deviation = max(self.deviation, float(apart.max()))
+
+    def step(self) -> None:
+        """The largest jump for a small step of each input."""
+        if self.error or self.settings.half:
+            return
+        try:
+            self.jump, name, inputs = jumps.largest(
+                self.specimen, lambda one: self.run(self.specimen, one), exact(self.specimen, self.settings)
+            )
+        except SssgenError as error:
+            self.error = error.diagnostics[0].message
+            return
+        if self.jump > JUMP and inputs is not None:
+            what = f"a step of {name}"
+            self.faults[STEPS, "jump", what, True] = Fault(
+                STEPS, "jump", what, True, 1, jumps.LANES, inputs, np.array(self.jump)
+            )
+
+    def column(self) -> Column:
+        """All of it, with the simplest inputs of the worst."""
+        order = sorted(self.faults, key=lambda key: (not key[3], KINDS.index(key[1])))
+        found = [self.told(key, number < SHOWN) for number, key in enumerate(order)]
+        return Column(
+            self.name, self.evaluations, self.seconds, tuple(found), self.jump, self.deviation, self.error
+        )  # fmt: skip
+
+    def told(self, key: tuple[str, str, str, bool], shrink: bool) -> Fault:
+        """A fault with the line that shows it."""
+        fault, trial = self.faults[key], self.trials.get(key)
+        if trial is not None:
+            fault = fault._replace(of=self.lanes[trial.name, trial.counts])
+        specimen = trial.specimen if trial is not None else self.specimen
+        if not shrink or self.error:
+            return fault
+        inputs = fault.inputs
+        if trial is not None and fault.kind in ("non-finite", "out of range"):
+            bare = trial._replace(expected={}, path=False, grows="", compared=False)
+
+            def fails(given: Inputs) -> Array:
+                outputs = self.run(specimen, given)
+                found = judged(bare._replace(inputs=given), outputs)
+                alike = [one.bad for one in found if one.kind == fault.kind and one.output == fault.output]
+                return alike[0] if alike else np.zeros(given.lanes, np.bool_)
+
+            with contextlib.suppress(SssgenError):  # then it stays as it was found
+                inputs = shrunk(specimen, inputs, fails)
+        return fault._replace(inputs=inputs, command=line(specimen, inputs, self.name, self.settings.guards))

@@ -1,0 +1,125 @@
+"""What is stressed: a technique of the library or of a file, or one stage of a material with its bindings."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from sssgen.harness.evaluate.probes import RESULT, Subject, of_stages, subject
+from sssgen.ir.nodes import Param
+from sssgen.material import library
+from sssgen.material.material_loading import examples, load_material
+from sssgen.material.model import Material
+from sssgen.passes.link import LinkStage
+from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
+
+
+class Specimen(NamedTuple):
+    """A subject, and what is known of it."""
+
+    title: str
+    """As reports call it: `beer_lambert`, or `ice: beer_lambert`."""
+    technique: str
+    """What `sssgen eval` calls it."""
+    subject: Subject
+    role: str
+    doc: Mapping[str, str]
+    baseline: bool = False
+    """Whether this is a source as published, faults and all."""
+    bind: Mapping[str, str] = {}
+    """Slot → function, as `--bind` takes them."""
+    settings: Mapping[str, tuple[float, ...]] = {}
+    """The uniforms that are no inputs: a material fixes them."""
+
+    @property
+    def slots(self) -> tuple[str, ...]:
+        """The slots that another function may be bound to; none for a material's stage, which has bound its own."""
+        if self.title != self.technique or not self.doc:
+            return ()
+        return tuple(slot.name for slot in library.load(self.technique).slots)
+
+    def rebound(self, slot: str, function: str) -> Specimen:
+        """The same technique with a function bound to one of its slots."""
+        bind = {**self.bind, slot: function}
+        return self._replace(subject=subject(self.technique, bind), bind=bind)
+
+    def output(self, name: str) -> Param:
+        """An output as a parameter: what it is called, and what it measures."""
+        probe = next(probe for probe in self.subject.probes if probe.output == name)
+        called = probe.function.removesuffix(f"_shows_{name}")
+        function = next(one for one in self.subject.module.functions if one.name == called)
+        written = next((param for param in function.params if param.name == name and param.direction != "in"), None)
+        return written or Param(RESULT, function.result, "out", function.quantity, function.span)
+
+    def quantity(self, output: str) -> str:
+        """What an output measures, '' where that is not declared or there is no such output."""
+        known = any(probe.output == output for probe in self.subject.probes)
+        return self.output(output).quantity if known else ""
+
+
+def specimens(names: Sequence[str]) -> list[Specimen]:
+    """The techniques and materials named, each material stage by stage; without names the library but its baselines.
+
+    A name is a technique, a .sss file, FILE:FUNCTION, an example or a .toml file. Raises SssgenError.
+    """
+    if not names:
+        paths = library.index().items()
+        return [technique(name) for name, path in paths if library.folder_of(path) != "baselines"]
+    wrong, found = [], []
+    for name in dict.fromkeys(names):
+        try:
+            found += named(name)
+        except SssgenError as error:
+            wrong += error.diagnostics
+    if wrong:
+        raise SssgenError(wrong)
+    return found
+
+
+def named(name: str) -> list[Specimen]:
+    """What one name means. Raises SssgenError."""
+    if name.endswith(".toml") or name in examples():
+        return stages(load_material(name))
+    if name not in library.index() and not name.rpartition(":")[0] and not name.endswith((".sss", ".glsl")):
+        known = [*library.index(), *examples()]
+        hint = did_you_mean(name, known) or "see: sssgen list techniques, sssgen list materials"
+        raise failure(f"'{name}' is neither a technique nor a material", hint)
+    return [technique(name)]
+
+
+def technique(name: str, bind: Mapping[str, str] | None = None) -> Specimen:
+    """A technique by its name or its file, or FILE:FUNCTION. Raises SssgenError."""
+    made = subject(name, bind)
+    if name.rpartition(":")[0].endswith((".sss", ".glsl")):
+        return Specimen(name, name, made, "distance", {}, bind=bind or {})
+    found = library.load(name)
+    return Specimen(name, name, made, found.role, found.doc, _published(found), bind or {})
+
+
+def _published(technique: library.Technique) -> bool:
+    """Whether a technique of the library stands among the sources as published."""
+    return library.folder_of(technique.path) == "baselines"
+
+
+def stages(material: Material) -> list[Specimen]:
+    """A material's stages, each with its bindings; what the material fixes stays at its value."""
+    found = []
+    for stage in material.stages:
+        chosen = stage.technique
+        bound = {slot: (binding.module, binding.function) for slot, binding in stage.bindings.items()}
+        link = LinkStage(chosen.name, chosen.role, chosen.module, chosen.function, bound, stage.values, frozenset())
+        made = of_stages(chosen.name, [link])
+        bind = {slot: _shown(one.function.span.file, one.function.name) for slot, one in stage.bindings.items()}
+        settings = {name: stage.values[name] for name in stage.fixed if name in made.uniforms and name in stage.values}
+        name = chosen.name if chosen.name in library.index() else chosen.path
+        title = f"{material.name}: {chosen.name}"
+        found.append(Specimen(title, name, made, chosen.role, chosen.doc, _published(chosen), bind, settings))
+    return found
+
+
+def _shown(file: str, function: str) -> str:
+    stem = os.path.splitext(os.path.basename(file))[0]
+    if stem in library.index():
+        return stem if stem == function else f"{stem}:{function}"
+    return f"{file}:{function}"

@@ -1,0 +1,77 @@
+"""A material through every compiler found, as one check. It needs no NumPy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from sssgen.harness.check import compile_check as check
+from sssgen.harness.check.compile_check import Report, Result
+from sssgen.harness.check.shader_files import of_material
+from sssgen.harness.compilers import Message, errors, readers
+from sssgen.harness.testing.outcome import Outcome, lacking
+from sssgen.ir.spans import Span
+from sssgen.pipeline.compiler import all_targets
+from sssgen.support.diagnostics import Diagnostic, did_you_mean, failure
+
+
+def compiled(material: str, targets: str | Iterable[str] = "all") -> Outcome:
+    """Both forms of a material (a path, or an example's name), for all targets or those named, by every compiler here.
+
+    `targets` is "all", names with commas between them, or a list. With "all" it is enough that one compiler is here; a
+    target that is named needs one of its own. Raises SssgenError for a faulty material and unknown targets.
+    """
+    names = chosen(targets)
+    shaders = of_material(material, names)
+    report = check.run(shaders)
+    if wrong := [found for result in report.results for found in _diagnostics(result)]:
+        compilers = sorted({result.compiler for result in report.results if not result.ok})
+        shown = "\n\n".join(dict.fromkeys(found.render() for found in wrong))
+        return Outcome("failed", f"{', '.join(compilers)} refused it: {len(wrong)} errors", shown)
+    read = {result.source.language for result in report.results}
+    unread = sorted({source.language for shader in shaders for source in shader.sources} - read)
+    if not read or (names and unread):
+        return lacking(f"a compiler for {', '.join(unread)}", _how(report, unread))
+    told = f"{len(read)} targets by {', '.join(report.versions)}: {len(report.results)} compilations"
+    if not unread:
+        return Outcome("passed", told)
+    return Outcome("passed", f"{told}; not compiled: {', '.join(unread)}", _how(report, unread))
+
+
+def chosen(targets: str | Iterable[str]) -> list[str]:
+    """The targets that are named, each once; none for "all". Raises SssgenError for unknown ones."""
+    given = targets.split(",") if isinstance(targets, str) else targets
+    names = list(dict.fromkeys(name.strip() for name in given))
+    if "all" in names:
+        return []
+    known = all_targets()
+    for name in names or [""]:
+        if name not in known:
+            hint = did_you_mean(name, known) or f"targets: {', '.join(known)}, or all"
+            raise failure(f"unknown target '{name}'", hint)
+        if not readers(name):
+            raise failure(f"no compiler here is known to read {name}", "name other targets")
+    return names
+
+
+def _how(report: Report, languages: list[str]) -> str:
+    """How to get the compilers that would read these languages."""
+    wanted = dict.fromkeys(name for language in languages for name in readers(language))
+    return "; ".join(f"{name}: {report.missing[name]}" for name in wanted if name in report.missing)
+
+
+def _diagnostics(result: Result) -> list[Diagnostic]:
+    """The errors, each at the technique's own line where that is known, else in the emitted file."""
+    return [_diagnostic(result, message) for message in errors(result.messages)]
+
+
+def _diagnostic(result: Result, message: Message) -> Diagnostic:
+    text = f"{result.compiler}: {' '.join(message.text.split())}"
+    name, lines = result.shader.name, result.shader.text.split("\n")
+    emitted = f"line {message.line} of {name}: {lines[message.line - 1].strip()}" if message.line else name
+    if not (origin := result.origin(message)):
+        return Diagnostic(
+            "error", text, Span(name, message.line, message.column, message.line, message.column), emitted
+        )
+    file, line, column = origin.rsplit(":", 2)
+    span = Span(file, int(line), int(column), int(line), int(column) + 1)
+    return Diagnostic("error", text, span, emitted, check.source_line(origin))

@@ -1,0 +1,249 @@
+"""A folder's materials compiled, its scenes compared with their golden pictures, its numbers with the oracle.
+
+    with Run(update=False) as run:
+        for case in cases("shaders", ["gl"]):
+            print(case.name, run(case).outcome.text)
+
+A case is a material, a scene on one back end, or a file `*.eval.json`:
+
+    {"technique": "lobe.sss", "bind": {"body_distance": "shapes.sss:star"}, "inputs": {"N": [[0, 0, 1]], "power": 4.0},
+     "tolerance": 1e-5}
+
+`inputs` are numbers by name, or the name of a file as `sssgen eval --inputs` takes it; `samples` is how many random
+ones there are for the rest, `seed` which; `outputs` are numbers that the oracle has to give.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import tomllib
+from collections.abc import Iterator, Sequence
+from time import perf_counter
+from typing import Any, Literal, NamedTuple
+
+from sssgen.harness.testing.compile_outcome import compiled
+from sssgen.harness.testing.outcome import Outcome, beside, lacking
+from sssgen.lang.loader import read_text
+from sssgen.material.library import ROLES
+from sssgen.support import json_source
+from sssgen.support.diagnostics import SssgenError, failure
+from sssgen.support.paths import posix, stem
+
+EVAL = ".eval.json"
+
+_OF_SCENES = {"geometry", "camera", "light", "background", "samples"}
+"""Keys by which a scene is known whose `material` is misspelt; a material is known by its roles."""
+
+Kind = Literal["compile", "render", "eval"]
+
+
+class Case(NamedTuple):
+    """One thing to check."""
+
+    kind: Kind
+    path: str
+    backends: tuple[str, ...] = ()
+    """Of a scene just one; of numbers any, and none means all that are here."""
+    first: bool = True
+    """Whether its picture is the one to keep: several back ends have one golden picture."""
+
+    @property
+    def name(self) -> str:
+        """The file, and the back ends that are meant."""
+        on = f" [{', '.join(self.backends)}]" if self.backends else ""
+        return f"{posix(self.path)}{on}"
+
+
+class Ran(NamedTuple):
+    """A case and what came of it."""
+
+    case: Case
+    outcome: Outcome
+    seconds: float
+
+
+def cases(folder: str, backends: Sequence[str] = ()) -> list[Case]:
+    """What there is to check in a folder and below it; scenes are on `gl` where no back end is named.
+
+    Hidden folders, Python's environments and `node_modules` are left out. Raises SssgenError where the folder cannot be
+    read, or has nothing to check.
+    """
+    found: list[Case] = []
+    for path in _files(folder):
+        if path.endswith(EVAL):
+            found.append(Case("eval", path, tuple(backends)))
+        elif path.endswith(".toml") and (kind := _kind(path)):
+            names = backends or ("gl",)
+            scenes = [Case(kind, path, (name,), name == names[0]) for name in names]
+            found += scenes if kind == "render" else [Case(kind, path)]
+    if not found:
+        hint = f"a material (.toml with [material]), a scene (.toml with `material = …`), or a file *{EVAL}"
+        raise failure("there is nothing to check in the folder", hint, posix(folder))
+    return found
+
+
+def _files(folder: str) -> Iterator[str]:
+    if not os.path.isdir(folder):
+        what = "this is not a folder" if os.path.exists(folder) else "there is no such folder"
+        raise failure(what, "name the folder of your materials and scenes", posix(folder))
+
+    def refuse(error: OSError) -> None:
+        raise failure(f"cannot read the folder: {error.strerror}", file=posix(error.filename or folder))
+
+    for parent, folders, names in os.walk(folder, onerror=refuse):
+        folders[:] = sorted(name for name in folders if not _foreign(parent, name))
+        yield from (os.path.join(parent, name) for name in sorted(names) if not name.startswith("."))
+
+
+def _foreign(parent: str, name: str) -> bool:
+    environment = os.path.join(parent, name, "pyvenv.cfg")
+    return name.startswith(".") or name in ("node_modules", "__pycache__") or os.path.isfile(environment)
+
+
+def _kind(path: str) -> Kind | None:
+    """What a .toml file describes; None for another tool's. One that cannot be read is a case, which fails."""
+    try:
+        text = read_text(path, posix(path))
+    except SssgenError:
+        return "compile"  # which says why it cannot be read
+    try:
+        data: dict[str, Any] = tomllib.loads(text)
+    except (ValueError, RecursionError):  # wrong syntax, or thousands of digits
+        head = f"\n{text}".partition("\n[")[0]
+        return "render" if re.search(r"^\s*material\s*=", head, re.MULTILINE) else "compile"
+    if isinstance(data.get("material"), dict):
+        return "compile"
+    if "material" in data or data.keys() & _OF_SCENES:
+        return "render"
+    return "compile" if data.keys() & set(ROLES) else None
+
+
+class Run:
+    """Checks cases. Back ends are kept until it is closed."""
+
+    def __init__(self, update: bool = False, flip: float | None = None) -> None:
+        """With `update` golden pictures are written; `flip` is the largest mean of FLIP that passes."""
+        self.update = update
+        self.flip = flip
+        self.started: Any = None  # NumPy is not needed for materials
+
+    def __enter__(self) -> Run:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self.started is not None:
+            self.started.close()
+
+    def __call__(self, case: Case) -> Ran:
+        """The case, checked. What is wrong with it is its outcome: nothing is raised."""
+        start = perf_counter()
+        try:
+            outcome = {"compile": self._compile, "render": self._render, "eval": self._eval}[case.kind](case)
+        except SssgenError as error:
+            outcome = _failed(error)
+        except ImportError as error:
+            outcome = lacking("a package", f"{error}: pip install 'sssgen[render]'")
+        except Exception as error:  # the others are checked all the same
+            outcome = Outcome("failed", f"a fault of sssgen; please report it: {type(error).__name__}: {error}")
+        return Ran(case, outcome, perf_counter() - start)
+
+    def _compile(self, case: Case) -> Outcome:
+        return compiled(case.path)
+
+    def _render(self, case: Case) -> Outcome:
+        from sssgen.harness.compilers import CompilerMissing
+        from sssgen.harness.render.scene_render import render
+        from sssgen.harness.scenes.scene_loading import load
+        from sssgen.harness.testing import golden
+
+        (name,), folder = case.backends, os.path.join(os.path.dirname(case.path), golden.FOLDER)
+        try:
+            backend = self._backends().get(name)
+        except CompilerMissing as reason:
+            return lacking(f"the back end {name}", str(reason))
+        picture = render(load(case.path), backend).encoded
+        if self.update and case.first:
+            return golden.updated(picture, folder, stem(case.path))
+        limit = golden.FLIP if self.flip is None else self.flip
+        return golden.compared(picture, folder, stem(case.path), limit, "" if case.first else f".{name}")
+
+    def _eval(self, case: Case) -> Outcome:
+        from sssgen.harness.backends import HALF, NAMES, CompilerMissing, get
+        from sssgen.harness.evaluate.deviation import GOAL
+        from sssgen.harness.evaluate.evaluation import fitted, run
+        from sssgen.harness.evaluate.input_files import read
+        from sssgen.harness.evaluate.probes import subject
+        from sssgen.harness.evaluate.random_inputs import samples
+        from sssgen.harness.testing.agreement import against_oracle, check_tolerance, known
+
+        given, folder = _read(case.path), [os.path.dirname(case.path)]
+        tolerance = check_tolerance(given.get("tolerance", GOAL))
+        bind = {slot: beside(str(function), folder) for slot, function in given.get("bind", {}).items()}
+        chosen = subject(beside(given["technique"], folder), bind)
+        inputs: Any = given.get("inputs", {})
+        inputs = read(os.path.join(*folder, inputs), chosen) if isinstance(inputs, str) else inputs
+        if "samples" in given:
+            inputs = samples(chosen, given["samples"], given.get("seed", 0)) | inputs
+        fit = fitted(chosen, inputs)
+        oracle = run(chosen, fit, get("numpy"))
+        outcome = known(oracle, given.get("outputs", {}), tolerance)
+        if outcome.state == "failed":
+            return outcome
+        told: dict[str, Outcome] = {}
+        for name in case.backends or [name for name in NAMES if name not in ("numpy", *HALF.values())]:
+            try:
+                told[name] = against_oracle(chosen, fit, self._backends().get(name), tolerance, oracle)[1]
+            except CompilerMissing as reason:
+                if case.backends:
+                    told[name] = lacking(f"the back end {name}", str(reason))
+            except SssgenError as error:  # of one back end: the others are asked all the same
+                told[name] = Outcome("failed", f"{name} failed", str(error))
+        return _summary(told)
+
+    def _backends(self) -> Any:
+        if self.started is None:
+            from sssgen.harness.testing.running_backends import Started
+
+            self.started = Started()
+        return self.started
+
+
+def _failed(error: SssgenError) -> Outcome:
+    shown = "\n\n".join(found.render() for found in error.diagnostics)
+    told = " ".join(error.diagnostics[0].message.split())
+    return Outcome("failed", told, "" if shown == f"error: {told}" else shown)
+
+
+def _summary(told: dict[str, Outcome]) -> Outcome:
+    """What several back ends said, in one."""
+    bad = [one for one in told.values() if one.state == "failed"]
+    skipped = [one for one in told.values() if one.state == "skipped"]
+    detail = "\n".join(one.text for one in (bad or told.values()))
+    if bad:
+        return Outcome("failed", f"{len(bad)} of {len(told)} back ends failed", detail)
+    if skipped:
+        return Outcome("skipped", skipped[0].told, detail)
+    return Outcome("passed", f"as in float64 on {', '.join(told)}", detail)
+
+
+_SHAPE: dict[str, tuple[type, ...]] = {
+    "technique": (str,), "bind": (dict,), "inputs": (dict, str), "samples": (int,), "seed": (int,),
+    "tolerance": (int, float), "outputs": (dict,),
+}  # fmt: skip
+
+
+def _read(path: str) -> dict[str, Any]:
+    """A file `*.eval.json`. Raises SssgenError."""
+    shown = posix(path)
+    data = json_source.parse(read_text(path, shown), shown)
+    if not isinstance(data, dict) or "technique" not in data:
+        raise failure("no technique is named", '{"technique": "lobe_gdc2011", "inputs": {…}}', shown)
+    for key, value in data.items():
+        if key not in _SHAPE:
+            raise failure(f"unknown key '{key}'", f"keys: {', '.join(_SHAPE)}", shown)
+        if not isinstance(value, _SHAPE[key]) or isinstance(value, bool):
+            raise failure(f"'{key}' is no {' or '.join(one.__name__ for one in _SHAPE[key])}", file=shown)
+    if not (1 <= data.get("samples", 1) <= 1_000_000 and data.get("seed", 0) >= 0):
+        raise failure("'samples' is from 1 to 1000000, 'seed' from 0", file=shown)
+    return data

@@ -1,0 +1,1 @@
+"""`sssgen transpile --verify`: the transpiled functions against the source on random inputs."""

@@ -1,0 +1,442 @@
+"""Reads the IR's text form, which `ir.text` describes and prints."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from math import isfinite
+
+from sssgen.ir.nodes import (
+    NOWHERE,
+    Assign,
+    Assume,
+    Binary,
+    Block,
+    Break,
+    Call,
+    Constant,
+    Construct,
+    Continue,
+    Declare,
+    Discard,
+    Evaluate,
+    Expr,
+    For,
+    Function,
+    Global,
+    If,
+    Index,
+    Intrinsic,
+    Literal,
+    Local,
+    Member,
+    Module,
+    Param,
+    Return,
+    Select,
+    Span,
+    Stmt,
+    StructDecl,
+    Swizzle,
+    Unary,
+    Uniform,
+    Variable,
+    While,
+    function_key,
+)
+from sssgen.ir.rules import inferred
+from sssgen.ir.types import BOOL, BY_NAME, FLOAT, INT, UINT, VOID, Array, Field, Struct, Type
+
+
+class TextError(ValueError):
+    """A text that is no module, with the 1-based place where that shows."""
+
+    def __init__(self, message: str, line: int, column: int) -> None:
+        super().__init__(f"{line}:{column}: {message}")
+        self.message, self.line, self.column = message, line, column
+
+
+def read_module(text: str) -> Module:
+    """The module that a text says. Raises TextError."""
+    return _Reader(text).module()
+
+
+_TOKEN = re.compile(
+    r"""(?P<space>\s+)
+    | (?P<span>@\d+:\d+:\d+-\d+(?::\d+)?)
+    | (?P<number>-?\d+(?:\.\d+)?(?:e[+-]?\d+)?u?)
+    | (?P<name>\$?[A-Za-z_]\w*)
+    | (?P<text>"(?:[^"\\\n]|\\["\\]|\\[0-9a-f]{1,6};)*")
+    | (?P<op>(?:<<|>>|[-+*/%&|^])=|&&|\|\||\^\^|==|!=|<=|>=|<<|>>|[-+*/%&|^<>!~?:=.,;()\[\]{}])""",
+    re.VERBOSE | re.ASCII,
+)
+_MAX_NUMBER = 400
+"""The longest number, and the longest place; the largest float32 has 39 digits."""
+
+_MAX_MESSAGE = 500
+"""The longest message: it may quote a name."""
+
+_ESCAPE = re.compile(r'\\(["\\]|[0-9a-f]+;)')
+
+
+class _Reader:
+    """Reads by recursive descent; functions' bodies come last, when every function's result is known."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+        self.tokens: list[tuple[str, str, int]] = []
+        self.next = 0
+        self.files: dict[str, str] = {}
+        self.types: dict[str, Type] = dict(BY_NAME)
+        self.globals: dict[str, Type] = {}
+        self.locals: dict[str, Type] = {}
+        self.results: dict[str, Type] = {}
+        position = 0
+        while position < len(text):
+            match = _TOKEN.match(text, position)
+            if match is None:
+                raise self.error(f"{text[position]!r} has no meaning here", position)
+            if match.lastgroup in ("number", "span") and len(match.group()) > _MAX_NUMBER:
+                raise self.error("this number is too long", position)
+            if match.lastgroup != "space":
+                self.tokens.append((str(match.lastgroup), match.group(), position))
+            position = match.end()
+        self.tokens.append(("end", "", len(text)))
+
+    def error(self, message: str, position: int) -> TextError:
+        line = self.text.count("\n", 0, position) + 1
+        return TextError(message[:_MAX_MESSAGE], line, position - self.text.rfind("\n", 0, position))
+
+    def fail(self, message: str, back: int = 0) -> TextError:
+        """An error at the next token, or at one before it."""
+        return self.error(message, self.tokens[max(0, self.next - back)][2])
+
+    # Tokens
+
+    def peek(self, ahead: int = 0) -> str:
+        return self.tokens[min(self.next + ahead, len(self.tokens) - 1)][1]
+
+    def take(self, text: str) -> bool:
+        """Goes past the next token if it is this one."""
+        found = self.peek() == text
+        self.next += found
+        return found
+
+    def expect(self, text: str) -> None:
+        if not self.take(text):
+            raise self.fail(f"'{text}' is expected here, not '{self.peek()}'")
+
+    def kind(self, kind: str) -> str:
+        """Goes past the next token, which must be of this kind."""
+        found, text, _ = self.tokens[self.next]
+        if found != kind:
+            raise self.fail(f"a {kind} is expected here, not '{text}'")
+        self.next += 1
+        return text
+
+    def name(self) -> str:
+        if self.peek().startswith("$"):
+            raise self.fail("'$' stands only where something is used")
+        return self.kind("name")
+
+    def string(self) -> str:
+        def character(match: re.Match[str]) -> str:
+            code = match[1]
+            if code in '"\\':
+                return code
+            if int(code[:-1], 16) > 0x10FFFF:
+                raise self.fail(f"there is no character {code[:-1]}", 1)
+            return chr(int(code[:-1], 16))
+
+        return _ESCAPE.sub(character, self.kind("text")[1:-1])
+
+    def number(self) -> float:
+        text = self.kind("number")
+        value = float(text.rstrip("u"))
+        if not isfinite(value):
+            raise self.fail(f"{text} is not finite", 1)
+        return value
+
+    def span(self) -> Span:
+        if self.tokens[self.next][0] != "span":
+            return NOWHERE
+        file, line, start, *end = self.kind("span")[1:].replace("-", ":").split(":")
+        if file not in self.files:
+            raise self.fail(f"there is no file {file}", 1)
+        return Span(self.files[file], int(line), int(start), int(end[0] if end[1:] else line), int(end[-1]))
+
+    def type(self) -> Type:
+        name = self.name()
+        if name not in self.types:
+            raise self.fail(f"there is no type '{name}'", 1)
+        return self.array_of(self.types[name])
+
+    def array_of(self, element: Type) -> Type:
+        if not self.take("["):
+            return element
+        length = int(self.number())
+        self.expect("]")
+        return Array(element, length)
+
+    def quantity(self) -> str:
+        return self.name() if self.take(":") else ""
+
+    # Declarations
+
+    def module(self) -> Module:
+        found: dict[str, list[object]] = {"struct": [], "const": [], "uniform": [], "function": [], "variable": []}
+        bodies: dict[int, int] = {}
+        try:
+            while self.take("file"):
+                number = self.kind("number")
+                self.files[number] = self.string()
+            while self.tokens[self.next][0] != "end":
+                doc = [self.string()] if self.take("doc") else []
+                while self.tokens[self.next][0] == "text":
+                    doc.append(self.string())
+                what = self.kind("name")
+                if what not in found:
+                    raise self.fail(f"a declaration is expected here, not '{what}'", 1)
+                read = getattr(self, what)
+                found[what].append(read("\n".join(doc), self.span()))
+                if what == "function" and not self.take("slot"):
+                    bodies[len(found[what]) - 1] = self.next
+                    self.skip_block()
+            functions: list[Function] = found["function"]  # type: ignore[assignment]  # what `function` returns
+            for index, start in bodies.items():
+                function, self.next = functions[index], start
+                self.locals = {param.name: param.type for param in function.params}
+                functions[index] = function._replace(body=self.block())
+        except RecursionError:
+            raise self.fail("nested too deeply") from None
+        return Module(*(tuple(declarations) for declarations in found.values()))  # type: ignore[arg-type]
+
+    def skip_block(self) -> None:
+        self.expect("{")
+        depth = 1
+        while depth:
+            depth += (self.peek() == "{") - (self.peek() == "}")
+            if self.tokens[self.next][0] == "end":
+                raise self.fail("a '}' is missing")
+            self.next += 1
+
+    def struct(self, doc: str, span: Span) -> StructDecl:
+        name, fields = self.name(), []
+        self.expect("{")
+        while not self.take("}"):
+            fields.append(Field(type=self.type(), name=self.name(), quantity=self.quantity()))
+            self.expect(";")
+        self.types[name] = Struct(name, tuple(fields))
+        return StructDecl(self.types[name], doc, span)
+
+    def const(self, doc: str, span: Span) -> Constant:
+        type_, name = self.type(), self.name()
+        self.expect("=")
+        self.globals[name] = type_
+        return Constant(name, type_, self.expr(), span)
+
+    def uniform(self, doc: str, span: Span) -> Uniform:
+        type_, name, quantity = self.type(), self.name(), self.quantity()
+        self.globals[name] = type_
+        default = []
+        if self.take("="):
+            self.expect("(")
+            default.append(self.number())
+            while self.take(","):
+                default.append(self.number())
+            self.expect(")")
+        return Uniform(name, type_, tuple(default), self.hints(), quantity, doc, span)
+
+    def variable(self, doc: str, span: Span) -> Variable:
+        storage, type_, name = self.name(), self.type(), self.name()
+        said: dict[str, float | str] = {"builtin": "", "interpolation": "", "location": -1.0}
+        for hint, args in self.hints():
+            if hint not in said or len(args) != 1 or type(args[0]) is not type(said[hint]):
+                raise self.fail(f"a variable says nothing like '{hint}'", 1)
+            said[hint] = args[0]
+        value = self.expr() if self.take("=") else None
+        self.globals[name] = type_
+        builtin, interpolation, location = said.values()
+        return Variable(name, type_, storage, value, str(builtin), str(interpolation), int(location), doc, span)
+
+    def hints(self) -> tuple[tuple[str, tuple[float | str, ...]], ...]:
+        found = []
+        if self.take("["):
+            found.append(self.hint())
+            while self.take(","):
+                found.append(self.hint())
+            self.expect("]")
+        return tuple(found)
+
+    def hint(self) -> tuple[str, tuple[float | str, ...]]:
+        name, args = self.name(), []
+        self.expect("(")
+        while not self.take(")"):
+            args.append(self.string() if self.tokens[self.next][0] == "text" else self.number())
+            if self.peek() != ")":
+                self.expect(",")
+        return name, tuple(args)
+
+    def function(self, doc: str, span: Span) -> Function:
+        result, name, params = self.type(), self.name(), []
+        self.expect("(")
+        while not self.take(")"):
+            direction, place = self.name(), self.span()
+            type_, param = self.type(), self.name()
+            params.append(Param(param, type_, direction, self.quantity(), place))
+            if self.peek() != ")":
+                self.expect(",")
+        function = Function(name, tuple(params), result, self.quantity(), None, doc, span)
+        self.results[function.key] = result
+        return function
+
+    # Statements
+
+    def block(self) -> Block:
+        self.expect("{")
+        stmts: list[Stmt] = []
+        while not self.take("}"):
+            stmts.append(self.stmt())
+        return tuple(stmts)
+
+    def stmt(self) -> Stmt:
+        what = self.name()
+        span = self.span()
+        stmt: Stmt
+        if what == "if":
+            condition = self.expr()
+            self.expect("then")
+            then = self.block()
+            return If(condition, then, self.block() if self.take("else") else (), span)
+        if what == "while":
+            condition = self.expr()
+            self.expect("do")
+            return While(condition, self.block(), span)
+        if what == "for":
+            return self.loop(span)
+        if what == "var":
+            type_, name = self.type(), self.name()
+            stmt = Declare(name, type_, self.expr() if self.take("=") else None, span)
+            self.locals[name] = type_
+        elif what == "set":
+            target, op = self.expr(), self.kind("op")
+            if op[-1] != "=" or op in ("==", "!=", "<=", ">="):
+                raise self.fail(f"an assignment is expected here, not '{op}'", 1)
+            stmt = Assign(target, op[:-1], self.expr(), span)
+        elif what == "call":
+            stmt = Evaluate(self.expr(), span)
+        elif what == "assume":
+            stmt = Assume(self.expr(), span)
+        elif what == "return":
+            stmt = Return(None if self.peek() == ";" else self.expr(), span)
+        elif what in _JUMPS:
+            stmt = _JUMPS[what](span)
+        else:
+            raise self.fail(f"a statement is expected here, not '{what}'", 1)
+        self.expect(";")
+        return stmt
+
+    def loop(self, span: Span) -> For:
+        self.expect("(")
+        init = None if self.take(";") else self.stmt()
+        condition = None if self.peek() == ";" else self.expr()
+        self.expect(";")
+        step = None if self.take(";") else self.stmt()
+        self.expect(")")
+        return For(init, condition, step, self.block(), span)
+
+    # Expressions
+
+    def expr(self) -> Expr:
+        kind, text, _ = self.tokens[self.next]
+        self.next += 1
+        expr: Expr
+        if kind == "number":
+            expr = self.literal(text)
+        elif text in ("true", "false"):
+            expr = Literal(BOOL, text == "true", NOWHERE)
+        elif text == "(":
+            expr = self.bracketed()
+        elif kind == "name" and text.startswith("$"):
+            expr = self.of_module(text[1:])
+        elif kind == "name" and (self.peek() == "{" or (self.peek() == "[" and self.peek(3) == "{")):
+            self.next -= 1
+            expr = Construct(self.type(), self.list("{", "}"), NOWHERE)
+        elif kind == "name" and self.peek() == "(":
+            expr = self.inferred(Intrinsic(VOID, text, self.list("(", ")"), NOWHERE), text)
+        elif kind == "name":
+            expr = Local(self.known(self.locals, text), text, NOWHERE)
+        else:
+            raise self.fail(f"an expression is expected here, not '{text}'", 1)
+        expr = expr._replace(span=self.span())
+        while self.peek() in (".", "["):
+            if self.take("."):
+                name = self.name()
+                is_struct = isinstance(expr.type, Struct)
+                expr = (Member if is_struct else Swizzle)(VOID, expr, name, NOWHERE)
+                expr = self.inferred(expr, f".{name}")
+            else:
+                self.expect("[")
+                expr = self.inferred(Index(VOID, expr, self.expr(), NOWHERE), "an index")
+                self.expect("]")
+            expr = expr._replace(span=self.span())
+        return expr
+
+    def literal(self, text: str) -> Literal:
+        if text.endswith("u"):
+            return Literal(UINT, int(text[:-1]), NOWHERE) if text[:-1].isdigit() else self.no_number(text)
+        if text.lstrip("-").isdigit():
+            return Literal(INT, int(text), NOWHERE)
+        return Literal(FLOAT, float(text), NOWHERE) if isfinite(float(text)) else self.no_number(text)
+
+    def no_number(self, text: str) -> Literal:
+        raise self.fail(f"{text} is no number", 1)
+
+    def bracketed(self) -> Expr:
+        """What stands behind an opening bracket: a negation, a binary operator, or a choice."""
+        if self.peek() in ("-", "!", "~"):
+            op = self.kind("op")
+            return self.closed(Unary(VOID, op, self.expr(), NOWHERE), op)
+        left = self.expr()
+        op = self.kind("op")
+        if op == "?":
+            yes = self.expr()
+            self.expect(":")
+            return self.closed(Select(VOID, left, yes, self.expr(), NOWHERE), op)
+        return self.closed(Binary(VOID, op, left, self.expr(), NOWHERE), op)
+
+    def closed(self, expr: Expr, op: str) -> Expr:
+        expr = self.inferred(expr, f"'{op}'")
+        self.expect(")")
+        return expr
+
+    def of_module(self, name: str) -> Expr:
+        if self.peek() != "(":
+            return Global(self.known(self.globals, name), name, NOWHERE)
+        args = self.list("(", ")")
+        key = function_key(name, [arg.type for arg in args])
+        return Call(self.known(self.results, key), key, args, NOWHERE)
+
+    def known(self, among: dict[str, Type], name: str) -> Type:
+        if name not in among:
+            raise self.fail(f"'{name}' is not declared", 1)
+        return among[name]
+
+    def inferred(self, expr: Expr, what: str) -> Expr:
+        """The expression with the type that follows from its operands."""
+        type_ = inferred(expr)
+        if type_ is None:
+            raise self.fail(f"{what} is not defined for these operands", 1)
+        return expr._replace(type=type_)
+
+    def list(self, opening: str, closing: str) -> tuple[Expr, ...]:
+        exprs: list[Expr] = []
+        self.expect(opening)
+        while not self.take(closing):
+            exprs.append(self.expr())
+            if self.peek() != closing:
+                self.expect(",")
+        return tuple(exprs)
+
+
+_JUMPS: dict[str, Callable[[Span], Stmt]] = {"break": Break, "continue": Continue, "discard": Discard}

@@ -1,0 +1,186 @@
+"""What a chart is drawn from: a record, as plain JSON; its checks, the Pareto front, the hypervolume, CSV and JSON.
+
+A record has the scenes, and a point for every technique with each of its settings on each scene. Lower is better, in
+cost and in error. Nothing is measured here.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, TypeGuard
+
+from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
+
+FORMAT = 1
+"""The version of a record's form."""
+
+ROLES = ("coordinates", "thickness", "translucency", "material")
+"""What points are compared within, in the order of the charts."""
+
+COSTS = {"value": "cost", "operations": "operations", "transcendentals": "transcendentals", "fetches": "fetches"}
+COSTS |= {"distance_evaluations": "distance evaluations", "gpu_ms": "GPU ms"}
+"""What a point's cost may have → its column; `value` is what is drawn."""
+
+ERRORS = {"value": "error", "low": "low", "high": "high", "relmse": "relMSE", "bias": "bias", "p99": "p99"}
+ERRORS |= {"max": "max", "flip": "FLIP"}
+"""What a point's error may have → its column; `value` is what is drawn, between `low` and `high`."""
+
+LEAST = 1e-6
+"""Costs and errors below this count as this much where their logarithm is taken: it is below float32's rounding."""
+
+Point = Mapping[str, Any]
+Record = Mapping[str, Any]
+
+
+def checked(record: Any) -> dict[str, Any]:
+    """A copy of the record with None for numbers that are not finite. Raises SssgenError for everything wrong in it."""
+    faults = list(_faults(record)) if isinstance(record, dict) else ["it is no JSON object"]
+    if faults:
+        told = [failure(f"this is no record of a chart: {fault}").diagnostics[0] for fault in faults[:20]]
+        raise SssgenError(told)
+    copy: dict[str, Any] = _finite(record)
+    return copy
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {str(name): _finite(part) for name, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(part) for part in value]
+    if isinstance(value, float):  # NumPy's float64 is one, too
+        return float(value) if math.isfinite(value) else None
+    return value
+
+
+def _faults(record: dict[str, Any]) -> Iterator[str]:
+    if record.get("format") != FORMAT:
+        yield f"its format is {record.get('format')!r}, not {FORMAT}"
+    for name, kind in (("record", dict), ("scenes", list), ("points", list), ("cost", str), ("cost_unit", str)):
+        if not isinstance(record.get(name), kind):
+            yield f"'{name}' is missing, or of a wrong kind"
+    scenes = [scene.get("name") for scene in _objects(record.get("scenes"))]
+    if not all(isinstance(scene, str) and scene for scene in scenes) or len(set(scenes)) != len(scenes):
+        yield "each scene needs a name of its own"
+    for number, point in enumerate(_objects(record.get("points"))):
+        for fault in _point_faults(point, scenes):
+            yield f"point {number}: {fault}"
+    for number, volume in enumerate(_objects(record.get("hypervolume", []))):
+        if volume.get("scene") not in scenes or volume.get("role") not in ROLES:
+            yield f"hypervolume {number}: its scene or role is unknown"
+        elif not all(_is_number(volume.get(name)) for name in ("ours", "baselines")):
+            yield f"hypervolume {number}: 'ours' and 'baselines' are numbers"
+
+
+def _objects(value: Any) -> list[dict[str, Any]]:
+    return [one if isinstance(one, dict) else {} for one in value] if isinstance(value, list) else []
+
+
+def _point_faults(point: dict[str, Any], scenes: Sequence[Any]) -> Iterator[str]:
+    if point.get("scene") not in scenes:
+        near = did_you_mean(str(point.get("scene")), [str(scene) for scene in scenes])
+        yield f"its scene {point.get('scene')!r} is unknown" + (f": {near}" if near else "")
+    if point.get("role") not in ROLES:
+        yield f"its role {point.get('role')!r} is none of {', '.join(ROLES)}"
+    for name in ("name", "label"):
+        if not (isinstance(point.get(name), str) and point[name]):
+            yield f"'{name}' is missing"
+    for name, known in (("cost", COSTS), ("error", ERRORS)):
+        numbers = point.get(name)
+        if not isinstance(numbers, dict):
+            yield f"'{name}' is missing"
+            continue
+        for part in known:
+            value = numbers.get(part)
+            if value is not None and not _is_number(value):
+                yield f"{name}.{part} is no number"
+        value = numbers.get("value")
+        if _is_number(value) and value < 0.0:
+            yield f"{name}.value is below 0"
+        if not (_is_number(value) and math.isfinite(value)) and (name == "cost" or not point.get("failed")):
+            yield f"{name}.value is not finite" + (", and 'failed' does not say why" if name == "error" else "")
+
+
+def _is_number(value: Any) -> TypeGuard[float]:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def measures(point: Point) -> tuple[float, float]:
+    """A point's cost and error; the error of a failed one is infinite."""
+    error = point["error"]["value"]
+    return float(point["cost"]["value"]), math.inf if point.get("failed") or error is None else float(error)
+
+
+def front(points: Iterable[Point]) -> list[Point]:
+    """The points that no other beats: none is as good in both and better in one. By cost; without failed ones.
+
+    Errors below LEAST are alike, and those that differ by a millionth: that is rounding.
+    """
+    ordered = sorted((point for point in points if math.isfinite(measures(point)[1])), key=measures)
+    best, found = (math.inf, math.inf), []
+    for point in ordered:
+        cost, error = measures(point)[0], max(measures(point)[1], LEAST)
+        if error < best[1] * (1.0 - LEAST) or (cost, error) == best:
+            best = (cost, error)
+            found.append(point)
+    return found
+
+
+def hypervolume(points: Iterable[Point], reference_point: Sequence[float]) -> float:
+    """The area that points dominate up to a reference point (cost, error), in decades of cost × decades of error.
+
+    Larger is better: 1 is a point with a tenth of the reference's cost and a tenth of its error. Both axes are
+    logarithmic, and end at LEAST. After Zitzler and Thiele, "Multiobjective optimization using evolutionary
+    algorithms", PPSN 1998.
+    """
+    right, top = map(_log, reference_point)
+    area = 0.0
+    for point in front(points):
+        x, y = map(_log, measures(point))
+        if x < right and y < top:
+            area += (right - x) * (top - y)
+            top = y
+    return area
+
+
+def _log(value: float) -> float:
+    return math.log10(max(value, LEAST))
+
+
+def points_of(record: Record, role: str, scene: str = "") -> list[Point]:
+    """The points of a role, on one scene or on all."""
+    return [point for point in record["points"] if point["role"] == role and scene in ("", point["scene"])]
+
+
+def roles(record: Record) -> list[str]:
+    """The roles that have points."""
+    return [role for role in ROLES if points_of(record, role)]
+
+
+def to_json(record: Record) -> str:
+    """The record as text: the same for the same record, whatever order its entries came in."""
+    return json.dumps(record, indent=1, sort_keys=True, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def to_csv(record: Record) -> str:
+    """A line for each point, below one with the names of the columns."""
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\n")
+    columns = ["scene", "role", "name", "label", "baseline", "front", "failed", "chain", "settings", "parameters"]
+    columns += [f"cost_{name}" for name in COSTS] + [f"error_{name}" for name in ERRORS]
+    writer.writerow([*columns, "implementation"])
+    for point in record["points"]:
+        row = [point["scene"], point["role"], point["name"], point["label"]]
+        row += [int(bool(point.get(name))) for name in ("baseline", "front")]
+        row += [point.get("failed", ""), " + ".join(point.get("chain", []))]
+        row += [_compact(point.get(name, {})) for name in ("settings", "parameters")]
+        row += [point["cost"].get(name) for name in COSTS] + [point["error"].get(name) for name in ERRORS]
+        writer.writerow([*row, _compact(point.get("implementation", {}))])
+    return file.getvalue()
+
+
+def _compact(value: Any) -> str:
+    return json.dumps(value, sort_keys=True, ensure_ascii=False)

@@ -1,0 +1,1 @@
+"""GPU times of emitted programs."""

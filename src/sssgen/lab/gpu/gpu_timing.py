@@ -1,0 +1,290 @@
+"""What shaders cost on a GPU, in milliseconds a frame.
+
+    found = measure([Program("mine", text, {"power": 4.0}), Program("theirs", other)], size=(1920, 1080))
+    found.net("mine").median                                    # ms of one evaluation at every pixel
+    found.ratio("mine", "theirs")                               # how many times as long, with its spread
+
+Programs are full-screen fragment shaders, drawn by OpenGL into 32-bit floats. Each is drawn many times for one timer
+query; all of them take turns, in an order that changes from round to round, so that a clock that drifts favours none.
+A program may have a floor: a shader that reads what it reads and computes nothing, whose time is taken off.
+
+On a software rasteriser (llvmpipe, SwiftShader) the times are the CPU's: compare them, but do not quote them.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from time import perf_counter
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+import numpy.typing as npt
+
+from sssgen.harness import backends
+from sssgen.harness.backends.backend_interface import Text, refused
+from sssgen.harness.backends.opengl import OpenGL, is_loose
+from sssgen.harness.compilers.gl_driver import messages
+from sssgen.targets.numpy_textures import Texture
+
+SIZE = (1920, 1080)
+ROUNDS = 31
+SAMPLE = 2.0
+"""Milliseconds of drawing behind one number: well above any timer's resolution."""
+WARM_UP = 300.0
+"""Milliseconds of drawing before the first number, in which a GPU raises its clocks."""
+MOST_DRAWS = 1000
+
+_SOFTWARE = re.compile("llvmpipe|softpipe|swiftshader|software", re.IGNORECASE)
+_SCREEN = """#version 330 core
+out vec2 v_uv;
+
+void main() {
+    vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
+    v_uv = 0.5 * corner + 0.5;
+    gl_Position = vec4(corner, 0.0, 1.0);
+}
+"""
+
+
+class Program(NamedTuple):
+    """A full-screen fragment shader, and what it reads."""
+
+    name: str
+    fragment: str
+    """GLSL 3.30 with its `#version`; it may read `in vec2 v_uv`, 0..1, and writes one vec4."""
+    uniforms: Mapping[str, Any] = {}
+    """Numbers by name; a matrix column by column. Names that the driver has dropped are passed over."""
+    textures: Mapping[str, Texture | backends.Array] = {}
+    """By name. An array (height, width, 4) is kept in float32, and meant for texelFetch."""
+    floor: str = ""
+    """The text of the floor, which has the same uniforms and textures; '' for none."""
+    evaluations: int = 1
+    """How often each pixel computes what is to be timed."""
+
+
+class Device(NamedTuple):
+    """What has drawn."""
+
+    renderer: str
+    version: str
+    software: bool
+    """A rasteriser on the CPU: only ratios of its times mean anything."""
+
+
+class Spread(NamedTuple):
+    """The middle of what the rounds found, and between what eight of ten lie."""
+
+    median: float
+    low: float
+    """The 10th percentile."""
+    high: float
+    """The 90th percentile."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """The times of programs that took turns."""
+
+    device: Device
+    size: tuple[int, int]
+    rounds: int
+    evaluations: Mapping[str, int]
+    raw_times: Mapping[str, npt.NDArray[np.float64]]
+    """Program → (rounds,): ms of a draw."""
+    net_times: Mapping[str, npt.NDArray[np.float64]]
+    """Program → (rounds,): ms of one evaluation at every pixel, the floor taken off."""
+
+    def raw(self, name: str) -> Spread:
+        """The time of a whole draw, in ms."""
+        return _spread(self.raw_times[name])
+
+    def net(self, name: str) -> Spread:
+        """The time of one evaluation at every pixel, in ms: less the floor's, by the number of evaluations.
+
+        What a GPU computes while it waits for memory costs nothing in a single evaluation; many show the arithmetic.
+        """
+        return _spread(self.net_times[name])
+
+    def ratio(self, name: str, other: str) -> Spread:
+        """How many times the net time of `other` that of `name` is, each round by itself."""
+        # a floor's noise may exceed a cheap program's time: no ratio is of less than nothing
+        return _spread(np.maximum(self.net_times[name], 0.0) / np.maximum(self.net_times[other], 1e-9))
+
+    def record(self) -> dict[str, Any]:
+        """All of it for JSON. `software` says that the times are to be shown as ratios only."""
+        return {
+            "device": self.device.renderer,
+            "driver": self.device.version,
+            "software": self.device.software,
+            "size": list(self.size),
+            "rounds": self.rounds,
+            "programs": {
+                name: {
+                    "evaluations": self.evaluations[name],
+                    "frame_ms": _rounded(self.raw(name)),
+                    "net_ms": _rounded(self.net(name)),
+                }
+                for name in self.raw_times
+            },
+        }
+
+
+def measure(
+    programs: Sequence[Program], size: tuple[int, int] = SIZE, rounds: int = ROUNDS, sample: float = SAMPLE
+) -> Measured:
+    """Draws the programs in turns and times them; `sample` is the least time, in ms, behind one number.
+
+    Raises SssgenError where there is no OpenGL, and for a program that the driver refuses.
+    """
+    with _Stage(size) as stage:
+        drawn: dict[str, _Drawn] = {}
+        for program in programs:
+            for text in filter(None, (program.fragment, program.floor)):
+                key = _key(text, program)
+                drawn[key] = drawn.get(key) or stage.prepare(program, text)
+        _warm(stage, list(drawn.values()), sample)
+        times = {key: np.empty(rounds) for key in drawn}
+        for number in range(rounds):
+            keys = list(drawn)
+            np.random.default_rng(number).shuffle(keys)
+            for key in keys:
+                times[key][number] = stage.time(drawn[key])
+        raw = {program.name: times[_key(program.fragment, program)] for program in programs}
+        net = {
+            program.name: (raw[program.name] - (times[_key(program.floor, program)] if program.floor else 0.0))
+            / program.evaluations
+            for program in programs
+        }
+        counts = {program.name: program.evaluations for program in programs}
+        return Measured(stage.device, size, rounds, counts, raw, net)
+
+
+def picture(program: Program, size: tuple[int, int]) -> npt.NDArray[np.float32]:
+    """What a program draws, (height, width, 4), row 0 at the bottom. Raises SssgenError as `measure` does."""
+    with _Stage(size) as stage:
+        stage.time(stage.prepare(program, program.fragment))
+        return np.frombuffer(stage.frame.read(components=4, dtype="f4"), np.float32).reshape(size[1], size[0], 4)
+
+
+@dataclass
+class _Drawn:
+    """A program in the driver, with what it is bound to."""
+
+    array: Any
+    textures: list[Any]
+    """By texture unit."""
+    draws: int = 1
+    """How many make one sample."""
+
+
+class _Stage:
+    """The frame that all programs draw into, and the timer. What it made is released at its end."""
+
+    def __init__(self, size: tuple[int, int]) -> None:
+        self.gpu = cast(OpenGL, backends.needed("gl"))
+        self.context: Any = self.gpu.context
+        self.made: list[Any] = []
+        self.uploaded: dict[int, Any] = {}
+        self.size = size
+        info = self.context.info
+        software = bool(_SOFTWARE.search(info["GL_RENDERER"]))
+        self.device = Device(info["GL_RENDERER"], info["GL_VERSION"], software)
+
+    def __enter__(self) -> _Stage:
+        self.context.__enter__()
+        self.frame = self._keep(self.context.framebuffer([self._keep(self.context.texture(self.size, 4, dtype="f4"))]))
+        self.query = self.context.query(time=True)
+        self.frame.use()
+        self.context.viewport = (0, 0, *self.size)
+        self.context.disable(self.context.DEPTH_TEST | self.context.BLEND | self.context.CULL_FACE)
+        return self
+
+    def __exit__(self, *failed: Any) -> None:
+        for one in reversed(self.made):
+            one.release()
+        self.context.__exit__(*failed)
+
+    def _keep(self, one: Any) -> Any:
+        self.made.append(one)
+        return one
+
+    def prepare(self, program: Program, text: str) -> _Drawn:
+        """A text in the driver, with the program's uniforms and textures."""
+        try:
+            linked = self._keep(self.context.program(vertex_shader=_SCREEN, fragment_shader=text))
+        except Exception as error:
+            raise refused(f"gl: {program.name}", Text(text), messages(str(error))) from None
+        textures: list[Any] = []
+        for name in (name for name in linked if is_loose(linked[name])):
+            if name in program.textures:
+                linked[name].value = len(textures)
+                textures.append(self._texture(program.textures[name]))
+            elif name in program.uniforms:
+                _write(linked[name], program.uniforms[name])
+        return _Drawn(self._keep(self.context.vertex_array(linked, [])), textures)
+
+    def _texture(self, data: Texture | backends.Array) -> Any:
+        if id(data) not in self.uploaded:
+            self.uploaded[id(data)] = self._keep(self._upload(data))
+        return self.uploaded[id(data)]
+
+    def _upload(self, data: Texture | backends.Array) -> Any:
+        if isinstance(data, Texture):
+            return self.gpu.upload(data)
+        texels = np.ascontiguousarray(data, np.float32)
+        made = self.context.texture(texels.shape[1::-1], 4, texels.tobytes(), dtype="f4")
+        made.filter = (self.context.NEAREST, self.context.NEAREST)
+        return made
+
+    def time(self, drawn: _Drawn) -> float:
+        """Milliseconds of one draw."""
+        for unit, texture in enumerate(drawn.textures):
+            texture.use(unit)
+        self.context.finish()
+        return self._timed(lambda: [drawn.array.render(vertices=3) for _ in range(drawn.draws)]) / drawn.draws
+
+    def _timed(self, work: Callable[[], object]) -> float:
+        # a software rasteriser draws after the query has ended
+        if self.device.software:
+            start = perf_counter()
+            work()
+            self.context.finish()
+            return 1e3 * (perf_counter() - start)
+        with self.query:
+            work()
+        return float(self.query.elapsed) * 1e-6
+
+
+def _warm(stage: _Stage, drawn: Sequence[_Drawn], sample: float) -> None:
+    """Draws until clocks and caches have settled, then finds how many draws each sample takes."""
+    for one in drawn:
+        stage.time(one)  # some drivers compile at the first draw
+    spent = 0.0
+    while spent < (0.0 if stage.device.software else WARM_UP):
+        spent += sum(stage.time(one) for one in drawn)
+    for one in drawn:
+        once = min(stage.time(one) for _ in range(2))
+        one.draws = int(np.clip(np.ceil(sample / max(once, 1e-6)), 1, MOST_DRAWS))
+
+
+def _key(text: str, program: Program) -> str:
+    """Programs of the same text, numbers and textures are the same: floors often are."""
+    values = sorted((name, str(np.asarray(value).tolist())) for name, value in program.uniforms.items())
+    return repr((text, values, sorted((name, id(data)) for name, data in program.textures.items())))
+
+
+def _write(member: Any, value: Any) -> None:
+    kind = {"f": np.float32, "I": np.uint32}.get(member.fmt[-1], np.int32)
+    kept = 4 * member.dimension * member.array_length  # of an array the driver may drop what is not read
+    member.write(np.ascontiguousarray(value, kind).tobytes()[:kept])
+
+
+def _spread(values: npt.NDArray[np.float64]) -> Spread:
+    low, median, high = (float(value) for value in np.percentile(values, [10.0, 50.0, 90.0]))
+    return Spread(median, low, high)
+
+
+def _rounded(spread: Spread) -> dict[str, float]:
+    return {name: float(f"{value:.5g}") for name, value in spread._asdict().items()}

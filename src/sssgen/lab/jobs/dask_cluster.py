@@ -1,0 +1,77 @@
+"""Work items on a Dask cluster (https://distributed.dask.org): what a lost worker had, another one computes.
+
+    dask scheduler
+    dask worker tcp://HOST:8786 --nthreads 1 --nworkers 8
+
+One thread a worker: a driver's context belongs to the thread that made it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+from collections.abc import Generator, Iterator
+from typing import Any
+
+from sssgen.lab.jobs.result_store import encoded
+from sssgen.lab.jobs.work_items import Ended, Failure, Task, execute
+from sssgen.support.diagnostics import failure
+from sssgen.support.extras import need
+
+SECONDS = 5
+"""How long a scheduler may take to answer."""
+WORKERS_SECONDS = 30
+"""How long it may take until it has a worker."""
+
+
+def on_cluster(tasks: list[Task], address: str) -> Generator[Ended]:
+    """The tasks as they end; to close it takes the others back. Raises SssgenError where there is no cluster."""
+    distributed = need("distributed", extra="cluster")
+    with _client(distributed, address) as client:
+        futures = {client.submit(execute, one, key=f"sssgen-{one.key}"): one for one in tasks}
+        ended = distributed.as_completed(list(futures), loop=client.loop, with_results=True, raise_errors=False)
+        for future, result in ended:
+            one = futures.pop(future)
+            if future.status == "cancelled":
+                raise failure(f"the Dask scheduler at {address} was lost", "what is done is kept: run it again")
+            if future.status == "error":
+                result = encoded(Failure(one.name, _told(result)))
+            yield one.key, result
+
+
+def _told(error: Any) -> str:
+    """What an error says that is not the item's own: a worker died, again and again, or cannot import it."""
+    found = error[1] if isinstance(error, tuple) else error
+    return f"{type(found).__name__}: {found}"
+
+
+@contextlib.contextmanager
+def _client(distributed: Any, address: str) -> Iterator[Any]:
+    logs = [logging.getLogger(name) for name in ("distributed", "distributed.client")]
+    levels = [log.level for log in logs]
+    for log in logs:
+        log.setLevel(logging.CRITICAL)  # what it says of lost workers is not for those who wait for a chart
+    try:
+        with _connected(distributed, address) as client:
+            yield client
+    finally:
+        for log, level in zip(logs, levels, strict=True):
+            log.setLevel(level)
+
+
+@contextlib.contextmanager
+def _connected(distributed: Any, address: str) -> Iterator[Any]:
+    try:
+        client = distributed.Client(address, timeout=SECONDS, set_as_default=False)
+    except (OSError, ValueError, TypeError) as error:
+        hint = "start one with `dask scheduler`, and give its address, as tcp://HOST:8786"
+        raise failure(f"no Dask scheduler answers at {address}: {error}", hint) from None
+    try:
+        try:
+            client.wait_for_workers(1, timeout=WORKERS_SECONDS)
+        except TimeoutError:
+            hint = f"dask worker {address} --nthreads 1"
+            raise failure(f"the Dask scheduler at {address} has no workers", hint) from None
+        yield client
+    finally:
+        client.close()

@@ -1,0 +1,67 @@
+"""Pictures of scenes as work items: a PNG, and how far the back ends' pictures are apart.
+
+A scene is named by its file in this installation, which every worker has.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import io
+import os
+import threading
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from sssgen.harness import backends
+from sssgen.harness.backends import Backend
+from sssgen.harness.render.scene_render import render
+from sssgen.harness.scenes.scene import Scene
+from sssgen.harness.scenes.scene_loading import load
+from sssgen.support.extras import need
+from sssgen.support.paths import place
+
+_one = threading.Lock()
+"""A worker's back ends draw one picture at a time."""
+
+
+class Apart(NamedTuple):
+    """How far a back end's picture is from what NumPy draws in float64."""
+
+    worst: float
+    """The largest difference of a channel, in 1/255 of the encoded sRGB value."""
+    beyond: int
+    """The pixels with a channel that is more than 1/255 off."""
+
+
+def picture(example: str) -> bytes:
+    """An example's scene as PNG, drawn by OpenGL."""
+    with _one:
+        color = render(_scene(example), _backend("gl")).encoded
+    buffer = io.BytesIO()
+    need("PIL.Image", "pillow").fromarray(np.rint(255.0 * color).astype(np.uint8)).save(buffer, "PNG", optimize=True)
+    return buffer.getvalue()
+
+
+def apart(example: str, names: Sequence[str], size: tuple[int, int] | None, samples: int | None) -> list[Apart]:
+    """An example's scene on the back ends named, held against NumPy.
+
+    `size`, in pixels, and `samples`, a pixel, are the scene's own where they are None.
+    """
+    scene = _scene(example)
+    scene = dataclasses.replace(scene, size=size or scene.size, samples=samples or scene.samples)
+    with _one:
+        wanted = render(scene, _backend("numpy")).encoded
+        far = [255.0 * np.abs(render(scene, _backend(name)).encoded - wanted).max(axis=2) for name in names]
+    return [Apart(float(one.max()), int((one > 1.0).sum())) for one in far]
+
+
+def _scene(example: str) -> Scene:
+    return load(os.path.join(place("examples"), example, "scene.toml"))
+
+
+@functools.cache
+def _backend(name: str) -> Backend:
+    return backends.get(name)

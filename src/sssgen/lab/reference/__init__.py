@@ -1,0 +1,1 @@
+"""Reference solutions: light transport, exact lengths inside bodies, true refraction."""

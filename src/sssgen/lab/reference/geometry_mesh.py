@@ -1,0 +1,145 @@
+"""Closed triangle meshes of geometry, for renderers that know nothing else.
+
+A box and a slab are exact, and so is a mesh, and the union of such. Triangles have their corners on a torus, and on
+the zero level of a distance function, and lie inside them by at most c² / 8r, for edges of length c and a radius of
+curvature r; what is thinner than a cell of the grid may be missed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+
+from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
+from sssgen.support.diagnostics import failure
+from sssgen.support.extras import need
+
+Array = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int64]
+
+RESOLUTION = 96
+"""Cells along a side of the grid about a distance function, and half of the steps around a torus and its tube."""
+
+_NEWTON_STEPS = 4
+
+
+def mesh_of(geometry: Geometry, resolution: int = RESOLUTION) -> tuple[Array, Indices]:
+    """A closed mesh in world space: vertices (v, 3), and faces (f, 3), counter-clockwise seen from outside.
+
+    Raises SssgenError for a mesh with a hole, a distance function that is nowhere negative, a missing libigl.
+    """
+    if isinstance(geometry, Mesh):
+        vertices, faces = geometry.triangles.places, geometry.triangles.corners
+        _check_closed(vertices, faces, geometry.path)
+    elif isinstance(geometry, Torus):
+        vertices, faces = _ring(geometry.major, geometry.minor, 2 * resolution)
+    elif isinstance(geometry, Box | Slab):
+        vertices, faces = _box(np.array(box_size(geometry)))
+    elif isinstance(geometry, Union):
+        vertices, faces = _united([mesh_of(part, resolution) for part in geometry.parts])
+    else:
+        reach = geometry.reach if isinstance(geometry, Distance) else _radius(geometry)
+        vertices, faces = _level(geometry.distance, reach, resolution)
+    if _volume(vertices, faces) < 0.0:
+        faces = faces[:, ::-1]
+    matrix = geometry.to_world()
+    return vertices @ matrix[:3, :3].T + matrix[:3, 3], np.ascontiguousarray(faces)
+
+
+def box_size(box: Box | Slab) -> tuple[float, float, float]:
+    """The lengths of the edges along x, y and z, in object space."""
+    return box.size if isinstance(box, Box) else (box.width, box.height, box.thickness)
+
+
+def _radius(geometry: Geometry) -> float:
+    if isinstance(geometry, Ball):
+        return geometry.radius
+    if isinstance(geometry, Capsule):
+        return 1.01 * (geometry.radius + 0.5 * geometry.length)
+    raise failure(f"there is no mesh of a {type(geometry).__name__}")
+
+
+def _box(size: Array) -> tuple[Array, Indices]:
+    corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+    quads = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
+    return corners * size, _halves(quads)
+
+
+def _ring(major: float, minor: float, steps: int) -> tuple[Array, Indices]:
+    """A torus about y, as many steps around the axis as around the tube."""
+    around, tube = (angle.ravel() for angle in np.meshgrid(*[np.arange(steps) * (2.0 * np.pi / steps)] * 2))
+    distance = major + minor * np.cos(tube)
+    vertices = np.stack([distance * np.sin(around), minor * np.sin(tube), distance * np.cos(around)], axis=1)
+    at = np.arange(steps * steps).reshape(steps, steps)
+    right, up = np.roll(at, -1, axis=1), np.roll(at, -1, axis=0)
+    quads = np.stack([at, right, np.roll(right, -1, axis=0), up], axis=-1).reshape(-1, 4)
+    return vertices, _halves(quads)
+
+
+def _united(parts: list[tuple[Array, Indices]]) -> tuple[Array, Indices]:
+    """The surface of closed meshes together, without what lies inside one of them."""
+    manifold = need("manifold3d", "manifold3d", "reference")
+    solids = [
+        manifold.Manifold(manifold.Mesh64(np.ascontiguousarray(vertices), np.ascontiguousarray(faces, np.uint64)))
+        for vertices, faces in parts
+    ]
+    whole = manifold.Manifold.batch_boolean(solids, manifold.OpType.Add).to_mesh64()
+    return np.asarray(whole.vert_properties, np.float64)[:, :3], np.asarray(whole.tri_verts, np.int64)
+
+
+def _halves(quads: Indices) -> Indices:
+    return np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+
+
+def _level(distance: Callable[[Array], Array], reach: float, resolution: int) -> tuple[Array, Indices]:
+    """The surface where the distance is 0, closed at the ball of radius `reach`: marching cubes, and Newton's steps."""
+
+    def cut(points: Array) -> Array:
+        values: Array = np.maximum(distance(points), np.linalg.norm(points, axis=1) - reach)
+        return values
+
+    igl = need("igl", "libigl")
+    count = resolution + 1
+    side = np.linspace(-1.0, 1.0, count) * reach * (1.0 + 2.0 / resolution)
+    z, y, x = np.meshgrid(side, side, side, indexing="ij")
+    grid = np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
+    values = np.concatenate([cut(part) for part in np.array_split(grid, 16)])
+    if not (values < 0.0).any():
+        raise failure("the distance function is nowhere negative: there is no inside", "widen its reach")
+    # a value of just 0 at a corner of the grid makes triangles without area
+    values = np.where(np.abs(values) < 1e-9 * reach, 1e-9 * reach, values)
+    found = igl.marching_cubes(values, grid, count, count, count, 0.0)
+    vertices, faces = np.asarray(found[0], np.float64), np.asarray(found[1], np.int64)
+    return _on_level(cut, vertices, 0.5 * float(side[1] - side[0])), faces
+
+
+def _on_level(cut: Callable[[Array], Array], vertices: Array, farthest: float) -> Array:
+    """Vertices moved onto the zero level, by Newton's steps along the gradient; none farther than `farthest`."""
+    step = 1e-4 * farthest
+    points = vertices
+    for _ in range(_NEWTON_STEPS):
+        slope = np.stack([cut(points + step * way) - cut(points - step * way) for way in np.eye(3)], axis=1)
+        slope /= 2.0 * step
+        square = np.maximum(np.einsum("nc,nc->n", slope, slope), 1e-6)
+        moved = points - (cut(points) / square)[:, None] * slope - vertices
+        length = np.linalg.norm(moved, axis=1, keepdims=True)
+        points = vertices + moved * np.minimum(1.0, farthest / np.maximum(length, 1e-30))
+    closer = np.abs(cut(points)) <= np.abs(cut(vertices))
+    return np.where(closer[:, None], points, vertices)
+
+
+def _volume(vertices: Array, faces: Indices) -> float:
+    first, second, third = np.moveaxis(vertices[faces], 1, 0)
+    return float(np.einsum("nc,nc->", first, np.cross(second, third)) / 6.0)
+
+
+def _check_closed(vertices: Array, faces: Indices, path: str) -> None:
+    """Raises SssgenError unless as many triangles run along each edge one way as the other."""
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    there = edges[:, 0] * len(vertices) + edges[:, 1]
+    back = edges[:, 1] * len(vertices) + edges[:, 0]
+    if not np.array_equal(np.sort(there), np.sort(back)):
+        message = "the mesh has a hole, or triangles that face different ways: light transport needs an inside"
+        raise failure(message, "close it, and make all its triangles counter-clockwise seen from outside", path)

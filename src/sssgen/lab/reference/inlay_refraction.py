@@ -1,0 +1,91 @@
+"""Where an inlay is seen through a clear surface: true refraction in three dimensions, on flat and curved bodies.
+
+The inlay lies `depth` below the surface, along its normal, all over. A ray refracts where it enters, goes straight on,
+and meets the layer; the place seen is the one on the surface right above. On a plane this is seed 4's formula.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from sssgen.harness.backends import Array
+from sssgen.lab.scene.measured_scene import Situation
+from sssgen.lab.scene.view_points import Points
+
+STEPS = 400
+TOUCHED = 1e-9
+
+
+class Seen(NamedTuple):
+    """What n points show of the inlay."""
+
+    hit: Array
+    """(n,): whether the ray meets the layer at all; through a curved edge it may pass it"""
+    offset: Array
+    """(2, n): the way along the surface, in world units along T and B, from the point to what it shows"""
+    depth: float
+
+
+def refracted(V: Array, N: Array, eta: float) -> Array:
+    """The unit directions (3, n) in which rays from the eye go on inside; `eta` is n outside over n inside.
+
+    Snell's law in vector form; 0 past the critical angle.
+    """
+    cosine = np.einsum("cn,cn->n", V, N)
+    k = 1.0 - eta**2 * (1.0 - cosine**2)
+    inside = -eta * V + (eta * cosine - np.sqrt(np.maximum(k, 0.0))) * N
+    return np.where(k >= 0.0, inside, 0.0)
+
+
+def plane_offset(sine: Array, depth: float, n: float) -> Array:
+    """How far an inlay below a plane seems to have moved, for an eye at an angle with that sine: closed form.
+
+    depth · sin θ / √(n² − sin² θ), with n = n inside over n outside.
+    """
+    return depth * sine / np.sqrt(n**2 - sine**2)
+
+
+def seen(situation: Situation, at: Points) -> Seen:
+    """What the situation's points show of its inlay. Its geometry's distance must be exact inside."""
+    assert situation.inlay is not None
+    geometry, inlay = situation.geometry, situation.inlay
+    N, T, B = at.inputs["N"], at.inputs["T"], at.inputs["B"]
+    inwards, scale = geometry.to_object(), geometry.scale
+    depth = inlay.depth / scale
+    start = at.inputs["P_object"]
+    turn = inwards[:3, :3] * scale
+    ray = turn @ refracted(at.inputs["V"], N, inlay.outside_ior / inlay.ior)
+    t = np.zeros(at.count)
+    hit = np.zeros(at.count, np.bool_)
+    going = np.abs(ray).any(axis=0)
+    for _ in range(STEPS):
+        # no layer is nearer than the distance says
+        left = depth + geometry.distance((start + t * ray).T)
+        hit |= going & (left < TOUCHED * depth)
+        going &= (left >= TOUCHED * depth) & (left < depth * 1.001 + TOUCHED)
+        if not going.any():
+            break
+        t = np.where(going, t + np.maximum(left, 0.0), t)
+    layer = start + t * ray
+    outward = _outward(situation, layer, depth)
+    chord = scale * turn.T @ (layer + depth * outward - start)
+    # along the surface the way is an arc: as on the ball that has these two normals
+    half = 0.5 * np.arccos(np.clip((outward * (turn @ N)).sum(axis=0), -1.0, 1.0))
+    arc = np.linalg.norm(chord, axis=0) / np.sinc(half / np.pi)
+    along = np.stack([(chord * T).sum(axis=0), (chord * B).sum(axis=0)])
+    length = np.linalg.norm(along, axis=0)
+    return Seen(hit, along * np.where(length > 0.0, arc / np.where(length > 0.0, length, 1.0), 0.0), inlay.depth)
+
+
+def _outward(situation: Situation, layer: Array, depth: float) -> Array:
+    """The surface's unit normals right above places of the layer, by the gradient of the distance: (3, n)."""
+    step = 1e-5 * max(depth, 1e-3)
+    distance = situation.geometry.distance
+    slopes = np.stack([
+        distance((layer + step * way[:, None]).T) - distance((layer - step * way[:, None]).T) for way in np.eye(3)
+    ])  # fmt: skip
+    length = np.linalg.norm(slopes, axis=0)
+    outward: Array = slopes / np.where(length > 0.0, length, 1.0)
+    return outward

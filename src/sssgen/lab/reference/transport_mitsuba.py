@@ -1,0 +1,203 @@
+"""The reference's renderer: Mitsuba 3 traces given rays through one homogeneous body, for one colour channel at a time.
+
+Of its variants `scalar_rgb` is used, which needs neither a GPU nor LLVM, with the integrator `volpath` and no limit to
+the depth of paths.
+"""
+
+from __future__ import annotations
+
+import importlib
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from sssgen.harness.scenes.geometry import Ball, Box, Geometry, Slab
+from sssgen.lab.reference.geometry_mesh import RESOLUTION, box_size, mesh_of
+from sssgen.support.diagnostics import failure
+
+Array = npt.NDArray[np.float64]
+
+_BLOCK = 32
+"""The side of a render block in pixels. It is set as Mitsuba's own choice, and so the noise, follows the threads."""
+
+_FAINT = 1e-3
+"""From which weight on paths end by chance: so late that few of those that go on weigh much."""
+
+_ROULETTE_ALBEDO = 0.95
+"""Up to which albedo. Mitsuba lets at most 95 of 100 go on, so above, those that do would grow heavier without end."""
+
+_NEVER = 2**30
+
+_FAR = 1000.0
+"""How many of the body's radii a light of some width is away."""
+
+
+@dataclass(frozen=True)
+class Body:
+    """What Mitsuba is given of a geometry, in world space: a shape of its own with a matrix, or triangles."""
+
+    kind: str
+    """sphere, cube (from −1 to 1) or mesh"""
+    matrix: Array
+    """(4, 4): to world space; of a mesh 1"""
+    vertices: Array
+    """(v, 3)"""
+    faces: npt.NDArray[np.int64]
+    """(f, 3)"""
+    centre: Array
+    """(3,), with `radius` a ball that holds the body"""
+    radius: float
+
+    def content(self) -> bytes:
+        """What tells it from other bodies."""
+        return b"".join([self.kind.encode(), self.matrix.tobytes(), self.vertices.tobytes(), self.faces.tobytes()])
+
+
+def body_of(geometry: Geometry, resolution: int = RESOLUTION) -> Body:
+    """A ball, a box and a slab exactly; all else as triangles, see `shapes_mesh`. Raises SssgenError as that does."""
+    none = np.zeros((0, 3))
+    if isinstance(geometry, Ball | Box | Slab):
+        half = np.full(3, geometry.radius) if isinstance(geometry, Ball) else 0.5 * np.array(box_size(geometry))
+        reach = geometry.radius if isinstance(geometry, Ball) else float(np.linalg.norm(half))
+        matrix = geometry.to_world() @ np.diag([*half, 1.0])
+        kind = "sphere" if isinstance(geometry, Ball) else "cube"
+        where = np.array(geometry.position, np.float64)
+        return Body(kind, matrix, none, none.astype(np.int64), where, reach * geometry.scale)
+    vertices, faces = mesh_of(geometry, resolution)
+    centre = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
+    radius = float(np.linalg.norm(vertices - centre, axis=1).max())
+    return Body("mesh", np.eye(4), vertices, faces, centre, radius)
+
+
+@dataclass(frozen=True)
+class Channel:
+    """A medium in one colour channel."""
+
+    extinction: float
+    albedo: float
+    anisotropy: float
+    ior: float
+
+
+@dataclass(frozen=True)
+class Light:
+    """The only light: an irradiance of 1 on a plane that faces it."""
+
+    direction: tuple[float, float, float] | None
+    """Unit, world space, towards the light; None for light from everywhere alike"""
+    radius: float = 0.0
+    """In degrees, as seen from the body: 0 for a light in one direction alone, else a disc; below 90"""
+
+
+class Renderer:
+    """Renders of n rays through one body, in one channel; each call of `batch` is independent of the others."""
+
+    def __init__(
+        self, body: Body, channel: Channel, light: Light, rays: tuple[Array, Array], base: int, scatterings: int
+    ) -> None:
+        """`rays` are origins and unit directions, (n, 3) each; `base` tells one stream of chance from another.
+
+        With `scatterings` above 0 only light that was scattered at most so often counts.
+        """
+        self._mitsuba = mitsuba()
+        # Mitsuba seeds pixel i of block b in render s with  base + s · (pixels) + b · (a block's pixels) + i.  The
+        # film is one line high, so blocks reach past it: renders this far apart never share a seed.
+        blocks = -(-len(rays[0]) // _BLOCK)
+        self._stride = -(-blocks * _BLOCK * _BLOCK // len(rays[0]))
+        self._scene = self._load(body, channel, light, rays, base, scatterings)
+
+    def batch(self, number: int, samples: int) -> Array:
+        """π times the radiance along each ray, (n,), by `samples` paths each."""
+        mi = self._mitsuba
+        image = np.array(mi.render(self._scene, spp=samples, seed=(number * self._stride) % 2**32))
+        return np.pi * image[0, :, 0].astype(np.float64)
+
+    def _load(
+        self, body: Body, channel: Channel, light: Light, rays: tuple[Array, Array], base: int, scatterings: int
+    ) -> Any:
+        mi = self._mitsuba
+        line = {"type": "hdrfilm", "height": 1, "rfilter": {"type": "box"}, "component_format": "float32"}
+        sensors: dict[str, Any] = {
+            f"ray{i:07}": {"type": "radiancemeter", "origin": origin, "direction": way, "film": {**line, "width": 1}}
+            for i, (origin, way) in enumerate(zip(rays[0].tolist(), rays[1].tolist(), strict=True))
+        }
+        film = {**line, "width": len(rays[0]), "pixel_format": "rgb"}
+        return mi.load_dict(
+            {
+                "type": "scene",
+                "integrator": {
+                    "type": "volpath",
+                    "max_depth": 1 + scatterings if scatterings else -1,
+                    "rr_depth": _roulette_depth(channel.albedo),
+                    "block_size": _BLOCK,
+                },
+                "sensor": {"type": "batch", "film": film, "sampler": {"type": "independent", "seed": base}, **sensors},
+                "body": self._shape(body, channel),
+                "light": self._light(body, light),
+            }
+        )
+
+    def _shape(self, body: Body, channel: Channel) -> Any:
+        mi = self._mitsuba
+        medium = {
+            "type": "homogeneous",
+            "sigma_t": channel.extinction,
+            "albedo": channel.albedo,
+            "has_spectral_extinction": False,
+            "phase": {"type": "hg", "g": channel.anisotropy} if channel.anisotropy else {"type": "isotropic"},
+        }
+        boundary = (
+            {"type": "null"} if channel.ior == 1.0 else {"type": "dielectric", "int_ior": channel.ior, "ext_ior": 1.0}
+        )
+        if body.kind != "mesh":
+            to_world = mi.ScalarTransform4f(body.matrix)
+            return {"type": body.kind, "to_world": to_world, "bsdf": boundary, "interior": medium}
+        given = mi.Properties()
+        given["mesh_bsdf"], given["interior"] = mi.load_dict(boundary), mi.load_dict(medium)
+        mesh = mi.Mesh("body", len(body.vertices), len(body.faces), props=given)
+        parameters = mi.traverse(mesh)
+        parameters["vertex_positions"] = np.ravel(body.vertices).astype(np.float32)
+        parameters["faces"] = np.ravel(body.faces).astype(np.uint32)
+        parameters.update()
+        return mesh
+
+    def _light(self, body: Body, light: Light) -> Any:
+        mi = self._mitsuba
+        if light.direction is None:
+            return {"type": "constant", "radiance": float(1.0 / np.pi)}
+        if light.radius == 0.0:
+            return {"type": "directional", "direction": [-x for x in light.direction], "irradiance": 1.0}
+        away = _FAR * body.radius
+        middle = body.centre + away * np.array(light.direction)
+        turn = mi.ScalarTransform4f().look_at(
+            origin=middle.tolist(), target=body.centre.tolist(), up=_across(np.array(light.direction)).tolist()
+        )
+        wide = np.tan(np.radians(light.radius)) * away
+        radiance = float(1.0 / (np.pi * np.sin(np.radians(light.radius)) ** 2))
+        emitter = {"type": "area", "radiance": radiance}
+        return {"type": "disk", "to_world": turn @ mi.ScalarTransform4f().scale(float(wide)), "emitter": emitter}
+
+
+def _roulette_depth(albedo: float) -> int:
+    """After how many encounters a path's weight is faint; never where roulette would do harm."""
+    if albedo > _ROULETTE_ALBEDO:
+        return _NEVER
+    return 1 + (math.ceil(math.log(_FAINT) / math.log(albedo)) if albedo > 0.0 else 0)
+
+
+def _across(direction: Array) -> Array:
+    """Some direction across another."""
+    return np.cross(direction, np.eye(3)[np.argmin(np.abs(direction))])
+
+
+def mitsuba() -> Any:
+    """Mitsuba, ready for use. Raises SssgenError where it is missing."""
+    try:
+        module = importlib.import_module("mitsuba")
+    except ImportError as error:
+        raise failure(f"the package 'mitsuba' is missing: {error}", "pip install 'sssgen[reference]'") from None
+    module.set_variant("scalar_rgb")
+    return module

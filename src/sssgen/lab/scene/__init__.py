@@ -1,0 +1,1 @@
+"""Scenes with physical data: media, bodies and the points that a view shows."""

@@ -1,0 +1,175 @@
+"""Situations: scenes that say what is physically there, so that materials can be measured on them.
+
+A scene file with `[medium]` (what the body is made of) or `[inlay]` (a picture below a clear surface) is one. Its body
+is lit by lights from afar.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sssgen.harness.scenes.camera import Camera
+from sssgen.harness.scenes.geometry import Distance, Geometry, Mesh, Union
+from sssgen.harness.scenes.scene import Light, Scene
+from sssgen.harness.scenes.scene_loading import load as load_scene
+from sssgen.harness.scenes.toml_table import NOT_NEGATIVE, POSITIVE, Table
+from sssgen.lab.jobs.result_store import encoded
+from sssgen.lab.scene import media
+from sssgen.lab.scene.media import Medium
+from sssgen.support import cache
+from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.support.paths import place, posix, stem
+
+SIDE = 64
+"""Pixels along the longer side of what is measured."""
+HELD_OUT = 50.0
+"""Degrees about the vertical through the camera's target by which the held-out view is turned."""
+
+
+@dataclass(frozen=True)
+class Inlay:
+    """A picture below a clear surface."""
+
+    depth: float
+    """World units below the surface, along its normal"""
+    ior: float = 1.5
+    outside_ior: float = 1.0
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """What parallax techniques call these."""
+        indices = {"ior": self.ior, "outside_ior": self.outside_ior, "relative_ior": self.ior / self.outside_ior}
+        return {"depth": self.depth, **indices}
+
+
+@dataclass(frozen=True, eq=False)
+class Situation:
+    """What is measured on. Two that say the same, of files with the same content, are equal."""
+
+    name: str
+    title: str
+    geometry: Geometry
+    camera: Camera
+    lights: tuple[Light, ...]
+    medium: Medium | None
+    inlay: Inlay | None
+    size: tuple[int, int] = (SIDE, SIDE)
+    contents: str = ""
+    """A digest of the files that the geometry is read from"""
+
+    @cached_property
+    def key(self) -> str:
+        """Tells it from every other."""
+        return cache.digest(encoded(self.__getstate__()))
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {one.name: getattr(self, one.name) for one in dataclasses.fields(self)}
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Situation) and self.key == other.key
+
+    def __hash__(self) -> int:
+        return hash(self.key)
+
+    def held_out(self) -> Situation:
+        """The same, seen from the side: nothing is fitted to this view."""
+        turn = np.radians(HELD_OUT)
+        x, y, z = np.subtract(self.camera.position, self.camera.target)
+        if np.hypot(x, z) < 1e-6 * abs(y):  # from straight above the turn would show the same
+            x = 0.5 * abs(y)
+        turned = np.array([np.cos(turn) * x + np.sin(turn) * z, y, np.cos(turn) * z - np.sin(turn) * x])
+        x, y, z = (float(value) for value in turned + self.camera.target)
+        return dataclasses.replace(self, camera=dataclasses.replace(self.camera, position=(x, y, z)))
+
+
+def names() -> dict[str, str]:
+    """The situations that come with the project: name → path."""
+    folder = os.path.join(place("examples"), "lab")
+    return {stem(name): os.path.join(folder, name) for name in sorted(os.listdir(folder)) if name.endswith(".toml")}
+
+
+def load(name: str) -> Situation:
+    """The situation of a scene file, or one of ours by name. Raises SssgenError with all that is wrong with it."""
+    known = names()
+    if not name.endswith(".toml") and "/" not in name and os.sep not in name:
+        if name not in known:
+            hint = did_you_mean(name, known) or f"give a path that ends in .toml, or one of: {', '.join(known)}"
+            raise failure(f"unknown scene '{name}'", hint)
+        name = known[name]
+    return of_scene(load_scene(name), name)
+
+
+def of_scene(scene: Scene, path: str) -> Situation:
+    """The situation that a scene describes. Raises SssgenError where it says too little to be measured."""
+    document, shown = scene.document, posix(path)
+    if not scene.measured:
+        hint = 'add [medium] with preset = "marble", say; or [inlay] with depth = 0.02: docs/accuracy.md'
+        raise failure("the scene does not say what its body is made of", hint, shown)
+    if scene.geometry is None:
+        raise failure("the scene has no geometry to measure", "add [geometry]", shown)
+    medium = _medium(scene) if "medium" in scene.measured else None
+    inlay = _inlay(scene) if "inlay" in scene.measured else None
+    for number, light in enumerate(scene.lights):
+        if light.direction is None and medium is not None:
+            span = document.place("light", number, "position").value
+            document.error(span, "only lights from afar can be measured", "write direction = […] towards the light")
+    if medium is not None and not scene.lights:
+        document.error(document.place().key, "nothing lights the scene", "add [[light]] with direction = […]")
+    document.reporter.check()
+    width, height = scene.size
+    scale = SIDE / max(width, height)
+    size = max(8, round(width * scale)), max(8, round(height * scale))
+    name = stem(path)
+    title = scene.title or name.replace("_", " ").capitalize()
+    geometry, camera, lights = scene.geometry, scene.camera, scene.lights
+    return Situation(name, title, geometry, camera, lights, medium, inlay, size, contents(geometry))
+
+
+def contents(geometry: Geometry) -> str:
+    """A digest of the files that a shape is read from, '' where there are none."""
+    if isinstance(geometry, Union):
+        return "".join(contents(part) for part in geometry.parts)
+    if isinstance(geometry, Mesh):
+        return cache.digest(Path(geometry.path).read_bytes())
+    if isinstance(geometry, Distance):
+        file = geometry.technique.rpartition(":")[0] or geometry.technique
+        path = Path(geometry.folder, file)
+        return cache.digest(path.read_bytes()) if path.is_file() else ""
+    return ""
+
+
+def _medium(scene: Scene) -> Medium | None:
+    keys = ("preset", "unit_mm", "absorption", "scattering", "anisotropy")
+    table = Table(scene.document, ("medium",), scene.measured["medium"], keys)
+    if "preset" in table.content:
+        for key in ("absorption", "scattering", "anisotropy"):
+            if key in table.content:
+                table.error(key, f"a preset has its own {key}", "give a preset, or the coefficients")
+        name = table.text("preset", "", media.media())
+        unit = table.number("unit_mm", 10.0, POSITIVE)
+        # the boundary is the engine's: its reflection is not what these techniques model
+        return media.preset(name, unit).matched() if name in media.media() else None
+    absorption: Any = table.vector("absorption", (0.0, 0.0, 0.0), NOT_NEGATIVE)
+    scattering: Any = table.vector("scattering", (5.0, 5.0, 5.0), NOT_NEGATIVE)
+    anisotropy = table.number("anisotropy", 0.0, (-0.95, 0.95))
+    if not any(scattering):
+        table.error("scattering", "nothing scatters in this medium", "no light would come through but straight on")
+    if "unit_mm" in table.content:
+        table.error("unit_mm", "coefficients are given per world unit", "leave unit_mm out, or name a preset")
+    return Medium("custom", absorption, scattering, anisotropy, 1.0, "the scene")
+
+
+def _inlay(scene: Scene) -> Inlay:
+    table = Table(scene.document, ("inlay",), scene.measured["inlay"], ("depth", "ior", "outside_ior"))
+    return Inlay(
+        table.number("depth", 0.05, (1e-6, 1.0)),
+        table.number("ior", 1.5, (1.0, 3.0)),
+        table.number("outside_ior", 1.0, (1.0, 3.0)),
+    )

@@ -1,0 +1,131 @@
+"""Translucent media: what light transport needs to know of a material, and presets from published measurements."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from sssgen.harness.scenes.toml_table import Table
+from sssgen.lang.loader import read_text
+from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.support.paths import posix
+from sssgen.support.toml_source import parse
+
+Spectrum = tuple[float, float, float]
+
+_KEYS = ("reduced_scattering", "absorption", "ior", "measured", "source")
+_FILE = os.path.join(os.path.dirname(__file__), "media.toml")
+_COEFFICIENT = (0.0, 1e6)
+
+
+@dataclass(frozen=True)
+class Medium:
+    """A homogeneous medium, for linear red, green and blue. Raises SssgenError for what no medium can be."""
+
+    name: str
+    absorption: Spectrum
+    """σa per world unit; at least 0"""
+    scattering: Spectrum
+    """σs per world unit; at least 0"""
+    anisotropy: float = 0.0
+    """g of Henyey and Greenstein's phase function, the mean cosine: between −1 and 1, 0 where all ways are equal"""
+    ior: float = 1.0
+    """Refractive index over that of the outside; 1 where the boundary neither reflects nor bends"""
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        for coefficient in (*self.absorption, *self.scattering):
+            if not 0.0 <= coefficient < float("inf"):
+                raise failure(f"the medium '{self.name}' has the coefficient {coefficient:g}", "it is at least 0")
+        if not -1.0 < self.anisotropy < 1.0:
+            message = f"the medium '{self.name}' has the anisotropy {self.anisotropy:g}"
+            raise failure(message, "it lies between -1 and 1; 0 scatters into all directions alike")
+        if not 1.0 <= self.ior <= 10.0:
+            raise failure(f"the medium '{self.name}' has the refractive index {self.ior:g}", "it goes from 1 to 10")
+
+    @property
+    def extinction(self) -> Spectrum:
+        """σt = σa + σs per world unit."""
+        red, green, blue = (a + s for a, s in zip(self.absorption, self.scattering, strict=True))
+        return red, green, blue
+
+    @property
+    def albedo(self) -> Spectrum:
+        """σs / σt, the part of the light that survives an encounter; 0 where there is nothing to meet."""
+        red, green, blue = (s / t if t > 0.0 else 0.0 for s, t in zip(self.scattering, self.extinction, strict=True))
+        return red, green, blue
+
+    def matched(self) -> Medium:
+        """The same medium behind a boundary that neither reflects nor bends."""
+        return replace(self, ior=1.0)
+
+
+@dataclass(frozen=True)
+class Measured:
+    """One medium of a file of media."""
+
+    reduced_scattering: Spectrum
+    """σs′ = σs (1 − g) per millimetre"""
+    absorption: Spectrum
+    """Per millimetre"""
+    ior: float
+    measured: bool
+    """Whether all of it is published; `source` says what is not"""
+    source: str
+
+
+def preset(name: str, unit_mm: float = 1.0, anisotropy: float = 0.0, file: str = "") -> Medium:
+    """The medium `name` of `media.toml`, or of `file`, where one world unit is `unit_mm` millimetres.
+
+    Publications give the reduced scattering. With g = 0 it is the scattering itself: light that scatters as much, but
+    alike into all directions, spreads alike deep inside (Wyman, Patterson and Wilson, Similarity relations for the
+    interaction parameters in radiation transport, 1989). With another g the scattering is σs′ / (1 − g).
+
+    Raises SssgenError for a medium that there is not, a faulty file, a unit that is not above 0, |g| ≥ 1.
+    """
+    known = media(file)
+    if name not in known:
+        raise failure(f"unknown medium '{name}'", did_you_mean(name, known) or f"media: {', '.join(known)}")
+    if not 0.0 < unit_mm < float("inf"):
+        raise failure(f"a world unit cannot be {unit_mm:g} mm", "unit_mm is above 0")
+    if not -1.0 < anisotropy < 1.0:
+        raise failure(f"the anisotropy cannot be {anisotropy:g}", "it lies between -1 and 1")
+    found = known[name]
+    return Medium(
+        name,
+        _scaled(found.absorption, unit_mm),
+        _scaled(found.reduced_scattering, unit_mm / (1.0 - anisotropy)),
+        anisotropy,
+        found.ior,
+        found.source,
+    )
+
+
+def media(file: str = "") -> Mapping[str, Measured]:
+    """The media of `media.toml`, or of `file`, by name. Raises SssgenError with all that is wrong with the file."""
+    path = file or _FILE
+    document = parse(read_text(path, posix(path)), posix(path))
+    found = {}
+    for name, content in document.data.items():
+        table = Table(document, (name,), content, _KEYS)
+        for key in ("reduced_scattering", "absorption", "source"):
+            if key not in table.content:
+                document.error(document.place(name).key, f"the medium '{name}' has no '{key}'", f"write {key} = …")
+        measured = table.content.get("measured", False)
+        if not isinstance(measured, bool):
+            table.error("measured", "'measured' is true or false")
+        found[name] = Measured(
+            table.vector("reduced_scattering", (1.0, 1.0, 1.0), _COEFFICIENT),
+            table.vector("absorption", (0.0, 0.0, 0.0), _COEFFICIENT),
+            table.number("ior", 1.0, (1.0, 10.0)),
+            measured is True,
+            table.text("source", ""),
+        )
+    document.reporter.check()
+    return found
+
+
+def _scaled(coefficients: Spectrum, factor: float) -> Spectrum:
+    red, green, blue = (factor * coefficient for coefficient in coefficients)
+    return red, green, blue

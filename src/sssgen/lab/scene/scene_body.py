@@ -1,0 +1,185 @@
+"""A scene's body as materials measure it: a distance function to bind to slots, and the numbers that go with it.
+
+Of solids the text of the function is made here, with the scene's numbers in it; a library or file function is bound as
+it is; a mesh has a distance texture.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
+from sssgen.harness.scenes.placed import Array, Vector
+from sssgen.harness.scenes.scene import DistanceTexture, placement
+from sssgen.support.diagnostics import failure
+
+TEXELS = 64
+"""Along the longest side of a distance texture."""
+FILE = "body.sss"
+
+
+@dataclass(frozen=True)
+class Body:
+    """What a material needs to know of a scene's body."""
+
+    function: str
+    """What a slot of a position in world space is bound to"""
+    files: Mapping[str, str] = field(default_factory=dict)
+    """The files that this names, to lie beside the material: name → text"""
+    parameters: Mapping[str, object] = field(default_factory=dict)
+    """The function's own parameters"""
+
+
+def body(geometry: Geometry) -> Body:
+    """The body's distance function in world space. Raises SssgenError for a shape that has none."""
+    if isinstance(geometry, Mesh):
+        return Body("distance_texture_world")
+    if isinstance(geometry, Distance):
+        if not np.array_equal(geometry.to_world(), np.eye(4)):
+            return Body("distance_texture_world")
+        return _function_of(geometry)
+    return Body(f"{FILE}:body", {FILE: text(geometry)})
+
+
+def _function_of(geometry: Distance) -> Body:
+    """The function of a scene's own file goes beside the material, as its file."""
+    file, colon, name = geometry.technique.rpartition(":")
+    path = os.path.join(geometry.folder, file if colon else geometry.technique)
+    if not os.path.isfile(path):
+        return Body(geometry.technique, {}, geometry.parameters)
+    with open(path, encoding="utf-8") as source:
+        base = os.path.basename(path)
+        return Body(base + (colon + name if colon else ""), {base: source.read()}, geometry.parameters)
+
+
+def text(geometry: Geometry) -> str:
+    """A file in our language with the function `body`: the distance to the shape, in world space."""
+    lines: list[str] = []
+    name = _write(geometry, lines)
+    lines += [
+        "/// The distance to the scene's body.",
+        "float body(world_position p)",
+        "{",
+        f"    return {name}(vec3(p));",
+        "}",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _write(geometry: Geometry, lines: list[str]) -> str:
+    """Appends the function of a shape, those of its parts first; gives its name."""
+    parts = [_write(part, lines) for part in geometry.parts] if isinstance(geometry, Union) else []
+    number = sum(line.startswith("float ") for line in lines)
+    name = f"{type(geometry).__name__.lower()}_{number + 1}"
+    inwards = geometry.to_object()
+    moved = not np.array_equal(inwards, np.eye(4))
+    lines += [f"float {name}(vec3 {'at' if moved else 'p'})", "{"]
+    if moved:
+        turned = not np.array_equal(inwards[:3, :3], np.eye(3))
+        place = f"at - {_vector(geometry.position)}"
+        matrix = ", ".join(_number(value) for value in inwards[:3, :3].T.ravel())
+        lines.append(f"    vec3 p = mat3({matrix}) * ({place});" if turned else f"    vec3 p = {place};")
+    *before, result = _formula(geometry, parts)
+    lines += [f"    {line}" for line in before]
+    lines += [
+        f"    return {_number(geometry.scale)} * ({result});" if geometry.scale != 1.0 else f"    return {result};"
+    ]
+    lines += ["}", ""]
+    return name
+
+
+def _formula(geometry: Geometry, parts: list[str]) -> list[str]:
+    """The lines of a distance at `p`, the last one an expression. Raises SssgenError for a shape that has none."""
+    if isinstance(geometry, Ball):
+        return [f"length(p) - {_number(geometry.radius)}"]
+    if isinstance(geometry, Box | Slab):
+        size = geometry.size if isinstance(geometry, Box) else (geometry.width, geometry.height, geometry.thickness)
+        half_size = _vector([0.5 * side for side in size])
+        outside = "length(max(q, 0.0)) + min(max(q.x, max(q.y, q.z)), 0.0)"
+        return [f"vec3 q = abs(p) - {half_size};", outside]
+    if isinstance(geometry, Torus):
+        return [f"length(vec2(length(p.xz) - {_number(geometry.major)}, p.y)) - {_number(geometry.minor)}"]
+    if isinstance(geometry, Capsule):
+        beyond = f"vec3(p.x, max(abs(p.y) - {_number(0.5 * geometry.length)}, 0.0), p.z)"
+        return [f"length({beyond}) - {_number(geometry.radius)}"]
+    if isinstance(geometry, Union):
+        lines = [f"float nearest = {parts[0]}(p);"]
+        lines += [f"nearest = min(nearest, {part}(p));" for part in parts[1:]]
+        return [*lines, "nearest"]
+    raise failure(f"a {type(geometry).__name__.lower()} cannot be part of a union that is measured")
+
+
+def _number(value: float) -> str:
+    shown = repr(float(np.float32(value)))
+    short = f"{value:.7g}"
+    shown = short if np.float32(short) == np.float32(value) else shown
+    return shown if any(mark in shown for mark in ".e") else f"{shown}.0"
+
+
+def _vector(values: Any) -> str:
+    return f"vec3({', '.join(_number(value) for value in values)})"
+
+
+def bounds(geometry: Geometry) -> tuple[Array, Array]:
+    """The smallest and the largest corner of a box around the shape, in object space; tight but for distances."""
+    if isinstance(geometry, Mesh):
+        return geometry.bounds()
+    if isinstance(geometry, Ball):
+        return np.full(3, -geometry.radius), np.full(3, geometry.radius)
+    if isinstance(geometry, Torus):
+        wide = geometry.major + geometry.minor
+        return np.array([-wide, -geometry.minor, -wide]), np.array([wide, geometry.minor, wide])
+    if isinstance(geometry, Capsule):
+        half_size = np.array([geometry.radius, geometry.radius + 0.5 * geometry.length, geometry.radius])
+        return -half_size, half_size
+    if isinstance(geometry, Box | Slab):
+        size = geometry.size if isinstance(geometry, Box) else (geometry.width, geometry.height, geometry.thickness)
+        return -0.5 * np.array(size), 0.5 * np.array(size)
+    if isinstance(geometry, Union):
+        corners = [corner for part in geometry.parts for corner in placed_corners(part)]
+        return np.min(corners, axis=0), np.max(corners, axis=0)
+    assert isinstance(geometry, Distance)
+    at = np.linspace(-geometry.reach, geometry.reach, 48)
+    points = np.stack(np.meshgrid(at, at, at, indexing="ij"), axis=-1).reshape(-1, 3)
+    # a cell that the surface passes has it within half of the cell's diagonal of its corners
+    near = points[geometry.distance(points) < 0.87 * (at[1] - at[0])]
+    if not len(near):
+        raise failure("the scene's body is empty", "its distance function is nowhere below 0 within its reach")
+    return near.min(axis=0), near.max(axis=0)
+
+
+def placed_corners(geometry: Geometry) -> Array:
+    """The eight corners of a shape's box, (8, 3), where the shape stands."""
+    low, high = bounds(geometry)
+    corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
+    matrix = geometry.to_world()
+    placed: Array = corners @ matrix[:3, :3].T + matrix[:3, 3]
+    return placed
+
+
+def distance_texture(geometry: Geometry) -> DistanceTexture:
+    """The distance texture of a shape in its object space: its box with a margin, in texels that are about cubes."""
+    low, high = bounds(geometry)
+    margin = 0.05 * float((high - low).max())
+    low, high = low - margin, high + margin
+    size = high - low
+    x, y, z = (max(int(side), 4) for side in np.ceil(TEXELS * size / size.max()))
+    return DistanceTexture((x, y, z), _vector_of(low), _vector_of(high), 0.5 * float(size.max()))
+
+
+def _vector_of(corner: Array) -> Vector:
+    x, y, z = map(float, corner)
+    return x, y, z
+
+
+def given(geometry: Geometry, texture: DistanceTexture) -> dict[str, object]:
+    """The numbers that go with a shape's distance texture by the names of techniques, as TOML has them."""
+    return {
+        "box_min": [*texture.box_min], "box_max": [*texture.box_max], "distance_range": texture.range,
+        **placement(geometry),
+    }  # fmt: skip

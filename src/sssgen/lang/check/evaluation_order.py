@@ -1,0 +1,37 @@
+"""What statements change, and whether an expression would see it: the order of evaluation is kept by these."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from sssgen.ir import nodes as ir
+from sssgen.ir.walk import all_expressions, statements, subexpressions
+
+
+def root_name(target: ir.Expr) -> str:
+    """The name of the variable that an assignment to `target` changes."""
+    while isinstance(target, ir.Swizzle | ir.Index | ir.Member):
+        target = target.value
+    return target.name if isinstance(target, ir.Local | ir.Global) else "value"
+
+
+def writes_of(added: Iterable[ir.Stmt]) -> tuple[set[str], bool]:
+    """The variables that statements write, and whether they call functions, which may write more."""
+    block = tuple(added)
+    written = {root_name(stmt.target) for stmt in statements(block) if isinstance(stmt, ir.Assign)}
+    calls = False
+    for expr in all_expressions(block):
+        if isinstance(expr, ir.Call):
+            calls = True
+            written |= {root_name(arg) for arg in expr.args if isinstance(arg, ir.Local | ir.Global)}
+    return written, calls
+
+
+def depends(expr: ir.Expr, written: set[str], calls: bool) -> bool:
+    """Whether an expression's value, or what its own calls do, depends on statements with these effects."""
+    for part in subexpressions(expr):
+        if isinstance(part, ir.Call):
+            return True
+        if isinstance(part, ir.Local | ir.Global) and (part.name in written or (calls and isinstance(part, ir.Global))):
+            return not hasattr(part.type, "dim")  # a sampler is the same throughout
+    return False

@@ -1,0 +1,101 @@
+"""Names and what they stand for while a function is checked."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from sssgen.ir.nodes import Span
+from sssgen.ir.types import Type
+
+
+class Variable(NamedTuple):
+    """A parameter or local variable. `ir_name` differs from the written name where an outer one is hidden."""
+
+    ir_name: str
+    type: Type
+    quantity: str
+    writable: bool
+    faulty: bool = False
+    """Its declaration has an error, so that nothing more is said about its use."""
+    value: int | None = None
+    """A constant's integer value, where it has one."""
+
+
+class GlobalValue(NamedTuple):
+    """A uniform, texture, constant or module variable; `value` is a constant's integer value where it has one."""
+
+    type: Type
+    quantity: str
+    value: int | None = None
+    constant: bool = False
+    writable: bool = False
+
+
+class Signature(NamedTuple):
+    """What a call needs to know of a function."""
+
+    key: str
+    names: tuple[str, ...]
+    types: tuple[Type, ...]
+    directions: tuple[str, ...]
+    quantities: tuple[str, ...]
+    result: Type
+    quantity: str
+    span: Span
+
+
+class Scopes:
+    """The nested scopes of one function."""
+
+    def __init__(self) -> None:
+        self.stack: list[dict[str, Variable]] = [{}]
+        self.visible: dict[str, Variable] = {}
+        """The variables of all scopes by their names in the IR."""
+        self.taken: list[list[str]] = [[]]
+        """The names in the IR of each scope's variables."""
+        self.counters: list[dict[str, Type]] = [{}]
+        """Of each scope, the variables of the loops in it: HLSL has those in the scope around the loop."""
+
+    def push(self) -> None:
+        self.stack.append({})
+        self.taken.append([])
+        self.counters.append({})
+
+    def pop(self, dissolve: bool = False, loop: bool = False) -> None:
+        """Leaves a scope. `dissolve`: it is none in the IR, so that its names stay taken in the one around it.
+
+        `loop`: it was that of a loop's head.
+        """
+        left = self.stack.pop()
+        names = self.taken.pop()
+        self.counters.pop()
+        if loop:
+            self.counters[-1] |= {one.ir_name: one.type for one in left.values()}
+        if dissolve:
+            self.taken[-1] += names
+        else:
+            for name in names:
+                del self.visible[name]
+
+    def find(self, name: str) -> Variable | None:
+        for scope in reversed(self.stack):
+            if name in scope:
+                return scope[name]
+        return None
+
+    def declare(
+        self, name: str, type: Type, quantity: str, writable: bool, faulty: bool = False, value: int | None = None
+    ) -> Variable | None:
+        """Adds a variable to the innermost scope; None if this scope has the name already."""
+        if name in self.stack[-1]:
+            return None
+        ir_name, count = name, 2
+        while ir_name in self.visible or self.counters[-1].get(ir_name, type) != type:
+            ir_name, count = f"{name}_{count}", count + 1
+        variable = Variable(ir_name, type, quantity, writable, faulty, value)
+        self.stack[-1][name] = self.visible[ir_name] = variable
+        self.taken[-1].append(ir_name)
+        return variable
+
+    def names(self) -> list[str]:
+        return [name for scope in self.stack for name in scope]

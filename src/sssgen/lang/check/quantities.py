@@ -1,0 +1,146 @@
+"""Quantity types: what a number or vector measures, so that thickness, thinness and transmittance never mix unasked.
+
+A quantity is a name over a plain type. A quantity value may be used as its plain type anywhere; a plain value
+becomes a quantity only through the constructor of that name; one quantity never becomes another but by a
+named conversion. The idea of spaces as types is Gator's ("Geometry types for graphics programming", OOPSLA
+2020).
+"""
+
+from __future__ import annotations
+
+from sssgen.ir.types import FLOAT, VEC2, VEC3, Type, spell
+
+SPACES = ("world", "object", "tangent", "uv")
+
+QUANTITIES: dict[str, Type] = {"thickness": FLOAT, "thinness": FLOAT, "transmittance": FLOAT}
+for _space in SPACES:
+    QUANTITIES[f"{_space}_position"] = QUANTITIES[f"{_space}_direction"] = VEC2 if _space == "uv" else VEC3
+
+SCALARS = ("thickness", "thinness", "transmittance")
+
+_TEXEL = "texel of "
+
+_CONVERSIONS = {
+    ("thickness", "transmittance"): "beer_lambert",
+    ("thickness", "thinness"): "thinness_from_thickness",
+    ("thinness", "thickness"): "thickness_from_thinness",
+    ("thinness", "transmittance"): "transmittance_from_thinness",
+    ("transmittance", "thinness"): "thinness_from_transmittance",
+    ("transmittance", "thickness"): "thickness_from_transmittance",
+}
+
+_FRAMES = {("world", "tangent"), ("tangent", "world"), ("world", "object"), ("object", "world")}
+"""The spaces between which common/frames.sss turns directions, from one to the other."""
+
+
+class Mixup(Exception):
+    """Two quantities that do not belong together; carries the message and the remedy."""
+
+    def __init__(self, message: str, hint: str = "") -> None:
+        super().__init__(message)
+        self.message, self.hint = message, hint
+
+
+def words(quantity: str) -> str:
+    """A quantity as a person would say it: `a world direction`."""
+    if not quantity:
+        return "a plain value"
+    return f"{'an' if quantity.startswith('object') else 'a'} {quantity.replace('_', ' ')}"
+
+
+def space(quantity: str) -> str:
+    """The space of a position or direction, else ''."""
+    return quantity.split("_")[0] if "_" in quantity else ""
+
+
+def texel_of(quantity: str) -> str:
+    """What a texture read of a map that holds `quantity` gives, before one channel is taken."""
+    return _TEXEL + quantity if quantity else ""
+
+
+def channel_of(quantity: str) -> str:
+    """The quantity of one component of a value: a texel's channel keeps it, a vector's component loses it."""
+    return quantity.removeprefix(_TEXEL) if quantity.startswith(_TEXEL) else ""
+
+
+def conversion(source: str, target: str) -> str:
+    """What to do to get `target` from `source`: the named conversion, in words."""
+    if (source, target) in _CONVERSIONS:
+        return f"convert it with {_CONVERSIONS[source, target]}(…)"
+    if space(source) and space(target):
+        turned = source.endswith("_direction") and target.endswith("_direction")
+        if turned and (space(source), space(target)) in _FRAMES:
+            return f"convert it with {space(target)}_from_{space(source)}(…) of common/frames.sss"
+        if space(source) != space(target):
+            return f"bring it there with a matrix or a function of your own, and name what comes out: {target}(…)"
+        return f"if it is meant as {words(target)}, write {target}({spell(QUANTITIES[target])}(…))"
+    if not source:
+        return f"if it is {words(target)}, say so: {target}(…)"
+    return f"{words(source)} cannot become {words(target)}"
+
+
+def check_assignable(source: str, target: str) -> None:
+    """Raises Mixup unless a value of quantity `source` may be stored as `target`."""
+    if target and source != target:
+        raise Mixup(f"{words(target)} is wanted here, but this is {words(source)}", conversion(source, target))
+
+
+def check_constructible(source: str, target: str) -> None:
+    """Raises Mixup where a constructor would turn one quantity into another."""
+    if source and not source.startswith(_TEXEL) and source != target:
+        raise Mixup(f"{words(source)} cannot be called {words(target)}", conversion(source, target))
+
+
+def of_operator(op: str, left: str, right: str, scaling: bool = False) -> str:
+    """The quantity of `left op right`; `scaling` says that one of them is a single number.
+
+    Raises Mixup for sums and comparisons that mix quantities, and for anything that mixes spaces.
+    """
+    _check_one_space((left, right))
+    if op in ("*", "/"):
+        scaled = next((one for one in (left, right if op == "*" else "") if one.endswith("_direction")), "")
+        return scaled if scaling else ""
+    if not left or not right:
+        return ""
+    if op == "+" and left != right and "_" in left and "_" in right:
+        return f"{space(left)}_position"
+    if op == "-" and left.endswith("_position") and right != left and "_" in right:
+        return left
+    if left != right:
+        raise Mixup(f"{words(left)} and {words(right)} do not go together in '{op}'", conversion(right, left))
+    if left.endswith("_position"):
+        return f"{space(left)}_direction" if op == "-" else ""
+    return left if op in ("+", "-") else ""
+
+
+_KEEP_DIRECTION = ("normalize", "cross", "reflect", "refract", "faceforward")
+_KEEP_BOUND = ("min", "max", "clamp", "abs", "saturate")
+_COMPARED = {**dict.fromkeys((*_KEEP_BOUND, "smoothstep"), 3), "mix": 2, "step": 2}
+"""How many of a builtin's arguments, from the first, must measure the same: a blend's factor need not."""
+
+
+def of_intrinsic(name: str, args: list[str]) -> str:
+    """The quantity of a builtin's result, from those of its arguments. Raises Mixup where they do not go together."""
+    given = [quantity for quantity in args if quantity]
+    if not given:
+        return ""
+    _check_one_space(given)
+    compared = [quantity for quantity in args[: _COMPARED.get(name, 0)] if quantity]
+    for quantity in compared[1:]:
+        if quantity != compared[0]:
+            message = f"{words(compared[0])} and {words(quantity)} do not go together in {name}"
+            raise Mixup(message, conversion(quantity, compared[0]))
+    if name in _KEEP_DIRECTION:
+        return given[0] if all(quantity.endswith("_direction") for quantity in given) else ""
+    if name in _KEEP_BOUND:
+        return given[0]
+    if name == "mix":
+        return args[0] if args[0] == args[1] else ""
+    return ""
+
+
+def _check_one_space(quantities: tuple[str, ...] | list[str]) -> None:
+    spaced = [quantity for quantity in quantities if space(quantity)]
+    for quantity in spaced[1:]:
+        if space(quantity) != space(spaced[0]):
+            raise Mixup(f"{words(spaced[0])} meets {words(quantity)}", conversion(quantity, spaced[0]))

@@ -1,0 +1,117 @@
+"""What a GPU cannot do without bound: loops that may not end, and calls that come back to where they began."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+
+from sssgen.ir import nodes as ir
+from sssgen.ir.types import INT, UINT
+from sssgen.ir.walk import all_expressions, callees, root, statements, subexpressions
+
+OutArgs = Callable[[ir.Call], Iterable[ir.Expr]]
+"""The arguments of a call that it writes to."""
+
+
+def ends(condition: ir.Expr, steps: ir.Block, body: ir.Block, out_args: OutArgs) -> bool:
+    """Whether the condition fails at last: an integer counter is stepped, once and always, towards a bound that stays.
+
+    `steps` are the statements that run in every round, `body` those that may run besides.
+    """
+    return _fails(condition, steps, writes((*steps, *body, ir.Return(condition, condition.span)), out_args))
+
+
+def endless(function: ir.Function) -> bool:
+    """Whether a function has a loop that is not seen to end; any argument of a call counts as written."""
+    for stmt in statements(function.body or ()):
+        if isinstance(stmt, ir.For):
+            steps = (stmt.step,) if stmt.step is not None else ()
+            if stmt.condition is None or not ends(stmt.condition, steps, stmt.body, lambda call: call.args):
+                return True
+        elif isinstance(stmt, ir.While) and (
+            skips(stmt.body) or not ends(stmt.condition, stmt.body, (), lambda call: call.args)
+        ):
+            return True
+    return False
+
+
+def _fails(condition: ir.Expr, steps: ir.Block, written: list[str]) -> bool:
+    """Whether a condition fails at last, where the loop writes `written`."""
+    if not isinstance(condition, ir.Binary):
+        return False
+    if condition.op == "&&":
+        return _fails(condition.left, steps, written) or _fails(condition.right, steps, written)
+    return any(
+        _approaches(counter, op, bound, steps, written)
+        for counter, op, bound in (
+            (condition.left, condition.op, condition.right),
+            (condition.right, condition.op.translate(str.maketrans("<>", "><")), condition.left),
+        )
+    )
+
+
+def skips(block: ir.Block) -> bool:
+    """Whether a block may go on with the next round of the loop that it is in."""
+    return any(
+        isinstance(stmt, ir.Continue) or (isinstance(stmt, ir.If) and (skips(stmt.then) or skips(stmt.otherwise)))
+        for stmt in block
+    )
+
+
+def writes(block: ir.Block, out_args: OutArgs) -> list[str]:
+    """The variables that a block writes, one entry for each place that does."""
+    targets = [stmt.target for stmt in statements(block) if isinstance(stmt, ir.Assign)]
+    for expr in all_expressions(block):
+        if type(expr) is ir.Call:
+            targets.extend(out_args(expr))
+    return [variable.name for target in targets if (variable := root(target)) is not None]
+
+
+def _approaches(counter: ir.Expr, op: str, bound: ir.Expr, steps: ir.Block, written: list[str]) -> bool:
+    """Whether `counter op bound` fails at last."""
+    if not isinstance(counter, ir.Local) or counter.type not in (INT, UINT) or written.count(counter.name) != 1:
+        return False
+    if any(isinstance(part, ir.Call) or _is_written(part, written) for part in subexpressions(bound)):
+        return False
+    step = next((size for stmt in steps if (size := _step(stmt, counter.name)) is not None), 0)
+    limit = bound.value if isinstance(bound, ir.Literal) else None
+    if step > 0:
+        return op == "<" or (op == "<=" and limit not in (2**31 - 1, 2**32 - 1)) or (op == "!=" and step == 1)
+    if counter.type == UINT:  # below 0 it would go on at the top
+        return step == -1 and (op in (">", "!=") or (op == ">=" and limit is not None and limit > 0))
+    return step < 0 and (op == ">" or (op == ">=" and limit != -(2**31)) or (op == "!=" and step == -1))
+
+
+def _is_written(part: ir.Expr, written: list[str]) -> bool:
+    return isinstance(part, ir.Local) and part.name in written
+
+
+def _step(stmt: ir.Stmt, counter: str) -> int | None:
+    """By how much a statement steps the counter (`i++`, `i -= 2`, `i = i + 1`), or None if it is no such step."""
+    if not isinstance(stmt, ir.Assign) or not _is_written(stmt.target, [counter]):
+        return None
+    op, value = stmt.op, stmt.value
+    if not op and isinstance(value, ir.Binary) and _is_written(value.left, [counter]):
+        op, value = value.op, value.right
+    if op not in ("+", "-") or not isinstance(value, ir.Literal):
+        return None
+    return int(value.value) if op == "+" else -int(value.value)
+
+
+def cycles(functions: Mapping[str, ir.Function]) -> Iterator[list[str]]:
+    """The cycles of calls, each as the keys along it, the first again at the end. Iterative: chains may be long."""
+    done: set[str] = set()
+    for start in functions:
+        path: dict[str, None] = {}
+        pending: list[Iterator[str]] = [iter((start,))]
+        while pending:
+            key = next(pending[-1], None)
+            if key is None:
+                pending.pop()
+                if path:
+                    done.add(path.popitem()[0])
+            elif key in path:
+                along = list(path)
+                yield [*along[along.index(key) :], key]
+            elif key in functions and key not in done:
+                path[key] = None
+                pending.append(iter(callees(functions[key])))

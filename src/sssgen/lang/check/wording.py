@@ -1,0 +1,77 @@
+"""How the checker's messages say things: a type with its article, a declaration, and what to do about a mismatch."""
+
+from __future__ import annotations
+
+import re
+
+from sssgen.ir import nodes as ir
+from sssgen.ir.signatures import candidates, resolve
+from sssgen.ir.types import FLOAT, INT, Scalar, Struct, Type, Vector, components, kind_of, spell, vector_of
+from sssgen.lang.check.name_scope import Signature
+
+
+def a_type(type_: Type) -> str:
+    """A type with its article."""
+    name = spell(type_)
+    return f"{'an' if name[0] in 'aeio' else 'a'} {name}"
+
+
+def declared(name: str, signature: Signature) -> str:
+    """A function as it was declared."""
+    return f"{name}({', '.join(map(spell, signature.types))})"
+
+
+def type_hint(value: ir.Expr, wanted: Type) -> str:
+    """What to do where `value` has not the type that is wanted."""
+    if wanted == FLOAT and value.type == INT:
+        return f"write {value.value}.0" if isinstance(value, ir.Literal) else "write float(…)"
+    if isinstance(wanted, Vector) and value.type == Scalar(wanted.kind):
+        return f"write {spell(wanted)}(…)"
+    if isinstance(wanted, Vector) and isinstance(value.type, Vector) and value.type.size > wanted.size:
+        return f"take .{'xyzw'[: wanted.size]}"
+    return ""
+
+
+def mixed_hint(left: ir.Expr, right: ir.Expr, op: str = "") -> str:
+    """What to do where two operands do not go together."""
+    for one, other in ((left, right), (right, left)):
+        kinds = kind_of(one.type), kind_of(other.type)
+        if kinds == ("int", "float"):
+            return type_hint(one, FLOAT) or "there is no implicit conversion: write float(…)"
+        if kinds == ("int", "uint") and isinstance(one.type, Scalar):
+            return f"write {one.value}u" if isinstance(one, ir.Literal) else "write uint(…)"
+    if isinstance(left.type, Vector) and isinstance(right.type, Vector) and op in ("<", ">", "<=", ">="):
+        return "componentwise comparison is lessThan(…), equal(…), and so on"
+    return "the remainder of floats is mod(…)" if op == "%" and kind_of(left.type) == "float" else ""
+
+
+def constructor_hint(type_: Type) -> str:
+    """What a constructor takes."""
+    if isinstance(type_, Struct):
+        return "members are given in order: " + ", ".join(f"{spell(f.type)} {f.name}" for f in type_.fields)
+    return ""
+
+
+def overload_hint(name: str, args: list[ir.Expr]) -> str:
+    """Which overloads a builtin has, or that it is floats that it wants."""
+    as_floats = [vector_of("float", components(arg.type)) if kind_of(arg.type) == "int" else arg.type for arg in args]
+    if resolve(name, as_floats) is not None:
+        return "there is no implicit conversion: write 1.0 for 1"
+    listed = ", ".join(candidates(name))
+    known = {"gen": "float, vec2, vec3 or vec4 alike", "vec": "vec2, vec3 or vec4 alike"}
+    families = [f"{family}F is {words}" for family, words in known.items() if f"{family}F" in listed]
+    return "; ".join([f"there are: {listed}", *families])
+
+
+_NOT_HERE = (
+    (r"double|d(vec|mat)[234](x[234])?", "WGSL has no floats of 64 bits"),
+    (r"[iu]?image\w+", "images are what compute shaders write"),
+    (r"[iu]?sampler(1D|2DRect|Buffer|2DMS)\w*", "WebGPU samples no such texture"),
+    (r"mat[234]x[234]", "matrices are square here"),
+    (r"atomic_uint", "atomics are of compute shaders"),
+)
+
+
+def why_not(name: str) -> str:
+    """Why a type of GLSL is not among ours; '' for what is no type of GLSL."""
+    return next((why for pattern, why in _NOT_HERE if re.fullmatch(pattern, name)), "")

@@ -1,0 +1,153 @@
+"""Loads plain GLSL, as people have it (1.00 ES to 4.60): preprocessor, parser, checker, and nothing of techniques."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from sssgen.ir.nodes import Module
+from sssgen.ir.spans import Span
+from sssgen.lang import shadertoy
+from sssgen.lang.check.module_checker import check_plain
+from sssgen.lang.loader import keep_lines, read_text
+from sssgen.lang.preprocess.preprocessor import Preprocessed, preprocess
+from sssgen.lang.syntax.doc_comments import words_of
+from sssgen.lang.syntax.parser import parse_tokens
+from sssgen.lang.syntax.tokens import Comment, Token
+from sssgen.support.diagnostics import Diagnostic, Reporter, SssgenError, did_you_mean, failure
+from sssgen.support.gc_pause import paused
+
+ENTRIES = ("shadertoy",)
+"""The conventions by which a file may be entered, beside `main()`."""
+
+
+_OURS = re.compile("Made by sssgen for |Paste it below the #version")
+"""The lines of our own head, between which that of the author stands in what was translated before."""
+
+
+class Loaded(NamedTuple):
+    """A file of plain GLSL and what it was made from."""
+
+    module: Module
+    version: int
+    """What `#version` says, else 0."""
+    texts: dict[str, str]
+    """Every file that was read, as it is written."""
+    constants: list[str]
+    """The macros that became constants."""
+    ignored: list[str]
+    """The extensions and pragmas, which change nothing here."""
+    warnings: list[Diagnostic]
+    paths: list[str]
+    """Where these files lie, but for the first."""
+    head: list[str]
+    """The lines of the comment that the file begins with, where it documents nothing: a licence, say."""
+
+
+def load_glsl(
+    path: str | os.PathLike[str],
+    shown: str = "",
+    roots: Sequence[str | os.PathLike[str]] = (),
+    defines: Mapping[str, str] | None = None,
+    entry: str = "",
+) -> Loaded:
+    """The checked module of a GLSL file and all it includes.
+
+    `shown` is the file's name in messages; `roots` are the folders in which included files are looked for after the
+    one that they are included from; `defines` are macros; `entry` is '' or `shadertoy`.
+    Raises SssgenError for a missing, unreadable, too large or faulty file.
+    """
+    name = shown or os.fspath(path)
+    return load_glsl_text(read_text(path, name), name, (os.path.dirname(path) or ".", *roots), defines, entry)
+
+
+def load_glsl_text(
+    text: str,
+    shown: str,
+    roots: Sequence[str | os.PathLike[str]] = (),
+    defines: Mapping[str, str] | None = None,
+    entry: str = "",
+) -> Loaded:
+    """The checked module of a GLSL text; see `load_glsl`."""
+    if entry and entry not in ENTRIES:
+        raise failure(f"unknown entry '{entry}'", did_you_mean(entry, ENTRIES) or f"entries: {', '.join(ENTRIES)}")
+    finder = _Finder(roots)
+    with paused():
+        loaded = _loaded(text, shown, preprocess(text, shown, finder.find, defines), entry)
+    return loaded._replace(paths=finder.paths)
+
+
+def _loaded(text: str, shown: str, found: Preprocessed, entry: str) -> Loaded:
+    """What the rest of the front end makes of a text whose directives are carried out."""
+    tokens = found.tokens
+    texts = dict(found.texts)
+    texts.setdefault(shown, text)
+    if entry == "shadertoy":
+        tokens, added = shadertoy.with_entry(tokens, shown)
+        texts[shadertoy.FILE] = added
+    keep_lines(texts)
+    reporter = Reporter(shown, text, texts)
+    reporter.macros = found.expanded
+    head, rest, ours = _head(found, shown)
+    comments = found.comments | {shown: rest} if ours else found.comments
+    file = parse_tokens(tokens, comments, reporter, plain=True)
+    if not ours and any("\n".join(head) in external.doc for external in file.externals):
+        head = []  # it documents something, and stands there
+    module = check_plain(file, reporter, _is_vertex(tokens, shown))
+    ignored = [f"#extension {one}" for one in found.extensions] + [f"#pragma {one}" for one in found.pragmas]
+    return Loaded(module, found.version, texts, found.macros, ignored, reporter.warnings, [], head)
+
+
+def _head(found: Preprocessed, shown: str) -> tuple[list[str], list[Comment], bool]:
+    """The words of the comments on a file's first lines, the comments behind them, and whether we wrote those first."""
+    comments = found.comments.get(shown, [])
+    above = found.texts[shown].split("\n")[: comments[0].first - 1] if comments else []
+    count = 0
+    while count < len(comments) and not any(line.strip() for line in above):
+        if count and comments[count].first > comments[count - 1].last + 1:
+            break
+        count += 1
+    lines = [line for comment in comments[:count] for line in words_of(comment.text).split("\n")]
+    ours = [index for index, line in enumerate(lines) if _OURS.match(line)]
+    if ours:
+        lines = lines[ours[0] + 1 : ours[1] if len(ours) > 1 else None]
+    said = "\n".join(lines).strip("\n")
+    return (said.split("\n") if said else []), comments[count:], bool(ours)
+
+
+def preprocessed(text: str, shown: str, roots: Sequence[str | os.PathLike[str]] = ()) -> Preprocessed:
+    """A text and what it includes as words; see `load_glsl`."""
+    return preprocess(text, shown, _Finder(roots).find)
+
+
+def _is_vertex(tokens: Sequence[Token], shown: str) -> bool:
+    """Whether a file is a vertex shader: by its name, else by what only such a one has."""
+    suffix = os.path.splitext(shown)[1]
+    if suffix in (".vert", ".vs", ".frag", ".fs"):
+        return suffix in (".vert", ".vs")
+    return any(token.text == "gl_Position" or token.type == "ATTRIBUTE" for token in tokens)
+
+
+class _Finder:
+    """Finds included files: beside the file that includes them, then in the folders given."""
+
+    def __init__(self, roots: Sequence[str | os.PathLike[str]]) -> None:
+        self.roots = [os.fspath(root) for root in roots]
+        self.folders: dict[str, str] = {}
+        """The folder of each file that was included, by its name in messages."""
+        self.paths: list[str] = []
+
+    def find(self, name: str, place: Span, angled: bool) -> tuple[str, str]:
+        own = self.folders.get(place.file, self.roots[0] if self.roots else ".")
+        for root in dict.fromkeys((own, *self.roots)):
+            path = os.path.join(root, name)
+            if os.path.isfile(path):
+                shown = os.path.normpath(os.path.relpath(path, self.roots[0])) if self.roots else name
+                shown = shown.replace(os.sep, "/")
+                self.folders[shown] = os.path.dirname(path)
+                self.paths.append(path)
+                return shown, read_text(path, shown)
+        hint = "it is looked for beside the file and in the folders of -I"
+        raise SssgenError([Diagnostic("error", f"cannot find '{name}' to include", place, hint)])

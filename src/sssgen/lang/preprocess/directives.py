@@ -1,0 +1,69 @@
+"""Where the directives of a text stand: one regular expression that knows comments, texts and lines that go on."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from sssgen.ir.spans import Span
+from sssgen.lang.syntax.lexer import BLOCK_COMMENT, LINE_COMMENT, NEWLINE, OPEN_COMMENT, TEXT
+
+BLANK = rf"(?>(?:[^\S\n]|{NEWLINE}|{BLOCK_COMMENT})*)"
+_DIRECTIVE = re.compile(
+    rf"""
+    ^{BLANK}(?P<mark>\#){BLANK}(?P<name>\w*+)
+        (?P<rest>(?>(?:[^\n\\/"]++|{NEWLINE}|{LINE_COMMENT}|{BLOCK_COMMENT}|{TEXT}|\\|/(?!\*))*))
+    | {LINE_COMMENT} | {BLOCK_COMMENT} | {OPEN_COMMENT} | {TEXT}
+    """,
+    re.VERBOSE | re.MULTILINE,
+)
+_IGNORED = re.compile(rf"{NEWLINE}|{LINE_COMMENT}|{BLOCK_COMMENT}")
+
+
+def directives(text: str) -> Iterator[re.Match[str]]:
+    """The directives: of each its `mark` (#), its `name`, which may be empty, and the `rest` of its line."""
+    if "#" in text:
+        for match in _DIRECTIVE.finditer(text):
+            if match["mark"] is not None:
+                yield match
+
+
+def plain(rest: str) -> str:
+    """What a directive says, without comments, on one line, single blanks between its words."""
+    return " ".join(_IGNORED.sub(" ", rest).split())
+
+
+class Branch:
+    """An #if that is open."""
+
+    def __init__(self, place: Span, outside: bool) -> None:
+        self.place = place
+        self.outside = outside  # whether it is itself switched on
+        self.live = False
+        self.taken = False  # whether one of its branches was
+        self.last = False  # whether this is the #else
+
+
+class SourceFile:
+    """A file being read: how far, and which of its #if are open."""
+
+    def __init__(self, text: str, shown: str) -> None:
+        self.text = text
+        self.shown = shown
+        self.at = 0
+        self.line = 1
+        self.branches: list[Branch] = []
+
+    def place(self, start: int, end: int) -> Span:
+        """The span of a part that begins no earlier than what was asked for before."""
+        self.line += self.text.count("\n", self.at, start)
+        self.at = start
+        column = start - self.text.rfind("\n", 0, start)
+        lines = self.text.count("\n", start, end)
+        end_column = end - self.text.rfind("\n", start, end) if lines else column + end - start
+        return Span(self.shown, self.line, column, self.line + lines, end_column)
+
+    @property
+    def live(self) -> bool:
+        """Whether what comes next is switched on."""
+        return not self.branches or self.branches[-1].live

@@ -1,0 +1,186 @@
+"""GLSL text → words with their places: one regular expression splits the text, one table says what each word is.
+
+Speed comes from the table: a word is classified when it is first seen, together with the blanks behind it, so that the
+loop over a text's words does little but count columns.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+
+from sssgen.ir.spans import Span
+from sssgen.lang.syntax.tokens import Comment, Token
+from sssgen.support.diagnostics import Reporter
+
+MAX_WORDS = 2_000_000
+"""How many words, comments and lines one text may have. The longest shaders that people wrote stay below 100,000."""
+
+Report = Callable[[Span, str, str], None]
+"""Notes an error: its place, the message, what to do."""
+
+_DIMENSIONS = "1D 2D 3D Cube 2DRect 1DArray 2DArray CubeArray Buffer 2DMS 2DMSArray"
+_SHADOWED = "1D 2D Cube 2DRect 1DArray 2DArray CubeArray"
+_SIZES = "2 3 4 2x2 2x3 2x4 3x2 3x3 3x4 4x2 4x3 4x4"
+
+TYPES = frozenset(
+    ["void", "float", "int", "uint", "bool", "double", "atomic_uint", "samplerExternalOES"]
+    + [f"{prefix}vec{size}" for prefix in ("", "i", "u", "b", "d") for size in (2, 3, 4)]
+    + [f"{prefix}mat{size}" for prefix in ("", "d") for size in _SIZES.split()]
+    + [
+        f"{prefix}{kind}{dim}"
+        for prefix in ("", "i", "u")
+        for kind in ("sampler", "image")
+        for dim in _DIMENSIONS.split()
+    ]
+    + [f"sampler{dim}Shadow" for dim in _SHADOWED.split()]
+)
+"""The names of GLSL's own types (GLSL 4.60, section 4.1; GLSL ES 3.20, section 4.1)."""
+
+_RESERVED = """
+    const in out inout uniform attribute varying buffer shared layout struct
+    if else for while do switch case default return break continue discard
+"""
+_QUALIFIERS = """
+    flat smooth noperspective centroid invariant precise patch sample coherent restrict readonly writeonly volatile
+"""
+
+KEYWORDS: Mapping[str, str] = {
+    **dict.fromkeys(TYPES, "TYPE"),
+    **dict.fromkeys(_QUALIFIERS.split(), "QUALIFIER"),
+    **dict.fromkeys(("lowp", "mediump", "highp"), "PRECISION"),
+    **dict.fromkeys(("true", "false"), "BOOL"),
+    **{word: word.upper() for word in _RESERVED.split()},
+    "precision": "DEFAULT_PRECISION",
+}
+"""GLSL's keywords and the terminals of grammar.lark that they are; every other word is a NAME."""
+
+_OPERATORS = "* / % << >> <= >= < > == != && || ^^ & | ^"
+_ASSIGNMENTS = "= += -= *= /= %= &= |= ^= <<= >>="
+_SIGNS = {
+    **dict.fromkeys(("++", "--"), "INCDEC"),
+    **dict.fromkeys("+-", "PLUSMINUS"),
+    **dict.fromkeys("!~", "NOT"),
+    **dict.fromkeys(_OPERATORS.split(), "OPERATOR"),
+    **dict.fromkeys(_ASSIGNMENTS.split(), "ASSIGN"),
+    "{": "LBRACE", "}": "RBRACE", "(": "LPAR", ")": "RPAR", "[": "LSQB", "]": "RSQB",
+    ",": "COMMA", ";": "SEMICOLON", ":": "COLON", ".": "DOT", "?": "QMARK",
+}  # fmt: skip
+
+_BLANKS = " \t\n\r\f\v"
+
+NEWLINE = r"\\\r?\n"  # a line that goes on in the next
+LINE_COMMENT = r"//[^\n\\]*+(?>(?:\\(?:\r?\n)?[^\n\\]*+)*)"  # no (…)*+: Python 3.11.2 does not match that right
+BLOCK_COMMENT = r"/\*[\s\S]*?\*/"
+OPEN_COMMENT = r"/\*[\s\S]*+"
+TEXT = r'"[^"\n]*+"?'
+
+_PIECE = re.compile(
+    rf"""
+    (?: [A-Za-z_]\w*+                                             # a name
+      | 0[xX]\w*+ | (?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d++)?\w*+  # a number, with all that sticks to it
+      | [{{}}()\[\],;:?~.]
+      | <<=? | >>=? | && | \|\| | \^\^ | \+\+ | -- | [-+*%&|^<>=!]=? | /(?![/*])=? | \#\#
+    )[ \t]*+
+    | (?>(?:\s|{NEWLINE})+)
+    | {LINE_COMMENT} | {BLOCK_COMMENT} | {OPEN_COMMENT} | {TEXT}
+    | [^\x00-\x7f]++ | .
+    """,
+    re.VERBOSE | re.ASCII,
+)
+_INT = re.compile(r"(?:0[xX][0-9a-fA-F]+|\d+)[uU]?")
+_FLOAT = re.compile(r"(?:(?:\d+\.\d*|\.\d+)(?:[eE][+-]?\d+)?|\d+[eE][+-]?\d+)(?:[fF]|lf|LF)?")
+
+
+def scan(
+    text: str, file: str, line: int = 1, column: int = 1, keywords: Mapping[str, str] = KEYWORDS
+) -> tuple[list[Token], list[Comment]]:
+    """The words and the comments of a text that begins at a line and column of a file.
+
+    Raises SssgenError with every character that begins no word, every malformed number, and what is not closed.
+    """
+    reporter: Reporter | None = None
+
+    def report(span: Span, message: str, hint: str) -> None:
+        nonlocal reporter
+        if reporter is None:
+            reporter = Reporter(file, "\n" * (line - 1) + " " * (column - 1) + text)
+        reporter.error(span, message, hint)
+
+    found = Lexer(keywords).scan(text, file, line, column, report)
+    if reporter is not None:
+        reporter.check()
+    return found
+
+
+class Lexer(dict[str, tuple[str, str, int, int]]):
+    """The table of words: from a word and the blanks behind it to its type, itself, its width, and that of both.
+
+    It may serve many texts with the same keywords, and is the faster the more it has seen.
+    """
+
+    def __init__(self, keywords: Mapping[str, str] = KEYWORDS) -> None:
+        self.keywords = {**_SIGNS, **keywords}
+
+    def __missing__(self, piece: str) -> tuple[str, str, int, int]:
+        word = piece.rstrip(" \t")
+        entry = (self.type_of(word), word, len(word), len(piece))
+        if not piece.startswith(("//", "/*")):  # no comment is met twice
+            self[piece] = entry
+        return entry
+
+    def type_of(self, word: str) -> str:
+        """The terminal that a word is; '' for blanks, comments, and what is no word."""
+        if word in self.keywords:
+            return self.keywords[word]
+        if _INT.fullmatch(word):
+            return "INT"
+        if _FLOAT.fullmatch(word):
+            return "FLOAT"
+        if word.isidentifier() and word.isascii():
+            return "NAME"
+        return "STRING" if len(word) > 1 and word[0] == word[-1] == '"' else ""
+
+    def scan(self, text: str, file: str, line: int, column: int, report: Report) -> tuple[list[Token], list[Comment]]:
+        """As `scan`, but errors are handed to `report`, which may raise; without, what is faulty is left out."""
+        pieces = _PIECE.findall(text)
+        tokens: list[Token] = []
+        comments: list[Comment] = []
+        if len(pieces) > MAX_WORDS:
+            report(Span(file, line, column, line, column + 1), f"more than {MAX_WORDS} words", "split the file")
+            return tokens, comments
+        append, make, token_type, span_type = tokens.append, tuple.__new__, Token, Span  # local names are the fastest
+        for piece in pieces:
+            kind, word, width, step = self[piece]
+            if kind:
+                span = make(span_type, (file, line, column, line, column + width))
+                append(make(token_type, (kind, word, span)))
+                column += step
+                continue
+            lines = piece.count("\n")
+            if piece.startswith(("//", "/*")) and _closed(piece):
+                comments.append(Comment(line, line + lines, piece))
+            elif piece[0] not in _BLANKS and not (piece[0] == "\\" and lines):
+                end = column + (2 if word.startswith("/*") else width)
+                report(Span(file, line, column, line, end), *_fault(word))
+            line += lines
+            column = len(piece) - piece.rfind("\n") if lines else column + step
+        return tokens, comments
+
+
+def _closed(comment: str) -> bool:
+    return comment.startswith("//") or (len(comment) > 3 and comment.endswith("*/"))
+
+
+def _fault(word: str) -> tuple[str, str]:
+    """What is wrong with what is no word, and what to do."""
+    first = word[0]
+    if first == "/":
+        return "this comment is not closed", "add */ at its end"
+    if first == '"':
+        return "this text is not closed on its line", ""
+    if first.isdecimal():
+        return f"'{word}' is no number", f"write {word[:-1]}.0" if re.fullmatch(r"\d+[fF]", word) else ""
+    if first == "#":
+        return f"'{word}' has no meaning here", "a directive stands first on its line"
+    return f"{word!r} has no meaning here", ""

@@ -1,0 +1,208 @@
+"""Tokens → syntax tree, by the tables of grammar.lark.
+
+A syntax error does not hide the next: the faulty declaration is left out and the rest is parsed again.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+
+from sssgen.lang.syntax import tree as s
+from sssgen.lang.syntax.doc_comments import attach_docs
+from sssgen.lang.syntax.lalr import Tables, Unexpected, run, tables
+from sssgen.lang.syntax.lexer import scan
+from sssgen.lang.syntax.tokens import Comment, Token
+from sssgen.lang.syntax.tree_builder import Builder
+from sssgen.support import cache
+from sssgen.support.diagnostics import Diagnostic, Reporter, SssgenError
+from sssgen.support.gc_pause import paused
+
+MAX_DEPTH = 100
+"""How deeply expressions and statements may nest, together. Hand-written shaders stay below 30; passes and printers
+recurse over what is nested, and a stack of Python's own 1000 frames must be enough for them."""
+
+_TOO_DEEP = (
+    f"nested more than {MAX_DEPTH} levels deep",
+    "name a part of it in a local variable or a function of its own",
+)
+
+MAX_OPERATORS = 1000
+"""How many operators one expression may have outside its brackets."""
+
+MAX_SYNTAX_ERRORS = 20
+
+_TOKEN_NAMES = {
+    "NAME": "a name", "INT": "a number", "FLOAT": "a number", "TYPE": "a type", "SEMICOLON": "';'", "LPAR": "'('",
+    "RPAR": "')'", "LBRACE": "'{'", "RBRACE": "'}'", "RSQB": "']'", "COMMA": "','", "ASSIGN": "'='", "COLON": "':'",
+    "DOT": "'.'", "LSQB": "'['", "OPERATOR": "an operator", "STRING": "a quoted text", "WHILE": "'while'",
+}  # fmt: skip
+
+_DIRECTIVE = re.compile(r'^[ \t]*#[ \t]*(?:include[ \t]+"[^"\n]*"|version[^\n]*)', re.MULTILINE)
+
+
+def parse(text: str, file: str) -> s.File:
+    """Parses a technique's source. Raises `SssgenError` with every syntax error found.
+
+    Its only directives are `#include "file"`, which the loader follows, and `#version`, which says nothing here.
+    """
+    with paused():
+        try:
+            tokens, comments = scan(_DIRECTIVE.sub(lambda found: " " * len(found.group()), text), file)
+        except SssgenError as error:
+            raise SssgenError([_without_directives(found) for found in error.diagnostics]) from None
+        return parse_tokens(tokens, {file: comments}, Reporter(file, text))
+
+
+def _without_directives(found: Diagnostic) -> Diagnostic:
+    """What the lexer says of a `#`, for a technique's author."""
+    if not found.message.startswith("'#'"):
+        return found
+    hint = 'but for #include "file.sss"; write a const, a function or a uniform instead'
+    return found._replace(message="there is no preprocessor", hint=hint)
+
+
+def parse_tokens(
+    tokens: Sequence[Token], comments: Mapping[str, Sequence[Comment]], reporter: Reporter, plain: bool = False
+) -> s.File:
+    """Parses the tokens of a file and of what it includes, whose comments are given by file.
+
+    `plain`: any comment before a function is its documentation. Raises `SssgenError` with every syntax error found.
+    """
+    _check_shape(tokens, reporter)
+    remaining = list(_as_names(tokens))
+    for _ in range(MAX_SYNTAX_ERRORS):
+        builder = Builder(MAX_DEPTH)
+        try:
+            externals = run(_tables(), remaining, builder.methods) if remaining else []
+            break
+        except Unexpected as error:
+            _report(error, remaining, reporter)
+            remaining = _without_declaration(remaining, error.index)
+    for place, message in builder.wrong:
+        reporter.error(place, message)
+    reporter.check()
+    if builder.too_deep is not None:
+        reporter.error(builder.too_deep, *_TOO_DEEP)
+        reporter.check()
+    lines = {file: reporter.texts.get(file, "").split("\n") for file in comments}
+    lines[reporter.file] = reporter.lines
+    return s.File(reporter.file, attach_docs(externals, comments, lines, plain))
+
+
+_BEGINNING = frozenset(
+    "IF FOR WHILE DO SWITCH RETURN BREAK CONTINUE DISCARD CONST UNIFORM STRUCT RBRACE".split()  # noqa: SIM905
+)
+"""What a statement or a declaration begins with, or what stands behind the last one."""
+_ENDING = frozenset("NAME INT FLOAT BOOL RPAR RSQB INCDEC RETURN BREAK CONTINUE DISCARD".split())  # noqa: SIM905
+"""What a statement ends with, before its semicolon."""
+
+_OPENED = frozenset(("LPAR", "LSQB", "LBRACE"))
+_CLOSED = frozenset(("RPAR", "RSQB", "RBRACE"))
+_OPERATORS = frozenset(("OPERATOR", "PLUSMINUS", "NOT", "ASSIGN", "QMARK"))
+
+
+def _check_shape(tokens: Sequence[Token], reporter: Reporter) -> None:
+    """Refuses, before a tree is made of them, deep brackets and endless expressions."""
+    depth = operators = 0
+    for token in tokens:
+        kind = token[0]
+        if kind in _OPERATORS:
+            operators += 1
+            if operators > MAX_OPERATORS:
+                message = f"more than {MAX_OPERATORS} operators in one expression"
+                reporter.error(token.span, message, _TOO_DEEP[1])
+                break
+        elif kind in _OPENED:
+            depth += 1
+            operators = 0
+            if depth > MAX_DEPTH:
+                reporter.error(token.span, *_TOO_DEEP)
+                break
+        elif kind in _CLOSED:
+            depth = max(0, depth - 1)
+            operators = 0
+        elif kind == "SEMICOLON" or kind == "COMMA":
+            operators = 0
+    reporter.check()
+
+
+_made: Tables | None = None
+
+
+def _tables() -> Tables:
+    """The grammar's tables, kept on disk between processes and in memory between calls."""
+    global _made
+    if _made is None:
+        from importlib.resources import files
+
+        from sssgen.lang.front_end_stamp import front_end_stamp
+
+        grammar = files(__package__).joinpath("grammar.lark").read_text("utf-8")
+        _made = cache.kept("grammar", [front_end_stamp()], lambda: tables(grammar))
+    return _made
+
+
+_LATER = frozenset(("QUALIFIER", "BUFFER", "SHARED"))
+"""Keywords of later versions of GLSL, which are names in older files: `vec4 sample = texture2D(…);`."""
+_BEFORE_TYPE = frozenset(
+    "NAME TYPE QUALIFIER IN OUT INOUT UNIFORM VARYING CONST PRECISION LAYOUT STRUCT BUFFER SHARED".split()  # noqa: SIM905
+)
+
+
+def _as_names(tokens: Sequence[Token]) -> Sequence[Token]:
+    """The tokens with the keywords of later versions as names where no qualifier can stand."""
+    places = [
+        index
+        for index, token in enumerate(tokens)
+        if token.type in _LATER and (index + 1 == len(tokens) or tokens[index + 1].type not in _BEFORE_TYPE)
+    ]
+    if not places:
+        return tokens
+    changed = list(tokens)
+    for index in places:
+        changed[index] = tokens[index]._replace(type="NAME")
+    return changed
+
+
+def _report(error: Unexpected, tokens: list[Token], reporter: Reporter) -> None:
+    """Says what cannot stand where it does, and what to do."""
+    index, accepted = error.index, error.accepted
+    before = tokens[index - 1].span if index else None
+    if index >= len(tokens):
+        last = tokens[-1].span
+        place = last._replace(line=last.end_line, column=max(1, last.end_column - 1))
+        reporter.error(place, "the file ends too early", "is a '}' or ';' missing?")
+        return
+    token = tokens[index]
+    whole = index > 0 and tokens[index - 1].type in _ENDING
+    ended = before is not None and (before.end_line < token.span.line or (whole and token.type in _BEGINNING))
+    if before is not None and ended and "SEMICOLON" in accepted and "LBRACE" not in accepted:
+        end = before._replace(line=before.end_line, column=before.end_column, end_column=before.end_column + 1)
+        reporter.error(end, "a ';' is missing here")
+        return
+    wanted = sorted({_TOKEN_NAMES[name] for name in accepted if name in _TOKEN_NAMES})
+    message = f"'{_shorten(token.text)}' is not expected here"
+    if 0 < len(wanted) <= 4:
+        message += f"; expected {' or '.join(wanted)}"
+    hint = "it is a word of GLSL: choose another name" if "NAME" in accepted and token.text[0].isalpha() else ""
+    reporter.error(token.span, message, hint)
+
+
+def _shorten(text: str, limit: int = 40) -> str:
+    return text if len(text) <= limit else text[:limit] + "…"
+
+
+def _without_declaration(tokens: list[Token], place: int) -> list[Token]:
+    """The tokens without the top-level declaration around one of them."""
+    start, depth = 0, 0
+    for index, token in enumerate(tokens):
+        if token.type == "LBRACE":
+            depth += 1
+        elif token.type == "RBRACE":
+            depth = max(0, depth - 1)
+        if depth == 0 and token.type in ("RBRACE", "SEMICOLON"):
+            if index >= place:
+                return tokens[:start] + tokens[index + 1 :]
+            start = index + 1
+    return tokens[:start]

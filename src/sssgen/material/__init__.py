@@ -1,0 +1,1 @@
+"""Materials, the technique library, and how a chain of techniques is put together."""

@@ -1,0 +1,106 @@
+"""What a baked texture says of itself in the JSON beside it: its quantity, and the parameters it goes with."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from sssgen.ir.nodes import Uniform
+from sssgen.ir.types import Sampler
+from sssgen.material import library
+from sssgen.support.diagnostics import failure
+from sssgen.support.file_memo import note
+from sssgen.support.paths import posix
+
+FORMAT = 1
+"""Of the JSON; it grows when a reader of an older file would be wrong."""
+MAX_BYTES = 2**20
+LARGEST = 1e30
+"""Beyond any number of a bake."""
+UNITS = "materials count in metres: scale the mesh, so that it is a few units large"
+"""What to do where a baked length is out of a parameter's range."""
+
+
+class Baked(NamedTuple):
+    """The JSON beside a baked texture."""
+
+    kind: str
+    """distance, thickness, transmittance, depth, cells, normal or packed"""
+    holds: str
+    """The quantity of its numbers, as a material's types have it; "" where it is none"""
+    parameters: Mapping[str, Any]
+    """What techniques need with it, by their names: TOML values, in the body's own space"""
+    settings: Mapping[str, Any]
+    """How an engine imports it; see `targets.texture_import`"""
+    facts: Mapping[str, Any]
+    """All that the file says"""
+
+
+def sidecar(path: str) -> str:
+    """The JSON's path beside a texture's."""
+    return f"{path}.json"
+
+
+def read(path: str) -> Baked | None:
+    """What the JSON beside a texture says; None where there is none. Raises SssgenError for a faulty one."""
+    file = sidecar(path)
+    note(file)
+    if not os.path.isfile(file):
+        return None
+    from sssgen.support import json_source  # most materials have nothing baked, and starting without json is quicker
+
+    shown = posix(file)
+    try:
+        with open(file, "rb") as opened:
+            data = json_source.parse(opened.read(MAX_BYTES + 1)[:MAX_BYTES].decode("utf-8"), shown)
+    except (OSError, UnicodeDecodeError) as error:
+        raise failure(f"cannot read what was baked: {error}", "bake it anew", shown) from None
+    if not isinstance(data, dict) or not isinstance(data.get("kind"), str):
+        return None  # another program's JSON
+    if data.get("format") != FORMAT:
+        raise failure(f"this is of another format than {FORMAT}", "bake it anew", shown)
+    parameters, how = data.get("parameters", {}), data.get("import", {})
+    if not isinstance(parameters, dict) or not isinstance(how, dict):
+        raise failure("'parameters' and 'import' are tables", "bake it anew", shown)
+    for name, value in parameters.items():
+        numbers = value if isinstance(value, list) else [value]
+        if not all(isinstance(one, int | float) and abs(one) < LARGEST for one in numbers):
+            raise failure(f"'parameters': '{name}' is not made of numbers", "bake it anew", shown)
+    return Baked(data["kind"], str(data.get("holds") or ""), parameters, how, data)
+
+
+def check(made: Baked, uniform: Uniform, name: str) -> None:
+    """Raises SssgenError where a texture's uniform takes another quantity or shape than what was baked."""
+    assert isinstance(uniform.type, Sampler)
+    wanted = uniform.quantity
+    if wanted and made.holds != wanted:
+        holds = made.holds or f"no quantity: it is a {made.kind} texture"
+        raise failure(f"'{name}' holds {holds}, and '{uniform.name}' takes {wanted}", _readers(made.holds))
+    dimension = made.settings.get("dimension", uniform.type.dim)
+    if dimension != uniform.type.dim:
+        raise failure(f"'{name}' is a {dimension} texture, and '{uniform.name}' is {uniform.type.dim}")
+    hints = dict(uniform.hints)
+    is_normal, is_color = "normal_map" in hints, "source_color" in hints
+    if (is_color and made.kind != "packed") or is_normal != (made.kind == "normal"):
+        takes = "normals" if is_normal else "colours" if is_color else "other numbers"
+        raise failure(f"'{name}' is a {made.kind} texture, and '{uniform.name}' takes {takes}")
+    if is_normal and made.facts.get("green") == "directx":
+        raise failure(f"the green of '{name}' is down, as DirectX has it", "bake it with --green opengl")
+    if "repeat_disable" in hints and not wanted and made.holds:
+        raise failure(f"'{name}' holds {made.holds}, and '{uniform.name}' takes what a view of the body sees")
+
+
+def _readers(quantity: str) -> str:
+    """Which techniques take a texture of a quantity."""
+    if not quantity:
+        return "sssgen bake thickness makes a map of a quantity"
+    known = [library.load(name) for name in library.index()]
+    reading = [one.name for one in known if any(_takes(uniform, quantity) for uniform in one.uniforms)]
+    if not reading:
+        return "bake it anew"
+    return f"{quantity} is read by {' and '.join(reading)}; a conversion makes another quantity of it"
+
+
+def _takes(uniform: Uniform, quantity: str) -> bool:
+    return isinstance(uniform.type, Sampler) and uniform.quantity == quantity

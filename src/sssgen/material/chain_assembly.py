@@ -1,0 +1,398 @@
+"""Assembles a material's chain of stages into the functions that a shell calls.
+
+- `evaluate_surface(…)` runs once a fragment and returns a `Surface` of what the engine and the lights need;
+- `evaluate_translucency(surface, …)` runs once a light and returns the factor on the light's colour;
+- `evaluate_lighting(surface, …)` is the lighting of targets that bring none;
+- `evaluate_color(…)` is the whole of an unlit material;
+- `evaluate_output(color)` encodes for the display.
+
+Parameters are matched to values by name, scalar quantities by what they measure. A value that nothing writes comes
+from the shell (an input) or is the standard default. Second of all passes: it needs the linked functions' signatures.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from sssgen.ir.nodes import (
+    NOWHERE,
+    Assign,
+    Block,
+    Call,
+    Construct,
+    Declare,
+    Evaluate,
+    Expr,
+    Function,
+    If,
+    Literal,
+    Local,
+    Member,
+    Module,
+    Param,
+    Return,
+    Span,
+    Stmt,
+    StructDecl,
+)
+from sssgen.ir.types import BOOL, FLOAT, VEC2, VEC3, VEC4, Field, Struct, Type
+from sssgen.passes.link import LinkError
+
+QUANTITIES = ("thickness", "thinness", "transmittance")
+
+INPUTS: dict[str, Type] = {
+    "uv": VEC2, "P": VEC3, "N": VEC3, "V": VEC3, "T": VEC3, "B": VEC3, "L": VEC3,
+    "P_object": VEC3, "N_object": VEC3, "V_object": VEC3, "L_object": VEC3,
+    "time": FLOAT, "light_color": VEC3, "ray_origin": VEC3, "ray_direction": VEC3,
+}  # fmt: skip
+"""What a shell can supply."""
+
+PER_LIGHT = frozenset({"L", "L_object", "light_color"})
+
+DEFAULTS: dict[str, tuple[Type, tuple[float, ...]]] = {
+    "albedo": (VEC3, (1.0, 1.0, 1.0)),
+    "alpha": (FLOAT, (1.0,)),
+    "normal": (VEC3, (0.0, 0.0, 1.0)),
+    "metallic": (FLOAT, (0.0,)),
+    "roughness": (FLOAT, (0.5,)),
+    "occlusion": (FLOAT, (1.0,)),
+    "emission": (VEC3, (0.0, 0.0, 0.0)),
+    "translucency": (VEC3, (0.0, 0.0, 0.0)),
+    "color": (VEC3, (0.0, 0.0, 0.0)),
+}
+"""The surface's values and what they are where no technique writes them."""
+
+SURFACE_FIELDS = ("albedo", "alpha", "normal", "metallic", "roughness", "occlusion", "emission")
+
+_RESULT_OF_ROLE = {"coordinates": "uv", "geometry": "hit", "lighting": "color", "output": "color"}
+
+
+TAKEN = frozenset(
+    {"Surface", "surface", "light", *INPUTS}
+    | {f"evaluate_{kind}" for kind in ("surface", "translucency", "lighting", "color", "output")}
+)
+"""What the assembled functions, their inputs and their surface are called: no uniform is called so. What else a shell
+declares, its descriptor reserves."""
+
+
+class ChainStage(NamedTuple):
+    """A stage with its linked function."""
+
+    role: str
+    technique: str
+    function: Function
+    span: Span
+    glows: bool = False
+    """Whether its light needs no lamp, so that no lamp's colour multiplies it"""
+
+
+class Entry(NamedTuple):
+    """An assembled function and the shell inputs that it takes, in order (a leading `surface` aside)."""
+
+    function: Function
+    inputs: tuple[str, ...]
+
+
+class Chain(NamedTuple):
+    """The module with its entries, by kind: surface, translucency, lighting, color, output."""
+
+    module: Module
+    entries: dict[str, Entry]
+    surface: Struct | None
+
+
+def assemble(module: Module, stages: Sequence[ChainStage], lit: bool, opaque: bool = False) -> Chain:
+    """Adds the entries; an opaque material has no alpha. Raises LinkError for a value that nothing supplies."""
+    if not lit:
+        entry = _color_entry(stages, opaque)
+        return Chain(module._replace(functions=(*module.functions, entry.function)), {"color": entry}, None)
+    outputs = [stage for stage in stages if stage.role == "output"]
+    chained = [stage for stage in stages if stage.role not in ("lighting", "output")]
+    per_light = _per_light(chained)
+    surface = _Body("evaluate_surface", lit=True)
+    for stage, late in zip(chained, per_light, strict=True):
+        if not late:
+            surface.add(stage)
+    late_stages = [stage for stage, late in zip(chained, per_light, strict=True) if late]
+    lighting = [stage for stage in stages if stage.role == "lighting"]
+    light = _Body("evaluate_translucency", surface, lit=True)
+    if "translucency" in surface.values:  # the same for every light: each multiplies it by its colour
+        light.take_over("translucency")
+    for stage in late_stages:
+        light.add(stage)
+    shade = _Body("evaluate_lighting", surface)
+    for stage in lighting:
+        shade.add(stage)
+    crossing = [name for name in (*light.crossing, *shade.crossing) if name not in SURFACE_FIELDS]
+    own = [name for name in SURFACE_FIELDS if name in surface.values and not (opaque and name == "alpha")]
+    fields = own + list(dict.fromkeys(crossing))
+    if not fields:  # no shading language has empty structs
+        surface.store("albedo", constant(*DEFAULTS["albedo"], surface.span), surface.statements, False, surface.span)
+        fields = ["albedo"]
+    struct = Struct("Surface", tuple(Field(name, surface.values[name].type) for name in fields))
+    entries: dict[str, Entry] = {"surface": surface.finish_surface(struct)}
+    if light.statements:
+        entries["translucency"] = light.finish("translucency", VEC3, struct)
+    if lighting:
+        entries["lighting"] = shade.finish("color", VEC3, struct)
+    if outputs:
+        encode = _Body("evaluate_output")
+        encode.supply("color", VEC3)
+        for stage in outputs:
+            encode.add(stage)
+        entries["output"] = encode.finish("color", VEC3, None)
+    declared = StructDecl(struct, "What the techniques say of the surface.", NOWHERE)
+    functions = module.functions + tuple(entry.function for entry in entries.values())
+    return Chain(module._replace(structs=(*module.structs, declared), functions=functions), entries, struct)
+
+
+def _per_light(stages: Sequence[ChainStage]) -> list[bool]:
+    """Which stages depend on the light."""
+    late: set[str] = set(PER_LIGHT)
+    result = []
+    for stage in stages:
+        reads = {_value_name(param) for param in stage.function.params if param.direction != "out"}
+        is_late = bool(reads & late)
+        written = _written(stage)
+        late = late | written if is_late else late - (written - reads)
+        result.append(is_late)
+    return result
+
+
+def _written(stage: ChainStage) -> set[str]:
+    names = {_value_name(param) for param in stage.function.params if param.direction != "in"}
+    result = _result_name(stage)
+    return names | {result} if result else names
+
+
+def _result_name(stage: ChainStage) -> str:
+    """The value that a stage's return becomes."""
+    from sssgen.ir.types import VOID
+
+    if stage.function.result == VOID:
+        return ""
+    return _RESULT_OF_ROLE.get(stage.role) or stage.function.quantity or "translucency"
+
+
+def _value_name(param: Param) -> str:
+    return param.quantity if param.quantity in QUANTITIES else param.name
+
+
+def _color_entry(stages: Sequence[ChainStage], opaque: bool) -> Entry:
+    """The one entry of an unlit material: everything in order, what follows a hit inside its `if`."""
+    body = _Body("evaluate_color")
+    for stage in stages:
+        body.add(stage)
+    return body.finish_color(opaque)
+
+
+class _Value(NamedTuple):
+    """A value of the chain: its type, and whether it exists only where a ray has hit."""
+
+    type: Type
+    behind_hit: bool
+
+
+class _Body:
+    """One entry function while it is put together."""
+
+    def __init__(self, name: str, surface: _Body | None = None, lit: bool = False) -> None:
+        self.name = name
+        self.surface = surface
+        self.lit = lit
+        self.inputs: dict[str, Type] = {}
+        self.values: dict[str, _Value] = {}
+        self.statements: list[Stmt] = []
+        self.after_hit: list[Stmt] = []
+        self.after: list[Stmt] = []
+        self.crossing: dict[str, None] = {}
+        self.span = NOWHERE
+
+    def supply(self, name: str, type_: Type) -> None:
+        """Makes a value a parameter."""
+        self.inputs[name] = type_
+        self.values[name] = _Value(type_, False)
+
+    def add(self, stage: ChainStage) -> None:
+        """Adds the call of one stage."""
+        function, span = stage.function, stage.span
+        self.span = span
+        waits = "hit" in self.values and any(
+            self.values[name].behind_hit
+            for param in function.params
+            if param.direction != "out" and (name := _value_name(param)) in self.values
+        )
+        target = self.after_hit if waits else self.statements
+        if stage.role == "output" and "hit" in self.values:
+            target = self.after
+        args = tuple([self.argument(param, stage, target, waits) for param in function.params])
+        call = Call(function.result, function.key, args, span)
+        result = _result_name(stage)
+        if not result:
+            target.append(Evaluate(call, span))
+        elif result == "translucency":
+            self.add_light("emission" if self.lit and stage.glows else "translucency", call, target, waits, span)
+        else:
+            self.store(result, call, target, waits, span)
+        if stage.role == "geometry" and result == "hit":
+            for param in function.params:
+                if param.direction == "out":
+                    self.values[param.name] = _Value(param.type, True)
+
+    def argument(self, param: Param, stage: ChainStage, target: list[Stmt], waits: bool) -> Expr:
+        """What is passed for a parameter."""
+        name = _value_name(param)
+        if param.direction == "out":
+            if name not in self.values:
+                self.values[name] = _Value(param.type, waits)
+                target.append(Declare(name, param.type, None, stage.span))
+            return Local(param.type, name, stage.span)
+        value = self.read(name, param, stage)
+        if param.direction == "inout" and not isinstance(value, Local):
+            target.append(Declare(name, param.type, value, stage.span))
+            self.values[name] = _Value(param.type, waits)
+            return Local(param.type, name, stage.span)
+        return value
+
+    def read(self, name: str, param: Param, stage: ChainStage) -> Expr:
+        """A value of the chain, as an expression."""
+        span = stage.span
+        if name in self.values:
+            return Local(param.type, name, span)
+        if self.surface is not None and self.surface.hands_over(name):
+            self.crossing[name] = None
+            return Member(param.type, Local(_SURFACE, "surface", span), name, span)
+        if name in INPUTS:
+            self.supply(name, INPUTS[name])
+            return Local(param.type, name, span)
+        if name in DEFAULTS:
+            return constant(*DEFAULTS[name], span)
+        raise LinkError(_missing(name, param, stage), span)
+
+    def hands_over(self, name: str) -> bool:
+        """Whether the lights get this value from the surface: it was made or changed there."""
+        made = name in self.values and name not in ("N", *PER_LIGHT)
+        return made and (name not in self.inputs or name in self.changed())
+
+    def changed(self) -> set[str]:
+        """The inputs that a stage has written over."""
+        return {
+            stmt.target.name
+            for stmt in self.statements
+            if isinstance(stmt, Assign) and isinstance(stmt.target, Local) and stmt.target.name in self.inputs
+        }
+
+    def store(self, name: str, value: Expr, target: list[Stmt], waits: bool, span: Span) -> None:
+        """Sets a value, declaring it where it is new."""
+        if name in self.values:
+            target.append(Assign(Local(value.type, name, span), "", value, span))
+        elif waits and name in DEFAULTS:  # needed after the `if` too
+            type_, default = DEFAULTS[name]
+            self.statements.append(Declare(name, type_, constant(type_, default, span), span))
+            self.values[name] = _Value(type_, False)
+            target.append(Assign(Local(type_, name, span), "", value, span))
+        else:
+            self.values[name] = _Value(value.type, waits)
+            target.append(Declare(name, value.type, value, span))
+
+    def add_light(self, name: str, call: Call, target: list[Stmt], waits: bool, span: Span) -> None:
+        """Adds to the translucency, or to the emission."""
+        value: Expr = call if call.type == VEC3 else Construct(VEC3, (call,), span)
+        if name in self.values:
+            target.append(Assign(Local(VEC3, name, span), "+", value, span))
+        else:
+            self.values[name] = _Value(VEC3, waits)
+            target.append(Declare(name, VEC3, value, span))
+
+    def take_over(self, name: str) -> None:
+        """Begins with a value of the surface's, to which more may be added."""
+        assert self.surface is not None
+        self.span = span = self.surface.span
+        self.crossing[name] = None
+        member = Member(self.surface.values[name].type, Local(_SURFACE, "surface", span), name, span)
+        self.store(name, member, self.statements, False, span)
+
+    # Finishing
+
+    def function(self, result: Type, body: Block, doc: str, struct: Struct | None) -> Function:
+        leading = (Param("surface", struct, "in", "", self.span),) if struct is not None else ()
+        given = tuple(Param(name, type_, "in", "", self.span) for name, type_ in self.inputs.items())
+        return Function(self.name, leading + given, result, "", body, doc, self.span)
+
+    def finish_surface(self, struct: Struct) -> Entry:
+        span = self.span
+        fields = tuple(Local(field.type, field.name, span) for field in struct.fields)
+        body = (*self.statements, Return(Construct(struct, fields, span), span))
+        doc = "Everything about the surface that does not depend on a light."
+        return Entry(self.function(struct, body, doc, None), tuple(self.inputs))
+
+    def finish(self, name: str, type_: Type, struct: Struct | None) -> Entry:
+        """Returns one value; where its declaration is the last statement, the value itself."""
+        value: Expr = Local(type_, name, self.span)
+        statements = self.statements
+        given = _given(statements[-1], name)
+        if given is not None:
+            value, statements = given, statements[:-1]
+        if struct is not None:
+            statements = _retyped(statements, struct)
+            value = _retype(value, struct)
+        doc = {
+            "translucency": "What one light adds from behind, as a factor on its colour.",
+            "evaluate_lighting": "What one light adds from the front.",
+            "evaluate_output": "Encodes a linear colour for the display.",
+        }.get(name if name == "translucency" else self.name, "")
+        return Entry(self.function(type_, (*statements, Return(value, self.span)), doc, struct), tuple(self.inputs))
+
+    def finish_color(self, opaque: bool) -> Entry:
+        span = self.span
+        if "color" not in self.values:
+            raise LinkError("an unlit material needs a lighting technique that gives its color", span)
+        statements = list(self.statements)
+        if self.after_hit:
+            statements.append(If(Local(BOOL, "hit", span), tuple(self.after_hit), (), span))
+        statements += self.after
+        given = "alpha" in self.values and not opaque
+        alpha: Expr = Local(FLOAT, "alpha", span) if given else Literal(FLOAT, 1.0, span)
+        result = Construct(VEC4, (Local(VEC3, "color", span), alpha), span)
+        body = (*statements, Return(result, span))
+        return Entry(self.function(VEC4, body, "The colour of one fragment.", None), tuple(self.inputs))
+
+
+def _given(last: Stmt, name: str) -> Expr | None:
+    """What a statement gives the variable `name`, if that is all it does."""
+    if isinstance(last, Declare) and last.name == name:
+        return last.value
+    if isinstance(last, Assign) and last.op == "" and isinstance(last.target, Local) and last.target.name == name:
+        return last.value
+    return None
+
+
+_SURFACE = Struct("Surface", ())
+
+
+def _retype(expr: Expr, struct: Struct) -> Expr:
+    """Gives references to the surface their type, which is known only once every stage has been added."""
+    from sssgen.ir.walk import rewrite
+
+    return rewrite(expr, lambda node: node._replace(type=struct) if node.type == _SURFACE else node)
+
+
+def _retyped(statements: Sequence[Stmt], struct: Struct) -> list[Stmt]:
+    from sssgen.ir.walk import rewrite_block
+
+    change = lambda node: node._replace(type=struct) if node.type == _SURFACE else node  # noqa: E731
+    return list(rewrite_block(tuple(statements), change))
+
+
+def constant(type_: Type, values: tuple[float, ...], span: Span) -> Expr:
+    """A constant float or vector."""
+    literals = tuple(Literal(FLOAT, value, span) for value in values)
+    if len(literals) == 1:
+        return literals[0]
+    return Construct(type_, literals[:1] if len(set(values)) == 1 else literals, span)
+
+
+def _missing(name: str, param: Param, stage: ChainStage) -> str:
+    what = f"a {name}" if param.quantity in QUANTITIES else f"'{name}'"
+    return f"{stage.technique} reads {what}, which no stage before it gives"

@@ -1,0 +1,141 @@
+"""The technique library: finding technique files, loading them, and reading their documentation."""
+
+from __future__ import annotations
+
+import functools
+import os
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from sssgen.ir.nodes import Function, Module, Uniform
+from sssgen.lang.loader import load_file
+from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
+from sssgen.support.file_memo import Kept, remembered
+from sssgen.support.paths import PACKAGE, posix, stem
+
+TECHNIQUES = os.path.join(PACKAGE, "techniques")
+
+ROLES = (
+    "geometry",
+    "coordinates",
+    "thickness",
+    "conversion",
+    "surface",
+    "translucency",
+    "lighting",
+    "output",
+    "distance",
+)
+"""The roles of a material's chain, in the order they run; `distance` functions are bound to slots."""
+
+
+class Technique(NamedTuple):
+    """One technique: the last function of its file, which has the file's name."""
+
+    name: str
+    role: str
+    path: str
+    module: Module
+    function: Function
+    doc: dict[str, str]
+    """The doc comment's sections: `summary` and its `key: text` entries."""
+
+    @property
+    def baseline(self) -> bool:
+        """Whether this is a source as published, kept to be compared with."""
+        return "baseline" in self.doc
+
+    @property
+    def slots(self) -> tuple[Function, ...]:
+        """The functions that a material has to bind."""
+        return tuple(function for function in self.module.functions if function.body is None)
+
+    @property
+    def uniforms(self) -> tuple[Uniform, ...]:
+        """The parameters and textures of the technique."""
+        return self.module.uniforms
+
+
+@functools.cache
+def index() -> dict[str, str]:
+    """Every technique of the library by name."""
+    found = {}
+    for folder in sorted(os.listdir(TECHNIQUES)):
+        if folder != "common":
+            for name in sorted(os.listdir(os.path.join(TECHNIQUES, folder))):
+                if name.endswith(".sss"):
+                    found[name.removesuffix(".sss")] = os.path.join(TECHNIQUES, folder, name)
+    return found
+
+
+def folder_of(path: str) -> str:
+    """The name of the folder that a technique lies in: its role, if it has not said another."""
+    return os.path.basename(os.path.dirname(path))
+
+
+def shown_name(path: str) -> str:
+    """A file's name in messages and reflection: library files by their place in the library."""
+    return posix(path.removeprefix(TECHNIQUES + os.sep))
+
+
+def load(name: str) -> Technique:
+    """A technique of the library by name, or of a file by path (`my/lobe.sss`).
+
+    Raises SssgenError for an unknown name or a faulty file.
+    """
+    if name.endswith((".sss", ".glsl")):
+        return load_path(name)
+    path = index().get(name)
+    if path is None:
+        raise failure(f"unknown technique '{name}'", did_you_mean(name, index()) or "see: sssgen list techniques")
+    return load_path(path)
+
+
+_techniques: dict[str, Kept] = {}
+
+
+def load_path(path: str) -> Technique:
+    """The technique that a file holds; the file is read again only if it, or what it includes, has changed."""
+    return remembered(_techniques, os.path.abspath(path), lambda: _read_technique(path))
+
+
+def _read_technique(path: str) -> Technique:
+    shown, name = shown_name(path), stem(path)
+    module = load_file(path, shown, (TECHNIQUES,))
+    function = next((f for f in reversed(module.functions) if f.name == name and f.body is not None), None)
+    if function is None:
+        raise failure(f"the file has no function '{name}'", "a technique is named like its file", shown)
+    doc = sections(function.doc)
+    role = doc.get("role", folder_of(path))
+    if "role" not in doc and role not in ROLES:
+        hint = "write `role: translucency`, say, in the doc comment that stands directly before the function"
+        raise failure(f"the technique '{name}' has no role", hint, shown)
+    if role not in ROLES:
+        raise failure(f"unknown role '{role}'", did_you_mean(role, ROLES) or f"roles: {', '.join(ROLES)}", shown)
+    return Technique(name, role, path, module, function, doc)
+
+
+def load_all() -> Iterator[Technique]:
+    """Every technique of the library. Raises SssgenError with the errors of all faulty ones."""
+    wrong = []
+    for path in index().values():
+        try:
+            yield load_path(path)
+        except SssgenError as error:
+            wrong += error.diagnostics
+    if wrong:
+        raise SssgenError(wrong)
+
+
+def sections(doc: str) -> dict[str, str]:
+    """A doc comment's first paragraph as `summary`, and its `key: text` sections."""
+    found: dict[str, str] = {}
+    key = "summary"
+    for line in doc.splitlines():
+        word, colon, rest = line.partition(":")
+        if colon and word.isidentifier() and word.islower() and not line.startswith(" "):
+            key = word
+            found[key] = rest.strip()
+        elif line.strip():
+            found[key] = f"{found.get(key, '')} {line.strip()}".strip()
+    return found

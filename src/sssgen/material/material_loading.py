@@ -1,0 +1,55 @@
+"""Loads materials: from a TOML file, from a TOML text, or an example by its name."""
+
+from __future__ import annotations
+
+import os
+
+from sssgen.lang.loader import read_text
+from sssgen.material.material_reader import read_material
+from sssgen.material.model import Material
+from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.support.file_memo import Kept, note, remembered
+from sssgen.support.paths import place, posix
+
+
+def examples() -> dict[str, str]:
+    """The example materials that come with the project, by name."""
+    folder = place("examples")
+    paths = {name: os.path.join(folder, name, f"{name}.toml") for name in sorted(os.listdir(folder))}
+    return {name: path for name, path in paths.items() if os.path.isfile(path)}
+
+
+_materials: dict[str, Kept] = {}
+
+
+def load_material(path_or_name: str | os.PathLike[str]) -> Material:
+    """The material of a TOML file, or of an example by its name.
+
+    It is the same object as before where no file that it is made of has changed. Raises SssgenError with all that
+    is wrong with it.
+    """
+    text = os.fspath(path_or_name)
+    if not text.endswith(".toml") and "/" not in text and "\\" not in text and not os.path.isfile(text):
+        note(text)
+        path = os.path.join(place("examples"), text, f"{text}.toml")
+        if not os.path.isfile(path):
+            known = examples()
+            beside = f"did you mean '{text}.toml'?" if os.path.isfile(f"{text}.toml") else ""
+            others = f"give a path that ends in .toml, or one of: {', '.join(known)}"
+            raise failure(f"unknown material '{text}'", beside or did_you_mean(text, known) or others)
+        return _remembered(path, f"examples/{text}/{text}.toml")
+    return _remembered(text, posix(text))
+
+
+def _remembered(path: str, shown: str) -> Material:
+    key = f"{os.path.abspath(path)}\0{shown}"
+    return remembered(_materials, key, lambda: parse_material(read_text(path, shown), path, shown))
+
+
+def parse_material(text: str, path: str | os.PathLike[str], shown: str = "") -> Material:
+    """The material that a TOML text describes.
+
+    Files that it names are looked for beside `path`; `shown` is its name in messages. Raises SssgenError with
+    all that is wrong with it.
+    """
+    return read_material(text, os.fspath(path), shown or posix(path))

@@ -1,0 +1,406 @@
+"""Reads a material's TOML: sections, stages, parameters and bindings, checked against the techniques."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, NamedTuple
+
+from sssgen.ir.nodes import Function, Span, Uniform
+from sssgen.ir.types import Sampler
+from sssgen.material import baked, library, roles, slots
+from sssgen.material.library import Technique
+from sssgen.material.model import ALPHA_MODES, SHADINGS, Binding, Material, Stage, wrong_name
+from sssgen.material.values import WrongValue, read_texture, read_value
+from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean
+from sssgen.support.toml_source import Document, parse
+
+_MATERIAL_KEYS = ("name", "title", "doc", "shading", "alpha_mode")
+_CHOICES = {
+    "shading": (SHADINGS, "lit: the engine lights it; unlit: the chain gives the color"),
+    "alpha_mode": (ALPHA_MODES, "opaque: alpha is left out; mask: cut at one half; blend: see-through"),
+}
+
+
+class _Shared(NamedTuple):
+    """What a stage said of a parameter that several stages share."""
+
+    value: object
+    technique: str
+    line: int
+
+
+def read_material(text: str, path: str, shown: str) -> Material:
+    """The material that a TOML text describes; see `material.parse_material`."""
+    reader = _Reader(parse(text, shown), path)
+    material = reader.material()
+    own = sorted(reader.document.reporter.diagnostics, key=lambda found: found.span[1:3])
+    if own or reader.foreign:
+        raise SssgenError([*own, *reader.foreign])
+    return material
+
+
+class _Reader:
+    """Reads one document; every error goes to the document, and reading goes on."""
+
+    def __init__(self, document: Document, path: str) -> None:
+        self.document = document
+        self.path = path
+        self.foreign: list[Diagnostic] = []
+        """What is wrong with the technique files that the material names."""
+        self.shared: dict[Span, _Shared] = {}
+        self.complete = True
+        """Whether every stage has a technique, so that the chain can be judged."""
+
+    def material(self) -> Material:
+        data, error, place = self.document.data, self.document.error, self.document.place
+        sections = ("material", *roles.SECTIONS)
+        for key, content in data.items():
+            if key in sections and isinstance(content, dict | list):
+                continue
+            self.complete = False
+            if key in sections:
+                error(
+                    place(key).key,
+                    f"'{key}' is a section",
+                    f"write [{key}] on a line of its own, its keys below",
+                )
+            elif isinstance(content, dict | list) and not _is_plain_list(content):
+                error(place(key).key, f"unknown section '{key}'", _section_hint(key, sections))
+            else:
+                hint = (
+                    f"sections: {', '.join(sections)}" if key not in _MATERIAL_KEYS else "it belongs below [material]"
+                )
+                error(place(key).key, f"'{key}' stands outside any section", hint)
+        name, title, doc, shading, alpha_mode = self.head(data.get("material"))
+        stages = [stage for section in roles.SECTIONS for stage in self.section(section, data.get(section))]
+        if not any(section in data for section in roles.SECTIONS):
+            hint = f"add a section with a technique: {', '.join(f'[{section}]' for section in roles.SECTIONS)}"
+            error(place("material").value, "the material has no stages", hint)
+        elif self.complete and not self.foreign:
+            links = [roles.Link(stage.technique, stage.span) for stage in stages]
+            roles.check_chain(links, shading, error)
+        return Material(
+            name, title or name.replace("_", " ").capitalize(), doc, shading, tuple(stages), self.path, alpha_mode
+        )
+
+    # The head
+
+    def head(self, table: Any) -> tuple[str, str, str, str, str]:
+        """The name, title, doc, shading and alpha mode of the [material] section."""
+        error, place = self.document.error, self.document.place
+        if table is None:
+            error(place().key, "there is no [material] section", 'add: [material] and below it name = "…"')
+            return "", "", "", "lit", "opaque"
+        if not isinstance(table, dict):
+            error(place("material").key, "one file describes one material", "write [material], once")
+            return "", "", "", "lit", "opaque"
+        for key in table:
+            if key not in _MATERIAL_KEYS:
+                hint = did_you_mean(key, _MATERIAL_KEYS) or f"keys: {', '.join(_MATERIAL_KEYS)}"
+                error(place("material", key).key, f"unknown key '{key}' in [material]", hint)
+        texts = {key: self.text(table.get(key, ""), key) for key in _MATERIAL_KEYS}
+        name = texts["name"]
+        if "name" not in table:
+            error(place("material").value, "the material has no name", 'add: name = "…"')
+        elif isinstance(table["name"], str) and (wrong := wrong_name(name)):
+            error(place("material", "name").value, *wrong)
+        chosen = {}
+        for key, (words, meaning) in _CHOICES.items():
+            chosen[key] = texts[key] or words[0]
+            if chosen[key] not in words:
+                message = f"unknown {key.replace('_', ' ')} '{chosen[key]}'"
+                error(place("material", key).value, message, did_you_mean(chosen[key], words) or meaning)
+        return name, texts["title"], texts["doc"], chosen["shading"], chosen["alpha_mode"]
+
+    def text(self, raw: object, key: str) -> str:
+        """A text of the head; only `doc` may have several lines."""
+        span = self.document.place("material", key).value
+        if not isinstance(raw, str):
+            self.document.error(span, f"'{key}' takes a text", f'write {key} = "…"')
+            return ""
+        controls = [character for character in raw if ord(character) < 32 and not (key == "doc" and character == "\n")]
+        if controls and key != "name":
+            self.document.error(span, f"'{key}' holds the control character {controls[0]!r}", "write it in one line")
+        return raw.strip() if key != "name" else raw
+
+    # Stages
+
+    def section(self, section: str, content: Any) -> list[Stage]:
+        """The stages of one section: a table, or an array of tables."""
+        if not isinstance(content, dict | list):
+            return []
+        tables = list(enumerate(content)) if isinstance(content, list) else [(None, content)]
+        found = []
+        for number, table in tables:
+            path: tuple[str | int, ...] = (section,) if number is None else (section, number)
+            if not isinstance(table, dict):
+                self.document.error(self.document.place(*path).value, f"'{section}' is a section", f"write [{section}]")
+                stage = None
+            else:
+                stage = self.stage(section, path, table)
+            if stage is None:
+                self.complete = False
+            else:
+                found.append(stage)
+        return found
+
+    def stage(self, section: str, path: tuple[str | int, ...], table: dict[str, Any]) -> Stage | None:
+        """One stage; None where its technique is not known."""
+        technique = self.technique(section, path, table)
+        if technique is None:
+            return None
+        span = self.document.place(*path, "technique").value
+        bindings = self.bind(technique, path, table)
+        names, _ = slots.needs(technique.module, technique.function)
+        uniforms = {uniform.span: uniform for uniform in technique.uniforms if uniform.name in names}
+        for binding in bindings.values():
+            names, _ = slots.needs(binding.module, binding.function)
+            uniforms |= {uniform.span: uniform for uniform in binding.module.uniforms if uniform.name in names}
+        stage = Stage(technique, {}, frozenset(), {}, bindings, span)
+        said: dict[Span, str] = {}
+        for key, raw in table.items():
+            if key in ("technique", "bind"):
+                continue
+            meant = [uniform for uniform in uniforms.values() if key in _names(uniform)]
+            if not meant:
+                self.unknown_parameter(technique, list(uniforms.values()), (*path, key))
+            for uniform in meant:
+                if uniform.span in said:
+                    message = f"'{said[uniform.span]}' and '{key}' are the same parameter, given twice"
+                    self.document.error(self.document.place(*path, key).key, message, "remove one of the two")
+                    continue
+                said[uniform.span] = key
+                stage = self.parameter(stage, uniform, (*path, key), raw)
+        return self.baked(stage, list(uniforms.values()), path, table)
+
+    def technique(self, section: str, path: tuple[str | int, ...], table: dict[str, Any]) -> Technique | None:
+        """The technique that a stage names."""
+        error, place = self.document.error, self.document.place
+        allowed = roles.allowed_roles(section)
+        name = table.get("technique")
+        if name is None:
+            error(
+                place(*path).value,
+                f"this [{section}] stage has no technique",
+                f"write technique = one of: {', '.join(_of_roles(allowed))}",
+            )
+            return None
+        span = place(*path, "technique").value
+        if not isinstance(name, str):
+            error(span, "'technique' takes a name", 'write technique = "…"')
+            return None
+        try:
+            if name.endswith((".sss", ".glsl")):
+                file = os.path.join(os.path.dirname(self.path), name)
+                if not os.path.isfile(file):
+                    error(span, f"cannot find the file '{name}'", "it is looked for beside the material")
+                    return None
+                technique = library.load_path(file)
+            elif name in library.index():
+                technique = library.load(name)
+            else:
+                known = _of_roles(allowed)
+                near = did_you_mean(name, known) or did_you_mean(name, library.index())
+                hint = near or f"techniques: {', '.join(known)}"
+                error(span, f"unknown technique '{name}'", hint)
+                return None
+        except SssgenError as faulty:
+            self.foreign += [found for found in faulty.diagnostics if found not in self.foreign]
+            return None
+        if technique.role not in allowed:
+            home = "thickness" if technique.role == "conversion" else technique.role
+            hint = f"put it into [{home}]"
+            if technique.role == "distance":
+                hint = f'it is bound to a slot: bind = {{ … = "{name}" }}'
+            error(span, f"'{name}' is a {technique.role} technique and cannot stand in [{section}]", hint)
+            self.complete = False
+        return technique
+
+    def unknown_parameter(self, technique: Technique, uniforms: list[Uniform], path: tuple[str | int, ...]) -> None:
+        key = str(path[-1])
+        hint = did_you_mean(key, [name for uniform in uniforms for name in _names(uniform)])
+        if any(slot.name == key for slot in technique.slots):
+            hint = f"'{key}' is a slot: write bind = {{ {key} = … }}"
+        if not hint:
+            hint = f"parameters: {', '.join(uniform.name for uniform in uniforms)}" if uniforms else "it has none"
+        message = f"unknown parameter '{key}' of '{technique.name}'"
+        if any(uniform.name == key for uniform in technique.uniforms):
+            message = f"'{technique.name}' does not read '{key}'"
+        self.document.error(self.document.place(*path).key, message, hint)
+
+    def parameter(self, stage: Stage, uniform: Uniform, path: tuple[str | int, ...], raw: object) -> Stage:
+        """The stage with one more parameter: `key = value` or `key = { value = …, fixed = true }`."""
+        error, place = self.document.error, self.document.place
+        fixed = False
+        if isinstance(raw, dict):
+            for key in raw.keys() - {"value", "fixed"}:
+                hint = did_you_mean(key, ("value", "fixed")) or "write { value = …, fixed = true }"
+                error(place(*path, key).key, f"unknown key '{key}' of a parameter", hint)
+            fixed = raw.get("fixed", False)
+            if not isinstance(fixed, bool):
+                error(place(*path, "fixed").value, "'fixed' is true or false")
+                fixed = False
+            if "value" not in raw and "fixed" not in raw:
+                error(place(*path).value, f"'{path[-1]}' has no value", "write { value = …, fixed = true }")
+                return stage
+            if "value" in raw:
+                path, raw = (*path, "value"), raw["value"]
+        try:
+            if isinstance(uniform.type, Sampler):
+                if fixed:
+                    error(place(*path).value, "a texture cannot be fixed", "leave 'fixed' out")
+                value: object = read_texture(uniform, raw)
+                stage = stage._replace(textures={**stage.textures, uniform.name: str(value)})
+            else:
+                components = uniform.default if isinstance(raw, dict) else read_value(uniform, raw)
+                value = components
+                stage = stage._replace(values={**stage.values, uniform.name: components})
+                if fixed:
+                    stage = stage._replace(fixed=stage.fixed | {uniform.name})
+        except WrongValue as wrong:
+            at = path if wrong.index is None else (*path, wrong.index)
+            error(place(*at).value, wrong.message, wrong.hint)
+            return stage
+        if uniform.span.file != stage.technique.function.span.file:
+            self.share(stage, uniform, path, value)
+        return stage
+
+    def baked(self, stage: Stage, uniforms: list[Uniform], path: tuple[str | int, ...], table: dict[str, Any]) -> Stage:
+        """The stage with the parameters that come with its baked textures, where it does not give them itself."""
+        for uniform in uniforms:
+            if uniform.name not in stage.textures:
+                continue
+            key = next(name for name in _names(uniform) if name in table)
+            span = self.document.place(*path, key).value
+            file = os.path.join(os.path.dirname(self.path), stage.textures[uniform.name])
+            try:
+                made = baked.read(file)
+                if made is None:
+                    continue
+                baked.check(made, uniform, stage.textures[uniform.name])
+            except SssgenError as wrong:
+                for found in wrong.diagnostics:
+                    self.document.error(span, found.message, found.hint)
+                continue
+            for other in uniforms:
+                given = [table[name] for name in _names(other) if name in table]
+                if other.name in made.parameters and all(isinstance(raw, dict) and "value" not in raw for raw in given):
+                    try:
+                        components = read_value(other, made.parameters[other.name])
+                    except WrongValue as wrong:
+                        message = f"what is baked into '{stage.textures[uniform.name]}' does not fit: {wrong.message}"
+                        self.document.error(span, message, "; ".join(filter(None, (wrong.hint, baked.UNITS))))
+                        continue
+                    stage = stage._replace(values={**stage.values, other.name: components})
+        return stage
+
+    def share(self, stage: Stage, uniform: Uniform, path: tuple[str | int, ...], value: object) -> None:
+        """Checks that all stages say the same of a parameter that they share.
+
+        Those of included files and of bound functions are shared.
+        """
+        span = self.document.place(*path).value
+        earlier = self.shared.setdefault(uniform.span, _Shared(value, stage.technique.name, span.line))
+        if earlier.value != value:
+            message = f"'{uniform.name}' has another value in '{earlier.technique}', line {earlier.line}"
+            self.document.error(span, message, f"both stages share it (it is in {uniform.span.file}): give it once")
+
+    # Slots
+
+    def bind(self, technique: Technique, path: tuple[str | int, ...], stage: dict[str, Any]) -> dict[str, Binding]:
+        """What the slots of a technique, and those of what is bound to them, are bound to."""
+        error, place = self.document.error, self.document.place
+        table = stage.get("bind", {})
+        if not isinstance(table, dict):
+            error(place(*path, "bind").value, "'bind' takes a table", 'write bind = { slot = "function" }')
+            return {}
+        found: dict[str, Binding] = {}
+        unbound: list[Function] = []
+        waiting = list(slots.needs(technique.module, technique.function)[1])
+        known: dict[str, Function] = {}
+        while waiting:
+            slot = waiting.pop(0)
+            if slot.name in known:
+                continue
+            known[slot.name] = slot
+            if slot.name not in table:
+                unbound.append(slot)
+            elif binding := self.binding(slot, table[slot.name], place(*path, "bind", slot.name).value):
+                found[slot.name] = binding
+                waiting += slots.needs(binding.module, binding.function)[1]
+        for name in table.keys() - known.keys():
+            hint = did_you_mean(name, known) or (f"slots: {', '.join(known)}" if known else "it has no slots")
+            error(place(*path, "bind", name).key, f"'{technique.name}' has no slot '{name}'", hint)
+            unbound = [slot for slot in unbound if f"'{slot.name}'" not in hint]  # it was misspelt
+        for slot in unbound:
+            if slot.name in stage:
+                continue  # it was taken for a parameter, and reported so
+            fitting = slots.candidates(slot)
+            hint = f'write bind = {{ {slot.name} = "{fitting[0] if fitting else "FILE:FUNCTION"}" }}; '
+            hint += (
+                f"functions that fit: {', '.join(fitting)}" if fitting else f"the function is {slots.signature(slot)}"
+            )
+            where = place(*path, "bind").key if table else place(*path, "technique").value
+            error(where, f"slot '{slot.name}' of '{technique.name}' is not bound", hint)
+        for name in _cycle(found):
+            error(
+                place(*path, "bind", name).value,
+                f"the function bound to '{name}' calls '{name}' again",
+                "bind another one",
+            )
+        return found
+
+    def binding(self, slot: Function, raw: object, span: Span) -> Binding | None:
+        """The function that a slot is bound to; None where there is an error."""
+        if not isinstance(raw, str):
+            self.document.error(span, "a slot is bound to the name of a function", f'write {slot.name} = "…"')
+            return None
+        try:
+            return Binding(*slots.find(raw, slot, os.path.dirname(self.path)))
+        except SssgenError as wrong:
+            for found in wrong.diagnostics:
+                if found.span.line:  # an error inside the file
+                    self.foreign.append(found)
+                else:
+                    self.document.error(span, found.message, found.hint)
+            return None
+
+
+def _names(uniform: Uniform) -> list[str]:
+    """A uniform's name and its aliases."""
+    return [uniform.name, *(str(name) for hint, names in uniform.hints if hint == "alias" for name in names)]
+
+
+def _of_roles(allowed: tuple[str, ...]) -> list[str]:
+    """The library's techniques of some roles, told from their folders."""
+    return [name for name, path in library.index().items() if library.folder_of(path) in allowed]
+
+
+def _is_plain_list(content: object) -> bool:
+    return isinstance(content, list) and not all(isinstance(element, dict) for element in content)
+
+
+def _section_hint(key: str, sections: tuple[str, ...]) -> str:
+    if key == "conversion":
+        return "conversions stand in [[thickness]], after the technique whose result they convert"
+    if key == "distance":
+        return 'distance functions are bound to slots: bind = { … = "…" }'
+    return did_you_mean(key, sections) or f"sections: {', '.join(sections)}"
+
+
+def _cycle(bindings: dict[str, Binding]) -> list[str]:
+    """A slot whose function comes to call the slot again, if there is one."""
+    calls = {
+        name: [slot.name for slot in slots.needs(binding.module, binding.function)[1]]
+        for name, binding in bindings.items()
+    }
+    for start in bindings:
+        waiting, seen = list(calls[start]), set()
+        while waiting:
+            name = waiting.pop()
+            if name == start:
+                return [start]
+            if name not in seen:
+                seen.add(name)
+                waiting += calls.get(name, [])
+    return []

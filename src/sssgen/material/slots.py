@@ -1,0 +1,138 @@
+"""Slots of techniques and the functions that a material binds to them."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+
+from sssgen.ir.nodes import Call, Function, Global, Module
+from sssgen.ir.types import spell
+from sssgen.ir.walk import all_expressions, subexpressions
+from sssgen.lang.loader import load_file
+from sssgen.material import library
+from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
+from sssgen.support.file_memo import note
+from sssgen.support.paths import stem
+
+Needs = tuple[frozenset[str], tuple[Function, ...]]
+
+_known: dict[int, tuple[Module, Function, Needs]] = {}
+_KEPT = 4096
+
+
+def needs(module: Module, function: Function) -> Needs:
+    """The names of the globals that a function reads and the slots it calls, itself or through others."""
+    kept = _known.get(id(function))
+    if kept is None or kept[0] is not module or kept[1] is not function:
+        if len(_known) >= _KEPT:
+            _known.clear()
+        kept = _known[id(function)] = (module, function, _needs(module, function))
+    return kept[2]
+
+
+def _needs(module: Module, function: Function) -> Needs:
+    functions = {other.key: other for other in module.functions}
+    constants = {constant.name: constant for constant in module.constants}
+    names: set[str] = set()
+    slots: list[Function] = []
+    waiting, seen = [function], {function.key}
+    while waiting:
+        at = waiting.pop()
+        if at.body is None:
+            slots.append(at)
+        for expr in all_expressions(at.body or ()):
+            kind = type(expr)
+            if kind is Call and expr.function not in seen:  # type: ignore[union-attr]  # it is a Call
+                seen.add(expr.function)  # type: ignore[union-attr]
+                waiting.append(functions[expr.function])  # type: ignore[union-attr]
+            elif kind is Global:
+                names.add(expr.name)  # type: ignore[union-attr]
+    for name in list(names & constants.keys()):
+        names |= {expr.name for expr in subexpressions(constants[name].value) if isinstance(expr, Global)}
+    return frozenset(names), tuple(slots)
+
+
+def signature(function: Function) -> str:
+    """A function's declaration as it is written: `float sphere(world_position p)`."""
+    params = []
+    for param in function.params:
+        direction = "" if param.direction == "in" else f"{param.direction} "
+        params.append(f"{direction}{param.quantity or spell(param.type)} {param.name}")
+    return f"{function.quantity or spell(function.result)} {function.name}({', '.join(params)})"
+
+
+def fits(slot: Function, function: Function) -> bool:
+    """Whether calls of the slot may go to the function: the same types; quantities may only be dropped."""
+
+    def drops(given: str, wanted: str) -> bool:
+        return wanted in ("", given)
+
+    return (
+        function.body is not None
+        and slot.result == function.result
+        and drops(function.quantity, slot.quantity)
+        and len(slot.params) == len(function.params)
+        and all(
+            one.type == other.type
+            and one.direction == other.direction
+            and (one.direction == "out" or drops(one.quantity, other.quantity))
+            and (one.direction == "in" or drops(other.quantity, one.quantity))
+            for one, other in zip(slot.params, function.params, strict=True)
+        )
+    )
+
+
+def find(text: str, slot: Function, folder: str) -> tuple[Module, Function]:
+    """The function that `NAME`, `NAME:FUNCTION`, `FILE` or `FILE:FUNCTION` names.
+
+    A file is relative to `folder`, or to the technique library.
+
+    Raises SssgenError where there is none or it does not fit the slot.
+    """
+    source, _, name = text.rpartition(":") if text.rpartition(":")[2].isidentifier() else (text, "", "")
+    if not source:
+        source, name = name, ""
+    if source.endswith((".sss", ".glsl")):
+        paths = [os.path.join(root, source) for root in (folder, library.TECHNIQUES)]
+        path = next((path for path in paths if os.path.isfile(path)), None)
+        note(paths[0])
+        if path is None:
+            raise failure(f"cannot find the file '{source}'", "it is looked for beside the material")
+        module = load_file(path, library.shown_name(path), (library.TECHNIQUES,))
+        name = name or stem(path)
+    else:
+        if source not in library.index():
+            hint = did_you_mean(source, library.index()) or f"functions that fit: {', '.join(candidates(slot))}"
+            raise failure(f"unknown function '{source}'", hint)
+        module = library.load(source).module
+        name = name or source
+    named = [function for function in module.functions if function.name == name and function.body is not None]
+    if not named:
+        known = [function.name for function in module.functions if function.body is not None]
+        raise failure(
+            f"'{source}' has no function '{name}'", did_you_mean(name, known) or f"it has: {', '.join(known)}"
+        )
+    for function in named:
+        if fits(slot, function):
+            return module, function
+    others = [function.name for function in module.functions if fits(slot, function)]
+    if others:
+        hint = f'write "{source}:{others[0]}"'
+    else:
+        fitting = candidates(slot)
+        hint = f"functions that fit: {', '.join(fitting)}" if fitting else "write a function of that signature"
+    raise failure(f"'{text}' does not fit the slot: {signature(named[0])} is bound to {signature(slot)}", hint)
+
+
+def candidates(slot: Function) -> list[str]:
+    """The library's functions that fit a slot, as a material writes them."""
+    found: list[str] = []
+    for name, path in library.index().items():
+        if library.folder_of(path) != "distance":
+            continue
+        with contextlib.suppress(SssgenError):  # a faulty file is reported where it is used
+            module = library.load_path(path).module
+            own = [one for one in module.functions if one.span.file == library.shown_name(path) and fits(slot, one)]
+            offered = [one.name for one in own if one.name == name or any(param.quantity for param in one.params)]
+            found += [name if one == name else f"{name}:{one}" for one in offered]
+    return found

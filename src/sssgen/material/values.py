@@ -1,0 +1,173 @@
+"""The values that a material gives to parameters: TOML values → a uniform's components, checked."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Any
+
+from sssgen.ir.contracts import of_uniform
+from sssgen.ir.nodes import Uniform
+from sssgen.ir.types import Array, Matrix, Sampler, Type, components, kind_of, spell
+
+_LARGEST = 3.4028234663852886e38
+_LIMITS = {"int": (-(2**31), 2**31 - 1), "uint": (0, 2**32 - 1), "float": (-_LARGEST, _LARGEST)}
+_HEX = re.compile(r"#(?:[0-9a-fA-F]{3}|[0-9a-fA-F]{6}|[0-9a-fA-F]{8})")
+
+
+class WrongValue(Exception):
+    """A value that does not fit; `index` is that of the element at fault in a list, else None."""
+
+    def __init__(self, message: str, hint: str = "", index: int | None = None) -> None:
+        super().__init__(message)
+        self.message, self.hint, self.index = message, hint, index
+
+
+def read_value(uniform: Uniform, raw: object) -> tuple[float, ...]:
+    """The components of a uniform's value. Matrices are given column by column, lists flat or nested.
+
+    A colour may be `"#rgb"`, `"#rrggbb"` or `"#rrggbbaa"` in sRGB, and becomes linear RGB. Raises WrongValue
+    for a value of another type or size, one that no 32-bit number holds, and one outside the uniform's range.
+    """
+    type_ = uniform.type
+    if isinstance(raw, str):
+        return _colour(uniform, raw)
+    if components(type_) == 1 and not isinstance(type_, Array):
+        return (_number(uniform, raw, None),)
+    flat = _flatten(raw) if isinstance(raw, list) else None
+    if flat is None:
+        raise WrongValue(f"'{uniform.name}' takes {wanted(uniform)}, but this is {_word(raw)}")
+    if len(flat) != components(type_):
+        count = f"{len(flat)} value{'' if len(flat) == 1 else 's'}"
+        raise WrongValue(f"'{uniform.name}' takes {wanted(uniform)}, but this has {count}")
+    nested = any(isinstance(element, list) for element in raw) if isinstance(raw, list) else False
+    return tuple(_number(uniform, element, None if nested else index) for index, element in enumerate(flat))
+
+
+def read_texture(uniform: Uniform, raw: object) -> str:
+    """The picture file of a texture. Raises WrongValue."""
+    if not isinstance(raw, str):
+        raise WrongValue(f"'{uniform.name}' takes {wanted(uniform)}, but this is {_word(raw)}")
+    if not raw or any(ord(character) < 32 for character in raw):
+        raise WrongValue(f"{raw!r} is no file name", "leave the line out to use the texture's default")
+    return raw
+
+
+def wanted(uniform: Uniform) -> str:
+    """What a uniform takes, in words: `3 numbers, as in [0.5, 0.5, 0.5]`."""
+    type_, kind = uniform.type, _kind(uniform.type)
+    if isinstance(type_, Sampler):
+        return 'the name of a picture file, as in "map.png"'
+    count = components(type_)
+    each = {
+        "bool": "true or false",
+        "float": "a number",
+        "int": "a whole number",
+        "uint": "a whole number of 0 or more",
+    }[kind]
+    if count == 1 and not isinstance(type_, Array):
+        return each
+    many = {
+        "bool": "truth values",
+        "float": "numbers",
+        "int": "whole numbers",
+        "uint": "whole numbers of 0 or more",
+    }[kind]
+    example = {"bool": "true", "float": "0.5", "int": "1", "uint": "1"}[kind]
+    if is_colour(uniform):
+        return f'a colour: {count} numbers of linear RGB, or a text of sRGB as in "#ff8000"'
+    if isinstance(type_, Matrix):
+        return f"{count} numbers ({spell(type_)}), column by column"
+    return f"{count} {many}, as in [{', '.join([example] * min(count, 4))}{', …' if count > 4 else ''}]"
+
+
+def is_colour(uniform: Uniform) -> bool:
+    """Whether the uniform says that it is a colour."""
+    return components(uniform.type) in (3, 4) and any(name == "source_color" for name, _ in uniform.hints)
+
+
+def linear(srgb: float) -> float:
+    """One sRGB component (0..1) as linear light (IEC 61966-2-1)."""
+    return srgb / 12.92 if srgb <= 0.04045 else ((srgb + 0.055) / 1.055) ** 2.4
+
+
+def _colour(uniform: Uniform, text: str) -> tuple[float, ...]:
+    if not is_colour(uniform):
+        hint = "write the number without quotes" if re.fullmatch(r"[-+0-9.eE]+", text.strip()) else ""
+        if text.startswith("#"):
+            hint = f"'{uniform.name}' is not declared a colour (source_color): give its components"
+        raise WrongValue(f"'{uniform.name}' takes {wanted(uniform)}, but this is a text", hint)
+    if not _HEX.fullmatch(text):
+        raise WrongValue(f"'{text}' is not a colour", 'write "#rgb", "#rrggbb" or "#rrggbbaa", or a list of linear RGB')
+    digits = text[1:]
+    if len(digits) == 3:
+        digits = "".join(digit * 2 for digit in digits)
+    values = [int(digits[at : at + 2], 16) / 255 for at in range(0, len(digits), 2)]
+    count = components(uniform.type)
+    if len(values) > count:
+        raise WrongValue(f"'{uniform.name}' has no alpha", f'write "{text[:7]}"')
+    alpha = [*values, 1.0][3]
+    return (*map(linear, values[:3]), alpha)[:count]
+
+
+def _number(uniform: Uniform, raw: Any, index: int | None) -> float:
+    """One component."""
+    kind, name = _kind(uniform.type), uniform.name
+    if kind == "bool":
+        if not isinstance(raw, bool):
+            raise WrongValue(f"'{name}' takes {wanted(uniform)}, but this is {_word(raw)}", "", index)
+        return float(raw)
+    if isinstance(raw, bool) or not isinstance(raw, int | float):
+        raise WrongValue(f"'{name}' takes {wanted(uniform)}, but this is {_word(raw)}", "", index)
+    if kind != "float" and isinstance(raw, float):
+        hint = f"write {raw:.0f}" if raw.is_integer() and abs(raw) < 2**32 else ""
+        raise WrongValue(f"'{name}' takes {wanted(uniform)}, but this is {raw:g}", hint, index)
+    low, high = _LIMITS[kind]
+    if not low <= raw <= high:  # also true of nan
+        what = (
+            str(raw)
+            if isinstance(raw, float) and not math.isfinite(raw)
+            else f"a number of {len(str(raw))} digits"
+            if abs(raw) > 1e300
+            else f"{raw:g}"
+        )
+        raise WrongValue(f"'{name}' cannot be {what}", f"a {kind} has 32 bits", index)
+    for hint, args in uniform.hints:
+        if hint == "hint_range" and not float(args[0]) <= raw <= float(args[1]):
+            default = ", ".join(f"{value:g}" for value in dict.fromkeys(uniform.default))
+            raise WrongValue(
+                f"{raw:g} is outside the range of '{name}'",
+                f"it goes from {args[0]:g} to {args[1]:g}; the default is {default}",
+                index,
+            )
+    contract = of_uniform(uniform)
+    if kind == "float" and not contract.low <= raw <= contract.high:
+        raise WrongValue(
+            f"{raw:g} is more than '{name}' is safe with",
+            f"without a hint_range it goes from {contract.low:g} to {contract.high:g}: give it one in the technique",
+            index,
+        )
+    return float(raw)
+
+
+def _kind(type_: Type) -> str:
+    return _kind(type_.element) if isinstance(type_, Array) else kind_of(type_)
+
+
+def _flatten(raw: list[Any]) -> list[Any]:
+    flat: list[Any] = []
+    for element in raw:
+        flat += _flatten(element) if isinstance(element, list) else [element]
+    return flat
+
+
+def _word(raw: object) -> str:
+    """What a TOML value is, in words."""
+    if isinstance(raw, bool):
+        return "true" if raw else "false"
+    if isinstance(raw, int | float):
+        return "a number"
+    for kind, word in ((str, "a text"), (list, "a list"), (dict, "a table")):
+        if isinstance(raw, kind):
+            return word
+    return "a date or time"

@@ -1,0 +1,1 @@
+"""Rewrites a module until the target can express every node."""

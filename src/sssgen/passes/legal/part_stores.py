@@ -1,0 +1,128 @@
+"""Says a store into a part of a vector or matrix as a store of the whole.
+
+Why: naga refuses `v.xz = a`, and FXC an index that is not constant on the left, as in `m[i] = a`. Both become a
+construction of the whole from its old parts and the new ones. Used by `legalise`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from sssgen.ir import nodes as ir
+from sssgen.ir.types import BOOL, Matrix, Scalar, Vector, components, kind_of, vector_of
+
+Keep = Callable[[ir.Expr, str], ir.Expr]
+"""Gives what is cheap to repeat in the place of an expression: itself, or a variable of about this name."""
+
+
+def whole_store(
+    place: ir.Expr, value: ir.Expr, refused: Callable[[ir.Expr], bool], keep: Keep
+) -> tuple[ir.Expr, ir.Expr]:
+    """The place and the value of a store that means `place = value` and of which no part is refused."""
+    place = _pinned(place, keep)
+    while any(refused(part) for part in parts_of(place)):
+        place, value = _wider(place, value, keep)
+    return place, value
+
+
+def is_swizzle_store(part: ir.Expr) -> bool:
+    """Whether several components would be stored at once."""
+    return isinstance(part, ir.Swizzle) and len(part.components) > 1
+
+
+def is_dynamic_store(part: ir.Expr) -> bool:
+    """Whether it depends on a value which component or column would be stored."""
+    return isinstance(part, ir.Index) and _in_registers(part) and not isinstance(part.index, ir.Literal)
+
+
+def base_name(place: ir.Expr) -> str:
+    """The name of the variable or member that a place is in, for names made after it."""
+    while isinstance(place, ir.Swizzle | ir.Index):
+        place = place.value
+    if isinstance(place, ir.Member):
+        return place.field
+    return place.name if isinstance(place, ir.Local | ir.Global) else "value"
+
+
+def parts_of(place: ir.Expr) -> list[ir.Expr]:
+    """A place and what it is a part of, up to an array's element or a whole variable."""
+    parts: list[ir.Expr] = []
+    while isinstance(place, ir.Swizzle) or (isinstance(place, ir.Index) and _in_registers(place)):
+        parts.append(place)
+        place = place.value
+    return parts
+
+
+def _in_registers(index: ir.Index) -> bool:
+    return isinstance(index.value.type, Vector | Matrix)
+
+
+def _pinned(place: ir.Expr, keep: Keep) -> ir.Expr:
+    """The place with its indices computed once."""
+    if isinstance(place, ir.Swizzle | ir.Member):
+        return place._replace(value=_pinned(place.value, keep))
+    if isinstance(place, ir.Index):
+        return place._replace(value=_pinned(place.value, keep), index=keep(place.index, "place"))
+    return place
+
+
+def _wider(place: ir.Expr, value: ir.Expr, keep: Keep) -> tuple[ir.Expr, ir.Expr]:
+    """The store one step further out: of what `place` is a part of."""
+    assert isinstance(place, ir.Swizzle | ir.Index)
+    whole, span = place.value, place.span
+    type_ = whole.type
+    assert isinstance(type_, Vector | Matrix)
+    one = Vector("float", type_.size) if isinstance(type_, Matrix) else Scalar(type_.kind)
+
+    def old(number: int) -> ir.Expr:
+        if isinstance(type_, Matrix):
+            return ir.Index(one, whole, ir.Literal(Scalar("int"), number, span), span)
+        return ir.Swizzle(one, whole, "xyzw"[number], span)
+
+    parts = [old(number) for number in range(type_.size)]
+    if isinstance(place, ir.Swizzle):
+        if len(place.components) > 1:
+            value = keep(value, f"{base_name(whole)}_{place.components}")
+        for number, letter in enumerate(place.components):
+            parts["xyzw".index(letter)] = _component(value, number, one)
+    elif isinstance(place.index, ir.Literal):
+        parts[int(place.index.value)] = value
+    else:
+        value = keep(value, f"{base_name(whole)}_new")
+        for number in range(type_.size):
+            hit = ir.Binary(BOOL, "==", place.index, ir.Literal(place.index.type, number, span), span)
+            parts[number] = ir.Select(one, hit, value, parts[number], span)
+    return whole, ir.Construct(type_, tuple(_joined(parts)), span)
+
+
+def _joined(parts: list[ir.Expr]) -> list[ir.Expr]:
+    """The components of a vector, with neighbours of one vector taken together: `v.x, v.y, w.z` as `v, w.z`."""
+    found: list[ir.Expr] = []
+    for part in parts:
+        last = found[-1] if found else None
+        if not isinstance(part, ir.Swizzle) or not isinstance(last, ir.Swizzle) or part.value is not last.value:
+            found.append(part)
+            continue
+        letters = last.components + part.components
+        found[-1] = part._replace(type=vector_of(kind_of(part.type), len(letters)), components=letters)
+    return [_whole(part) for part in found]
+
+
+def _whole(part: ir.Expr) -> ir.Expr:
+    """A vector itself where all of its components are named in their order."""
+    if (
+        isinstance(part, ir.Swizzle)
+        and part.type == part.value.type
+        and part.components == "xyzw"[: components(part.type)]
+    ):
+        return part.value
+    return part
+
+
+def _component(value: ir.Expr, number: int, type_: Scalar | Vector) -> ir.Expr:
+    """One component of a vector, or the scalar itself."""
+    if isinstance(value.type, Scalar):
+        return value
+    if isinstance(value, ir.Swizzle):
+        return ir.Swizzle(type_, value.value, value.components[number], value.span)
+    return ir.Swizzle(type_, value, "xyzw"[number], value.span)

@@ -1,0 +1,1 @@
+"""If-conversion for the NumPy target: control flow that differs between lanes becomes masks."""

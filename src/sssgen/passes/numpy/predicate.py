@@ -1,0 +1,501 @@
+"""If-conversion: turns control flow that differs from lane to lane into straight-line code under masks.
+
+Why: NumPy computes all lanes of a batch at once, so `if (c) x = a;` becomes `x = select(c, a, x)`, and a loop
+runs while any lane is in it. Place: after all other passes but `names`, as its result is for targets without
+control flow per lane, and no longer meant for other passes. What is uniform (see `uniformity`) stays as it
+is.
+
+The result is ordinary IR with these conventions:
+- a mask is a bool variable: `mask` (lanes in the arm of an if), `running` (still in the loop), `active` (not
+  yet done with this pass of the loop, where it has a continue), `returned` (done with the function, `result`
+  is their value);
+- `if`, `for` and `while` are left only where their condition is the same in all lanes, `for` only where it
+  counts (`uniformity.count`); a loop that lanes leave one by one runs `while (any_lane(running))`, an
+  intrinsic of its own;
+- a call that writes stands alone (see `lift_calls`), and a function says in `out bool discarded` which lanes
+  are discarded;
+- a variable is masked only against lanes that may still read it: what is declared under a mask, or read no
+  more after a return, is assigned plainly, and lanes that are out hold garbage there. Loads and builtins run
+  for all lanes, so they must bear garbage: indices are clamped, divisions by 0 go on.
+"""
+
+from __future__ import annotations
+
+from sssgen.ir.nodes import (
+    Assign,
+    Binary,
+    Block,
+    Break,
+    Call,
+    Continue,
+    Declare,
+    Discard,
+    Evaluate,
+    Expr,
+    For,
+    Function,
+    If,
+    Intrinsic,
+    Literal,
+    Local,
+    Module,
+    Return,
+    Select,
+    Span,
+    Stmt,
+    Unary,
+    While,
+)
+from sssgen.ir.types import BOOL, VOID, Type
+from sssgen.ir.walk import all_expressions, expressions, root, statements
+from sssgen.passes.lift_calls import DISCARDED, Functions, lift_calls, out_arguments
+from sssgen.passes.numpy.masks import Mask, negated, renumber, settle, tidy, zero
+from sssgen.passes.numpy.uniformity import Uniformity
+from sssgen.passes.scopes import declared, fresh, separate
+
+
+def predicate(module: Module) -> Module:
+    """The module without control flow per lane. Its functions stand after those they call."""
+    module = lift_calls(module)
+    functions = {function.key: function for function in module.functions}
+    constants = frozenset(constant.name for constant in module.constants)
+    converted = tuple([_Converter(function, functions, constants).run() for function in module.functions])
+    return module._replace(functions=converted)
+
+
+class _Frame:
+    """Code that runs for some lanes only: the function, the arm of an if, or the body of a loop."""
+
+    def __init__(self, mask: Mask | None, running: str = "", active: str = "") -> None:
+        self.mask = mask
+        """The lanes here, None for all. It may be wrong for lanes that no one here asks about: see `base`."""
+        self.running, self.active = running, active
+        """A loop's masks, '' if it has none."""
+        self.more = False
+        """Whether statements of this frame are still to come."""
+        self.branches = 0
+        """How many uniform ifs and loops of this frame we are in."""
+
+
+_OUTSIDE = -1
+"""The depth of what lives on when the function has returned."""
+
+
+class _Converter:
+    """Converts one function."""
+
+    def __init__(self, function: Function, functions: Functions, constants: frozenset[str]) -> None:
+        self.function, self.functions = function, functions
+        self.facts = Uniformity(function, constants, functions)
+        self.names = set(declared(function)) | constants | {other.name for other in functions.values()}
+        self.made: set[str] = set()
+        """The masks and results that this pass has made."""
+        self.depths = {param.name: 0 if param.direction == "in" else _OUTSIDE for param in function.params}
+        """The frame that each variable belongs to."""
+        self.frames = [_Frame(None)]
+        self.loops: list[int] = []
+        """For each loop we are in the depth of its frame, 0 where it has none."""
+        self.out: list[Stmt] = []
+        self.python_depth = 0
+        """How many loops and ifs of the result we are in."""
+        self.diverges = "return" in self.facts.jumps(function.body or (), False)
+        self.returned, self.result = "", ""
+        self.arms_to_come = 0
+
+    def run(self) -> Function:
+        function = self.function
+        self.block(function.body or ())
+        if self.result and not (self.out and isinstance(self.out[-1], Return)):
+            self.out.append(Return(Local(function.result, self.result, function.span), function.span))
+        body = renumber(tidy(tuple(self.out), self.made, self.functions), self.made, self.names)
+        return separate(function._replace(body=settle(body, function, self.functions)))
+
+    # Names
+
+    def new(self, name: str) -> str:
+        name = fresh(name, self.names)
+        self.names.add(name)
+        self.made.add(name)
+        return name
+
+    def mask(self, value: Expr, name: str = "mask") -> Mask:
+        """Keeps a condition as a mask."""
+        name = self.new(name)
+        self.out.append(Declare(name, BOOL, value, value.span))
+        return Mask(name)
+
+    @property
+    def frame(self) -> _Frame:
+        return self.frames[-1]
+
+    @property
+    def depth(self) -> int:
+        return len(self.frames) - 1
+
+    # Statements
+
+    def block(self, block: Block) -> bool:
+        """Converts statements; whether no lane of the frame gets beyond them."""
+        frame = self.frame
+        outer = frame.more
+        ended = False
+        for index, stmt in enumerate(block):
+            frame.more = outer or index + 1 < len(block)
+            ended = self.statement(stmt)
+            if ended:
+                break
+        frame.more = outer
+        return ended
+
+    def nested(self, block: Block) -> tuple[Block, bool]:
+        """Converts statements that stay inside a statement of the result."""
+        outer, self.out = self.out, []
+        self.python_depth += 1
+        ended = self.block(block)
+        self.python_depth -= 1
+        made, self.out = self.out, outer
+        return tuple(made), ended
+
+    def statement(self, stmt: Stmt) -> bool:
+        """Converts a statement; whether no lane of the frame gets beyond it."""
+        if isinstance(stmt, Declare):
+            self.depths[stmt.name] = self.depth
+            if isinstance(stmt.value, Call):
+                self.call(stmt, stmt.value)
+            else:
+                self.out.append(stmt)
+        elif isinstance(stmt, Assign):
+            if isinstance(stmt.value, Call):
+                self.call(stmt, stmt.value)
+            else:
+                self.assign(stmt)
+        elif isinstance(stmt, Evaluate):
+            if isinstance(stmt.call, Call):
+                self.call(stmt, stmt.call)
+        elif isinstance(stmt, If):
+            return self.branch(stmt)
+        elif isinstance(stmt, For | While):
+            self.loop(stmt)
+        elif isinstance(stmt, Return):
+            self.leave_function(stmt.value, stmt.span)
+            return True
+        elif isinstance(stmt, Discard):
+            self.discard(stmt)
+            return True
+        elif isinstance(stmt, Break | Continue):
+            self.leave_loop(stmt)
+            return True
+        return False
+
+    def mask_for(self, name: str) -> Mask | None:
+        """The lanes in which a variable may change here, None if it may in all."""
+        return self.frame.mask if self.depths[name] < self.depth else None
+
+    def assign(self, stmt: Assign) -> None:
+        target, span = stmt.target, stmt.span
+        variable = root(target)
+        assert variable is not None
+        mask = self.mask_for(variable.name)
+        if mask is None:
+            self.out.append(stmt)
+            return
+        value = Binary(target.type, stmt.op, target, stmt.value, span) if stmt.op else stmt.value
+        self.out.append(Assign(target, "", mask.choose(value, target, span), span))
+
+    def call(self, stmt: Declare | Assign | Evaluate, call: Call) -> None:
+        """A call that may write: under a mask, it writes to variables of its own, which are then copied."""
+        args = list(call.args)
+        after: list[Stmt] = []
+        for index, param in enumerate(self.functions[call.function].params):
+            arg = args[index]
+            if param.direction != "in":
+                assert isinstance(arg, Local)
+                mask = self.mask_for(arg.name)
+                if mask is not None:
+                    kept = args[index] = Local(arg.type, self.new(arg.name), arg.span)
+                    value = arg if param.direction == "inout" else None
+                    self.out.append(Declare(kept.name, arg.type, value, arg.span))
+                    after.append(Assign(arg, "", mask.choose(kept, arg, arg.span), arg.span))
+        call = call._replace(args=tuple(args))
+        if isinstance(stmt, Evaluate):
+            self.out.append(stmt._replace(call=call))
+        elif isinstance(stmt, Assign):
+            variable = root(stmt.target)
+            assert variable is not None
+            if out_arguments(call, self.functions) and self.mask_for(variable.name) is not None:
+                kept = Local(stmt.target.type, self.new(variable.name), stmt.span)
+                self.out.append(Declare(kept.name, kept.type, call, stmt.span))
+                self.assign(stmt._replace(value=kept))
+            else:
+                self.assign(stmt._replace(value=call))
+        else:
+            self.out.append(stmt._replace(value=call))
+        self.out += after
+
+    # Ifs
+
+    def branch(self, stmt: If) -> bool:
+        frame = self.frame
+        if self.facts.uniform(stmt.condition):
+            self.prepare_return(stmt)
+            frame.branches += 1
+            then, then_ends = self.nested(stmt.then)
+            otherwise, else_ends = self.nested(stmt.otherwise)
+            frame.branches -= 1
+            self.out.append(If(stmt.condition, then, otherwise, stmt.span))
+            return then_ends and else_ends
+        condition, inverted = negated(stmt.condition)
+        outer = frame.mask if self.base(stmt) < self.depth else None
+        shared = outer is None and not _jumps_inside(stmt.then)
+        if outer is None and isinstance(condition, Local) and self.constant_in(condition.name, stmt):
+            mask = Mask(condition.name)
+        else:
+            mask = self.mask(condition)
+        then_mask, else_mask = Mask(mask.name, inverted), Mask(mask.name, not inverted)
+        if outer is not None:
+            then_mask = self.mask(outer.also(then_mask.expr(stmt.span)))
+        if stmt.otherwise and outer is not None:
+            else_mask = self.mask(outer.also(else_mask.expr(stmt.span)))
+        elif stmt.otherwise and not shared:
+            else_mask = self.mask(else_mask.expr(stmt.span))
+        self.arms_to_come += bool(stmt.otherwise)
+        then_ends = self.arm(stmt.then, then_mask)
+        self.arms_to_come -= bool(stmt.otherwise)
+        return self.arm(stmt.otherwise, else_mask) and then_ends
+
+    def arm(self, block: Block, mask: Mask) -> bool:
+        self.frames.append(_Frame(mask))
+        ended = self.block(block)
+        self.frames.pop()
+        return ended
+
+    def constant_in(self, name: str, stmt: If) -> bool:
+        """Whether a variable can serve as the mask of an if: nothing in there changes it."""
+        if any(_jumps_inside(arm) for arm in (stmt.then, stmt.otherwise)):
+            return False
+        return name not in _written(stmt, self.functions)
+
+    def base(self, stmt: If) -> int:
+        """The depth of the outermost frame to which something belongs that the if changes.
+
+        Its mask need tell apart only the lanes of that frame, so it need not repeat the masks further out.
+        """
+        depths = [self.depth]
+        depths += [self.depths[name] for name in _written(stmt, self.functions) if name in self.depths]
+        for inner in statements((stmt,)):
+            if isinstance(inner, Return):
+                depths.append(0)
+            elif isinstance(inner, Break | Continue) and self.loops:
+                target = self.loops[-1]  # or a loop inside; what goes on after a continue must not break
+                depths.append(target - 1 if self.frames[target].active and isinstance(inner, Break) else target)
+            elif isinstance(inner, Discard) or (
+                isinstance(inner, For | While) and self.facts.loops[id(inner)].diverges
+            ):
+                depths.append(_OUTSIDE)
+        return min(depths)
+
+    # Loops
+
+    def loop(self, loop: For | While) -> None:
+        facts = self.facts.loops[id(loop)]
+        if facts.diverges:
+            self.diverging_loop(loop, facts.masked, facts.jumps)
+            return
+        self.prepare_return(loop)
+        frame, span = self.frame, loop.span
+        if isinstance(loop, For) and isinstance(loop.init, Declare):
+            self.depths[loop.init.name] = self.depth
+        if isinstance(loop, For) and not facts.counted and loop.init is not None:
+            self.statement(loop.init)
+        more, frame.more = frame.more, True
+        frame.branches += 1
+        self.loops.append(0)
+        if isinstance(loop, For) and facts.counted:
+            self.out.append(loop._replace(body=self.nested(loop.body)[0]))
+        else:
+            step = (loop.step,) if isinstance(loop, For) and loop.step is not None else ()
+            body, _ = self.nested(loop.body + step)
+            assert loop.condition is not None
+            self.out.append(While(loop.condition, body, span))
+        self.loops.pop()
+        frame.branches -= 1
+        frame.more = more
+
+    def diverging_loop(self, loop: For | While, masked: bool, jumps: frozenset[str]) -> None:
+        """A loop with a mask of the lanes still in it, and perhaps one of those still in this pass."""
+        outer, span = self.frame, loop.span
+        init, step = (loop.init, loop.step) if isinstance(loop, For) else (None, None)
+        if isinstance(init, Declare):
+            # lanes that are done with the loop need no counter any more, but those do that go on with the next round
+            steps = "continue" in jumps and _writes(loop.body, init.name)
+            self.depths[init.name] = self.depth + (0 if steps else 1)
+            if masked:
+                self.out.append(init)
+        elif init is not None:
+            self.statement(init)
+        everyone: Expr = Literal(BOOL, True, span)
+        test = loop.condition if masked and not isinstance(loop.condition, Literal) else None
+        start = everyone if outer.mask is None else outer.mask.expr(span)
+        running = ""
+        if masked or jumps - {"continue"}:
+            first = start if test is None else test if outer.mask is None else outer.mask.also(test)
+            running = self.mask(first, "running").name
+            start = Local(BOOL, running, span)
+        self.prepare_return(loop)
+        active = self.new("active") if "continue" in jumps else ""
+        frame = _Frame(Mask(active or running), running, active)
+        self.frames.append(frame)
+        self.loops.append(self.depth)
+        statements, self.out = self.out, []
+        self.python_depth += 1
+        if active:
+            self.out.append(Declare(active, BOOL, start, span))
+        self.block(loop.body)
+        ended = bool(self.out) and isinstance(self.out[-1], Break)
+        frame.mask = Mask(running)
+        if masked and not ended:
+            if step is not None:
+                self.statement(step)
+            if test is not None:
+                self.update(running, "&&", test)
+        elif running and not ended:
+            left = Unary(BOOL, "!", _any_lane(running, span), span)
+            self.out.append(If(left, (Break(span),), (), span))
+        self.python_depth -= 1
+        body, self.out = tuple(self.out), statements
+        self.loops.pop()
+        self.frames.pop()
+        if masked:
+            self.out.append(While(_any_lane(running, span), body, span))
+        else:
+            assert isinstance(loop, For)
+            self.out.append(loop._replace(body=body))
+
+    # Jumps
+
+    def update(self, name: str, op: str, value: Expr) -> None:
+        local = Local(BOOL, name, value.span)
+        self.out.append(Assign(local, "", Binary(BOOL, op, local, value, value.span), value.span))
+
+    def clear(self, mask: Mask, gone: Mask | None, span: Span) -> None:
+        """Takes lanes out of a mask; all of them for None."""
+        if gone is None:
+            self.out.append(Assign(Local(BOOL, mask.name, span), "", Literal(BOOL, mask.inverted, span), span))
+        elif mask.inverted:
+            self.update(mask.name, "||", gone.expr(span))
+        else:
+            self.update(mask.name, "&&", Mask(gone.name, not gone.inverted).expr(span))
+
+    def leave(self, target: int, kind: str, span: Span) -> None:
+        """Takes the lanes of this frame out of the frames around it, up to that at depth `target`."""
+        gone = self.frame.mask
+        assert gone is not None
+        for depth in range(max(target, 1), self.depth):
+            frame = self.frames[depth]
+            if frame.running and not (kind == "continue" and depth == target):
+                self.clear(Mask(frame.running), gone, span)
+            if frame.more and frame.mask is not None and frame.mask.name != frame.running:
+                self.clear(frame.mask, gone, span)
+        frame = self.frame
+        if kind != "continue" and frame.running:
+            if not frame.active:
+                self.out.append(Break(span))
+                return
+            self.clear(Mask(frame.running), gone, span)
+        if frame.more and (frame.branches or frame.active):
+            self.clear(gone, None, span)
+
+    def leave_loop(self, stmt: Break | Continue) -> None:
+        kind = "break" if isinstance(stmt, Break) else "continue"
+        target = self.loops[-1]
+        uniform = target == 0 or (target == self.depth and not self.frame.active)
+        if uniform:
+            self.out.append(stmt)
+        else:
+            self.leave(target, kind, stmt.span)
+
+    def prepare_return(self, stmt: Stmt) -> None:
+        """Before a loop or if of the result in which lanes may return: nobody has yet."""
+        inside = any(isinstance(inner, Return | Discard) for inner in statements((stmt,)))
+        if self.diverges and inside and not self.returned and self.python_depth == 0:
+            self.start_return(Literal(BOOL, False, stmt.span), None, stmt.span)
+
+    def start_return(self, returned: Expr, result: Expr | None, span: Span) -> None:
+        """Declares which lanes have returned, and what."""
+        type_: Type = self.function.result
+        if type_ != VOID:
+            self.result = self.new("result")
+            self.out.append(Declare(self.result, type_, result, span))
+        self.returned = self.new("returned")
+        self.out.append(Declare(self.returned, BOOL, returned, span))
+        self.frames[0].mask = Mask(self.returned, True)
+
+    def leave_function(self, value: Expr | None, span: Span) -> None:
+        if value is not None and self.returned:
+            value = Select(
+                value.type,
+                Local(BOOL, self.returned, span),
+                Local(value.type, self.result, span),
+                value,
+                span,
+            )
+        if self.depth == 0:
+            self.out.append(Return(value, span))
+            return
+        gone = self.frame.mask
+        assert gone is not None
+        if not self.returned:
+            self.start_return(gone.expr(span), value, span)
+        else:
+            if value is not None:
+                self.out.append(Assign(Local(value.type, self.result, span), "", value, span))
+            if self.loops or self.arms_to_come or any(frame.more for frame in self.frames):
+                self.update(self.returned, "||", gone.expr(span))
+        self.leave(0, "return", span)
+
+    def discard(self, stmt: Discard) -> None:
+        span = stmt.span
+        mask = self.frame.mask
+        discarded = Local(BOOL, DISCARDED, span)
+        self.out.append(Assign(discarded, "", Literal(BOOL, True, span), span))
+        if mask is not None:
+            self.out.pop()
+            self.update(DISCARDED, "||", mask.expr(span))
+        type_ = self.function.result
+        self.leave_function(None if type_ == VOID else zero(type_, span), span)
+
+
+def _any_lane(mask: str, span: Span) -> Expr:
+    return Intrinsic(BOOL, "any_lane", (Local(BOOL, mask, span),), span)
+
+
+def _written(stmt: Stmt, functions: Functions) -> set[str]:
+    """The variables that a statement changes but does not itself declare."""
+    written, own = set(), set()
+    for inner in statements((stmt,)):
+        if isinstance(inner, Declare):
+            own.add(inner.name)
+        elif isinstance(inner, Assign):
+            target = root(inner.target)
+            assert target is not None
+            written.add(target.name)
+        for expr in expressions(inner):
+            written.update(out_arguments(expr, functions))
+    return written - own
+
+
+def _jumps_inside(block: Block) -> bool:
+    """Whether there is a jump in a statement of the block, beside the block's own."""
+    jumps = (Break, Continue, Return, Discard)
+    return any(
+        isinstance(inner, jumps) for stmt in block if not isinstance(stmt, jumps) for inner in statements((stmt,))
+    )
+
+
+def _writes(block: Block, name: str) -> bool:
+    """Whether a block may change a variable: it assigns to it, or hands it to a function."""
+    for stmt in statements(block):
+        if isinstance(stmt, Assign) and (place := root(stmt.target)) is not None and place.name == name:
+            return True
+    calls = (expr for expr in all_expressions(block) if isinstance(expr, Call))
+    return any((place := root(arg)) is not None and place.name == name for call in calls for arg in call.args)

@@ -1,0 +1,213 @@
+"""Finds the control flow that is the same in all lanes, where Python's own `if` and loops serve.
+
+A condition is uniform when it is made of literals, module constants and variables that hold nothing else.
+What comes from outside (parameters, uniforms, textures) may differ from lane to lane. Used by `predicate`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Set
+from typing import NamedTuple
+
+from sssgen.ir.nodes import (
+    Assign,
+    Binary,
+    Block,
+    Break,
+    Construct,
+    Continue,
+    Declare,
+    Discard,
+    Expr,
+    For,
+    Function,
+    Global,
+    If,
+    Literal,
+    Local,
+    Return,
+    Select,
+    Unary,
+    While,
+)
+from sssgen.ir.types import INT, UINT, Scalar
+from sssgen.ir.walk import expressions, root, statements, subexpressions
+from sssgen.passes.lift_calls import Functions, out_arguments
+
+
+class Count(NamedTuple):
+    """A loop that counts: `name` goes from `start` by `step` while `name op stop`."""
+
+    name: str
+    start: Expr
+    stop: Expr
+    op: str
+    step: int
+
+
+class LoopFacts(NamedTuple):
+    """How a loop is to be run."""
+
+    counted: bool
+    """As `for … in range(…)`."""
+    masked: bool
+    """As a `while` with a mask, as its own condition differs from lane to lane, or lanes leave it."""
+    jumps: frozenset[str]
+    """break, continue and return (also for discard), where some lanes do it and others do not."""
+
+    @property
+    def diverges(self) -> bool:
+        """Whether the loop's body runs for some lanes only."""
+        return self.masked or bool(self.jumps)
+
+
+def count(loop: For) -> Count | None:
+    """The loop's counter if it has one that only the loop's own step changes, else None."""
+    init, test, step = loop.init, loop.condition, loop.step
+    if not isinstance(init, Declare) or init.value is None or init.type not in (INT, UINT):
+        return None
+    if not isinstance(test, Binary) or test.op not in ("<", "<=", ">", ">="):
+        return None
+    if not isinstance(step, Assign) or step.op not in ("+", "-") or not isinstance(step.value, Literal):
+        return None
+    if not isinstance(test.left, Local) or test.left.name != init.name or root(step.target) != step.target:
+        return None
+    size = int(step.value.value) if step.op == "+" else -int(step.value.value)
+    right_way = size > 0 if test.op[0] == "<" else size < 0
+    own = isinstance(step.target, Local) and step.target.name == init.name
+    return Count(init.name, init.value, test.right, test.op, size) if own and right_way else None
+
+
+class Uniformity:
+    """What is uniform in one function whose calls are lifted."""
+
+    def __init__(self, function: Function, constants: Set[str], functions: Functions) -> None:
+        self.constants, self.functions = constants, functions
+        self.loops: dict[int, LoopFacts] = {}
+        """The facts of each loop, by the id of its node."""
+        body = function.body or ()
+        self.names = {stmt.name for stmt in statements(body) if isinstance(stmt, Declare)}
+        self.names -= {param.name for param in function.params}
+        while True:
+            self.depths = {param.name: 0 for param in function.params}
+            self.varying: set[str] = set()
+            self.block(body, 0)
+            if not self.varying & self.names:
+                break
+            self.names -= self.varying
+
+    def uniform(self, expr: Expr) -> bool:
+        """Whether a scalar expression has one value for all lanes."""
+        for part in subexpressions(expr):
+            if not isinstance(part.type, Scalar):
+                return False
+            if isinstance(part, Local):
+                if part.name not in self.names:
+                    return False
+            elif isinstance(part, Global):
+                if part.name not in self.constants:
+                    return False
+            elif not isinstance(part, Literal | Unary | Binary | Select | Construct):
+                return False
+        return True
+
+    def block(self, block: Block, depth: int) -> None:
+        """Finds variables that vary. `depth` counts the enclosing statements that run for some lanes only."""
+        for stmt in block:
+            for expr in expressions(stmt):
+                for name in out_arguments(expr, self.functions):
+                    self.varying.add(name)
+            if isinstance(stmt, Declare):
+                self.depths[stmt.name] = depth
+                if stmt.value is not None and not self.uniform(stmt.value):
+                    self.varying.add(stmt.name)
+            elif isinstance(stmt, Assign):
+                target = root(stmt.target)
+                assert target is not None
+                if self.depths[target.name] < depth or not self.uniform(stmt.value):
+                    self.varying.add(target.name)
+            elif isinstance(stmt, If):
+                inner = depth if self.uniform(stmt.condition) else depth + 1
+                self.block(stmt.then, inner)
+                self.block(stmt.otherwise, inner)
+            elif isinstance(stmt, For | While):
+                self.loop(stmt, depth)
+
+    def loop(self, loop: For | While, depth: int) -> None:
+        facts = self.loops[id(loop)] = self.facts(loop, depth > 0)
+        inner = depth + 1 if facts.diverges else depth
+        if isinstance(loop, For):
+            if loop.init is not None:
+                self.block((loop.init,), inner if isinstance(loop.init, Declare) else depth)
+            if loop.step is not None:
+                self.block((loop.step,), inner)
+        self.block(loop.body, inner)
+
+    def facts(self, loop: For | While, inside: bool) -> LoopFacts:
+        """How to run a loop; `inside` says that it stands where only some lanes are."""
+        body = loop.body
+        counter = count(loop) if isinstance(loop, For) else None
+        counted = counter is not None and self.fixed(counter, body)
+        jumps = self.jumps(body, False)
+        own = _own_jumps(body)
+        uniform = counted or (
+            loop.condition is not None and self.uniform(loop.condition) and not jumps and "continue" not in own
+        )
+        if not uniform and "continue" in own:
+            jumps.add("continue")
+        if "continue" in jumps and "break" in own:
+            jumps.add("break")
+        if (inside or jumps or not uniform) and _returns(body):
+            jumps.add("return")
+        return LoopFacts(counted, not uniform or bool(jumps and not counted), frozenset(jumps))
+
+    def fixed(self, counter: Count, body: Block) -> bool:
+        """Whether the counter and its bounds are uniform and stay as they are during the loop."""
+        if not self.uniform(counter.start) or not self.uniform(counter.stop):
+            return False
+        watched = {part.name for part in subexpressions(counter.stop) if isinstance(part, Local)} | {counter.name}
+        for stmt in statements(body):
+            target = root(stmt.target) if isinstance(stmt, Assign) else None
+            if target is not None and target.name in watched:
+                return False
+            for expr in expressions(stmt):
+                if watched.intersection(out_arguments(expr, self.functions)):
+                    return False
+        return True
+
+    def jumps(self, block: Block, diverged: bool) -> set[str]:
+        """How some lanes, and not others, leave the loop whose body this is, or its pass."""
+        found: set[str] = set()
+        for stmt in block:
+            if isinstance(stmt, Break | Continue | Return | Discard):
+                if diverged:
+                    found.add(_kind(stmt))
+            elif isinstance(stmt, If):
+                inner = diverged or not self.uniform(stmt.condition)
+                found |= self.jumps(stmt.then, inner) | self.jumps(stmt.otherwise, inner)
+            elif (
+                isinstance(stmt, For | While) and _returns(stmt.body) and (diverged or self.facts(stmt, False).diverges)
+            ):
+                found.add("return")
+        return found
+
+
+def _kind(jump: Break | Continue | Return | Discard) -> str:
+    if isinstance(jump, Break):
+        return "break"
+    return "continue" if isinstance(jump, Continue) else "return"
+
+
+def _returns(block: Block) -> bool:
+    return any(isinstance(stmt, Return | Discard) for stmt in statements(block))
+
+
+def _own_jumps(block: Block) -> set[str]:
+    """The breaks and continues of a loop with this body, without those of loops inside it."""
+    found: set[str] = set()
+    for stmt in block:
+        if isinstance(stmt, Break | Continue):
+            found.add(_kind(stmt))
+        elif isinstance(stmt, If):
+            found |= _own_jumps(stmt.then) | _own_jumps(stmt.otherwise)
+    return found

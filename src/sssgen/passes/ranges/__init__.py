@@ -1,0 +1,1 @@
+"""The value-range analysis: which values each expression can have."""

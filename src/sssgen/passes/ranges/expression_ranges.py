@@ -1,0 +1,376 @@
+"""Ranges of expressions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, cast
+
+from sssgen.ir import nodes as ir
+from sssgen.ir.contracts import INTEGERS
+from sssgen.ir.formats import FLOAT32
+from sssgen.ir.intervals import ANY, INF, Range, as_range, clip, hull, square, widened
+from sssgen.ir.rules import element_type
+from sssgen.ir.types import BOOL, Array, Matrix, Struct, kind_of
+from sssgen.passes.ranges import vector_ranges as vectors
+from sssgen.passes.ranges.call_ranges import FETCHES, Builtins
+from sssgen.passes.ranges.range_state import State
+from sssgen.passes.ranges.scalar_parts import field_at, hull_of, matrix_product, scalars
+from sssgen.passes.ranges.sites import COUNT, DIVISION, ELEMENT, SIGNED_COUNT, TEXEL, WHOLE_NUMBER
+from sssgen.passes.ranges.vector_ranges import Value, length_of
+
+
+class Expressions(Builtins):
+    """The expressions' part of the analysis."""
+
+    def expr(self, node: ir.Expr) -> Value:
+        return _METHODS[type(node)](self, node)
+
+    def literal(self, node: ir.Literal) -> Value:
+        number = float(node.value) if kind_of(node.type) != "float" else self.format.rounded(float(node.value))
+        return Value((Range(number, number),), (self.numbers.of("constant", number),), Range(abs(number), abs(number)))
+
+    def local(self, node: ir.Local) -> Value:
+        found = self.state.env.get(node.name)
+        if found is None:
+            return self.unknown(node.type)
+        return found if found.texel is not None or not self.state.facts.ranges else self.known(found)
+
+    def known(self, found: Value) -> Value:
+        return self.value(found.parts, found.numbers, found.length)
+
+    def global_(self, node: ir.Global) -> Value:
+        if node.name in self.variables:  # what it holds, any function may have changed
+            return self.unknown(node.type)
+        found = self.globals[node.name]
+        return found if found.texel is not None or not self.state.facts.ranges else self.known(found)
+
+    def unary(self, node: ir.Unary) -> Value:
+        value = self.expr(node.operand)
+        if node.op == "!":
+            parts = [Range(1.0 - part.high, 1.0 - part.low) for part in value.parts]
+            return self.computed(node, parts, [self.numbers.of("!", n) for n in value.numbers])
+        if node.op == "~":
+            return self.unknown(node.type)
+        kind = kind_of(node.type)
+        # the negative of an integer may wrap
+        numbers = [self.negated(n) if kind == "float" else self.numbers.of("negated", kind, n) for n in value.numbers]
+        return self.computed(node, [-part for part in value.parts], numbers, value.length)
+
+    def negated(self, number: int) -> int:
+        key = self.numbers.definitions[number]
+        return cast(int, key[1]) if key[0] == "neg" else self.numbers.of("neg", number)
+
+    def binary(self, node: ir.Binary) -> Value:
+        if node.op in ("&&", "||", "^^"):
+            return self.logic(node)
+        return self.operation(node, self.expr(node.left), self.expr(node.right))
+
+    def logic(self, node: ir.Binary) -> Value:
+        left = self.expr(node.left)
+        outer = self.state
+        if node.op != "^^":  # the right side runs where the left one has not decided
+            self.state = outer.copy()
+            self.learn(left.numbers[0], node.op == "&&")
+        right = self.expr(node.right)
+        self.state = self.after_either(outer, [self.state])
+        a, b = left.parts[0], right.parts[0]
+        part = {
+            "&&": Range(min(a.low, b.low), min(a.high, b.high)),
+            "||": Range(max(a.low, b.low), max(a.high, b.high)),
+        }.get(node.op, hull(0.0, 1.0))
+        return self.computed(node, [part], [self.numbers.of(node.op, left.numbers[0], right.numbers[0])])
+
+    def operation(self, node: ir.Binary, left: Value, right: Value) -> Value:
+        """`left op right`."""
+        op, kind = node.op, kind_of(node.left.type)
+        if node.type == BOOL and op in ("<", ">", "<=", ">=", "==", "!="):
+            return self.comparison(node, left, right)
+        if op == "*" and (isinstance(node.left.type, Matrix) or isinstance(node.right.type, Matrix)):
+            slack = 8.0 * self.format.epsilon
+            product = matrix_product(node.left.type, left.parts, node.right.type, right.parts, slack)
+            if product is not None:
+                return self.computed(node, product, [self.numbers.fresh() for _ in product])
+        if op in ("%", "<<", ">>", "&", "|", "^") or (op == "/" and kind != "float"):
+            return self.integer(node, left, right)
+        if op == "/":
+            return self.division(node, left, right)
+        size = max(len(left.parts), len(right.parts))
+        parts, numbers = [], []
+        for index in range(size):
+            a, m = left.parts[index % len(left.parts)], left.numbers[index % len(left.numbers)]
+            b, n = right.parts[index % len(right.parts)], right.numbers[index % len(right.numbers)]
+            if op == "*":
+                parts.append(self.product(a, m, b, n) if kind == "float" else square(a) if m == n else a * b)
+                if m == n and kind == "float":
+                    numbers.append(self.numbers.of("squares", m))
+                else:  # an integer's product may wrap, unlike that of the floats with the same numbers
+                    numbers.append(self.numbers.of("*", *sorted((m, n)), kind))
+            else:
+                parts.append(self.sum(a, m, b, n, op))
+                numbers.append(self.numbers.sum(op, m, n, kind, self.slack(a, b, parts[-1], kind)))
+        return self.computed(node, parts, numbers, self.length_after(op, left, right))
+
+    def product(self, a: Range, m: int, b: Range, n: int) -> Range:
+        """A product of floats: of a number with itself, with its negative, with another."""
+        if m == n:
+            return square(a)
+        return -square(a) if self.negated(m) == n or self.negated(n) == m else a * b
+
+    def sum(self, a: Range, m: int, b: Range, n: int, op: str) -> Range:
+        if op == "+":
+            return a + b
+        # a compiler may fuse a product with the sum, and then it is not the rounded one that was compared
+        products = any(self.numbers.definitions[one][0] in ("*", "squares") for one in (m, n))
+        fused = self.format.epsilon * (a.size + b.size) if products else 0.0
+        if m == n:
+            return Range(-fused, fused)
+        found = a - b
+        facts = self.state.facts
+        if facts.upper:
+            high, low = facts.bound(self.numbers, m, n) + fused, -facts.bound(self.numbers, n, m) - fused
+            found = found.met(Range(low, high)) if low <= high else found
+        return found
+
+    def slack(self, a: Range, b: Range, sum: Range, kind: str) -> float:
+        """How far a sum of a and b may be from the exact one."""
+        limits = self.limits(kind)
+        if sum.low < limits.low or sum.high > limits.high:  # it wraps, or is clamped
+            return INF
+        return self.format.epsilon * (a.size + b.size) if kind == "float" else 0.0
+
+    def length_after(self, op: str, left: Value, right: Value) -> Range:
+        """The length of a vector's sum or of its product with a number."""
+        if len(left.parts) == len(right.parts) and op in "+-":
+            slack = 8.0 * self.format.epsilon  # the difference of lengths rounds by a part of their sum
+            return widened(
+                vectors.total_length(left.length, right.length), 0.0, slack * (left.length.high + right.length.high)
+            )
+        if op == "*" and 1 in (len(left.parts), len(right.parts)) and len(left.parts) != len(right.parts):
+            one, vector = (left, right) if len(left.parts) == 1 else (right, left)
+            scale = length_of(one.parts)
+            return widened(scale * vector.length, 8.0 * self.format.epsilon) if vector.length.high < INF else ANY
+        return ANY
+
+    def division(self, node: ir.Binary, left: Value, right: Value) -> Value:
+        size = max(len(left.parts), len(right.parts))
+        least = self.format.tiny
+        counts = _is_count(node.right)
+        smallest = 1.0 if counts else self.format.divisor
+        parts, numbers, proven = [], [], True
+        for index in range(size):
+            a, m = left.parts[index % len(left.parts)], left.numbers[index % len(left.numbers)]
+            b, n = right.parts[index % len(right.parts)], right.numbers[index % len(right.numbers)]
+            safe = b.gap >= least
+            proven &= safe
+            if not safe:  # as the guard makes it
+                gap = max(b.gap, smallest)
+                b = Range(gap if b.low >= 0.0 else min(b.low, -gap), max(b.high, gap), gap)
+            part = widened(a / b, 3.0 * self.format.epsilon)
+            if b.low > 0.0 and (slack := self.ratio(a, m, b, n)) is not None:
+                part = part.met(Range(-INF, slack))
+            parts.append(part)
+            numbers.append(self.numbers.of("/", m, n))
+        dividend, divisor = hull_of(left.parts), hull_of(right.parts)
+        guard = DIVISION if not counts else COUNT if divisor.low >= 0.0 else SIGNED_COUNT
+        self.note(node, "/", proven, guard, (dividend, divisor))
+        return self.computed(node, parts, numbers)
+
+    def ratio(self, a: Range, m: int, b: Range, n: int) -> float | None:
+        """The most that a/b may be, b above 0, from what is known of a - b: a/b = 1 + (a - b)/b."""
+        facts = self.state.facts
+        if not facts.upper:
+            return None
+        over = facts.bound(self.numbers, m, n)
+        if over == INF:
+            return None
+        return widened(as_range(1.0 + over / (b.low if over > 0.0 else b.high)), 3.0 * self.format.epsilon).high
+
+    def integer(self, node: ir.Binary, left: Value, right: Value) -> Value:
+        """Integer operators without a rule of their own; what languages leave undefined, `legalise` defines."""
+        size = max(len(left.parts), len(right.parts))
+        parts, numbers = [], []
+        for index in range(size):
+            a, b = left.parts[index % len(left.parts)], right.parts[index % len(right.parts)]
+            part = self.limits(kind_of(node.type))
+            if node.op == "/" and b.low > 0.0 and a.low >= 0.0:
+                part = Range(float(int(a.low / b.high)), float(int(a.high / b.low)))
+            elif node.op == "%" and b.low > 0.0 and a.low >= 0.0:
+                part = Range(0.0, min(a.high, b.high - 1.0))
+            elif node.op == ">>" and b.low == b.high and 0.0 <= b.low < 32.0 and a.low >= 0.0:
+                part = Range(float(int(a.low) >> int(b.low)), float(int(a.high) >> int(b.low)))
+            elif node.op == "&" and max(a.low, b.low) >= 0.0:  # one of them masks the sign
+                part = Range(0.0, min(one.high for one in (a, b) if one.low >= 0.0))
+            parts.append(part)
+            numbers.append(self.numbers.fresh())
+        return self.computed(node, parts, numbers)
+
+    def comparison(self, node: ir.Binary, left: Value, right: Value) -> Value:
+        if len(left.parts) != 1 or not left.parts:
+            return self.unknown(BOOL)
+        (a,), (b,), (m,), (n,) = left.parts, right.parts, left.numbers, right.numbers
+        kind = kind_of(node.left.type)
+        low, high = {
+            "<": (a.high < b.low, a.low < b.high), "<=": (a.high <= b.low, a.low <= b.high),
+            ">": (a.low > b.high, a.high > b.low), ">=": (a.low >= b.high, a.high >= b.low),
+            "==": (a.low == a.high == b.low == b.high, a.low <= b.high and b.low <= a.high),
+            "!=": (a.high < b.low or b.high < a.low, not a.low == a.high == b.low == b.high),
+        }[node.op]  # fmt: skip
+        number = self.numbers.of("compare", node.op, m, n, kind != "float", a, b)
+        return self.computed(node, [Range(float(low), float(high))], [number])
+
+    def select(self, node: ir.Select) -> Value:
+        condition = self.expr(node.condition)
+        outer = self.state
+        arms = []
+        for truth, arm in ((True, node.yes), (False, node.no)):
+            self.state = outer.copy()
+            self.learn(condition.numbers[0], truth)
+            arms.append((self.known(self.expr(arm)), self.state))
+        self.state = self.after_either(outer, [state for _, state in arms])
+        if condition.parts[0].low == 1.0 or condition.parts[0].high == 0.0:
+            return arms[0 if condition.parts[0].low == 1.0 else 1][0]
+        return self.joined(arms[0][0], arms[1][0], arms[0][1].facts, arms[1][1].facts)
+
+    def after_either(self, before: State, after: list[State]) -> State:
+        """The state behind parts of which one or none ran: what their calls wrote."""
+        for state in after:
+            if any(value is not state.env[name] for name, value in before.env.items()):
+                return cast(State, self.join_all([before, *after]))
+        return before
+
+    def intrinsic(self, node: ir.Intrinsic) -> Value:
+        args = tuple([self.expr(arg) for arg in node.args])
+        return self.builtin(node, args, True)
+
+    def construct(self, node: ir.Construct) -> Value:
+        args = [self.expr(arg) for arg in node.args]
+        type_ = node.type
+        if isinstance(type_, Array):
+            found = args[0]
+            for arg in args[1:]:
+                found = Value(
+                    tuple([a.joined(b) for a, b in zip(found.parts, arg.parts, strict=True)]),
+                    tuple([self.numbers.fresh() for _ in found.parts]),
+                )
+            return found
+        parts = [part for arg in args for part in arg.parts]
+        numbers = [number for arg in args for number in arg.numbers]
+        if isinstance(type_, Struct):
+            return Value(tuple(parts), tuple(numbers))
+        if len(args) == 1 and kind_of(node.args[0].type) != kind_of(type_):
+            return self.conversion(node, args[0])
+        if isinstance(type_, Matrix) and len(args) == 1:
+            return self.matrix(node, args[0])
+        if len(parts) == 1:
+            parts, numbers = parts * scalars(type_), numbers * scalars(type_)
+        length = args[0].length if len(args) == 1 and len(args[0].parts) == len(parts) else ANY
+        return self.value(tuple(parts), tuple(numbers), length)
+
+    def matrix(self, node: ir.Construct, value: Value) -> Value:
+        size = cast(Matrix, node.type).size
+        zero, one = self.numbers.of("constant", 0.0), self.numbers.of("constant", 1.0)
+        parts, numbers = [], []
+        old = value.parts and int(len(value.parts) ** 0.5)
+        for column in range(size):
+            for row in range(size):
+                if len(value.parts) == 1:
+                    parts.append(value.parts[0] if row == column else as_range(0.0))
+                    numbers.append(value.numbers[0] if row == column else zero)
+                elif row < cast(int, old) and column < cast(int, old):
+                    parts.append(value.parts[column * cast(int, old) + row])
+                    numbers.append(value.numbers[column * cast(int, old) + row])
+                else:
+                    parts.append(as_range(float(row == column)))
+                    numbers.append(one if row == column else zero)
+        return self.value(tuple(parts), tuple(numbers))
+
+    def conversion(self, node: ir.Construct, value: Value) -> Value:
+        """Between float, int, uint and bool."""
+        source, kind = kind_of(node.args[0].type), kind_of(node.type)
+        if kind == "bool":
+            parts = [hull(0.0 if part.has_zero() else 1.0, 1.0 if part.size else 0.0) for part in value.parts]
+            return self.value(tuple(parts), tuple([self.numbers.of("bool", n) for n in value.numbers]))
+        exact = 2.0**24 if self.format is FLOAT32 else 2.0**11
+        if kind == "float":
+            numbers = [
+                n if part.size <= exact and source != "bool" else self.numbers.of("float", source, n)
+                for part, n in zip(value.parts, value.numbers, strict=True)
+            ]
+            return self.computed(node, list(value.parts), numbers)
+        if source == "float":
+            # the largest float below the end of the integers
+            low, high = INTEGERS[kind][0], 2147483520.0 if kind == "int" else 4294967040.0
+            parts = [Range(float(int(part.low)), float(int(part.high))) for part in value.parts]
+            proven = all(low <= part.low and part.high <= high for part in parts)
+            self.note(node, kind, proven, WHOLE_NUMBER, (hull_of(value.parts),), (low, min(high, self.format.largest)))
+            parts = [clip(part, low, high) for part in parts]
+            return self.computed(node, parts, [self.numbers.of(kind, n) for n in value.numbers])
+        limits = self.limits(kind)
+        parts = [part if part.within(limits) or (part.low >= limits.low and part.high <= limits.high) else limits
+                 for part in value.parts]  # fmt: skip
+        return self.value(tuple(parts), tuple([self.numbers.of(kind, source, n) for n in value.numbers]))
+
+    def swizzle(self, node: ir.Swizzle) -> Value:
+        inner = node.value
+        if isinstance(inner, ir.Intrinsic) and inner.name in FETCHES:
+            args = tuple([self.expr(arg) for arg in inner.args])
+            value = self.builtin(inner, args, False)
+            texel = args[0].texel
+            if texel is not None and not texel.finite:
+                self.note(node, "texel", False, TEXEL, (ANY,), (texel.low, texel.high))
+        else:
+            value = self.expr(inner)
+        at = ["xyzw".index(letter) for letter in node.components]
+        length = ANY  # of a component twice, what the components say
+        if len(set(at)) == len(at):
+            length = value.length if len(at) == len(value.parts) else Range(0.0, value.length.high)
+        return self.value(tuple([value.parts[i] for i in at]), tuple([value.numbers[i] for i in at]), length)
+
+    def index(self, node: ir.Index) -> Value:
+        value, index = self.expr(node.value), self.expr(node.index).parts[0]
+        found = element_type(node.value.type)
+        assert found is not None
+        count = found[1]
+        if not isinstance(node.index, ir.Literal):
+            self.note(
+                node, "index", index.low >= 0.0 and index.high <= count - 1.0, ELEMENT, (index,), (0.0, count - 1.0)
+            )
+        if isinstance(node.value.type, Array):
+            return self.value(value.parts, tuple([self.numbers.fresh() for _ in value.parts]))
+        size = scalars(node.type)
+        if index.low == index.high and 0 <= index.low < count:
+            start = int(index.low) * size
+            return self.value(value.parts[start : start + size], value.numbers[start : start + size])
+        parts = []
+        for row in range(size):
+            part = value.parts[row]
+            for column in range(1, count):
+                part = part.joined(value.parts[column * size + row])
+            parts.append(part)
+        return self.value(tuple(parts), tuple([self.numbers.fresh() for _ in parts]))
+
+    def member(self, node: ir.Member) -> Value:
+        value = self.expr(node.value)
+        start, count = field_at(cast(Struct, node.value.type), node.field)
+        return self.value(value.parts[start : start + count], value.numbers[start : start + count])
+
+
+def _is_count(node: ir.Expr) -> bool:
+    """Whether this is an integer made a float."""
+    return isinstance(node, ir.Construct) and len(node.args) == 1 and kind_of(node.args[0].type) in ("int", "uint")
+
+
+_METHODS: dict[type, Callable[[Any, Any], Value]] = {
+    ir.Literal: Expressions.literal,
+    ir.Local: Expressions.local,
+    ir.Global: Expressions.global_,
+    ir.Unary: Expressions.unary,
+    ir.Binary: Expressions.binary,
+    ir.Select: Expressions.select,
+    ir.Call: lambda self, node: cast(Value, self.call(node)),
+    ir.Intrinsic: Expressions.intrinsic,
+    ir.Construct: Expressions.construct,
+    ir.Swizzle: Expressions.swizzle,
+    ir.Index: Expressions.index,
+    ir.Member: Expressions.member,
+}

@@ -1,0 +1,158 @@
+"""What is known of values at one point of a program: value numbers, and facts that conditions establish.
+
+Two expressions with the same number have the same value, as in `x * x` or in a condition and what stands under it. A
+fact bounds a number; `upper` bounds a sum of numbers, as `i < n` does with `i - n`.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from sssgen.ir.intervals import INF, Range, maximum, minimum
+
+Key = tuple[object, ...]
+Terms = tuple[tuple[int, float], ...]
+"""A sum of numbers, each times a factor, in the order of the numbers."""
+_TERMS = 8
+"""The most terms of a sum; a longer one is a term itself."""
+
+
+class Sum(NamedTuple):
+    """What a value is made of by sums and differences."""
+
+    terms: Terms
+    constant: float = 0.0
+    slack: float = 0.0
+    """How far the value may be from that, by rounding."""
+
+
+class Numbers:
+    """Value numbers: each definition has one."""
+
+    def __init__(self, tiny: float) -> None:
+        self.tiny = tiny
+        """Squares below this may be 0."""
+        self.known: dict[Key, int] = {}
+        self.definitions: list[Key] = []
+        self.sums: dict[int, Sum] = {}
+
+    def of(self, *key: object) -> int:
+        found = self.known.get(key)
+        if found is None:
+            found = self.known[key] = len(self.definitions)
+            self.definitions.append(key)
+        return found
+
+    def fresh(self) -> int:
+        """The number of a value of which nothing is known: an input, or what meets at the end of branches."""
+        self.definitions.append(("new",))
+        return len(self.definitions) - 1
+
+    def sum(self, op: str, left: int, right: int, kind: str, slack: float) -> int:
+        """The number of a sum or difference, which rounds by `slack` at most (infinite where an integer may wrap)."""
+        found = self.of(op, *(sorted((left, right)) if op == "+" else (left, right)), kind)
+        one, two = self.sum_of(left), self.sum_of(right)
+        sign = 1.0 if op == "+" else -1.0
+        terms = _added(one.terms, two.terms, sign)
+        if len(terms) <= _TERMS:
+            known = self.sums.get(found)
+            most = max(one.slack + two.slack + slack, known.slack if known else 0.0)
+            self.sums[found] = Sum(terms, one.constant + sign * two.constant, most)
+        return found
+
+    def sum_of(self, number: int) -> Sum:
+        """A value as a sum; what is none is its only term."""
+        key = self.definitions[number]
+        if key[0] == "constant":
+            return Sum((), float(key[1]))  # type: ignore[arg-type]  # a constant's definition holds its value
+        return self.sums.get(number) or Sum(((number, 1.0),))
+
+    def difference(self, left: int, right: int) -> Sum:
+        """`left - right` as a sum."""
+        one, two = self.sum_of(left), self.sum_of(right)
+        return Sum(_added(one.terms, two.terms, -1.0), one.constant - two.constant, one.slack + two.slack)
+
+
+def _added(one: Terms, two: Terms, sign: float) -> Terms:
+    found = dict(one)
+    for number, factor in two:
+        found[number] = found.get(number, 0.0) + sign * factor
+    return tuple(sorted((number, factor) for number, factor in found.items() if factor))
+
+
+class Facts(NamedTuple):
+    """What holds at a point."""
+
+    ranges: dict[int, Range]
+    upper: dict[Terms, float]
+
+    def copy(self) -> Facts:
+        return Facts(dict(self.ranges), dict(self.upper))
+
+    def joined(self, other: Facts) -> Facts:
+        """What holds on both ways."""
+        if self.ranges is other.ranges:
+            return self
+        ranges = {n: r.joined(other.ranges[n]) for n, r in self.ranges.items() if n in other.ranges}
+        upper = {t: max(bound, other.upper[t]) for t, bound in self.upper.items() if t in other.upper}
+        return Facts(ranges, upper)
+
+    def learn(self, numbers: Numbers, number: int, range: Range) -> None:
+        """Notes that a number lies in a range, and what follows for what it was made of."""
+        known = self.ranges.get(number)
+        range = range if known is None else known.met(range)
+        self.ranges[number] = range
+        key = numbers.definitions[number]
+        if key[0] == "abs":
+            self.learn(numbers, _number(key[1]), Range(-range.high, range.high, max(range.low, 0.0)))
+        elif key[0] == "neg":
+            self.learn(numbers, _number(key[1]), -range)
+        elif key[0] == "max" and range.high < INF:
+            for operand in key[1:]:
+                self.learn(numbers, _number(operand), Range(-INF, range.high))
+        elif key[0] == "min" and range.low > -INF:
+            for operand in key[1:]:
+                self.learn(numbers, _number(operand), Range(range.low, INF))
+        elif key[0] == "squares":
+            # a little more and less, for the rounding of the sum
+            low, high = max(range.low, 0.0) ** 0.5 * 0.999, max(range.high, numbers.tiny) ** 0.5 * 1.001
+            self.learn(numbers, numbers.of("length", *key[1:]), Range(low, high))
+
+    def compare(
+        self, numbers: Numbers, left: tuple[int, Range], op: str, right: tuple[int, Range], whole: bool
+    ) -> None:
+        """Notes `left op right`; `whole` where both are integers."""
+        (a, x), (b, y) = left, right
+        if op in (">", ">="):
+            (a, x), (b, y), op = (b, y), (a, x), "<" if op == ">" else "<="
+        if op in ("<", "<="):
+            step = 1.0 if whole and op == "<" else 0.0
+            self.learn(numbers, a, Range(-INF, y.high - step))
+            self.learn(numbers, b, Range(x.low + step, INF))
+            terms, constant, slack = numbers.difference(a, b)
+            self.upper[terms] = min(self.upper.get(terms, INF), slack - constant - step)
+            self.upper[_pair(a, b)] = -step
+        elif op == "==":
+            both = maximum(minimum(x, y.high), y.low)
+            self.learn(numbers, a, both)
+            self.learn(numbers, b, both)
+        elif op == "!=" and y.low == y.high == 0.0 and whole:
+            self.learn(numbers, a, Range(-INF, INF, 1.0))
+
+    def bound(self, numbers: Numbers, left: int, right: int) -> float:
+        """The most that `left - right` may be."""
+        known = self.upper.get(_pair(left, right))
+        if known is not None:
+            return known
+        terms, constant, slack = numbers.difference(left, right)
+        return (self.upper.get(terms, INF) if terms else 0.0) + constant + slack
+
+
+def _pair(left: int, right: int) -> Terms:
+    """The key of `left - right` of two numbers as they are."""
+    return (left, 1.0), (right, -1.0)
+
+
+def _number(part: object) -> int:
+    assert isinstance(part, int)
+    return part

@@ -1,0 +1,230 @@
+"""Ranges through loops.
+
+A loop is interpreted once as its first round, then until nothing new is found; a variable that is only added to grows
+by what is added, times the rounds.
+"""
+
+from __future__ import annotations
+
+from sssgen.ir import nodes as ir
+from sssgen.ir.intervals import INF, Range, clip
+from sssgen.ir.types import kind_of
+from sssgen.ir.walk import calls_of, root, statements
+from sssgen.passes.ranges.expression_ranges import Expressions
+from sssgen.passes.ranges.range_state import Loop, State
+from sssgen.passes.ranges.scalar_parts import scalars
+from sssgen.passes.ranges.vector_ranges import Value, length_of
+
+_ROUNDS = 3
+"""Joins of a loop's state before it is widened."""
+_UNROLLED = 8
+"""The most rounds of a loop that are interpreted one by one."""
+_STEPS = (0.0, 1.0, 10.0, 1e3, 1e6, 1e12, 1e20, 1e30)
+
+
+class Loops(Expressions):
+    """The loops' part of the analysis."""
+
+    def loop(self, stmt: ir.For | ir.While) -> State | None:
+        state: State | None = self.state
+        if isinstance(stmt, ir.For) and stmt.init is not None:
+            state = self.block((stmt.init,), state)
+        assert state is not None
+        trips = self.trips(stmt)
+        ways: list[State | None] = []
+        # the first round as it is: what it adds keeps sums from being 0; of a short loop, all of them
+        for _ in range(int(trips) if trips <= _UNROLLED else 1):
+            frame, after, left = self.round(stmt, state.copy(), trips)
+            ways += [left, *frame.broken]
+            if after is None:
+                return self.join_all(ways)
+            state = after
+        return self.join_all([*ways, *self.rounds(stmt, state, max(trips - 1.0, 1.0))])
+
+    def round(self, stmt: ir.For | ir.While, state: State, trips: float) -> tuple[Loop, State | None, State | None]:
+        """One round: the loop's ways out, the state at its end, and the state in which it does not run."""
+        loop = Loop(trips)
+        self.state = state
+        left: State | None = None
+        inside: State | None = state
+        if stmt.condition is not None:
+            condition = self.expr(stmt.condition)
+            state, known = self.state, condition.parts[0]
+            if known.low < 1.0:
+                self.state = state.copy()
+                self.learn(condition.numbers[0], False)
+                left = self.state
+            inside = state.copy() if known.high > 0.0 else None
+            if inside is not None:
+                self.state = inside
+                self.learn(condition.numbers[0], True)
+        if inside is None:
+            return loop, None, left
+        self.loops.append(loop)
+        after = self.join_all([self.block(stmt.body, inside), *loop.continued])
+        if isinstance(stmt, ir.For) and stmt.step is not None:
+            after = self.block((stmt.step,), after)
+        self.loops.pop()
+        return loop, after, left
+
+    def rounds(self, stmt: ir.For | ir.While, entry: State, trips: float) -> list[State | None]:
+        """Any number of rounds from `entry`: the ways out."""
+        block = (*stmt.body, *((stmt.step,) if isinstance(stmt, ir.For) and stmt.step is not None else ()))
+        if stmt.condition is not None:  # its calls may write
+            block = (*block, ir.Return(stmt.condition, stmt.span))
+        written = self.written(block)
+        sums = {name: self.sum_kind(name, block) for name in written if name in entry.env}
+        numbers = {name: [self.numbers.fresh() for _ in value.parts] for name, value in entry.env.items()}
+        ranges = {name: entry.env[name].parts for name in written if name in entry.env}
+        for attempt in range(24):
+            head = self.head(entry, ranges, numbers)
+            # what a narrower attempt finds, a wider one finds too: all may be noted
+            loop, after, left = self.round(stmt, head, trips + 1.0)
+            if after is None:
+                return [left, *loop.broken]
+            found = {
+                name: self.grown(entry.env[name].parts, loop.added.get(name, {}), trips, sums[name])
+                if sums[name]
+                else self.after(after, name, ranges[name])
+                for name in ranges
+            }
+            if all(a.within(b) for name in ranges for a, b in zip(found[name], ranges[name], strict=True)):
+                return [left, *loop.broken]
+            ranges = {
+                name: tuple([
+                    self.wider(old, new, attempt) for old, new in zip(ranges[name], found[name], strict=True)
+                ])
+                for name in ranges
+            }  # fmt: skip
+        anything = Range(-self.format.largest, self.format.largest)
+        ranges = {name: (anything,) * len(parts) for name, parts in ranges.items()}
+        loop, _, left = self.round(stmt, self.head(entry, ranges, numbers), trips + 1.0)
+        return [left, *loop.broken]
+
+    def head(self, entry: State, ranges: dict[str, tuple[Range, ...]], numbers: dict[str, list[int]]) -> State:
+        """The state at the beginning of a later round."""
+        env = dict(entry.env)
+        for name, parts in ranges.items():
+            env[name] = Value(parts, tuple(numbers[name]), length_of(parts))
+        return State(env, entry.facts.copy())
+
+    def after(self, state: State, name: str, before: tuple[Range, ...]) -> tuple[Range, ...]:
+        """A variable's ranges at a round's end, and those at its beginning."""
+        facts, value = state.facts.ranges, state.env[name]
+        parts = [p.met(facts[n]) if n in facts else p for p, n in zip(value.parts, value.numbers, strict=True)]
+        return tuple([part.joined(old) for part, old in zip(parts, before, strict=True)])
+
+    def grown(
+        self, start: tuple[Range, ...], added: dict[int, tuple[list[Range], float]], trips: float, kind: str
+    ) -> tuple[Range, ...]:
+        """A sum after any number of rounds."""
+        found = list(start)
+        grows = [(False, False)] * len(found)
+        total = 0.0
+        for parts, times in added.values():
+            for index, part in enumerate(parts):
+                low, high = min(part.low, 0.0), max(part.high, 0.0)
+                count = trips * times
+                found[index] += Range(low * count if low else 0.0, high * count if high else 0.0)
+                grows[index] = grows[index][0] or low < 0.0, grows[index][1] or high > 0.0
+            total += trips * times
+        if kind != "float":
+            limits = self.limits(kind)  # beyond them it wraps
+            return tuple([part if part.low >= limits.low and part.high <= limits.high else limits for part in found])
+        # each sum rounds; what grows one way keeps its other end
+        error = min(self.format.epsilon * total, 1.0)
+        for index, (part, (falls, rises)) in enumerate(zip(found, grows, strict=True)):
+            off = error * min(part.size, self.format.largest)
+            found[index] = self.held(Range(part.low - off * falls, part.high + off * rises))
+        return tuple(found)
+
+    def held(self, part: Range) -> Range:
+        return clip(part, -self.format.largest, self.format.largest)
+
+    def wider(self, old: Range, new: Range, attempt: int) -> Range:
+        """A range for the next attempt: what was found, then more and more."""
+        both = old.joined(new)
+        if attempt < _ROUNDS:
+            return both
+        largest = max(self.format.largest, 2.0**32)
+        low = old.low if new.low >= old.low else next((-s for s in _STEPS if -s <= new.low), -largest)
+        if 0.0 <= new.low < old.low:
+            low = 0.0
+        high = old.high if new.high <= old.high else next((s for s in _STEPS if s >= new.high), largest)
+        gap = old.gap if new.gap >= old.gap and low != 0.0 and high != 0.0 else 0.0
+        return Range(low, high, gap)
+
+    def add(self, name: str, stmt: ir.Assign, value: Value) -> None:
+        """Notes what a statement adds to a variable, for every loop around it."""
+        parts = [-part for part in value.parts] if stmt.op == "-" else list(value.parts)
+        parts = parts * (scalars(stmt.target.type) // len(parts))
+        times = 1.0
+        for loop in reversed(self.loops):
+            known = loop.added.setdefault(name, {}).get(id(stmt))
+            joined = parts if known is None else [a.joined(b) for a, b in zip(known[0], parts, strict=True)]
+            loop.added[name][id(stmt)] = joined, max(times, known[1] if known else 0.0)
+            times *= loop.trips
+
+    def written(self, block: ir.Block) -> set[str]:
+        found: set[str] = set()
+        for stmt in statements(block):
+            if isinstance(stmt, ir.Assign) and (variable := root(stmt.target)) is not None:
+                found.add(variable.name)
+            found |= self.written_by_calls(stmt)
+        return found
+
+    def written_by_calls(self, stmt: ir.Stmt) -> set[str]:
+        """The variables that a statement's calls write through out parameters."""
+        return {
+            variable.name
+            for call in calls_of(stmt)
+            for param, arg in zip(self.functions[call.function].params, call.args, strict=True)
+            if param.direction != "in" and (variable := root(arg)) is not None
+        }
+
+    def sum_kind(self, name: str, block: ir.Block) -> str:
+        """The kind of a variable that a block only adds to; '' for any other."""
+        kind = ""
+        for stmt in statements(block):
+            if isinstance(stmt, ir.Assign):
+                variable = root(stmt.target)
+                plain = stmt.op in ("+", "-") and variable is stmt.target
+                if variable is not None and variable.name == name:
+                    if not plain:
+                        return ""
+                    kind = kind_of(variable.type)
+            if name in self.written_by_calls(stmt):
+                return ""
+        return kind
+
+    def trips(self, stmt: ir.For | ir.While) -> float:
+        """The most rounds of a loop, as its header says; infinite where it does not."""
+        if not isinstance(stmt, ir.For) or not isinstance(stmt.step, ir.Assign) or stmt.step.op not in ("+", "-"):
+            return INF
+        counter = stmt.step.target
+        step = self.expr(stmt.step.value).parts[0]
+        if stmt.step.op == "-":
+            step = -step
+        most = INF
+        conditions = [stmt.condition]
+        while conditions:
+            condition = conditions.pop()
+            if isinstance(condition, ir.Binary) and condition.op == "&&":
+                conditions += [condition.left, condition.right]
+            elif isinstance(condition, ir.Binary) and isinstance(counter, ir.Local):
+                swapped = condition.op.translate(str.maketrans("<>", "><"))
+                for near, op, far in (
+                    (condition.left, condition.op, condition.right), (condition.right, swapped, condition.left),
+                ):  # fmt: skip
+                    if isinstance(near, ir.Local) and near.name == counter.name:
+                        most = min(most, self.steps(self.expr(near).parts[0], op, self.expr(far).parts[0], step))
+        return most
+
+    def steps(self, start: Range, op: str, end: Range, step: Range) -> float:
+        """How often `counter op end` may hold where the counter goes on by `step`; infinite where that says nothing."""
+        if step.high < 0.0:
+            start, end, step, op = -start, -end, -step, op.translate(str.maketrans("<>", "><"))
+        if step.low <= 0.0 or op not in ("<", "<=", "!=") or (op == "!=" and end.low < start.high):
+            return INF
+        way = max(end.high - start.low, 0.0)
+        return float(int(way / step.low)) + 1.0

@@ -1,0 +1,260 @@
+"""Value ranges: interprets a program over ranges and says of each operation with a domain whether it can go wrong.
+
+Sound under the rounding of the format: every value that a run may have lies in the range found, as long as the inputs
+keep to their contracts (`ir.contracts`) and each operation found unsafe is guarded, or happens not to occur: behind
+such an operation the analysis goes on with what the guard would let through. Functions are interpreted at each call,
+with the ranges there. A loop is interpreted once as its first round, then until nothing new is found; a variable
+that is only added to grows by what is added, times the rounds.
+Place: after `hoist`, since the program is then the one that every target gets; before `parameters`, which takes the
+uniforms' hints away.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple, cast
+
+from sssgen.ir import contracts
+from sssgen.ir import nodes as ir
+from sssgen.ir.contracts import Contract
+from sssgen.ir.formats import FLOAT32, Format
+from sssgen.ir.intervals import clip, rounded
+from sssgen.ir.types import VOID, Array, Struct, kind_of
+from sssgen.ir.walk import root
+from sssgen.passes.ranges.facts import Facts
+from sssgen.passes.ranges.loop_ranges import Loops
+from sssgen.passes.ranges.range_state import Frame, State
+from sssgen.passes.ranges.scalar_parts import field_at, hull_of, innermost, scalars
+from sssgen.passes.ranges.sites import BOUNDS, Site
+from sssgen.passes.ranges.vector_ranges import Value
+
+
+class Findings(NamedTuple):
+    """What the analysis found."""
+
+    sites: list[Site]
+    """Every operation with a domain that was reached, in the order in which it was."""
+    compounds: dict[int, ir.Binary]
+    """The operations of compound assignments, by the identity of the statement."""
+
+
+def analyse(module: ir.Module, roots: Iterable[str], format: Format = FLOAT32, chained: bool = True) -> Findings:
+    """Interprets the functions with the keys `roots`, their parameters within their contracts."""
+    analysis = _Analysis(module, format, chained)
+    for key in roots:
+        analysis.root(key)
+    return Findings(list(analysis.sites.values()), analysis.compounds)
+
+
+class _Analysis(Loops):
+    """The whole: functions and statements."""
+
+    # Functions
+
+    def root(self, key: str) -> None:
+        """Interprets a function whose parameters keep to their contracts."""
+        function = self.functions[key]
+        if function.body is None:
+            return
+        self.state = State({}, Facts({}, {}))
+        args = [
+            self.unknown(param.type) if param.direction == "out" else self.outside(param) for param in function.params
+        ]
+        self.enter(function, args)
+
+    def outside(self, param: ir.Param) -> Value:
+        """What a caller that is not ours may pass; of a struct, in each of its fields."""
+        inner = innermost(param.type)
+        if not isinstance(inner, Struct):
+            return self.given(inner, contracts.from_outside(param._replace(type=inner), self.format, self.chained))
+        fields = [
+            self.outside(ir.Param(field.name, field.type, "in", field.quantity, param.span)) for field in inner.fields
+        ]
+        parts = tuple([part for field in fields for part in field.parts])
+        return self.value(parts, tuple([number for field in fields for number in field.numbers]))
+
+    def enter(self, function: ir.Function, args: Sequence[Value]) -> tuple[Value | None, list[Value]]:
+        """Interprets a function's body; its result, and the parameters' values at its end."""
+        outer, loops, self.loops = self.state, self.loops, []
+        env = {param.name: arg for param, arg in zip(function.params, args, strict=True)}
+        frame = Frame(function, [])
+        self.frames.append(frame)
+        end = self.block(function.body or (), State(env, outer.facts.copy()))
+        if end is not None:
+            frame.returned.append((end, None))
+        self.frames.pop()
+        self.loops = loops
+        if not frame.returned:  # every way is a discard
+            self.state = outer
+            return (None if function.result == VOID else self.unknown(function.result)), list(args)
+        state, found = frame.returned[0]
+        for other, value in frame.returned[1:]:
+            if found is not None and value is not None:
+                found = self.joined(found, value, state.facts, other.facts)
+            state = self.join(state, other)
+        self.state = State(outer.env, state.facts)
+        if found is None and function.result != VOID:
+            found = self.unknown(function.result)
+        return found, [state.env.get(param.name, arg) for param, arg in zip(function.params, args, strict=True)]
+
+    def call(self, node: ir.Call) -> Value:
+        function = self.functions[node.function]
+        args = [
+            self.unknown(param.type) if param.direction == "out" else self.expr(arg)
+            for param, arg in zip(function.params, node.args, strict=True)
+        ]
+        # an index among them may be written by the call
+        written = [
+            self.places(arg) if param.direction != "in" and root(arg) is not None else None
+            for param, arg in zip(function.params, node.args, strict=True)
+        ]
+        result, ends = self.enter(function, args) if function.body is not None else (None, args)
+        for places, arg, end in zip(written, node.args, ends, strict=True):
+            if places is not None:
+                self.store(arg, self.value(end.parts, end.numbers, end.length), places)
+        return result if result is not None else (Value((), ()) if node.type == VOID else self.unknown(node.type))
+
+    # Statements
+
+    def block(self, block: ir.Block, state: State | None) -> State | None:
+        """The state at a block's end; None where control does not come there."""
+        for stmt in block:
+            if state is None:
+                return None
+            self.state = state
+            state = self.statement(stmt)
+        return state
+
+    def statement(self, stmt: ir.Stmt) -> State | None:
+        if isinstance(stmt, ir.Declare):
+            value = self.expr(stmt.value) if stmt.value is not None else self.unknown(stmt.type)
+            self.state.env[stmt.name] = value
+        elif isinstance(stmt, ir.Assign):
+            self.assign(stmt)
+        elif isinstance(stmt, ir.Evaluate):
+            self.expr(stmt.call)
+        elif isinstance(stmt, ir.Assume):
+            self.learn(self.expr(stmt.condition).numbers[0], True)
+        elif isinstance(stmt, ir.Return):
+            found = self.returned(stmt.value) if stmt.value is not None else None
+            self.frames[-1].returned.append((self.state, found))
+            return None
+        elif isinstance(stmt, ir.If):
+            return self.branch(stmt)
+        elif isinstance(stmt, ir.For | ir.While):
+            return self.loop(stmt)
+        elif isinstance(stmt, ir.Break):
+            self.loops[-1].broken.append(self.state)
+            return None
+        elif isinstance(stmt, ir.Continue):
+            self.loops[-1].continued.append(self.state)
+            return None
+        elif isinstance(stmt, ir.Discard):
+            return None
+        return self.state
+
+    def returned(self, expr: ir.Expr) -> Value:
+        """What a function gives: a quantity in its range."""
+        value = self.expr(expr)
+        quantity = self.frames[-1].function.quantity
+        contract = contracts.made(quantity, None, self.format) if kind_of(expr.type) == "float" else None
+        return value if contract is None else self.bounded(expr, value, quantity, contract)
+
+    def assign(self, stmt: ir.Assign) -> None:
+        value = self.expr(stmt.value)
+        node: ir.Expr = stmt.value
+        variable = root(stmt.target)
+        if stmt.op:
+            if stmt.op in ("+", "-") and variable is stmt.target and self.loops:
+                self.add(stmt.target.name, stmt, value)
+            node = self.compound_of(stmt)
+            value = self.operation(node, self.expr(stmt.target), value)
+        param = self.out_param(variable) if kind_of(node.type) == "float" else None
+        contract = self.made(param) if param is not None else None
+        if param is not None and contract is not None:
+            value = self.bounded(node, value, param.quantity or param.name, contract)
+        self.store(stmt.target, value)
+
+    def out_param(self, variable: ir.Local | None) -> ir.Param | None:
+        """The out parameter that is assigned to."""
+        if variable is None or not self.frames:
+            return None
+        params = self.frames[-1].function.params
+        return next((param for param in params if param.name == variable.name and param.direction != "in"), None)
+
+    def made(self, param: ir.Param) -> Contract | None:
+        """What an out parameter is kept to."""
+        return contracts.made(param.quantity, param if self.chained else None, self.format)
+
+    def compound_of(self, stmt: ir.Assign) -> ir.Binary:
+        """The operation of `target op= value`, one and the same each time."""
+        known = self.compounds.get(id(stmt))
+        if known is None:
+            known = ir.Binary(stmt.target.type, stmt.op, stmt.target, stmt.value, stmt.span)
+            self.compounds[id(stmt)] = known
+        return known
+
+    def bounded(self, node: ir.Expr, value: Value, what: str, contract: Contract) -> Value:
+        """A value that others rely on: within its contract."""
+        limits = (contract.low, min(contract.high, 1.0) if contract.high == contracts.ONE else contract.high)
+        inside = all(part.low >= contract.low and part.high <= contract.high for part in value.parts)
+        self.note(node, what, inside, BOUNDS, (hull_of(value.parts),), limits)
+        if inside:
+            return value
+        held = tuple([rounded(clip(part, contract.low, contract.high), self.format) for part in value.parts])
+        return self.value(held, tuple([self.numbers.fresh() for _ in held]))
+
+    def branch(self, stmt: ir.If) -> State | None:
+        condition = self.expr(stmt.condition)
+        known = condition.parts[0]
+        start = self.state
+        ways: list[State | None] = []
+        for truth, block in ((True, stmt.then), (False, stmt.otherwise)):
+            if (known.high == 0.0 and truth) or (known.low == 1.0 and not truth):
+                continue
+            self.state = start.copy()
+            self.learn(condition.numbers[0], truth)
+            ways.append(self.block(block, self.state))
+        return self.join_all(ways)
+
+    # Stores
+
+    def store(self, target: ir.Expr, value: Value, known: tuple[list[int], bool] | None = None) -> None:
+        """Writes to a variable or a part of one; `known` is what `places` has said of it."""
+        variable = root(target)
+        if variable is None or variable.name not in self.state.env:
+            return
+        if variable is target:
+            self.state.env[variable.name] = value
+            return
+        old = self.state.env[variable.name]
+        places, sure = known or self.places(target)
+        parts, numbers = list(old.parts), list(old.numbers)
+        for index, place in enumerate(places):
+            part, number = value.parts[index % len(value.parts)], value.numbers[index % len(value.numbers)]
+            parts[place] = part if sure else part.joined(parts[place])
+            numbers[place] = number if sure else self.numbers.fresh()
+        self.state.env[variable.name] = self.value(tuple(parts), tuple(numbers))
+
+    def places(self, target: ir.Expr) -> tuple[list[int], bool]:
+        """Which scalars of its variable a target is, and whether it is sure to be these and all of these."""
+        if isinstance(target, ir.Local):
+            return list(range(scalars(target.type))), True
+        assert isinstance(target, ir.Swizzle | ir.Member | ir.Index)
+        inner, sure = self.places(target.value)
+        if isinstance(target, ir.Swizzle):
+            chosen = ["xyzw".index(letter) for letter in target.components]
+        elif isinstance(target, ir.Member):
+            start, count = field_at(cast(Struct, target.value.type), target.field)
+            chosen = list(range(start, start + count))
+        else:
+            if isinstance(target.value.type, Array):
+                return inner, False
+            size, count = scalars(target.type), scalars(target.value.type)
+            index = self.expr(target.index).parts[0]
+            if index.low != index.high or not 0 <= index.low < count // size:
+                return inner, False
+            chosen = list(range(int(index.low) * size, (int(index.low) + 1) * size))
+        # of a column that is not sure there are as many as the matrix has
+        width = scalars(target.value.type)
+        return [inner[base + at] for base in range(0, len(inner), width) for at in chosen], sure

@@ -1,0 +1,206 @@
+"""What a program's analysis knows where it stands: variables, facts, and what it found."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any, NamedTuple, cast
+
+from sssgen.ir import contracts
+from sssgen.ir import nodes as ir
+from sssgen.ir.contracts import INTEGERS, Contract
+from sssgen.ir.formats import Format
+from sssgen.ir.intervals import ANY, INF, Range, clip, rounded
+from sssgen.ir.intrinsics import FINITE
+from sssgen.ir.types import Matrix, Sampler, Type, kind_of
+from sssgen.passes.ranges.facts import Facts, Numbers
+from sssgen.passes.ranges.scalar_parts import innermost, scalar_kinds, scalars
+from sssgen.passes.ranges.sites import OVERFLOW, Site
+from sssgen.passes.ranges.vector_ranges import Value, length_of
+
+SUMS = OVERFLOW._replace(text=FINITE, doc="A finite number in place of infinity; 0 in place of NaN.")
+"""Of what has products inside whose sum may be infinity less infinity."""
+
+
+def _is_sum(node: ir.Expr) -> bool:
+    if isinstance(node, ir.Intrinsic):
+        return node.name in ("dot", "cross", "reflect", "refract", "mix", "mod", "fmod", "determinant")
+    return isinstance(node, ir.Binary) and node.op == "*" and Matrix in (type(node.left.type), type(node.right.type))
+
+
+class State(NamedTuple):
+    """What is known where control stands."""
+
+    env: dict[str, Value]
+    facts: Facts
+
+    def copy(self) -> State:
+        return State(dict(self.env), self.facts.copy())
+
+
+class Frame(NamedTuple):
+    """A function's way out."""
+
+    function: ir.Function
+    returned: list[tuple[State, Value | None]]
+
+
+class Loop:
+    """A loop's ways out, and what its rounds add to variables."""
+
+    def __init__(self, trips: float) -> None:
+        self.trips = trips
+        self.broken: list[State] = []
+        self.continued: list[State] = []
+        self.added: dict[str, dict[int, tuple[list[Range], float]]] = {}
+        """A variable → each statement that adds to it: what, and how often in one round."""
+
+
+class Known:
+    """The state of an analysis."""
+
+    def __init__(self, module: ir.Module, format: Format, chained: bool = True) -> None:
+        self.functions = {function.key: function for function in module.functions}
+        self.format = format
+        self.chained = chained
+        """Whether names of parameters have the chain's meaning."""
+        self.numbers = Numbers(format.tiny)
+        self.sites: dict[tuple[int, str], Site] = {}
+        self.compounds: dict[int, ir.Binary] = {}
+        self.frames: list[Frame] = []
+        self.loops: list[Loop] = []
+        self.globals: dict[str, Value] = {}
+        self.variables = frozenset(variable.name for variable in module.variables)
+        self.state = State({}, Facts({}, {}))
+        for uniform in module.uniforms:
+            inner = innermost(uniform.type)
+            contract = contracts.of_uniform(uniform, format)
+            value = self.given(inner, contract)
+            if (at := contracts.alpha_at(uniform)) is not None:
+                value = value._replace(parts=(*value.parts[:at], Range(0.0, 1.0)))
+            self.globals[uniform.name] = value
+        for constant in module.constants:
+            self.globals[constant.name] = self.expr(constant.value)
+
+    # Values
+
+    def given(self, type_: Type, contract: Contract) -> Value:
+        """An input that keeps to a contract."""
+        if isinstance(type_, Sampler):
+            return Value((), (), ANY, contract)
+        count = scalars(type_)
+        parts = tuple([Range(contract.low, contract.high)] * count)
+        length = Range(0.0, contract.length) if contract.length < INF else ANY
+        return self.value(parts, tuple([self.numbers.fresh() for _ in parts]), length)
+
+    def unknown(self, type_: Type) -> Value:
+        """A value of which its type is known."""
+        parts = tuple([self.limits(kind) for kind in scalar_kinds(type_)])
+        return self.value(parts, tuple([self.numbers.fresh() for _ in parts]))
+
+    def limits(self, kind: str) -> Range:
+        low, high = INTEGERS.get(kind, (-self.format.largest, self.format.largest))
+        return Range(low, high)
+
+    def value(self, parts: tuple[Range, ...], numbers: tuple[int, ...], length: Range = ANY) -> Value:
+        """A value, with what the facts say of its components and its length."""
+        facts = self.state.facts.ranges
+        if facts:
+            parts = tuple([part.met(facts[n]) if n in facts else part for part, n in zip(parts, numbers, strict=True)])
+        if parts:
+            length = length.met(length_of(parts)) if length is not ANY else length_of(parts)
+            known = facts.get(self.numbers.known.get(("length", *numbers), -1)) if facts else None
+            if known is not None:
+                length = length.met(known)
+                parts = tuple([clip(part, -length.high, length.high) for part in parts])
+        return Value(parts, numbers, length)
+
+    def computed(self, node: ir.Expr, parts: Sequence[Range], numbers: Sequence[int], length: Range = ANY) -> Value:
+        """The result of an operation: rounded, and checked for overflow."""
+        kind = kind_of(node.type)
+        if kind != "float":
+            limits = self.limits(kind)
+            held = [part if part.low >= limits.low and part.high <= limits.high else limits for part in parts]
+            return self.value(tuple(held), tuple(numbers))
+        held = [rounded(part, self.format) for part in parts]
+        largest = self.format.largest
+        over = [part for part in held if part.low < -largest or part.high > largest]
+        if over:
+            self.note(node, "overflow", False, SUMS if _is_sum(node) else OVERFLOW, tuple(over[:1]))
+            held = [clip(part, -largest, largest) for part in held]
+        return self.value(tuple(held), tuple(numbers), length)
+
+    def note(
+        self, node: ir.Expr, what: str, proven: bool, guard: Any, args: tuple[Range, ...],
+        limits: tuple[float, float] = (0.0, 0.0),
+    ) -> None:  # fmt: skip
+        site = Site(node, what, proven, guard, args, limits)
+        known = self.sites.get((id(node), what))
+        self.sites[id(node), what] = site if known is None else known.joined(site)
+
+    # Joins
+
+    def joined(self, one: Value, two: Value, at_one: Facts, at_two: Facts) -> Value:
+        """A value that comes from either of two ways."""
+        if one is two:
+            return one
+        parts, numbers = [], []
+        for a, b, m, n in zip(one.parts, two.parts, one.numbers, two.numbers, strict=True):
+            if m == n:
+                numbers.append(m)
+                parts.append(a.joined(b))
+                continue
+            numbers.append(self.numbers.fresh())
+            a = a.met(at_one.ranges[m]) if m in at_one.ranges else a
+            b = b.met(at_two.ranges[n]) if n in at_two.ranges else b
+            parts.append(a.joined(b))
+        return Value(tuple(parts), tuple(numbers), one.length.joined(two.length), one.texel)
+
+    def join(self, one: State, two: State) -> State:
+        if one is two:
+            return one
+        env = {
+            name: self.joined(value, two.env[name], one.facts, two.facts)
+            for name, value in one.env.items()
+            if name in two.env
+        }
+        return State(env, one.facts.joined(two.facts))
+
+    def join_all(self, states: Iterable[State | None]) -> State | None:
+        found: State | None = None
+        for state in states:
+            if state is not None:
+                found = state if found is None else self.join(found, state)
+        return found
+
+    # Conditions
+
+    def learn(self, number: int, truth: bool) -> None:
+        """Notes that a condition is true or false."""
+        key = self.numbers.definitions[number]
+        facts = self.state.facts
+        facts.ranges[number] = Range(float(truth), float(truth))
+        if key[0] == "!":
+            self.learn(cast(int, key[1]), not truth)
+        elif (key[0] == "&&" and truth) or (key[0] == "||" and not truth):
+            self.learn(cast(int, key[1]), truth)
+            self.learn(cast(int, key[2]), truth)
+        elif key[0] == "compare":
+            _, op, left, right, whole, x, y = cast("tuple[str, str, int, int, bool, Range, Range]", key)
+            if not truth:
+                op = {"<": ">=", ">": "<=", "<=": ">", ">=": "<", "==": "!=", "!=": "=="}[op]
+            facts.compare(self.numbers, (left, x), op, (right, y), whole)
+
+    # What the others bring: `expr` is Expressions', `call` and `block` are the whole analysis's. They call each other,
+    # and these say so to the type checker.
+
+    def expr(self, node: ir.Expr) -> Value:
+        """The value of an expression."""
+        raise NotImplementedError
+
+    def call(self, node: ir.Call) -> Value:
+        """The result of a call."""
+        raise NotImplementedError
+
+    def block(self, block: ir.Block, state: State | None) -> State | None:
+        """The state at a block's end; None where control does not come there."""
+        raise NotImplementedError

@@ -1,0 +1,71 @@
+"""The scalars that a value is made of, in one order: what ranges are kept for."""
+
+from __future__ import annotations
+
+from typing import cast
+
+from sssgen.ir.intervals import ANY, INF, Range, widened
+from sssgen.ir.types import Array, Matrix, Scalar, Struct, Type, components, kind_of
+
+
+def scalars(type_: Type) -> int:
+    """How many ranges a value of this type has: an array's elements share those of one."""
+    if isinstance(type_, Array):
+        return scalars(type_.element)
+    if isinstance(type_, Struct):
+        return sum(scalars(field.type) for field in type_.fields)
+    return components(type_)
+
+
+def scalar_kinds(type_: Type) -> list[str]:
+    """The kind of each of these scalars."""
+    if isinstance(type_, Array):
+        return scalar_kinds(type_.element)
+    if isinstance(type_, Struct):
+        return [kind for field in type_.fields for kind in scalar_kinds(field.type)]
+    return [kind_of(type_)] * components(type_)
+
+
+def innermost(type_: Type) -> Type:
+    """The type of an array's elements, of those arrays where they are arrays; any other as it is."""
+    while isinstance(type_, Array):
+        type_ = type_.element
+    return type_
+
+
+def field_at(type_: Struct, name: str) -> tuple[int, int]:
+    """Where a field's scalars begin in its struct's, and how many there are."""
+    start = 0
+    for field in type_.fields:
+        count = scalars(field.type)
+        if field.name == name:
+            return start, count
+        start += count
+    raise KeyError(name)
+
+
+def matrix_product(
+    left: Type, a: tuple[Range, ...], right: Type, b: tuple[Range, ...], slack: float
+) -> list[Range] | None:
+    """The components of a matrix product, whose sums round by `slack` of their terms; None for one with a number."""
+    if isinstance(left, Scalar) or isinstance(right, Scalar):
+        return None
+    size = left.size if isinstance(left, Matrix) else cast(Matrix, right).size
+    rows = [[a[k * size + row] for k in range(size)] for row in range(size)] if isinstance(left, Matrix) else [list(a)]
+    columns = [list(b[c * size : (c + 1) * size]) for c in range(size)] if isinstance(right, Matrix) else [list(b)]
+    found = []
+    for column in columns:
+        for row in rows:
+            products = [x * y for x, y in zip(row, column, strict=True)]
+            total, terms = Range(0.0, 0.0), 0.0
+            for product in products:
+                total, terms = total + product, terms + product.size
+            found.append(widened(total, 0.0, slack * terms) if terms < INF else total)
+    return found
+
+
+def hull_of(parts: tuple[Range, ...]) -> Range:
+    found = parts[0] if parts else ANY
+    for part in parts[1:]:
+        found = found.joined(part)
+    return found

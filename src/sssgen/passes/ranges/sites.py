@@ -1,0 +1,79 @@
+"""The places of a program where something may go wrong, and what is known of each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+from sssgen.ir import nodes as ir
+from sssgen.ir.intervals import Range
+from sssgen.ir.intrinsics import NONZERO, Guard
+
+OVERFLOW = Guard("", "a number too large for its format", "clamp(x, -LARGEST, LARGEST)", "result")
+"""Beside the table's: what any sum or product may do."""
+TEXEL = Guard(
+    "",
+    "a texel of a float texture that is no number",
+    "mix(clamp(x, LOW, HIGH), genF(0.0), isnan(x))",
+    "result",
+    scalar="isnan(x) ? 0.0 : clamp(x, LOW, HIGH)",
+    doc="A texel within its range; 0 in place of NaN.",
+)
+BOUNDS = Guard("", "a quantity beyond its range", "clamp(x, LOW, HIGH)", "result")
+DIVISION = Guard("", "a division by 0", NONZERO, "y", doc="A divisor that is not 0, with the sign of `y`.")
+COUNT = Guard("", "a division by a count of 0", "max(y, 1.0)", "y")
+SIGNED_COUNT = COUNT._replace(text=NONZERO.replace("DIVISOR", "1.0"), doc=DIVISION.doc)
+"""Of a count that may be below 0."""
+WHOLE_NUMBER = Guard("", "a float too large for an integer", "clamp(x, LOW, HIGH)", "x")
+ELEMENT = Guard("", "an index beyond the elements", "clamp(y, 0, LAST)", "y")
+
+
+class Site(NamedTuple):
+    """One operation with a domain."""
+
+    node: ir.Expr
+    what: str
+    """The operator or builtin, or `overflow`, `texel`, a quantity's name, `int`, `index`."""
+    proven: bool
+    guard: Guard
+    args: tuple[Range, ...]
+    """What was found of the arguments (of each: all its components), or of the result."""
+    limits: tuple[float, float] = (0.0, 0.0)
+    """LOW and HIGH of the guard's text."""
+
+    def joined(self, other: Site) -> Site:
+        """What holds in both contexts: the guard that is needed in either, the ranges of both."""
+        args = tuple([a.joined(b) for a, b in zip(self.args, other.args, strict=True)])
+        if self.proven != other.proven:
+            worse = other if self.proven else self
+        else:
+            worse = min(self, other, key=lambda site: site.guard.replaces != "")
+        if worse.guard is COUNT and args[1].low < 0.0:
+            worse = worse._replace(guard=SIGNED_COUNT)
+        return worse._replace(args=args)
+
+    @property
+    def place(self) -> str:
+        """Where it stands, as `file:line:column`."""
+        span = self.node.span
+        return f"{span.file}:{span.line}:{span.column}"
+
+    @property
+    def found(self) -> str:
+        """The ranges that were found, for people."""
+        if self.guard.replaces == "result" or not self.args:
+            return f"{_shown(self.args[0])}" if self.args and self.what != "texel" else ""
+        return ", ".join([f"{letter} in {_shown(arg)}" for letter, arg in zip("xyz", self.args, strict=False)])
+
+
+def _shown(range: Range) -> str:
+    gap = f" but not within {range.gap:.4g} of 0" if range.gap and range.low < 0.0 < range.high else ""
+    return f"{range.low:.4g}..{range.high:.4g}{gap}"
+
+
+def report(sites: Sequence[Site], guarded: Sequence[Site]) -> dict[str, Any]:
+    """For the reflection: how many are proven safe, and each that has a guard."""
+    rows = [
+        {"at": site.place, "operation": site.what, "reason": site.guard.says, "found": site.found} for site in guarded
+    ]
+    return {"proven": sum(site.proven for site in sites), "guarded": rows}

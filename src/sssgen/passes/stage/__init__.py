@@ -1,0 +1,1 @@
+"""Passes for whole shaders: inputs, outputs and variables of the module."""

@@ -1,0 +1,192 @@
+"""The interface of a whole shader: its stage, and where each of its in and out variables is bound.
+
+A module with a function `void main()` is one: a vertex shader where gl_Position is written, else a fragment shader.
+A location that the author wrote is kept; the other variables get the lowest free ones in the order of their
+declaration, so that a vertex shader's outputs meet a fragment shader's inputs where both are declared alike.
+Place: what goes by the framebuffer before `hoist`, the interface last, as the names are final there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from typing import NamedTuple
+
+from sssgen.ir.nodes import Expr, Function, Global, Index, Intrinsic, Literal, Module, Span, Unary, Variable
+from sssgen.ir.rules import element_type
+from sssgen.ir.types import VOID, Array, Matrix, Struct, Type, Vector
+from sssgen.ir.walk import all_expressions, builtins_of, operands, rewrite_module
+from sssgen.passes.variable_effects import effects
+
+ENTRY = "main()"
+"""The key of the function that a stage begins with."""
+
+RESOLUTION = "iResolution"
+"""The uniform that says how large the framebuffer is, in pixels."""
+
+COLORS = ("gl_FragColor", "gl_FragData")
+"""Builtins that are colours of the framebuffer at the locations from 0 on."""
+
+
+class StageError(Exception):
+    """Something that a stage of the target cannot have, with its place."""
+
+    def __init__(self, message: str, span: Span) -> None:
+        super().__init__(message)
+        self.message, self.span = message, span
+
+
+class Slot(NamedTuple):
+    """One value that goes in or comes out: a variable, or an element or column of one."""
+
+    variable: Variable
+    path: tuple[int, ...]
+    """The indices that lead to it."""
+    type: Type
+    location: int
+    """-1 for a builtin."""
+
+
+class Stage(NamedTuple):
+    """A whole shader's interface."""
+
+    kind: str
+    """vertex or fragment"""
+    function: str
+    """The key of the author's main function."""
+    inputs: tuple[Slot, ...]
+    outputs: tuple[Slot, ...]
+    """Those with a location first, in its order."""
+    resolution: str
+    """The uniform from whose y gl_FragCoord.y is taken; '' where it stays as it is."""
+
+
+def entry_of(module: Module) -> Function | None:
+    """The function that a stage begins with."""
+    found = (one for one in module.functions if one.key == ENTRY and one.result == VOID and one.body is not None)
+    return next(found, None)
+
+
+def stage_kind(module: Module) -> str:
+    """vertex or fragment; '' for a module without an entry."""
+    if entry_of(module) is None:
+        return ""
+    positions = {variable.name for variable in module.variables if variable.builtin == "gl_Position"}
+    written = [effect.writes for effect in effects(module).values()] if positions else []
+    return "fragment" if all(map(positions.isdisjoint, written)) else "vertex"
+
+
+def interface(module: Module, kind: str, function: str, builtins: Collection[str], turned: bool) -> Stage:
+    """The interface of a module with its final names. Raises StageError for what no stage of the target is given.
+
+    `function` is the key of its main function, `builtins` are those that the target has a value for; of an output
+    that it has not nothing comes out. `turned`: the framebuffer's y counts from the top.
+    """
+    given = [variable for variable in module.variables if variable.storage == "in"]
+    made = [variable for variable in module.variables if variable.storage == "out"]
+    for variable in given:
+        if variable.builtin and variable.builtin not in builtins:
+            raise StageError(f"a {kind} shader of this target is given no {variable.builtin}", variable.span)
+    made = [one for one in made if not one.builtin or one.builtin in builtins or one.builtin in COLORS]
+    resolution = resolution_of(module) if turned and kind == "fragment" else ""
+    return Stage(kind, function, _slots(given), _slots(made), resolution)
+
+
+def resolution_of(module: Module) -> str:
+    """The name of the uniform that says how large the framebuffer is; '' where there is none."""
+    for uniform in module.uniforms:
+        if uniform.name == RESOLUTION and isinstance(uniform.type, Vector) and uniform.type.kind == "float":
+            return uniform.name
+    return ""
+
+
+def turned_derivatives(module: Module) -> Module:
+    """The module for a framebuffer whose y counts from the top: dFdy keeps its meaning, and is negated."""
+
+    def change(expr: Expr) -> Expr:
+        if isinstance(expr, Intrinsic) and expr.name.startswith("dFdy"):
+            return Unary(expr.type, "-", expr, expr.span)
+        return expr
+
+    turned = any(name.startswith("dFdy") for name in builtins_of(module))
+    return rewrite_module(module, change) if turned else module
+
+
+def colors_in_use(module: Module) -> Module:
+    """The module with gl_FragData no longer than what it uses of it, where its indices say so."""
+    data = {one.name: one.type for one in module.variables if one.builtin == "gl_FragData"}
+    if not data:
+        return module
+    length = 0
+    for function in module.functions:
+        for expr in all_expressions(function.body or ()):
+            named = [part for part in operands(expr) if isinstance(part, Global) and part.name in data]
+            if named and not (isinstance(expr, Index) and isinstance(expr.index, Literal)):
+                return module
+            if named and isinstance(expr, Index) and isinstance(expr.index, Literal):
+                length = max(length, int(expr.index.value) + 1)
+
+    def short(type_: Type) -> Type:
+        return type_._replace(length=length) if isinstance(type_, Array) and length else type_
+
+    def change(expr: Expr) -> Expr:
+        return expr._replace(type=short(expr.type)) if isinstance(expr, Global) and expr.name in data else expr
+
+    variables = tuple([one._replace(type=short(one.type)) if one.name in data else one for one in module.variables])
+    return rewrite_module(module._replace(variables=variables), change)
+
+
+def remarks(
+    module: Module, builtins: Collection[str], turned: bool, can: Callable[[str], bool]
+) -> list[tuple[str, Span]]:
+    """What differs from the source in a target's whole shader, with its place."""
+    found = []
+    for variable in module.variables:
+        if variable.interpolation == "noperspective" and not can("noperspective"):
+            found.append(
+                (
+                    f"'{variable.name}' is interpolated with perspective here: this target has no other way",
+                    variable.span,
+                )
+            )
+        if variable.builtin == "gl_FragCoord" and turned and not resolution_of(module):
+            hint = f"with a uniform vec2 {RESOLUTION} it would be turned"
+            found.append((f"gl_FragCoord.y counts from the top of the framebuffer here; {hint}", variable.span))
+        elif variable.storage == "out" and variable.builtin and variable.builtin not in (*builtins, *COLORS):
+            found.append((f"{variable.builtin} has no effect here: this target has nothing like it", variable.span))
+    return found
+
+
+def _slots(variables: Sequence[Variable]) -> tuple[Slot, ...]:
+    """What the variables are made of: what has a location, then the builtins."""
+    placed: list[Slot] = []
+    builtins: list[Slot] = []
+    taken: set[int] = set()
+    written = {one.name: one.location if one.builtin not in COLORS else 0 for one in variables}
+    parts = {one.name: _parts(one, one.type) for one in variables}
+    for name, location in written.items():
+        if location >= 0:
+            taken.update(range(location, location + len(parts[name])))
+    for variable in variables:
+        found = parts[variable.name]
+        if variable.builtin and variable.builtin not in COLORS:
+            builtins.append(Slot(variable, (), variable.type, -1))
+            continue
+        first = written[variable.name]
+        if first < 0:
+            first = next(at for at in range(len(taken) + 1) if taken.isdisjoint(range(at, at + len(found))))
+            taken.update(range(first, first + len(found)))
+        placed += [Slot(variable, path, type_, first + index) for index, (path, type_) in enumerate(found)]
+    return (*sorted(placed, key=lambda slot: slot.location), *builtins)
+
+
+def _parts(variable: Variable, type_: Type, path: tuple[int, ...] = ()) -> list[tuple[tuple[int, ...], Type]]:
+    """The scalars and vectors of a variable, with the indices that lead to each."""
+    inner = type_.element if isinstance(type_, Array) else type_
+    if isinstance(inner, Struct):
+        raise StageError(f"'{variable.name}' is made of structs, which go from stage to stage nowhere", variable.span)
+    if not isinstance(type_, Array | Matrix):
+        return [(path, type_)]
+    found = element_type(type_)
+    assert found is not None
+    element, count = found
+    return [part for index in range(count) for part in _parts(variable, element, (*path, index))]

@@ -1,0 +1,210 @@
+"""Takes uniforms apart that are structs, or arrays of them: each member becomes a uniform of its own.
+
+Why: uniform blocks lay structs out otherwise in each language, and an engine's material has no such parameters. Of
+`uniform Light lights[4]` comes `uniform vec3 lights_color[4]`, a struct of arrays; a nested member's name goes on the
+same way, and arrays in an array become one, element after element. A struct that is read whole is constructed.
+Place: first of all, so that no other pass meets one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import prod
+from typing import NamedTuple
+
+from sssgen.ir.nodes import (
+    Assign,
+    Binary,
+    Block,
+    Call,
+    Construct,
+    Declare,
+    Expr,
+    For,
+    Global,
+    Index,
+    Literal,
+    Member,
+    Module,
+    Return,
+    Span,
+    Stmt,
+    Uniform,
+)
+from sssgen.ir.types import INT, Array, Struct, Type, components
+from sssgen.ir.walk import operands, rewrite, rewrite_module, subexpressions, with_operands
+from sssgen.passes.scopes import fresh
+
+Path = tuple[str, ...]
+"""A uniform's name and those of its members, down to one of them."""
+
+
+class Unreadable(Exception):
+    """A whole element that is read at an index which must not be computed twice, with its place."""
+
+    def __init__(self, message: str, span: Span) -> None:
+        super().__init__(message)
+        self.message, self.span = message, span
+
+
+class _Leaf(NamedTuple):
+    """A member that holds no struct: the uniform that stands for it."""
+
+    name: str
+    lengths: tuple[int, ...]
+    """Of the arrays around it, its own last."""
+    element: Type
+
+    @property
+    def type(self) -> Type:
+        return Array(self.element, prod(self.lengths)) if self.lengths else self.element
+
+
+def uniform_structs(module: Module) -> Module:
+    """The module without uniforms that hold structs. Raises Unreadable."""
+    if not any(_holds_struct(uniform.type) for uniform in module.uniforms):
+        return module
+    return _Splitter(module).run()
+
+
+def _holds_struct(type_: Type) -> bool:
+    """Whether it is a struct or an array of them."""
+    return isinstance(type_, Struct) or (isinstance(type_, Array) and _holds_struct(type_.element))
+
+
+class _Splitter:
+    def __init__(self, module: Module) -> None:
+        self.module = module
+        declared = (module.constants, module.uniforms, module.variables, module.functions)
+        self.taken = {one.name for group in declared for one in group}
+        self.split = {uniform.name for uniform in module.uniforms if _holds_struct(uniform.type)}
+        self.leaves: dict[Path, _Leaf] = {}
+
+    def run(self) -> Module:
+        uniforms = tuple([part for uniform in self.module.uniforms for part in self.parts(uniform)])
+        variables = tuple(
+            [
+                one if one.value is None else one._replace(value=self.whole(rewrite(one.value, self.change)))
+                for one in self.module.variables
+            ]
+        )
+        return rewrite_module(self.module._replace(uniforms=uniforms, variables=variables), self.change, self.restate)
+
+    def parts(self, uniform: Uniform) -> Iterator[Uniform]:
+        """The uniforms that stand for one."""
+        if uniform.name not in self.split:
+            yield uniform
+            return
+        numbers = uniform.default or (0.0,) * components(uniform.type)
+        for path, lengths, element, default in _members((uniform.name,), uniform.type, (), [numbers]):
+            name = fresh("_".join(path), self.taken)
+            self.taken.add(name)
+            leaf = self.leaves[path] = _Leaf(name, lengths, element)
+            yield uniform._replace(name=name, type=leaf.type, default=default)
+
+    # Rewriting, from the leaves up: a chain of members and indices waits until it has come to a number
+
+    def change(self, node: Expr) -> Expr:
+        """A node whose operands are done."""
+        if self.waits(node):
+            return node if isinstance(node.type, Struct | Array) else self.read(node)
+        old = operands(node)
+        if not any(map(self.waits, old)):
+            return node
+        return with_operands(node, tuple([self.whole(operand) for operand in old]))
+
+    def restate(self, stmt: Stmt) -> Block | None:
+        """A statement whose value is a whole struct or array."""
+        if isinstance(stmt, For) and stmt.init is not None:
+            init = self.restate(stmt.init)
+            return None if init is None else (stmt._replace(init=init[0]),)
+        if isinstance(stmt, Declare | Assign | Return) and stmt.value is not None and self.waits(stmt.value):
+            return (stmt._replace(value=self.whole(stmt.value)),)
+        return None
+
+    def waits(self, node: Expr) -> bool:
+        """Whether it is a split uniform, or a member or element of one."""
+        while isinstance(node, Member | Index):
+            node = node.value
+        return isinstance(node, Global) and node.name in self.split
+
+    def whole(self, node: Expr) -> Expr:
+        """The value of a chain; any other expression as it is."""
+        return self.read(node) if self.waits(node) else node
+
+    def read(self, node: Expr) -> Expr:
+        path, indices = _taken_apart(node)
+        leaf = self.leaves.get(path)
+        if leaf is not None and (len(indices) == len(leaf.lengths) or not indices):
+            return self.element(leaf, indices, node.span)
+        for index in indices:
+            if any(isinstance(part, Call) for part in subexpressions(index)):
+                raise Unreadable("this index is needed more than once: keep it in a variable", index.span)
+        if isinstance(node.type, Struct):
+            values = [self.read(Member(field.type, node, field.name, node.span)) for field in node.type.fields]
+            return Construct(node.type, tuple(values), node.span)
+        assert isinstance(node.type, Array)
+        places = [Literal(INT, index, node.span) for index in range(node.type.length)]
+        values = [self.read(Index(node.type.element, node, place, node.span)) for place in places]
+        return Construct(node.type, tuple(values), node.span)
+
+    def element(self, leaf: _Leaf, indices: list[Expr], span: Span) -> Expr:
+        """One element of a leaf; all of it where there are no indices."""
+        value = Global(leaf.type, leaf.name, span)
+        if not indices:
+            return value
+        place = indices[0]
+        for length, index in zip(leaf.lengths[1:], indices[1:], strict=True):
+            place = _sum(_product(_whole_number(place), length), _whole_number(index))
+        return Index(leaf.element, value, place, span)
+
+
+def _taken_apart(node: Expr) -> tuple[Path, list[Expr]]:
+    """The path of a chain, and its indices from the outermost array on."""
+    names: list[str] = []
+    indices: list[Expr] = []
+    while isinstance(node, Member | Index):
+        if isinstance(node, Member):
+            names.append(node.field)
+        else:
+            indices.append(node.index)
+        node = node.value
+    assert isinstance(node, Global)
+    return (node.name, *reversed(names)), indices[::-1]
+
+
+def _members(
+    path: Path, type_: Type, lengths: tuple[int, ...], numbers: list[tuple[float, ...]]
+) -> Iterator[tuple[Path, tuple[int, ...], Type, tuple[float, ...]]]:
+    """Each leaf with the arrays around it and its default. `numbers` are those of each element of the outer arrays."""
+    if isinstance(type_, Struct):
+        start = 0
+        for field in type_.fields:
+            end = start + components(field.type)
+            yield from _members((*path, field.name), field.type, lengths, [some[start:end] for some in numbers])
+            start = end
+    elif isinstance(type_, Array):
+        size = components(type_.element)
+        parts = [some[at : at + size] for some in numbers for at in range(0, size * type_.length, size)]
+        yield from _members(path, type_.element, (*lengths, type_.length), parts)
+    else:
+        yield path, lengths, type_, tuple([number for some in numbers for number in some])
+
+
+def _whole_number(index: Expr) -> Expr:
+    return index if index.type == INT else Construct(INT, (index,), index.span)
+
+
+def _product(left: Expr, right: int) -> Expr:
+    if isinstance(left, Literal):
+        return left._replace(value=int(left.value) * right)
+    return Binary(INT, "*", left, Literal(INT, right, left.span), left.span)
+
+
+def _sum(left: Expr, right: Expr) -> Expr:
+    if isinstance(left, Literal) and isinstance(right, Literal):
+        return left._replace(value=int(left.value) + int(right.value))
+    for one, other in ((left, right), (right, left)):
+        if isinstance(one, Literal) and one.value == 0:
+            return other
+    return Binary(INT, "+", left, right, right.span)

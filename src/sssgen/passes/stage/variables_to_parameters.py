@@ -1,0 +1,68 @@
+"""Hands module variables to functions as parameters, for targets that have none.
+
+Why: a NumPy function has no variables but its own, and what it is given must be seen to be given.
+Place: after `hoist` and `guards`, before `uniforms_to_parameters`, whose parameters stand behind these, and `legalise`.
+
+A function gets a parameter for each variable that it uses, itself or through what it calls: behind its own, in the
+order in which the variables are declared, with their names; `inout` where the variable may be written, else `in`. A
+variable of the function's own that is called so is renamed. Who calls such a function from outside gives the values
+that the variables begin with; nothing sets them.
+
+The entry of a stage takes only what the stage is given (its `in` variables), and gives its `out` variables through
+`out` parameters; the private ones are variables of its own, which begin with their values.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from sssgen.ir.nodes import Declare, Function, Module, Param, Stmt
+from sssgen.passes.lift_calls import Calls, lift
+from sssgen.passes.stage.initial_values import set_at_start
+from sssgen.passes.uniforms_to_parameters import Closer
+from sssgen.passes.variable_effects import effects
+
+
+class Handed(NamedTuple):
+    """A module without variables."""
+
+    module: Module
+    added: dict[str, tuple[Param, ...]]
+    """The old key of each function that got parameters → these, in their order."""
+
+
+def variables_to_parameters(module: Module, entry: str = "") -> Handed:
+    """The module with its variables handed on; `entry` is the key of a stage's main function, if there is one."""
+    if not module.variables:
+        return Handed(module, {})
+    if entry:
+        module = set_at_start(module, entry, all_of_them=True)
+    shared = effects(module)
+    calls = Calls({function.key: function for function in module.functions}, shared)
+    # a call that writes stands alone from here on, so that an argument that is a variable is not passed twice
+    module = module._replace(functions=tuple([lift(one, calls) for one in module.functions]))
+    handed = {one.name: Param(one.name, one.type, "in", "", one.span) for one in module.variables}
+    closer = Closer(module, handed, {key: effect.writes for key, effect in shared.items()})
+    added: dict[str, tuple[Param, ...]] = {}
+    made = []
+    for old, new in zip(module.functions, closer.run(), strict=True):
+        if old.key == entry:
+            new = _entered(new, len(old.params), module)
+        if len(new.params) > len(old.params):
+            added[old.key] = new.params[len(old.params) :]
+        made.append(new)
+    return Handed(module._replace(functions=tuple(made), variables=()), added)
+
+
+def _entered(function: Function, own: int, module: Module) -> Function:
+    """The entry, with parameters for what goes in and out of its stage, and variables of its own for the rest."""
+    storage = {variable.name: variable.storage for variable in module.variables}
+    params: list[Param] = list(function.params[:own])
+    begins: list[Stmt] = []
+    for param in function.params[own:]:
+        kind = storage[param.name]
+        if kind == "private":
+            begins.append(Declare(param.name, param.type, None, param.span))
+        else:
+            params.append(param._replace(direction=kind))
+    return function._replace(params=tuple(params), body=(*begins, *(function.body or ())))

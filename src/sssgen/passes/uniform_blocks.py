@@ -1,0 +1,100 @@
+"""How uniforms stand in a uniform block, and how they are read from there.
+
+Why: no two APIs fill a bool alike. An array's elements take 16 bytes each, which WGSL demands and HLSL does without
+saying so. WGSL packs a mat2 tighter than std140 does; and behind HLSL's smaller matrices D3D puts the next value into
+the last row, where SPIR-V does not allow it. So in a block an int stands for a bool, a vec4 for each smaller element,
+and a vec4 for each column of such a matrix. Used by `legalise`, and by the printers for the declarations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeGuard
+
+from sssgen.ir import nodes as ir
+from sssgen.ir.types import INT, Array, Matrix, Scalar, Type, Vector, components, kind_of, vector_of
+
+Can = Callable[[str], bool]
+
+
+def block_type(type_: Type, can: Can) -> Type:
+    """The type that stands for `type_` in a uniform block."""
+    if isinstance(type_, Scalar | Vector) and type_.kind == "bool" and not can("bool_uniforms"):
+        return vector_of("int", components(type_))
+    if _by_columns(type_, can):
+        return Array(Vector("float", 4), type_.size)
+    if isinstance(type_, Array):
+        element = block_type(type_.element, can)
+        if isinstance(element, Array):
+            return Array(element.element, element.length * type_.length)
+        if components(element) < 4 and not can("float_array_uniforms"):
+            element = Vector(kind_of(element), 4)
+        return Array(element, type_.length)
+    return type_
+
+
+def _by_columns(type_: Type, can: Can) -> TypeGuard[Matrix]:
+    return isinstance(type_, Matrix) and not can(f"mat{type_.size}_uniforms")
+
+
+def read(value: ir.Global, can: Can) -> ir.Expr:
+    """A whole uniform, read from its block."""
+    type_, span = value.type, value.span
+    stored = value._replace(type=block_type(type_, can))
+    if stored.type == type_:
+        return value
+    if isinstance(type_, Array):
+        places = [ir.Literal(INT, number, span) for number in range(type_.length)]
+        return ir.Construct(type_, tuple([_element(value, type_, place, can) for place in places]), span)
+    return _restored(type_, stored, None, span)
+
+
+def element(index: ir.Index, can: Can) -> ir.Expr:
+    """A uniform's element or column, read from its block; the same where it stands there as it is."""
+    value = index.value
+    assert isinstance(value, ir.Global)
+    stored = block_type(value.type, can)
+    if stored == value.type:
+        return index
+    if isinstance(value.type, Array):
+        return _element(value, value.type, index.index, can)
+    if isinstance(stored, Array):
+        return _row(value._replace(type=stored), index.index, components(index.type), index.span)
+    return index._replace(value=read(value, can))
+
+
+def _element(value: ir.Global, type_: Array, place: ir.Expr, can: Can) -> ir.Expr:
+    stored = value._replace(type=block_type(type_, can))
+    return _restored(type_.element, stored, place, value.span)
+
+
+def _restored(type_: Type, stored: ir.Global, place: ir.Expr | None, span: ir.Span) -> ir.Expr:
+    """A value of `type_` from what stands for it."""
+    if isinstance(type_, Matrix):
+        size = type_.size
+        columns = [_row(stored, _column(place, column, size, span), size, span) for column in range(size)]
+        return ir.Construct(type_, tuple(columns), span)
+    value: ir.Expr = stored if place is None else _row(stored, place, components(type_), span)
+    if kind_of(type_) == "bool" and isinstance(type_, Scalar):
+        return ir.Binary(type_, "!=", value, ir.Literal(INT, 0, span), span)
+    return ir.Construct(type_, (value,), span) if kind_of(type_) == "bool" else value
+
+
+def _row(stored: ir.Global, place: ir.Expr, size: int, span: ir.Span) -> ir.Expr:
+    """The first components of a row of an array of vec4."""
+    assert isinstance(stored.type, Array)
+    row = ir.Index(stored.type.element, stored, place, span)
+    if size == components(row.type):
+        return row
+    return ir.Swizzle(vector_of(kind_of(row.type), size), row, "xyzw"[:size], span)
+
+
+def _column(place: ir.Expr | None, column: int, size: int, span: ir.Span) -> ir.Expr:
+    """The row at which a column stands, of the matrix at `place` in an array or of the only one."""
+    if place is None or isinstance(place, ir.Literal):
+        first = size * int(place.value) if isinstance(place, ir.Literal) else 0
+        return ir.Literal(INT, first + column, span)
+    first_row = ir.Binary(place.type, "*", place, ir.Literal(place.type, size, span), span)
+    if column == 0:
+        return first_row
+    return ir.Binary(place.type, "+", first_row, ir.Literal(place.type, column, span), span)

@@ -1,0 +1,101 @@
+"""Hands uniforms and textures to functions as parameters, for targets whose text has no place to declare
+them.
+
+Why: a function library to paste, or an engine's custom-function node, gets its parameters from its caller.
+Place: after `prune` and `hoist`, so that only what is read is passed on; before `legalise` and `names`, as it
+brings parameters to shape and names to make legal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container, Mapping
+
+from sssgen.ir.nodes import Call, Expr, Function, Global, Local, Module, Param, function_key
+from sssgen.ir.types import Sampler
+from sssgen.ir.walk import rewrite_function
+from sssgen.passes.scopes import declared, fresh, mentions, rename_locals
+
+
+def uniforms_to_parameters(module: Module, textures: bool = True) -> Module:
+    """The module with every function closed over the uniforms that it reads, itself or through what it calls.
+
+    They become parameters behind its own, in the order of the uniforms' declarations, with their names; a
+    variable of that name is renamed. `module.uniforms` stays for the documentation. Without `textures` these
+    remain global. The keys of functions change with their parameters.
+    """
+    uniforms = {
+        uniform.name: uniform for uniform in module.uniforms if textures or not isinstance(uniform.type, Sampler)
+    }
+    handed = {
+        name: Param(name, uniform.type, "in", uniform.quantity, uniform.span) for name, uniform in uniforms.items()
+    }
+    if not handed:
+        return module
+    closer = Closer(module, handed, {})
+    return module._replace(functions=closer.run())
+
+
+class Closer:
+    """Gives functions parameters for the globals that they use, themselves or through what they call.
+
+    `handed` are the globals with their parameters; `written` says which of them a function writes, by its key: they
+    are inout there.
+    """
+
+    def __init__(self, module: Module, handed: Mapping[str, Param], written: Mapping[str, Container[str]]) -> None:
+        self.handed, self.written = handed, written
+        self.functions = {function.key: function for function in module.functions}
+        self.order = {name: position for position, name in enumerate(handed)}
+        self.reads: dict[str, list[str]] = {}
+        self.names: dict[str, str] = {}
+        """The new name of each function, by its old key: another overload may have the new parameters
+        already."""
+        self.keys: dict[str, str] = {}
+        taken = set[str]()
+        # functions that stay as they are come first, so that others make way for them
+        for key, function in sorted(self.functions.items(), key=lambda item: bool(self.read(item[0]))):
+            types = [param.type for param in function.params]
+            types += [handed[name].type for name in self.read(key)]
+            name, count = function.name, 2
+            while function_key(name, types) in taken:
+                name, count = f"{function.name}_{count}", count + 1
+            self.names[key], self.keys[key] = name, function_key(name, types)
+            taken.add(self.keys[key])
+
+    def run(self) -> tuple[Function, ...]:
+        """The functions with their new parameters, in the order they had."""
+        return tuple([self.function(key, function) for key, function in self.functions.items()])
+
+    def read(self, key: str) -> list[str]:
+        """The globals that a function uses, in the order of their declaration."""
+        found = self.reads.get(key)
+        if found is None:
+            names, self.reads[key] = set[str](), []
+            if key in self.functions:
+                globals_, calls = mentions(self.functions[key])
+                names = globals_ & self.handed.keys()
+                for callee in calls:
+                    names.update(self.read(callee))
+            found = self.reads[key] = sorted(names, key=self.order.__getitem__)
+        return found
+
+    def function(self, key: str, function: Function) -> Function:
+        names = self.read(key)
+        if not names:
+            return function
+        hidden = set(names) & set(declared(function))
+        if hidden:
+            function, _ = rename_locals(function, hidden, fresh)
+
+        def change(node: Expr) -> Expr:
+            if type(node) is Global and node.name in self.handed:
+                return Local(node.type, node.name, node.span)
+            if type(node) is Call and self.reads.get(node.function):
+                extra = [Local(self.handed[name].type, name, node.span) for name in self.read(node.function)]
+                return Call(node.type, self.keys[node.function], (*node.args, *extra), node.span)
+            return node
+
+        function = rewrite_function(function, change)
+        written = self.written.get(key, ())
+        params = [self.handed[name]._replace(direction="inout" if name in written else "in") for name in names]
+        return function._replace(name=self.names[key], params=(*function.params, *params))

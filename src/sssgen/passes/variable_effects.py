@@ -1,0 +1,75 @@
+"""Which module variables a function reads and writes, itself or through what it calls.
+
+Asked by the passes that move, drop or repeat expressions: what reads a variable must not get behind a call that
+writes it, nor before.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from sssgen.ir.nodes import Assign, Call, Expr, Function, Global, Literal, Local, Module
+from sssgen.ir.walk import expressions, operands, statements, written_root
+from sssgen.passes.scopes import outs_of
+
+
+class Effects(NamedTuple):
+    """The names of the module variables that a call may read, and of those that it may write."""
+
+    reads: frozenset[str] = frozenset()
+    writes: frozenset[str] = frozenset()
+
+
+NONE = Effects()
+
+
+def effects(module: Module) -> dict[str, Effects]:
+    """The effects of each function that has any, by its key; callees may stand behind their callers."""
+    if not module.variables:
+        return {}
+    finder = _Finder(module)
+    found = {function.key: finder.of(function.key) for function in module.functions}
+    return {key: effect for key, effect in found.items() if effect != NONE}
+
+
+class _Finder:
+    def __init__(self, module: Module) -> None:
+        self.functions = {function.key: function for function in module.functions}
+        self.outs = outs_of(module.functions)
+        self.variables = frozenset(variable.name for variable in module.variables)
+        self.found: dict[str, Effects] = {}
+
+    def of(self, key: str) -> Effects:
+        known = self.found.get(key)
+        if known is None:
+            self.found[key] = NONE
+            function = self.functions.get(key)
+            known = self.found[key] = self.function(function) if function is not None else NONE
+        return known
+
+    def function(self, function: Function) -> Effects:
+        reads: set[str] = set()
+        targets: list[Expr] = []
+        calls: set[str] = set()
+        for stmt in statements(function.body or ()):
+            if type(stmt) is Assign:
+                targets.append(stmt.target)
+            stack = list(expressions(stmt))
+            while stack:
+                node = stack.pop()
+                kind = type(node)
+                if kind is Local or kind is Literal:
+                    continue
+                if isinstance(node, Global):
+                    reads.add(node.name)
+                    continue
+                if isinstance(node, Call):
+                    calls.add(node.function)
+                    targets += [node.args[index] for index in self.outs.get(node.function, ())]
+                stack += operands(node)
+        writes = {found.name for found in map(written_root, targets) if isinstance(found, Global)}
+        called = [self.of(key) for key in calls]
+        return Effects(
+            frozenset(reads & self.variables).union(*[effect.reads for effect in called]),
+            frozenset(writes).union(*[effect.writes for effect in called]),
+        )

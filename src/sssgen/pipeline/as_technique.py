@@ -1,0 +1,89 @@
+"""A function of plain GLSL as a technique's file: its text in the language of techniques, its doc to be filled in."""
+
+from __future__ import annotations
+
+from itertools import dropwhile
+
+from sssgen.ir.nodes import Function, Module, Uniform
+from sssgen.ir.types import FLOAT, VEC2, VEC3, Array, Matrix, Sampler, Struct, Type, components, kind_of, spell
+from sssgen.lang.check.quantities import QUANTITIES
+from sssgen.lang.loader import load_text
+from sssgen.material.library import ROLES
+from sssgen.pipeline.programs import make_library
+from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.targets import descriptor
+
+_LANGUAGE = "glsl-es-300"
+"""The target whose text is the language of techniques, but for uniforms."""
+
+_ROLES: dict[Type, str] = {VEC2: "coordinates", FLOAT: "thickness", VEC3: "translucency"}
+"""What a function is likely to be for, by what it gives."""
+
+
+def technique_file(module: Module, shown: str, wanted: str = "") -> tuple[str, str]:
+    """The name of the technique and the text of its file.
+
+    `wanted` is the function's name; '' means the last one of the file `shown`. Raises SssgenError where there is none,
+    and where the function does what a technique cannot: its loops must be seen to end, and it has no variables
+    outside of itself.
+    """
+    function = _chosen(module, shown, wanted)
+    program = make_library(
+        module, descriptor.load(_LANGUAGE)._replace(parameters=()), "none", [function.key], keep=True
+    )
+    if program.module.variables:
+        name = program.module.variables[0].name
+        hint = "hand it to the function as a parameter"
+        raise failure(f"'{name}' is a variable outside of the function, which a technique has not", hint, shown)
+    name = program.module.functions[-1].name  # it stands behind what it calls; GLSL may reserve what it was called
+    parts = {kind: [[line.text for line in block] for block in blocks] for kind, blocks in program.parts.items()}
+    own = "\n".join(dropwhile(lambda line: line.startswith("//"), parts["functions"].pop()))
+    blocks = ["\n".join(block) for kind in ("types", "constants") for block in parts[kind]]
+    blocks += map(_uniform, program.module.uniforms)
+    blocks += ["\n".join(block) for block in parts["functions"]]
+    made = "\n\n".join([*filter(None, blocks), _doc(function) + own]) + "\n"
+    load_text(made, f"{name}.sss")  # what a technique cannot do is said now
+    return name, made
+
+
+def _chosen(module: Module, shown: str, wanted: str) -> Function:
+    own = [one for one in module.functions if one.body is not None and one.span.file == shown and one.name != "main"]
+    if wanted:
+        own = [one for one in own if one.name == wanted]
+    if not own:
+        known = [one.name for one in module.functions]
+        message = f"there is no function '{wanted}' in this file" if wanted else "there is no function in this file"
+        raise failure(message, did_you_mean(wanted, known), shown)
+    return own[-1]
+
+
+def _uniform(uniform: Uniform) -> str:
+    """A uniform's declaration with the hints that its type allows."""
+    type_ = uniform.type
+    doc = f"/// {uniform.doc.splitlines()[0]}" if uniform.doc else "/// What it is."
+    if isinstance(type_, Sampler):
+        return f"{doc}\nuniform {spell(type_)} {uniform.name} : default_white;"
+    if isinstance(type_, Array | Struct):
+        return f"{doc}\nuniform {spell(type_)} {uniform.name};"
+    numbers = [f"{int(one)}" if kind_of(type_) in ("int", "uint") else repr(float(one)) for one in uniform.default]
+    value = numbers[0] if components(type_) == 1 else f"{spell(type_)}({', '.join(numbers)})"
+    if kind_of(type_) == "bool":
+        return f"{doc}\nuniform {spell(type_)} {uniform.name};"
+    low, high = min(0.0, *uniform.default), max(1.0, *uniform.default)
+    ranged = f" : hint_range({low!r}, {high!r})" if kind_of(type_) == "float" and not isinstance(type_, Matrix) else ""
+    return f"{doc}\nuniform {spell(type_)} {uniform.name}{ranged} = {value};"
+
+
+def _doc(function: Function) -> str:
+    """The doc comment to fill in, with what each parameter could be."""
+    said = function.doc.strip().splitlines()
+    role = _ROLES.get(function.result, "surface")
+    lines = [said[0] if said else "What it gives, in one sentence.", f"role: {role}"]
+    lines += ["formula: ", "source: ", "units: ", "limits: "]
+    text = "/**\n" + "".join(f" * {line}".rstrip() + "\n" for line in lines) + " */\n"
+    notes = [f"// role: one of {', '.join(ROLES)}"]
+    for what, type_ in [("the result", function.result), *((one.name, one.type) for one in function.params)]:
+        fitting = [name for name, plain in QUANTITIES.items() if plain == type_]
+        if fitting:
+            notes.append(f"// {what}: {spell(type_)}, or if it measures that: {', '.join(fitting)}")
+    return "\n".join(notes) + "\n" + text

@@ -1,0 +1,219 @@
+"""From a material to shader text: its program (`programs`), the values of its parameters, the target's templates.
+
+A program is kept by what it depends on. The values of free parameters are not among that: they only stand in the
+declarations, in an engine's properties and in the reflection, so that a variant of a material costs no pass.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from sssgen.ir.nodes import Module, Uniform
+from sssgen.ir.types import kind_of
+from sssgen.lang.loader import key_of
+from sssgen.material import library
+from sssgen.material.model import Material, Stage
+from sssgen.pipeline.emitted_cache import installation
+from sssgen.support import cache
+from sssgen.support.diagnostics import Diagnostic
+from sssgen.support.gc_pause import paused
+from sssgen.support.paths import place
+from sssgen.targets import descriptor
+from sssgen.targets.assemble import About, Program, emit
+from sssgen.targets.descriptor import Target
+from sssgen.targets.reflection import as_text, reflect
+
+if TYPE_CHECKING:
+    from sssgen.passes.ranges.sites import Site
+
+FORMS = ("shader", "functions")
+GUARDS = ("auto", "all", "none")
+"""Where operations that may go wrong are made safe: where that is not proven, everywhere, nowhere."""
+
+
+class Compiled(NamedTuple):
+    """The files of one material for one target."""
+
+    files: dict[str, str]
+    """File name → text; `NAME.TARGET.reflection.json` among them, at the end."""
+    warnings: list[Diagnostic]
+
+    @property
+    def reflection(self) -> dict[str, Any]:
+        """The reflection, read from its file: yours to change."""
+        import json
+
+        found: dict[str, Any] = json.loads(list(self.files.values())[-1])
+        return found
+
+
+_compiled: dict[tuple[int, str, str, str], tuple[Material, Compiled]] = {}
+_programs: dict[tuple[str, str, str, str], Program] = {}
+_KEPT = 128
+
+
+def all_targets() -> dict[str, Target]:
+    """Every target by name, plug-ins too."""
+    return {name: descriptor.load(name) for name in descriptor.names()}
+
+
+def compile(
+    material: Material | str | os.PathLike[str],
+    target: str,
+    form: str = "shader",
+    templates: str | os.PathLike[str] | None = None,
+    guards: str = "auto",
+) -> Compiled:
+    """Compiles a material for a target.
+
+    `material` is a checked material, the path of a material file, or the name of an example; `form` is `shader` (a
+    complete shader) or `functions` (a library to paste); `templates` a folder whose templates go before ours;
+    `guards` puts them where they are needed (`auto`), everywhere (`all`), or nowhere (`none`).
+    Raises SssgenError for anything wrong with the input.
+
+    >>> import sssgen
+    >>> made = sssgen.compile("paper_lantern", "glsl-330")
+    >>> sorted(made.files)[0]
+    'paper_lantern.glsl-330.frag'
+    """
+    if not isinstance(material, Material):
+        from sssgen.material.material_loading import load_material
+
+        material = load_material(material)
+    if form not in FORMS:
+        from sssgen.support.diagnostics import did_you_mean, failure
+
+        raise failure(f"unknown form '{form}'", did_you_mean(form, FORMS) or "forms: shader, functions")
+    _check_guards(guards)
+    chosen = descriptor.load(target)
+    key = (id(material), target, form, guards)
+    known = _compiled.get(key) if templates is None else None
+    if known is not None and known[0] is material:
+        return _copy(known[1])
+    program = _program_of(material, chosen, form, guards)._replace(about=_about(material))
+    made = _finish(program, chosen, form, os.fspath(templates) if templates else None)
+    if templates is None:
+        if len(_compiled) >= _KEPT:
+            _compiled.clear()
+        _compiled[key] = material, made
+    return _copy(made)
+
+
+def _copy(made: Compiled) -> Compiled:
+    """The caller's own: what is done to it is not done to what is kept."""
+    return Compiled(dict(made.files), list(made.warnings))
+
+
+def transpile(
+    module: Module, target: str, name: str, guards: str = "none", called: Sequence[str] | None = None,
+    at: Callable[[Site], str] | None = None, chained: bool = False, keep: bool = False, head: Sequence[str] = (),
+) -> Compiled:  # fmt: skip
+    """The functions form of a module of plain functions (no chain), or a whole shader where it has a `void main()`.
+
+    It is what `sssgen transpile` writes. With `keep` the text stays as it was written, but for what the target cannot
+    say, and `called` only leaves functions out. `head` is what its author says at its head.
+
+    `called` are the keys of the functions that are called from outside, with any argument that they allow; None: all.
+    `chained`: they are techniques, whose parameters have the meaning of their names. `at` is that of
+    `passes.guards.guard`.
+    """
+    from sssgen.pipeline.programs import make_library
+
+    _check_guards(guards)
+    chosen = descriptor.load(target)
+    about = About(name, name, head=tuple(head))
+    with paused():
+        program = make_library(module, chosen, guards, called, at, chained, keep)._replace(about=about)
+        return _finish(program, chosen, program.stage.kind if program.stage else "functions", None)
+
+
+def guarded_sites(material: Material, target: str = "glsl-330", form: str = "shader") -> list[Site]:
+    """Every operation with a domain in a material's program, and what is known of it. Raises SssgenError."""
+    from sssgen.pipeline.programs import sites_of
+
+    return sites_of(material, descriptor.load(target), form)
+
+
+def _check_guards(guards: str) -> None:
+    if guards not in GUARDS:
+        from sssgen.support.diagnostics import did_you_mean, failure
+
+        raise failure(f"unknown guards '{guards}'", did_you_mean(guards, GUARDS) or "guards: auto, all, none")
+
+
+def _program_of(material: Material, target: Target, form: str, guards: str) -> Program:
+    """The program of a material, with the material's values as the uniforms' defaults."""
+    fixed = {name for stage in material.stages for name in stage.fixed}
+    bare = material._replace(stages=tuple([_bare(stage, fixed) for stage in material.stages]))
+    structure = _structure(bare, target)
+    key = (structure, target.name, form, guards)
+    program = _programs.get(key) if structure else None
+    if program is None:
+        program = _stored_program(bare, structure, target, form, guards)
+        if len(_programs) >= _KEPT:
+            _programs.clear()
+        _programs[key] = program
+    uniforms = tuple([_with_value(uniform, program, material) for uniform in program.module.uniforms])
+    return program._replace(module=program.module._replace(uniforms=uniforms))
+
+
+def _stored_program(bare: Material, structure: str, target: Target, form: str, guards: str) -> Program:
+    """A program from the cache folder, or made: of each material's file, that of the newest structure is kept."""
+
+    def made() -> Program:
+        from sssgen.pipeline.programs import make
+
+        return make(bare, structure, target, form, guards)
+
+    if not structure or target.folder != place("targets"):  # what a plug-in's program depends on is not known here
+        return made()
+    name = "\0".join([os.path.abspath(bare.file), target.name, form, guards])
+    program: Program = cache.kept(f"program-{cache.digest(name)}", [installation(), structure], made)
+    return program
+
+
+def _bare(stage: Stage, fixed: set[str]) -> Stage:
+    """A stage without the values that no pass looks at."""
+    modules = [stage.technique.module, *(binding.module for binding in stage.bindings.values())]
+    uniforms = [uniform for module in modules for uniform in module.uniforms]
+    seen = fixed | {uniform.name for uniform in uniforms if kind_of(uniform.type) in ("int", "uint")}
+    return stage._replace(values={name: value for name, value in stage.values.items() if name in seen})
+
+
+def _structure(bare: Material, target: Target) -> str:
+    """What the program of a material depends on; '' where that cannot be told."""
+    modules = [library.load(target.lighting).module] if target.lighting else []
+    parts: list[object] = [bare.shading, bare.alpha_mode]
+    for stage in bare.stages:
+        technique, bound = stage.technique, stage.bindings
+        modules += [technique.module, *(binding.module for binding in bound.values())]
+        functions = [(slot, binding.function.key) for slot, binding in bound.items()]
+        values = sorted(stage.values.items())
+        parts.append((technique.name, technique.role, functions, values, sorted(stage.fixed), stage.span))
+    keys = [key_of(module) for module in modules]
+    return repr((parts, keys)) if all(keys) else ""
+
+
+def _with_value(uniform: Uniform, program: Program, material: Material) -> Uniform:
+    """A uniform with the value that the material gives it."""
+    for index, name in reversed(program.settings.get(program.source_names[uniform.name], ())):
+        value = material.stages[index].values.get(name)
+        if value is not None:
+            return uniform._replace(default=value)
+    return uniform
+
+
+def _about(material: Material) -> About:
+    raymarched = any(stage.technique.role == "geometry" for stage in material.stages)
+    return About(material.name, material.title, material.doc, material.shading, material.alpha_mode, raymarched)
+
+
+def _finish(program: Program, target: Target, form: str, templates: str | None) -> Compiled:
+    """The files of a program."""
+    emitted = emit(target, program, form, templates)
+    files = dict(emitted.files)
+    suffix = "reflection" if form == "shader" else f"{form}.reflection"
+    files[f"{program.about.name}.{target.name}.{suffix}.json"] = as_text(reflect(target, program, emitted, form))
+    return Compiled(files, program.warnings)

@@ -1,0 +1,157 @@
+"""Errors for people: a file, a line, a column, a caret, and what to do.
+
+A run collects every error it can find and raises them together as one `SssgenError`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from typing import Any, NamedTuple
+
+from sssgen.ir.spans import NOWHERE, Span
+
+MAX_ERRORS = 100
+"""How many errors of one file are collected; nobody reads more."""
+
+MAX_MESSAGE = 500
+"""How long a message may be: a name in it may be a megabyte."""
+
+
+class Diagnostic(NamedTuple):
+    """One error or warning. `source_line` is the text of the line that `span` begins on, where there is one."""
+
+    severity: str
+    message: str
+    span: Span = NOWHERE
+    hint: str = ""
+    source_line: str = ""
+
+    def render(self) -> str:
+        """The diagnostic as it is shown in a terminal."""
+        lines = [f"{self.severity}: {visible(self.message)}"]
+        span = self.span
+        if span.file:
+            place = f"{span.file}:{span.line}:{span.column}" if span.line else span.file
+            lines.append(f"  --> {visible(place)}")
+        if self.source_line.strip():
+            text, column, end = _window(self.source_line, span)
+            gutter = str(span.line)
+            lines.append(f" {gutter} | {text}")
+            lines.append(f" {' ' * len(gutter)} | {' ' * (column - 1)}{'^' * max(1, end - column)}")
+        if self.hint:
+            lines.append(f"  help: {visible(self.hint)}")
+        return "\n".join(lines)
+
+    def as_json(self) -> dict[str, Any]:
+        """The diagnostic for editors: 1-based positions, the end exclusive."""
+        span = self.span
+        return {
+            "severity": self.severity,
+            "message": self.message,
+            "file": span.file,
+            "line": span.line,
+            "column": span.column,
+            "end_line": span.end_line,
+            "end_column": span.end_column,
+            "help": self.hint,
+        }
+
+
+def visible(text: str) -> str:
+    """Text that does nothing to a terminal: what is not printable becomes one visible character."""
+    if text.isprintable():
+        return text
+    return "".join([char if char.isprintable() else _picture(char) for char in text])
+
+
+def _picture(char: str) -> str:
+    code = ord(char)
+    if char == "\t":
+        return " "
+    return chr(0x2400 + code) if code < 0x20 else "\u2421" if code == 0x7F else "\ufffd"
+
+
+def _window(line: str, span: Span, width: int = 120) -> tuple[str, int, int]:
+    """A readable part of a possibly very long line, with the caret's columns in it."""
+    end = span.end_column if span.end_line == span.line else len(line) + 1
+    start = max(0, span.column - 1 - width // 2) if len(line) > width else 0
+    shown = visible(line[start : start + width])
+    return shown, span.column - start, min(end - start, len(shown) + 1)
+
+
+class SssgenError(Exception):
+    """Everything that was wrong with an input. `diagnostics` is never empty."""
+
+    def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
+        self.diagnostics = list(diagnostics)
+        super().__init__("\n".join(diagnostic.render() for diagnostic in self.diagnostics))
+
+    def __reduce__(self) -> tuple[type[SssgenError], tuple[list[Diagnostic]]]:
+        return type(self), (self.diagnostics,)  # it may come from another process
+
+
+def failure(message: str, hint: str = "", file: str = "") -> SssgenError:
+    """An error that has no place in a source text (a missing file, a bad argument)."""
+    return SssgenError([Diagnostic("error", message, Span(file, 0, 0, 0, 0), hint)])
+
+
+class Reporter:
+    """Collects the diagnostics of one source text; `texts` are those of the files that it includes, by their names."""
+
+    def __init__(self, file: str, text: str, texts: Mapping[str, str] | None = None) -> None:
+        self.file = file
+        self.texts = texts or {}
+        self.macros: Collection[str] = ()
+        """The macros whose uses stand in the text: what is wrong there may stand in their definitions."""
+        self.lines = text.split("\n")  # as the parser counts them: other line ends are white space to it
+        self.diagnostics: list[Diagnostic] = []
+        self.warnings: list[Diagnostic] = []
+        self.seen: set[tuple[Span, str]] = set()
+
+    def error(self, span: Span, message: str, hint: str = "") -> None:
+        """Notes an error; the same message at the same place is noted once. Raises when there are too many."""
+        message, hint = _cut(message), _cut(hint)
+        if self.macros and (written := self.line(span)[span.column - 1 : span.end_column - 1]) in self.macros:
+            message = f"{message}, in what the macro {written} stands for"
+        if (span, message) in self.seen:
+            return
+        self.seen.add((span, message))
+        self.diagnostics.append(Diagnostic("error", message, span, hint, self.line(span)))
+        if len(self.diagnostics) >= MAX_ERRORS:
+            self.diagnostics.append(
+                Diagnostic("error", f"more than {MAX_ERRORS} errors; the rest is not looked at", span)
+            )
+            self.check()
+
+    def warn(self, span: Span, message: str, hint: str = "") -> None:
+        """Notes what does not stop anything."""
+        self.warnings.append(Diagnostic("warning", _cut(message), span, _cut(hint), self.line(span)))
+
+    def line(self, span: Span) -> str:
+        """The text of the line that the span begins on."""
+        own = span.file == self.file or span.file not in self.texts
+        lines = self.lines if own else self.texts[span.file].split("\n")
+        return lines[span.line - 1].rstrip("\r") if 0 < span.line <= len(lines) else ""
+
+    def check(self) -> None:
+        """Raises what has been collected, in source order, if there is any."""
+        if self.diagnostics:
+            raise SssgenError(sorted(self.diagnostics, key=lambda found: found.span[1:3]))
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= MAX_MESSAGE else f"{text[:MAX_MESSAGE]}…"
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """`did you mean 'x'?` for the nearest known name, or ''."""
+    import difflib
+
+    if len(word) > 100:
+        return ""
+    names = [name for name in known if len(name) <= 100][:2000]
+    near = difflib.get_close_matches(word, names, n=1, cutoff=0.6)
+    if not near:
+        folded = {name.lower(): name for name in names}
+        near = [folded[word.lower()]] if word.lower() in folded else []
+    return f"did you mean '{near[0]}'?" if near else ""

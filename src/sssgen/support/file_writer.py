@@ -1,0 +1,140 @@
+"""Writing emitted files: inside their folder only, and each whole or not at all."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
+
+from sssgen.ir.spans import NOWHERE
+from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
+from sssgen.support.paths import posix
+
+
+class Written(NamedTuple):
+    """One file of an emit; `changed` is false where it already held the same text and was left as it was."""
+
+    path: str
+    changed: bool
+
+
+def check_names(names: Iterable[str]) -> None:
+    """Raises SssgenError for every name that leaves its folder, or that some system cannot have."""
+    wrong = [
+        Diagnostic(
+            "error",
+            f"cannot write {name[:200]!r}: {why}",
+            NOWHERE,
+            "an output is named like `ice.wgsl` or `include/ice.hlsl`",
+        )
+        for name in names
+        if (why := _fault(name))
+    ]
+    if wrong:
+        raise SssgenError(wrong)
+
+
+_DRIVE = re.compile("[A-Za-z]:")
+_UNFIT = re.compile(r'[\x00-\x1f<>:"|?*\\]')
+
+
+def _fault(name: str) -> str:
+    """What is wrong with an output's name, or ''."""
+    if not name.strip():
+        return "the name is empty"
+    if name.startswith(("/", "\\")) or _DRIVE.match(name):
+        return "the name is absolute"
+    if ".." in re.split(r"[/\\]", name):
+        return "the name climbs out of the output folder"
+    if _UNFIT.search(name):
+        return "the name has characters that file names cannot have on every system"
+    if any(part in ("", ".") or part.endswith((".", " ")) for part in name.split("/")):
+        return "the name is not a plain file name"
+    return ""
+
+
+def write_files(folder: str | os.PathLike[str], files: Mapping[str, str | bytes]) -> list[Written]:
+    """Writes texts (UTF-8, as they are) and bytes into a folder, making it if need be; names may have sub-folders.
+
+    All of them stand in temporary files before the first old file is replaced, each in one step:
+    whatever interrupts, every file is either the old or the new one, whole. A link is replaced, not
+    followed. Raises SssgenError where a name climbs out of the folder, is a device's, or the system refuses.
+    """
+    folder = os.fspath(folder)
+    check_names(files)
+    _check_links(folder, files)
+    waiting: list[tuple[str, str]] = []
+    written: list[Written] = []
+    try:
+        for name, content in files.items():
+            path = os.path.join(folder, name)
+            if _is_special(path):
+                raise failure("cannot write the file: this is a device or a pipe", "name a file", posix(path))
+            data = content if isinstance(content, bytes) else content.encode("utf-8")
+            if _holds(path, data):
+                written.append(Written(path, False))
+                continue
+            parent, base = os.path.split(path)
+            os.makedirs(parent or ".", exist_ok=True)
+            if os.path.isdir(path):
+                raise failure("cannot write the file: a folder has its name", file=posix(path))
+            temporary = os.path.join(parent, f".{base}.{os.getpid()}.tmp")
+            waiting.append((temporary, path))
+            _write_bytes(temporary, data)
+            written.append(Written(path, True))
+        while waiting:
+            _replace(*waiting[0])
+            waiting.pop(0)
+    except OSError as error:
+        place = str(error.filename or folder)
+        place = next((path for temporary, path in waiting if temporary == place), place)
+        raise failure(f"cannot write: {error.strerror or error}", _advice(error), posix(place)) from None
+    finally:
+        for temporary, _ in waiting:
+            with contextlib.suppress(OSError):
+                os.unlink(temporary)
+    return written
+
+
+def _is_special(path: str) -> bool:
+    """Whether a device, a pipe or a socket has the name: a file in its place would be a loss."""
+    return not os.path.islink(path) and os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path)
+
+
+def _write_bytes(path: str, data: bytes) -> None:
+    with open(path, "wb") as file:
+        file.write(data)
+
+
+def _replace(temporary: str, path: str) -> None:
+    os.replace(temporary, path)
+
+
+def _holds(path: str, data: bytes) -> bool:
+    """Whether the file already holds this, so that no editor need import it again."""
+    try:
+        if os.stat(path).st_size != len(data) or not os.path.isfile(path):
+            return False
+        with open(path, "rb") as file:
+            return file.read() == data
+    except OSError:
+        return False
+
+
+def _check_links(folder: str, names: Iterable[str]) -> None:
+    """Raises SssgenError where a sub-folder is a link to somewhere outside."""
+    top = os.path.realpath(folder)
+    for parent in sorted({os.path.dirname(name) for name in names} - {""}):
+        path = os.path.join(folder, parent)
+        if os.path.commonpath([top, os.path.realpath(path)]) != top:
+            raise failure("cannot write here: this folder is a link out of the output folder", file=posix(path))
+
+
+def _advice(error: OSError) -> str:
+    if isinstance(error, PermissionError):
+        return "choose a folder that you may write to, with -o"
+    if isinstance(error, FileExistsError | NotADirectoryError):
+        return "a file stands where a folder is wanted: choose another one, with -o"
+    return ""

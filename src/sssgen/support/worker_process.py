@@ -1,0 +1,153 @@
+"""Another Python process that answers questions, so that a driver that crashes or hangs there costs only its answer.
+
+    process = Process("sssgen.harness.compilers.compiler_process", "tint", seconds=60.0)
+    version = process.start()
+    messages = process.ask(source)
+
+The module named has a function `serve(name)` that returns the first answer and a function from questions to answers.
+Both are pickled over the process's standard input and output; what drivers print goes nowhere.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import os
+import pickle
+import subprocess
+import sys
+import threading
+from collections.abc import Mapping
+from typing import IO, Any
+
+
+class LostError(Exception):
+    """The process is gone; the text says how: `crashed (SIGSEGV)`, `did not answer within 60 seconds`."""
+
+
+class Process:
+    """Starts when it is first asked, and again after it was lost. What is raised there is raised here."""
+
+    def __init__(
+        self, module: str, name: str, environment: Mapping[str, str] | None = None, seconds: float = 60.0
+    ) -> None:
+        self.command = [sys.executable, "-m", __name__, module, name]
+        self.environment = dict(environment or {})
+        self.seconds = seconds
+        self.process: subprocess.Popen[bytes] | None = None
+
+    def start(self) -> Any:
+        """Starts the process anew; its first answer. Raises LostError, and what `serve` raises."""
+        import atexit
+
+        self.close()
+        self.process = subprocess.Popen(
+            self.command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path)), **self.environment},
+            start_new_session=True,  # so that all of it can be ended at once; and Ctrl-C is this process's matter
+        )
+        atexit.register(self.close)
+        return self._answer()
+
+    def ask(self, question: Any) -> Any:
+        """The answer to a question. Raises LostError, and what the other side raises."""
+        if self.process is None:
+            self.start()
+        assert self.process is not None and self.process.stdin is not None
+        with contextlib.suppress(OSError):  # it has died: the answer says so
+            _send(self.process.stdin, question)
+        return self._answer()
+
+    def close(self) -> None:
+        """Ends the process, and what it started."""
+        import atexit
+
+        process, self.process = self.process, None
+        if process is None:
+            return
+        atexit.unregister(self.close)
+        _kill(process)
+        for pipe in (process.stdin, process.stdout):
+            with contextlib.suppress(OSError):
+                assert pipe is not None
+                pipe.close()
+        process.wait()
+
+    def _answer(self) -> Any:
+        process = self.process
+        assert process is not None and process.stdout is not None
+        late = threading.Event()
+
+        def end() -> None:
+            late.set()
+            _kill(process)
+
+        timer = threading.Timer(self.seconds, end)
+        timer.start()
+        try:
+            good, answer = pickle.load(process.stdout)
+        except (EOFError, pickle.UnpicklingError, OSError):
+            status = process.wait()
+            self.close()
+            told = (
+                f"did not finish within {self.seconds:g} seconds" if late.is_set() else f"crashed ({_ending(status)})"
+            )
+            raise LostError(told) from None
+        finally:
+            timer.cancel()
+        if not good:
+            raise answer
+        return answer
+
+
+def _kill(process: subprocess.Popen[bytes]) -> None:
+    if hasattr(os, "killpg"):
+        import signal
+
+        with contextlib.suppress(OSError):
+            os.killpg(process.pid, signal.SIGKILL)
+    process.kill()
+
+
+def _ending(status: int) -> str:
+    import signal
+
+    if status < 0:
+        with contextlib.suppress(ValueError):
+            return signal.Signals(-status).name
+    return f"exit status {status}"
+
+
+def _send(pipe: IO[bytes], value: object) -> None:
+    pickle.dump(value, pipe, protocol=pickle.HIGHEST_PROTOCOL)
+    pipe.flush()
+
+
+def _main(module: str, name: str) -> None:
+    answers = os.fdopen(os.dup(1), "wb")
+    questions = os.fdopen(os.dup(0), "rb")
+    quiet = os.open(os.devnull, os.O_RDWR)
+    for stream in (0, 1, 2):
+        os.dup2(quiet, stream)
+    try:
+        first, answer = importlib.import_module(module).serve(name)
+    except Exception as error:
+        _send(answers, (False, error))
+        return
+    _send(answers, (True, first))
+    while True:
+        try:
+            question = pickle.load(questions)
+        except EOFError:
+            return
+        try:
+            found = True, answer(question)
+        except Exception as error:
+            found = False, error
+        _send(answers, found)
+
+
+if __name__ == "__main__":
+    _main(*sys.argv[1:])

@@ -1,0 +1,299 @@
+"""Puts a shader together: prints the legal module, hands the text to the target's templates, and maps lines to source.
+
+Printed lines carry an invisible mark through the template, so that each line of the finished file is known by the span
+that it came from, wherever the template put it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from sssgen.ir.nodes import Function, Local, Module, Param, Span, Uniform
+from sssgen.ir.types import Sampler, Struct, spell
+from sssgen.passes.stage.stage_interface import Stage
+from sssgen.support.diagnostics import Diagnostic, failure
+from sssgen.targets.descriptor import Target
+from sssgen.targets.printer import Comments, Line, Printer, comment_text
+from sssgen.targets.templates import render
+from sssgen.targets.uniform_layout import Member, place
+
+_MARK = re.compile(r"\x02(\d{1,9})\x03", re.ASCII)
+
+_DEFAULTS = {"default_white": "white", "default_black": "black", "default_gray": "gray", "default_bump": "bump"}
+
+
+class About(NamedTuple):
+    """What a material says of itself; templates see it as `material`."""
+
+    name: str
+    title: str
+    doc: str = ""
+    shading: str = "lit"
+    alpha_mode: str = "opaque"
+    raymarched: bool = False
+    """Whether the chain makes its own geometry, so that the shell needs no mesh."""
+    head: tuple[str, ...] = ()
+    """What the author says at the head of the file: a licence, say."""
+
+
+class Program(NamedTuple):
+    """A legal module with what the templates need to know of it."""
+
+    module: Module
+    entries: Mapping[str, tuple[Function, tuple[str, ...]]]
+    """Entry kind → its function as it is in `module`, and the inputs it takes."""
+    surface: Struct | None
+    source_names: Mapping[str, str]
+    """A uniform's name in `module` → its technique's own name for it."""
+    about: About
+    encoded: bool
+    """Whether the colour that comes out is already encoded for a display."""
+    parts: Mapping[str, list[list[Line]]]
+    """What is printed of the structs (`types`), constants, variables, functions and the entry. The functions in
+    `module` have no bodies."""
+    owners: Mapping[str, tuple[str, str]]
+    """A uniform's source name → its technique and its name there."""
+    renames: Mapping[str, str]
+    costs: Mapping[str, dict[str, int]]
+    warnings: list[Diagnostic]
+    settings: Mapping[str, list[tuple[int, str]]]
+    """A uniform's source name → the material's stages that may give it a value, and its name there."""
+    guards: Mapping[str, Any]
+    """How many operations with a domain are proven safe, and each that is guarded: where, what, why."""
+    stage: Stage | None = None
+    """The interface, where the module is a whole shader."""
+
+
+class Emitted(NamedTuple):
+    """The finished files, each with the source span of its lines (1-based)."""
+
+    files: dict[str, str]
+    lines: dict[str, dict[int, Span]]
+    members: list[Member]
+    block_size: int
+    bindings: list[dict[str, int | str]]
+    """Where each texture and its sampler are bound; empty where the language does not say."""
+
+
+_PRINTERS = {
+    "glsl": "sssgen.targets.glsl:GlslPrinter",
+    "hlsl": "sssgen.targets.hlsl:HlslPrinter",
+    "wgsl": "sssgen.targets.wgsl:WgslPrinter",
+    "python": "sssgen.targets.numpy_printer:NumpyPrinter",
+}
+
+
+def printer_for(target: Target, module: Module) -> Printer:
+    """The target's printer. Raises SssgenError where a plug-in names one that is not there."""
+    import importlib
+
+    place, _, name = _PRINTERS.get(target.language, target.language).partition(":")
+    try:
+        printer: Printer = getattr(importlib.import_module(place), name)(target, module)
+    except (ImportError, AttributeError, ValueError):
+        raise failure(f"target '{target.name}' names a printer that is not there: {target.language}") from None
+    return printer
+
+
+def print_parts(
+    target: Target,
+    module: Module,
+    comments: Comments,
+    stage: Stage | None = None,
+    entry: str = "",
+    kept: bool = False,
+    behind: Callable[[str, int], str] | None = None,
+    source: Callable[[Span], str] | None = None,
+) -> dict[str, list[list[Line]]]:
+    """Prints all of a legal module but its uniforms; of a whole shader the function `entry` that it begins with.
+
+    `kept`: numbers have the digits that they were written with.
+    """
+    printer = printer_for(target, module)
+    printer.comments = comments
+    printer.stage, printer.kept = stage, kept
+    if behind is not None:
+        printer.behind = behind
+    if source is not None:
+        printer.source = source
+    return {
+        "types": [printer.print_struct(struct) for struct in module.structs],
+        "constants": [[line for constant in module.constants for line in printer.print_constant(constant)]],
+        "variables": [[line for variable in module.variables for line in printer.print_variable(variable)]],
+        "functions": [printer.print_function(function) for function in module.functions],
+        "entry": [printer.print_entry(entry)] if stage is not None else [],
+    }
+
+
+def emit(target: Target, program: Program, form: str, templates: str | None = None) -> Emitted:
+    """Prints the uniforms and renders every file of a form. Raises SssgenError for a faulty template."""
+    module = program.module
+    printer = printer_for(target, module)
+    members, size = place(module.uniforms, target.layout)
+    textures = [uniform for uniform in module.uniforms if isinstance(uniform.type, Sampler)]
+    marks: list[Span] = []
+    declared = form not in target.parameters
+    uniform_lines: list[Line] = printer.print_uniforms(members) if declared else []
+    texture_lines: list[Line] = printer.print_textures(textures) if declared else []
+    code = {
+        "types": _text(program.parts["types"], marks),
+        "constants": _text(program.parts["constants"], marks),
+        "uniforms": _text([uniform_lines], marks),
+        "textures": _text([texture_lines], marks),
+        "declarations": _text([uniform_lines, texture_lines], marks),
+        "variables": _text(program.parts["variables"], marks),
+        "functions": _text(program.parts["functions"], marks),
+        "entry": _text(program.parts["entry"], marks),
+    }
+    context = _context(target, program, printer, form, code)
+    files: dict[str, str] = {}
+    lines: dict[str, dict[int, Span]] = {}
+    for output in target.files.get(form, ()):
+        name = output.name.format(material=program.about.name)
+        files[name], lines[name] = _finish(render(output.template, context, templates, target.folder), marks)
+    bindings = [printer.binding(index) for index in range(len(textures))] if declared else []
+    return Emitted(files, lines, members, size, [binding for binding in bindings if binding])
+
+
+def _text(parts: Sequence[Sequence[Line]], marks: list[Span]) -> str:
+    """Lines as text, the parts separated by empty lines, every line with its mark."""
+    blocks = []
+    for part in parts:
+        texts = []
+        for line in part:
+            if line.span.file:
+                texts.append(f"{line.text}\x02{len(marks)}\x03")
+                marks.append(line.span)
+            else:
+                texts.append(line.text)
+        if texts:
+            blocks.append("\n".join(texts))
+    return "\n\n".join(blocks)
+
+
+def _context(target: Target, program: Program, printer: Printer, form: str, code: dict[str, str]) -> dict[str, Any]:
+    """What a template sees; documented in docs/templates.md."""
+    entries = {
+        kind: _entry(target, printer, kind, function, inputs) for kind, (function, inputs) in program.entries.items()
+    }
+    inputs = {name for _, given in program.entries.values() for name in given}
+    surface = program.surface
+    return {
+        "material": program.about._asdict(),
+        "target": {**target.table, "name": target.name},
+        "form": form,
+        "header": _header(target, program),
+        "code": code,
+        "uniforms": [
+            _uniform(printer, uniform, program)
+            for uniform in program.module.uniforms
+            if not isinstance(uniform.type, Sampler)
+        ],
+        "textures": _textures(printer, program),
+        "entries": entries,
+        "inputs": inputs,
+        "surface_fields": [{"name": f.name, "type": printer.type(f.type)} for f in surface.fields] if surface else [],
+        "library": [function.name for function in program.module.functions],
+    }
+
+
+def _header(target: Target, program: Program) -> list[str]:
+    """The comment at the head of a file: what it is, and where to change it."""
+    import textwrap
+
+    about = program.about
+    words = f"{about.title}: {about.doc}" if about.doc else about.title
+    what = "the material" if program.entries else "the source"
+    made = f"Made by sssgen for {target.title}. Change {what} and emit it again rather than this file."
+    own = ["", *map(comment_text, about.head)] if about.head else []
+    return [comment_text(line) for line in textwrap.wrap(words, 100)] + [made, *own]
+
+
+def _entry(target: Target, printer: Printer, kind: str, function: Function, inputs: tuple[str, ...]) -> dict[str, Any]:
+    """An entry with the text of its call: the shell's expressions for its inputs, then the passed-on uniforms."""
+    given = {**target.inputs, **(target.light_inputs if kind in ("translucency", "lighting") else {})}
+    leading = ["surface"] if len(function.params) > 0 and isinstance(function.params[0].type, Struct) else []
+    names = [*leading, *inputs]
+    uniforms = {uniform.span: uniform.name for uniform in printer.module.uniforms}
+    params, args = [], []
+    for index, param in enumerate(function.params):
+        name = names[index] if index < len(names) else ""
+        text = given.get(name, name) if name else _passed(printer, param, uniforms[param.span])
+        params.append({"name": param.name, "type": printer.type(param.type), "input": name})
+        args.append(text)
+    call = f"{function.name}({', '.join(args)})"
+    return {"name": function.name, "params": params, "result": printer.type(function.result), "call": call}
+
+
+def _passed(printer: Printer, param: Param, uniform: str) -> str:
+    """A uniform passed on as an argument; the shell knows it by the uniform's name, whatever the parameter's is."""
+    return printer.argument(Local(param.type, uniform, param.span), param)
+
+
+def _hint(uniform: Uniform, *names: str) -> tuple[str, tuple[Any, ...]]:
+    for name, args in uniform.hints:
+        if name in names:
+            return name, args
+    return "", ()
+
+
+def _uniform(printer: Printer, uniform: Uniform, program: Program) -> dict[str, Any]:
+    _, limits = _hint(uniform, "hint_range")
+    source = program.source_names.get(uniform.name, uniform.name)
+    return {
+        "name": uniform.name,
+        "source_name": source,
+        "type": printer.type(uniform.type),
+        "base": spell(uniform.type),
+        "default": list(uniform.default),
+        "range": (*limits, None)[:3] if limits else None,
+        "unit": (_hint(uniform, "unit")[1] or ("",))[0],
+        "hint": _hint(uniform, "source_color")[0],
+        "doc": " ".join(uniform.doc.split()),
+        "label": source.replace("_", " ").capitalize(),
+    }
+
+
+def _textures(printer: Printer, program: Program) -> list[dict[str, Any]]:
+    found: list[dict[str, Any]] = []
+    for uniform in program.module.uniforms:
+        if not isinstance(uniform.type, Sampler):
+            continue
+        source = program.source_names.get(uniform.name, uniform.name)
+        found.append(
+            {
+                "name": uniform.name,
+                "source_name": source,
+                "sampler": printer.sampler(uniform.name),
+                "dim": uniform.type.dim,
+                "default": _DEFAULTS.get(_hint(uniform, *_DEFAULTS)[0], "white"),
+                "hint": _hint(uniform, "normal_map")[0] or _hint(uniform, "source_color")[0],
+                "doc": " ".join(uniform.doc.split()),
+                "label": source.replace("_", " ").capitalize(),
+                "holds": uniform.quantity,
+                "binding": 1 + 2 * len(found),
+                "sampler_binding": 2 + 2 * len(found),
+            }
+        )
+    return found
+
+
+def _finish(text: str, marks: list[Span]) -> tuple[str, dict[int, Span]]:
+    """Takes the marks out, tidies blank lines, and says where each line came from."""
+    lines: list[str] = []
+    spans: dict[int, Span] = {}
+    for line in text.split("\n"):
+        mark = _MARK.search(line)
+        line = _MARK.sub("", line).rstrip()
+        if not line and (not lines or not lines[-1] or lines[-1].endswith("{")):
+            continue
+        if lines and not lines[-1] and line.lstrip().startswith("}"):
+            lines.pop()
+        lines.append(line)
+        if mark is not None and int(mark[1]) < len(marks):  # a template may have written one of its own
+            spans[len(lines)] = marks[int(mark[1])]
+    while lines and not lines[-1]:
+        lines.pop()
+    return "\n".join(lines) + "\n", spans

@@ -1,0 +1,69 @@
+"""Where uniforms lie in a uniform block.
+
+std140 (OpenGL 4.6, section 7.6.2.2) is the rule that every API can be made to follow: WGSL's own alignment gives the
+same offsets for these types, and HLSL's packing does once explicit padding stands where it packs tighter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from sssgen.ir.nodes import Uniform
+from sssgen.ir.types import Array, Matrix, Sampler, Type, components
+
+
+class Member(NamedTuple):
+    """A uniform in its block: byte offset and size, and the 4-byte words of padding HLSL needs before it."""
+
+    uniform: Uniform
+    offset: int
+    size: int
+    padding: int
+
+
+def place(uniforms: Sequence[Uniform], rule: str) -> tuple[list[Member], int]:
+    """The members of a block in order, and its size in bytes. Textures are left out."""
+    members: list[Member] = []
+    end = 0
+    for uniform in uniforms:
+        if isinstance(uniform.type, Sampler):
+            continue
+        size = _size(uniform.type)
+        packed = _hlsl_offset(end, uniform.type, size)
+        offset = packed if rule == "hlsl" else _align(end, _alignment(uniform.type))
+        padding = (offset - packed) // 4 if rule == "std140" else 0
+        members.append(Member(uniform, offset, size, padding))
+        end = offset + (size if rule == "hlsl" else _std140_size(uniform.type, size))
+    return members, _align(end, 16)
+
+
+def _align(offset: int, alignment: int) -> int:
+    return (offset + alignment - 1) // alignment * alignment
+
+
+def _alignment(type_: Type) -> int:
+    if isinstance(type_, Matrix | Array):
+        return 16
+    return {1: 4, 2: 8, 3: 16, 4: 16}[components(type_)]
+
+
+def _size(type_: Type) -> int:
+    """The bytes that hold values."""
+    if isinstance(type_, Matrix):
+        return 16 * (type_.size - 1) + 4 * type_.size
+    if isinstance(type_, Array):
+        stride = 16 * type_.element.size if isinstance(type_.element, Matrix) else 16
+        return stride * (type_.length - 1) + _size(type_.element)
+    return 4 * components(type_)
+
+
+def _std140_size(type_: Type, size: int) -> int:
+    return _align(size, 16) if isinstance(type_, Matrix | Array) else size
+
+
+def _hlsl_offset(end: int, type_: Type, size: int) -> int:
+    """HLSL packs into 16-byte rows: a value may not straddle one; matrices and arrays start one."""
+    if isinstance(type_, Matrix | Array):
+        return _align(end, 16)
+    return _align(end, 16) if end % 16 + size > 16 else end
