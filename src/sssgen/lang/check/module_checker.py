@@ -98,7 +98,10 @@ class _FileChecker(StatementChecker):
                 if isinstance(external, s.StructSyntax):
                     self.struct(external)
                 elif isinstance(external, s.BlockSyntax):
-                    self.interface.block(external)
+                    members = self.interface.members(external)
+                    for member in members:
+                        self.global_(member)
+                    self.interface.name_instance(external, members)
                 elif isinstance(external, s.GlobalSyntax):
                     constants.extend(self.global_(external))
                 else:

@@ -14,7 +14,7 @@ from sssgen.lang.check.wording import a_type
 from sssgen.lang.syntax import tree as s
 
 if TYPE_CHECKING:
-    from sssgen.lang.check.module_checker import _FileChecker
+    from sssgen.lang.check.statement_checker import StatementChecker
 
 BUILTIN_VARIABLES: dict[str, tuple[Type, str]] = {
     "gl_FragCoord": (VEC4, "in"),
@@ -46,7 +46,7 @@ _SAME = {"gl_FragDepthEXT": "gl_FragDepth", "gl_VertexIndex": "gl_VertexID", "gl
 class Interface:
     """Collects the uniforms and variables of one file."""
 
-    def __init__(self, checker: _FileChecker, vertex: bool) -> None:
+    def __init__(self, checker: StatementChecker, vertex: bool) -> None:
         self.checker = checker
         self.vertex = vertex
         self.uniforms: list[ir.Uniform] = []
@@ -122,8 +122,8 @@ class Interface:
                 return number
         return -1
 
-    def block(self, block: s.BlockSyntax) -> None:
-        """A block: its members are uniforms, inputs or outputs of their own."""
+    def members(self, block: s.BlockSyntax) -> list[s.GlobalSyntax]:
+        """The members of a block, as uniforms, inputs or outputs of their own."""
         checker, words = self.checker, block.qualifiers.words
         if not checker.plain:
             raise checker.fail(block.name.span, "there are no blocks in the language of techniques", "write uniform …;")
@@ -132,26 +132,32 @@ class Interface:
         if block.lengths:
             raise checker.fail(block.lengths[0].span, "there are no arrays of blocks", "declare one block of arrays")
         if block.name.text == "gl_PerVertex":
-            return
-        members: dict[str, s.Name] = {}
+            return []
+        members: list[s.GlobalSyntax] = []
         for member in block.members:
             renamed = []
             for declarator in member.declarators:
                 label = declarator.name
                 if block.instance is not None:
                     label = replace(label, text=self.free(f"{block.instance.text}_{label.text}"))
-                members[declarator.name.text] = label
                 renamed.append(replace(declarator, name=label))
             own = [word for word in member.qualifiers.words if word not in words]
             location = member.qualifiers.layout or block.qualifiers.layout
             qualifiers = s.Qualifiers((*words, *own), location, block.qualifiers.span)
             declaration = replace(member, qualifiers=qualifiers, declarators=tuple(renamed))
-            checker.global_(s.GlobalSyntax(declaration, block.doc))
-        if block.instance is not None:
-            checker.instances[block.instance.text] = {
-                name: Typed(ir.Global(checker.globals[label.text].type, label.text, label.span))
-                for name, label in members.items()
-            }
+            members.append(s.GlobalSyntax(declaration, block.doc))
+        return members
+
+    def name_instance(self, block: s.BlockSyntax, members: list[s.GlobalSyntax]) -> None:
+        """Makes the declared members of a block known by its instance name."""
+        if block.instance is None:
+            return
+        globals_, instance = self.checker.globals, self.checker.instances.setdefault(block.instance.text, {})
+        for written, member in zip(block.members, members, strict=True):
+            for declarator, renamed in zip(written.declarators, member.declaration.declarators, strict=True):
+                label = renamed.name
+                value = ir.Global(globals_[label.text].type, label.text, label.span)
+                instance[declarator.name.text] = Typed(value)
 
     def free(self, name: str) -> str:
         """A name for a member of a block that nothing else has."""

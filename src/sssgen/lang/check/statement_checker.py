@@ -124,6 +124,10 @@ class StatementChecker(CallChecker):
         """A struct that a function declares for itself."""
         raise NotImplementedError
 
+    def new_name(self, name: s.Name, functions: bool = False) -> str:
+        """Reports a module-level name that is taken."""
+        raise NotImplementedError
+
     def allowed(self, name: s.Name) -> None:
         """Reports a name that GLSL keeps for itself."""
         raise NotImplementedError
