@@ -44,7 +44,7 @@ fuzz: setup
 lint: setup
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/mypy --strict src
+	$(BIN)/mypy --strict src qualification
 	$(BIN)/lint-imports
 
 bench: setup
@@ -57,8 +57,8 @@ gallery: setup
 	$(BIN)/python docs/gallery.py
 
 stability: setup
-	$(BIN)/python docs/stability.py
-	$(BIN)/python docs/safety.py
+	$(BIN)/python -m qualification.pages.stability
+	$(BIN)/python -m qualification.pages.safety
 
 bake: setup
 	$(BIN)/python docs/bake.py

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from qualification.parity import Case, cases, oracle
+from qualification.parity_inputs import FEW, INTERVALS, UNIT, evaluated, widened
 from sssgen.harness.backends import Array
 from sssgen.harness.evaluate.evaluation import shape_of
-from sssgen.harness.parity import Case, cases, oracle
-from sssgen.harness.parity_inputs import FEW, INTERVALS, UNIT, evaluated, widened
 from sssgen.ir.types import Matrix, Type, kind_of
 
 LANES = 400

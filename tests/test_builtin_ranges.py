@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from pass_cases import module_of
+from qualification.parity_inputs import DTYPES, EDGES, INTERVALS, UNIT, evaluated, widened
 from sssgen.harness.backends import Array, Backend, Call, Text
-from sssgen.harness.parity_inputs import DTYPES, EDGES, INTERVALS, UNIT, evaluated, widened
 from sssgen.ir import nodes as ir
 from sssgen.ir import signatures
 from sssgen.ir.formats import FLOAT32

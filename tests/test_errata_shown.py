@@ -7,8 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
-from sssgen.harness.backends import Backend
-from sssgen.harness.errata import (
+from qualification.errata import (
     BACKENDS,
     CHAPTERS,
     ERRATA,
@@ -21,6 +20,7 @@ from sssgen.harness.errata import (
     holds,
     shows,
 )
+from sssgen.harness.backends import Backend
 from sssgen.material import library
 
 Get = Callable[[str], Backend]

@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 from half_cases import half_cases, wrong_lanes
+from qualification.parity import run as run_cases
+from qualification.parity import supported
 from sssgen.cli import main as cli
 from sssgen.harness import backends
 from sssgen.harness.backends import Array, Backend, Call, CompilerMissing, Text
@@ -19,8 +21,6 @@ from sssgen.harness.compilers import Compiler, Source, errors
 from sssgen.harness.evaluate.evaluation import fitted, run
 from sssgen.harness.evaluate.probes import Subject, subject
 from sssgen.harness.evaluate.random_inputs import samples
-from sssgen.harness.parity import run as run_cases
-from sssgen.harness.parity import supported
 from sssgen.ir.types import FLOAT, INT, Type
 from sssgen.lang.loader import load_text
 from sssgen.material import library

@@ -10,17 +10,10 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from qualification.closed_forms import ball_once, h_function, half_space, henyey_greenstein, slab_once, unscattered
 from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Ball, Box, Distance, Geometry, Slab, Torus
 from sssgen.lab.reference import transport
-from sssgen.lab.reference.closed_forms import (
-    ball_once,
-    h_function,
-    half_space,
-    henyey_greenstein,
-    slab_once,
-    unscattered,
-)
 from sssgen.lab.reference.geometry_mesh import mesh_of
 from sssgen.lab.reference.transport import Light, Transport, radiance, radiance_along
 from sssgen.lab.reference.transport_mitsuba import Renderer

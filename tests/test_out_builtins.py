@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from qualification.parity_inputs import DTYPES, textures
 from sssgen.harness.backends import Array, Backend, Call, Text
-from sssgen.harness.parity_inputs import DTYPES, textures
 from sssgen.ir.out_builtins import OUT_BUILTINS, is_out_builtin, out_builtin
 from sssgen.ir.types import FLOAT, VEC2, VEC3, VEC4, Sampler, Type, kind_of, spell, vector_of
 from sssgen.lang.loader import load_text

@@ -68,11 +68,21 @@ def test_the_wheel_carries_what_it_needs_and_nothing_else(wheel: Path) -> None:
         if path.is_file() and not any(part.startswith((".", "__pycache__")) for part in inside.parts):
             assert inside.as_posix() in names
     assert {name.split("/")[0] for name in names} == {"sssgen", f"sssgen-{VERSION}.dist-info"}
-    assert not any("__pycache__" in name for name in names)
+    assert not any("__pycache__" in name or "qualification" in name for name in names)
     assert not [name for name, text in texts.items() if str(ROOT).encode() in text]
     metadata = texts[f"sssgen-{VERSION}.dist-info/METADATA"].decode()
     assert f"Version: {VERSION}" in metadata
     assert b"sssgen = sssgen.cli:main" in texts[f"sssgen-{VERSION}.dist-info/entry_points.txt"]
+
+
+def test_the_source_distribution_carries_the_qualification() -> None:
+    """What proves the project is for those who build it: it is in the sdist, not in the wheel."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    assert "/qualification" in project["tool"]["hatch"]["build"]["targets"]["sdist"]["include"]
+    assert "/tests" in project["tool"]["hatch"]["build"]["targets"]["sdist"]["include"], "they import it"
+    for path in (ROOT / "src").rglob("*.py"):
+        assert "import qualification" not in (text := path.read_text(encoding="utf-8")), path
+        assert "from qualification" not in text, path
 
 
 def test_the_wheel_emits_what_the_checkout_emits(installed: Path, tmp_path: Path) -> None:

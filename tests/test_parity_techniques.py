@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from qualification.parity_techniques import BACKENDS, BOUND_LANES, KNOWN, LANES, cases, excess, measure
 from sssgen.cli import main as cli
 from sssgen.harness import backends
 from sssgen.harness.backends import Backend
@@ -17,7 +18,6 @@ from sssgen.harness.evaluate.deviation import GOAL, MARGIN, blur, compared, devi
 from sssgen.harness.evaluate.evaluation import fitted, run
 from sssgen.harness.evaluate.probes import subject
 from sssgen.harness.evaluate.random_inputs import samples
-from sssgen.harness.parity_techniques import BACKENDS, BOUND_LANES, KNOWN, LANES, cases, excess, measure
 from sssgen.material import library
 from sssgen.targets.numpy_textures import Texture
 
@@ -50,10 +50,10 @@ def test_techniques_on_many_inputs(backend: Get) -> None:
 def test_the_page_lists_every_technique() -> None:
     text = PAGE.read_text(encoding="utf-8")
     listed = [line.split(" | ")[0].removeprefix("| ") for line in text.splitlines() if line.startswith("| ")]
-    assert listed[1:] == sorted(library.index()), "run python docs/parity_techniques.py"
+    assert listed[1:] == sorted(library.index()), "run python -m qualification.pages.parity_techniques"
     for one in KNOWN:
         assert set(one.techniques) <= set(library.index()) and set(one.backends) <= set(BACKENDS)
-        assert one.reason in text, "run python docs/parity_techniques.py"
+        assert one.reason in text, "run python -m qualification.pages.parity_techniques"
 
 
 # The blur

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from qualification.safety import Safety, safety
 from sssgen.harness.evaluate.probes import subject
-from sssgen.harness.safety import Safety, safety
 from sssgen.harness.stress.guard_witness import sites, witness
 from sssgen.harness.stress.subject import technique
 from sssgen.material import library
@@ -64,7 +64,9 @@ def test_the_page_has_the_counts_of_now() -> None:
     text = PAGE.read_text(encoding="utf-8")
     for one in counted():
         row = [one.proven, one.guarded, one.costs["none"].operations, one.added("auto"), one.added("all")]
-        assert f"| {one.name} | {' | '.join(map(str, row))} |" in text, "python docs/safety.py writes it anew"
+        assert f"| {one.name} | {' | '.join(map(str, row))} |" in text, (
+            "python -m qualification.pages.safety writes it anew"
+        )
     assert f"Of {sum(one.guarded for one in counted())} guards" in text
 
 

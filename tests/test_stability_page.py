@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import runpy
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -14,8 +13,9 @@ import numpy.typing as npt
 import pytest
 from PIL import Image
 
+from qualification.errata import ERRATA, OPEN, UNSHOWN, as_mended, as_published
+from qualification.pages import stability
 from sssgen.harness.backends import Backend
-from sssgen.harness.errata import ERRATA, OPEN, UNSHOWN, as_mended, as_published
 from sssgen.harness.pictures import images
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -28,7 +28,7 @@ Get = Callable[[str], Backend]
 
 @cache
 def script() -> dict[str, Any]:
-    return runpy.run_path(str(DOCS / "stability.py"))
+    return vars(stability)
 
 
 @cache

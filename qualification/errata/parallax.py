@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.harness.errata.erratum import Erratum, Figures, Measure, Outputs, Right, about
+from qualification.errata.erratum import Erratum, Figures, Measure, Outputs, Right, about
 
 _DEPTH = 0.1
 _X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)

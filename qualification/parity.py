@@ -23,9 +23,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from qualification.parity_inputs import FEW, MAX, MIN, Case, cases, evaluated, textures, widened
 from sssgen.harness.backends import Array, Backend, Call, Text
 from sssgen.harness.backends.call_program import grid
-from sssgen.harness.parity_inputs import FEW, MAX, MIN, Case, cases, evaluated, textures, widened
 from sssgen.ir import signatures
 from sssgen.ir.intrinsics import Builtin
 from sssgen.ir.nodes import Intrinsic

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.harness.errata.erratum import Erratum, Figures, Measure, Outputs, Right, about
+from qualification.errata.erratum import Erratum, Figures, Measure, Outputs, Right, about
 
 _UP = (0.0, 1.0, 0.0)
 _FRONT, _BEHIND = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)

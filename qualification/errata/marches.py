@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.harness.errata.erratum import Erratum, Figures, Measure, Outputs, about
+from qualification.errata.erratum import Erratum, Figures, Measure, Outputs, about
 
 _FRONT, _BEHIND = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
 _PUBLISHED, _OURS = "seed2_march", "march_distance_texture"

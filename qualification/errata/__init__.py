@@ -10,13 +10,13 @@ docs/errata.md says it in words, docs/stability.md shows it; `UNSHOWN` has what 
 
 from __future__ import annotations
 
-from sssgen.harness.errata.absorption import ABSORPTION
-from sssgen.harness.errata.distance_fields import OPEN, SEED_0
-from sssgen.harness.errata.erratum import Erratum, Measure, Right, as_mended, as_published, holds, shows
-from sssgen.harness.errata.lobes import SEED_1, SEED_3
-from sssgen.harness.errata.marches import SEED_2
-from sssgen.harness.errata.parallax import SEED_4
-from sssgen.harness.errata.unshown import UNSHOWN, Unshown
+from qualification.errata.absorption import ABSORPTION
+from qualification.errata.distance_fields import OPEN, SEED_0
+from qualification.errata.erratum import Erratum, Measure, Right, as_mended, as_published, holds, shows
+from qualification.errata.lobes import SEED_1, SEED_3
+from qualification.errata.marches import SEED_2
+from qualification.errata.parallax import SEED_4
+from qualification.errata.unshown import UNSHOWN, Unshown
 
 __all__ = [
     "BACKENDS", "CHAPTERS", "ERRATA", "OPEN", "UNSHOWN", "Erratum", "Measure", "Right", "Unshown", "as_mended",

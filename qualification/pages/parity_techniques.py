@@ -1,4 +1,7 @@
-"""Measures the parity of the techniques and writes docs/parity_techniques.md: python docs/parity_techniques.py"""
+"""Measures the parity of the techniques and writes docs/parity_techniques.md.
+
+python -m qualification.pages.parity_techniques
+"""
 
 from __future__ import annotations
 
@@ -6,12 +9,12 @@ from pathlib import Path
 from textwrap import wrap
 from typing import NamedTuple
 
+from qualification.parity_techniques import BACKENDS, BOUND_LANES, KNOWN, LANES, SEED, Known, cases, excess, measure
 from sssgen.harness import backends
 from sssgen.harness.backends import Backend
 from sssgen.harness.evaluate.deviation import DRAWS, GOAL, MARGIN, Deviation
-from sssgen.harness.parity_techniques import BACKENDS, BOUND_LANES, KNOWN, LANES, SEED, Known, cases, excess, measure
 
-PAGE = Path(__file__).with_name("parity_techniques.md")
+PAGE = Path(__file__).parents[2] / "docs" / "parity_techniques.md"
 
 
 class Row(NamedTuple):
@@ -41,7 +44,7 @@ def rows(present: list[Backend]) -> dict[str, Row]:
 def page(present: list[Backend], found: dict[str, Row]) -> str:
     """The page's text."""
     texts = [
-        "Measured by `python docs/parity_techniques.py`; `tests/test_parity_techniques.py` holds it. "
+        "Measured by `python -m qualification.pages.parity_techniques`; `tests/test_parity_techniques.py` holds it. "
         f"Each technique has {LANES:,} random inputs (seed {SEED}), in the declared meaning of each parameter "
         f"(`src/sssgen/harness/evaluate/random_inputs.py`), and again {BOUND_LANES:,} for each other function of "
         "the library that fits one of its slots. The oracle is what the `numpy` target emits, in float64.",

@@ -1,7 +1,7 @@
-"""Draws docs/stability/ and writes docs/stability.md: python docs/stability.py
+"""Draws docs/stability/ and writes docs/stability.md: python -m qualification.pages.stability
 
 The published techniques fail in the ways that docs/errata.md says, ours hold: in pictures drawn by what `sssgen` emits,
-and in the figures of `sssgen.harness.errata`. A section of the page is a function in `SECTIONS`.
+and in the figures of `qualification.errata`. A section of the page is a function in `SECTIONS`.
 """
 
 from __future__ import annotations
@@ -18,15 +18,16 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
+from qualification.errata import BACKENDS, CHAPTERS, OPEN, UNSHOWN, Erratum, Right, as_mended, as_published, maps
 from sssgen.harness import backends
 from sssgen.harness.backends import Backend
-from sssgen.harness.errata import BACKENDS, CHAPTERS, OPEN, UNSHOWN, Erratum, Right, as_mended, as_published, maps
 from sssgen.harness.render.scene_render import render
 from sssgen.harness.scenes.scene_loading import load
 from sssgen.support.file_writer import write_files
 
-PAGE = Path(__file__).with_name("stability.md")
-FOLDER = Path(__file__).with_name("stability")
+DOCS = Path(__file__).parents[2] / "docs"
+PAGE = DOCS / "stability.md"
+FOLDER = DOCS / "stability"
 
 GAP = 8
 """Pixels between the pictures that stand side by side."""
@@ -35,7 +36,8 @@ Panel = Callable[[], npt.NDArray[np.float64]]
 """Draws an encoded picture, (height, width, 3), row 0 at the top."""
 
 
-class Shot(NamedTuple):
+@dataclasses.dataclass(frozen=True)
+class Shot:
     """A scene of docs/stability/, drawn with one of its materials."""
 
     scene: str
@@ -199,9 +201,9 @@ def introduction() -> list[str]:
             "In each row of pictures the published technique is at the left and ours at the right."
         ),
         *_paragraph(
-            "Made by `make stability` (`docs/stability.py`). The pictures are drawn by the emitted GLSL in OpenGL "
-            "where nothing else is said; scenes and materials are in `docs/stability/`. The figures are those of "
-            "`sssgen.harness.errata`, on "
+            "Made by `make stability` (`qualification/pages/stability.py`). The pictures are drawn by the emitted GLSL "
+            "in OpenGL where nothing else is said; scenes and materials are in `docs/stability/`. The figures are those "
+            "of `qualification.errata`, on "
             + ", ".join(f"`{name}`" for name in BACKENDS)
             + "; where these differ, each is named. `tests/test_errata_shown.py` holds them: the published ones are "
             "off as theory says, ours are within their bounds on every back end. The published ones are measured "

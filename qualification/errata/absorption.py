@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from sssgen.harness.errata.erratum import Erratum, Measure, about, each
+from qualification.errata.erratum import Erratum, Measure, about, each
 
 _CLEAR: dict[str, Any] = {"d": 0.0, "attenuation_color": [(0.0, 0.5, 1.0)]}
 _OPAQUE: dict[str, Any] = {**_CLEAR, "attenuation_distance": 0.0}

@@ -1,4 +1,4 @@
-"""Writes docs/safety.md: python docs/safety.py
+"""Writes docs/safety.md: python -m qualification.pages.safety
 
 What the range pass proves of the library, what is guarded and why, what that costs, and the table of dangerous inputs
 on every back end.
@@ -10,15 +10,15 @@ from collections import Counter
 from pathlib import Path
 from textwrap import wrap
 
-from sssgen.harness.safety import Safety, safety
+from qualification.mutants import Mutant, mutants
+from qualification.safety import Safety, safety
 from sssgen.harness.stress import dangerous_inputs as dangerous
-from sssgen.harness.stress.mutants import Mutant, mutants
 from sssgen.harness.stress.stress_run import Machines, Settings, stress
 from sssgen.harness.stress.subject import Specimen, specimens
 from sssgen.material.material_loading import examples, load_material
 from sssgen.pipeline.compiler import guarded_sites
 
-PAGE = Path(__file__).with_name("safety.md")
+PAGE = Path(__file__).parents[2] / "docs" / "safety.md"
 BACKENDS = ("numpy-f32", "gl", "webgpu", "hlsl", "browser")
 
 
@@ -32,7 +32,9 @@ def introduction() -> list[str]:
             "division, a root, `pow`, `normalize`…) whether it can. What is proven carries no guard; the rest gets the "
             "cheapest one that its range asks for. `sssgen lint` shows both, for your files too."
         ),
-        *_paragraph("Made by `make stability` (`docs/safety.py`); the tests are `tests/test_safety.py`."),
+        *_paragraph(
+            "Made by `make stability` (`qualification/pages/safety.py`); the tests are `tests/test_safety.py`."
+        ),
     ]
 
 

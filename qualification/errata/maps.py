@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from qualification.errata.erratum import subject_of
 from sssgen.harness.backends import Array, Backend
-from sssgen.harness.errata.erratum import subject_of
 from sssgen.harness.evaluate.evaluation import evaluate
 from sssgen.harness.pictures.images import encode_srgb
 from sssgen.harness.scenes.camera import Camera

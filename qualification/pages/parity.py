@@ -1,16 +1,16 @@
-"""Measures every builtin on every back end, and writes docs/parity.md: python docs/parity.py"""
+"""Measures every builtin on every back end, and writes docs/parity.md: python -m qualification.pages.parity"""
 
 from __future__ import annotations
 
 from pathlib import Path
 
+from qualification.parity import BACKENDS, FULL, Figure, cases, measure
+from qualification.parity_inputs import FEW
 from sssgen.harness import backends
-from sssgen.harness.parity import BACKENDS, FULL, Figure, cases, measure
-from sssgen.harness.parity_inputs import FEW
 from sssgen.ir.intrinsics import BUILTINS, Builtin
 from sssgen.ir.types import kind_of
 
-PAGE = Path(__file__).with_name("parity.md")
+PAGE = Path(__file__).parents[2] / "docs" / "parity.md"
 
 _REASONS = """
 - `asin`, `acos`, `atan`: Mesa has polynomials whose error is absolute, up to 4e-4 for `asin` and `acos`; in SPIR-V
@@ -34,8 +34,9 @@ def page() -> str:
     lines = [
         "# Parity of the builtins",
         "",
-        "How far every builtin of the [table](intrinsics.md) is from NumPy in float64, on every back end. Made by",
-        "`python docs/parity.py`; `tests/test_parity_intrinsics.py` holds every back end to the limits at each run.",
+        "How far every builtin of the [table](intrinsics.md) is from NumPy in float64, on every back end.",
+        "`python -m qualification.pages.parity` writes this page; `tests/test_parity_intrinsics.py` checks the limits on every",
+        "back end.",
         "",
         f"Measured: {len(chosen)} overloads of {len(BUILTINS)} builtins on {lanes} sets of arguments a back end,",
         f"{FULL} an overload ({FEW} for texture reads and derivatives). A third are edges: zeros, powers of two and",

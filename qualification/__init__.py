@@ -1,0 +1,1 @@
+"""What proves the project: measurements and demonstrations that only its tests and its documents need."""

@@ -1,0 +1,1 @@
+"""Each module writes one page of docs/ from what it measures."""
