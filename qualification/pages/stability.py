@@ -202,8 +202,8 @@ def introduction() -> list[str]:
         ),
         *_paragraph(
             "Made by `make stability` (`qualification/pages/stability.py`). The pictures are drawn by the emitted GLSL "
-            "in OpenGL where nothing else is said; scenes and materials are in `docs/stability/`. The figures are those "
-            "of `qualification.errata`, on "
+            "in OpenGL where nothing else is said; scenes and materials are in `docs/stability/`. The figures are "
+            "those of `qualification.errata`, on "
             + ", ".join(f"`{name}`" for name in BACKENDS)
             + "; where these differ, each is named. `tests/test_errata_shown.py` holds them: the published ones are "
             "off as theory says, ours are within their bounds on every back end. The published ones are measured "
