@@ -1,8 +1,7 @@
-"""Runs the LALR(1) tables that lark makes of grammar.lark over tokens that are there already.
+"""The LALR(1) parser loop over the tables that lark builds of grammar.lark (`grammar_tables`).
 
-Lark's own loop makes a call for each reduction and has its lexer follow the parser's state; shaders are read for every
-keystroke of an editor and every file of a library, and most reductions of an expression pass one child through a level
-of precedence. Here these are skipped by a table that is filled as it is asked, which parses some 3 times as fast
+Most reductions of an expression only pass one child through a level of precedence. The loop skips these by a table that
+it fills on demand, and needs no call per reduction; it parses about 3 times as fast as lark's own loop
 (`benchmarks/bench_transpile.py` prints the shares).
 """
 
@@ -52,62 +51,6 @@ class Unexpected(Exception):
     def __init__(self, index: int, accepted: set[str]) -> None:
         super().__init__(index)
         self.index, self.accepted = index, accepted
-
-
-def tables(grammar: str) -> Tables:
-    """The tables of a grammar whose terminals are declared only."""
-    from lark import Lark
-    from lark.lexer import Lexer
-
-    class _None(Lexer):
-        """The tokens come from elsewhere."""
-
-        def __init__(self, *_: Any) -> None: ...
-
-        def lex(self, *_: Any) -> Any: ...
-
-    made: Any = Lark(grammar, parser="lalr", lexer=_None).parser.parser
-    table = made._parse_table
-    number = {state: index for index, state in enumerate(table.states)}
-    actions: list[dict[str, Action]] = []
-    goto: list[dict[str, int]] = []
-    for state in table.states:
-        acts: dict[str, Action] = {}
-        nexts: dict[str, int] = {}
-        for terminal, (kind, argument) in table.states[state].items():
-            name = str(terminal)  # lark's own are of a class that compares slowly
-            if kind.name == "Reduce":
-                acts[name] = _reduction(argument)
-            elif name[0].isupper() or name[0] == "$" or name.startswith("__ANON"):
-                acts[name] = number[argument]
-            else:
-                nexts[name] = number[argument]
-        actions.append(acts)
-        goto.append(nexts)
-    return Tables(actions, goto, number[table.start_states["start"]], number[table.end_states["start"]], {})
-
-
-def _reduction(rule: Any) -> Action:
-    """What lark's tree builder would do for a rule, as data."""
-    name = str(rule.origin.name)
-    options = rule.options
-    absent = [0] * (len(rule.expansion) + 1)
-    if options.empty_indices:
-        absent = [len(run) for run in "".join("01"[flag] for flag in options.empty_indices).split("0")]
-    children, pending = [], 0
-    for index, symbol in enumerate(rule.expansion):
-        pending += absent[index]
-        if not (symbol.is_term and symbol.filter_out):
-            children.append((index, not symbol.is_term and symbol.name.startswith("_"), pending))
-            pending = 0
-    pending += absent[-1]
-    helper = name.startswith("_")
-    one = len(children) == 1 and not pending and not children[0][2]
-    if options.expand1 and not rule.alias and one and not children[0][1]:
-        if len(rule.expansion) == 1:
-            return str(name)
-        return Reduction(len(rule.expansion), name, "only", tuple(children), 0)
-    return Reduction(len(rule.expansion), name, "" if helper else str(rule.alias or name), tuple(children), pending)
 
 
 def run(found: Tables, tokens: Sequence[Token], methods: dict[str, Callable[[list[Any]], Any]]) -> Any:

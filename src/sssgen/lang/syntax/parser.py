@@ -8,13 +8,13 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 
+from sssgen.lang.syntax import grammar_tables
 from sssgen.lang.syntax import tree as s
 from sssgen.lang.syntax.doc_comments import attach_docs
-from sssgen.lang.syntax.lalr import Tables, Unexpected, run, tables
+from sssgen.lang.syntax.lalr import Unexpected, run
 from sssgen.lang.syntax.lexer import scan
 from sssgen.lang.syntax.tokens import Comment, Token
 from sssgen.lang.syntax.tree_builder import Builder
-from sssgen.support import cache
 from sssgen.support.diagnostics import Diagnostic, Reporter, SssgenError
 from sssgen.support.gc_pause import paused
 
@@ -74,7 +74,7 @@ def parse_tokens(
     for _ in range(MAX_SYNTAX_ERRORS):
         builder = Builder(MAX_DEPTH)
         try:
-            externals = run(_tables(), remaining, builder.methods) if remaining else []
+            externals = run(grammar_tables.load(), remaining, builder.methods) if remaining else []
             break
         except Unexpected as error:
             _report(error, remaining, reporter)
@@ -125,22 +125,6 @@ def _check_shape(tokens: Sequence[Token], reporter: Reporter) -> None:
         elif kind == "SEMICOLON" or kind == "COMMA":
             operators = 0
     reporter.check()
-
-
-_made: Tables | None = None
-
-
-def _tables() -> Tables:
-    """The grammar's tables, kept on disk between processes and in memory between calls."""
-    global _made
-    if _made is None:
-        from importlib.resources import files
-
-        from sssgen.lang.front_end_stamp import front_end_stamp
-
-        grammar = files(__package__).joinpath("grammar.lark").read_text("utf-8")
-        _made = cache.kept("grammar", [front_end_stamp()], lambda: tables(grammar))
-    return _made
 
 
 _LATER = frozenset(("QUALIFIER", "BUFFER", "SHARED"))
