@@ -1,4 +1,4 @@
-"""The LALR(1) tables of grammar.lark: built by lark, shipped as JSON beside the grammar, so that no run has to build them.
+"""The LALR(1) tables of grammar.lark: built by lark, shipped as JSON beside the grammar so that no run builds them.
 
 After a change of the grammar `python -m sssgen.lang.syntax.grammar_tables` writes the JSON file again; until then each
 process builds the tables itself.
@@ -34,7 +34,7 @@ def load() -> Tables:
 
 
 def build(grammar: str) -> Tables:
-    """The tables of a grammar whose terminals are only declared. Raises SssgenError for a lark that is too old or new."""
+    """The tables of a grammar whose terminals are only declared. Raises SssgenError for a lark too old or too new."""
     import lark
     from lark.lexer import Lexer
 
