@@ -140,7 +140,7 @@ def outcome(module: Module, a: float, b: float) -> tuple[Any, ...]:
 
 def legal(target: str) -> Callable[[Module], Module]:
     chosen = descriptor.load(target)
-    return lambda module: legalise(module, chosen.dialect, chosen.can, polyfill)
+    return lambda module: legalise(module, chosen.dialect, chosen.capabilities, polyfill)
 
 
 PASSES: dict[str, Callable[[Module], Module]] = {

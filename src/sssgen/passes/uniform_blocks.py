@@ -8,63 +8,66 @@ and a vec4 for each column of such a matrix. Used by `legalise`, and by the prin
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TypeGuard
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.types import INT, Array, Matrix, Scalar, Type, Vector, components, kind_of, vector_of
+from sssgen.passes.capabilities import Capabilities
 
-Can = Callable[[str], bool]
 
-
-def block_type(type_: Type, can: Can) -> Type:
+def block_type(type_: Type, capabilities: Capabilities) -> Type:
     """The type that stands for `type_` in a uniform block."""
-    if isinstance(type_, Scalar | Vector) and type_.kind == "bool" and not can("bool_uniforms"):
+    if isinstance(type_, Scalar | Vector) and type_.kind == "bool" and not capabilities.bool_uniforms:
         return vector_of("int", components(type_))
-    if _by_columns(type_, can):
+    if _by_columns(type_, capabilities):
         return Array(Vector("float", 4), type_.size)
     if isinstance(type_, Array):
-        element = block_type(type_.element, can)
+        element = block_type(type_.element, capabilities)
         if isinstance(element, Array):
             return Array(element.element, element.length * type_.length)
-        if components(element) < 4 and not can("float_array_uniforms"):
+        if components(element) < 4 and not capabilities.float_array_uniforms:
             element = Vector(kind_of(element), 4)
         return Array(element, type_.length)
     return type_
 
 
-def _by_columns(type_: Type, can: Can) -> TypeGuard[Matrix]:
-    return isinstance(type_, Matrix) and not can(f"mat{type_.size}_uniforms")
+def _by_columns(type_: Type, capabilities: Capabilities) -> TypeGuard[Matrix]:
+    return isinstance(type_, Matrix) and not _matrix_uniforms(type_.size, capabilities)
 
 
-def read(value: ir.Global, can: Can) -> ir.Expr:
+def _matrix_uniforms(size: int, capabilities: Capabilities) -> bool:
+    """Whether a uniform block may hold a matrix of that size."""
+    return {2: capabilities.mat2_uniforms, 3: capabilities.mat3_uniforms}.get(size, True)
+
+
+def read(value: ir.Global, capabilities: Capabilities) -> ir.Expr:
     """A whole uniform, read from its block."""
     type_, span = value.type, value.span
-    stored = value._replace(type=block_type(type_, can))
+    stored = value._replace(type=block_type(type_, capabilities))
     if stored.type == type_:
         return value
     if isinstance(type_, Array):
         places = [ir.Literal(INT, number, span) for number in range(type_.length)]
-        return ir.Construct(type_, tuple([_element(value, type_, place, can) for place in places]), span)
+        return ir.Construct(type_, tuple([_element(value, type_, place, capabilities) for place in places]), span)
     return _restored(type_, stored, None, span)
 
 
-def element(index: ir.Index, can: Can) -> ir.Expr:
+def element(index: ir.Index, capabilities: Capabilities) -> ir.Expr:
     """A uniform's element or column, read from its block; the same where it stands there as it is."""
     value = index.value
     assert isinstance(value, ir.Global)
-    stored = block_type(value.type, can)
+    stored = block_type(value.type, capabilities)
     if stored == value.type:
         return index
     if isinstance(value.type, Array):
-        return _element(value, value.type, index.index, can)
+        return _element(value, value.type, index.index, capabilities)
     if isinstance(stored, Array):
         return _row(value._replace(type=stored), index.index, components(index.type), index.span)
-    return index._replace(value=read(value, can))
+    return index._replace(value=read(value, capabilities))
 
 
-def _element(value: ir.Global, type_: Array, place: ir.Expr, can: Can) -> ir.Expr:
-    stored = value._replace(type=block_type(type_, can))
+def _element(value: ir.Global, type_: Array, place: ir.Expr, capabilities: Capabilities) -> ir.Expr:
+    stored = value._replace(type=block_type(type_, capabilities))
     return _restored(type_.element, stored, place, value.span)
 
 

@@ -115,10 +115,10 @@ def _prepared(module: Module, kind: str, target: Target) -> tuple[Module, list[N
     module = colors_in_use(module)
     if _turned(target):
         module = turned_derivatives(module)
-    if kind == "vertex" and not target.can("implicit_levels"):
+    if kind == "vertex" and not target.capabilities.implicit_levels:
         module = with_levels(module)
     known = _stage_builtins(module, target)
-    return module, [Note(*one) for one in remarks(module, known, _turned(target), target.can)]
+    return module, [Note(*one) for one in remarks(module, known, _turned(target), target.capabilities)]
 
 
 def _stage_builtins(module: Module, target: Target) -> set[str]:
@@ -137,9 +137,9 @@ def _kept(module: Module, target: Target, called: Sequence[str] | None) -> tuple
     if called is not None:
         module = used(only(module, called))
     roots = [function.key for function in module.functions if function.body is not None]
-    if not target.can("undefined_constants"):
+    if not target.capabilities.undefined_constants:
         _refuse_undefined(module)
-    if target.can("implicit_levels"):
+    if target.capabilities.implicit_levels:
         return module, [], roots
     entry = entry_of(module)
     if entry is None:
@@ -284,20 +284,22 @@ def _finish(middle: _Middle, target: Target, form: str, keep: bool = False) -> P
     """The target's own part: parameters, legalise, names, printing."""
     module = middle.module
     start = ENTRY if entry_of(module) is not None else ""
+    # kept operators mean what GLSL says, which leaves some results open
+    capabilities = target.capabilities._replace(integer_division=True) if keep else target.capabilities
     try:
-        if not target.can("module_variables"):
+        if not target.capabilities.module_variables:
             module = variables_to_parameters(module, start).module
-        elif not target.can("variable_values"):
+        elif not target.capabilities.variable_values:
             module = set_at_start(module, start)
         if form in target.parameters:
             module = uniforms_to_parameters(module)
-        module = legalise(module, target.dialect, _can_keeping(target) if keep else target.can, polyfill)
+        module = legalise(module, target.dialect, capabilities, polyfill)
     except Unsupported as error:
         refused = [_refused(one.message, one.span, target).diagnostics[0] for one in (error, *error.more)]
         raise SssgenError(refused) from None
     except NoEntry as error:
         raise _refused(error.message, error.span, target) from None
-    if not target.can("lane_control_flow"):
+    if not target.capabilities.lane_control_flow:
         module = predicate(module)
     before = [uniform.name for uniform in module.uniforms]
     main = _entry_name(target, form)
@@ -305,9 +307,9 @@ def _finish(middle: _Middle, target: Target, form: str, keep: bool = False) -> P
         module,
         _reserved(target, main, keep),
         _uniform_style(target),
-        not target.can("overloads"),
+        not target.capabilities.overloads,
         (descriptor.reserved_of(target.language) if keep else descriptor.reserved_everywhere())[1] | target.folded,
-        target.can("matrix_overloads"),
+        target.capabilities.matrix_overloads,
     )
     try:
         stage = _stage(module, target, form, renames)
@@ -326,11 +328,6 @@ def _finish(middle: _Middle, target: Target, form: str, keep: bool = False) -> P
         {kind: cost._asdict() for kind, cost in middle.costs.items()}, middle.warnings, middle.settings,
         report(middle.guarded.sites, middle.guarded.guarded) if middle.guarded else {}, stage,
     )  # fmt: skip
-
-
-def _can_keeping(target: Target) -> Callable[[str], bool]:
-    """What a target can say where its operators may mean what they mean in GLSL, which leaves some results open."""
-    return lambda capability: capability == "integer_division" or target.can(capability)
 
 
 def _refused(message: str, span: Span, target: Target) -> SssgenError:

@@ -11,11 +11,14 @@ import functools
 import importlib
 import os
 import sys
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
+from sssgen.passes.capabilities import Capabilities
 from sssgen.support import cache
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.paths import place, stem
+
+_Record = TypeVar("_Record", bound=NamedTuple)
 
 
 class OutputFile(NamedTuple):
@@ -48,8 +51,8 @@ class Target(NamedTuple):
     """Reserved in any case, as some of HLSL's words are; lower case here."""
     prefixes: tuple[str, ...]
     """Names that begin so are reserved."""
-    capabilities: dict[str, bool]
-    """What the language can say without legalising; see `passes/legalise.py`."""
+    capabilities: Capabilities
+    """What the language can express; the passes rewrite the rest."""
     lighting: str
     """The technique that lights a lit material where the target brings no lighting."""
     output: str
@@ -65,10 +68,6 @@ class Target(NamedTuple):
     table: dict[str, Any]
     folder: str
     """Where the descriptor lies; a plug-in keeps its `templates` there."""
-
-    def can(self, capability: str) -> bool:
-        """Whether the language can say something; what the descriptor does not mention, it can."""
-        return bool(self.capabilities.get(capability, True))
 
 
 @functools.cache
@@ -192,7 +191,7 @@ def _target(table: dict[str, Any], path: str) -> Target:
             reserved=frozenset((names.get("reserved", "") + " " + names.get("shell", "")).split()),
             folded=frozenset(word.lower() for word in names.get("case_insensitive", ())),
             prefixes=tuple(names.get("prefixes", ())),
-            capabilities=table.get("capabilities", {}),
+            capabilities=_record(Capabilities(), table.get("capabilities", {}), "capabilities", path),
             lighting=table.get("lighting", ""),
             output=table.get("output", ""),
             uniform_style=table.get("uniform_style", "plain"),
@@ -204,6 +203,20 @@ def _target(table: dict[str, Any], path: str) -> Target:
         )
     except (KeyError, TypeError, AttributeError) as error:
         raise failure(f"the target descriptor is incomplete: {error}", file=os.path.basename(path)) from None
+
+
+def _record(empty: _Record, table: dict[str, Any], section: str, path: str) -> _Record:
+    """A section of a descriptor as a record. Raises SssgenError for an unknown key or a value of the wrong type."""
+    defaults = empty._asdict()
+    file = os.path.basename(path)
+    for key, value in table.items():
+        if key not in defaults:
+            hint = did_you_mean(key, defaults) or f"its keys: {', '.join(defaults)}"
+            raise failure(f"the target descriptor has an unknown key '{key}' in [{section}]", hint, file)
+        if not isinstance(value, type(defaults[key])):
+            wanted = type(defaults[key]).__name__
+            raise failure(f"the target descriptor needs a {wanted} for '{key}' in [{section}]", "", file)
+    return empty._replace(**table)
 
 
 class Words:

@@ -27,7 +27,7 @@ class GlslPrinter(Printer):
         if variable.storage == "private":
             return super().print_variable(variable)
         word = variable.interpolation
-        words = [word] if word and (word != "noperspective" or self.target.can(word)) else []
+        words = [word] if word and (word != "noperspective" or self.target.capabilities.noperspective) else []
         text = " ".join([*words, variable.storage, self.variable(variable.type, variable.name)])
         return self.with_comments(variable, [Line(f"{self.layout(variable)}{text};", variable.span)])
 
@@ -51,7 +51,7 @@ class GlslPrinter(Printer):
     def default(self, uniform: ir.Uniform) -> str:
         """The value that an author gave a uniform, where the version has such."""
         plain = isinstance(uniform.type, Scalar | Vector) and uniform.type.kind != "bool"
-        if not self.kept or not plain or not any(uniform.default) or not self.target.can("uniform_values"):
+        if not self.kept or not plain or not any(uniform.default) or not self.target.capabilities.uniform_values:
             return ""
         number = Scalar(kind_of(uniform.type))
         whole = number.kind != "float"

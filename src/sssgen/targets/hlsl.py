@@ -95,7 +95,7 @@ class HlslPrinter(Printer):
         pad = "    " if bindings is not None else ""
         for member in members:
             lines += [Line(f"{pad}float padding_{member.offset}_{index};") for index in range(member.padding)]
-            type_ = block_type(member.uniform.type, self.target.can)
+            type_ = block_type(member.uniform.type, self.target.capabilities)
             of_matrices = isinstance(type_.element if isinstance(type_, Array) else type_, Matrix)
             major = "row_major " if of_matrices and not self.engine_matrices else ""
             declared = self.variable(type_, member.uniform.name)

@@ -120,7 +120,7 @@ class WgslPrinter(Printer):
             return []
         lines = [Line("struct Material {")]
         for member in members:
-            text = self.type(block_type(member.uniform.type, self.target.can))
+            text = self.type(block_type(member.uniform.type, self.target.capabilities))
             lines.append(documented(f"    {member.uniform.name}: {text},", member.uniform))
         place = f"@group({self.target.table['material_group']}) @binding(0)"
         return [*lines, Line("}"), Line(f"{place} var<uniform> material: Material;")]

@@ -29,6 +29,7 @@ from sssgen.ir.types import (
 )
 from sssgen.ir.walk import operands, rewrite, subexpressions, with_operands
 from sssgen.passes import uniform_blocks as blocks
+from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.legal.integer_operators import counts_up, with_result
 from sssgen.passes.legal.matrix_columns import by_whole_columns, needs_columns
 from sssgen.passes.legal.part_stores import is_dynamic_store, is_swizzle_store, parts_of, whole_store
@@ -39,8 +40,6 @@ from sssgen.passes.variable_effects import effects
 
 Polyfill = Callable[[str, Sequence[Type]], ir.Module]
 """Gives the module whose last function stands in for a builtin with these argument types."""
-
-Can = Callable[[str], bool]
 
 
 _EVERYWHERE = frozenset(("+", "-", "*", "<", ">", "<=", ">=", "&&", "||"))
@@ -59,17 +58,17 @@ class _OutOfOrder(Exception):
     """Something would be computed before a call that it stands behind."""
 
 
-def legalise(module: ir.Module, dialect: str, can: Can, polyfill: Polyfill) -> ir.Module:
+def legalise(module: ir.Module, dialect: str, capabilities: Capabilities, polyfill: Polyfill) -> ir.Module:
     """The module as the target can say it. Raises Unsupported."""
-    return _Legaliser(module, dialect, can, polyfill).run()
+    return _Legaliser(module, dialect, capabilities, polyfill).run()
 
 
 class _Legaliser:
-    def __init__(self, module: ir.Module, dialect: str, can: Can, polyfill: Polyfill) -> None:
+    def __init__(self, module: ir.Module, dialect: str, capabilities: Capabilities, polyfill: Polyfill) -> None:
         self.module = module
         self.dialect = dialect
         self.language = dialect.partition("-")[0]
-        self.can = can
+        self.capabilities = capabilities
         self.polyfill = polyfill
         self.functions = {function.key: function for function in module.functions}
         self.helpers: dict[str, ir.Function] = {}
@@ -108,16 +107,16 @@ class _Legaliser:
         return variable if value is variable.value else variable._replace(value=value)
 
     def function(self, function: ir.Function) -> ir.Function:
-        if isinstance(function.result, Array) and not self.can("array_constructors"):
+        if isinstance(function.result, Array) and not self.capabilities.array_constructors:
             raise Unsupported(
                 "a function cannot return an array for this target: give it an out parameter", function.span
             )
         if not self.writing:
             return self.lifted(function)
-        if not self.can("out_parameters"):
+        if not self.capabilities.out_parameters:
             return self.lifted(lift(function, self.calls))
         stmts = awkward(function, self.calls)
-        if stmts and (not self.can("operand_order") or awkward(function, Calls(self.functions))):
+        if stmts and (not self.capabilities.operand_order or awkward(function, Calls(self.functions))):
             return self.lifted(lift(function, self.calls))
         self.ordered = {id(stmt) for stmt in stmts}
         prelude, counters = self.prelude, list(self.counters)
@@ -130,7 +129,7 @@ class _Legaliser:
     def lifted(self, function: ir.Function) -> ir.Function:
         """A function whose writing calls stand where they can."""
         self.names, self.at_hand = set(), function
-        if not self.can("mutable_parameters"):
+        if not self.capabilities.mutable_parameters:
             function = self.copy_parameters(function)
         body = self.block(function.body or ())
         return function if body is function.body else function._replace(body=body)
@@ -234,8 +233,8 @@ class _Legaliser:
 
     def refused(self, part: ir.Expr) -> bool:
         """Whether the target has no store into such a part."""
-        return (is_swizzle_store(part) and not self.can("swizzle_store")) or (
-            is_dynamic_store(part) and not self.can("dynamic_stores")
+        return (is_swizzle_store(part) and not self.capabilities.swizzle_store) or (
+            is_dynamic_store(part) and not self.capabilities.dynamic_stores
         )
 
     def leaving(self, value: ir.Expr, span: ir.Span) -> ir.Expr:
@@ -308,7 +307,7 @@ class _Legaliser:
         if kind is ir.Select and not self.chooses(expr):  # type: ignore[arg-type]  # narrowed by its exact class
             return self.select(expr)  # type: ignore[arg-type]  # the same
         if isinstance(expr, ir.Index) and isinstance(expr.value, ir.Global) and expr.value.name in self.uniforms:
-            return blocks.element(expr._replace(index=self.expr(expr.index)), self.can)
+            return blocks.element(expr._replace(index=self.expr(expr.index)), self.capabilities)
         old = operands(expr)
         new = tuple([self.expr(operand) for operand in old])
         return self.node(expr if all(map(is_, old, new)) else with_operands(expr, new))
@@ -331,14 +330,18 @@ class _Legaliser:
             isinstance(expr, ir.Unary)
             and expr.op == "-"
             and kind_of(expr.type) == "uint"
-            and not self.can("uint_minus")
+            and not self.capabilities.uint_minus
         ):
             zero = _widened(ir.Literal(UINT, 0, expr.span), components(expr.type))
             return ir.Binary(expr.type, "-", zero, expr.operand, expr.span)
-        if isinstance(expr, ir.Unary) and isinstance(expr.type, Matrix) and not self.can("matrix_scalar_arithmetic"):
+        if (
+            isinstance(expr, ir.Unary)
+            and isinstance(expr.type, Matrix)
+            and not self.capabilities.matrix_scalar_arithmetic
+        ):
             return ir.Binary(expr.type, "*", expr.operand, ir.Literal(FLOAT, -1.0, expr.span), expr.span)
         if isinstance(expr, ir.Global) and expr.name in self.uniforms:
-            value = blocks.read(expr, self.can)
+            value = blocks.read(expr, self.capabilities)
             return value if value is expr or not isinstance(value, ir.Construct) else self.construct(value)
         if isinstance(expr, ir.Swizzle) and isinstance(expr.value, ir.Swizzle):
             letters = "".join([expr.value.components["xyzw".index(letter)] for letter in expr.components])
@@ -397,14 +400,14 @@ class _Legaliser:
 
     def construct(self, construct: ir.Construct) -> ir.Expr:
         type_, args, span = construct.type, construct.args, construct.span
-        if isinstance(type_, Matrix) and len(args) == 1 and not self.can("matrix_conversions"):
+        if isinstance(type_, Matrix) and len(args) == 1 and not self.capabilities.matrix_conversions:
             return self.matrix_from(type_, args[0], span)
-        if isinstance(type_, Matrix) and needs_columns(type_, args) and not self.can("mixed_columns"):
+        if isinstance(type_, Matrix) and needs_columns(type_, args) and not self.capabilities.mixed_columns:
             kept = [arg if is_cheap(arg) or isinstance(arg.type, Scalar) else self.keep(arg, "part") for arg in args]
             return by_whole_columns(type_, kept, span)
-        if isinstance(type_, Struct) and not self.can("struct_constructors"):
+        if isinstance(type_, Struct) and not self.capabilities.struct_constructors:
             return self.keep(construct, type_.name[0].lower() + type_.name[1:])
-        if isinstance(type_, Array) and not self.can("array_constructors"):
+        if isinstance(type_, Array) and not self.capabilities.array_constructors:
             return self.keep(construct, "values")
         return construct
 
@@ -439,15 +442,15 @@ class _Legaliser:
         if op == "^^":
             return ir.Binary(BOOL, "!=", left, right, span)
         if op in ("==", "!=") and binary.type == BOOL and not isinstance(left.type, Scalar):
-            return self.equality(binary) if not self.can("whole_equality") else binary
+            return self.equality(binary) if not self.capabilities.whole_equality else binary
         whole = op in ("/", "%", "<<", ">>") and kind_of(left.type) != "float"
-        if whole and not self.can("integer_division") and self.prelude is not None:
+        if whole and not self.capabilities.integer_division and self.prelude is not None:
             return self.integer(binary)
-        if op in ("<<", ">>", "&", "|", "^") and not self.can("mixed_bits"):
+        if op in ("<<", ">>", "&", "|", "^") and not self.capabilities.mixed_bits:
             size = max(components(left.type), components(right.type))
             right = _amount(right, size) if op in ("<<", ">>") else _widened(right, size)
             return binary._replace(left=_widened(left, size), right=right)
-        if not self.can("matrix_scalar_arithmetic"):
+        if not self.capabilities.matrix_scalar_arithmetic:
             if isinstance(left.type, Matrix) and isinstance(right.type, Scalar) and op == "/":
                 inverse = ir.Binary(FLOAT, "/", ir.Literal(FLOAT, 1.0, span), right, span)
                 return ir.Binary(left.type, "*", left, inverse, span)
@@ -529,7 +532,7 @@ class _Legaliser:
     def chooses(self, select: ir.Select) -> bool:
         """Whether the target has an expression for this choice."""
         whole = isinstance(select.type, Struct | Array)
-        return self.can("ternary") and (not whole or self.can("struct_choices"))
+        return self.capabilities.ternary and (not whole or self.capabilities.struct_choices)
 
     def branches(self, select: ir.Select) -> bool:
         """Whether a choice is for an if: its arms are not plain values, or one of them calls or samples."""

@@ -8,13 +8,14 @@ Place: what goes by the framebuffer before `hoist`, the interface last, as the n
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
 from sssgen.ir.nodes import Expr, Function, Global, Index, Intrinsic, Literal, Module, Span, Unary, Variable
 from sssgen.ir.rules import element_type
 from sssgen.ir.types import VOID, Array, Matrix, Struct, Type, Vector
 from sssgen.ir.walk import all_expressions, builtins_of, operands, rewrite_module
+from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.variable_effects import effects
 
 ENTRY = "main()"
@@ -136,12 +137,12 @@ def colors_in_use(module: Module) -> Module:
 
 
 def remarks(
-    module: Module, builtins: Collection[str], turned: bool, can: Callable[[str], bool]
+    module: Module, builtins: Collection[str], turned: bool, capabilities: Capabilities
 ) -> list[tuple[str, Span]]:
     """What differs from the source in a target's whole shader, with its place."""
     found = []
     for variable in module.variables:
-        if variable.interpolation == "noperspective" and not can("noperspective"):
+        if variable.interpolation == "noperspective" and not capabilities.noperspective:
             found.append(
                 (
                     f"'{variable.name}' is interpolated with perspective here: this target has no other way",

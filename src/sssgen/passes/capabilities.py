@@ -1,0 +1,68 @@
+"""What a target language can express: the passes rewrite whatever it cannot."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Capabilities(NamedTuple):
+    """The capabilities of one language: `[capabilities]` of its descriptor. What is not declared is False."""
+
+    array_constructors: bool = False
+    """An array constructor is an expression, and a function may return an array."""
+    bool_uniforms: bool = False
+    """A uniform block may hold a bool; if not, it holds an int in its place."""
+    dynamic_stores: bool = False
+    """A component of a vector or a column of a matrix may be assigned through an index that is not constant."""
+    float_array_uniforms: bool = False
+    """Array elements in a uniform block may be smaller than 16 bytes; if not, each is a vector of four."""
+    implicit_levels: bool = False
+    """Derivatives, and texture reads that need them, are allowed in non-uniform control flow and in vertex shaders."""
+    integer_division: bool = False
+    """Integer `/`, `%`, `<<` and `>>` are defined for a divisor of 0, negative operands and shifts by 32 or more."""
+    lane_control_flow: bool = False
+    """Each lane branches for itself; if not, control flow becomes masks."""
+    mat2_uniforms: bool = False
+    """A uniform block may hold a mat2; if not, it holds a vec4 for each column."""
+    mat3_uniforms: bool = False
+    """The same for a mat3."""
+    matrix_conversions: bool = False
+    """A matrix can be constructed from a scalar (its diagonal) or from a matrix of another size."""
+    matrix_overloads: bool = False
+    """Overloads may differ in a vec4 and a mat2 alone."""
+    matrix_scalar_arithmetic: bool = False
+    """`-M` and componentwise `/`, `+` and `-` of matrices and scalars exist; `M * s` exists in every language."""
+    mixed_bits: bool = False
+    """Shifts and bitwise operators take operands of different sizes and signs."""
+    mixed_columns: bool = False
+    """A matrix can be constructed from any mixture of vectors and scalars; if not, from whole columns or scalars."""
+    module_variables: bool = False
+    """Modules have mutable variables; if not, these become parameters."""
+    mutable_parameters: bool = False
+    """A function may assign to its `in` parameters; if not, it copies them."""
+    noperspective: bool = False
+    """Stage inputs can be interpolated without perspective."""
+    operand_order: bool = False
+    """Operands and arguments are evaluated from left to right, and `&&`, `||`, `?:` evaluate only what they need."""
+    out_parameters: bool = False
+    """Functions have `out` and `inout` parameters; if not, pointers."""
+    overloads: bool = False
+    """Functions of one name may differ in their parameters' types."""
+    struct_choices: bool = False
+    """`?:` chooses between structs and between arrays, too."""
+    struct_constructors: bool = False
+    """A struct constructor is an expression."""
+    swizzle_store: bool = False
+    """A swizzle of several components may be assigned: `a.xy = b`."""
+    ternary: bool = False
+    """`c ? a : b` exists and evaluates one arm only."""
+    uint_minus: bool = False
+    """`-u` exists for unsigned integers."""
+    undefined_constants: bool = False
+    """Constant expressions may give infinity or NaN."""
+    uniform_values: bool = False
+    """A uniform's declaration may give it a value."""
+    variable_values: bool = False
+    """A module variable may be initialised with an expression that is not constant."""
+    whole_equality: bool = False
+    """`==` and `!=` of vectors, matrices, structs and arrays give one bool."""
