@@ -13,7 +13,7 @@ from textwrap import wrap
 from typing import Any
 
 import sssgen
-from sssgen.cli.arguments import add_where
+from sssgen.cli.options import add_workers
 from sssgen.harness import backends
 from sssgen.harness.backends import Backend
 from sssgen.lab.jobs.executor import Item, failures, run
@@ -173,7 +173,7 @@ def _item(text: str) -> list[str]:
 def main() -> None:
     """Draws, measures and writes."""
     parser = argparse.ArgumentParser(description="draws the gallery")
-    add_where(parser)
+    add_workers(parser)
     where = parser.parse_args()
     processes = where.processes if where.scheduler or where.processes else 0
     with Bar() as told:

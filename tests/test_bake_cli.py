@@ -373,7 +373,7 @@ def test_ctrl_c_ends_all_of_it(arguments: list[str]) -> None:
     before = there()
     # a process of a shell in the background ignores interrupts, and so would its own
     heed = "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler); "
-    command = [sys.executable, "-c", f"{heed}from sssgen.cli import main; sys.exit(main())", "bake", *arguments]
+    command = [sys.executable, "-c", f"{heed}from sssgen.cli.main import main; sys.exit(main())", "bake", *arguments]
     with subprocess.Popen(command, start_new_session=True, stderr=subprocess.PIPE, text=True) as process:
         time.sleep(10.0)
         assert process.poll() is None, "it ended before it was interrupted"

@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 
 from sssgen.cli import main as cli
+from sssgen.cli.output import CHECK_FAILED
 from sssgen.harness.backends import Backend
 from sssgen.harness.backends.isolated import Isolated
 from sssgen.harness.testing import junit
@@ -89,7 +90,7 @@ def test_faulty_files_are_failures_and_the_rest_goes_on(capsys: pytest.CaptureFi
     write_files(".", {"all/broken.toml": "[material]\nname = \n", "all/half.eval.json": json.dumps(HALF)})
     status = cli.main(["ci", "all", "--backend", "numpy-f32", "--json", "--junit", "report.xml"])
     found = json.loads(capsys.readouterr().out)
-    assert status == cli.CHECK_FAILED and found["ok"] is False
+    assert status == CHECK_FAILED and found["ok"] is False
     assert [(case["kind"], case["outcome"]) for case in found["cases"]] == [("compile", "failed"), ("eval", "passed")]
     assert "all/broken.toml:2" in found["cases"][0]["detail"]
     assert [len(ET.parse("report.xml").findall(f".//{name}")) for name in ("testcase", "failure")] == [2, 1]

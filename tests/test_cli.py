@@ -126,13 +126,28 @@ def test_help_and_version(arguments: list[str], capsys: pytest.CaptureFixture[st
 
 def test_help_and_emit_start_light() -> None:
     """What `--help` and reading a material import: nothing heavy."""
-    code = (
-        "import sys, sssgen.cli as c; c.parser(); import sssgen.commands.emit, sssgen.material_reader;"
-        "heavy = {'numpy', 'lark', 'jinja2', 'json', 'tomllib', 'subprocess', 'difflib'};"
-        "print(sorted(heavy & set(sys.modules)))"
-    )
+    code = """
+import sys, sssgen.cli.emit, sssgen.cli.main, sssgen.material.material_loading
+try:
+    sssgen.cli.main.main(["--help"])
+except SystemExit:
+    print(sorted({"numpy", "lark", "jinja2", "json", "tomllib", "subprocess", "difflib"} & set(sys.modules)))
+"""
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+@pytest.mark.parametrize("name", cli.COMMANDS)
+def test_the_help_of_every_command(name: str, run: Run, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        cli.main([name, "--help"])
+    assert ended.value.code == 0
+    assert capsys.readouterr().out.startswith(f"usage: sssgen {name} ")
+
+
+@pytest.mark.parametrize("words", [["--", "list"], ["--json", "list"], ["-x"]])
+def test_arguments_that_do_not_begin_with_a_command(words: list[str], run: Run) -> None:
+    assert run(*words).status == cli.WRONG_INPUT
 
 
 @pytest.mark.parametrize(
@@ -181,13 +196,13 @@ def fail(error: BaseException) -> Callable[[Any], int]:
     return run_command
 
 
-def test_an_internal_error_is_one_line(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_internal_error_is_short(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     from sssgen.cli import show
 
     monkeypatch.setattr(show, "run", fail(ZeroDivisionError("one\ntwo")))
     ran = run("show", "sphere")
-    assert (ran.status, ran.err.count("\n")) == (cli.INTERNAL_ERROR, 1)
-    assert ran.err.startswith("internal error: ZeroDivisionError one two: ")
+    assert (ran.status, ran.err.count("\n")) == (cli.INTERNAL_ERROR, 2)
+    assert ran.err.startswith("error: internal error: ZeroDivisionError one two\n")
     assert json.loads(run("show", "sphere", "--json").out)["ok"] is False
     monkeypatch.setenv("SSSGEN_DEBUG", "1")
     assert "Traceback" in run("show", "sphere").err

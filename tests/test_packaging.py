@@ -72,7 +72,7 @@ def test_the_wheel_carries_what_it_needs_and_nothing_else(wheel: Path) -> None:
     assert not [name for name, text in texts.items() if str(ROOT).encode() in text]
     metadata = texts[f"sssgen-{VERSION}.dist-info/METADATA"].decode()
     assert f"Version: {VERSION}" in metadata
-    assert b"sssgen = sssgen.cli:main" in texts[f"sssgen-{VERSION}.dist-info/entry_points.txt"]
+    assert b"sssgen = sssgen.cli.main:main" in texts[f"sssgen-{VERSION}.dist-info/entry_points.txt"]
 
 
 def test_the_source_distribution_carries_the_qualification() -> None:

@@ -3,34 +3,85 @@
 from __future__ import annotations
 
 import os
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
-from sssgen.cli.main import OK, print_json
+from sssgen.cli.options import add_json, add_seed, add_workers
+from sssgen.cli.output import OK, print_json
 from sssgen.support.diagnostics import failure
-from sssgen.support.extras import need
 from sssgen.support.paths import posix
 from sssgen.targets.texture_import import import_settings
 
+CHANNELS = ("red", "green", "blue", "alpha")
 GREEN = {"opengl": "OpenGL (up)", "directx": "DirectX (down)"}
 
 Done = tuple[list[str], dict[str, Any], list[str]]
 """The files that were written, what their JSON says, and what people are told."""
 
 
+class Kind(NamedTuple):
+    """A kind of texture: its help, its options, and the function that bakes it."""
+
+    help: str
+    epilog: str
+    add_options: Callable[[ArgumentParser], None]
+    bake: Callable[[Namespace], Done]
+
+
+def add_options(parser: ArgumentParser) -> None:
+    parser.epilog = (
+        "examples:\n"
+        "  sssgen bake sdf bunny.glb -o bunny.npy\n"
+        "  sssgen bake thickness bunny.glb -o bunny_thickness.png\n"
+        "A JSON file next to each texture states what it holds, its errors, and the parameters that belong to it."
+    )
+    kinds = parser.add_subparsers(metavar="TEXTURE", dest="TEXTURE", required=True)
+    for name, kind in KINDS.items():
+        options = kinds.add_parser(name, help=kind.help, description=kind.help, epilog=kind.epilog)
+        add_json(options)
+        kind.add_options(options)
+
+
 def run(arguments: Namespace) -> int:
-    """Bakes one texture, writes it with its JSON, and says what it is."""
-    need("numpy", extra="bake")
-    kinds: dict[str, Callable[[Namespace], Done]] = {
-        "sdf": _sdf, "thickness": _thickness, "depth": _depth, "voronoi": _voronoi, "normal": _normal, "pack": _pack,
-    }  # fmt: skip
-    paths, facts, told = kinds[arguments.TEXTURE](arguments)
+    """Bakes one texture, writes it with its JSON, and prints its properties."""
+    paths, facts, lines = KINDS[arguments.TEXTURE].bake(arguments)
     if arguments.json:
         print_json({"ok": True, "files": paths, **facts})
     else:
-        print("\n".join([f"wrote {', '.join(map(posix, paths))}", *(f"  {line}" for line in told)]))
+        print("\n".join([f"wrote {', '.join(map(posix, paths))}", *(f"  {line}" for line in lines)]))
     return OK
+
+
+def _add_mesh(parser: ArgumentParser) -> None:
+    parser.add_argument("MESH", help="a file that ends in .obj, .ply, .stl, .glb or .gltf")
+
+
+def _add_output(parser: ArgumentParser, help: str) -> None:
+    parser.add_argument("-o", "--output", metavar="FILE", required=True, help=help)
+
+
+def _add_size(parser: ArgumentParser) -> None:
+    parser.add_argument("--size", default="512", metavar="N|WxH", help="of the map, in texels (default: 512)")
+
+
+def _add_bits(parser: ArgumentParser) -> None:
+    parser.add_argument("--bits", type=int, choices=(8, 16), default=8, help="bits per channel of a .png (default: 8)")
+
+
+def _sdf_options(parser: ArgumentParser) -> None:
+    add = parser.add_argument
+    _add_mesh(parser)
+    _add_output(parser, "the texture's file")
+    add("--resolution", default="64", metavar="N|X,Y,Z", help="texels along the longest side, or each (default: 64)")
+    add(
+        "--padding", type=float, default=0.05, metavar="P",
+        help="the margin around the mesh, relative to its longest side (default: 0.05)",
+    )  # fmt: skip
+    add("--format", metavar="F", help="npy, dds, ktx2, exr-slices or raw+json (default: from FILE's suffix)")
+    add("--encode", default="r16", metavar="E", help="r8, r16 (default), r16f or r32f")
+    add("--range", type=float, metavar="R", help="distances are clamped to ±R (default: the largest that occurs)")
+    add("--thin", type=float, metavar="T", help="treat the mesh as a sheet of thickness T, without an inside")
 
 
 def _sdf(arguments: Namespace) -> Done:
@@ -64,6 +115,24 @@ def _sdf(arguments: Namespace) -> Done:
         *([f"warning: {MIXED}"] if mesh["mixed_sides"] else []),
     ]
     return paths, made.facts, told
+
+
+def _thickness_options(parser: ArgumentParser) -> None:
+    add = parser.add_argument
+    _add_mesh(parser)
+    _add_output(parser, "a .png (16 bit), .exr or .npy")
+    add(
+        "--mode", choices=("mean", "chord", "transmittance"), default="mean",
+        help="the mean length over inward directions, weighted by their cosine (default); the length along the "
+        "inward normal; or the transmitted share of light, by Beer and Lambert's law",
+    )  # fmt: skip
+    add("--direction", metavar="LIGHT", help="the length towards a light: a .json with direction or position, or X,Y,Z")
+    _add_size(parser)
+    add("--rays", type=int, default=256, metavar="N", help="rays per texel (default: 256)")
+    add("--attenuation", type=float, metavar="D", help="for --mode transmittance: the length that transmits 1/e")
+    add_seed(parser, "the seed of the rays")
+    add("--unwrap", action="store_true", help="compute new texture coordinates; a mesh without any always gets them")
+    add_workers(parser)
 
 
 def _thickness(arguments: Namespace) -> Done:
@@ -100,6 +169,14 @@ def _thickness(arguments: Namespace) -> Done:
     return paths, made.facts, told
 
 
+def _depth_options(parser: ArgumentParser) -> None:
+    _add_mesh(parser)
+    _add_output(parser, "an .exr or .npy")
+    help = "the light: a .json with direction or position, or X,Y,Z"
+    parser.add_argument("--direction", metavar="LIGHT", required=True, help=help)
+    _add_size(parser)
+
+
 def _depth(arguments: Namespace) -> Done:
     from sssgen.bake import bake_light as light
     from sssgen.bake import baked_files as output
@@ -115,6 +192,28 @@ def _depth(arguments: Namespace) -> Done:
     low, high = facts["range"]
     told = [f"depths from {low:.4g} to {high:.4g}; the mesh is in {facts['covered']:.0%} of the texels"]
     return paths, facts, told if facts["covered"] else ["warning: the light meets nothing"]
+
+
+def _voronoi_options(parser: ArgumentParser) -> None:
+    add = parser.add_argument
+    _add_output(parser, "a .png (16 bit), .exr or .npy")
+    _add_size(parser)
+    add("--cells", default="8", metavar="N|X,Y", help="the number of cells along each side (default: 8)")
+    add("--jitter", type=float, default=1.0, metavar="J", help="from 0, a grid, to 1 (default), anywhere")
+    add_seed(parser, "the seed of the cells")
+    add(
+        "--feature", choices=("faceted", "f1", "f2-f1"), default="faceted",
+        help="levels with bevelled edges (default), the distance to the nearest site, or the distance to the edges",
+    )  # fmt: skip
+    add(
+        "--bevel",
+        type=float,
+        default=0.35,
+        metavar="B",
+        help="of faceted: the width of slopes, in cells (default: 0.35)",
+    )
+    add("--variation", type=float, default=0.6, metavar="V", help="of faceted: how much levels differ (default: 0.6)")
+    add("--no-tile", action="store_true", help="the map need not tile")
 
 
 def _voronoi(arguments: Namespace) -> Done:
@@ -137,6 +236,19 @@ def _voronoi(arguments: Namespace) -> Done:
     return paths, facts, [f"{count[0]} × {count[1]} cells, {arguments.feature}{', tileable' if tiles else ''}"]
 
 
+def _normal_options(parser: ArgumentParser) -> None:
+    add = parser.add_argument
+    add("HEIGHT", help="a .png, .exr or .npy; bright is high")
+    _add_output(parser, "a .png, .exr or .npy")
+    add(
+        "--strength", type=float, default=0.05, metavar="S",
+        help="the height of white above black, relative to the picture's width (default: 0.05)",
+    )  # fmt: skip
+    add("--green", choices=("opengl", "directx"), default="opengl", help="green points up (default), or down")
+    _add_bits(parser)
+    add("--no-tile", action="store_true", help="the picture does not tile")
+
+
 def _normal(arguments: Namespace) -> Done:
     from sssgen.bake import baked_files as output
     from sssgen.bake import normal_map as normals
@@ -156,12 +268,19 @@ def _normal(arguments: Namespace) -> Done:
     return paths, facts, [f"tangent-space normals, green as in {GREEN[arguments.green]}"]
 
 
+def _pack_options(parser: ArgumentParser) -> None:
+    _add_output(parser, "a .png, .exr or .npy")
+    for channel in CHANNELS:
+        parser.add_argument(f"--{channel}", metavar="SOURCE", help=f"the source of the {channel} channel")
+    _add_bits(parser)
+
+
 def _pack(arguments: Namespace) -> Done:
     from sssgen.bake import baked_files as output
     from sssgen.bake import channel_packing as packing
 
     output.picture_suffix(arguments.output)
-    given = {name: getattr(arguments, name) for name in ("red", "green", "blue", "alpha")}
+    given = {name: getattr(arguments, name) for name in CHANNELS}
     if not any(given.values()):
         raise failure("there is nothing to pack", "--red a.png --green b.png --blue 1-c.png")
     sources = [packing.parse(text) if text else None for text in given.values()]
@@ -173,6 +292,38 @@ def _pack(arguments: Namespace) -> Done:
     }  # fmt: skip
     paths = output.write_picture(arguments.output, made, facts, arguments.bits)
     return paths, facts, [f"{name}: {text}" for name, text in given.items() if text]
+
+
+KINDS = {
+    "sdf": Kind(
+        "the signed distance to a mesh, as a 3-D texture",
+        "Bind it to distance_map of the technique distance_texture.",
+        _sdf_options,
+        _sdf,
+    ),
+    "thickness": Kind(
+        "the thickness of a body below each texel of its texture coordinates",
+        "The exact lengths inside the mesh along rays. Bind it to thickness_texture of thickness_map, or, for\n"
+        "--mode transmittance, to transmittance_texture of transmittance_map.",
+        _thickness_options,
+        _thickness,
+    ),
+    "depth": Kind(
+        "the distance to the first surface that a light meets, as a map from the light's view",
+        "Bind it to light_depth_map of the technique depth_map_thickness.",
+        _depth_options,
+        _depth,
+    ),
+    "voronoi": Kind("cells, as in cracked ice: a map of thickness or height", "", _voronoi_options, _voronoi),
+    "normal": Kind("the normal map of a height or thickness map", "", _normal_options, _normal),
+    "pack": Kind(
+        "channels of pictures in one texture",
+        "A source is FILE, FILE:CHANNEL, 1-FILE (inverted) or a number from 0 to 1.",
+        _pack_options,
+        _pack,
+    ),
+}
+"""What can be baked."""
 
 
 def _size(text: str) -> tuple[int, int]:

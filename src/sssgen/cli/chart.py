@@ -2,17 +2,43 @@
 
 from __future__ import annotations
 
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from sssgen.cli.main import OK, print_json
+from sssgen.cli.options import add_seed, add_workers
+from sssgen.cli.output import OK, print_json
 from sssgen.support.diagnostics import did_you_mean, failure
 
 if TYPE_CHECKING:
     from sssgen.lab.chart.charting import Settings
 
 MOST_SAMPLES = 1 << 16
+
+
+def add_options(parser: ArgumentParser) -> None:
+    parser.epilog = (
+        "examples:\n"
+        "  sssgen chart cube torus -o charts\n"
+        "  sssgen chart my/scene.toml --role thickness --json\n"
+        "[medium] of a scene states the medium of its body. Without a scene: all of examples/lab."
+    )
+    parser.add_argument("SCENE", nargs="*", help="a scene's .toml file, or one of examples/lab")
+    parser.add_argument("-o", "--output", metavar="DIR", help="the folder for PNG, SVG, HTML, CSV and JSON")
+    parser.add_argument("--role", metavar="R,R", help="coordinates, thickness, translucency, material (default: all)")
+    parser.add_argument(
+        "--cost", choices=("static", "gpu"), default="static", help="counted operations (default), or time on the GPU"
+    )
+    add_reference_options(parser)
+
+
+def add_reference_options(parser: ArgumentParser) -> None:
+    """How the reference is computed, and where: options of `chart`, `pick` and `fit`."""
+    parser.add_argument(
+        "--samples", type=int, default=512, metavar="N", help="samples of the reference per pixel (default: 512)"
+    )
+    add_seed(parser, "the seed of the reference")
+    add_workers(parser)
 
 
 def run(arguments: Namespace) -> int:

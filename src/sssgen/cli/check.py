@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 
 from sssgen.cli.emit import chosen_targets
-from sssgen.cli.main import CHECK_FAILED, OK, print_json
+from sssgen.cli.output import CHECK_FAILED, OK, print_json
 from sssgen.harness.check import compile_check as check
 from sssgen.harness.check.compile_check import Report, Result
 from sssgen.harness.check.shader_files import Shader, read
@@ -16,6 +16,22 @@ from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean, fa
 
 SHOWN = 8
 """How many messages of one compiler on one file are shown; the first ones make the others."""
+
+
+def add_options(parser: ArgumentParser) -> None:
+    parser.epilog = (
+        "examples:\n  sssgen check ice\n  sssgen check wax.toml --target wgsl,hlsl\n  sssgen check out mine.frag"
+    )
+    parser.add_argument("FILE", nargs="+", help="a shader, a folder of shaders, a material's .toml file, or an example")
+    parser.add_argument(
+        "--target",
+        "-t",
+        metavar="T,T|all",
+        action="append",
+        help="only these targets; the language of a shader whose file name does not determine it",
+    )
+    parser.add_argument("--compiler", metavar="NAME", action="append", help="only this compiler; repeatable")
+    parser.add_argument("--unity-includes", metavar="DIR", help="the folder of Unity's own headers")
 
 
 def run(arguments: Namespace) -> int:

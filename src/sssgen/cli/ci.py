@@ -2,16 +2,32 @@
 
 from __future__ import annotations
 
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 from collections import Counter
 
-from sssgen.cli.main import CHECK_FAILED, OK, print_json
+from sssgen.cli.output import CHECK_FAILED, OK, print_json
 from sssgen.harness.testing import junit
 from sssgen.harness.testing import project_run as ci
 from sssgen.harness.testing.project_run import Case, Ran
 from sssgen.support.diagnostics import visible
 
 WORDS = {"passed": "ok  ", "failed": "FAIL", "skipped": "skip"}
+
+
+def add_options(parser: ArgumentParser) -> None:
+    parser.epilog = (
+        "examples:\n"
+        "  sssgen ci shaders --junit report.xml\n"
+        "  sssgen ci shaders --update\n"
+        "The golden picture of a scene is golden/NAME.png next to it. A file NAME.eval.json has inputs to evaluate: "
+        '{"technique": "lobe_gdc2011", "inputs": {"N": [[0, 0, 1]]}, "tolerance": 1e-5}'
+    )
+    add = parser.add_argument
+    add("DIR", help="the folder of your materials and scenes")
+    add("--backend", "-b", metavar="NAME", help="one or several, with commas (default: gl for scenes, all for numbers)")
+    add("--update", action="store_true", help="write the golden pictures instead of comparing with them")
+    add("--flip", type=float, metavar="X", help="the largest mean of FLIP that passes (default: 0.005)")
+    add("--junit", metavar="FILE", help="write a report in JUnit's XML")
 
 
 def run(arguments: Namespace) -> int:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-import sys
 from typing import TYPE_CHECKING
 
-from sssgen.cli.main import OK, print_json
+from sssgen.cli.options import add_guards, add_targets
+from sssgen.cli.output import OK, print_json, print_warnings
 from sssgen.pipeline import emitted_cache as emitted
 from sssgen.pipeline.emitted_cache import Made
 from sssgen.support import file_memo as watch
@@ -15,10 +15,25 @@ from sssgen.support.file_writer import write_files
 from sssgen.support.paths import posix
 
 if TYPE_CHECKING:
-    from argparse import Namespace
+    from argparse import ArgumentParser, Namespace
 
     from sssgen.material.model import Material
     from sssgen.pipeline.compiler import Compiled
+
+
+def add_options(parser: ArgumentParser) -> None:
+    parser.epilog = "examples:\n  sssgen emit ice --target all -o out\n  sssgen emit wax.toml -t wgsl,unity-urp -o out"
+    parser.add_argument("MATERIAL", nargs="+", help="a .toml file, or an example from `sssgen list materials`")
+    add_targets(parser, required=True)
+    parser.add_argument("-o", "--output", metavar="DIR", required=True, help="the folder to write to")
+    parser.add_argument(
+        "--form",
+        choices=("shader", "functions"),
+        default="shader",
+        help="whole shaders (default), or functions to include in your own shader",
+    )
+    add_guards(parser)
+    parser.add_argument("--templates", metavar="DIR", help="a folder of templates that take precedence over ours")
 
 
 def run(arguments: Namespace) -> int:
@@ -90,12 +105,6 @@ def chosen_targets(text: str, wrong: list[Diagnostic]) -> list[str]:
             hint = did_you_mean(name, [*known, "all"]) or f"targets: {', '.join(known)}, or all"
             wrong += failure(f"unknown target '{name}'", hint).diagnostics
     return known if "all" in names else [name for name in dict.fromkeys(names) if name in known]
-
-
-def print_warnings(warnings: list[Diagnostic]) -> None:
-    """Warnings go beside the result, not into it."""
-    for warning in warnings:
-        print(f"{warning.render()}\n", file=sys.stderr)
 
 
 def _templates(folder: str | None, wrong: list[Diagnostic]) -> str | None:

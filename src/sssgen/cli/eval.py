@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 from collections.abc import Mapping
 from typing import Any
 
-from sssgen.cli.main import CHECK_FAILED, OK, print_json
+from sssgen.cli.options import add_guards, add_seed
+from sssgen.cli.output import CHECK_FAILED, OK, print_json
 from sssgen.support.diagnostics import failure
 
 SHOWN = 12
@@ -14,12 +15,32 @@ SHOWN = 12
 MOST_SAMPLES = 1_000_000
 
 
+def add_options(parser: ArgumentParser) -> None:
+    parser.epilog = (
+        "examples:\n"
+        "  sssgen eval lobe_gdc2011 --inputs lobe.json --backend all\n"
+        "  sssgen eval standard --samples 10000 --backend all\n"
+        "  sssgen eval march_light --inputs rays.json --bind body_distance=shapes.sss:star\n"
+        "The inputs are values by name, one value or a list: "
+        '{"N": [[0, 0, 1], [0, 1, 0]], "power": 4.0, "map": "wood.png"}'
+    )
+    add = parser.add_argument
+    add("TECHNIQUE", help="a name from `sssgen list techniques`, a .sss file, or FILE:FUNCTION")
+    add("--inputs", "-i", metavar="FILE", help="the inputs, as JSON; - reads them from the standard input")
+    add("--samples", type=int, metavar="N", help="draw N random values, in its range, for each input without a value")
+    add_seed(parser, "the seed of the random inputs")
+    add(
+        "--backend", "-b", metavar="NAME", default="numpy",
+        help="numpy (default), gl, gl-es, webgpu, browser, hlsl, hlsl-glslang, unity, unity-urp, several, or all",
+    )  # fmt: skip
+    add("--bind", action="append", default=[], metavar="SLOT=FUNCTION", help="a function for a slot, or FILE:FUNCTION")
+    add_guards(parser)
+    add("--precision", choices=("f64", "f32", "f16"), help="numpy's precision (default: f64); webgpu has f16, too")
+
+
 def run(arguments: Namespace) -> int:
     """Prints the outputs, and with several back ends how far each is from the oracle."""
-    try:
-        from sssgen.harness.evaluate import input_files as inputs
-    except ImportError as error:
-        raise failure(f"sssgen eval needs NumPy: {error}", "pip install 'sssgen[numpy]'") from None
+    from sssgen.harness.evaluate import input_files as inputs
     from sssgen.harness.evaluate.probes import subject
 
     names = _backends(arguments.backend, arguments.precision)

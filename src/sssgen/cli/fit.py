@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 from collections.abc import Mapping
 from typing import Any
 
-from sssgen.cli.chart import settings_of
-from sssgen.cli.main import OK, print_json
+from sssgen.cli.chart import add_reference_options, settings_of
+from sssgen.cli.output import OK, print_json
 from sssgen.support.diagnostics import did_you_mean, failure
+
+
+def add_options(parser: ArgumentParser) -> None:
+    parser.epilog = "example:\n  sssgen fit cube lobe_exp2"
+    parser.add_argument("SCENE", help="a scene's .toml file, or one of examples/lab")
+    parser.add_argument("TECHNIQUE", nargs="*", help="translucency techniques (default: all)")
+    add_reference_options(parser)
 
 
 def run(arguments: Namespace) -> int:

@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 from collections import Counter
 
-from sssgen.cli.main import CHECK_FAILED, OK, print_json
+from sssgen.cli.output import CHECK_FAILED, OK, print_json
 from sssgen.support.diagnostics import Diagnostic, SssgenError
+
+
+def add_options(parser: ArgumentParser) -> None:
+    parser.epilog = (
+        "examples:\n  sssgen lint ice\n  sssgen lint mine.glsl --json\n"
+        "Exit status 1: a plain function may fail. What is emitted for a material has guards."
+    )
+    parser.add_argument("NAME", nargs="+", help="a technique, a material's .toml file, an example, or a GLSL file")
+    parser.add_argument("--all", action="store_true", help="list the operations that are proven safe, too")
+    parser.add_argument("--no-examples", action="store_true", help="do not search for inputs that fail: faster")
 
 
 def run(arguments: Namespace) -> int:

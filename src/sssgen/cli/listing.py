@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 from typing import Any
 
-from sssgen.cli.main import OK, print_json
+from sssgen.cli.output import OK, print_json
 from sssgen.material import library
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import posix
+
+LISTS = ("techniques", "targets", "materials")
+
+
+def add_options(parser: ArgumentParser) -> None:
+    parser.add_argument("KIND", choices=LISTS, help="techniques, targets or materials")
+    parser.add_argument("--role", metavar="R", help="only the techniques of this role")
 
 
 def run(arguments: Namespace) -> int:

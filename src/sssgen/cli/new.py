@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from sssgen.cli.main import OK, print_json
+from sssgen.cli.output import OK, print_json
 from sssgen.material.model import wrong_name
 from sssgen.support.diagnostics import failure
 
@@ -54,6 +54,10 @@ distortion = 0.2
 power = 6.0
 subsurface_color = "#ffb36b"  # sRGB, as color pickers show it; a list [1.0, 0.45, 0.15] is linear RGB
 """
+
+
+def add_options(parser: ArgumentParser) -> None:
+    parser.add_argument("MATERIAL", help="the material's name, or a .toml file; no file is overwritten")
 
 
 def run(arguments: Namespace) -> int:

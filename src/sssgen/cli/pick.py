@@ -3,17 +3,34 @@
 from __future__ import annotations
 
 import os
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from sssgen.cli.chart import settings_of
-from sssgen.cli.main import CHECK_FAILED, OK, print_json
+from sssgen.cli.chart import add_reference_options, settings_of
+from sssgen.cli.options import add_targets
+from sssgen.cli.output import CHECK_FAILED, OK, print_json
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 
 if TYPE_CHECKING:
     from sssgen.lab.chart.picking import Pick
     from sssgen.lab.scene.measured_scene import Situation
+
+
+def add_options(parser: ArgumentParser) -> None:
+    parser.epilog = (
+        "examples:\n"
+        "  sssgen pick cube --max-error 0.5\n"
+        "  sssgen pick my/scene.toml --max-cost 300 --emit out --target wgsl\n"
+        "The scene is measured first, unless its chart is in the cache."
+    )
+    parser.add_argument("SCENE", help="a scene's .toml file, or one of examples/lab")
+    limits = parser.add_mutually_exclusive_group(required=True)
+    limits.add_argument("--max-error", type=float, metavar="E", help="the largest relative error, such as 0.3")
+    limits.add_argument("--max-cost", type=float, metavar="C", help="the largest static cost, in operations")
+    parser.add_argument("--emit", metavar="DIR", help="write the material and its shaders to this folder")
+    add_targets(parser, default="glsl-330")
+    add_reference_options(parser)
 
 
 def run(arguments: Namespace) -> int:

@@ -4,17 +4,36 @@ from __future__ import annotations
 
 import os
 import re
-from argparse import Namespace
-from importlib.util import find_spec
+from argparse import ArgumentParser, Namespace
 
-from sssgen.cli.main import OK, print_json
+from sssgen.cli.options import add_guards
+from sssgen.cli.output import OK, print_json
 from sssgen.support.diagnostics import failure
+
+
+def add_options(parser: ArgumentParser) -> None:
+    parser.epilog = (
+        "examples:\n"
+        "  sssgen render scenes/lantern.toml -o lantern.png\n"
+        "  sssgen render --compare lantern.png golden.png -o difference.png"
+    )
+    add = parser.add_argument
+    add("SCENE", nargs="?", help="a scene's .toml file, or an example")
+    add("-o", "--output", metavar="FILE", help="a .png or .exr file (default: SCENE's name with .png)")
+    add("--backend", "-b", metavar="NAME", default="gl", help="gl (default), webgpu, browser, hlsl, numpy, …")
+    add_guards(parser)
+    add("--size", metavar="WxH", help="in pixels (default: the scene's size)")
+    add("--time", type=float, metavar="T", help="in seconds (default: the scene's time)")
+    add(
+        "--compare",
+        nargs=2,
+        metavar=("A", "B"),
+        help="print FLIP, relMSE, p99 and maximum of the difference of A and B",
+    )
 
 
 def run(arguments: Namespace) -> int:
     """Renders, or compares."""
-    if find_spec("numpy") is None:
-        raise failure("sssgen render needs more packages", "pip install 'sssgen[render]'")
     if arguments.compare:
         return _compare(arguments)
     if not arguments.SCENE:

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 from typing import Any
 
-from sssgen.cli.main import OK, print_json
+from sssgen.cli.output import OK, print_json
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler, kind_of, spell
 from sssgen.material import library, slots
 from sssgen.material.library import Technique
 
 WIDTH = 100
+
+
+def add_options(parser: ArgumentParser) -> None:
+    parser.add_argument("TECHNIQUE", help="a name from `sssgen list techniques`, or a .sss file")
 
 
 def run(arguments: Namespace) -> int:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from sssgen.cli.main import CHECK_FAILED, OK, print_json
+from sssgen.cli.options import add_guards, add_seed, add_workers
+from sssgen.cli.output import CHECK_FAILED, OK, print_json
 from sssgen.support.diagnostics import failure
 
 if TYPE_CHECKING:
@@ -20,13 +21,35 @@ DEFAULT = {None: "numpy-f32,gl,webgpu,browser,hlsl", "f32": "numpy-f32,gl,webgpu
 MOST_SAMPLES = 10**9
 
 
+def add_options(parser: ArgumentParser) -> None:
+    parser.epilog = (
+        "examples:\n"
+        "  sssgen stress lobe_normalized\n"
+        "  sssgen stress wax.toml --backend gl,webgpu --samples 1000000 -o stress.md\n"
+        "Without a name: every technique of the library but its published baselines."
+    )
+    add = parser.add_argument
+    add("NAME", nargs="*", help="a technique, a .sss file, a material's .toml file, or an example")
+    add("--backend", "-b", metavar="NAME", help="default: numpy-f32,gl,webgpu,browser,hlsl; one, several, or all")
+    add("--samples", type=int, default=10_000, metavar="N", help="the number of random inputs (default: 10000)")
+    add_seed(parser, "their seed")
+    add(
+        "--row",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="only this row of the table of dangerous inputs; repeatable",
+    )
+    add("--precision", choices=("f32", "f16"), help="f16: numpy and webgpu in half precision (default: f32)")
+    add_guards(parser)
+    add("-o", "--output", metavar="REPORT", help="a .md or .json file to write the report to")
+    add_workers(parser)
+
+
 def run(arguments: Namespace) -> int:
     """Stresses what is named, and prints what is wrong; 1 where something that counts is."""
-    try:
-        from sssgen.harness.stress import dangerous_inputs as dangerous
-        from sssgen.harness.stress import stress_report as report
-    except ImportError as error:
-        raise failure(f"sssgen stress needs NumPy: {error}", "pip install 'sssgen[numpy]'") from None
+    from sssgen.harness.stress import dangerous_inputs as dangerous
+    from sssgen.harness.stress import stress_report as report
     from sssgen.harness.stress.stress_run import Settings
     from sssgen.harness.stress.subject import specimens
     from sssgen.harness.testing.outcome import in_ci

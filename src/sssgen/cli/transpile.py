@@ -6,12 +6,13 @@ import keyword
 import os
 import re
 import sys
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sssgen.cli.emit import chosen_targets, print_warnings
-from sssgen.cli.main import CHECK_FAILED, OK, print_json
+from sssgen.cli.emit import chosen_targets
+from sssgen.cli.options import add_guards, add_seed
+from sssgen.cli.output import CHECK_FAILED, OK, print_json, print_warnings
 from sssgen.lang.loader import load_file, read_text
 from sssgen.lang.plain_glsl import Loaded, load_glsl
 from sssgen.material.library import TECHNIQUES
@@ -23,6 +24,47 @@ if TYPE_CHECKING:
     from sssgen.ir.nodes import Module
 
 REFLECTION = ".reflection.json"
+
+
+def add_options(parser: ArgumentParser) -> None:
+    parser.epilog = (
+        "examples:\n"
+        "  sssgen transpile noise.glsl --target wgsl -o noise.wgsl\n"
+        "  sssgen transpile scene.glsl --entry shadertoy --target hlsl\n"
+        "  sssgen transpile library/fbm.glsl -I library -D OCTAVES=5 --prune --target unity-urp\n"
+        "  sssgen transpile noise.glsl --verify\n"
+        "  sssgen transpile noise.glsl --as technique --function snoise\n"
+        "The accepted language: docs/transpile.md. Exit status 1: --verify found a difference."
+    )
+    add = parser.add_argument
+    add("FILE", help="a file of GLSL 1.00 ES to 4.60: functions, or a fragment or vertex shader")
+    add("--target", "-t", metavar="T", help="a target from `sssgen list targets`")
+    add(
+        "--include",
+        "-I",
+        metavar="DIR",
+        action="append",
+        default=[],
+        help="search this folder for #include; repeatable",
+    )
+    add("--define", "-D", metavar="NAME[=VALUE]", action="append", default=[], help="define a macro; repeatable")
+    add("--entry", choices=("shadertoy",), default="", help="the file's entry point: mainImage instead of main")
+    add("--prune", action="store_true", help="omit functions that the file itself never calls")
+    add_guards(parser, default="none")
+    add("-o", "--output", metavar="FILE", help="the file to write; its reflection is written next to it")
+    add(
+        "--verify", action="store_true", help="run every function as written and as translated, and compare the results"
+    )
+    add(
+        "--samples",
+        type=int,
+        default=1000,
+        metavar="N",
+        help="the number of random inputs for --verify (default: 1000)",
+    )
+    add_seed(parser, "the seed of these inputs")
+    add("--as", dest="as_", choices=("technique",), help="write a function as the start of a technique's file")
+    add("--function", metavar="NAME", default="", help="the function for --as (default: the last one of the file)")
 
 
 def run(arguments: Namespace) -> int:
@@ -178,11 +220,9 @@ def _print(
 
 def _verify(arguments: Namespace, path: Path) -> int:
     """Runs each function as it is written and as it is translated, and prints how far they are apart."""
-    try:
-        from sssgen.harness.verify import inline_includes as includes
-        from sssgen.harness.verify import verification as transpiled
-    except ImportError as error:
-        raise failure(f"--verify needs the harness: {error}", "pip install 'sssgen[harness]'") from None
+    from sssgen.harness.verify import inline_includes as includes
+    from sssgen.harness.verify import verification as transpiled
+
     if arguments.define:
         raise failure("-D does not go with --verify", "write the #define into the file")
     text = includes.expanded(read_text(path, path.as_posix()), path, arguments.include)

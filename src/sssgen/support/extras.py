@@ -1,10 +1,11 @@
-"""Packages that only some commands need: imported where they are used, so that a missing one can say how to get it."""
+"""Optional packages: what imports them, and how the error of a missing one names the extra that installs it."""
 
 from __future__ import annotations
 
 import contextlib
 import importlib
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from typing import Any
@@ -13,30 +14,45 @@ from sssgen.support.diagnostics import failure
 
 
 def need(module: str, package: str = "", extra: str = "render") -> Any:
-    """The module of that name; `package` is what it is installed as, `extra` the extra of sssgen's that brings it.
+    """Imports a module of the distribution `package`, which an extra of sssgen installs.
 
     Raises SssgenError where it is missing.
     """
     try:
-        with _interrupts_wait():
+        with _delayed_interrupts():
             return importlib.import_module(module)
     except ImportError as error:
-        message = f"the package '{package or module}' is missing: {error}"
-        raise failure(message, f"pip install 'sssgen[{extra}]'") from None
+        raise failure(f"the package '{package or module}' is missing: {error}", install_hint(extra)) from None
+
+
+def missing_package(error: ModuleNotFoundError, extra: str) -> Exception:
+    """The error for the user where a package is not installed; `error` itself where the module is of sssgen or Python.
+
+    `extra` is the one that installs what the command needs.
+    """
+    name = (error.name or "").partition(".")[0]
+    if name in ("", "sssgen") or name in sys.stdlib_module_names:
+        return error
+    return failure(f"the package '{name}' is missing", install_hint(extra))
+
+
+def install_hint(extra: str) -> str:
+    """The command that installs an extra; double quotes do in every shell."""
+    return f'pip install "sssgen[{extra}]"'
 
 
 @contextlib.contextmanager
-def _interrupts_wait() -> Iterator[None]:
-    """Interrupts are raised afterwards: some packages catch whatever is raised while they import others."""
-    unknown = signal.getsignal(signal.SIGINT) is None  # not set by Python: it could not be set again
-    if unknown or threading.current_thread() is not threading.main_thread():
+def _delayed_interrupts() -> Iterator[None]:
+    """Delays Ctrl-C until the import is done: some packages catch every exception while they import others."""
+    foreign = signal.getsignal(signal.SIGINT) is None  # not set by Python, which cannot restore it
+    if foreign or threading.current_thread() is not threading.main_thread():
         yield
         return
-    held: list[int] = []
-    before = signal.signal(signal.SIGINT, lambda number, _: held.append(number))
+    pending: list[int] = []
+    handler = signal.signal(signal.SIGINT, lambda number, _: pending.append(number))
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
-        if held:
-            signal.raise_signal(held[0])
+        signal.signal(signal.SIGINT, handler)
+        if pending:
+            signal.raise_signal(pending[0])

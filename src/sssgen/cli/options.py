@@ -1,0 +1,71 @@
+"""The options that several commands share, and the parser that reports errors as sssgen does."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from typing import Any, NoReturn
+
+from sssgen.support.diagnostics import did_you_mean, failure
+
+
+class Parser(argparse.ArgumentParser):
+    """An `argparse` parser without abbreviations, whose errors are SssgenErrors with a hint."""
+
+    def __init__(self, prog: str, description: str, epilog: str = "", **settings: Any) -> None:
+        super().__init__(
+            prog=prog,
+            description=f"{description[0].upper()}{description[1:]}.",
+            epilog=epilog,
+            allow_abbrev=False,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+            **settings,
+        )
+
+    def error(self, message: str) -> NoReturn:
+        hint = f"see: {self.prog} --help"
+        if match := re.match(r"argument ([^:]+): invalid choice: '?(.*?)'? \(choose from (.*)\)", message):
+            argument, word, listed = match.groups()
+            choices = re.findall(r"[\w-]+", listed)
+            message = f"unknown {argument.lower()} '{word}'"
+            hint = did_you_mean(word, choices) or f"choose from: {', '.join(choices)}"
+        elif match := re.match(r"argument (?:\S+/)?(--[\w-]+): expected one argument", message):
+            hint = f"write a value that begins with - as {match[1]}=VALUE"
+        raise failure(message, hint)
+
+
+def add_json(parser: argparse.ArgumentParser) -> None:
+    """Every command has `--json`."""
+    parser.add_argument("--json", action="store_true", help="print the result, or the errors, as JSON")
+
+
+def add_targets(parser: argparse.ArgumentParser, required: bool = False, default: str | None = None) -> None:
+    """The targets to emit for: `--target`. Without a default it is required, or None."""
+    help = "targets from `sssgen list targets`, or all" + (f" (default: {default})" if default else "")
+    parser.add_argument("--target", "-t", metavar="T,T|all", required=required, default=default, help=help)
+
+
+def add_guards(parser: argparse.ArgumentParser, default: str = "auto") -> None:
+    """Which operations are guarded: `--guards`."""
+    help = "guard operations that may fail: auto where safety is not proven, all everywhere, none nowhere"
+    choices = ("auto", "all", "none")
+    parser.add_argument("--guards", choices=choices, default=default, help=f"{help} (default: {default})")
+
+
+def add_seed(parser: argparse.ArgumentParser, help: str) -> None:
+    """Which random numbers are used: `--seed`."""
+    parser.add_argument("--seed", type=int, default=0, metavar="N", help=f"{help} (default: 0)")
+
+
+def add_workers(parser: argparse.ArgumentParser) -> None:
+    """Where the command's work items run: `--processes` and `--scheduler`."""
+    parser.add_argument("--processes", type=_processes, metavar="N", help="distribute the work over N processes")
+    parser.add_argument(
+        "--scheduler", default="", metavar="ADDRESS", help="distribute it over a Dask cluster: tcp://HOST:8786"
+    )
+
+
+def _processes(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number of processes")
+    return int(text)
