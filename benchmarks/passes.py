@@ -10,7 +10,8 @@ from pathlib import Path
 from time import perf_counter
 
 from sssgen.ir.nodes import Module
-from sssgen.ir.walk import all_expressions, rewrite_module
+from sssgen.ir.transform import rewrite_module
+from sssgen.ir.walk import all_expressions
 from sssgen.material.material_loading import load_material
 from sssgen.passes.fold import fold
 from sssgen.passes.hoist import hoist

@@ -14,6 +14,7 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.rules import element_type, operator_type, prefix_type
 from sssgen.ir.signatures import instantiate, parse, resolve
+from sssgen.ir.transform import rewrite
 from sssgen.ir.types import (
     BOOL,
     FLOAT,
@@ -32,7 +33,6 @@ from sssgen.ir.types import (
     kind_of,
     vector_of,
 )
-from sssgen.ir.walk import rewrite
 from sssgen.lang.check.quantities import QUANTITIES
 
 T = TypeVar("T")

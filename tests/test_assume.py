@@ -18,9 +18,10 @@ from sssgen.harness.evaluate.random_inputs import samples
 from sssgen.ir import nodes as ir
 from sssgen.ir.text import print_module
 from sssgen.ir.text_reader import read_module
+from sssgen.ir.transform import rewrite_module
 from sssgen.ir.types import BOOL, FLOAT, Matrix, Sampler
 from sssgen.ir.verify import verify
-from sssgen.ir.walk import rewrite_module, statements
+from sssgen.ir.walk import statements
 from sssgen.lang.check.module_checker import check
 from sssgen.lang.syntax.parser import parse
 from sssgen.material import library

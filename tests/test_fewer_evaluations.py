@@ -18,7 +18,7 @@ from sssgen.harness.evaluate.probes import subject
 from sssgen.harness.scenes.geometry import Ball, Box, Geometry, Slab, Torus
 from sssgen.ir import nodes as ir
 from sssgen.ir.nodes import Module
-from sssgen.ir.walk import rewrite_module
+from sssgen.ir.transform import rewrite_module
 
 REACH, WAY = 0.4, 2.0
 TWO_BALLS_AND_A_WALL = """

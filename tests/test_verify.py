@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from ir_sample import SAMPLE_MODULE
 from sssgen.ir import nodes as ir
 from sssgen.ir.rules import constructs, inferred, operator_type
+from sssgen.ir.transform import rewrite_module
 from sssgen.ir.types import (
     BOOL,
     FLOAT,
@@ -31,7 +32,7 @@ from sssgen.ir.types import (
     spell,
 )
 from sssgen.ir.verify import InvalidIR, check_module, verify
-from sssgen.ir.walk import all_expressions, rewrite_module
+from sssgen.ir.walk import all_expressions
 from strategies import modules
 
 NOWHERE = ir.NOWHERE

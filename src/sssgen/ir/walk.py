@@ -1,12 +1,9 @@
-"""Walking and rewriting IR: the one place that knows which fields of a node are its children.
-
-Rewriting keeps a node's identity when nothing below it changed, so that an idle pass costs no memory.
-"""
+"""Walking IR: the one place that knows which fields of a node are its operands. For rewriting see `ir.transform`."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import TypeAlias, cast
+from collections.abc import Iterator
+from typing import cast
 
 from sssgen.ir.nodes import (
     Assign,
@@ -36,9 +33,6 @@ from sssgen.ir.nodes import (
     While,
 )
 
-RewriteExpr: TypeAlias = Callable[[Expr], Expr]
-RewriteStmt: TypeAlias = Callable[[Stmt], "Block | None"]
-
 
 def operands(expr: Expr) -> tuple[Expr, ...]:
     """The expressions directly inside `expr`."""
@@ -61,109 +55,23 @@ def operands(expr: Expr) -> tuple[Expr, ...]:
 
 def with_operands(expr: Expr, new: tuple[Expr, ...]) -> Expr:
     """`expr` with other operands, in the order of `operands`."""
-    if isinstance(expr, Call | Intrinsic | Construct):
-        return expr._replace(args=new)
     if isinstance(expr, Binary):
-        return expr._replace(left=new[0], right=new[1])
-    if isinstance(expr, Swizzle | Member):
-        return expr._replace(value=new[0])
+        return Binary(expr.type, expr.op, new[0], new[1], expr.span)
+    if isinstance(expr, Intrinsic):
+        return Intrinsic(expr.type, expr.name, new, expr.span)
+    if isinstance(expr, Construct):
+        return Construct(expr.type, new, expr.span)
+    if isinstance(expr, Call):
+        return Call(expr.type, expr.function, new, expr.span)
+    if isinstance(expr, Swizzle):
+        return Swizzle(expr.type, new[0], expr.components, expr.span)
     if isinstance(expr, Unary):
-        return expr._replace(operand=new[0])
+        return Unary(expr.type, expr.op, new[0], expr.span)
     if isinstance(expr, Select):
-        return expr._replace(condition=new[0], yes=new[1], no=new[2])
+        return Select(expr.type, new[0], new[1], new[2], expr.span)
     if isinstance(expr, Index):
-        return expr._replace(value=new[0], index=new[1])
-    return expr
-
-
-def rewrite(expr: Expr, change: RewriteExpr) -> Expr:
-    """Rebuilds `expr` bottom-up, passing every node through `change`."""
-    old = operands(expr)
-    if old:
-        new = tuple([rewrite(operand, change) for operand in old])
-        for before, after in zip(old, new, strict=True):
-            if before is not after:
-                expr = with_operands(expr, new)
-                break
-    return change(expr)
-
-
-def rewrite_stmt(stmt: Stmt, change: RewriteExpr, restate: RewriteStmt | None = None) -> Block:
-    """Rewrites a statement's expressions, then its inner blocks, then the statement itself.
-
-    `restate` may return a block to put in the statement's place, or None to keep it.
-    """
-    new = stmt
-    if isinstance(stmt, Declare):
-        if stmt.value is not None:
-            value = rewrite(stmt.value, change)
-            new = stmt if value is stmt.value else stmt._replace(value=value)
-    elif isinstance(stmt, Assign):
-        target, value = rewrite(stmt.target, change), rewrite(stmt.value, change)
-        if target is not stmt.target or value is not stmt.value:
-            new = stmt._replace(target=target, value=value)
-    elif isinstance(stmt, If):
-        condition = rewrite(stmt.condition, change)
-        then = rewrite_block(stmt.then, change, restate)
-        otherwise = rewrite_block(stmt.otherwise, change, restate)
-        if condition is not stmt.condition or then is not stmt.then or otherwise is not stmt.otherwise:
-            new = If(condition, then, otherwise, stmt.span)
-    elif isinstance(stmt, For):
-        init = _only(rewrite_stmt(stmt.init, change)) if stmt.init is not None else None
-        test = rewrite(stmt.condition, change) if stmt.condition is not None else None
-        step = _only(rewrite_stmt(stmt.step, change)) if stmt.step is not None else None
-        body = rewrite_block(stmt.body, change, restate)
-        if init is not stmt.init or test is not stmt.condition or step is not stmt.step or body is not stmt.body:
-            new = For(init, test, step, body, stmt.span)
-    elif isinstance(stmt, While):
-        condition, body = rewrite(stmt.condition, change), rewrite_block(stmt.body, change, restate)
-        if condition is not stmt.condition or body is not stmt.body:
-            new = While(condition, body, stmt.span)
-    elif isinstance(stmt, Return):
-        if stmt.value is not None:
-            value = rewrite(stmt.value, change)
-            new = stmt if value is stmt.value else stmt._replace(value=value)
-    elif isinstance(stmt, Evaluate):
-        call = rewrite(stmt.call, change)
-        new = stmt if call is stmt.call else stmt._replace(call=call)
-    elif isinstance(stmt, Assume):
-        condition = rewrite(stmt.condition, change)
-        new = stmt if condition is stmt.condition else Assume(condition, stmt.span)
-    if restate is not None:
-        replacement = restate(new)
-        if replacement is not None:
-            return replacement
-    return (new,)
-
-
-def rewrite_block(block: Block, change: RewriteExpr, restate: RewriteStmt | None = None) -> Block:
-    """Rewrites every statement of a block; the same block when nothing changed."""
-    result: list[Stmt] = []
-    changed = False
-    for stmt in block:
-        new = rewrite_stmt(stmt, change, restate)
-        changed = changed or len(new) != 1 or new[0] is not stmt
-        result.extend(new)
-    return tuple(result) if changed else block
-
-
-def rewrite_function(function: Function, change: RewriteExpr, restate: RewriteStmt | None = None) -> Function:
-    """Rewrites a function's body."""
-    if function.body is None:
-        return function
-    body = rewrite_block(function.body, change, restate)
-    return function if body is function.body else function._replace(body=body)
-
-
-def rewrite_module(module: Module, change: RewriteExpr, restate: RewriteStmt | None = None) -> Module:
-    """Rewrites the body of every function (not the values of constants)."""
-    functions = tuple([rewrite_function(function, change, restate) for function in module.functions])
-    return module._replace(functions=functions)
-
-
-def _only(block: Block) -> Stmt:
-    (stmt,) = block
-    return stmt
+        return Index(expr.type, new[0], new[1], expr.span)
+    return Member(expr.type, new[0], expr.field, expr.span) if isinstance(expr, Member) else expr
 
 
 def expressions(stmt: Stmt) -> tuple[Expr, ...]:

@@ -373,13 +373,13 @@ _SURFACE = Struct("Surface", ())
 
 def _retype(expr: Expr, struct: Struct) -> Expr:
     """Gives references to the surface their type, which is known only once every stage has been added."""
-    from sssgen.ir.walk import rewrite
+    from sssgen.ir.transform import rewrite
 
     return rewrite(expr, lambda node: node._replace(type=struct) if node.type == _SURFACE else node)
 
 
 def _retyped(statements: Sequence[Stmt], struct: Struct) -> list[Stmt]:
-    from sssgen.ir.walk import rewrite_block
+    from sssgen.ir.transform import rewrite_block
 
     change = lambda node: node._replace(type=struct) if node.type == _SURFACE else node  # noqa: E731
     return list(rewrite_block(tuple(statements), change))

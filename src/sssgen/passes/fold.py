@@ -46,8 +46,9 @@ from sssgen.ir.nodes import (
     While,
 )
 from sssgen.ir.rules import element_type
+from sssgen.ir.transform import rewrite
 from sssgen.ir.types import BOOL, Array, Matrix, Scalar, Struct, Type, Vector, components, kind_of, vector_of
-from sssgen.ir.walk import operands, rewrite, subexpressions, with_operands
+from sssgen.ir.walk import operands, subexpressions, with_operands
 from sssgen.passes import constant_arithmetic as arithmetic
 from sssgen.passes.constant_arithmetic import Number, Numbers
 from sssgen.passes.scopes import separate

@@ -14,8 +14,9 @@ from typing import NamedTuple
 from sssgen.ir import nodes as ir
 from sssgen.ir.formats import FLOAT32, Format
 from sssgen.ir.intrinsics import Guard, with_constants
+from sssgen.ir.transform import rewrite_function, rewrite_module
 from sssgen.ir.types import BOOL, FLOAT, UINT, Matrix, Type, components, kind_of, spell, vector_of
-from sssgen.ir.walk import operands, rewrite_function, rewrite_module, statements, with_operands
+from sssgen.ir.walk import operands, statements, with_operands
 from sssgen.passes.ranges.range_pass import Findings, analyse
 from sssgen.passes.ranges.sites import BOUNDS, DIVISION, Site
 from sssgen.passes.substitute import in_place, widened_bound

@@ -39,7 +39,8 @@ from sssgen.ir.nodes import (
     Swizzle,
     While,
 )
-from sssgen.ir.walk import expressions, operands, rewrite, subexpressions, with_operands
+from sssgen.ir.transform import rewrite
+from sssgen.ir.walk import expressions, operands, subexpressions, with_operands
 from sssgen.passes.divergence import Summary, implicit, summaries
 from sssgen.passes.scopes import declared, fresh, substitute
 

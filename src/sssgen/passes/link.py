@@ -10,8 +10,9 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import NamedTuple
 
 from sssgen.ir.nodes import Call, Constant, Expr, Function, Global, Module, Span, StructDecl, Uniform
+from sssgen.ir.transform import rewrite, rewrite_function
 from sssgen.ir.types import Struct
-from sssgen.ir.walk import all_expressions, rewrite, rewrite_function, subexpressions
+from sssgen.ir.walk import all_expressions, subexpressions
 
 Bound = tuple[Module, Function]
 

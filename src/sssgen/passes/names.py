@@ -30,8 +30,9 @@ from sssgen.ir.nodes import (
     Variable,
     function_key,
 )
+from sssgen.ir.transform import rewrite, rewrite_block
 from sssgen.ir.types import VEC4, Array, Field, Matrix, Struct, Type, spell
-from sssgen.ir.walk import all_expressions, rewrite, rewrite_block, statements
+from sssgen.ir.walk import all_expressions, statements
 from sssgen.passes.scopes import Renamer, declared, rename_locals
 
 

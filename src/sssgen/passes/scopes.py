@@ -30,7 +30,8 @@ from sssgen.ir.nodes import (
     Stmt,
     While,
 )
-from sssgen.ir.walk import calls_of, expressions, inner_statements, operands, rewrite, root, statements, with_operands
+from sssgen.ir.transform import rewrite
+from sssgen.ir.walk import calls_of, expressions, inner_statements, operands, root, statements, with_operands
 
 _NONE: Mapping[str, str] = {}
 

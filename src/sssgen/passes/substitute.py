@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.walk import rewrite, subexpressions
+from sssgen.ir.transform import rewrite
+from sssgen.ir.walk import subexpressions
 
 _OURS = ("intrinsics/", "guards/")
 

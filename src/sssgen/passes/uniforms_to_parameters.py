@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections.abc import Container, Mapping
 
 from sssgen.ir.nodes import Call, Expr, Function, Global, Local, Module, Param, function_key
+from sssgen.ir.transform import rewrite_function
 from sssgen.ir.types import Sampler
-from sssgen.ir.walk import rewrite_function
 from sssgen.passes.scopes import declared, fresh, mentions, rename_locals
 
 

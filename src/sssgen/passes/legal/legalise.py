@@ -12,6 +12,7 @@ from operator import is_
 from sssgen.ir import nodes as ir
 from sssgen.ir import signatures
 from sssgen.ir.intrinsics import BUILTINS
+from sssgen.ir.transform import rewrite
 from sssgen.ir.types import (
     BOOL,
     FLOAT,
@@ -27,7 +28,7 @@ from sssgen.ir.types import (
     kind_of,
     vector_of,
 )
-from sssgen.ir.walk import operands, rewrite, subexpressions, with_operands
+from sssgen.ir.walk import operands, subexpressions, with_operands
 from sssgen.passes import uniform_blocks as blocks
 from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.legal.integer_operators import counts_up, with_result

@@ -26,8 +26,9 @@ from sssgen.ir.nodes import (
     Unary,
     While,
 )
+from sssgen.ir.transform import rewrite, rewrite_block
 from sssgen.ir.types import BOOL, Array, Matrix, Scalar, Struct, Type, Vector
-from sssgen.ir.walk import expressions, rewrite, rewrite_block, root, statements, subexpressions
+from sssgen.ir.walk import expressions, root, statements, subexpressions
 from sssgen.passes.lift_calls import Functions, out_arguments
 from sssgen.passes.scopes import fresh
 

@@ -13,8 +13,9 @@ from typing import NamedTuple
 
 from sssgen.ir.nodes import Expr, Function, Global, Index, Intrinsic, Literal, Module, Span, Unary, Variable
 from sssgen.ir.rules import element_type
+from sssgen.ir.transform import rewrite_module
 from sssgen.ir.types import VOID, Array, Matrix, Struct, Type, Vector
-from sssgen.ir.walk import all_expressions, builtins_of, operands, rewrite_module
+from sssgen.ir.walk import all_expressions, builtins_of, operands
 from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.variable_effects import effects
 

@@ -31,8 +31,9 @@ from sssgen.ir.nodes import (
     Stmt,
     Uniform,
 )
+from sssgen.ir.transform import rewrite, rewrite_module
 from sssgen.ir.types import INT, Array, Struct, Type, components
-from sssgen.ir.walk import operands, rewrite, rewrite_module, subexpressions, with_operands
+from sssgen.ir.walk import operands, subexpressions, with_operands
 from sssgen.passes.scopes import fresh
 
 Path = tuple[str, ...]

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from sssgen.ir.nodes import Expr, Intrinsic, Literal, Module
 from sssgen.ir.signatures import resolve
+from sssgen.ir.transform import rewrite_module
 from sssgen.ir.types import FLOAT
-from sssgen.ir.walk import rewrite_module
 
 
 def with_levels(module: Module) -> Module:
