@@ -92,7 +92,7 @@ def page(present: list[Backend], small: dict[str, list[Apart]], large: dict[str,
         *_paragraph(
             f"Each scene at {SMALL[0]} × {SMALL[1]} on every back end: the largest difference of any channel of any "
             "pixel from what NumPy draws in float64, in 1/255 of the encoded sRGB value, before rounding to 8 bits. "
-            "At 64 × 48, with one sample a pixel, `tests/test_gallery.py` holds it below 1."
+            "At 64 × 48, with one sample a pixel, `tests/harness/test_gallery.py` holds it below 1."
         ),
         f"| Scene | {' | '.join(f'`{backend.name}`' for backend in present)} |",
         f"|---|{'---|' * len(present)}",

@@ -44,7 +44,8 @@ def rows(present: list[Backend]) -> dict[str, Row]:
 def page(present: list[Backend], found: dict[str, Row]) -> str:
     """The page's text."""
     texts = [
-        "Measured by `python -m qualification.pages.parity_techniques`; `tests/test_parity_techniques.py` holds it. "
+        "Measured by `python -m qualification.pages.parity_techniques`; "
+        "`tests/qualification/test_parity_techniques.py` checks it. "
         f"Each technique has {LANES:,} random inputs (seed {SEED}), in the declared meaning of each parameter "
         f"(`src/sssgen/harness/evaluate/random_inputs.py`), and again {BOUND_LANES:,} for each other function of "
         "the library that fits one of its slots. The oracle is what the `numpy` target emits, in float64.",

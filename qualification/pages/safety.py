@@ -33,7 +33,8 @@ def introduction() -> list[str]:
             "cheapest one that its range asks for. `sssgen lint` shows both, for your files too."
         ),
         *_paragraph(
-            "Made by `make stability` (`qualification/pages/safety.py`); the tests are `tests/test_safety.py`."
+            "Made by `make stability` (`qualification/pages/safety.py`); "
+            "the tests are `tests/qualification/test_safety.py`."
         ),
     ]
 

@@ -205,9 +205,10 @@ def introduction() -> list[str]:
             "in OpenGL where nothing else is said; scenes and materials are in `docs/stability/`. The figures are "
             "those of `qualification.errata`, on "
             + ", ".join(f"`{name}`" for name in BACKENDS)
-            + "; where these differ, each is named. `tests/test_errata_shown.py` holds them: the published ones are "
-            "off as theory says, ours are within their bounds on every back end. The published ones are measured "
-            "without the guards that `sssgen` adds where an operation may go wrong, ours with them. "
+            + "; where these differ, each is named. `tests/qualification/test_errata_shown.py` checks them: the "
+            "published ones are off as theory says, ours are within their bounds on every back end. "
+            "The published ones are measured without the guards that `sssgen` adds where an operation may go wrong, "
+            "ours with them. "
             "[errata.md](errata.md) has the same errata in words."
         ),
     ]  # fmt: skip

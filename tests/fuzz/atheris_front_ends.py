@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 
 import atheris
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[1] / "tools"))
 
 with atheris.instrument_imports(include=["sssgen"]):
     from front_ends import FRONT_ENDS, survives

@@ -15,6 +15,7 @@ import numpy as np
 from PIL import Image
 
 from amounts import COUNTED
+from folders import TESTS
 from ir_sample import SAMPLE
 from sssgen.bake import bake_light as light
 from sssgen.bake.volume_files import encoded
@@ -45,7 +46,7 @@ from watchdog import bounded
 NAME = "fuzzed"
 """What the files are called, before their suffix."""
 
-CORPUS = Path(__file__).parent.parent / "transpile"
+CORPUS = TESTS / "transpile"
 """Plain GLSL of every construct."""
 
 

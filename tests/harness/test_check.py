@@ -1,0 +1,361 @@
+"""`sssgen check`: what it takes, what it says of what is wrong, and where that stands in the technique."""
+
+from __future__ import annotations
+
+import json
+import os
+import stat
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+
+from folders import UNITY_STANDIN
+from sssgen.cli import main as cli
+from sssgen.harness.check import compile_check as check
+from sssgen.harness.check.shader_files import of_files, of_material, read
+from sssgen.harness.compilers import Compiler, Source
+from sssgen.harness.compilers.compiler_process import Worker
+from sssgen.support.file_writer import write_files
+
+FRAGMENT = "in vec2 v_uv;\nout vec4 color;\nvoid main() {\n    color = vec4(v_uv, 0.0, 1.0);\n}\n"
+HLSL = """\
+struct Varyings { float4 position : SV_Position; float2 uv : TEXCOORD0; };
+Varyings place(float3 position : POSITION) {
+    Varyings made;
+    made.position = float4(position, 1.0);
+    made.uv = position.xy;
+    return made;
+}
+float4 tint(float2 uv) { return float4(uv, 0.0, 1.0); }
+float4 shade(Varyings input) : SV_Target { return tint(input.uv); }
+"""
+WGSL = "@fragment fn shade() -> @location(0) vec4<f32> {\n    return vec4<f32>(1.0);\n}\n"
+
+
+class Ran(NamedTuple):
+    status: int
+    out: str
+    err: str
+
+    @property
+    def data(self) -> dict[str, Any]:
+        found: dict[str, Any] = json.loads(self.out)
+        return found
+
+
+Run = Callable[..., Ran]
+
+
+@pytest.fixture(autouse=True)
+def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("CI", raising=False)
+
+
+@pytest.fixture
+def run(capsys: pytest.CaptureFixture[str]) -> Run:
+    def call(*arguments: str) -> Ran:
+        status = cli.main(["check", *arguments])
+        return Ran(status, *capsys.readouterr())
+
+    return call
+
+
+def write(files: dict[str, str]) -> None:
+    write_files(".", files)
+
+
+def emitted(target: str, form: str = "shader") -> dict[str, str]:
+    from sssgen.pipeline.compiler import compile
+
+    return compile("ice", target, form).files
+
+
+def program(name: str, script: str) -> str:
+    """A program that stands for a compiler which behaves badly."""
+    path = Path(name)
+    path.write_text(f"#!/bin/sh\n{script}\n", encoding="utf-8")
+    path.chmod(path.stat().st_mode | stat.S_IXUSR)
+    return str(path.resolve())
+
+
+# What compiles
+
+
+def test_files_by_hand_in_every_language(run: Run, compiler: Callable[[str], Compiler]) -> None:
+    for name in ("gl", "glslang", "dxc", "naga", "tint"):
+        compiler(name)
+    write({"a.frag": FRAGMENT, "a.hlsl": HLSL, "a.wgsl": WGSL, "f.glsl": "float f(float x) { return x; }\n"})
+    ran = run("a.frag", "a.hlsl", "a.wgsl", "f.glsl", "--json")
+    assert ran.status == 0, ran.out
+    assert ran.data["missing"] == []
+    rows = {(row["file"], row["stage"], row["compiler"]) for row in ran.data["results"]}
+    assert rows == {
+        ("a.frag", "fragment", "gl"), ("a.frag", "fragment", "glslang"),
+        ("f.glsl", "library", "gl"), ("f.glsl", "library", "glslang"),
+        ("a.hlsl", "vertex", "glslang"), ("a.hlsl", "vertex", "dxc"),
+        ("a.hlsl", "fragment", "glslang"), ("a.hlsl", "fragment", "dxc"),
+        ("a.wgsl", "fragment", "naga"), ("a.wgsl", "fragment", "tint"),
+    }  # fmt: skip
+
+
+def test_a_material_in_both_forms(run: Run, compiler: Callable[[str], Compiler]) -> None:
+    compiler("glslang")
+    ran = run("ice", "--target", "glsl-330", "-t", "hlsl", "--compiler", "glslang", "--json")
+    assert ran.status == 0
+    assert set(ran.data) == {"compilers", "missing", "results"}
+    assert ran.data["compilers"][0]["name"] == "glslang"
+    assert {row["file"] for row in ran.data["results"]} == {
+        "ice.glsl-330.vert", "ice.glsl-330.frag", "ice.glsl-330.glsl", "ice.hlsl", "ice.functions.hlsl",
+    }  # fmt: skip
+    assert all(row["ok"] and row["messages"] == [] for row in ran.data["results"])
+
+
+def test_a_material_means_every_target_that_a_compiler_reads() -> None:
+    found = {source.language for shader in of_material("ice", ()) for source in shader.sources}
+    assert found == {language for languages in check.LANGUAGES.values() for language in languages}
+
+
+def test_a_folder_takes_what_is_a_shader(run: Run) -> None:
+    write({**emitted("numpy"), "sub/b.py": "x = \n", "sub/README.md": "# no shader\n", ".hidden/c.frag": "no"})
+    ran = run(".")
+    assert ran.status == 0
+    assert "ok   ice.py  python" in ran.out
+    assert "1 files, 1 compilations, 0 failed" in ran.out
+
+
+def test_languages_by_text_and_by_target() -> None:
+    es = f"#version 300 es\nprecision highp float;\n{FRAGMENT}"
+    urp = '#include "Packages/com.unity.render-pipelines.core/ShaderLibrary/Common.hlsl"\n'
+    shader = 'Shader "A/B" { SubShader { } }\n'
+    files = {
+        "a.frag": FRAGMENT,
+        "e.frag": es,
+        "u.hlsl": urp,
+        "s.shader": shader,
+        "c.cginc": "float f() { return 1; }\n",
+    }
+
+    def languages(*targets: str) -> dict[str, str]:
+        return {one.name: one.sources[0].language for one in of_files(files, set(), targets)}
+
+    builtin = {"s.shader": "unity-builtin", "c.cginc": "unity-builtin"}
+    assert languages() == {"a.frag": "glsl-330", "e.frag": "glsl-es-300", "u.hlsl": "unity-urp", **builtin}
+    assert languages("glsl-es-300") == {"a.frag": "glsl-es-300", "e.frag": "glsl-es-300"}
+    assert of_files({"x.txt": FRAGMENT}, {"x.txt"}, ["glsl-es-300"])[0].sources[0].language == "glsl-es-300"
+
+
+# What does not compile
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "right", "wrong", "places"),
+    [
+        ("a.frag", FRAGMENT, "vec4(v_uv,", "vec4(nowhere,", {"gl": (4, 18), "glslang": (4, 0)}),
+        ("a.hlsl", HLSL, "float4(uv,", "float4(nowhere,", {"glslang": (8, 0), "dxc": (8, 40)}),
+        ("a.wgsl", WGSL, "(1.0)", "(nowhere)", {"naga": (2, 22), "tint": (2, 22)}),
+    ],
+)
+def test_an_error_at_its_line_and_column(
+    name: str,
+    text: str,
+    right: str,
+    wrong: str,
+    places: dict[str, tuple[int, int]],
+    run: Run,
+    compiler: Callable[[str], Compiler],
+) -> None:
+    for needed in places:
+        compiler(needed)
+    assert right in text
+    write({name: text.replace(right, wrong)})
+    ran = run(name, "--json")
+    assert ran.status == 1
+    rows = [row for row in ran.data["results"] if row["compiler"] in places]
+    assert {row["compiler"] for row in rows} == set(places)
+    for row in rows:
+        assert not row["ok"]
+        first = row["messages"][0]
+        assert (first["line"], first["column"]) == places[row["compiler"]], row
+        assert (first["severity"], "nowhere" in first["text"], "source" in first) == ("error", True, False)
+
+
+@pytest.mark.parametrize(
+    ("target", "form", "name", "compiler_name"),
+    [
+        ("wgsl", "shader", "ice.wgsl", "tint"),
+        ("hlsl", "functions", "ice.functions.hlsl", "glslang"),
+        ("unity-builtin", "shader", "ice.unity-builtin.shader", "unity"),
+        ("unity-urp", "shader", "ice.unity-urp.shader", "unity"),
+    ],
+)
+def test_an_error_in_an_edited_file_leads_to_the_technique(
+    target: str, form: str, name: str, compiler_name: str, run: Run, compiler: Callable[[str], Compiler]
+) -> None:
+    compiler(compiler_name)
+    files = emitted(target, form)
+    lines = files[name].split("\n")
+    number = next(number for number, line in enumerate(lines, 1) if "return exp(-min(" in line)
+    files[name] = files[name].replace("return exp(-min(", "return nowhere(-min(")
+    write({f"out/{file}": text for file, text in files.items()})
+    ran = run("out", "--compiler", compiler_name, "--json")
+    assert ran.status == 1
+    message = next(m for row in ran.data["results"] for m in row["messages"])
+    assert message["line"] == number
+    assert message["source"].startswith("conversion/beer_lambert.sss:")
+    shown = run(f"out/{name}", "--compiler", compiler_name).out
+    assert f"--> out/{name}:{number}" in shown
+    assert f"from {message['source']}" in shown
+    assert "return transmittance(exp(" in shown
+
+
+def test_a_material_leads_to_the_technique_without_files(compiler: Callable[[str], Compiler]) -> None:
+    from dataclasses import replace
+
+    compiler("glslang")
+    shader = next(one for one in of_material("ice", ["glsl-330"]) if one.name.endswith(".frag"))
+    text = shader.text.replace("return exp(-min(", "return nowhere(-min(")
+    broken = replace(shader, text=text, sources=tuple(source.with_text(text) for source in shader.sources))
+    (result,) = check.run([broken], ["glslang"]).results
+    assert result.origin(result.messages[0]).startswith("conversion/beer_lambert.sss:")
+
+
+def test_an_error_in_the_other_stage_is_that_ones(run: Run, compiler: Callable[[str], Compiler]) -> None:
+    compiler("gl")
+    files = emitted("glsl-330")
+    files["ice.glsl-330.vert"] = files["ice.glsl-330.vert"].replace("gl_Position =", "gl_Nowhere =")
+    write(files)
+    ran = run(".", "--compiler", "gl", "--json")
+    assert {row["file"]: row["ok"] for row in ran.data["results"]} == {
+        "ice.glsl-330.frag": True,
+        "ice.glsl-330.vert": False,
+    }
+
+
+def test_an_error_outside_of_the_file_has_no_line_of_it(compiler: Callable[[str], Compiler]) -> None:
+    unity = compiler("unity")
+    text = (UNITY_STANDIN / "samples" / "surface.shader").read_text(encoding="utf-8")
+    assert not unity.check(Source(text, "unity-builtin", name='a "quoted": name.shader'))
+    found = unity.check(Source(text.replace("LightingBacklit_GI", "LightingOther_GI"), "unity-builtin"))
+    assert any("surface entries:" in message.text for message in found), found
+    assert all(not message.line for message in found)
+
+
+# Compilers that are missing or misbehave
+
+
+def test_a_missing_compiler_is_told(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    write({"a.wgsl": WGSL})
+    monkeypatch.setenv("SSSGEN_NODE_MODULES", "nowhere")
+    ran = run("a.wgsl", "--json")
+    assert [row["name"] for row in ran.data["missing"]][-1] == "tint"
+    assert "webgpu" in ran.data["missing"][-1]["how"] or "node" in ran.data["missing"][-1]["how"]
+    shown = run("a.wgsl")
+    assert "tint     not found: " in shown.out
+    assert shown.status == ran.status
+    monkeypatch.setenv("CI", "true")
+    assert run("a.wgsl").status == 1
+    named = run("a.wgsl", "--compiler", "tint")
+    assert (named.status, named.out) == (2, "")
+    assert "error: tint is not here\n  help: " in named.err
+
+
+def test_nothing_compiled_is_no_success(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    write({"a.hlsl": HLSL, "a.shader": 'Shader "A/B" { }\n'})
+    monkeypatch.setenv("PATH", "nowhere")
+    monkeypatch.setenv("SSSGEN_GLSLANG", "nowhere")
+    ran = run("a.shader")
+    assert ran.status == 1
+    assert "not compiled: unity not found" in ran.out
+
+
+@pytest.mark.skipif(os.name != "posix", reason="the programs are shell scripts")
+def test_a_compiler_that_hangs_or_crashes(monkeypatch: pytest.MonkeyPatch) -> None:
+    source = Source(FRAGMENT, "glsl-330")
+    started = 'if [ "$1" = --version ]; then echo "Glslang Version: 1.2"; exit; fi\n'
+    monkeypatch.setenv("SSSGEN_GLSLANG", program("hangs", f"{started}sleep 100"))
+    worker = Worker("glslang", seconds=2.0)
+    assert worker.version() == "glslang 1.2"
+    (message,) = worker.check(source)
+    assert "did not finish within 2 seconds" in message.text
+    monkeypatch.setenv("SSSGEN_GLSLANG", program("kills", f"{started}kill -SEGV $PPID"))
+    (message,) = worker.check(source)
+    assert "glslang crashed (SIGSEGV)" in message.text
+    monkeypatch.setenv("SSSGEN_GLSLANG", program("works", started))
+    assert worker.check(source) == []
+    worker.close()
+
+
+def test_a_text_too_deep_for_a_compiler(run: Run, compiler: Callable[[str], Compiler]) -> None:
+    for name in ("gl", "glslang"):
+        compiler(name)
+    write({"a.frag": FRAGMENT.replace("v_uv,", f"{'(' * 50000}v_uv{')' * 50000},"), "b.frag": FRAGMENT})
+    ran = run("a.frag", "b.frag", "--json")
+    assert ran.status in (0, 1)
+    assert all(row["ok"] for row in ran.data["results"] if row["file"] == "b.frag")
+
+
+# Wrong input
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["no.frag"], "no such file\n  --> no.frag"),
+        (["no/such"], "no such file\n  --> no/such"),
+        (["icee"], "unknown material 'icee'\n  help: did you mean 'ice'?"),
+        (["empty.frag"], "the file is empty\n  --> empty.frag"),
+        (["zero.frag"], "holds a zero byte\n  --> zero.frag"),
+        (["latin.frag"], "this is not UTF-8 text\n  --> latin.frag:1:3"),
+        (["bare"], "nothing to compile\n  --> bare"),
+        (["what.txt"], "the language of the file cannot be told\n  --> what.txt\n  help: say it with --target T:"),
+        (["what.txt", "-t", "wgsl,hlsl"], "the language of the file cannot be told"),
+        (["x.glsl-330.frag", "-t", "wgsl"], "the file is for glsl-330\n  --> x.glsl-330.frag"),
+        (["map.wgsl"], "this is not a reflection of sssgen's\n  --> map.wgsl.reflection.json"),
+        (["ice", "-t", "wgls"], "unknown target 'wgls'\n  help: did you mean 'wgsl'?"),
+        (["ice", "--compiler", "glslng"], "unknown compiler 'glslng'\n  help: did you mean 'glslang'?"),
+        (["ok.frag", "--compiler", "tint"], "no tint reads glsl-330\n  help: compilers that do: gl, glslang"),
+        (["ok.frag", "--unity-includes", "no"], "no such folder of Unity's headers\n  --> no"),
+        (["ok.frag", "--unity-includes", "bare"], "the folder has none of Unity's headers\n  --> bare"),
+        (["no.frag", "empty.frag", "icee"], "3 errors"),
+    ],
+)
+def test_wrong_input(arguments: list[str], said: str, run: Run) -> None:
+    write({"ok.frag": FRAGMENT, "empty.frag": " \n", "what.txt": "x\n", "x.glsl-330.frag": FRAGMENT})
+    write({"map.wgsl": WGSL, "map.wgsl.reflection.json": "[]\n"})
+    Path("zero.frag").write_bytes(b"void\0")
+    Path("latin.frag").write_bytes(b"//\xff")
+    Path("bare").mkdir()
+    ran = run(*arguments)
+    assert (ran.status, ran.out) == (2, "")
+    assert said in ran.err
+    as_json = run(*arguments, "--json")
+    assert (as_json.status, as_json.err) == (2, "")
+    assert as_json.data["ok"] is False
+
+
+@pytest.mark.skipif(os.name != "posix", reason="there are no pipes with names")
+def test_a_pipe_is_not_waited_for(run: Run) -> None:
+    os.mkfifo("pipe.frag")
+    assert "this is not a file" in run("pipe.frag").err
+
+
+def test_which_headers_of_unity(run: Run, compiler: Callable[[str], Compiler]) -> None:
+    compiler("unity")
+    text = (UNITY_STANDIN / "samples" / "surface.shader").read_text(encoding="utf-8")
+    write({"a.shader": text})
+    assert "the project's stand-in headers" in run("a.shader").out
+    own = Path("headers")
+    own.mkdir()
+    for part in ("CGIncludes", "Packages"):
+        (own / part).symlink_to(UNITY_STANDIN / part)
+    ran = run("a.shader", "--unity-includes", "headers")
+    assert ran.status == 0
+    assert f"Unity's own headers in {own.resolve()}" in ran.out
+
+
+def test_arguments_that_are_the_same_are_one() -> None:
+    write({"a.frag": FRAGMENT})
+    assert len(read(["a.frag", "./a.frag", "a.frag"], ())) == 1

@@ -1,0 +1,156 @@
+"""examples/ci as a user has it: copied, run, changed, healed; with pytest and with `sssgen ci`, each as a program."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from folders import EXAMPLES
+from sssgen.harness.backends import Backend
+from sssgen.harness.pictures import images
+from sssgen.material.material_loading import examples
+
+pytest.importorskip("flip_evaluator", reason="flip-evaluator is missing: pip install 'sssgen[render]'")
+
+EXAMPLE = EXAMPLES / "ci"
+NO_DRIVER = {"__EGL_VENDOR_LIBRARY_FILENAMES": os.devnull}
+GL = ("--backend", "gl")
+
+
+@pytest.fixture(autouse=True)
+def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, backend: Callable[[str], Backend]) -> Path:
+    """A copy of the example, which is the current folder."""
+    backend("gl")
+    folder = shutil.copytree(EXAMPLE, tmp_path / "project")
+    monkeypatch.chdir(folder)
+    return folder
+
+
+def run(*arguments: str, **variables: str) -> tuple[int, str]:
+    """The exit status of a Python module, and all that it printed."""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
+    environment.pop("CI", None)
+    command = [sys.executable, "-m", *arguments]
+    done = subprocess.run(command, env={**environment, **variables}, capture_output=True, text=True, check=False)
+    return done.returncode, done.stdout + done.stderr
+
+
+def run_pytest(*arguments: str, **variables: str) -> tuple[int, str]:
+    return run(
+        "pytest", "-p", "sssgen.harness.testing.pytest_plugin", "-p", "no:cacheprovider", *arguments, **variables
+    )
+
+
+def run_ci(*arguments: str, **variables: str) -> tuple[int, str]:
+    return run("sssgen", "ci", *arguments, **variables)
+
+
+def brighten() -> None:
+    material = Path("materials/lamp.toml")
+    text = material.read_text(encoding="utf-8")
+    assert "scale = 2.0" in text
+    material.write_text(text.replace("scale = 2.0", "scale = 2.2"), encoding="utf-8")
+
+
+def failures() -> list[str]:
+    return sorted(path.name for path in Path("scenes/sssgen-failures").glob("*"))
+
+
+def report(path: str = "report.xml") -> tuple[dict[str, str], dict[str, ET.Element]]:
+    """The suite's counts, and its test cases by kind."""
+    (suite,) = ET.parse(path).getroot().findall("testsuite")
+    return suite.attrib, {case.attrib["classname"]: case for case in suite.findall("testcase")}
+
+
+def test_with_pytest() -> None:
+    assert run_pytest()[0] == 0
+    brighten()
+    status, told = run_pytest("-k", "looks")
+    assert status == 1
+    assert "FLIP 0.0" in told and "is more than 0.005" in told and "max" in told
+    assert 'sssgen_golden(SCENE, "lamp")' in told
+    assert "pytest_plugin.py" not in told.replace("-p sssgen.harness.testing.pytest_plugin", "")
+    assert failures() == ["lamp.actual.png", "lamp.difference.png"]
+    assert images.read("scenes/sssgen-failures/lamp.difference.png").shape == (72, 96, 3)
+    assert run_pytest("-k", "looks", "--sssgen-flip", "0.2")[0] == 0
+    assert run_pytest("-k", "looks", "--sssgen-update")[0] == 0
+    assert run_pytest("-k", "looks")[0] == 0
+    assert failures() == []
+
+
+def test_with_the_command() -> None:
+    status, told = run_ci(".", *GL, "--junit", "report.xml")
+    assert status == 0, told
+    suite, cases = report()
+    assert (suite["tests"], suite["failures"], suite["skipped"], suite["errors"]) == ("3", "0", "0", "0")
+    assert set(cases) == {"compile", "render", "eval"}
+    assert all(float(case.attrib["time"]) > 0.0 for case in cases.values())
+    brighten()
+    status, told = run_ci("scenes", "--junit", "report.xml")
+    assert status == 1
+    assert "FAIL render  scenes/lamp.toml [gl]" in told and "1 failed" in told
+    failure = report()[1]["render"].find("failure")
+    assert failure is not None and failure.text is not None
+    assert "FLIP 0.0" in failure.attrib["message"] and "lamp.difference.png" in failure.text
+    assert failures() == ["lamp.actual.png", "lamp.difference.png"]
+    assert run_ci("scenes", "--flip", "0.2")[0] == 0
+    assert run_ci("scenes", "--update")[0] == 0
+    status, told = run_ci("scenes", "--backend", "gl,numpy")
+    assert (status, failures()) == (0, []), told
+
+
+def test_a_missing_back_end_is_skipped_and_in_ci_a_failure() -> None:
+    status, told = run_ci("scenes", "--junit", "report.xml", **NO_DRIVER)
+    assert status == 1 and "nothing was checked" in told and "libgl1-mesa-dri" in told
+    skipped = report()[1]["render"].find("skipped")
+    assert skipped is not None and "the back end gl is missing" in skipped.attrib["message"]
+    assert run_ci("scenes", "--junit", "report.xml", **NO_DRIVER, CI="true")[0] == 1
+    assert report()[0]["failures"] == "1"
+    status, told = run_pytest("-rs", "-k", "looks", **NO_DRIVER)
+    assert status == 0 and "1 skipped" in told and "libgl1-mesa-dri" in told
+    status, told = run_pytest("-k", "looks", **NO_DRIVER, CI="true")
+    assert status == 1 and "the back end gl is missing" in told
+
+
+def test_another_size_and_no_golden_picture() -> None:
+    images.write_png("scenes/golden/lamp.png", np.zeros((36, 48, 3)))
+    status, told = run_ci("scenes")
+    assert status == 1 and "has 96 × 72 pixels" in told and "has 48 × 36" in told
+    assert failures() == ["lamp.actual.png"]
+    Path("scenes/golden/lamp.png").unlink()
+    status, told = run_ci("scenes")
+    assert status == 1 and "no golden picture scenes/golden/lamp.png: --update writes it" in told
+
+
+def test_folders_that_cannot_be_written() -> None:
+    brighten()
+    Path("scenes/sssgen-failures").write_text("a file", encoding="utf-8")
+    status, told = run_ci("scenes")
+    assert status == 1 and "is more than 0.005" in told and "cannot write" in told
+    shutil.rmtree("scenes/golden")
+    Path("scenes/golden").write_text("a file", encoding="utf-8")
+    status, told = run_ci("scenes", "--update")
+    assert status == 1 and "cannot write" in told and "Traceback" not in told
+    assert Path("scenes/golden").read_text(encoding="utf-8") == "a file"
+    status, told = run_ci("scenes", "--junit", "scenes/golden/report.xml")
+    assert status == 2 and "cannot write" in told and "render" not in told
+
+
+def test_the_workflow_runs_what_is_here() -> None:
+    text = Path(".github/workflows/shaders.yml").read_text(encoding="utf-8")
+    assert "python -m pytest --junitxml report.xml" in text
+    assert "sssgen ci . --junit report.xml" in text
+    assert "\t" not in text
+
+
+def test_the_folder_is_no_example_material() -> None:
+    assert "ci" not in examples()
+    assert not list(EXAMPLE.glob("*.toml"))  # which the makefile takes for materials

@@ -1,0 +1,206 @@
+"""Unity's programs, drawn whole: the forward pass of the emitted .shader, with what the engine gives it.
+
+With the stand-in headers the lighting is that of the other targets' shells, so that pictures must be the same. With
+Unity's own (SSSGEN_UNITY_INCLUDES) only what does not depend on Unity's standard lighting must.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from drawn import BALL, LAMP, SIZE, apart
+from folders import EXAMPLES
+from sssgen.cli.main import main
+from sssgen.harness import backends
+from sssgen.harness.backends import Backend, Text
+from sssgen.harness.backends.isolated import isolated
+from sssgen.harness.backends.unity_backend import UnityHLSL
+from sssgen.harness.pictures import images
+from sssgen.harness.render.scene_render import Rendered, render
+from sssgen.harness.scenes.scene import Scene
+from sssgen.harness.scenes.scene_loading import parse_scene
+from sssgen.support.diagnostics import SssgenError
+
+UNITY = ["unity", "unity-urp"]
+PROBE = """
+uniform float shade : hint_range(0.0, 1.0) = 0.5;
+uniform vec3 mixed : source_color = vec3(1.0, 0.5, 0.25);
+uniform mat2 turn = mat2(1.0, 2.0, 3.0, 4.0);
+uniform int steps : hint_range(1, 8) = 3;
+uniform sampler2D marks : source_color, default_white;
+
+/** Shows what the engine gives.
+role: surface
+*/
+void probe(uv_position uv, world_position P, world_direction V, world_direction N, world_direction T, world_direction B,
+    object_position P_object, object_direction V_object, object_direction N_object, float time,
+    out vec3 albedo, out float alpha, out vec3 emission) {
+    albedo = vec3(0.5) * shade;
+    alpha = P_object.y > 0.6 ? 0.25 : 1.0;
+    vec2 turned = turn * vec2(0.01, 0.02);
+    emission = 0.25 + 0.25 * vec3(N.x, dot(N, V), P.y) + vec3(turned, time * 0.01) + mixed * 0.05 * float(steps);
+    emission += 0.2 * texture(marks, uv).rgb + 0.05 * T + 0.04 * B + 0.03 * V_object + 0.02 * N_object;
+}
+"""
+OWN_LIGHTING = """
+[material]
+name = "own"
+shading = "unlit"
+[[surface]]
+technique = "base_color"
+[[surface]]
+technique = "normal_map"
+[[surface]]
+technique = "pbr_constants"
+[[lighting]]
+technique = "standard"
+"""
+LIT_FROM_BEHIND = {
+    "a lamp inside": "[[light]]\nposition = [0.2, 0.1, -0.2]\ncolor = [0.3, 0.25, 0.2]\n",
+    "light from afar": "[[light]]\ndirection = [0.0, 0.0, -1.0]\ncolor = [1.0, 0.9, 0.8]\n",
+    "both": "[[light]]\nposition = [0.2, 0.1, -0.2]\ncolor = [0.1, 0.2, 0.1]\n"
+    "[[light]]\ndirection = [0.0, 0.0, -1.0]\ncolor = [0.3, 0.3, 0.3]\n",
+}
+"""On a ball in the middle these reach no side that the camera sees: all its light comes through."""
+
+
+@pytest.fixture(params=UNITY)
+def unity(request: pytest.FixtureRequest, backend: Callable[[str], Backend]) -> UnityHLSL:
+    found = backend(request.param)
+    assert isinstance(found, UnityHLSL)
+    return found
+
+
+@pytest.fixture
+def standin(unity: UnityHLSL) -> UnityHLSL:
+    if unity.unity.real:
+        pytest.skip("Unity's standard lighting is not ours")
+    return unity
+
+
+def scene(text: str, folder: Path = EXAMPLES) -> Scene:
+    return parse_scene(text, folder / "scene.toml")
+
+
+def example(name: str) -> Scene:
+    """An example's scene, one sample a pixel."""
+    text = (EXAMPLES / name / "scene.toml").read_text(encoding="utf-8")
+    lines = [line for line in text.splitlines() if not line.startswith("samples")]
+    return scene("\n".join(["samples = 1", *lines]), EXAMPLES / name)
+
+
+def drawn(shown: Scene, machine: Backend) -> Rendered:
+    return render(shown, machine, SIZE)
+
+
+def test_a_raymarched_scene(unity: UnityHLSL) -> None:
+    """The same picture as in GLSL, which encodes it with a gamma of 2.2; in Unity the engine encodes."""
+    shown = scene('material = "jelly_cubes"\nsamples = 1\ntime = 1.0\n[parameters]\nglow_strength = 2.0\n')
+    encoded = drawn(shown, backends.get("gl")).encoded
+    found = images.encode_srgb(encoded**2.2)
+    assert 255.0 * np.abs(drawn(shown, unity).encoded - found).max() < 0.5
+    assert found.std() > 0.1
+
+
+@pytest.mark.parametrize("alpha_mode", ["opaque", "mask", "blend"])
+def test_everything_that_the_engine_gives(unity: UnityHLSL, alpha_mode: str, tmp_path: Path) -> None:
+    """Spaces, uniforms of every kind, textures, time and alpha: all as in NumPy; with our own lighting, light too."""
+    (tmp_path / "probe.sss").write_text(PROBE, encoding="utf-8")
+    images.write_png(tmp_path / "marks.png", np.random.default_rng(5).random((8, 16, 3)))
+    head = f'[material]\nname = "probe"\nshading = "lit"\nalpha_mode = "{alpha_mode}"\n'
+    (tmp_path / "probe.toml").write_text(f'{head}[surface]\ntechnique = "probe.sss"\n', encoding="utf-8")
+    values = "[parameters]\nshade = 0.75\nmixed = [0.1, 0.9, 0.4]\nturn = [1, 0, 0.5, 2]\nsteps = 5\n"
+    ambient, lights = ("[0, 0, 0]", "") if unity.unity.real else ("[0.2, 0.3, 0.4]", LAMP)
+    text = f'material = "probe.toml"\nsamples = 2\ntime = 3.0\nambient = {ambient}\n{BALL}{lights}{values}'
+    shown = scene(text + '[textures]\nmarks = "marks.png"\n', tmp_path)
+    found, oracle = drawn(shown, unity), drawn(shown, backends.get("numpy"))
+    assert apart(found, oracle) < 0.3
+    np.testing.assert_allclose(found.covered, oracle.covered)
+
+
+@pytest.mark.parametrize("name", ["paper_lantern", "ice", "resin_inlay"])
+def test_examples_as_in_glsl(standin: UnityHLSL, name: str) -> None:
+    shown = example(name)
+    gl = drawn(shown, backends.get("gl"))
+    assert apart(drawn(shown, standin), gl) < 0.3
+    assert gl.encoded.std() > 0.05
+
+
+def test_an_unlit_surface_with_a_lighting_of_its_own(unity: UnityHLSL, tmp_path: Path) -> None:
+    """The main light, in the material's own formulas: the same whatever Unity's lighting is."""
+    (tmp_path / "own.toml").write_text(OWN_LIGHTING, encoding="utf-8")
+    light = "[[light]]\ndirection = [1, 2, 2]\ncolor = [0.9, 0.8, 0.7]\n"
+    shown = scene(f'material = "own.toml"\nsamples = 1\n{BALL}{light}', tmp_path)
+    gl = drawn(shown, backends.get("gl"))
+    assert apart(drawn(shown, unity), gl) < 0.3
+    assert gl.linear.max() > 0.3
+
+
+@pytest.mark.parametrize("lights", LIT_FROM_BEHIND.values(), ids=LIT_FROM_BEHIND)
+def test_light_that_comes_through_is_the_same(unity: UnityHLSL, lights: str) -> None:
+    """The translucency lobe of each kind of light, and of none twice, whatever lighting is around it."""
+    ball = '[geometry]\nkind = "ball"\nrotation = [20, 30, 40]\nscale = 0.9\n'
+    values = "[parameters]\npower = 2.0\nscale = 1.5\ndistortion = 0.4\n"
+    shown = scene(f'material = "paper_lantern"\nsamples = 1\n{ball}{lights}{values}')
+    gl = drawn(shown, backends.get("gl"))
+    assert gl.linear.max() > 0.1
+    assert apart(drawn(shown, unity), gl) < 0.3
+
+
+def test_ambient_light(unity: UnityHLSL) -> None:
+    """Unity takes the 4 percent away that a surface mirrors."""
+    shown = scene(f'material = "paper_lantern"\nsamples = 1\nambient = [0.2, 0.4, 0.6]\n{BALL}')
+    found, gl = drawn(shown, unity), drawn(shown, backends.get("gl"))
+    on = gl.covered > 0.99
+    expected = 0.96 if unity.unity.real else 1.0
+    np.testing.assert_allclose(found.linear[on], expected * gl.linear[on], rtol=2e-3)
+    assert gl.linear[on].min() > 0.1
+
+
+def test_a_lantern_looks_like_itself(unity: UnityHLSL) -> None:
+    """With Unity's own lighting too: two lights, ambient, normal map, thickness map."""
+    shown = example("paper_lantern")
+    found, gl = drawn(shown, unity).encoded, drawn(shown, backends.get("gl")).encoded
+    assert np.corrcoef(found.ravel(), gl.ravel())[0, 1] > 0.99
+    assert found.mean() == pytest.approx(gl.mean(), rel=0.02)
+
+
+@pytest.mark.parametrize("name", UNITY)
+def test_the_command(name: str, backend: Callable[[str], Backend], tmp_path: Path) -> None:
+    backend(name)
+    path, out = tmp_path / "scene.toml", str(tmp_path / "x.png")
+    path.write_text(f'material = "paper_lantern"\n{BALL}{LAMP}', encoding="utf-8")
+    assert main(["render", str(path), "-o", out, "--size", "24x18", "--backend", name]) == 0
+    assert images.read(out).std() > 0.01
+
+
+@pytest.mark.parametrize("text", ['Shader "x" {', 'Shader "x" { SubShader { Pass {\nHLSLPROGRAM\n#if\nENDHLSL\n} } }'])
+def test_a_shader_that_cannot_be_read(unity: UnityHLSL, text: str) -> None:
+    with pytest.raises(SssgenError, match=unity.name):
+        unity.forward(Text(text), "vertex", ())
+
+
+def test_a_shader_that_does_not_compile(unity: UnityHLSL) -> None:
+    code = "#pragma fragment frag\nfloat4 frag() : SV_Target { return missing; }"
+    shader = Text(f'Shader "x" {{ SubShader {{ Pass {{\nHLSLPROGRAM\n{code}\nENDHLSL\n}} }} }}', {4: "glow.sss:7:1"})
+    with pytest.raises(SssgenError, match=rf"{unity.name}: forward pass: .*missing[^$]*glow.sss:7"):
+        unity.whole.glsl(unity.forward(shader, "fragment", ()), "fragment")
+
+
+def test_in_a_process_of_its_own(unity: UnityHLSL, backend: Callable[[str], Backend]) -> None:
+    """As `sssgen ci` draws. The lamp's parameters are packed as GLSL packs none: a colour behind a number."""
+    backend("gl")
+    path = EXAMPLES / "ci" / "scenes" / "lamp.toml"
+    scene = parse_scene(path.read_text(encoding="utf-8"), str(path))
+    other = isolated(unity.name)
+    try:
+        there = render(scene, other, SIZE)
+    finally:
+        other.close()
+    here = render(scene, unity, SIZE)
+    assert np.array_equal(there.linear, here.linear)
+    assert apart(here, render(scene, backends.get("gl"), SIZE)) < (10.0 if unity.unity.real else 0.3)

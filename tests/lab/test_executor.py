@@ -1,0 +1,324 @@
+"""Work items: the same bytes wherever they run, once each, whatever dies."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from executor_items import items, runs
+from folders import TESTS
+from sssgen.cli import main as cli
+from sssgen.harness.stress.stress_report import Report, as_json
+from sssgen.harness.stress.stress_run import Machines, Settings, stress
+from sssgen.harness.stress.subject import specimens
+from sssgen.lab.jobs import dask_cluster as cluster
+from sssgen.lab.jobs import work_items as work
+from sssgen.lab.jobs.executor import Failure, Item, failures, run
+from sssgen.lab.jobs.result_store import Store, decoded, encoded
+from sssgen.lab.jobs.stress_items import spread
+from sssgen.lab.jobs.work_items import execute, task
+from sssgen.support.diagnostics import SssgenError
+from sssgen.support.progress import Bar
+
+
+@pytest.fixture(autouse=True)
+def stamped_anew() -> None:
+    """Somebody may edit sssgen while its tests run; then only the test of that moment fails."""
+    work.code_stamp.cache_clear()
+    work._own.cache_clear()
+
+
+def test_a_worker_with_other_code_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    one = task(Item("executor_items:echo", (1,), "the item"))
+    assert decoded(execute(one)) == (1, 1)
+    monkeypatch.setattr(work, "code_stamp", lambda module: "another")
+    refused = decoded(execute(one))
+    assert isinstance(refused, Failure) and "another state of sssgen" in refused.message
+
+
+def as_bytes(results: list[Any]) -> list[bytes]:
+    assert not failures(results), failures(results)
+    return [encoded(result) for result in results]
+
+
+def wait_until(true: Callable[[], Any], seconds: float = 20.0) -> None:
+    end = time.monotonic() + seconds
+    while not true():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+def test_same_bytes_in_processes_as_here(tmp_path: Path) -> None:
+    todo = items(tmp_path, 6)
+    here = run(todo, processes=0, store=Store(""))
+    assert [result.name for result in here] == [f"item {number}" for number in range(6)]
+    assert as_bytes(run(todo, processes=2, store=Store(""))) == as_bytes(here)
+    assert runs(tmp_path) == sorted([*range(6)] * 2)
+
+
+def test_bytes_depend_on_values_alone() -> None:
+    grid = np.arange(6.0).reshape(2, 3)
+    text = "".join(["one", "two"])
+    fixed = grid.copy()
+    fixed.flags.writeable = False
+    assert encoded((text, text)) == encoded(("onetwo", "".join(["onet", "wo"])))
+    assert encoded(grid.T) == encoded(np.ascontiguousarray(grid.T)) != encoded(grid)
+    assert encoded(np.asfortranarray(grid)) == encoded(grid) == encoded(fixed)
+    assert encoded(decoded(encoded(grid.T))) == encoded(grid.T)
+    cycle: list[Any] = []
+    cycle.append(cycle)
+    with pytest.raises(ValueError, match="cyclic"):
+        encoded(cycle)
+
+
+def test_keys() -> None:
+    one = Item("executor_items:echo", (1,), "one")
+    assert task(one).key == task(one._replace(name="another name")).key
+    others = [one._replace(arguments=(2,)), one._replace(function="executor_items:fail")]
+    others += [one._replace(function="sssgen.support.progress:Bar")]
+    assert len({task(other).key for other in [one, *others]}) == 4
+
+
+def test_duplicates_run_once(tmp_path: Path) -> None:
+    todo = items(tmp_path, 3)
+    results = run([*todo, *todo], processes=2, store=Store(""))
+    assert runs(tmp_path) == [0, 1, 2]
+    assert as_bytes(results[:3]) == as_bytes(results[3:])
+
+
+def test_what_is_kept_is_not_made_again(tmp_path: Path) -> None:
+    store, noted = Store(str(tmp_path / "store")), tmp_path / "runs"
+    noted.mkdir()
+    first = run(items(noted, 3), processes=0, store=store)
+    told: list[tuple[int, int, str]] = []
+    again = run(items(noted, 4), processes=0, store=store, progress=lambda *what: told.append(what))
+    assert runs(noted) == [0, 1, 2, 3]
+    assert as_bytes(again[:3]) == as_bytes(first)
+    assert told == [(number + 1, 4, f"item {number}") for number in range(4)]
+
+
+def test_damaged_entries_are_made_again(tmp_path: Path) -> None:
+    store, noted = Store(str(tmp_path / "store")), tmp_path / "runs"
+    noted.mkdir()
+    first = run(items(noted, 2), processes=0, store=store)
+    path = next(path for path in (tmp_path / "store").rglob("*") if path.is_file())
+    path.write_bytes(path.read_bytes()[:-1])
+    assert as_bytes(run(items(noted, 2), processes=0, store=store)) == as_bytes(first)
+    assert len(runs(noted)) == 3
+
+
+def test_no_cache_folder_is_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sssgen.support.cache._folder", "")
+    monkeypatch.setattr("sssgen.support.cache._known", True)
+    store = Store()
+    run([Item("executor_items:echo", (1,))], processes=0, store=store)
+    assert not store.folder and len(store.memory) == 1
+
+
+@pytest.mark.parametrize("processes", [0, 2])
+def test_a_failure_stands_for_its_item_alone(processes: int) -> None:
+    todo = [Item("executor_items:fail", (how,), how) for how in ("said", "raised", "exit")]
+    todo += [Item("executor_items:missing", (), "missing"), Item("no_such_module:name", (), "module")]
+    todo += [Item("executor_items:echo", (1,), "good")]
+    store = Store("")
+    *failed, good = run(todo, processes=processes, store=store)
+    assert good == (1, 1)
+    assert [one.name for one in failed] == ["said", "raised", "exit", "missing", "module"]
+    assert failed[0].message == "the scene has no light"
+    assert failed[1].message.startswith("ValueError: no such thing (executor_items.py:")
+    assert "no_such_module" in failed[4].message
+    assert len(store.memory) == 1  # what failed is tried again
+
+
+def test_a_killed_process_costs_nothing(tmp_path: Path) -> None:
+    todo = [*items(tmp_path, 3, name="die_first"), *items(tmp_path, 6)[3:]]
+    results = run(todo, processes=2, store=Store(""))
+    assert results[:3] == [0, 1, 2] and not failures(results)
+    assert runs(tmp_path) == [0, 0, 1, 1, 2, 2, 3, 4, 5]
+
+
+def test_what_kills_every_process_is_named(tmp_path: Path) -> None:
+    deadly, good = Item("executor_items:die", (str(tmp_path), 7), "the seventh"), Item("executor_items:echo", (1,))
+    assert run([deadly, good], processes=2, store=Store("")) == [
+        Failure("the seventh", "its process crashed (SIGKILL), 3 times in a row"),
+        (1, 1),
+    ]
+    assert runs(tmp_path) == [7, 7, 7]
+
+
+def test_interrupt_here_keeps_what_is_done() -> None:
+    store = Store("")
+    with pytest.raises(KeyboardInterrupt):
+        run([Item("executor_items:interrupted", (number,)) for number in range(5)], processes=0, store=store)
+    assert len(store.memory) == 2
+
+
+# a process of a shell in the background ignores interrupts, and so would its own
+LONG_RUN = """
+import signal, sys
+from pathlib import Path
+from sssgen.lab.jobs.executor import run
+from sssgen.lab.jobs.store import Store
+from executor_items import items
+signal.signal(signal.SIGINT, signal.default_int_handler)
+run(items(Path(sys.argv[1]), 10, 0.15), processes=2, store=Store(sys.argv[2]))
+"""
+
+
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
+def test_an_interrupted_run_goes_on(tmp_path: Path, how: int) -> None:
+    noted, folder = tmp_path / "runs", tmp_path / "store"
+    noted.mkdir()
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(TESTS / "tools"), *filter(None, sys.path)])}
+    command = [sys.executable, "-c", LONG_RUN, str(noted), str(folder)]
+    process = subprocess.Popen(command, env=environment, stderr=subprocess.PIPE)
+
+    def kept() -> list[Path]:
+        return [path for path in folder.rglob("*") if path.is_file() and path.suffix != ".tmp"]
+
+    wait_until(lambda: len(kept()) >= 3)
+    process.send_signal(how)
+    assert process.wait(timeout=10) != 0
+    assert process.stderr is not None
+    process.stderr.close()
+    started, done = len(runs(noted)), len(kept())
+    assert 3 <= done < 10 and started <= done + 4  # what its two workers had in their hands or had just handed over
+    time.sleep(0.4)
+    assert len(runs(noted)) == started  # nobody goes on without it
+    todo = items(noted, 10, 0.15)
+    results = run(todo, processes=2, store=Store(str(folder)))
+    assert len(runs(noted)) == started + 10 - done
+    assert as_bytes(results) == as_bytes(run(todo, processes=0, store=Store(str(folder))))
+
+
+def test_bar_is_silent_where_there_is_no_terminal(capfd: pytest.CaptureFixture[str]) -> None:
+    with Bar() as told:
+        run([Item("executor_items:echo", (1,))], processes=0, store=Store(""), progress=told)
+    assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("rich", [True, False])
+def test_bar_on_a_terminal(rich: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    monkeypatch.setenv("TERM", "xterm")
+    if not rich:
+        monkeypatch.setitem(sys.modules, "rich.console", None)
+    with Bar() as told:
+        told(3, 4, "cube [one]")
+    shown = capsys.readouterr()
+    assert not shown.out and "3/4" in shown.err and "cube [one]" in shown.err
+
+
+@pytest.fixture(scope="module")
+def dask() -> Iterator[Any]:
+    """A scheduler and two workers, each in a process of its own."""
+    distributed = pytest.importorskip("distributed")
+    import dask
+
+    path = os.pathsep.join([str(TESTS / "tools"), *filter(None, sys.path)])
+    with (
+        dask.config.set({"distributed.worker.memory.terminate": False, "distributed.scheduler.allowed-failures": 3}),
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, env={"PYTHONPATH": path}
+        ) as local,
+    ):
+        yield local
+
+
+@pytest.mark.filterwarnings("default")
+def test_same_bytes_on_dask_though_a_worker_dies(tmp_path: Path, dask: Any) -> None:
+    local, remote = tmp_path / "local", tmp_path / "remote"
+    for folder in (local, remote):
+        folder.mkdir()
+    wanted = as_bytes(run(items(local, 4), processes=0, store=Store("")))
+    assert as_bytes(run([*items(local, 4), *items(local, 2)], dask.scheduler_address, store=Store(""))) == [
+        *wanted,
+        *wanted[:2],
+    ]
+    assert runs(local) == sorted([*range(4)] * 2)
+
+    todo = [*items(remote, 12, 0.1), Item("executor_items:fail", ("said",), "said")]
+    store, killed = Store(str(tmp_path / "store")), []
+
+    def kill(done: int, total: int, name: str) -> None:
+        if done == 3:
+            killed.append(next(iter(dask.workers.values())).pid)
+            os.kill(killed[0], signal.SIGKILL)
+
+    *results, failed = run(todo, dask.scheduler_address, store=store, progress=kill)
+    assert killed and failed == Failure("said", "the scene has no light")
+    assert [result.name for result in results] == [f"item {number}" for number in range(12)]
+    assert set(runs(remote)) == set(range(12))
+    assert as_bytes(results) == as_bytes(run(todo[:-1], processes=0, store=Store("")))
+    assert len([path for path in (tmp_path / "store").rglob("*") if path.is_file()]) == 12
+
+
+@pytest.mark.filterwarnings("default")
+def test_what_kills_every_dask_worker_is_named(tmp_path: Path, dask: Any) -> None:
+    deadly = Item("executor_items:die", (str(tmp_path), 7), "the seventh")
+    failed, good = run([deadly, Item("executor_items:echo", (1,))], dask.scheduler_address, store=Store(""))
+    assert good == (1, 1) and failed.name == "the seventh" and "KilledWorker" in failed.message
+    assert runs(tmp_path) == [7] * 4
+
+
+@pytest.mark.filterwarnings("default")
+@pytest.mark.parametrize("where", ["processes", "dask"])
+def test_stress_is_the_same_when_it_is_shared_out(
+    where: str, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scheduler = request.getfixturevalue("dask").scheduler_address if where == "dask" else ""
+    missing = ["browser"] if where == "processes" else []
+    monkeypatch.setenv("SSSGEN_CHROMIUM", "/nowhere/chromium")
+    chosen, names = specimens(["resin_inlay", "seed3_lobe"]), ["numpy-f32", *missing]
+    settings = Settings(samples=500)
+    with Machines(names) as machines:
+        rows = [stress(one, machines, settings) for one in chosen]
+        alone = Report(settings, {"numpy-f32": machines.here["numpy-f32"].device()}, machines.missing, rows)
+    shared = spread(chosen, names, settings, scheduler, None if scheduler else 2)
+    assert without_times(shared) == without_times(alone)
+    assert len(shared.rows) == len(chosen) > 2 and [*shared.missing] == missing
+
+
+def without_times(report: Report) -> str:
+    return re.sub(r'"seconds": [0-9.e-]+', "", json.dumps(as_json(report)))
+
+
+@pytest.mark.filterwarnings("default")
+def test_no_scheduler(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("distributed")
+    monkeypatch.setattr(cluster, "SECONDS", 0.5)
+    for address in ("tcp://127.0.0.1:9", "nonsense://x:y"):
+        with pytest.raises(SssgenError, match="no Dask scheduler answers"):
+            run([Item("executor_items:echo", (1,))], address, store=Store(""))
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(SssgenError, match=r"sssgen\[cluster\]"):
+        run([Item("executor_items:echo", (1,))], "tcp://127.0.0.1:9", store=Store(""))
+
+
+def test_the_command_shares_out(capsys: pytest.CaptureFixture[str]) -> None:
+    command = ["stress", "lobe_normalized", "--backend", "numpy-f32", "--samples", "100"]
+    assert cli.main(command) == 0
+    alone = capsys.readouterr().out
+    assert cli.main([*command, "--processes", "2"]) == 0
+    times = re.compile(r"in [0-9.]+ s, [0-9.]+ million a second")
+    assert times.sub("", capsys.readouterr().out) == times.sub("", alone)
+    assert cli.main([*command, "--processes", "0"]) == 2
+    assert "'0' is not a number of processes" in capsys.readouterr().err
+
+
+def test_pictures_apart_are_the_same_when_they_are_shared_out() -> None:
+    todo = [Item("sssgen.lab.jobs.render_items:apart", ("resin_inlay", ("numpy-f32", "numpy"), (32, 24), 1))]
+    [[single, same]] = here = run(todo, processes=0, store=Store(""))
+    assert 0.0 < single.worst < 1.0 and single.beyond == 0 and same == (0.0, 0)
+    assert as_bytes(run(todo, processes=1, store=Store(""))) == as_bytes(here)

@@ -1,0 +1,193 @@
+"""The cost on a GPU: what is timed computes what it should, and the times tell dear from cheap. On any OpenGL."""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib.util
+from collections.abc import Callable
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+from folders import ROOT
+from sssgen.harness import backends
+from sssgen.harness.backends import Backend
+from sssgen.harness.evaluate import evaluation as evaluate
+from sssgen.harness.evaluate.probes import subject
+from sssgen.harness.pictures.images import decode_srgb
+from sssgen.harness.pictures.picture_difference import compare
+from sssgen.harness.render import scene_render as render
+from sssgen.harness.scenes import scene_loading
+from sssgen.harness.scenes.camera import Camera
+from sssgen.lab.gpu import gpu_timing as gpu_cost
+from sssgen.lab.gpu import timed_programs as gpu_programs
+from sssgen.lab.gpu.gpu_timing import Measured, Program
+from sssgen.support.diagnostics import SssgenError
+
+SIZE = (64, 36)
+LOOP = """#version 330 core
+uniform int count;
+in vec2 v_uv;
+out vec4 color;
+void main() {
+    color = vec4(0.0);
+    for (int i = 0; i < count; i++) {
+        color += sin(v_uv.xyxy * float(i));
+    }
+}
+"""
+FLOOR = """#version 330 core
+in vec2 v_uv;
+out vec4 color;
+void main() { color = v_uv.xyxy; }
+"""
+
+
+@pytest.fixture(autouse=True)
+def opengl(backend: Callable[[str], Backend]) -> Backend:
+    return backend("gl")
+
+
+@pytest.fixture(scope="module")
+def benchmark() -> ModuleType:
+    """benchmarks/gpu.py, which is no module of the package."""
+    found = importlib.util.spec_from_file_location("gpu", ROOT / "benchmarks" / "gpu.py")
+    assert found is not None and found.loader is not None
+    module = importlib.util.module_from_spec(found)
+    found.loader.exec_module(module)
+    return module
+
+
+def measured(*programs: Program) -> Measured:
+    return gpu_cost.measure(programs, (128, 72), rounds=5, sample=1.0)
+
+
+def test_more_work_costs_more() -> None:
+    found = measured(Program("few", LOOP, {"count": 20}), Program("many", LOOP, {"count": 2000}))
+    assert found.ratio("many", "few").median > 4.0
+    assert found.ratio("few", "many").median < 0.25
+
+
+def test_the_same_costs_the_same() -> None:
+    found = measured(Program("one", LOOP, {"count": 800}), Program("other", LOOP + "// twice\n", {"count": 800}))
+    assert 0.5 < found.ratio("one", "other").median < 2.0
+
+
+def test_the_floor_is_taken_off() -> None:
+    floored = Program("floored", LOOP, {"count": 500}, floor=LOOP.replace("sin", "cos"))
+    found = measured(floored, Program("bare", LOOP, {"count": 500}))
+    assert abs(found.net("floored").median) < 0.5 * found.net("bare").median
+    assert found.net("bare") == found.raw("bare")
+
+
+def test_net_is_of_one_evaluation() -> None:
+    found = measured(Program("ten", LOOP, {"count": 1000}, evaluations=10))
+    assert found.net("ten").median == pytest.approx(found.raw("ten").median / 10)
+
+
+def test_the_record_says_what_has_drawn(opengl: Backend) -> None:
+    found = measured(Program("one", LOOP, {"count": 10}, floor=FLOOR))
+    record = found.record()
+    assert record["device"] in opengl.device() and record["size"] == [128, 72] and record["rounds"] == 5
+    assert record["software"] == ("llvmpipe" in record["device"] or "softpipe" in record["device"])
+    frame = record["programs"]["one"]["frame_ms"]
+    assert 0.0 < frame["low"] <= frame["median"] <= frame["high"]
+
+
+def test_a_program_that_the_driver_refuses() -> None:
+    with pytest.raises(SssgenError, match=r"gl: broken: .*unknown"):
+        measured(Program("broken", FLOOR.replace("v_uv.xyxy", "unknown")))
+
+
+def test_without_opengl(monkeypatch: pytest.MonkeyPatch) -> None:
+    def lacks(name: str) -> Backend:
+        raise backends.CompilerMissing("pip install moderngl")
+
+    monkeypatch.setattr(backends, "get", lacks)
+    with pytest.raises(SssgenError, match="the back end gl is missing"):
+        measured(Program("one", FLOOR))
+
+
+def test_a_technique_is_computed() -> None:
+    points = gpu_programs.ball_points(SIZE)
+    shown = gpu_cost.picture(gpu_programs.of_technique("lobe_normalized", points), SIZE)[..., 0].ravel()
+    place, normal = points.place[..., :3].reshape(-1, 3), points.normal[..., :3].reshape(-1, 3)
+    uv = np.stack([points.place[..., 3], points.normal[..., 3]], axis=-1).reshape(-1, 2)
+    view, light = (np.array(at) - place for at in (gpu_programs.EYE, gpu_programs.LIGHT))
+    given = {"V": view, "L": light, "N": normal}
+    given = {name: value / np.linalg.norm(value, axis=1, keepdims=True) for name, value in given.items()}
+    expected = evaluate.evaluate(
+        subject("lobe_normalized"), {**given, "through": (uv @ [3.0, 5.0]) % 1.0}, backends.get("numpy")
+    )
+    np.testing.assert_allclose(shown, expected["result"][:, 0], atol=2e-4)
+
+
+def test_values_of_a_technique() -> None:
+    points = gpu_programs.ball_points(SIZE)
+    ball = {"body_distance": "sphere"}
+    # a ball reads (1 - diameter / (2 reach))^2, and 0 while the taps stay in its nearer half
+    for reach, expected in ((0.9, 0.0), (2.0, 0.25)):
+        program = gpu_programs.of_technique("thinness_uniform", points, ball, values={"reach": reach, "taps": 60})
+        np.testing.assert_allclose(gpu_cost.picture(program, SIZE)[..., 0], expected, atol=0.01)
+    with pytest.raises(SssgenError, match="has no parameter 'reech'"):
+        gpu_programs.of_technique("thinness_uniform", points, ball, values={"reech": 1.0})
+
+
+def test_evaluations_add_up() -> None:
+    points = gpu_programs.ball_points(SIZE)
+    programs = [gpu_programs.of_technique("wrap_lighting", points, evaluations=count) for count in (1, 8)]
+    once, often = (gpu_cost.picture(program, SIZE) for program in programs)
+    np.testing.assert_allclose(often[..., :3], 8.0 * once[..., :3], atol=0.01)
+    assert np.abs(often - 8.0 * once).max() > 1e-4  # each at a place of its own
+
+
+def test_a_material_has_its_scene_s_colours(opengl: Backend) -> None:
+    """The pass over points stretches what the camera sees, so that only the mean is that of the picture."""
+    shown = render.with_samples(scene_loading.load("paper_lantern"), 1)
+    points = gpu_programs.surface_points(shown, SIZE)
+    made = gpu_cost.picture(gpu_programs.of_material("lantern", shown.material, shown, points), SIZE)[..., :3]
+    picture = render.render(shown, opengl, size=SIZE)
+    mean = picture.linear[picture.covered == 1.0].mean(axis=0) / shown.exposure
+    np.testing.assert_allclose(made.mean(axis=(0, 1)), mean, rtol=0.25)
+
+
+def test_a_material_with_its_own_camera_draws_its_picture(opengl: Backend) -> None:
+    shown = dataclasses.replace(render.with_samples(scene_loading.load("jelly_cubes"), 1), size=SIZE)
+    points = gpu_programs.surface_points(shown, SIZE)
+    made = gpu_cost.picture(gpu_programs.of_material("cubes", shown.material, shown, points), SIZE)[::-1, :, :3]
+    picture = render.render(shown, opengl)
+    np.testing.assert_allclose(decode_srgb(made) * shown.exposure, picture.linear, atol=0.01)
+
+
+def test_costs_of_materials() -> None:
+    cheap, dear = (scene_loading.load(name) for name in ("resin_inlay", "wax_suzanne"))
+    points = [gpu_programs.Point(one.material, one.material, one) for one in (cheap, dear)]
+    found = gpu_programs.costs(points, size=SIZE, rounds=3)
+    assert found.ratio("wax_suzanne", "resin_inlay").median > 3.0
+
+
+def test_a_camera_that_sees_nothing() -> None:
+    shown = scene_loading.load("wax_suzanne")
+    away = Camera(position=shown.camera.position, target=(0.0, 100.0, 0.0), field_of_view=1.0)
+    with pytest.raises(SssgenError, match="sees nothing"):
+        gpu_programs.surface_points(dataclasses.replace(shown, camera=away), SIZE)
+
+
+def test_by_hand_is_the_same(benchmark: ModuleType) -> None:
+    """What is compared must compute the same: every technique that benchmarks/by_hand has."""
+    pairs = benchmark.techniques(gpu_programs.ball_points(SIZE), 1)
+    assert len(pairs) > 40
+    for one, other in pairs:
+        emitted, by_hand = gpu_cost.picture(one, SIZE), gpu_cost.picture(other, SIZE)
+        scale = np.abs(emitted).max() + 1e-3
+        assert np.abs(emitted - by_hand).max() < 1e-3 * scale, one.name
+
+
+def test_seed_0_as_published_and_as_emitted(benchmark: ModuleType) -> None:
+    size = (320, 180)
+    pictures = [
+        gpu_cost.picture(make(size[0] / size[1]), size)[::-1, :, :3]
+        for make in (benchmark.published, benchmark.emitted)
+    ]
+    assert compare(*pictures).flip <= 0.01

@@ -1,0 +1,316 @@
+"""Exact thickness: closed forms, sampling of the distance along random rays, winding numbers of meshes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from folders import MESHES
+from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
+from sssgen.lab.reference.inside_lengths import intervals, merged, thickness
+
+Array = npt.NDArray[np.float64]
+
+SPOT = MESHES / "spot.obj"
+ASKEW: dict[str, Any] = {"position": (0.3, -0.2, 0.5), "rotation": (20.0, -30.0, 65.0), "scale": 1.7}
+Z = (0.0, 0.0, 1.0)
+
+PARTS = (
+    Box(size=(1.2, 0.3, 0.5), position=(0.0, -0.4, 0.0)),
+    Box(size=(0.3, 1.1, 0.5), position=(-0.45, 0.0, 0.0), rotation=(0.0, 0.0, 10.0)),
+    Ball(0.4, position=(0.4, 0.3, 0.1), scale=0.8),
+)
+BODIES: list[Geometry] = [
+    Ball(0.9),
+    Box(size=(1.0, 1.4, 0.7)),
+    Slab(1.5, 2.0, 0.2),
+    Torus(0.8, 0.3),
+    Capsule(0.3, 0.7),
+    Capsule(0.4, 0.0),
+    Union(PARTS),
+    Union((Torus(0.6, 0.2), Capsule(0.25, 0.9, rotation=(0.0, 0.0, 90.0)))),
+]
+
+
+def one(shape: Geometry, origin: npt.ArrayLike, way: npt.ArrayLike) -> float:
+    """The thickness along one ray."""
+    direction = np.array(way, float)
+    return float(thickness(shape, np.array([origin], float), direction[None] / np.linalg.norm(direction))[0])
+
+
+def rays(count: int, spread: float, seed: int = 1) -> tuple[Array, Array]:
+    """Random rays from in and about a ball of radius `spread`."""
+    generator = np.random.default_rng(seed)
+    ways = generator.normal(size=(count, 3))
+    return generator.uniform(-spread, spread, (count, 3)), ways / np.linalg.norm(ways, axis=1, keepdims=True)
+
+
+def through(shape: Geometry, count: int, seed: int = 2) -> tuple[Array, Array]:
+    """Random rays from outside towards places in and about a shape that is no larger than a ball of radius 1.2."""
+    generator = np.random.default_rng(seed)
+    origins = generator.normal(size=(count, 3))
+    origins *= 4.0 / np.linalg.norm(origins, axis=1, keepdims=True)
+    ways = generator.uniform(-0.9, 0.9, (count, 3)) - origins
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    matrix = shape.to_world()
+    return origins @ matrix[:3, :3].T + matrix[:3, 3], ways @ matrix[:3, :3].T / shape.scale
+
+
+def sampled(shape: Geometry, origins: Array, ways: Array, reach: float, count: int) -> Array:
+    """The thickness by counting, of `count` places evenly along each ray, those inside."""
+    step = reach / count
+    inwards = shape.to_object()
+    total = np.zeros(len(origins))
+    for some in np.array_split((np.arange(count) + 0.5) * step, max(count // 200, 1)):
+        places = (origins + some[:, None, None] * ways).reshape(-1, 3) @ inwards[:3, :3].T + inwards[:3, 3]
+        total += (shape.distance(places) < 0.0).reshape(len(some), -1).sum(axis=0)
+    return total * step
+
+
+# --- closed forms ---
+
+
+def test_a_ball_has_twice_its_radius_times_the_cosine() -> None:
+    angle = np.radians([0.0, 20.0, 50.0, 80.0, 89.9])
+    ways = np.stack([np.sin(angle), np.zeros(5), -np.cos(angle)], axis=1)
+    origins = np.tile([0.0, 0.0, 0.7], (5, 1))
+    assert thickness(Ball(0.7), origins, ways) == pytest.approx(2.0 * 0.7 * np.cos(angle), abs=1e-12)
+    assert thickness(Ball(0.7), origins, -ways) == pytest.approx(np.zeros(5), abs=1e-12)  # away from it
+    assert one(Ball(0.7), (0.0, 0.0, 0.2), Z) == pytest.approx(0.5)  # from inside: what is left
+    assert one(Ball(0.7), (0.7001, 0.0, -3.0), Z) == 0.0
+
+
+def test_a_slab_has_its_thickness_over_the_cosine() -> None:
+    angle = np.radians([0.0, 30.0, 60.0, 75.0])
+    ways = np.stack([np.sin(angle), np.zeros(4), -np.cos(angle)], axis=1)
+    assert thickness(Slab(100.0, 100.0, 0.2), np.tile([0.0, 0.0, 0.1], (4, 1)), ways) == pytest.approx(
+        0.2 / np.cos(angle)
+    )
+
+
+def test_a_box_by_its_slabs() -> None:
+    box = Box(size=(1.0, 2.0, 4.0))
+    assert [one(box, -3.0 * axis, axis) for axis in np.eye(3)] == pytest.approx([1.0, 2.0, 4.0])
+    assert one(box, (-2.0, -2.0, 0.0), (1.0, 1.0, 0.0)) == pytest.approx(np.sqrt(2.0))
+    assert one(box, (-2.0, -2.4, 0.3), (1.0, 1.0, 0.0)) == pytest.approx(np.sqrt(2.0))  # in at the front, out above
+    assert one(box, (0.4, -1.9, 0.0), (1.0, 1.0, 0.0)) == 0.0  # past the edge
+    assert one(Box(size=(1.0, 1.0, 1.0)), (-5.0, -5.0, -5.0), (1.0, 1.0, 1.0)) == pytest.approx(np.sqrt(3.0))
+    # along a pair of faces: inside of them, and outside
+    assert one(box, (0.49, -9.0, 0.0), (0.0, 1.0, 0.0)) == pytest.approx(2.0)
+    assert one(box, (0.51, -9.0, 0.0), (0.0, 1.0, 0.0)) == 0.0
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.1, 0.29])
+def test_a_torus_along_its_axis(offset: float) -> None:
+    torus, half = Torus(0.8, 0.3), np.sqrt(0.3**2 - offset**2)
+    for x in (0.8 + offset, -0.8 + offset):
+        assert one(torus, (x, 5.0, 0.0), (0.0, -1.0, 0.0)) == pytest.approx(2.0 * half, abs=1e-7)
+    assert one(torus, (0.0, 5.0, 0.0), (0.0, -1.0, 0.0)) == 0.0  # through its hole
+
+
+@pytest.mark.parametrize("height", [0.0, 0.15, -0.25])
+@pytest.mark.parametrize("aside", [0.0, 0.3, 0.55, 0.7, 1.0])
+def test_a_torus_across(height: float, aside: float) -> None:
+    # at that height it is a ring between two circles; a line at x = aside runs in the one and not in the other
+    half = np.sqrt(0.3**2 - height**2)
+    outer, inner = 0.8 + half, 0.8 - half
+    expected = 2.0 * (np.sqrt(max(outer**2 - aside**2, 0.0)) - np.sqrt(max(inner**2 - aside**2, 0.0)))
+    assert one(Torus(0.8, 0.3), (aside, height, -5.0), Z) == pytest.approx(expected, abs=1e-9)
+
+
+def test_a_torus_along_its_tube() -> None:
+    # from the ring's middle line, along it: a chord of the outer circle
+    assert one(Torus(0.8, 0.3), (0.8, 0.0, 0.0), Z) == pytest.approx(np.sqrt(1.1**2 - 0.8**2))
+    # askew through the centre: the tube twice, the gap between not counted
+    turned = np.radians(15.0)
+    way = (np.cos(turned), np.sin(turned), 0.0)
+    chord = 2.0 * np.sqrt(0.3**2 - (0.8 * np.sin(turned)) ** 2)
+    assert one(Torus(0.8, 0.3), -4.0 * np.array(way), way) == pytest.approx(2.0 * chord)
+
+
+def test_a_capsule() -> None:
+    capsule = Capsule(0.3, 1.0)
+    assert one(capsule, (0.0, -4.0, 0.0), (0.0, 1.0, 0.0)) == pytest.approx(1.6)
+    assert one(capsule, (0.2, -4.0, 0.0), (0.0, 1.0, 0.0)) == pytest.approx(1.0 + 2.0 * np.sqrt(0.05))
+    assert one(capsule, (0.0, 0.3, -4.0), Z) == pytest.approx(0.6)
+    assert one(capsule, (0.1, 0.3, -4.0), Z) == pytest.approx(2.0 * np.sqrt(0.08))
+    assert one(capsule, (0.0, 0.7, -4.0), Z) == pytest.approx(2.0 * np.sqrt(0.05))  # through the upper end
+    assert one(capsule, (0.0, 0.81, -4.0), Z) == 0.0
+    turned = np.radians(60.0)  # through the middle, out at the sides
+    assert one(capsule, (0.0, 0.0, 0.0), (np.sin(turned), np.cos(turned), 0.0)) == pytest.approx(0.3 / np.sin(turned))
+    assert one(Capsule(0.3, 0.0), (0.1, -4.0, 0.0), (0.0, 1.0, 0.0)) == pytest.approx(2.0 * np.sqrt(0.08))  # a ball
+
+
+def test_a_union_counts_what_overlaps_once_and_gaps_not() -> None:
+    apart = Union((Ball(0.5, position=(-1.0, 0.0, 0.0)), Ball(0.25, position=(1.0, 0.0, 0.0))))
+    assert one(apart, (-5.0, 0.0, 0.0), (1.0, 0.0, 0.0)) == pytest.approx(1.5)
+    assert one(apart, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)) == pytest.approx(0.5)  # what lies behind does not count
+    overlapping = Union((Ball(0.5), Ball(0.5, position=(0.5, 0.0, 0.0)), Box(size=(0.1, 0.1, 0.1))))
+    assert one(overlapping, (-5.0, 0.0, 0.0), (1.0, 0.0, 0.0)) == pytest.approx(1.5)
+    touching = Union((Box(size=(1.0, 1.0, 1.0)), Box(size=(1.0, 1.0, 1.0), position=(1.0, 0.0, 0.0))))
+    assert one(touching, (-5.0, 0.2, 0.1), (1.0, 0.0, 0.0)) == pytest.approx(2.0)
+    # a part in a part's place, scaled with it
+    nested = Union((Union((Ball(0.5, scale=2.0),), scale=0.5, position=(0.0, 3.0, 0.0)),), scale=3.0)
+    assert one(nested, (0.0, 9.0, -9.0), Z) == pytest.approx(3.0)
+
+
+def test_merged_intervals_are_apart_in_order_and_cover_the_same() -> None:
+    generator = np.random.default_rng(7)
+    ends = np.sort(generator.uniform(0.0, 1.0, (300, 5, 2)), axis=2)
+    ends[:, 2] = 0.0  # an empty one
+    found = merged(ends)
+    at = np.linspace(0.0, 1.0, 3001)
+    for before, after in zip(ends, found, strict=True):
+        inside = ((before[:, :1] <= at) & (at < before[:, 1:])).any(axis=0)
+        again = ((after[:, :1] <= at) & (at < after[:, 1:])).sum(axis=0)
+        assert (again == inside).all()
+
+
+# --- places ---
+
+
+@pytest.mark.parametrize("shape", BODIES, ids=repr)
+def test_turned_scaled_and_moved_it_is_the_same_times_the_scale(shape: Geometry) -> None:
+    origins, ways = rays(400, 1.0)
+    placed = replace(shape, **ASKEW)
+    matrix = placed.to_world()
+    there = thickness(placed, origins @ matrix[:3, :3].T + matrix[:3, 3], ways @ matrix[:3, :3].T / 1.7)
+    here = thickness(shape, origins, ways)
+    assert (here > 0.05).sum() > 20
+    assert there == pytest.approx(1.7 * here, abs=1e-6)
+
+
+@pytest.mark.parametrize("shape", [*BODIES, *(replace(body, **ASKEW) for body in BODIES)], ids=repr)
+def test_as_much_as_samples_of_the_distance_find(shape: Geometry) -> None:
+    origins, ways = through(shape, 150)
+    reach = 8.0 * shape.scale
+    exact = thickness(shape, origins, ways)
+    assert (exact > 0.0).sum() > 20
+    # a step may be counted or not at each of at most six ends
+    assert np.abs(exact - sampled(shape, origins, ways, reach, 4000)).max() < 6.0 * reach / 4000
+    starts, onwards = origins + 0.5 * reach * ways, ways  # half of it lies behind, some begin inside
+    rest = thickness(shape, starts, onwards)
+    assert (rest < exact - 0.05).sum() > 10
+    assert np.abs(rest - sampled(shape, starts, onwards, reach, 4000)).max() < 6.0 * reach / 4000
+
+
+def test_another_part_never_makes_a_union_thinner() -> None:
+    origins, ways = rays(2000, 1.5)
+    parts: tuple[Geometry, ...] = ()
+    before = np.zeros(len(origins))
+    for part in (*PARTS, Torus(0.7, 0.2, rotation=(40.0, 0.0, 0.0)), Capsule(0.2, 1.0)):
+        parts = (*parts, part)
+        after = thickness(Union(parts), origins, ways)
+        assert (after >= before - 1e-12).all()
+        assert (after <= before + thickness(part, origins, ways) + 1e-12).all()
+        assert (after > before + 0.01).any()
+        before = after
+
+
+# --- distance functions ---
+
+
+@pytest.mark.parametrize(
+    ("function", "solid"),
+    [
+        (Distance("sphere", parameters={"radius": 0.8}, reach=1.2), Ball(0.8)),
+        (Distance("torus", parameters={"ring_radius": 0.8, "tube_radius": 0.25}, reach=1.5), Torus(0.8, 0.25)),
+    ],
+)
+@pytest.mark.parametrize("placed", [False, True])
+def test_a_distance_function_has_the_thickness_of_the_solid(function: Distance, solid: Geometry, placed: bool) -> None:
+    if placed:
+        function, solid = replace(function, **ASKEW), replace(solid, **ASKEW)
+    origins, ways = through(solid, 400)
+    exact = thickness(solid, origins, ways)
+    found = thickness(function, origins, ways)
+    # what is shorter than the shortest step may be missed
+    missed = (found == 0.0) & (exact > 0.0)
+    assert exact[missed].max(initial=0.0) < 0.05
+    assert found[~missed] == pytest.approx(exact[~missed], abs=1e-3)
+    assert np.median(np.abs(found - exact)) < 1e-9
+    assert (np.abs(found - exact) < 1e-6).mean() > 0.98
+    # from the surface on, into the body
+    at = origins + intervals_of(solid, origins, ways)[:, None] * ways
+    hit = exact > 0.1
+    assert thickness(function, at[hit], ways[hit]) == pytest.approx(exact[hit], abs=1e-3)
+
+
+def intervals_of(shape: Geometry, origins: Array, ways: Array) -> Array:
+    """The way to the first surface in front, world units; 0 where there is none."""
+    inwards = shape.to_object()
+    found = intervals(shape, origins @ inwards[:3, :3].T + inwards[:3, 3], ways @ inwards[:3, :3].T * shape.scale)
+    first: Array = np.where(found[..., 1] > found[..., 0], found[..., 0], np.inf).min(axis=1) * shape.scale
+    return np.where(np.isfinite(first), first, 0.0)
+
+
+# --- meshes ---
+
+
+def mesh(path: Path, made: object) -> Mesh:
+    made.export(path)  # type: ignore[attr-defined]
+    return Mesh(path=str(path))
+
+
+def test_a_mesh_of_a_box_is_the_box(tmp_path: Path) -> None:
+    trimesh = pytest.importorskip("trimesh")
+    pytest.importorskip("embreex")
+    box = mesh(tmp_path / "box.ply", trimesh.creation.box((1.0, 1.4, 0.7)))
+    exact = Box(size=(1.0, 1.4, 0.7))
+    for placed, solid in ((box, exact), (replace(box, **ASKEW), replace(exact, **ASKEW))):
+        origins, ways = through(solid, 2000)
+        expected = thickness(solid, origins, ways)
+        assert thickness(placed, origins, ways) == pytest.approx(expected, abs=2e-4)
+        inside = origins + (intervals_of(solid, origins, ways) + 0.3 * expected)[:, None] * ways
+        deep = expected > 0.1
+        assert thickness(placed, inside[deep], ways[deep]) == pytest.approx(0.7 * expected[deep], abs=2e-4)
+    # straight through the diagonal that two triangles share: once in and once out
+    assert one(box, (0.0, 0.0, -3.0), Z) == pytest.approx(0.7, abs=1e-5)
+    assert one(box, (0.0, 0.0, -0.35), Z) == pytest.approx(0.7, abs=1e-5)  # from the surface
+    assert one(box, (0.0, 0.0, 0.35), Z) == 0.0  # away from it
+
+
+def test_a_mesh_of_a_ball_is_nearly_the_ball(tmp_path: Path) -> None:
+    trimesh = pytest.importorskip("trimesh")
+    pytest.importorskip("embreex")
+    ball = mesh(tmp_path / "ball.ply", trimesh.creation.icosphere(5, 0.9))
+    origins, ways = through(ball, 2000)
+    exact = thickness(Ball(0.9), origins, ways)
+    deep = exact > 0.2
+    # edges of 0.04 dent the ball by at most c² / 8r = 2e-4, seen at a slant
+    assert thickness(ball, origins, ways)[deep] == pytest.approx(exact[deep], abs=6e-3)
+    assert (thickness(ball, origins, ways)[exact == 0.0] == 0.0).all()
+
+
+def test_a_mesh_with_a_part_inside_another_counts_it_once(tmp_path: Path) -> None:
+    trimesh = pytest.importorskip("trimesh")
+    pytest.importorskip("embreex")
+    whole, part = trimesh.creation.box((2.0, 2.0, 2.0)), trimesh.creation.box((2.0, 0.5, 0.5))
+    part.apply_translation((1.5, 0.1, 0.2))  # half in, half out
+    made = mesh(tmp_path / "two.ply", trimesh.util.concatenate([whole, part]))
+    same = Union((Box(size=(2.0, 2.0, 2.0)), Box(size=(2.0, 0.5, 0.5), position=(1.5, 0.1, 0.2))))
+    origins, ways = through(same, 2000)
+    assert thickness(made, origins, ways) == pytest.approx(thickness(same, origins, ways), abs=2e-4)
+
+
+@pytest.mark.skipif(not SPOT.is_file(), reason="the meshes of shared/data/meshes are not part of the project")
+def test_spot_has_the_thickness_of_her_winding_number() -> None:
+    for package in ("trimesh", "embreex", "igl"):
+        pytest.importorskip(package)
+    spot = Mesh(path=str(SPOT))
+    low, high = spot.bounds()
+    assert low == pytest.approx(spot.triangles.places.min(axis=0))
+    generator = np.random.default_rng(3)
+    count, steps = 40, 400
+    origins = generator.normal(size=(count, 3))
+    origins = 0.5 * (low + high) + 3.0 * origins / np.linalg.norm(origins, axis=1, keepdims=True)
+    ways = generator.uniform(low, high, (count, 3)) - origins
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    exact = thickness(spot, origins, ways)
+    assert (exact > 0.1).sum() > 20
+    assert np.abs(exact - sampled(spot, origins, ways, 6.0, steps)).max() < 8.0 * 6.0 / steps

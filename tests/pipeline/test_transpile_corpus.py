@@ -1,0 +1,135 @@
+"""Plain GLSL of every construct (tests/transpile): what is made of it is kept, compiles, is stable, computes the same.
+
+UPDATE_SNAPSHOTS=1 keeps what is made now.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from functools import cache
+
+import pytest
+
+from folders import SNAPSHOTS, TESTS
+from skips import compiler_or_skip
+from snapshot import check_snapshot
+from sssgen.harness.backends import Backend
+from sssgen.harness.compilers import Source, errors, readers
+from sssgen.harness.verify import verification as transpiled
+from sssgen.harness.verify.inline_includes import expanded
+from sssgen.harness.verify.verification_report import BACKENDS
+from sssgen.ir.text import print_module
+from sssgen.lang.plain_glsl import load_glsl, load_glsl_text
+from sssgen.pipeline.compiler import transpile
+from sssgen.support.diagnostics import SssgenError
+
+CORPUS = TESTS / "transpile"
+FILES = sorted(path.name for path in CORPUS.iterdir() if path.is_file())
+TARGETS = ("wgsl", "hlsl", "glsl-330")
+SUFFIXES = {"wgsl": "wgsl", "hlsl": "hlsl", "glsl-330": "glsl"}
+COMPILERS = ("naga", "tint", "glslang", "dxc")
+REFUSED = {("array_results.glsl", "hlsl")}
+"""What a target has no way to say; the snapshot is the error."""
+QUICK = ("switches.glsl", "loops.glsl", "side_effects.glsl", "stores.glsl", "conversions.glsl", "macros.glsl")
+"""What is run in the fast tests, too."""
+
+HEADER = re.compile(r"^// \w+\n// Made by sssgen .*\n(// Paste .*\n)?\n?", re.MULTILINE)
+"""What stands above each text, and would be taken for the first function's comment."""
+
+NOTHING_TO_COMPARE = ("it gives nothing", "it reads numbers, a texture that cannot be given")
+"""Why a function may not be run."""
+
+
+def entry(name: str) -> str:
+    return "shadertoy" if ".shadertoy." in name else ""
+
+
+@cache
+def made(name: str, target: str) -> str:
+    """The text that is made of a file. Raises SssgenError."""
+    loaded = load_glsl(CORPUS / name, name, (), None, entry(name))
+    return next(iter(transpile(loaded.module, target, name.split(".")[0], keep=True).files.values()))
+
+
+def source(name: str, target: str) -> Source:
+    """What compilers are given."""
+    text = made(name, target)
+    if name.endswith((".frag", ".vert")) or entry(name):
+        stage = "vertex" if name.endswith(".vert") else "fragment"
+        return Source(text, target, stage, "main" if target == "glsl-330" else f"{stage}_main", name)
+    return Source(text, target, "library", name=name)
+
+
+CASES = [(name, target) for name in FILES for target in TARGETS]
+
+
+@pytest.mark.parametrize(("name", "target"), CASES)
+def test_the_text_is_as_it_was(name: str, target: str) -> None:
+    try:
+        text = made(name, target)
+    except SssgenError as error:
+        assert (name, target) in REFUSED, error
+        text = f"{error}\n"
+    check_snapshot(f"transpile/{name}.{SUFFIXES[target]}", text)
+
+
+def test_no_snapshot_is_left_over() -> None:
+    kept = {path.name for path in (SNAPSHOTS / "transpile").iterdir()}
+    assert kept == {f"{name}.{SUFFIXES[target]}" for name, target in CASES}
+
+
+@pytest.mark.parametrize("compiler", COMPILERS)
+def test_other_compilers_take_it(compiler: str) -> None:
+    found = compiler_or_skip(compiler)
+    wrong = []
+    for name, target in CASES:
+        if compiler in readers(target) and (name, target) not in REFUSED:
+            wrong += [f"{name} as {target}: {said}" for said in errors(found.check(source(name, target)))]
+    assert wrong == []
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_one_trip_makes_it_stable(name: str) -> None:
+    """GLSL made of GLSL is that GLSL, and means the same."""
+    title = name.split(".")[0]
+    text = HEADER.sub("", made(name, "glsl-330"))
+    shown = f"{title}.vert" if name.endswith(".vert") else name
+    once = load_glsl_text(text, shown).module
+    again = HEADER.sub("", next(iter(transpile(once, "glsl-330", title, keep=True).files.values())))
+    assert again == text
+    assert print_module(load_glsl_text(again, shown).module) == print_module(once)
+
+
+def computed(name: str, samples: int) -> None:
+    """Fails where a function gives another number than the author's text does in OpenGL's driver."""
+    text = expanded((CORPUS / name).read_text("utf-8"), CORPUS / name)
+    report = transpiled.verify(text, name, samples, 0, entry(name))
+    wrong = [
+        f"{row.function} as {target}: {found.error or found.at}"
+        for row in report.rows
+        for target, found in row.found.items()
+        if not found.ok and (name, target) not in REFUSED
+    ]
+    assert wrong == []
+    assert all(row.found or row.reason in NOTHING_TO_COMPARE for row in report.rows), "\n".join(report.lines())
+
+
+@pytest.fixture
+def machines(backend: Callable[[str], Backend]) -> None:
+    """All that functions run on, or a skip."""
+    for name in BACKENDS.values():
+        backend(name)
+
+
+@pytest.mark.usefixtures("machines")
+@pytest.mark.parametrize("name", QUICK)
+def test_functions_compute_what_they_did(name: str) -> None:
+    computed(name, 64)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("machines")
+@pytest.mark.parametrize("name", FILES)
+def test_all_functions_compute_what_they_did(name: str) -> None:
+    computed(name, 512)

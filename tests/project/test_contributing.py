@@ -1,0 +1,141 @@
+"""CONTRIBUTING.md, followed step by step: its files written, its commands run, in a copy of the project."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+import sysconfig
+import venv
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from documents import Reader, blocks, programs, read, uncommented
+from folders import ROOT
+from sssgen.targets import descriptor
+
+CONTRIBUTING = ROOT / "CONTRIBUTING.md"
+COPIED = ("src", "targets", "templates", "examples", "tests", "pyproject.toml", "README.md", "LICENSE")
+
+
+def checkout(folder: Path, programs: Path) -> Reader:
+    """A reader in a fresh copy of the project, with the compilers that this one has."""
+    for name in COPIED:
+        source = ROOT / name
+        if source.is_dir():
+            shutil.copytree(
+                source, folder / name, ignore=shutil.ignore_patterns("__pycache__", ".*_cache", "snapshots")
+            )
+        else:
+            shutil.copy(source, folder / name)
+    environment = {"PYTHONPATH": str(folder / "src"), "SSSGEN_CACHE": str(folder / "cache")}
+    modules = os.environ.get("SSSGEN_NODE_MODULES") or str(ROOT / "build" / "node" / "node_modules")
+    return Reader(folder, programs, {**environment, "SSSGEN_NODE_MODULES": modules})
+
+
+def test_add_a_technique(tmp_path: Path, compiler: Callable[[str], Any]) -> None:
+    for name in ("gl", "glslang", "naga", "tint", "dxc", "unity"):
+        compiler(name)
+    reader = checkout(tmp_path, programs(tmp_path / "programs"))
+    steps = blocks(CONTRIBUTING, "Add a technique")
+    assert [step.verb for step in steps] == ["write", "output", "write", "run", "write", "run", "run"]
+    for step in steps:
+        reader.follow(step)
+    assert "sheet_thickness" in reader.run("sssgen list techniques --role thickness")[0]
+    assert "sheet_thickness(" in (tmp_path / "out" / "sheet" / "frosted_sheet.wgsl").read_text("utf-8")
+
+
+def test_add_a_target(tmp_path: Path, compiler: Callable[[str], Any]) -> None:
+    """In a fresh environment that has sssgen and what it needs, and no plug-in yet."""
+    compiler("glslang")
+    environment = tmp_path / "environment"
+    venv.create(environment, with_pip=True)
+    (environment / "bin" / "sssgen").symlink_to(
+        programs(tmp_path / "programs", str(environment / "bin" / "python")) / "sssgen"
+    )
+    (packages,) = (environment / "lib").glob("python*/site-packages")
+    (packages / "outer.pth").write_text(f"{sysconfig.get_path('purelib')}\n", encoding="utf-8")  # lark, jinja2
+    reader = checkout(tmp_path / "checkout", environment / "bin")
+    before = reader.run("sssgen list targets")[0]
+    assert "vulkan" not in before.split()
+    steps = blocks(CONTRIBUTING, "Add a target")
+    for step in steps:
+        reader.follow(step)
+    after = reader.run("sssgen list targets")[0]
+    assert {line.split()[0] for line in after.splitlines()} == {line.split()[0] for line in before.splitlines()} | {
+        "vulkan"
+    }
+    reflection = (reader.folder / "out" / "vulkan" / "paper_lantern.vulkan.reflection.json").read_text("utf-8")
+    assert '"binding": {"group": 1, "texture": 1}' in reflection and '"offset": 0' in reflection
+
+
+def test_every_step_is_followed() -> None:
+    """Only the commands at the top, for the project's own environment, are not."""
+    lines = read(CONTRIBUTING).splitlines()
+    assert [lines[number] for number in uncommented(CONTRIBUTING)] == [lines[3]]
+    assert lines[3].startswith("make test")
+
+
+# Plug-ins that are faulty
+
+
+@pytest.fixture
+def plugin(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, str], None]:
+    """`plugin(entry, module)`: a package with that entry point and that text, on the path."""
+
+    def install(entry: str, module: str) -> None:
+        information = tmp_path / "toy-1.0.dist-info"
+        information.mkdir()
+        (information / "METADATA").write_text("Metadata-Version: 2.1\nName: toy\nVersion: 1.0\n", encoding="utf-8")
+        (information / "entry_points.txt").write_text(f"[sssgen.targets]\n{entry}\n", encoding="utf-8")
+        (tmp_path / "toy_target.py").write_text(module, encoding="utf-8")
+
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.delitem(sys.modules, "toy_target", raising=False)
+    for cached in (descriptor.names, descriptor._plugins, descriptor.load):
+        cached.cache_clear()
+        monkeypatch.setattr(descriptor, cached.__name__, cached.__wrapped__)
+    return install
+
+
+TOY = "from sssgen.targets import descriptor\ndef toy():\n    return descriptor.load('glsl-330')._replace(name='{}')\n"
+
+
+def test_a_plugin_may_give_a_target(plugin: Callable[[str, str], None]) -> None:
+    plugin("toy = toy_target:toy", TOY.format("toy"))
+    assert "toy" in descriptor.names()
+    assert descriptor.load("toy").language == "glsl"
+
+
+@pytest.mark.parametrize(
+    ("entry", "module", "said"),
+    [
+        ("toy = toy_target:toy", "import no_such_module", "No module named 'no_such_module'"),
+        ("toy = toy_target:tow", "toy = 1", "no attribute 'tow'"),
+        ("toy = toy_target:toy", "toy = 1", "TypeError"),
+        ("toy = toy_target:toy", "def toy(): raise KeyError('x')", "KeyError: 'x'"),
+        ("toy = toy_target:toy", "toy = 'no_such_file.toml'", "cannot read the target descriptor"),
+        ("toy = toy_target:toy", TOY.format("other"), "gives a target called 'other'"),
+    ],
+)
+def test_a_faulty_plugin_is_named(plugin: Callable[[str, str], None], entry: str, module: str, said: str) -> None:
+    from sssgen import SssgenError
+
+    plugin(entry, module)
+    with pytest.raises(SssgenError) as error:
+        descriptor.load("toy")
+    (found,) = error.value.diagnostics
+    assert said in found.render()
+
+
+def test_a_faulty_descriptor_is_named(tmp_path: Path) -> None:
+    from sssgen import SssgenError
+
+    path = tmp_path / "toy.toml"
+    for text in ("title = 1\n", "title = 'T'\nlanguage = 'glsl'\n[types]\n[names]\nreserved = 3\n[files]\n", "= 1"):
+        path.write_text(text, encoding="utf-8")
+        with pytest.raises(SssgenError, match="target descriptor"):
+            descriptor.read(path)

@@ -1,0 +1,132 @@
+"""The wheel carries what `sssgen emit` needs, and emits in an empty environment what the checkout does."""
+
+from __future__ import annotations
+
+import ast
+import os
+import subprocess
+import sys
+import tomllib
+import venv
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from folders import ROOT
+from sssgen.material.material_loading import examples
+from sssgen.support.paths import folder
+from sssgen.version import VERSION
+
+
+def run(*command: str | Path, cwd: Path, **variables: str) -> str:
+    """The output of a command that has to succeed, run without this environment's Python settings."""
+    kept = [name for name in os.environ if not name.startswith(("PYTHON", "SSSGEN"))]
+    environment = {name: os.environ[name] for name in kept}
+    done = subprocess.run(
+        [str(part) for part in command],
+        cwd=cwd,
+        env={**environment, "PIP_DISABLE_PIP_VERSION_CHECK": "1", **variables},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, f"{command}\n{done.stdout}\n{done.stderr}"
+    return done.stdout
+
+
+@pytest.fixture(scope="session")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The wheel of this checkout."""
+    path = tmp_path_factory.mktemp("wheel")
+    run(sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", path, ROOT, cwd=path)
+    (made,) = path.glob("*.whl")
+    return made
+
+
+@pytest.fixture(scope="session")
+def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The programs of an environment that has the wheel, what it asks for, and nothing else."""
+    path = tmp_path_factory.mktemp("environment")
+    venv.create(path, with_pip=True)
+    programs = path / ("Scripts" if sys.platform == "win32" else "bin")
+    run(programs / "python", "-m", "pip", "install", "--quiet", wheel, cwd=path)
+    return programs
+
+
+def test_the_wheel_carries_what_it_needs_and_nothing_else(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        names = set(archive.namelist())
+        texts = {name: archive.read(name) for name in names}
+    for name in ("templates", "targets", "examples"):
+        prefix = f"sssgen/_data/{name}/"
+        carried = {Path(one.removeprefix(prefix)) for one in names if one.startswith(prefix)}
+        assert carried == {path.relative_to(ROOT / name) for path in (ROOT / name).rglob("*") if path.is_file()}
+    for path in (ROOT / "src" / "sssgen").rglob("*"):
+        inside = path.relative_to(ROOT / "src")
+        if path.is_file() and not any(part.startswith((".", "__pycache__")) for part in inside.parts):
+            assert inside.as_posix() in names
+    assert {name.split("/")[0] for name in names} == {"sssgen", f"sssgen-{VERSION}.dist-info"}
+    assert not any("__pycache__" in name or "qualification" in name for name in names)
+    assert not [name for name, text in texts.items() if str(ROOT).encode() in text]
+    metadata = texts[f"sssgen-{VERSION}.dist-info/METADATA"].decode()
+    assert f"Version: {VERSION}" in metadata
+    assert b"sssgen = sssgen.cli.main:main" in texts[f"sssgen-{VERSION}.dist-info/entry_points.txt"]
+
+
+def test_the_source_distribution_carries_the_qualification() -> None:
+    """What proves the project is for those who build it: it is in the sdist, not in the wheel."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    assert "/qualification" in project["tool"]["hatch"]["build"]["targets"]["sdist"]["include"]
+    assert "/tests" in project["tool"]["hatch"]["build"]["targets"]["sdist"]["include"], "they import it"
+    for path in (ROOT / "src").rglob("*.py"):
+        assert "import qualification" not in (text := path.read_text(encoding="utf-8")), path
+        assert "from qualification" not in text, path
+
+
+def test_the_wheel_emits_what_the_checkout_emits(installed: Path, tmp_path: Path) -> None:
+    """Every example for every target, each side with its own hash seed and with no cache to begin with."""
+    names = list(examples())
+    wheel_run = [installed / "sssgen", "emit", *names, "--target", "all", "-o", "wheel"]
+    run(*wheel_run, cwd=tmp_path, PYTHONHASHSEED="1", SSSGEN_CACHE=str(tmp_path / "cache_1"))
+    checkout_run = [sys.executable, "-m", "sssgen", "emit", *names, "--target", "all", "-o", "checkout"]
+    run(
+        *checkout_run,
+        cwd=tmp_path,
+        PYTHONPATH=str(ROOT / "src"),
+        PYTHONHASHSEED="2",
+        SSSGEN_CACHE=str(tmp_path / "cache_2"),
+    )
+    ours = {path.name: path.read_bytes() for path in (tmp_path / "checkout").iterdir()}
+    theirs = {path.name: path.read_bytes() for path in (tmp_path / "wheel").iterdir()}
+    assert len(ours) > len(names)
+    assert theirs == ours
+
+
+def test_the_installed_program(installed: Path, tmp_path: Path) -> None:
+    assert run(installed / "sssgen", "--version", cwd=tmp_path) == f"sssgen {VERSION}\n"
+    assert run(installed / "python", "-m", "sssgen", "--version", cwd=tmp_path) == f"sssgen {VERSION}\n"
+    packages = run(installed / "python", "-m", "pip", "list", "--format", "freeze", cwd=tmp_path).lower()
+    assert "numpy" not in packages
+    listed = run(installed / "sssgen", "list", "targets", cwd=tmp_path)
+    assert {line.split()[0] for line in listed.splitlines()} == {path.stem for path in folder("targets").glob("*.toml")}
+
+
+def test_the_version_is_in_the_changelog_or_unreleased() -> None:
+    text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert f"## [{VERSION}]" in text or "## [Unreleased]" in text
+
+
+def test_what_is_imported_is_asked_for() -> None:
+    """Every module from outside that src/ imports is a dependency, or one of an extra."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    asked = str([project["dependencies"], project["optional-dependencies"]])
+    outside: set[str] = set()
+    for path in (ROOT / "src").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                outside |= {name.name.split(".")[0] for name in node.names}
+            elif isinstance(node, ast.ImportFrom) and node.level == 0:
+                outside.add(str(node.module).split(".")[0])
+    outside -= {*sys.stdlib_module_names, "sssgen"}
+    assert {name for name in outside if name not in asked} == set()

@@ -1,0 +1,239 @@
+"""Half precision in WebGPU: the printer, every builtin and technique executed, and `sssgen eval --precision f16`."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from folders import EXAMPLES
+from half_cases import half_cases, wrong_lanes
+from qualification.parity import run as run_cases
+from qualification.parity import supported
+from sssgen.cli import main as cli
+from sssgen.harness import backends
+from sssgen.harness.backends import Array, Backend, Call, CompilerMissing, Text
+from sssgen.harness.backends.call_program import drawing
+from sssgen.harness.backends.webgpu import WebGPU
+from sssgen.harness.compilers import Compiler, Source, errors
+from sssgen.harness.evaluate.evaluation import fitted, run
+from sssgen.harness.evaluate.probes import Subject, subject
+from sssgen.harness.evaluate.random_inputs import samples
+from sssgen.ir.types import FLOAT, INT, Type
+from sssgen.lang.loader import load_text
+from sssgen.material import library
+from sssgen.pipeline.compiler import transpile
+from sssgen.support.diagnostics import SssgenError
+from sssgen.targets import descriptor
+from sssgen.targets.wgsl_half import half_text
+
+TARGET = "wgsl-f16"
+ULP = 2.0**-10
+"""The distance from 1 to the next half."""
+
+SIMPLE = {
+    "beer_lambert": 2, "box": 2, "constant_thickness": 1, "gltf_diffuse_transmission": 2, "gltf_volume": 2, "srgb": 2,
+    "sphere": 4, "thickness_from_thinness": 1, "thickness_from_transmittance": 4, "thinness_from_thickness": 1,
+    "transmittance_from_thinness": 1, "wrap_lighting": 2, "lobe_henyey_greenstein": 4, "lobe_gdc2011": 32,
+    "lobe_exp2": 32, "lobe_normalized": 32,
+}  # fmt: skip
+"""Technique → by how many ulp of half NumPy and the shader may be apart; a lobe's power, up to 32, multiplies what its
+bases are apart."""
+
+Get = Callable[[str], Backend]
+
+
+def text_of(source: str) -> str:
+    """The WGSL of functions in half precision."""
+    files = transpile(load_text(source, "half"), TARGET, "half").files
+    return next(text for name, text in files.items() if not name.endswith(".json"))
+
+
+def call(gpu: Backend, source: str, result: Type, *args: Array) -> Array:
+    """`float f(…)` of the source for floats and ints."""
+    params = tuple(FLOAT if arg.dtype.kind == "f" else INT for arg in args)
+    return gpu.run(Text(text_of(source)), [Call("f", params, result, args)])[0]
+
+
+# The printer
+
+
+def test_half_is_no_target_for_users() -> None:
+    target = descriptor.load(TARGET)
+    assert target.table["precision"] == "half" and set(target.files) == {"functions"}
+    assert TARGET not in descriptor.names()
+
+
+def test_every_half_is_read_back_from_its_text() -> None:
+    bits = np.arange(0x7C00, dtype=np.uint16)
+    texts = [half_text(float(value)) for value in bits.view(np.float16)]
+    assert (
+        np.array([text.removesuffix("h") for text in texts], np.float64).astype(np.float16).view(np.uint16) == bits
+    ).all()
+    assert max(sum(char.isdigit() for char in text.partition("e")[0].strip("0.h")) for text in texts) <= 5
+    assert [half_text(value) for value in (0.1, -0.0, 2.0, 65504.0, 2.0**-24)] == [
+        "0.1h", "-0.0h", "2.0h", "65500.0h", "6.0e-8h",
+    ]  # fmt: skip
+
+
+def test_what_there_is_in_float32_alone_is_converted() -> None:
+    text = text_of(
+        "vec2 f(sampler2D map, vec2 uv, uint bits) {\n"
+        "    return dFdx(uv) + texture(map, uv * 0.1).xy + unpackUnorm2x16(bits);\n}\n"
+    )
+    assert text.startswith("enable f16;\n")
+    for part in (
+        "uv: vec2h, bits: u32", "vec2h(dpdx(vec2f(uv)))", "vec2h(unpack2x16unorm(bits))",
+        "vec4h(textureSample(map, map_sampler, vec2f(uv * 0.1h)))",
+    ):  # fmt: skip
+        assert part in text
+
+
+def test_a_literal_beyond_the_halves_is_an_error_at_its_place() -> None:
+    assert "65500.0h" in text_of("float f(float x) { return x + 65519.0; }")
+    with pytest.raises(SssgenError) as caught:
+        text_of("float f(float x) {\n    return x * 65520.0;\n}\n")
+    (told,) = caught.value.diagnostics
+    assert told.message == "65520 is beyond the largest half, 65504" and told.span[1:3] == (2, 16)
+
+
+def test_whole_shaders_are_refused(capsys: pytest.CaptureFixture[str], backend: Get, tmp_path: Path) -> None:
+    backend("webgpu-f16")
+    scene = EXAMPLES / "paper_lantern" / "scene.toml"
+    assert cli.main(["render", str(scene), "-b", "webgpu-f16", "-o", str(tmp_path / "no.png")]) == 2
+    assert "functions only" in capsys.readouterr().err
+
+
+# Executed
+
+
+@pytest.mark.parametrize("name", ["numpy-f16", "webgpu-f16"])
+def test_every_builtin(name: str, backend: Get) -> None:
+    gpu = backend(name)
+    known = [case for case in half_cases() if supported(case, gpu)]
+    assert len(known) > 250
+    wrong = [said for case, got in zip(known, run_cases(gpu, known), strict=True) if (said := wrong_lanes(case, got))]
+    assert not wrong, "\n".join(wrong)
+
+
+@pytest.mark.parametrize(("target", "dtype"), [(TARGET, np.float16), ("wgsl", np.float32)])
+def test_arguments_are_rounded_before_they_are_sent(target: str, dtype: type) -> None:
+    """WGSL lets a conversion round either way."""
+    given = np.array([0.1, 2049.5, 1e6, -1.0 / 3.0])
+    program, _ = drawing(descriptor.load(target), Text(""), [Call("f", (FLOAT,), FLOAT, (given,))], {})
+    sent = program.textures["sssgen_data"].data
+    assert isinstance(sent, np.ndarray)
+    with np.errstate(over="ignore"):
+        assert sent[..., 0].view(np.float32).ravel()[:4].tolist() == given.astype(dtype).tolist()
+
+
+def test_every_operation_rounds_to_half(backend: Get) -> None:
+    """A sum of products in which no compiler finds anything to combine: as in NumPy, not rounded at its end only."""
+    rng = np.random.default_rng(0)
+    args = [rng.uniform(-8.0, 8.0, 2000).astype(np.float16).astype(np.float64) for _ in range(3)]
+    x, y, z = (arg.astype(np.float16) for arg in args)
+    source = "float f(float x, float y, float z) {{ float s = x; {} return s; }}".format("s = s * (y * 0.1) + z; " * 20)
+    each, once = x, args[0]
+    for _ in range(20):
+        each = each * (y * np.float16(0.1)) + z
+        once = once * (args[1] * 0.1) + args[2]
+    found = call(backend("webgpu-f16"), source, FLOAT, *args)
+    assert (found == each).mean() > 0.9 > 0.8 > (found == once.astype(np.float16)).mean()
+
+
+def test_literals_arrive_as_they_are(backend: Get) -> None:
+    gpu = backend("webgpu-f16")
+    values = np.random.default_rng(1).integers(0x400, 0x7C00, 200).astype(np.uint16).view(np.float16)
+    listed = ", ".join(repr(float(value)) for value in values)
+    source = f"float f(int i) {{ float all[200] = float[200]({listed}); return all[i]; }}"
+    assert (call(gpu, source, FLOAT, np.arange(200)) == values).all()
+
+
+def test_infinity_and_nan_come_back(backend: Get) -> None:
+    gpu = backend("webgpu-f16")
+    given = np.array([np.inf, -np.inf, np.nan, 65504.0, 1e6])
+    np.testing.assert_array_equal(
+        call(gpu, "float f(float x) { return x; }", FLOAT, given), [np.inf, -np.inf, np.nan, 65504.0, np.inf]
+    )
+    product = call(
+        gpu, "float f(float x, float y) { return x * y; }", FLOAT, np.full(2, 300.0), np.array([300.0, -300])
+    )
+    assert product.tolist() == [np.inf, -np.inf]
+
+
+def technique(name: str, lanes: int) -> tuple[Subject, dict[str, object]]:
+    chosen = subject(name)
+    return chosen, samples(chosen, lanes, 3)
+
+
+def test_every_technique_compiles_and_runs(backend: Get, compiler: Callable[[str], Compiler]) -> None:
+    gpu, readers = backend("webgpu-f16"), [compiler("naga"), compiler("tint")]
+    wrong = []
+    for name in sorted(library.index()):
+        chosen, given = technique(name, 20)
+        try:
+            made = transpile(chosen.module, TARGET, name).files
+            text = next(text for file, text in made.items() if not file.endswith(".json"))
+            said = [(one.name, errors(one.check(Source(text, "wgsl", "library")))) for one in readers]
+            wrong += [f"{name}: {reader}: {found}" for reader, found in said if found]
+            outputs = run(chosen, fitted(chosen, given), gpu)
+            wrong += [f"{name}: {key}" for key, value in outputs.items() if len(value) != 20]
+        except SssgenError as error:
+            wrong.append(f"{name}: {error}")
+    assert not wrong, "\n".join(wrong)
+
+
+@pytest.mark.parametrize("name", SIMPLE)
+def test_a_simple_technique_is_as_in_numpy(name: str, backend: Get) -> None:
+    gpu = backend("webgpu-f16")
+    chosen, given = technique(name, 1000)
+    fit = fitted(chosen, given)
+    wanted = run(chosen, fit, backends.get("numpy-f16"))
+    for key, got in run(chosen, fit, gpu).items():
+        right = wanted[key].astype(np.float64)
+        assert np.isfinite(right).all() and np.isfinite(got).all()
+        assert (np.abs(got - right) / np.maximum(np.abs(right), 1.0)).max() <= SIMPLE[name] * ULP, key
+
+
+# sssgen eval --precision f16
+
+
+def test_eval_in_half(capsys: pytest.CaptureFixture[str], backend: Get) -> None:
+    backend("webgpu-f16")
+    asked = ["eval", "wrap_lighting", "--samples", "50", "--precision", "f16", "--json", "--backend"]
+    assert cli.main([*asked, "webgpu"]) == 0
+    assert json.loads(capsys.readouterr().out)["backend"] == "webgpu-f16"
+    for named in ("numpy,webgpu", "all", "webgpu-f16,numpy,webgpu"):
+        assert cli.main([*asked, named]) == 0
+        rows = json.loads(capsys.readouterr().out)["backends"]
+        assert {row["name"] for row in rows} == {"numpy-f16", "webgpu-f16"} and len(rows) == 2
+        assert all(1e-5 < row["deviation"] < 1e-2 for row in rows)
+
+
+@pytest.mark.parametrize(("named", "precision"), [("gl", "f16"), ("numpy,browser", "f16"), ("webgpu-f16", "f32")])
+def test_eval_refuses(named: str, precision: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["eval", "box", "--samples", "5", "--backend", named, "--precision", precision]) == 2
+    told = capsys.readouterr().err
+    if precision == "f16":
+        assert f"{named.split(',')[-1]} does not compute in half precision" in told
+        assert "--backend numpy or webgpu" in told
+    else:
+        assert "webgpu-f16 computes in its own precision, not in f32" in told
+
+
+def test_an_adapter_without_halves_is_said(backend: Get, monkeypatch: pytest.MonkeyPatch) -> None:
+    backend("webgpu")
+
+    class Without:
+        def __init__(self, gpu: object) -> None:
+            self.features: set[str] = set()
+            self.limits = gpu.limits  # type: ignore[attr-defined]  # an adapter; wgpu is not imported here
+
+    gpu = backends.get("webgpu")
+    assert isinstance(gpu, WebGPU)
+    monkeypatch.setattr(gpu.naga, "gpu", Without(gpu.gpu))
+    with pytest.raises(CompilerMissing, match=r"shader-f16, which naga in wgpu .* has not"):
+        WebGPU("webgpu-f16", TARGET)

@@ -1,0 +1,107 @@
+"""Every builtin of the intrinsic table on every back end, against NumPy in float64, within the table's limits."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+
+from folders import DOCS
+from qualification.pages import parity as parity_page
+from qualification.parity import BACKENDS, FULL, Figure, cases, measure, oracle, supported
+from sssgen.harness.backends import Backend
+from sssgen.ir.intrinsics import BUILTINS
+from sssgen.ir.types import FLOAT
+from sssgen.lang import polyfills
+
+LANES = 240
+
+
+def wrong(figures: dict[str, Figure]) -> str:
+    return "\n".join(f"{name}: {figure}" for name, figure in figures.items() if not figure.right)
+
+
+@pytest.mark.parametrize("name", BACKENDS)
+def test_every_builtin_is_within_its_limits(name: str, backend: Callable[[str], Backend]) -> None:
+    gpu = backend(name)
+    figures = measure(gpu, cases(LANES))
+    assert set(figures) == {case.name for case in cases(LANES) if supported(case, gpu)}
+    assert not wrong(figures), wrong(figures)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", BACKENDS)
+def test_every_builtin_is_within_its_limits_on_many_arguments(name: str, backend: Callable[[str], Backend]) -> None:
+    figures = measure(backend(name), cases(FULL))
+    assert not wrong(figures), wrong(figures)
+
+
+def test_the_cases_are_all_overloads_and_the_same_each_time() -> None:
+    found = cases(LANES)
+    titles = {case.title for case in found}
+    assert len(titles) == len(found)
+    assert {case.name for case in found} == set(BUILTINS)
+    assert {"mix(vec3, vec3, bvec3)", "mod(vec4, float)", "clamp(uvec2, uint, uint)", "inverse(mat4)"} <= titles
+    cases.cache_clear()
+    for one, other in zip(found, cases(LANES), strict=True):
+        for arg, same in zip(one.args, other.args, strict=True):
+            np.testing.assert_array_equal(arg, same)
+
+
+@pytest.mark.parametrize("name", ["floor", "exp", "mod", "packHalf2x16", "clamp", "inverse"])
+def test_arguments_reach_the_edges_and_stay_in_the_domain(name: str) -> None:
+    chosen = [case for case in cases(LANES) if case.name == name]
+    assert all(case.lanes == LANES for case in chosen)
+    for case in chosen:
+        assert np.isfinite(oracle(case)).mean() > 0.9
+    first = np.concatenate([case.args[0].ravel() for case in chosen])
+    assert 0 in first and (first < 0).any() and len(np.unique(first)) > 50
+
+
+# A broken rule is caught
+
+
+@contextmanager
+def mod_as_fmod(monkeypatch: pytest.MonkeyPatch, native: bool) -> Iterator[None]:
+    """The table says `mod` as it says `fmod`; with `native` HLSL's own function."""
+    fmod = BUILTINS["fmod"]
+    texts = {**fmod.texts, "hlsl": "fmod"} if native else fmod.texts
+    broken = BUILTINS["mod"]._replace(texts=texts, polyfill=fmod.polyfill.replace(" fmod(", " mod("))
+    with monkeypatch.context() as patch:
+        patch.setitem(BUILTINS, "mod", broken)
+        polyfills._polyfill.cache_clear()
+        yield
+    polyfills._polyfill.cache_clear()
+
+
+@pytest.mark.parametrize(
+    ("name", "native"),
+    [("gl", False), ("gl-es", False), ("webgpu", False), ("browser", False), ("hlsl", False), ("hlsl", True),
+     ("hlsl-glslang", False), ("unity", False), ("unity-urp", False), ("unity-urp", True)],
+)  # fmt: skip
+def test_a_broken_rule_is_caught(
+    name: str, native: bool, backend: Callable[[str], Backend], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    gpu = backend(name)
+    chosen = [case for case in cases(LANES) if case.result == FLOAT and set(case.params) == {FLOAT}]
+    with mod_as_fmod(monkeypatch, native):
+        figures = measure(gpu, chosen)
+    assert {found for found, figure in figures.items() if not figure.right} == {"mod"}
+    title, _, rest = figures["mod"].at.partition(" at ")
+    given = [float(number) for number in rest.partition(":")[0].split(", ")]
+    assert title == "mod(float, float)"
+    assert min(given) < 0.0 < max(given)
+    assert measure(gpu, chosen)["mod"].right
+
+
+# The page
+
+
+def test_the_page_of_parity_has_every_builtin_and_its_limit() -> None:
+    rows = re.findall(r"^\| `(\w+)` \| (.*?) \|", (DOCS / "parity.md").read_text(encoding="utf-8"), re.MULTILINE)
+    assert rows == [(name, parity_page.allowed(row)) for name, row in BUILTINS.items()], (
+        "run python -m qualification.pages.parity"
+    )

@@ -1,0 +1,190 @@
+"""Every technique on the back ends against the oracle, on random inputs; the inputs themselves; `eval --samples`."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from folders import DOCS
+from qualification.parity_techniques import BACKENDS, BOUND_LANES, KNOWN, LANES, cases, excess, measure
+from sssgen.cli import main as cli
+from sssgen.harness import backends
+from sssgen.harness.backends import Backend
+from sssgen.harness.evaluate.deviation import GOAL, MARGIN, blur, compared, deviation
+from sssgen.harness.evaluate.evaluation import fitted, run
+from sssgen.harness.evaluate.probes import subject
+from sssgen.harness.evaluate.random_inputs import samples
+from sssgen.material import library
+from sssgen.targets.numpy_textures import Texture
+
+PAGE = DOCS / "parity_techniques.md"
+FEW = 500
+
+Get = Callable[[str], Backend]
+
+
+@pytest.mark.parametrize("name", ["gl", "webgpu", "browser", "hlsl"])
+def test_techniques(backend: Get, name: str) -> None:
+    gpu = backend(name)
+    found = [excess(case, name, measure(case, gpu, FEW), FEW) for case in cases() if not case.bind]
+    wrong = [one for one in found if one]
+    assert len(found) == len(library.index())
+    assert not wrong, "\n".join([f"{len(wrong)} of {len(found)}", *wrong])
+
+
+@pytest.mark.slow
+def test_techniques_on_many_inputs(backend: Get) -> None:
+    """All back ends on the inputs of docs/parity_techniques.md, with each function that fits a slot."""
+    gpus = [backend(name) for name in BACKENDS]
+    wrong = []
+    for case in cases():
+        lanes = BOUND_LANES if case.bind else LANES
+        wrong += [one for gpu in gpus if (one := excess(case, gpu.name, measure(case, gpu, lanes), lanes))]
+    assert not wrong, "\n".join([f"{len(wrong)}", *wrong])
+
+
+def test_the_page_lists_every_technique() -> None:
+    text = PAGE.read_text(encoding="utf-8")
+    listed = [line.split(" | ")[0].removeprefix("| ") for line in text.splitlines() if line.startswith("| ")]
+    assert listed[1:] == sorted(library.index()), "run python -m qualification.pages.parity_techniques"
+    for one in KNOWN:
+        assert set(one.techniques) <= set(library.index()) and set(one.backends) <= set(BACKENDS)
+        assert one.reason in text, "run python -m qualification.pages.parity_techniques"
+
+
+# The blur
+
+CELLS = """
+/**
+ * Which of a thousand cells `x` is in.
+ * role: distance
+ */
+float cells(float x)
+{
+    return floor(1000.0 * x) + x * 1.0e-3;
+}
+"""
+
+
+def test_a_lane_at_a_step_is_excused_and_a_wrong_one_is_not(tmp_path: Path) -> None:
+    """At n / 1000 float32 may round into the cell beside; 0.4 cells further on it may not."""
+    (tmp_path / "cells.sss").write_text(CELLS, encoding="utf-8")
+    chosen = subject(f"{tmp_path / 'cells.sss'}:cells")
+    x = np.concatenate([np.arange(1, 1000) / 1000.0, np.arange(1, 1000) / 1000.0 + 4e-4])
+    inputs = fitted(chosen, {"x": x})
+    oracle, (row,) = compared(chosen, inputs, ["numpy-f32"])
+    assert row.deviation is not None and row.ok
+    assert 100 < row.deviation.excused < 1000, "float32 puts many of the steps elsewhere"
+    assert 1.0 / 999.0 <= row.deviation.furthest <= 1.0
+    assert f"blurs {row.deviation.excused} more" in row.told and row.as_json()["excused"] == row.deviation.excused
+
+    found = blur(chosen, inputs, oracle)
+    assert found["result"][:999].max() > GOAL and found["result"][999:].max() < GOAL / MARGIN
+    off = {"result": oracle["result"] + 1.0}
+    wrong = deviation(off, oracle, lambda: found)
+    assert wrong.largest > GOAL and wrong.lane >= 999
+    assert deviation(off, oracle).excused == 0
+
+
+def test_nan_is_not_excused() -> None:
+    right = {"result": np.ones(4)}
+    got = {"result": np.array([1.0, np.nan, 1.0, 1.0])}
+    worst = deviation(got, right, lambda: {"result": np.full(4, 0.1)})
+    assert worst.largest == np.inf and worst.lane == 1 and worst.excused == 0
+
+
+# The inputs
+
+
+def drawn(name: str, count: int = 2000, seed: int = 3) -> dict[str, Any]:
+    return samples(subject(name), count, seed)
+
+
+def test_samples_keep_to_the_meaning_of_a_parameter() -> None:
+    found = drawn("lobe_normalized")
+    for name in "VNL":
+        assert np.linalg.norm(found[name], axis=1) == pytest.approx(np.ones(2000))
+    cosine = np.abs((found["V"] * found["L"]).sum(axis=1))
+    assert 0.05 < (cosine > 0.99).mean() < 0.3, "some lie along or against one another"
+    for name, low, high in (("through", 0.0, 1.0), ("power", 1.0, 32.0), ("scale", 0.0, 20.0), ("ambient", 0.0, 1.0)):
+        assert found[name].min() == low and found[name].max() == high, name
+        assert 0.005 < (found[name] == low).mean() < 0.1, name
+    assert found["distortion"].max() == 0.99, "the technique's limits: below 1"
+
+
+def test_samples_of_frames_and_normals() -> None:
+    found = drawn("parallax_refracted")
+    volume = np.abs((found["T"] * np.cross(found["B"], found["N"])).sum(axis=1))
+    assert volume.min() > 0.3
+    handed = (found["T"] * np.cross(found["B"], found["N"])).sum(axis=1) < 0.0
+    assert 0.2 < handed.mean() < 0.8
+    assert drawn("normal_map")["normal"][:, 2].min() >= 0.0
+
+
+def test_samples_of_textures_and_numbers() -> None:
+    found = drawn("distance_texture")
+    field = found["distance_map"]
+    assert isinstance(field, Texture) and field.dim == "3D" and field.levels[0].dtype == np.float16
+    stored = field.levels[0][..., 0].astype(np.float64)
+    steps = [np.abs(np.diff(stored, axis=axis)).max() for axis in range(3)]
+    assert stored.min() < 0.5 < stored.max() and max(steps) <= 0.5 / 16 + 1e-3, "a distance field"
+    hard = drawn("base_color")["base_color_texture"].levels[0]
+    assert hard.min() == 0.0 and hard.max() == 1.0
+    taps = drawn("thinness_uniform")["taps"]
+    assert taps.dtype.kind == "i" and taps.min() == 1 and taps.max() == 58
+    matrix = drawn("depth_map_thickness")["light_matrix"]
+    assert matrix.shape == (2000, 4, 4) and (matrix[..., 3] == [0.0, 0.0, 0.0, 1.0]).all()
+
+
+def test_samples_are_the_same_for_the_same_seed() -> None:
+    first, again, other = (drawn("box", 50, seed) for seed in (3, 3, 4))
+    assert all((first[name] == again[name]).all() and (first[name] != other[name]).any() for name in first)
+    assert (drawn("sphere", 50)["p"] == first["p"]).all(), "a parameter's numbers do not depend on the others"
+
+
+def test_samples_give_numbers_for_every_technique() -> None:
+    """Finite ones, but for the baseline that marches without end."""
+    for name in library.index():
+        chosen = subject(name)
+        outputs = run(chosen, fitted(chosen, samples(chosen, 200, 3)), backends.get("numpy"))
+        bad = [key for key, value in outputs.items() if value.dtype.kind == "f" and not np.isfinite(value).all()]
+        assert not bad or name == "seed0_raymarch", f"{name}: {bad}"
+
+
+# sssgen eval --samples
+
+
+def test_eval_compares_on_samples(capsys: pytest.CaptureFixture[str]) -> None:
+    asked = ["eval", "voronoi_thickness", "--samples", "3000", "--seed", "5", "--backend", "numpy,numpy-f32"]
+    assert cli.main(asked) == 0
+    told = capsys.readouterr().out
+    assert "3000 lanes" in told and "float32 blurs" in told and "result:" not in told
+    assert cli.main([*asked, "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert data["lanes"] == 3000 and data["outputs"] == {} and data["backends"][1]["excused"] > 0
+
+
+def test_eval_puts_given_inputs_before_samples(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "in.json").write_text('{"through": 0.0}', encoding="utf-8")
+    asked = ["eval", "lobe_gdc2011", "--samples", "20", "--inputs", str(tmp_path / "in.json"), "--json"]
+    assert cli.main(asked) == 0
+    assert not np.any(json.loads(capsys.readouterr().out)["outputs"]["result"])
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (["--samples", "0"], "--samples 0 is not a number of samples"),
+        (["--samples", "2000000"], "from 1 to 1000000"),
+        (["--samples", "many"], "invalid int value"),
+        (["--samples", "5", "--seed", "-1"], "--seed -1 is below 0"),
+    ],
+)
+def test_eval_refuses(given: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["eval", "box", *given]) == 2
+    assert said in capsys.readouterr().err

@@ -1,0 +1,125 @@
+"""A module with a main(): a whole shader in every language, which other compilers take, with the meaning of GLSL."""
+
+from __future__ import annotations
+
+import pytest
+
+from sssgen.harness.compilers import Source, check, errors
+from sssgen.ir.text import read_module
+from sssgen.pipeline.compiler import transpile
+from sssgen.support.diagnostics import SssgenError
+from whole_shaders import FRAGMENT, FUNCTIONS, OLD, SEVERAL, STAGES, TARGETS, VERTEX, whole, wrong
+
+
+@pytest.mark.parametrize("keep", [True, False])
+@pytest.mark.parametrize("target", TARGETS)
+@pytest.mark.parametrize("name", STAGES)
+def test_a_whole_shader_compiles(name: str, target: str, keep: bool) -> None:
+    stage = "vertex" if name == "vertex" else "fragment"
+    text = whole(STAGES[name], target, keep)
+    assert wrong(text, target, stage) == [], text  # type: ignore[arg-type]  # one of its two words
+
+
+def test_colours_that_nothing_gives_are_left_out() -> None:
+    assert "out vec4 FragData[2];" in whole(SEVERAL, "glsl-es-300")
+    assert "SV_Target1" in whole(SEVERAL, "hlsl")
+    assert "SV_Target2" not in whole(SEVERAL, "hlsl")
+
+
+def test_the_stages_meet() -> None:
+    """What the vertex shader gives is what the fragment shader takes, and the GL driver links them."""
+    for target in ("glsl-330", "glsl-es-300"):
+        source = Source(whole(FRAGMENT, target), target, "fragment", companion=whole(VERTEX, target))
+        assert [str(one) for messages in check(source).values() for one in errors(messages)] == []
+    wgsl = whole(VERTEX, "wgsl"), whole(FRAGMENT, "wgsl")
+    for place in ("@location(0) uv", "@location(1) @interpolate(flat) kind"):
+        assert all(place in text for text in wgsl)
+
+
+def test_what_the_framebuffer_turns() -> None:
+    assert "FragCoord.y = iResolution.y - FragCoord.y;" in whole(FRAGMENT, "hlsl")
+    assert "FragCoord.w = 1.0 / FragCoord.w;" in whole(FRAGMENT, "hlsl")
+    assert "FragCoord.y = material.iResolution.y - FragCoord.y;" in whole(FRAGMENT, "wgsl")
+    assert "-uv_dy" in whole(FRAGMENT, "wgsl").replace("-value_dy", "-uv_dy")
+    assert "Position.z = (Position.z + Position.w) * 0.5;" in whole(VERTEX, "hlsl")
+    assert "dFdy(uv.y)" in whole(FRAGMENT, "glsl-330")
+    assert "-dFdy" not in whole(FRAGMENT, "glsl-330")
+    without = FRAGMENT.replace("iResolution", "size")
+    (warning,) = transpile(read_module(without), "wgsl", "x", keep=True).warnings
+    assert "counts from the top" in warning.message
+    assert transpile(read_module(without), "glsl-330", "x", keep=True).warnings == []
+
+
+def test_glsl_is_kept() -> None:
+    """The text is the author's, unused functions and all, in the order of its operands."""
+    text = whole(FRAGMENT + "function float unused() {\n    return (1.0 + 1.0);\n}\n", "glsl-330")
+    assert "float a = rand() + rand() * seed;" in text
+    assert "return 1.0 + 1.0;" in text
+    assert "kind = gl_VertexID % 3;" in whole(VERTEX, "glsl-330")
+    module = read_module(FRAGMENT + "function float unused() {\n    return (1.0 + 1.0);\n}\n")
+    pruned = transpile(module, "glsl-330", "x", called=["main()"], keep=True)
+    assert "unused" not in next(iter(pruned.files.values()))
+
+
+def test_what_a_stage_cannot_have_is_refused() -> None:
+    point = 'variable in vec2 gl_PointCoord [builtin("gl_PointCoord")]\n' + OLD
+    with pytest.raises(SssgenError, match="is given no gl_PointCoord"):
+        transpile(read_module(point), "wgsl", "x", keep=True)
+    loose = "uniform float u = (1.0)\nvariable private float g = $u\nfunction float f() {\n    return $g;\n}\n"
+    with pytest.raises(SssgenError, match="the value of 'g' is not constant"):
+        transpile(read_module(loose), "wgsl", "x", keep=True)
+
+
+def test_a_constant_that_is_no_number_is_refused_where_it_must_be() -> None:
+    text = "function float f() {\n    return (1.0 / 0.0);\n}\n"
+    assert "1.0 / 0.0" in whole(text, "glsl-330")
+    with pytest.raises(SssgenError, match="divided by 0"):
+        transpile(read_module(text), "wgsl", "x", keep=True)
+
+
+def test_a_vertex_shader_reads_textures_at_level_0() -> None:
+    read = "    set $uv += texture($map, $uv).xy;\n}\n"
+    text = "uniform sampler2D map\n" + VERTEX.removesuffix("}\n") + read
+    assert "texture(map, uv)" in whole(text, "glsl-330")
+    for target, level in (("wgsl", "textureSampleLevel(map, map_sampler, uv, 0.0)"), ("hlsl", "SampleLevel")):
+        made = whole(text, target)
+        assert level in made
+        assert wrong(made, target, "vertex") == []
+
+
+def test_an_interpolation_that_a_target_has_not_is_told() -> None:
+    text = 'variable in vec2 uv [interpolation("noperspective")]\n' + OLD
+    assert "noperspective in vec2 uv;" in whole(text, "glsl-330")
+    assert "@interpolate(linear)" in whole(text, "wgsl")
+    made = transpile(read_module(text), "glsl-es-300", "x", keep=True)
+    assert "\nin vec2 uv;" in next(iter(made.files.values()))
+    assert "with perspective" in made.warnings[0].message
+
+
+def test_what_main_calls_alike_for_all_pixels_may_sample_in_a_loop() -> None:
+    """A function of a whole shader is judged by its calls: here the loop's bound is a constant."""
+    text = """uniform sampler2D map
+variable in vec2 uv
+variable out vec4 color
+function vec4 blurred(in int count) {
+    var vec4 sum = vec4{0.0};
+    for (var int i = 0; (i < count); set i += 1;) {
+        set sum += texture($map, ($uv * float{i}));
+    }
+    return sum;
+}
+function void main() {
+    set $color = $blurred(4);
+}
+"""
+    made = transpile(read_module(text), "wgsl", "x", keep=True)
+    assert made.warnings == []
+    shown = next(iter(made.files.values()))
+    assert wrong(shown, "wgsl") == [], shown
+
+
+def test_variables_of_a_library() -> None:
+    """Without an entry they are declared, for whoever calls its functions."""
+    assert "var<private> g: f32 = 1.0;" in whole(FUNCTIONS, "wgsl")
+    assert "static float g = 1.0;" in whole(FUNCTIONS, "hlsl")
+    assert "\nfloat g = 1.0;" in whole(FUNCTIONS, "glsl-330")

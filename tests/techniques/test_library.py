@@ -1,0 +1,198 @@
+"""The library as a whole: documented, tested and, with `pytest -m slow`, compiled for every target."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from sssgen.harness import compilers
+from sssgen.harness.check.compiler_inputs import sources
+from sssgen.harness.compilers import Compiler, errors
+from sssgen.ir.nodes import Uniform
+from sssgen.ir.types import Matrix, Sampler, Scalar
+from sssgen.lang.loader import load_file
+from sssgen.material import library
+from sssgen.material.library import Technique
+from sssgen.material.material_loading import parse_material
+from sssgen.material.model import Material
+from sssgen.material.slots import candidates
+from sssgen.pipeline.compiler import FORMS, Compiled
+from sssgen.pipeline.compiler import compile as compile_material
+from sssgen.targets import descriptor
+
+NAMES = sorted(library.index())
+
+
+# Documented
+
+SECTIONS = {"summary", "role", "formula", "source", "units"}
+KNOWN = SECTIONS | {"limits", "corrects", "baseline", "uncharted", "glows"}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_doc_comment_says_all(name: str) -> None:
+    technique = library.load(name)
+    doc = technique.doc
+    assert doc.keys() >= SECTIONS and doc.keys() <= KNOWN, sorted(doc)
+    assert doc.keys() & {"limits", "corrects", "baseline"}, "neither limits nor corrects"
+    assert all(text and (key in ("role", "formula") or text.endswith(".")) for key, text in doc.items()), doc
+    folder = Path(technique.path).parent.name
+    assert doc["role"] == folder or (folder == "baselines" and technique.baseline)
+    if technique.baseline:
+        corrected = doc["baseline"].partition("Corrected: ")[2].rstrip(".")
+        assert all(word in library.index() for word in corrected.replace(" and ", ", ").split(", ") if word), corrected
+
+
+UNBOUNDED = {
+    "center": "a place", "box_min": "a place", "box_max": "a place", "start": "a place", "end": "a place",
+    "look_at": "a place", "eye": "a place", "half_size": "a size along each axis",
+    "uv_per_unit": "a scale along each axis, below 0 for mirrored maps",
+    "red_speed": "a speed", "green_speed": "a speed", "blue_speed": "a speed", "key_direction": "a direction",
+}  # fmt: skip
+"""Uniforms that have no range, and why."""
+
+
+def uniforms() -> dict[str, Uniform]:
+    """Every uniform of the library, by FILE:NAME."""
+    found = {}
+    for path in sorted(Path(library.TECHNIQUES).glob("*/*.sss")):
+        shown = path.relative_to(library.TECHNIQUES).as_posix()
+        for uniform in load_file(path, shown, (library.TECHNIQUES,)).uniforms:
+            found[f"{uniform.span.file}:{uniform.name}"] = uniform
+    return found
+
+
+def test_uniforms_say_what_they_are() -> None:
+    """A sentence, and a range and unit, or a reason why not."""
+    wrong = []
+    for name, uniform in uniforms().items():
+        hints = dict(uniform.hints)
+        if not (uniform.doc and not uniform.doc[0].islower() and uniform.doc.rstrip().endswith(".")):
+            wrong.append(f"{name}: no sentence: {uniform.doc!r}")
+        if isinstance(uniform.type, Sampler):
+            if not any(hint.startswith("default_") for hint in hints):
+                wrong.append(f"{name}: nothing is said of what is read where no texture is bound")
+        elif isinstance(uniform.type, Scalar):
+            whole = uniform.type.kind == "int"
+            if "hint_range" not in hints or ("unit" not in hints and not whole):
+                wrong.append(f"{name}: no range or no unit")
+        elif not isinstance(uniform.type, Matrix) and "source_color" not in hints and uniform.name not in UNBOUNDED:
+            wrong.append(f"{name}: neither a colour nor among the uniforms without a range")
+    assert not wrong, "\n".join(wrong)
+    named = {name.partition(":")[2] for name in uniforms()}
+    assert named >= UNBOUNDED.keys()
+
+
+def test_aliases_mean_one_thing() -> None:
+    """Within one technique a name means one uniform."""
+    for name in NAMES:
+        words = [
+            word
+            for uniform in library.load(name).uniforms
+            for word in (uniform.name, *dict(uniform.hints).get("alias", ()))
+        ]
+        assert len(words) == len(set(words)), (name, words)
+
+
+def test_every_technique_is_run_by_a_test() -> None:
+    """Each is named in a test of its values (this file, which only compiles, does not count)."""
+    named: set[str] = set()
+    for path in Path(__file__).parent.glob("test_*.py"):
+        if path != Path(__file__):
+            tree = ast.parse(path.read_text("utf-8"))
+            constants = [node.value for node in ast.walk(tree) if isinstance(node, ast.Constant)]
+            named |= {value for value in constants if isinstance(value, str)}
+    assert not library.index().keys() - named
+
+
+# Compiled
+
+TAKERS = {"thickness": "absorption_tint", "thinness": "sky_glow", "transmittance": "lobe_gdc2011"}
+GIVERS = {"thickness": "constant_thickness", "thinness": "thinness_map", "transmittance": "transmittance_map"}
+SLOTS = {"body_distance": "torus", "scene_distance": "jelly_scene", "distance_at": "distance_texture"}
+
+
+def stage(section: str, name: str, **slots: str) -> str:
+    """One stage of a material file, its slots bound."""
+    bound = {slot.name: slots.get(slot.name, SLOTS[slot.name]) for slot in library.load(name).slots}
+    table = ", ".join(f'{slot} = "{function}"' for slot, function in bound.items())
+    return f'[[{section}]]\ntechnique = "{name}"\n' + (f"bind = {{ {table} }}\n" if bound else "")
+
+
+def chain(technique: Technique) -> tuple[str, list[str]]:
+    """The shading and the stages of a small material that uses the technique."""
+    name, role, function = technique.name, technique.role, technique.function
+    if role == "distance":
+        for path in library.index().values():
+            user = library.load_path(path)
+            for slot in user.slots:
+                if user.role == "thickness" and name in candidates(slot):
+                    stages = [stage("thickness", user.name, **{slot.name: name})]
+                    return "lit", [*stages, stage("translucency", TAKERS[user.function.quantity])]
+        raise AssertionError(f"nothing takes {name}")
+    own = stage("thickness" if role == "conversion" else role, name)
+    taken = [param.quantity for param in function.params if param.quantity in GIVERS]
+    before = [stage("thickness", GIVERS[quantity]) for quantity in taken]
+    written = function.quantity if function.quantity in TAKERS else ""
+    if role == "surface" and taken:
+        written = taken[0]
+    after = [stage("translucency", TAKERS[written])] if written else []
+    if role == "lighting" or role == "geometry":
+        if name == "standard":
+            return "lit", [stage("surface", "base_color"), own]
+        scene = [own] if role == "geometry" else []
+        if name not in ("camera_still", "camera_orbit"):
+            scene.insert(0, stage("geometry", "camera_orbit"))
+        if "march" not in name and name != "sky_background":
+            scene.append(stage("geometry", "raymarch"))
+        light = own if role == "lighting" else stage("lighting", "studio")
+        return "unlit", [*scene, light]
+    surface = [] if name == "base_color" or "albedo" in {param.name for param in function.params} else ["base_color"]
+    return "lit", [*before, *[stage("surface", one) for one in surface], own, *after]
+
+
+@cache
+def material(name: str) -> Material:
+    """A small material of one technique."""
+    shading, stages = chain(library.load(name))
+    alpha = "blend" if name in ("base_color", "alpha_erosion") else "opaque"
+    head = f'[material]\nname = "{name}_alone"\nshading = "{shading}"\nalpha_mode = "{alpha}"\n'
+    return parse_material("\n".join([head, *stages]), Path("alone.toml"))
+
+
+def compiled(name: str, target: str, form: str) -> Compiled:
+    return compile_material(material(name), target, form)
+
+
+# These hand a value on as it is, and leave no line.
+IDENTITIES = {"thinness_from_transmittance", "transmittance_from_thinness"}
+
+
+@pytest.mark.parametrize("name", sorted({*NAMES} - IDENTITIES))
+def test_every_technique_makes_a_material(name: str) -> None:
+    """And lines of it stand in the output."""
+    maps = compiled(name, "glsl-330", "shader").reflection["source_map"]
+    places = {place for file in maps.values() for place in file.values()}
+    assert any(place.startswith(library.shown_name(library.index()[name])) for place in places), places
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("target", descriptor.names())
+def test_every_technique_compiles(target: str, form: str, compiler: Callable[[str], Compiler]) -> None:
+    """On every target, by every compiler for it; all that is wrong is reported together."""
+    wrong = []
+    readers = [compiler(reader) for reader in compilers.readers(target)]
+    count = 0
+    for name in NAMES:
+        for source in sources(compiled(name, target, form).files):
+            count += 1
+            for reader in readers:
+                said = errors(reader.check(source))
+                wrong += [f"{source.name} ({source.stage}), {reader.name}: {message}" for message in said]
+    assert count >= len(NAMES) and readers
+    assert not wrong, "\n".join(wrong)

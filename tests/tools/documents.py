@@ -1,0 +1,155 @@
+"""The documents' code blocks, put to the test: what a comment before a block says of it is made true or fails.
+
+    <!-- file: PATH -->            the block is that file of the project
+    <!-- part of: PATH -->         its lines stand in that file, in this order
+    <!-- emitted: MATERIAL TARGET FORM FILE -->   the block is that file as `sssgen.compile` makes it
+    <!-- write: PATH -->           the block is written there, in the reader's folder
+    <!-- run -->                   its commands succeed there; `<!-- run: gl -->` where there is an OpenGL driver
+    <!-- output: sssgen … -->      the block is what the command prints
+    <!-- findings: sssgen … -->    the same, where the command ends with status 1
+    <!-- errors: sssgen … -->      the block is what the command says when it fails with status 2
+    <!-- python -->                a session of the interpreter
+
+UPDATE_SNAPSHOTS=1 fills in the blocks that are made: file, emitted, output, findings, errors.
+"""
+
+from __future__ import annotations
+
+import doctest
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import sssgen
+from folders import ROOT
+
+_BLOCK = re.compile(
+    r"<!-- (?P<verb>[a-z ]+?)(?:: (?P<argument>[^\n]*?))? -->\n```(?P<language>\w*)\n(?P<text>(?:(?!```).*\n)*)```\n"
+)
+
+
+class Block(NamedTuple):
+    """One code block with what is said of it."""
+
+    document: Path
+    line: int
+    verb: str
+    argument: str
+    text: str
+
+    def __str__(self) -> str:
+        return f"{self.document.name}:{self.line} {self.verb} {self.argument}".strip()
+
+
+def read(document: Path) -> str:
+    return document.read_text(encoding="utf-8")
+
+
+def blocks(document: Path, under: str = "") -> list[Block]:
+    """The blocks with a comment, of a whole document or of the part under one heading."""
+    text = read(document)
+    start, end = 0, len(text)
+    if under:
+        start = text.index(f"\n## {under}\n")
+        end = text.find("\n## ", start + 1) % (len(text) + 1)
+    found = []
+    for match in _BLOCK.finditer(text, start, end):
+        line = text.count("\n", 0, match.start()) + 1
+        found.append(Block(document, line, match["verb"], match["argument"] or "", match["text"]))
+    return found
+
+
+def uncommented(document: Path) -> list[int]:
+    """The lines of the blocks that no comment puts to the test."""
+    text = read(document)
+    tested = {text.count("\n", 0, match.start()) + 2 for match in _BLOCK.finditer(text)}
+    fences = [number for number, line in enumerate(text.splitlines(), 1) if line.startswith("```")][::2]
+    return [number for number in fences if number not in tested]
+
+
+class Reader:
+    """Somebody who follows a document in a folder of their own, with the project's commands at hand."""
+
+    def __init__(self, folder: Path, programs: Path, environment: dict[str, str]) -> None:
+        self.folder = folder
+        path = os.pathsep.join([str(programs), os.environ.get("PATH", "")])
+        kept = {name: value for name, value in os.environ.items() if not name.startswith(("SSSGEN", "PYTHON"))}
+        self.environment = {**kept, "PATH": path, "PYTHONDONTWRITEBYTECODE": "1", "PYTHONUTF8": "1", **environment}
+
+    def run(self, command: str, status: int = 0) -> tuple[str, str]:
+        """What a command prints to its output and to its errors."""
+        shell = ["bash", "-euc", command]
+        done = subprocess.run(
+            shell, cwd=self.folder, env=self.environment, capture_output=True, text=True, encoding="utf-8", check=False
+        )
+        assert done.returncode == status, f"{command}\n{done.returncode}\n{done.stdout}\n{done.stderr}"
+        return done.stdout, done.stderr
+
+    def follow(self, block: Block) -> None:
+        """Does what the block says. Raises AssertionError where it is not so."""
+        if block.verb == "write":
+            path = self.folder / block.argument
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(block.text, encoding="utf-8", newline="\n")
+        elif block.verb == "run":
+            self.run(block.text)
+        elif block.verb == "python":
+            _session(block)
+        elif block.verb == "part of":
+            _part(block)
+        else:
+            check(block, self.made(block))
+
+    def made(self, block: Block) -> str:
+        """What the block has to be."""
+        if block.verb == "file":
+            return read(ROOT / block.argument)
+        if block.verb == "emitted":
+            material, target, form, file = block.argument.split()
+            return sssgen.compile(material, target, form).files[file]
+        if block.verb == "output":
+            return self.run(block.argument)[0]
+        if block.verb == "findings":
+            return self.run(block.argument, status=1)[0]
+        assert block.verb == "errors", f"{block}: what is this?"
+        return self.run(block.argument, status=2)[1]
+
+
+def programs(folder: Path, python: str = sys.executable) -> Path:
+    """A folder with `sssgen` and `python`, as an installation has them."""
+    folder.mkdir(parents=True)
+    for name, text in {"sssgen": f"{shlex.quote(python)} -m sssgen", "python": shlex.quote(python)}.items():
+        path = folder / name
+        path.write_text(f'#!/bin/sh\nexec {text} "$@"\n', encoding="utf-8")
+        path.chmod(0o755)
+    return folder
+
+
+def check(block: Block, wanted: str) -> None:
+    """Fails where the block is not that text; UPDATE_SNAPSHOTS=1 puts it in."""
+    wanted = "".join(f"{line.rstrip()}\n" for line in wanted.rstrip().splitlines())
+    if os.environ.get("UPDATE_SNAPSHOTS") and block.text != wanted:
+        text = read(block.document)
+        head = f"<!-- {block.verb}: {block.argument} -->\n```"
+        start = text.index("\n", text.index(head) + len(head)) + 1
+        assert text[start:].startswith(f"{block.text}```")
+        block.document.write_text(text[:start] + wanted + text[start + len(block.text) :], encoding="utf-8")
+        return
+    assert block.text == wanted, f"{block} is not so any more; UPDATE_SNAPSHOTS=1 puts it right"
+
+
+def _session(block: Block) -> None:
+    test = doctest.DocTestParser().get_doctest(block.text, {}, str(block), block.document.name, block.line)
+    said: list[str] = []
+    doctest.DocTestRunner(verbose=False, optionflags=doctest.ELLIPSIS).run(test, out=said.append)
+    assert not said, "".join(said)
+
+
+def _part(block: Block) -> None:
+    lines = iter([line.strip() for line in read(ROOT / block.argument).splitlines()])
+    for line in filter(None, map(str.strip, block.text.splitlines())):
+        assert line in lines, f"{block}: this line is not there, or not in this order: {line}"

@@ -1,0 +1,23 @@
+"""The scene that the tests of rendering draw, and how far two pictures differ."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sssgen.harness.render.scene_render import Rendered
+
+LAMP = """
+[[light]]
+position = [0.6, 0.6, -1.6]
+color = [2.4, 2.2, 1.9]
+[[light]]
+direction = [1, 2, 2]
+color = [1, 1, 1]
+"""
+BALL = '[geometry]\nkind = "ball"\nrotation = [20, 30, 40]\nposition = [0.1, 0, 0]\nscale = 0.9\n'
+SIZE = (48, 36)
+
+
+def apart(a: Rendered, b: Rendered) -> float:
+    """The largest difference in 1/255."""
+    return float(255.0 * np.abs(a.encoded - b.encoded).max())

@@ -1,0 +1,82 @@
+"""Functions that the tests of the executor have run as work items. Each writes a file for every time that it runs."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+import uuid
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from sssgen.lab.jobs.executor import Item
+from sssgen.support.diagnostics import failure
+
+
+class Measured(NamedTuple):
+    """Of the kinds of values that results are made of."""
+
+    name: str
+    numbers: np.ndarray[Any, Any]
+    told: dict[str, Any]
+
+
+def note(folder: str, number: int) -> None:
+    """Leaves a file that says that the item ran once."""
+    Path(folder, f"{number}-{uuid.uuid4()}").touch()
+
+
+def runs(folder: str | Path) -> list[int]:
+    """The numbers of the items that ran, as often as they ran."""
+    return sorted(int(path.name.partition("-")[0]) for path in Path(folder).glob("*-*"))
+
+
+def measure(folder: str, number: int, seconds: float = 0.0) -> Measured:
+    """Numbers from a seed, some of them the same object twice, and an array that does not lie as it reads."""
+    note(folder, number)
+    time.sleep(seconds)
+    numbers = np.random.default_rng(number).normal(size=(3, 4))
+    label = f"item {number}"
+    return Measured(label, numbers.T @ numbers, {"label": label, "mean": float(numbers.mean()), "rows": numbers.T})
+
+
+def echo(value: Any) -> Any:
+    """What it was given."""
+    return value, value
+
+
+def die_first(folder: str, number: int) -> int:
+    """Kills its process when it runs for the first time."""
+    first = number not in runs(folder)
+    note(folder, number)
+    if first:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return number
+
+
+def die(folder: str, number: int) -> int:
+    """Kills its process each time."""
+    note(folder, number)
+    os.kill(os.getpid(), signal.SIGKILL)
+    return number
+
+
+def fail(how: str) -> None:
+    """Raises."""
+    if how == "exit":
+        raise SystemExit(3)
+    raise failure("the scene has no light", "add one") if how == "said" else ValueError("no such thing")
+
+
+def interrupted(number: int) -> int:
+    """Stands for Ctrl-C at the third item."""
+    if number == 2:
+        raise KeyboardInterrupt
+    return number
+
+
+def items(folder: Path, count: int, seconds: float = 0.0, name: str = "measure") -> list[Item]:
+    rest = (seconds,) if seconds else ()
+    return [Item(f"executor_items:{name}", (str(folder), number, *rest), f"item {number}") for number in range(count)]

@@ -1,0 +1,93 @@
+"""The cases of tests/pitfalls: one rule to a file, each case a source and what the targets make of it.
+
+A case is a source under `=== source` (see `validate`), followed by the output of each target. GLSL ES is given
+where it differs from GLSL 3.30, and Unity's dialects where they differ from HLSL. A new case is a new source;
+UPDATE_SNAPSHOTS=1 adds and renews the rest, for review.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+from folders import TESTS
+from sssgen.ir.nodes import Function, Module
+from sssgen.lang.loader import merge
+from validate import module_of, printed
+
+FOLDER = TESTS / "pitfalls"
+SHOWN = {"glsl": "", "glsl-es": "glsl", "hlsl": "", "dx9": "hlsl", "urp": "hlsl", "wgsl": ""}
+"""The targets that are shown, and for some the one that they are shown beside only where they differ."""
+
+
+class Case(NamedTuple):
+    """One source and the texts it gives, by target."""
+
+    rule: str
+    source: str
+    texts: Mapping[str, str]
+
+    @property
+    def refused(self) -> bool:
+        return any(text.startswith("error:") for text in self.texts.values())
+
+
+def read(path: Path) -> tuple[str, list[Case]]:
+    """The rule, which is the text before the first case, and the cases."""
+    rule, *parts = re.split(r"^=== source\n", path.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    cases = []
+    for part in parts:
+        source, *texts = re.split(r"^--- (\S+)\n", part, flags=re.MULTILINE)
+        found = dict(zip(texts[::2], (text.strip() for text in texts[1::2]), strict=True))
+        cases.append(Case(path.stem, source.strip(), found))
+    return rule.strip(), cases
+
+
+def renewed(path: Path) -> str:
+    """The file's text with what the targets make of its sources now."""
+    rule, cases = read(path)
+    lines = [rule, ""]
+    for case in cases:
+        lines += ["=== source", case.source]
+        made = {target: printed(case.source, target) for target in SHOWN}
+        for target, beside in SHOWN.items():
+            same = beside and plain(made[target]) == plain(made[beside])
+            lines += [] if same else [f"--- {target}", made[target]]
+        lines.append("")
+    return "\n".join(lines)
+
+
+def plain(text: str) -> str:
+    """A text without the name of the target that refuses."""
+    return re.sub(r"(?m)^(error: .*) \([\w-]+\)$", r"\1", text)
+
+
+RULES = sorted(FOLDER.glob("*.txt"))
+if os.environ.get("UPDATE_SNAPSHOTS"):
+    for rule_file in RULES:
+        rule_file.write_text(renewed(rule_file), encoding="utf-8", newline="\n")
+CASES = [case for path in RULES for case in read(path)[1]]
+
+
+def called(module: Module) -> Function:
+    """The function that a case is about: the last one."""
+    return module.functions[-1]
+
+
+@cache
+def program() -> tuple[Module, tuple[tuple[Case, Function], ...]]:
+    """All cases that no target refuses in one module, and the function of each."""
+    whole, functions = Module(), []
+    for number, case in enumerate(CASES):
+        if case.refused:
+            continue
+        module = module_of(case.source, f"case {number}")
+        if "{" not in case.source:
+            module = module._replace(functions=(called(module)._replace(name=f"case_{number}"),))
+        functions.append((case, called(module)))
+        whole = merge(whole, module)
+    return whole, tuple(functions)

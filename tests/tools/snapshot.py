@@ -1,0 +1,17 @@
+"""Comparing a text with the one kept under tests/snapshots; UPDATE_SNAPSHOTS=1 keeps the new one instead."""
+
+from __future__ import annotations
+
+import os
+
+from folders import SNAPSHOTS
+
+
+def check_snapshot(name: str, text: str) -> None:
+    """Fails where `text` is not what the file tests/snapshots/NAME holds."""
+    path = SNAPSHOTS / name
+    if os.environ.get("UPDATE_SNAPSHOTS"):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8", newline="\n")
+    assert path.is_file(), f"no snapshot {name}: look at the text, then set UPDATE_SNAPSHOTS=1\n{text}"
+    assert text == path.read_text(encoding="utf-8"), f"{name} changed; UPDATE_SNAPSHOTS=1 takes it over"
