@@ -1,30 +1,28 @@
-"""What each case of a switch runs: its own statements, and those of the next where it falls through."""
+"""The cases of a switch: each with its own statements and those of the cases that it falls through to."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from sssgen.ir.spans import Span
+from sssgen.lang.check.context import CheckContext
 from sssgen.lang.syntax import tree as s
 
-if TYPE_CHECKING:
-    from sssgen.lang.check.expression_checker import ExpressionChecker
-
 MAX_STATEMENTS = 2000
-"""How many statements the cases of one function's switches may have, once each has those that it falls through to."""
+"""How many statements all cases of one function may have, with those that they fall through to."""
 
 
 class Case(NamedTuple):
-    """A case; the default comes last, whatever its place was."""
+    """A case; the default comes last, wherever it is written."""
 
     labels: tuple[s.Label, ...]
     body: tuple[s.Statement, ...]
     span: Span
 
 
-def cases_of(checker: ExpressionChecker, switch: s.SwitchStatement) -> list[Case]:
-    """The cases of a switch. Reports statements before the first, a second default, and endless falling through."""
+def cases_of(context: CheckContext, switch: s.SwitchStatement) -> list[Case]:
+    """The cases of a switch. Reports statements before the first, a second default, and too many statements."""
     groups: list[tuple[list[s.Label], list[s.Statement]]] = []
     for statement in switch.body.statements:
         if isinstance(statement, s.Label):
@@ -32,59 +30,59 @@ def cases_of(checker: ExpressionChecker, switch: s.SwitchStatement) -> list[Case
                 groups.append(([], []))
             groups[-1][0].append(statement)
         elif not groups:
-            raise checker.fail(statement.span, "a switch begins with a case")
+            raise context.fail(statement.span, "a switch begins with a case")
         else:
             groups[-1][1].append(statement)
-    found, default = list[Case](), None
+    cases, default = list[Case](), None
     for index, (labels, _) in enumerate(groups):
-        body = _runs([statements for _, statements in groups[index:]])
-        checker.fallen += len(body)
-        if checker.fallen > MAX_STATEMENTS:
+        body = _executed([statements for _, statements in groups[index:]])
+        context.function.case_statements += len(body)
+        if context.function.case_statements > MAX_STATEMENTS:
             hint = "end the cases with break"
-            raise checker.fail(labels[0].span, "these cases fall through to too many statements", hint)
+            raise context.fail(labels[0].span, "these cases fall through to too many statements", hint)
         case = Case(tuple(labels), body, labels[0].span)
         if all(label.value is not None for label in labels):
-            found.append(case)
+            cases.append(case)
         elif default is not None:
-            raise checker.fail(labels[0].span, "there are two defaults in this switch")
+            raise context.fail(labels[0].span, "there are two defaults in this switch")
         else:
             default = case
-    return [*found, default] if default is not None else found
+    return [*cases, default] if default is not None else cases
 
 
-def _runs(groups: list[list[s.Statement]]) -> tuple[s.Statement, ...]:
-    """The statements from a case up to what leaves the switch."""
+def _executed(groups: list[list[s.Statement]]) -> tuple[s.Statement, ...]:
+    """The statements from a case to the statement that leaves the switch."""
     body: list[s.Statement] = []
     for statements in groups:
         for statement in statements:
-            ended = _end(statement)
-            if ended is not None:
-                return (*body, *ended)
+            last = _without_break(statement)
+            if last is not None:
+                return (*body, *last)
             body.append(statement)
     return tuple(body)
 
 
-def _end(statement: s.Statement) -> tuple[s.Statement, ...] | None:
-    """What is left to run of a statement that always leaves the switch; None where it does not."""
+def _without_break(statement: s.Statement) -> tuple[s.Statement, ...] | None:
+    """A statement that always leaves the switch, without its `break`; None for any other statement."""
     if isinstance(statement, s.Jump):
         return () if statement.kind == "break" else (statement,)
     if isinstance(statement, s.Compound) and statement.statements:
-        last = _end(statement.statements[-1])
+        last = _without_break(statement.statements[-1])
         if last is not None:
             return (replace(statement, statements=(*statement.statements[:-1], *last)),)
     return None
 
 
-def leaves(body: tuple[s.Statement, ...]) -> bool:
-    """Whether a `break` of the switch itself stands in these statements."""
-    return any(_leaves(statement) for statement in body)
+def has_break(body: tuple[s.Statement, ...]) -> bool:
+    """Whether these statements contain a `break` of the switch itself."""
+    return any(_has_break(statement) for statement in body)
 
 
-def _leaves(statement: s.Statement | None) -> bool:
+def _has_break(statement: s.Statement | None) -> bool:
     if isinstance(statement, s.Jump):
         return statement.kind == "break"
     if isinstance(statement, s.Compound):
-        return leaves(statement.statements)
+        return has_break(statement.statements)
     if isinstance(statement, s.IfStatement):
-        return _leaves(statement.then) or _leaves(statement.otherwise)
+        return _has_break(statement.then) or _has_break(statement.otherwise)
     return False

@@ -1,12 +1,12 @@
-"""What a GPU cannot do without bound: loops that may not end, and calls that come back to where they began."""
+"""Whether loops end: a GPU stops a program that runs too long."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.types import INT, UINT
-from sssgen.ir.walk import all_expressions, callees, root, statements, subexpressions
+from sssgen.ir.walk import all_expressions, root, statements, subexpressions
 
 OutArgs = Callable[[ir.Call], Iterable[ir.Expr]]
 """The arguments of a call that it writes to."""
@@ -95,23 +95,3 @@ def _step(stmt: ir.Stmt, counter: str) -> int | None:
     if op not in ("+", "-") or not isinstance(value, ir.Literal):
         return None
     return int(value.value) if op == "+" else -int(value.value)
-
-
-def cycles(functions: Mapping[str, ir.Function]) -> Iterator[list[str]]:
-    """The cycles of calls, each as the keys along it, the first again at the end. Iterative: chains may be long."""
-    done: set[str] = set()
-    for start in functions:
-        path: dict[str, None] = {}
-        pending: list[Iterator[str]] = [iter((start,))]
-        while pending:
-            key = next(pending[-1], None)
-            if key is None:
-                pending.pop()
-                if path:
-                    done.add(path.popitem()[0])
-            elif key in path:
-                along = list(path)
-                yield [*along[along.index(key) :], key]
-            elif key in functions and key not in done:
-                path[key] = None
-                pending.append(iter(callees(functions[key])))

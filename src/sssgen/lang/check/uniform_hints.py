@@ -1,22 +1,18 @@
-"""The hints on a uniform: which there are, what they take, and whether the default agrees with them."""
+"""The hints of a uniform: their names, their arguments, and whether the default value agrees with them."""
 
 from __future__ import annotations
-
-from typing import TYPE_CHECKING
 
 from sssgen.ir.nodes import Span
 from sssgen.ir.rules import FLOAT_MAX
 from sssgen.ir.types import VEC3, VEC4, Sampler, Type, kind_of
 from sssgen.lang.check import quantities as q
+from sssgen.lang.check.context import CheckContext
 from sssgen.lang.syntax import tree as s
 from sssgen.support.diagnostics import did_you_mean
 
-if TYPE_CHECKING:
-    from sssgen.lang.check.expression_checker import ExpressionChecker
-
 Hints = tuple[tuple[str, tuple[float | str, ...]], ...]
 
-# Hint → (the fewest and most arguments, their kind, whether it is for textures).
+# Hint → (minimum and maximum number of arguments, their kind, whether it is for textures; None: for both).
 HINTS = {
     "hint_range": (2, 3, float, False),
     "source_color": (0, 0, str, None),
@@ -33,39 +29,39 @@ HINTS = {
 
 
 def check_hints(
-    checker: ExpressionChecker, uniform: s.Declarator, type_: Type, default: tuple[float, ...]
+    context: CheckContext, uniform: s.Declarator, type_: Type, default: tuple[float, ...]
 ) -> tuple[Hints, str]:
     """Checks a uniform's hints; returns them with the quantity that a texture holds ('' for none)."""
-    found: dict[str, tuple[float | str, ...]] = {}
-    held = ""
+    hints: dict[str, tuple[float | str, ...]] = {}
+    quantity = ""
     for hint in uniform.hints:
         name, span = hint.name.text, hint.name.span
         if name not in HINTS:
-            raise checker.fail(span, f"unknown hint '{name}'", did_you_mean(name, HINTS))
-        if name in found:
-            raise checker.fail(span, f"hint '{name}' is given twice")
+            raise context.fail(span, f"unknown hint '{name}'", did_you_mean(name, HINTS))
+        if name in hints:
+            raise context.fail(span, f"hint '{name}' is given twice")
         fewest, most, kind, for_texture = HINTS[name]
         if any(isinstance(arg, float) and not abs(arg) <= FLOAT_MAX for arg in hint.args):
-            raise checker.fail(span, f"a number of {name} does not fit in a float")
+            raise context.fail(span, f"a number of {name} does not fit in a float")
         if not fewest <= len(hint.args) <= most or any(not isinstance(arg, kind) for arg in hint.args):
-            raise checker.fail(span, f"{name} takes {_arguments(fewest, most, kind)}")
+            raise context.fail(span, f"{name} takes {_arguments(fewest, most, kind)}")
         if for_texture is not None and for_texture != isinstance(type_, Sampler):
-            raise checker.fail(span, f"{name} is for {'textures' if for_texture else 'values'} only")
+            raise context.fail(span, f"{name} is for {'textures' if for_texture else 'values'} only")
         if name == "source_color" and not isinstance(type_, Sampler) and type_ not in (VEC3, VEC4):
-            raise checker.fail(span, "source_color is for vec3, vec4 and textures only")
+            raise context.fail(span, "source_color is for vec3, vec4 and textures only")
         if name == "hint_range":
-            _check_range(checker, span, hint.args, type_, default, uniform.value is not None)
+            _check_range(context, span, hint.args, type_, default, uniform.value is not None)
         if name == "holds":
-            held = str(hint.args[0])
-            if held not in q.SCALARS:
+            quantity = str(hint.args[0])
+            if quantity not in q.SCALARS:
                 known = f"it holds one of {', '.join(q.SCALARS)}"
-                raise checker.fail(span, f"a texture cannot hold '{held}'", known)
-        found[name] = hint.args
-    return tuple(found.items()), held
+                raise context.fail(span, f"a texture cannot hold '{quantity}'", known)
+        hints[name] = hint.args
+    return tuple(hints.items()), quantity
 
 
 def _check_range(
-    checker: ExpressionChecker,
+    context: CheckContext,
     span: Span,
     args: tuple[float | str, ...],
     type_: Type,
@@ -74,15 +70,15 @@ def _check_range(
 ) -> None:
     low, high = float(args[0]), float(args[1])
     if kind_of(type_) not in ("float", "int", "uint"):
-        raise checker.fail(span, "hint_range is for numbers only")
+        raise context.fail(span, "hint_range is for numbers only")
     if not low < high:
-        raise checker.fail(span, f"the range {low:g} to {high:g} is empty")
+        raise context.fail(span, f"the range {low:g} to {high:g} is empty")
     if not all(float(step) > 0.0 for step in args[2:]):
-        raise checker.fail(span, "the step of a range is above 0")
+        raise context.fail(span, "the step of a range is above 0")
     for value in default:
         if not low <= value <= high:
             message = f"the default {value:g} is outside the range {low:g} to {high:g}"
-            raise checker.fail(span, message, "" if written else "it has no default of its own: give it one with =")
+            raise context.fail(span, message, "" if written else "it has no default of its own: give it one with =")
 
 
 def _arguments(fewest: int, most: int, kind: type) -> str:

@@ -1,0 +1,86 @@
+"""Checks accesses to parts of values: indices, struct members, swizzles, block members, arrays of textures."""
+
+from __future__ import annotations
+
+from sssgen.ir import nodes as ir
+from sssgen.ir.rules import element_type, swizzle_type
+from sssgen.ir.types import INT, UINT, Array, Scalar, Struct, Vector, spell
+from sssgen.lang.check import quantities as q
+from sssgen.lang.check.constant_integers import constant_int
+from sssgen.lang.check.context import Typed
+from sssgen.lang.check.expression_checker import ExpressionChecker
+from sssgen.lang.check.wording import a_type
+from sssgen.lang.syntax import tree as s
+from sssgen.support.diagnostics import did_you_mean
+
+_SWIZZLES = ("xyzw", "rgba", "stpq")
+
+
+class AccessChecker:
+    """Checks the accesses of one file."""
+
+    def __init__(self, expressions: ExpressionChecker) -> None:
+        self.context = expressions.context
+        self.expressions = expressions
+        expressions.methods[s.IndexOf] = self.index
+        expressions.methods[s.MemberOf] = self.member
+
+    def index(self, index: s.IndexOf) -> Typed:
+        if isinstance(index.value, s.Name) and index.value.text in self.context.texture_arrays:
+            return self.texture_of(index.value, index)
+        value, position = self.expressions.operands((index.value, index.index))
+        if position.expr.type not in (INT, UINT):
+            raise self.context.fail(index.index.span, f"an index is an int, but this is {a_type(position.expr.type)}")
+        type_ = value.expr.type
+        element = element_type(type_)
+        if element is None:
+            raise self.context.fail(index.span, f"{a_type(type_)} has no elements to index")
+        result, length = element
+        constant = constant_int(self.context, index.index)
+        if constant is not None and not 0 <= constant < length:
+            raise self.context.fail(index.index.span, f"index {constant} is outside {spell(type_)}: 0 to {length - 1}")
+        quantity = value.quantity if isinstance(type_, Array) else ""
+        return Typed(ir.Index(result, value.expr, position.expr, index.span), quantity)
+
+    def texture_of(self, name: s.Name, index: s.IndexOf) -> Typed:
+        """One texture of an array of textures, which are separate textures in the IR."""
+        textures = self.context.texture_arrays[name.text]
+        position = constant_int(self.context, index.index)
+        if position is None or not 0 <= position < len(textures):
+            message = f"a texture of '{name.text}' is chosen by a constant from 0 to {len(textures) - 1}"
+            raise self.context.fail(index.index.span, message, "WebGPU has no arrays of textures: write the cases out")
+        texture = self.context.globals[textures[position]]
+        return Typed(ir.Global(texture.type, textures[position], index.span), texture.quantity)
+
+    def member(self, member: s.MemberOf) -> Typed:
+        context = self.context
+        if isinstance(member.value, s.Name) and member.value.text in context.blocks:
+            block, label = member.value.text, member.name
+            if context.function.scopes.find(block) is None:
+                members = context.blocks[block]
+                if label.text not in members:
+                    hint = did_you_mean(label.text, members)
+                    raise context.fail(label.span, f"block '{block}' has no member '{label.text}'", hint)
+                typed = members[label.text]
+                return typed._replace(expr=typed.expr._replace(span=member.span))
+        value = self.expressions.check(member.value)
+        type_, name = value.expr.type, member.name.text
+        if isinstance(type_, Struct):
+            for field in type_.fields:
+                if field.name == name:
+                    return Typed(ir.Member(field.type, value.expr, name, member.span), field.quantity)
+            hint = did_you_mean(name, [field.name for field in type_.fields])
+            raise context.fail(member.name.span, f"struct '{type_.name}' has no member '{name}'", hint)
+        if isinstance(type_, Scalar) and context.plain and name in ("x", "r", "s"):
+            return value
+        if not isinstance(type_, Vector):
+            raise context.fail(member.name.span, f"{a_type(type_)} has no member '{name}'")
+        for letters in _SWIZZLES:
+            parts = name.translate(str.maketrans(letters, "xyzw")) if set(name) <= set(letters) else ""
+            result = swizzle_type(type_, parts)
+            if result is not None:
+                quantity = q.channel_of(value.quantity) if len(parts) == 1 else ""
+                return Typed(ir.Swizzle(result, value.expr, parts, member.span), quantity)
+        letters = _SWIZZLES[0][: type_.size]
+        hint = f"its components are {letters}"
+        raise context.fail(member.name.span, f"'{name}' is no swizzle of {a_type(type_)}", hint)

@@ -1,0 +1,50 @@
+"""The variables and constants of GLSL whose names begin with gl_."""
+
+from __future__ import annotations
+
+from sssgen.ir import nodes as ir
+from sssgen.ir.types import BOOL, FLOAT, INT, VEC2, VEC4, Array, Type
+from sssgen.lang.check.context import CheckContext
+from sssgen.lang.check.name_scope import GlobalValue
+from sssgen.lang.syntax import tree as s
+
+BUILTIN_VARIABLES: dict[str, tuple[Type, str]] = {
+    "gl_FragCoord": (VEC4, "in"),
+    "gl_FrontFacing": (BOOL, "in"),
+    "gl_PointCoord": (VEC2, "in"),
+    "gl_VertexID": (INT, "in"),
+    "gl_VertexIndex": (INT, "in"),
+    "gl_InstanceID": (INT, "in"),
+    "gl_InstanceIndex": (INT, "in"),
+    "gl_Position": (VEC4, "out"),
+    "gl_PointSize": (FLOAT, "out"),
+    "gl_FragDepth": (FLOAT, "out"),
+    "gl_FragDepthEXT": (FLOAT, "out"),
+    "gl_FragColor": (VEC4, "out"),
+    "gl_FragData": (Array(VEC4, 8), "out"),
+}
+"""The variables that have a counterpart in other languages: type, and whether a stage reads or writes them."""
+
+_SAME = {"gl_FragDepthEXT": "gl_FragDepth", "gl_VertexIndex": "gl_VertexID", "gl_InstanceIndex": "gl_InstanceID"}
+
+_LIMITS = {
+    "gl_MaxDrawBuffers": 8, "gl_MaxTextureImageUnits": 16, "gl_MaxVertexAttribs": 16, "gl_MaxVertexUniformVectors": 256,
+    "gl_MaxFragmentUniformVectors": 256, "gl_MaxVaryingVectors": 15, "gl_MaxCombinedTextureImageUnits": 32,
+    "gl_MaxVertexTextureImageUnits": 16,
+}  # fmt: skip
+"""GLSL's implementation limits, with the values that WebGPU guarantees."""
+
+
+def builtin_variable(context: CheckContext, name: s.Name) -> GlobalValue | None:
+    """The variable or constant that a gl_ name stands for in plain GLSL. The first use of a variable declares it."""
+    text = name.text
+    if not context.plain:
+        return None
+    if text in _LIMITS:
+        return GlobalValue(INT, "", _LIMITS[text], True)
+    if text not in BUILTIN_VARIABLES:
+        return None
+    type_, storage = BUILTIN_VARIABLES[text]
+    context.variables[text] = ir.Variable(text, type_, storage, None, _SAME.get(text, text), "", -1, "", name.span)
+    value = context.globals[text] = GlobalValue(type_, "", writable=storage == "out")
+    return value

@@ -1,0 +1,101 @@
+"""What the checkers of one file share: the reporter, the declarations so far, and the state of the current function."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from sssgen.ir import nodes as ir
+from sssgen.ir.types import FLOAT, VOID, Struct, Type
+from sssgen.lang import shadertoy
+from sssgen.lang.check.name_scope import GlobalValue, Scopes, Signature
+from sssgen.support.diagnostics import Reporter, did_you_mean
+
+
+class Typed(NamedTuple):
+    """A checked expression and its quantity ('' for none)."""
+
+    expr: ir.Expr
+    quantity: str = ""
+
+
+class AlreadyReported(Exception):
+    """Unwinds to the statement or declaration that contains an error, once the error is reported."""
+
+
+class FunctionContext:
+    """The state of one function while it is checked. Expressions at file scope have one that holds no variables."""
+
+    def __init__(self, result: Type = VOID, quantity: str = "") -> None:
+        self.result, self.quantity = result, quantity
+        self.scopes = Scopes()
+        self.prelude: list[ir.Stmt] = []
+        """The statements that run before the current expression: its side effects."""
+        self.loop_depth = 0
+        self.switches: list[ir.Local | None] = []
+        """For each switch between the current statement and the innermost loop: the variable that requests a
+        `continue` of that loop, where the switch itself becomes a loop; else None."""
+        self.case_statements = 0
+        """The number of statements in all switch cases, with those that they fall through to."""
+        self.has_faults = False
+        """Whether a statement was left out because of an error."""
+
+    def temporary(
+        self, name: str, value: ir.Expr | None, position: int | None = None, type_: Type | None = None
+    ) -> ir.Local:
+        """A new variable with this value, declared in the prelude (at its end, or at `position`).
+
+        Its name is `name`, with a number where that is taken.
+        """
+        declared_type = type_ if type_ is not None else value.type if value is not None else FLOAT
+        span = value.span if value is not None else ir.NOWHERE
+        scopes, label, count = self.scopes, name, 2
+        while scopes.find(label) is not None or (variable := scopes.declare(label, declared_type, "", True)) is None:
+            label, count = f"{name}_{count}", count + 1
+        declaration = ir.Declare(variable.ir_name, declared_type, value, span)
+        self.prelude.insert(len(self.prelude) if position is None else position, declaration)
+        return ir.Local(declared_type, variable.ir_name, span)
+
+
+class CheckContext:
+    """The declarations of one file so far, and the function that is being checked.
+
+    `plain`: the file is GLSL, where an int converts to a float and loops need no visible bound. Otherwise it is a
+    technique.
+    """
+
+    def __init__(self, reporter: Reporter, plain: bool = False) -> None:
+        self.reporter = reporter
+        self.plain = plain
+        self.function = FunctionContext()
+        self.structs: dict[str, Struct] = {}
+        self.struct_declarations: list[ir.StructDecl] = []
+        self.functions: dict[str, list[Signature]] = {}
+        self.globals: dict[str, GlobalValue] = {}
+        self.variables: dict[str, ir.Variable] = {}
+        """The inputs, outputs and private variables of a whole shader."""
+        self.faulty: set[str] = set()
+        """Names whose declaration has an error. Their uses are not reported."""
+        self.blocks: dict[str, dict[str, Typed]] = {}
+        """The members of each block that has an instance name, by that name."""
+        self.texture_arrays: dict[str, list[str]] = {}
+        """For each array of textures, the names of the textures that replace its elements."""
+
+    def fail(self, span: ir.Span, message: str, hint: str = "") -> AlreadyReported:
+        """Reports an error; gives the exception to raise."""
+        self.reporter.error(span, message, hint)
+        return AlreadyReported()
+
+    def unknown(self, span: ir.Span, kind: str, name: str, candidates: list[str]) -> AlreadyReported:
+        """Reports a name that is not declared."""
+        if name in self.faulty:
+            return AlreadyReported()
+        hint = did_you_mean(name, candidates)
+        if self.plain and name in shadertoy.UNIFORMS:
+            hint = "it is Shadertoy's: write --entry shadertoy"
+        return self.fail(span, f"unknown {kind} '{name}'", hint)
+
+    def out_arguments(self, call: ir.Call) -> list[ir.Expr]:
+        """The arguments that a call writes to."""
+        overloads = self.functions[call.function.split("(")[0]]
+        directions = next(signature.directions for signature in overloads if signature.key == call.function)
+        return [arg for arg, direction in zip(call.args, directions, strict=True) if direction != "in"]

@@ -1,0 +1,142 @@
+"""Checks declarations at file scope: constants, uniforms and their default values."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from sssgen.ir import nodes as ir
+from sssgen.ir.intrinsics import BUILTINS
+from sssgen.ir.types import INT, UINT, VOID, Array, Matrix, Sampler, Struct, Type, components, kind_of
+from sssgen.ir.walk import subexpressions
+from sssgen.lang.check.constant_integers import constant_int
+from sssgen.lang.check.declared_names import check_global_name, declare_struct
+from sssgen.lang.check.expression_checker import ExpressionChecker
+from sssgen.lang.check.name_scope import GlobalValue
+from sssgen.lang.check.shader_interface import ShaderInterface
+from sssgen.lang.check.type_names import array_type, named_type
+from sssgen.lang.check.uniform_hints import check_hints
+from sssgen.lang.check.wording import a_type
+from sssgen.lang.syntax import tree as s
+
+
+class GlobalChecker:
+    """Checks and collects the constants, uniforms and interface variables of one file."""
+
+    def __init__(self, expressions: ExpressionChecker, interface: ShaderInterface) -> None:
+        self.context = expressions.context
+        self.expressions = expressions
+        self.interface = interface
+        self.constants: list[ir.Constant] = []
+        self.uniforms: list[ir.Uniform] = []
+
+    def block(self, block: s.BlockSyntax) -> None:
+        """The members of a block, as separate globals."""
+        members = self.interface.members(block)
+        for member in members:
+            self.global_(member)
+        self.interface.name_instance(block, members)
+
+    def global_(self, external: s.GlobalSyntax) -> None:
+        context, declaration = self.context, external.declaration
+        words = declaration.qualifiers.words
+        if not declaration.declarators and declaration.type.struct is None:
+            if "invariant" in words or "precise" in words:
+                return  # no other language has these
+            raise context.fail(declaration.type.span, "this declares nothing", "a type and a name are wanted")
+        if declaration.type.struct is not None:
+            declare_struct(context, declaration.type.struct)
+        if "uniform" in words:
+            for declarator in declaration.declarators:
+                for element in self.interface.textures(declaration, declarator):
+                    self.uniform(declaration, element, external.doc)
+        elif "const" in words:
+            for declarator in declaration.declarators:
+                self.constant(declaration, declarator)
+        elif context.plain:
+            self.interface.declare(declaration, external.doc)
+        else:
+            message = "a variable of the module is not in the language of techniques"
+            raise context.fail(declaration.type.span, message, "make it const, a uniform, or a parameter")
+
+    def uniform(self, declaration: s.Declaration, declarator: s.Declarator, doc: str) -> None:
+        context, name = self.context, declarator.name
+        check_global_name(context, name)
+        type_, quantity = named_type(context, declaration.type)
+        type_ = array_type(context, type_, declarator.lengths)
+        has_struct = isinstance(type_.element if isinstance(type_, Array) else type_, Struct)
+        if type_ == VOID or (has_struct and not context.plain):
+            raise context.fail(declaration.type.span, f"a uniform cannot be {a_type(type_)}")
+        default = self.default(declarator, type_)
+        hints, texel_quantity = check_hints(context, declarator, type_, default)
+        quantity = quantity or texel_quantity
+        context.globals[name.text] = GlobalValue(type_, quantity)
+        self.uniforms.append(ir.Uniform(name.text, type_, default, hints, quantity, doc, name.span))
+
+    def default(self, declarator: s.Declarator, type_: Type) -> tuple[float, ...]:
+        """The components of a uniform's default value; () for a texture."""
+        value = declarator.value
+        if value is None:
+            return () if isinstance(type_, Sampler) else _identity(type_)
+        if isinstance(type_, Sampler):
+            hint = "use default_white, default_black, default_gray or default_bump"
+            raise self.context.fail(value.span, "a texture has no default value", hint)
+        typed = self.expressions.check(value)._replace(quantity="")
+        numbers = _components(self.expressions.require(typed, type_, "", value.span, f"'{declarator.name.text}'"))
+        if numbers is None:
+            hint = "write it as 0.2 or vec3(1.0, 0.5, 0.0)"
+            raise self.context.fail(value.span, "a default is made of literals", hint)
+        return numbers
+
+    def constant(self, declaration: s.Declaration, declarator: s.Declarator) -> None:
+        context, name = self.context, declarator.name
+        is_macro = declaration.type.name == "auto"
+        element, quantity = (VOID, "") if is_macro else named_type(context, replace(declaration.type, lengths=()))
+        check_global_name(context, name)
+        if declarator.value is None:
+            raise context.fail(name.span, f"const '{name.text}' needs a value")
+        if is_macro:
+            value = self.expressions.check(declarator.value).expr
+            type_ = value.type
+        else:
+            type_ = self.expressions.declared_type(element, declaration.type, declarator)
+            value = self.expressions.check_as(declarator.value, type_, quantity, f"'{name.text}'")
+        if not all(self.is_constant(part) for part in subexpressions(value)):
+            message = f"the value of const '{name.text}' is not constant"
+            raise context.fail(declarator.value.span, message, "use literals, other constants and builtins")
+        number = constant_int(context, declarator.value) if type_ in (INT, UINT) else None
+        context.globals[name.text] = GlobalValue(type_, quantity, number, True)
+        self.constants.append(ir.Constant(name.text, type_, value, name.span))
+
+    def is_constant(self, part: ir.Expr) -> bool:
+        """Whether a part of an expression is known before the shader runs."""
+        if isinstance(part, ir.Intrinsic):
+            return BUILTINS[part.name].kind not in ("fetch", "derivative")
+        return not isinstance(part, ir.Call) and (
+            not isinstance(part, ir.Global) or self.context.globals[part.name].constant
+        )
+
+
+def _components(value: ir.Expr) -> tuple[float, ...] | None:
+    """The numbers of a constant made of literals, or None."""
+    if isinstance(value, ir.Literal):
+        return (float(value.value),)
+    if not isinstance(value, ir.Construct) or not value.args:
+        return None
+    parts = [_components(arg) for arg in value.args]
+    flat = tuple(number for part in parts if part is not None for number in part)
+    if None in parts or (kind_of(value.type) and kind_of(value.type) != kind_of(value.args[0].type)):
+        return None
+    if len(flat) == 1 and isinstance(value.type, Matrix):
+        return tuple(flat[0] * entry for entry in _identity(value.type))
+    if len(flat) == 1:
+        flat *= components(value.type)
+    return flat if len(flat) == components(value.type) else None
+
+
+def _identity(type_: Type) -> tuple[float, ...]:
+    """The default of a uniform without one: zeros, or the identity matrix."""
+    if isinstance(type_, Matrix):
+        return tuple(1.0 if row == column else 0.0 for column in range(type_.size) for row in range(type_.size))
+    if isinstance(type_, Array):
+        return _identity(type_.element) * type_.length
+    return (0.0,) * components(type_)

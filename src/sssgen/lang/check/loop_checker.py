@@ -1,0 +1,151 @@
+"""Checks loops. IR loops have one declaration and one step in their head and no `do`; the rest becomes statements."""
+
+from __future__ import annotations
+
+from sssgen.ir import nodes as ir
+from sssgen.ir.types import BOOL
+from sssgen.ir.walk import all_expressions, subexpressions
+from sssgen.lang.check.evaluation_order import writes_of
+from sssgen.lang.check.statement_checker import StatementChecker
+from sssgen.lang.check.termination import ends, skips
+from sssgen.lang.syntax import tree as s
+
+_LOOP_HINT = "write for (int i = 0; i < N; i++) with N that the body does not change, and step the counter nowhere else"
+
+
+class LoopChecker:
+    """Checks the loops of one file."""
+
+    def __init__(self, statements: StatementChecker) -> None:
+        self.context = statements.context
+        self.expressions = statements.expressions
+        self.statements = statements
+        statements.methods[s.ForStatement] = self.for_
+        statements.methods[s.WhileStatement] = self.while_
+        statements.methods[s.DoStatement] = self.do
+
+    def for_(self, statement: s.ForStatement) -> list[ir.Stmt]:
+        context, scopes, span = self.context, self.context.function.scopes, statement.span
+        errors = len(context.reporter.diagnostics)
+        scopes.push()
+        before = self.statements.statement(statement.init) if statement.init is not None else []
+        condition, tested = None, list[ir.Stmt]()
+        if statement.condition is not None:
+            condition, tested = self.expressions.with_prelude(statement.condition, self.statements.condition)
+        steps: list[ir.Stmt] = []
+        if statement.step is not None:
+            _, steps = self.expressions.with_prelude(statement.step, self.statements.assignments.effect)
+        body = self.loop_body(statement.body)
+        scopes.pop(dissolve=len(before) > 1, loop=True)
+        if len(context.reporter.diagnostics) > errors:
+            return []
+        counters = (
+            {part.name for part in subexpressions(condition) if isinstance(part, ir.Local)} if condition else set()
+        )
+        before, init = _split(before, counters)
+        others, step = _split(steps, counters) if all(map(_fits_in_head, steps)) else (steps, None)
+        if others:
+            body = (*_before_continues(body, others), *others)
+        if tested:
+            assert condition is not None
+            body, condition = (*tested, _break_unless(condition), *body), None
+        bounded = condition is not None and step is not None and ends(condition, (step,), body, context.out_arguments)
+        if not context.plain and not bounded:
+            raise context.fail(span, "this loop cannot be seen to end", _LOOP_HINT)
+        return [*before, ir.For(init, condition, step, body, span)]
+
+    def while_(self, statement: s.WhileStatement) -> list[ir.Stmt]:
+        context, span = self.context, statement.span
+        errors = len(context.reporter.diagnostics)
+        if isinstance(statement.condition, s.Declaration):
+            hint = "declare it before the loop"
+            raise context.fail(statement.condition.span, "a condition declares nothing here", hint)
+        condition, tested = self.expressions.with_prelude(statement.condition, self.statements.condition)
+        body = self.loop_body(statement.body)
+        if condition is None or len(context.reporter.diagnostics) > errors:
+            return []
+        if tested:
+            body, condition = (*tested, _break_unless(condition), *body), ir.Literal(BOOL, True, span)
+        if not context.plain and (skips(body) or not ends(condition, body, (), context.out_arguments)):
+            raise context.fail(span, "this loop cannot be seen to end", _LOOP_HINT)
+        return [ir.While(condition, body, span)]
+
+    def do(self, statement: s.DoStatement) -> list[ir.Stmt]:
+        """`do body while (test);` is `while (true) { body; if (!test) break; }`; each `continue` tests first, too."""
+        body = self.loop_body(statement.body)
+        condition, tested = self.expressions.with_prelude(statement.condition, self.statements.condition)
+        if condition is None:
+            return []
+        if not self.context.plain:
+            hint = "write for (int i = 0; i < N; i++)"
+            raise self.context.fail(statement.span, "this loop cannot be seen to end", hint)
+        if isinstance(condition, ir.Literal):  # while (false): the body runs once
+            last = tested if condition.value else [*tested, ir.Break(condition.span)]
+        else:
+            last = [*tested, _break_unless(condition)]
+        body = (*_before_continues(body, last), *last)
+        return [ir.While(ir.Literal(BOOL, True, statement.span), body, statement.span)]
+
+    def loop_body(self, statement: s.Statement) -> ir.Block:
+        function = self.context.function
+        outer, function.switches = function.switches, []
+        function.loop_depth += 1
+        body = self.statements.body(statement)
+        function.loop_depth -= 1
+        function.switches = outer
+        return body
+
+
+def _break_unless(condition: ir.Expr) -> ir.Stmt:
+    return ir.If(ir.Unary(BOOL, "!", condition, condition.span), (ir.Break(condition.span),), (), condition.span)
+
+
+def _fits_in_head(stmt: ir.Stmt) -> bool:
+    """Whether a step may be the step of an IR loop: an assignment without calls."""
+    return isinstance(stmt, ir.Assign) and not any(isinstance(part, ir.Call) for part in all_expressions((stmt,)))
+
+
+def _split(statements: list[ir.Stmt], counters: set[str]) -> tuple[list[ir.Stmt], ir.Stmt | None]:
+    """Of the statements of a loop's head, those to move elsewhere and the one that stays.
+
+    The one that stays writes a counter and does not depend on the others, nor they on it; otherwise it is the last.
+    """
+    simple = [stmt for stmt in statements if isinstance(stmt, ir.Declare | ir.Assign | ir.Evaluate)]
+    if not simple:
+        return statements, None
+    for stmt in simple:
+        others = [other for other in statements if other is not stmt]
+        independent = not any(_written(stmt) & _used(other) or _written(other) & _used(stmt) for other in others)
+        if independent and _written(stmt) & counters:
+            return others, stmt
+    if statements[-1] in simple:
+        return statements[:-1], statements[-1]
+    return statements, None
+
+
+def _written(stmt: ir.Stmt) -> set[str]:
+    """The variables that a statement writes."""
+    if isinstance(stmt, ir.Declare):
+        return {stmt.name}
+    return writes_of([stmt])[0]
+
+
+def _used(stmt: ir.Stmt) -> set[str]:
+    """The variables that a statement reads or writes."""
+    names = {part.name for part in all_expressions((stmt,)) if isinstance(part, ir.Local | ir.Global)}
+    return names | _written(stmt)
+
+
+def _before_continues(body: ir.Block, added: list[ir.Stmt]) -> ir.Block:
+    """A loop's body with statements before each `continue` of the loop; if they end with `break`, instead of it."""
+    result: list[ir.Stmt] = []
+    for stmt in body:
+        if isinstance(stmt, ir.Continue):
+            result += added
+            if added and isinstance(added[-1], ir.Break):
+                continue
+        elif isinstance(stmt, ir.If):
+            then, otherwise = _before_continues(stmt.then, added), _before_continues(stmt.otherwise, added)
+            stmt = stmt._replace(then=then, otherwise=otherwise)
+        result.append(stmt)
+    return tuple(result)
