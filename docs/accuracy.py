@@ -28,7 +28,7 @@ HERE = Path(__file__).parent
 FOLDER = HERE / "accuracy"
 PAGE = HERE / "accuracy.md"
 GPU_CHART = "gpu_chart.json"
-BY_HAND = "gpu_s0.json"
+BY_HAND = "gpu_jelly_cubes.json"
 TIMED = ("cube", "torus", "inlay_plate", "inlay_ball")
 """The scenes whose chains are timed: a minute or two each."""
 SPOT = FOLDER / "spot.toml"
@@ -158,22 +158,22 @@ def known_answers(record: Record) -> str:
     rows = ["| answer known before | measured |", "|---|---|"]
     for scene in (one["name"] for one in record["scenes"] if "medium" in one):
         by_label = {point["label"]: point for point in of(record, scene, "material")}
-        seed3, gdc = by_label["seed 3"], by_label["GDC 2011"]
+        ice, gdc = by_label["Unity ice"], by_label["GDC 2011"]
         rows.append(
-            f"| seed 3's lobe adds nothing to its ambient light: its fit leaves power, scale and distortion alone "
-            f"({scene}) | {untouched(seed3)}; error {error(seed3)}, with a lobe that works {error(gdc)} |"
+            f"| the Unity ice lobe adds nothing to its ambient light: its fit leaves power, scale and distortion alone "
+            f"({scene}) | {untouched(ice)}; error {error(ice)}, with a lobe that works {error(gdc)} |"
         )
         thickness = {point["label"]: point for point in of(record, scene, "thickness")}
-        seed0 = min((one for one in thickness.values() if one["name"] == "seed0_thinness"), key=value)
+        cheap = min((one for one in thickness.values() if one["name"] == "cheap_sss_thinness"), key=value)
         best = min(thickness.values(), key=value)
         rows.append(
-            f"| seed 0 measures no thickness towards the light ({scene}) | {value(seed0):.3f}, "
+            f"| Cheap SSS measures no thickness towards the light ({scene}) | {value(cheap):.3f}, "
             f"where {best['label']} errs by {value(best):.4f} |"
         )
     for scene in (one["name"] for one in record["scenes"] if "medium" not in one):
         named = {point["name"]: point for point in of(record, scene, "coordinates")}
         on_plane = value(named["parallax_refracted"]) < 1e-6
-        known = "corrected seed 4 is exact on a plane" if on_plane else "on a curved body it is not"
+        known = "corrected Subsurface Parallax is exact on a plane" if on_plane else "on a curved body it is not"
         rows.append(
             f"| {known} ({scene}) | {value(named['parallax_refracted']):.2g}; "
             f"without refraction {value(named['parallax_straight']):.3g} |"
@@ -263,16 +263,17 @@ def gpu() -> str:
 def by_hand() -> str:
     """Emitted shaders beside the same by hand, as `make bench-gpu` recorded them."""
     record = json.loads((FOLDER / BY_HAND).read_text(encoding="utf-8"))
-    scene = {name: one["net_ms"]["median"] for name, one in record["s0"]["programs"].items()}
-    published, emitted = scene["s0 published"], scene["s0 emitted"]
+    scene_record = record["jelly_cubes"]
+    scene = {name: one["net_ms"]["median"] for name, one in scene_record["programs"].items()}
+    published, emitted = scene["jelly_cubes published"], scene["jelly_cubes emitted"]
     taken = {name: one["net_ms"]["median"] for name, one in record["techniques"]["programs"].items()}
     shown = [name for name in taken if f"{name} by hand" in taken and taken[name] > 1e-4]  # some leave nothing to do
     ratios = {name: taken[name] / taken[f"{name} by hand"] for name in shown}
     dearer = sorted((ratio, name) for name, ratio in ratios.items() if ratio > 1.01)
     rows = [
-        f"{record['s0']['device']}, {record['s0']['driver']}: the scene of seed 0 as published takes {published:.2f} "
+        f"{scene_record['device']}, {scene_record['driver']}: the scene of 42yeah as published takes {published:.2f} "
         f"ms at 1080p and as emitted {emitted:.2f} ms, {emitted / published:.2f} ×, with the same picture (FLIP "
-        f"{record['s0']['flip']:.4f}); of {len(ratios)} techniques {len(ratios) - len(dearer)} are within 1 % of the "
+        f"{scene_record['flip']:.4f}); of {len(ratios)} techniques {len(ratios) - len(dearer)} are within 1 % of the "
         "formula by hand or faster. The dearer ones pay for what the hand leaves out, a guard or a stable form:",
         "", "| technique | emitted / by hand | ms emitted |", "|---|---:|---:|",
         *(f"| `{name}` | {ratio:.2f} | {taken[name]:.4f} |" for ratio, name in dearer),

@@ -32,20 +32,20 @@ SMALL = (160, 120)
 """The size in pixels of the pictures that are compared."""
 
 CAPTIONS = {
-    "jelly_cubes": "Seed 0, 42yeah's raymarched scene, drawn by the shader alone: rays are marched through distance "
+    "jelly_cubes": "42yeah's raymarched scene, drawn by the shader alone: rays are marched through distance "
     "functions. Where a cube is thin, at its edges and corners, the evening sky comes through.",
-    "paper_lantern": "Seed 1, Alisavakis's simple subsurface scattering, on paper and wood. The lamp is inside, so "
+    "paper_lantern": "Alisavakis's simple subsurface scattering, on paper and wood. The lamp is inside, so "
     "that every side is lit from behind; a map says how thick the paper is, fibre by fibre, and the hoops let nothing "
     "through.",
-    "wax_suzanne": "Seed 2, subsurface scattering with 3-D distance fields, on a candle. The way of the light through "
+    "wax_suzanne": "Subsurface scattering with 3-D distance fields, on a candle. The way of the light through "
     "the wax is marched through a 3-D distance texture, which is measured on the geometry: the ears glow, the body "
     "stays deep. For those who have Blender's monkey: `scene_mesh.toml`, in the same folder.",
-    "ice": "Seed 3, ice after Zucconi's fast subsurface scattering. Voronoi facets give thickness and normals, the sun "
+    "ice": "Ice after Zucconi's fast subsurface scattering. Voronoi facets give thickness and normals, the sun "
     "stands behind them, light moves in the veins below; snow has drifted against the foot, and the edges and some "
     "holes melt.",
-    "resin_inlay": "Seed 4, subsurface parallax: marquetry below clear resin. Refraction says where the inlay is seen: "
+    "resin_inlay": "Subsurface parallax: marquetry below clear resin. Refraction says where the inlay is seen: "
     "flat below the flat top, bent below the round edges.",
-    "ice_inlay": "The parallax of seed 4 and the lobe of GDC 2011 in one material: leaves lie below the surface of the "
+    "ice_inlay": "Subsurface parallax and the lobe of GDC 2011 in one material: leaves lie below the surface of the "
     "ice, by refracted parallax, and the low sun shines through around them.",
 }
 """What each example's picture shows, in the order of the page."""

@@ -70,9 +70,9 @@ KNOWN = (
         ("march_distance_texture", "studio"), "A way that just touches a surface, or the side of the box."
     ),
     Known(
-        ("seed2_march",), "With a `stored_range` of 0.001 what is stored is steep: its step from 0.5 to 0 moves."
+        ("distance_field_march",), "With a `stored_range` of 0.001 what is stored is steep: its step at 0.5 moves."
     ),
-    Known(("seed1_lobe",), "A power below 1 is steep where the lobe begins."),
+    Known(("alisavakis_lobe",), "A power below 1 is steep where the lobe begins."),
     Known(
         ("voronoi_thickness", "voronoi_normal"),
         "The last bit of `uv * cell_count` (up to 400 cells) is 3e-5 of a cell, and the slopes of narrow bevels are "
@@ -89,7 +89,7 @@ KNOWN = (
         bound_share=1.0,
     ),
     Known(
-        ("seed0_raymarch",),
+        ("cheap_sss_raymarch",),
         "A baseline without a far limit: where the ray meets nothing P grows beyond float32.",
         share=0.3,
     ),

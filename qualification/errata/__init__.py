@@ -11,11 +11,11 @@ docs/errata.md says it in words, docs/stability.md shows it; `UNSHOWN` has what 
 from __future__ import annotations
 
 from qualification.errata.absorption import ABSORPTION
-from qualification.errata.distance_fields import OPEN, SEED_0
+from qualification.errata.distance_fields import CHEAP_SSS, OPEN
 from qualification.errata.erratum import Erratum, Measure, Right, as_mended, as_published, holds, shows
-from qualification.errata.lobes import SEED_1, SEED_3
-from qualification.errata.marches import SEED_2
-from qualification.errata.parallax import SEED_4
+from qualification.errata.lobes import ALISAVAKIS, UNITY_ICE
+from qualification.errata.marches import DISTANCE_FIELDS
+from qualification.errata.parallax import SUBSURFACE_PARALLAX
 from qualification.errata.unshown import UNSHOWN, Unshown
 
 __all__ = [
@@ -27,11 +27,11 @@ BACKENDS = ("numpy-f32", "gl", "webgpu", "hlsl", "browser")
 """Those that are measured: all in float32, with four compilers and two drivers beneath."""
 
 CHAPTERS: dict[str, tuple[Erratum, ...]] = {
-    "seed 0": SEED_0,
-    "seed 1": SEED_1,
-    "seed 2": SEED_2,
-    "seed 3": SEED_3,
-    "seed 4": SEED_4,
+    "Cheap SSS": CHEAP_SSS,
+    "Alisavakis": ALISAVAKIS,
+    "3D Distance Fields": DISTANCE_FIELDS,
+    "Unity ice": UNITY_ICE,
+    "Subsurface Parallax": SUBSURFACE_PARALLAX,
     "absorption": ABSORPTION,
 }
 

@@ -1,4 +1,4 @@
-"""Seed 0 and XT95: thinness from a distance field along the normal."""
+"""Cheap SSS and XT95: thinness from a distance field along the normal."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from qualification.errata.erratum import Erratum, Figures, Measure, Outputs, Rig
 _UP = (0.0, 1.0, 0.0)
 _FRONT, _BEHIND = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
 _TAPS = [0.4 * i / 30 for i in range(30)]
-"""Where seed 0 looks, below the surface."""
+"""Where 42yeah looks, below the surface."""
 
 _BOX = {"body_distance": "box"}
 _GROUND = {"body_distance": "ground_plane"}
@@ -28,7 +28,7 @@ _NOTHING: dict[str, Any] = {"P": (0.0, 0.0, 0.0), "N": _UP, "half_size": (10.0, 
 
 
 def _thinness_of_slab(slab: float) -> float:
-    """Seed 0's mean: a tap in the first half of the slab adds nothing, one beyond it 2 d - slab."""
+    """42yeah's mean: a tap in the first half of the slab adds nothing, one beyond it 2 d - slab."""
     return sum(max(2.0 * d - slab, 0.0) for d in _TAPS) / 30.0
 
 
@@ -47,7 +47,7 @@ def _lit_face(points: Any, light: Any = _SIDEWAYS) -> dict[str, Any]:
 
 _STEP = 0.003
 _ACROSS = [(side * 0.35 + offset, 0.35) for side in (-1, 1) for offset in (-_STEP, 0.0, _STEP)]
-"""Three points on either side of both diagonals of the face, between two taps of seed 0."""
+"""Three points on either side of both diagonals of the face, between two taps of 42yeah."""
 
 
 def _bends(outputs: Outputs) -> Figures:
@@ -72,7 +72,7 @@ def _smallest(outputs: Outputs) -> Figures:
 
 _CORNER = math.sqrt(0.5)
 _SIDE = (0.5 * _CORNER, 0.02, 0.5 * _CORNER)
-"""On the side of seed 0's cube, in its middle, two centimetres above the floor; the cube reaches as deep below it."""
+"""On the side of 42yeah's cube, in its middle, two centimetres above the floor; the cube reaches as deep below it."""
 _CONTACT: dict[str, Any] = {"P": _SIDE, "N": (_CORNER, 0.0, _CORNER)}
 
 
@@ -117,31 +117,31 @@ def _as_thickness(outputs: Outputs) -> Figures:
     return (1.0 - float(outputs["result"][0]),)
 
 
-SEED_0 = (
+CHEAP_SSS = (
     Erratum(
         "range",
-        "Seed 0",
+        "Cheap SSS",
         "Thinness of slabs of 0, .01, .1, .4 and .774 m. 1 = no matter at all",
-        Measure("seed0_thinness", (_SLAB,), bind=_BOX),
+        Measure("cheap_sss_thinness", (_SLAB,), bind=_BOX),
         tuple(_thinness_of_slab(slab) for slab in _SLABS),
         Measure("thinness_uniform", (_SLAB,), bind=_BOX),
         tuple(about(_thinness_of_slab(slab) / _thinness_of_slab(0.0), 1e-5) for slab in _SLABS),
     ),
     Erratum(
         "nearest face",
-        "Seed 0",
+        "Cheap SSS",
         "A cube's face, 0 and .2 m from its edge: the cube is 1 m deep at both. Ours: metres towards the light, from 1 "
         "mm and .2 m",
-        Measure("seed0_thinness", (_face([(0.5, 0.0), (0.3, 0.0)]),), bind=_BOX),
+        Measure("cheap_sss_thinness", (_face([(0.5, 0.0), (0.3, 0.0)]),), bind=_BOX),
         (sum(_TAPS) / 30.0, sum(max(d - 0.2, 0.0) for d in _TAPS) / 30.0),
         Measure("march_light", (_lit_face([(0.499, 0.0), (0.3, 0.0)], _BEHIND),), bind=_BOX),
         (about(1.0, 1e-5), about(1.0, 1e-5)),
     ),
     Erratum(
         "the X",
-        "Seed 0",
+        "Cheap SSS",
         "Change of slope across the two diagonals of a cube's face, per metre",
-        Measure("seed0_thinness", (_face(_ACROSS),), _bends, _BOX),
+        Measure("cheap_sss_thinness", (_face(_ACROSS),), _bends, _BOX),
         (_SLOPE, _SLOPE),
         Measure("march_light", (_lit_face(_ACROSS),), _bends, _BOX),
         (about(0.0, 1e-3), about(0.0, 1e-3)),
@@ -149,37 +149,37 @@ SEED_0 = (
     ),
     Erratum(
         "the dead centre",
-        "Seed 0",
+        "Cheap SSS",
         "The most in the middle .22 m of a cube's face. Ours: metres of matter towards the light, at least",
-        Measure("seed0_thinness", (_face(_CENTRE),), _largest, _BOX),
+        Measure("cheap_sss_thinness", (_face(_CENTRE),), _largest, _BOX),
         (0.0,),
         Measure("march_light", (_lit_face(_CENTRE),), _smallest, _BOX),
         (about(math.hypot(0.06, 0.04, 1.0), 1e-5),),
     ),
     Erratum(
         "half-space",
-        "Seed 0, attenuated",
+        "Cheap SSS, attenuated",
         "Thinness of an endless body: 0",
-        Measure("seed0_attenuated", (_ENDLESS,), bind=_GROUND),
+        Measure("cheap_sss_attenuated", (_ENDLESS,), bind=_GROUND),
         (sum((1.0 - 0.9**i) * d for i, d in enumerate(_TAPS)) / 30.0,),
         Measure("thinness_attenuated", (_ENDLESS,), bind=_GROUND),
         (about(0.0, 1e-6),),
     ),
     Erratum(
         "contrast",
-        "Seed 0, attenuated",
+        "Cheap SSS, attenuated",
         "Thinness of no matter at all: 1. Less that of an endless body, a sixth of the contrast is left",
-        Measure("seed0_attenuated", (_NOTHING,), bind=_BOX),
+        Measure("cheap_sss_attenuated", (_NOTHING,), bind=_BOX),
         (sum((1.0 + 0.9**i) * d for i, d in enumerate(_TAPS)) / 30.0,),
         Measure("thinness_attenuated", (_NOTHING,), bind=_BOX),
         (about(1.0, 1e-5),),
     ),
     Erratum(
         "contact",
-        "Seed 0",
+        "Cheap SSS",
         "A cube's side 2 cm above the floor that it stands in, floor and cube in one field: as thin as an edge. "
         "Ours: metres of matter straight inwards, to half a step",
-        Measure("seed0_thinness", (_CONTACT,), bind={"body_distance": "jelly_scene"}),
+        Measure("cheap_sss_thinness", (_CONTACT,), bind={"body_distance": "jelly_scene"}),
         (sum(max(d - 0.04, 0.0) for d in _TAPS) / 30.0,),
         Measure(
             "march_light", ({"P": _SIDE, "L": (-_CORNER, 0.0, -_CORNER)},), bind={"body_distance": "jelly_scene"}
@@ -188,9 +188,9 @@ SEED_0 = (
     ),
     Erratum(
         "no far limit",
-        "Seed 0",
+        "Cheap SSS",
         "How far a ray goes that meets nothing, in metres",
-        Measure("seed0_raymarch", (_MISS,), _far, {"scene_distance": "ground_plane"}),
+        Measure("cheap_sss_raymarch", (_MISS,), _far, {"scene_distance": "ground_plane"}),
         (math.inf,),
         Measure("raymarch", (_MISS,), _far, {"scene_distance": "ground_plane"}),
         (Right(0.0, 104.0),),
@@ -210,11 +210,11 @@ SEED_0 = (
 OPEN = (
     Erratum(
         "biased normals",
-        "Seed 0",
-        "The largest error of the normal on a ball of 5 cm, in radians. Seed 0 takes one-sided differences of 1 mm, "
+        "Cheap SSS",
+        "The largest error of the normal on a ball of 5 cm, in radians. Cheap SSS takes one-sided differences of 1 mm, "
         "`raymarch` the four corners of a tetrahedron 1 mm along each axis: its error is as large as that of the mixed "
         "second derivatives",
-        Measure("seed0_raymarch", (_AT_BALL,), _turned, {"scene_distance": "sphere"}),
+        Measure("cheap_sss_raymarch", (_AT_BALL,), _turned, {"scene_distance": "sphere"}),
         (math.sqrt(0.5) * 1e-3 / _RADIUS,),
         Measure("raymarch", (_AT_BALL,), _turned, {"scene_distance": "sphere"}),
         (about(0.0, 1e-3),),

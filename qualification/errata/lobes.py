@@ -1,4 +1,4 @@
-"""Seeds 1 and 3, GDC 2011 and the three.js port: back-light lobes."""
+"""Alisavakis and Unity ice, GDC 2011 and the three.js port: back-light lobes."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def _unit(vectors: Any) -> Any:
 
 
 def _spread() -> dict[str, Any]:
-    """Random normals, lights and distortions; the eye stands where the lobe of seeds 1 and 3 is meant to peak."""
+    """Random normals, lights and distortions; the eye stands where the lobe is meant to peak."""
     random = np.random.default_rng(3)
     normal, light = (_unit(random.normal(size=(_COUNT, 3))) for _ in range(2))
     distortion = random.uniform(0.0, 0.99, _COUNT)
@@ -57,13 +57,13 @@ _ZERO_HALF: dict[str, Any] = {
 """The light a little to one side; just behind, so that L + N is no direction; to the other. The eye at 45 degrees."""
 _JUST_BEHIND: dict[str, Any] = {**_ZERO_HALF, "L": _BEHIND}
 
-SEED_1 = (
+ALISAVAKIS = (
     Erratum(
         "pow(0, 0)",
-        "Seed 1",
+        "Alisavakis",
         "`concentration` as it comes, 0, `scale` 1, the eye where there is no lobe. x^0 is 1 for every x > 0; at 0 "
         "each language has its own. Ours, at the least `power`, 1: no light",
-        Measure("seed1_lobe", ({**_NO_LOBE, "d": 0.0, "scale": 1.0},), _white),
+        Measure("alisavakis_lobe", ({**_NO_LOBE, "d": 0.0, "scale": 1.0},), _white),
         (),
         Measure("lobe_normalized", ({**_NO_LOBE, **_LOBE, "power": 1.0},), _white),
         (about(0.0, 1e-6),),
@@ -71,19 +71,19 @@ SEED_1 = (
     ),
     Erratum(
         "dark by default",
-        "Seed 1",
+        "Alisavakis",
         "All as it comes (`concentration` 0, `scale` 0), the light behind: pow(1, 0) · 0, no glow. Ours, as it comes",
-        Measure("seed1_lobe", ({**_BACK_LIT, "d": 0.0},), _white),
+        Measure("alisavakis_lobe", ({**_BACK_LIT, "d": 0.0},), _white),
         (0.0,),
         Measure("lobe_normalized", ({**_BACK_LIT, "through": 1.0},), _white),
         (about(2.05, 1e-5),),
     ),
     Erratum(
         "the zero half vector",
-        "Seed 1",
+        "Alisavakis",
         "`distortion` 1, `scale` 1, the light .001 to one side, straight behind, and .001 to the other side. Straight "
         "behind L + N is 0 and has no direction. Ours does not normalise",
-        Measure("seed1_lobe", ({**_ZERO_HALF, "d": 0.0, "concentration": 4.0, "scale": 1.0},), _white),
+        Measure("alisavakis_lobe", ({**_ZERO_HALF, "d": 0.0, "concentration": 4.0, "scale": 1.0},), _white),
         (),
         Measure("lobe_gdc2011", ({**_ZERO_HALF, **_LOBE},), _white),
         (about(0.0, 1e-6),) * 3,
@@ -91,9 +91,9 @@ SEED_1 = (
     ),
     Erratum(
         "the zero half vector, normalised",
-        "Seed 1",
+        "Alisavakis",
         "The same, straight behind alone. Ours normalises as well, and is guarded: a lobe from 0 to 1",
-        Measure("seed1_lobe", ({**_JUST_BEHIND, "d": 0.0, "concentration": 4.0, "scale": 1.0},), _white),
+        Measure("alisavakis_lobe", ({**_JUST_BEHIND, "d": 0.0, "concentration": 4.0, "scale": 1.0},), _white),
         (),
         Measure("lobe_normalized", ({**_JUST_BEHIND, **_LOBE},), _white),
         (Right(0.0, 1.0),),
@@ -101,23 +101,23 @@ SEED_1 = (
     ),
 )
 
-SEED_3 = (
+UNITY_ICE = (
     Erratum(
         "the zero lobe",
-        "Seed 3",
+        "Unity ice",
         f"The largest lobe over {_COUNT:,} random N, L and `distortion` below 1, without `ambient`; the eye where it "
         "should peak, at 1",
-        Measure("seed3_lobe", (_NO_EYE,), _largest),
+        Measure("unity_ice_lobe", (_NO_EYE,), _largest),
         (0.0,),
         Measure("lobe_normalized", (_SPREAD,), _largest),
         (about(1.0, 1e-4),),
     ),
     Erratum(
         "constant ambient",
-        "Seed 3",
+        "Unity ice",
         "The light before, beside and behind; `attenuation` .5, `ambient` .1, map .8, `scale` 2, `power` 4: always "
         "attenuation · ambient · map. Ours: a glow with the light behind",
-        Measure("seed3_lobe", ({**_LIGHTS, **_ICE},), _white),
+        Measure("unity_ice_lobe", ({**_LIGHTS, **_ICE},), _white),
         (0.04, 0.04, 0.04),
         Measure("lobe_normalized", ({**_LIGHTS, **_ICE, "V": _FRONT},), _white),
         (about(0.04, 1e-6), about(0.04, 1e-6), about(0.84, 1e-5)),

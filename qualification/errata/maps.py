@@ -60,8 +60,8 @@ def half_vector(technique: str, distortion: float, backend: Backend) -> Array:
 
 
 def _lobe(technique: str, power: float) -> dict[str, float]:
-    """The power and nothing in the way, by the names of seed 1 and by ours."""
-    if technique == "seed1_lobe":
+    """The power and nothing in the way, by the names of Alisavakis and by ours."""
+    if technique == "alisavakis_lobe":
         return {"concentration": power, "scale": 1.0, "d": 0.0}
     return {"power": power, "scale": 1.0, "ambient": 0.0, "through": 1.0}
 

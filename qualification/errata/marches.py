@@ -1,4 +1,4 @@
-"""Seed 2: thickness marched through a distance texture."""
+"""3D Distance Fields: thickness marched through a distance texture."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from qualification.errata.erratum import Erratum, Figures, Measure, Outputs, about
 
 _FRONT, _BEHIND = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
-_PUBLISHED, _OURS = "seed2_march", "march_distance_texture"
+_PUBLISHED, _OURS = "distance_field_march", "march_distance_texture"
 _FROM_BOX, _FROM_BALL = {"distance_at": "box:box_object"}, {"distance_at": "sphere:sphere_object"}
 _FROM_TEXTURE = {"distance_at": "distance_texture"}
 
@@ -18,7 +18,7 @@ _INSIDE = 1e-3
 
 
 def _march(slab: float, light: float, steps: int, stored: float, size: float = 2.0) -> float:
-    """Seed 2's sum, for the axis through the front face of a slab, by hand.
+    """The article's sum, for the axis through the front face of a slab, by hand.
 
     `light` is 1 or -1: the light before or behind; `stored` the distance that the texture's 1 stands for; `size` the
     length of a box about the slab's middle.
@@ -98,10 +98,10 @@ _FLAT: dict[str, Any] = {
 }
 """A sheet without any thickness, and the box that just holds it."""
 
-SEED_2 = (
+DISTANCE_FIELDS = (
     Erratum(
         "polarity",
-        "Seed 2",
+        "3D Distance Fields",
         "A box of nothing and a box of matter. By its text 0 to .5 is outside, so .25 and .75 are stored; its code "
         "counts what is below .5. Ours, as it stores them: metres",
         Measure(_PUBLISHED, (_filled(0.25), _filled(0.75)), bind=_FROM_TEXTURE),
@@ -111,7 +111,7 @@ SEED_2 = (
     ),
     Erratum(
         "deep counts least",
-        "Seed 2",
+        "3D Distance Fields",
         "Slabs of .21, .61 and .99 m, the light before them, 32 steps, .1 m stored: the thicker, the thinner. Ours: "
         "metres",
         Measure(_PUBLISHED, tuple(_published(slab, 32, 0.1, light=_FRONT) for slab in _SLABS), bind=_FROM_BOX),
@@ -121,7 +121,7 @@ SEED_2 = (
     ),
     Erratum(
         "no length: steps",
-        "Seed 2",
+        "3D Distance Fields",
         "A slab of .99 m, the light behind it, with 8, 16 and 32 steps. Ours: metres",
         Measure(_PUBLISHED, tuple(_published(_THICK, steps, 1.0) for steps in (8, 16, 32)), bind=_FROM_BOX),
         tuple(_march(_THICK, -1.0, steps, 1.0) for steps in (8, 16, 32)),
@@ -130,7 +130,7 @@ SEED_2 = (
     ),
     Erratum(
         "no length: units",
-        "Seed 2",
+        "3D Distance Fields",
         "The same slab in metres, and twice as large in all: 16 steps. Ours: metres",
         Measure(_PUBLISHED, tuple(_published(_THICK, 16, 1.0, scale=scale) for scale in (1.0, 2.0)), bind=_FROM_BOX),
         (_march(_THICK, -1.0, 16, 1.0),) * 2,
@@ -139,7 +139,7 @@ SEED_2 = (
     ),
     Erratum(
         "a box that is no cube",
-        "Seed 2",
+        "3D Distance Fields",
         "The same slab in a box of 2 × 2 × 2 m, and of 2 × 2 × 4 m: 16 steps. Ours: metres",
         Measure(_PUBLISHED, (_published(_THICK, 16, 1.0), _published(_THICK, 16, 1.0, **_LONG)), bind=_FROM_BOX),
         (_march(_THICK, -1.0, 16, 1.0), _march(_THICK, -1.0, 16, 1.0, 4.0)),
@@ -148,7 +148,7 @@ SEED_2 = (
     ),
     Erratum(
         "a box above the origin",
-        "Seed 2",
+        "3D Distance Fields",
         "A ball of 1 m in a box of 2 m about the origin, and both 3 m higher up: p + abs(min) leaves the box, where "
         "there is nothing. Ours: metres",
         Measure(_PUBLISHED, (_ball(0.0, steps=16), _ball(3.0, steps=16)), bind=_FROM_BALL),
@@ -162,7 +162,7 @@ SEED_2 = (
     ),
     Erratum(
         "a flat box",
-        "Seed 2",
+        "3D Distance Fields",
         "A sheet in a box without height: 0 / 0. There is no matter: 0",
         Measure(_PUBLISHED, (_FLAT,), bind=_FROM_BOX),
         (),

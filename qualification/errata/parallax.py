@@ -1,4 +1,4 @@
-"""Seed 4: parallax below the surface."""
+"""Subsurface Parallax: parallax below the surface."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _FRAME: dict[str, Any] = {"uv": (0.0, 0.0), "T": _X, "B": _Y, "N": _Z, "depth": 
 _ANGLES = (15.0, 30.0, 45.0, 60.0, 75.0, 85.0)
 _AIR_TO_GLASS = 1.0 / 1.5
 _CRITICAL = math.degrees(math.asin(1.0 / 1.5))
-"""Beyond this angle nothing is refracted where the index that seed 4 asks for is the wrong way round."""
+"""Beyond this angle nothing is refracted where the index that Subsurface Parallax asks for is the wrong way round."""
 
 
 def _view(degrees: Any, turned: float = 0.0) -> Any:
@@ -61,7 +61,7 @@ _SKEWED_VIEW = _view(45.0, 30.0)
 
 
 def _published_slide(view: Any, tangent: Any, bitangent: Any, eta: float) -> tuple[float, float]:
-    """Seed 4's slide over the depth with the frame by its transpose, whatever the frame."""
+    """Subsurface Parallax's slide over the depth with the frame by its transpose, whatever the frame."""
     x, y, z = (float(np.dot(axis, view)) for axis in (tangent, bitangent, _Z))
     r_z = -eta * z + (eta * z - math.sqrt(1.0 - eta * eta * (1.0 - z * z)))
     return -eta * x / r_z, -eta * y / r_z
@@ -81,12 +81,12 @@ _DIAGONAL = _view(45.0, 45.0)
 _NONE = (0.0, 0.0, 0.0)
 _HALF = _slide(45.0, _AIR_TO_GLASS) * math.sqrt(0.5)
 
-SEED_4 = (
+SUBSURFACE_PARALLAX = (
     Erratum(
         "index unsaid: total reflection",
-        "Seed 4",
+        "Subsurface Parallax",
         "`eta` 1.5, the index of glass: the first angle of the view, in degrees, that gives 0/0. 90: none does",
-        Measure("seed4_parallax", ({**_FRAME, "V": _view(_SWEEP), "eta": 1.5},), _first_bad),
+        Measure("subsurface_parallax", ({**_FRAME, "V": _view(_SWEEP), "eta": 1.5},), _first_bad),
         (_CRITICAL,),
         Measure("parallax_refracted", ({**_FRAME, "V": _view(_SWEEP), "ior": 1.0, "outside_ior": 1.5},), _first_bad),
         (about(90.0, 0.0),),
@@ -94,18 +94,18 @@ SEED_4 = (
     ),
     Erratum(
         "past the critical angle",
-        "Seed 4",
+        "Subsurface Parallax",
         "The slide over the depth there, at 60°",
-        Measure("seed4_parallax", ({**_FRAME, "V": _view([60.0]), "eta": 1.5},), _slides),
+        Measure("subsurface_parallax", ({**_FRAME, "V": _view([60.0]), "eta": 1.5},), _slides),
         (math.nan,),
         Measure("parallax_refracted", ({**_FRAME, "V": _view([60.0]), "ior": 1.0, "outside_ior": 1.5},), _slides),
         (about(0.0, 0.0),),
     ),
     Erratum(
         "index unsaid: the wrong way",
-        "Seed 4",
+        "Subsurface Parallax",
         "`eta` 1.5 at 15°, 30° and 40°: the slide over the depth. Ours, `ior` 1.5: sin θ / √(n² − sin² θ)",
-        Measure("seed4_parallax", ({**_FRAME, "V": _view([15.0, 30.0, 40.0]), "eta": 1.5},), _slides),
+        Measure("subsurface_parallax", ({**_FRAME, "V": _view([15.0, 30.0, 40.0]), "eta": 1.5},), _slides),
         tuple(_slide(angle, 1.5) for angle in (15.0, 30.0, 40.0)),
         Measure("parallax_refracted", ({**_FRAME, "V": _view([15.0, 30.0, 40.0]), "ior": 1.5},), _slides),
         tuple(about(_slide(angle, _AIR_TO_GLASS), 1e-5) for angle in (15.0, 30.0, 40.0)),
@@ -113,9 +113,9 @@ SEED_4 = (
     ),
     Erratum(
         "grazing",
-        "Seed 4",
+        "Subsurface Parallax",
         "The longest slide over the depth, without refraction, up to 89.9°. Ours: at most 1.054 / .2",
-        Measure("seed4_parallax", ({**_FRAME, "V": _view(_SWEEP[:8991]), "eta": 1.0},), _longest),
+        Measure("subsurface_parallax", ({**_FRAME, "V": _view(_SWEEP[:8991]), "eta": 1.0},), _longest),
         (math.tan(math.radians(89.9)),),
         Measure("parallax_straight", ({**_FRAME, "V": _view(_SWEEP[:8991])},), _longest),
         (Right(math.tan(math.radians(78.0)), 1.054 / 0.2),),
@@ -123,40 +123,40 @@ SEED_4 = (
     ),
     Erratum(
         "depth in texture coordinates",
-        "Seed 4",
+        "Subsurface Parallax",
         "A mesh whose texture is twice as dense in u and half as dense in v: the slide along both, over the depth, at "
         "45° along the diagonal",
-        Measure("seed4_parallax", ({**_FRAME, "V": [_DIAGONAL], "eta": _AIR_TO_GLASS},), _both),
+        Measure("subsurface_parallax", ({**_FRAME, "V": [_DIAGONAL], "eta": _AIR_TO_GLASS},), _both),
         (_HALF, _HALF),
         Measure("parallax_refracted", ({**_FRAME, "V": [_DIAGONAL], "ior": 1.5, "uv_per_unit": (2.0, 0.5)},), _both),
         (about(2.0 * _HALF, 1e-5), about(0.5 * _HALF, 1e-5)),
     ),
     Erratum(
         "a sheared frame",
-        "Seed 4",
+        "Subsurface Parallax",
         "T and B at 60°: the slide along both, over the depth, at 45°",
-        Measure("seed4_parallax", ({**_FRAME, "V": [_SKEWED_VIEW], "B": _SHEARED, "eta": _AIR_TO_GLASS},), _both),
+        Measure("subsurface_parallax", ({**_FRAME, "V": [_SKEWED_VIEW], "B": _SHEARED, "eta": _AIR_TO_GLASS},), _both),
         _published_slide(_SKEWED_VIEW, _X, _SHEARED, _AIR_TO_GLASS),
         Measure("parallax_refracted", ({**_FRAME, "V": [_SKEWED_VIEW], "B": _SHEARED, "ior": 1.5},), _both),
         tuple(about(value, 1e-5) for value in _true_slide(_SKEWED_VIEW, _X, _SHEARED, _AIR_TO_GLASS)),
     ),
     Erratum(
         "a scaled frame",
-        "Seed 4",
+        "Subsurface Parallax",
         "T half as long, B twice: the slide along both, over the depth, at 45° along the diagonal. It is a length: "
         "that of the unit frame",
-        Measure("seed4_parallax", ({**_FRAME, "V": [_DIAGONAL], **_ODD, "eta": _AIR_TO_GLASS},), _both),
+        Measure("subsurface_parallax", ({**_FRAME, "V": [_DIAGONAL], **_ODD, "eta": _AIR_TO_GLASS},), _both),
         _published_slide(_DIAGONAL, _ODD["T"], _ODD["B"], _AIR_TO_GLASS),
         Measure("parallax_refracted", ({**_FRAME, "V": [_DIAGONAL], **_ODD, "ior": 1.5},), _both),
         (about(_HALF, 1e-5), about(_HALF, 1e-5)),
     ),
     Erratum(
         "a mirrored frame",
-        "Seed 4",
+        "Subsurface Parallax",
         "Mirrored texture coordinates, T = −x, at 45° along y; B as cross(N, T), an orthonormal frame: the slide along "
         "v, over the depth. Ours: B with the sign in the tangent's w, as our shells hand it on",
         Measure(
-            "seed4_parallax",
+            "subsurface_parallax",
             ({**_FRAME, "V": [_view(45.0, 90.0)], "T": (-1.0, 0.0, 0.0), "B": (0.0, -1.0, 0.0), "eta": _AIR_TO_GLASS},),
             lambda found: _both(found)[1:],
         ),
@@ -170,10 +170,10 @@ SEED_4 = (
     ),
     Erratum(
         "no tangent",
-        "Seed 4",
+        "Subsurface Parallax",
         "A mesh without tangents, T = 0, and a B: the longest slide over the depth, at 45° along the diagonal. Ours: "
         "none",
-        Measure("seed4_parallax", ({**_FRAME, "V": [_DIAGONAL], "T": _NONE, "eta": _AIR_TO_GLASS},), _longest),
+        Measure("subsurface_parallax", ({**_FRAME, "V": [_DIAGONAL], "T": _NONE, "eta": _AIR_TO_GLASS},), _longest),
         (abs(_published_slide(_DIAGONAL, _NONE, _Y, _AIR_TO_GLASS)[1]),),
         Measure("parallax_refracted", ({**_FRAME, "V": [_DIAGONAL], "T": _NONE, "ior": 1.5},), _longest),
         (about(0.0, 0.0),),

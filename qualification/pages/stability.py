@@ -74,70 +74,71 @@ PICTURES = {
         (Shot("cube"), Shot("cube", "mended")),
         "Two cubes with the light behind: one with a dark X and a black square on each face, one lit smoothly from the "
         "edges that the light is near",
-        "Seed 0's thinness, and `march_light` with `beer_lambert`. The light is behind, above and to the left.",
+        "42yeah's thinness, and `march_light` with `beer_lambert`. The light is behind, above and to the left.",
     ),
     "wax": Picture(
         (
-            lambda: maps.ball("seed1_lobe", 0.0, backends.get("gl")),
-            lambda: maps.ball("seed1_lobe", 0.0, backends.get("browser")),
+            lambda: maps.ball("alisavakis_lobe", 0.0, backends.get("gl")),
+            lambda: maps.ball("alisavakis_lobe", 0.0, backends.get("browser")),
             lambda: maps.ball("lobe_normalized", 1.0, backends.get("gl")),
         ),
         "Three balls: one with a dark disc and a hard rim, one bright all over, one with a glow that fades smoothly",
-        "Seed 1 with its own `concentration`, 0: one shader text, in OpenGL and in a browser. Where the lobe ends it "
-        "computes pow(0, 0), which is 0 here and 1 there. Right: `lobe_normalized` at `power` 1.",
+        "Alisavakis with its own `concentration`, 0: one shader text, in OpenGL and in a browser. Where the lobe ends "
+        "it computes pow(0, 0), which is 0 here and 1 there. Right: `lobe_normalized` at `power` 1.",
     ),
     "half_vector": Picture(
         (
-            lambda: maps.half_vector("seed1_lobe", 1.0, backends.get("numpy-f32")),
-            lambda: maps.half_vector("seed1_lobe", 1.0, backends.get("gl")),
+            lambda: maps.half_vector("alisavakis_lobe", 1.0, backends.get("numpy-f32")),
+            lambda: maps.half_vector("alisavakis_lobe", 1.0, backends.get("gl")),
             lambda: maps.half_vector("lobe_normalized", 0.9, backends.get("gl")),
         ),
         "Three gray maps: two are cut in the middle from bright to black, the first with a magenta square there; the "
         "third is smooth",
         "A map of the lobe over the light's direction, a tenth of a radian wide, the light straight behind in the "
-        "middle. Seed 1 with `distortion` 1, in NumPy's float32 (magenta: NaN) and in OpenGL, where clamp() swallows "
-        "the NaN and the tear remains; `lobe_normalized` with `distortion` .9.",
+        "middle. Alisavakis with `distortion` 1, in NumPy's float32 (magenta: NaN) and in OpenGL, where clamp() "
+        "swallows the NaN and the tear remains; `lobe_normalized` with `distortion` .9.",
     ),
     "wedge": Picture(
         (Shot("wedge"), Shot("wedge", "mended")),
         "Two panels: one evenly bright with stripes, one that darkens evenly from left to right",
-        "The face of a wedge, .2 m thick at the left and 1.2 m at the right. Seed 2's sum, with 32 steps: the thick "
-        "end is no darker, and the stripes are steps that meet the back. Right: `march_distance_texture`, with 16.",
+        "The face of a wedge, .2 m thick at the left and 1.2 m at the right. The article's sum, with 32 steps: the "
+        "thick end is no darker, and the stripes are steps that meet the back. "
+        "Right: `march_distance_texture`, with 16.",
     ),
     "ring": Picture(
         (Shot("ring"), Shot("ring", "mended")),
         "Two rings with the light behind: one blank above and black below, one shaded all round",
-        "A ring of wax whose box begins above the origin. Seed 2 looks for the matter beside where it is. Right: "
-        "`march_distance_texture`.",
+        "A ring of wax whose box begins above the origin. 3D Distance Fields looks for the matter beside where it is. "
+        "Right: `march_distance_texture`.",
     ),
     "ball": Picture(
         (Shot("ball"), Shot("ball", "mended")),
         "Two balls with a lamp behind: one flat and dark, one that glows where the lamp is",
-        "The same lamp, thickness, `power` and `scale` in seed 3's lobe and in `lobe_normalized`.",
+        "The same lamp, thickness, `power` and `scale` in the Unity ice lobe and in `lobe_normalized`.",
     ),
     "floor": Picture(
         (
-            lambda: maps.floor("seed4_parallax", {"eta": 1.5}, backends.get("gl")),
+            lambda: maps.floor("subsurface_parallax", {"eta": 1.5}, backends.get("gl")),
             lambda: maps.floor("parallax_refracted", {"ior": 1.5}, backends.get("gl")),
         ),
         "Two floors of wood with brass rings: one is magenta but for a bent piece at the viewer's feet, one is whole",
-        "A floor with an inlay under resin of index 1.5. Seed 4 with `eta` = 1.5 (magenta: NaN), and "
+        "A floor with an inlay under resin of index 1.5. Subsurface Parallax with `eta` = 1.5 (magenta: NaN), and "
         "`parallax_refracted` with `ior` = 1.5.",
     ),
     "mirror": Picture(
         (
-            lambda: maps.mirrored("seed4_parallax", False, {"eta": 1.0 / 1.5}, backends.get("gl")),
+            lambda: maps.mirrored("subsurface_parallax", False, {"eta": 1.0 / 1.5}, backends.get("gl")),
             lambda: maps.mirrored("parallax_refracted", True, {"ior": 1.5}, backends.get("gl")),
         ),
         "Two panels of wood with brass rings: in one the rings are broken along the middle, in one they are whole",
-        "The left half of the panel has mirrored texture coordinates, as many models have. Seed 4 with B = cross(N, "
-        "T), and `parallax_refracted` with the sign in the tangent's w.",
+        "The left half of the panel has mirrored texture coordinates, as many models have. Subsurface Parallax with B "
+        "= cross(N, T), and `parallax_refracted` with the sign in the tangent's w.",
     ),
 }
 
 CHAPTER_TEXTS = {
-    "seed 0": Chapter(
-        "Thinness from a distance field (seed 0, XT95)",
+    "Cheap SSS": Chapter(
+        "Thinness from a distance field (Cheap SSS, XT95)",
         "The taps go straight inwards and see the nearest wall, not the way of the light: every face of a box shows a "
         "dark X with a black square in it, whatever the light does, and edges glow where nothing is behind them. The "
         "published cure weakens the X by making all parts alike. For light through a body use `march_light`, which "
@@ -146,29 +147,29 @@ CHAPTER_TEXTS = {
         "right; the X stays.",
         ("cube",),
     ),
-    "seed 1": Chapter(
-        "The lobe with a thickness map (seed 1)",
+    "Alisavakis": Chapter(
+        "The lobe with a thickness map (Alisavakis)",
         "With the parameters as they come the glow is undefined: black on one GPU, white on another. With `distortion` "
         "at 1 the lobe tears just where the light is behind. Use `lobe_normalized` with `distortion` below 1 (at 1 it "
         "stays a number, but tears as well), or `lobe_gdc2011`, which does not normalise and takes every `distortion`.",
         ("wax", "half_vector"),
     ),
-    "seed 2": Chapter(
-        "Thickness through a distance texture (seed 2)",
+    "3D Distance Fields": Chapter(
+        "Thickness through a distance texture (3D Distance Fields)",
         "What it adds up is no length: thick and thin parts look alike, the look changes with the number of steps and "
         "with the model's scale, and a model that stands above the origin is read beside itself. Use "
         "`march_distance_texture`: it gives metres, from a box anywhere.",
         ("wedge", "ring"),
     ),
-    "seed 3": Chapter(
-        "Ice after Zucconi, and its relatives (seed 3)",
+    "Unity ice": Chapter(
+        "Ice after Zucconi, and its relatives (Unity ice)",
         "One letter is wrong, L for V, and the lobe is gone: what is left is an even light that no lamp changes. Use "
         "`lobe_normalized`. The others are small: `lobe_gdc2011` is duller where the surface faces the eye, "
         "`lobe_exp2` never gets quite dark, and three.js has a unit half vector unlike the talk that it names.",
         ("ball",),
     ),
-    "seed 4": Chapter(
-        "Parallax below the surface (seed 4)",
+    "Subsurface Parallax": Chapter(
+        "Parallax below the surface (Subsurface Parallax)",
         "The index is to be given the other way round, which the source does not say; with 1.5 the picture breaks off "
         "beyond 41.81 degrees into NaN, which bloom makes into bright blots. Mirrored, sheared and scaled texture "
         "coordinates slide the wrong way or too far. Use `parallax_refracted` (or `parallax_straight`) with `ior`, a "

@@ -345,8 +345,8 @@ def test_the_report_in_markdown(capsys: pytest.CaptureFixture[str], tmp_path: Pa
 
 def test_the_library_without_baselines() -> None:
     names = [one.title for one in specimens([])]
-    assert "lobe_normalized" in names and "seed1_lobe" not in names
-    assert specimens(["seed1_lobe"])[0].baseline
+    assert "lobe_normalized" in names and "alisavakis_lobe" not in names
+    assert specimens(["alisavakis_lobe"])[0].baseline
 
 
 @pytest.mark.parametrize(

@@ -56,7 +56,13 @@ def few(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(situation, "SIDE", 8)
     lengths, lights, whole = candidates.thickness, candidates.translucency, candidates.materials
     some = ("constant_thickness", "march_light, 4 steps", "march_light, 6 steps")
-    kept = ("none", "seed 3", "wrap_lighting", "march_light → absorption_tint", "constant_thickness → absorption_tint")
+    kept = (
+        "none",
+        "Unity ice",
+        "wrap_lighting",
+        "march_light → absorption_tint",
+        "constant_thickness → absorption_tint",
+    )
     monkeypatch.setattr(candidates, "thickness", lambda: [one for one in lengths() if one.label in some])
     monkeypatch.setattr(candidates, "translucency", lambda: [one for one in lights() if one.name in kept])
     monkeypatch.setattr(candidates, "materials", lambda given: [one for one in whole(given) if one.name in kept])

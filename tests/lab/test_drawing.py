@@ -30,7 +30,7 @@ from sssgen.support.diagnostics import SssgenError
 
 SCENES = {"slab": "A slab <b>&", "ball": "Ball, lit from behind", "cube": "Marble $x^2$ cube"}
 OURS = ("march_light", "thinness_uniform", "thinness_hemisphere", "constant_thickness", "thickness_map")
-BASELINES = ("depth_map_absorption", "gltf_volume", "seed0_thinness", "seed2_march")
+BASELINES = ("depth_map_absorption", "gltf_volume", "cheap_sss_thinness", "distance_field_march")
 
 
 def point(cost: float, error: float | None, **more: Any) -> dict[str, Any]:
@@ -39,7 +39,7 @@ def point(cost: float, error: float | None, **more: Any) -> dict[str, Any]:
 
 
 def record(roles: tuple[str, ...] = ("thickness",), scenes: tuple[str, ...] = tuple(SCENES)) -> dict[str, Any]:
-    """Techniques with one to four settings each; seed2_march fails on the ball, one error is 0."""
+    """Techniques with one to four settings each; distance_field_march fails on the ball, one error is 0."""
     points: list[dict[str, Any]] = []
     volumes = []
     for role, scene in itertools.product(roles, scenes):
@@ -48,8 +48,8 @@ def record(roles: tuple[str, ...] = ("thickness",), scenes: tuple[str, ...] = tu
             draw = random.Random(f"{role} {name}")
             cost, error = 10.0 ** draw.uniform(0.8, 2.0), 10.0 ** draw.uniform(-1.5, 0.3)
             error *= 10.0 ** random.Random(f"{scene} {name}").uniform(-0.3, 0.3)
-            for taps in (4, 8, 16, 32) if name.startswith(("march", "thin", "seed2")) else (0,):
-                failed = "12 of 4096 points are NaN" if (scene, name) == ("ball", "seed2_march") else ""
+            for taps in (4, 8, 16, 32) if name.startswith(("march", "thin", "distance_field_march")) else (0,):
+                failed = "12 of 4096 points are NaN" if (scene, name) == ("ball", "distance_field_march") else ""
                 found = 0.0 if (scene, name) == ("slab", "constant_thickness") else error / (1.0 + taps)
                 made = point(cost * (1.0 + taps), None if failed else found, failed=failed)
                 made |= {"scene": scene, "role": role, "name": name, "baseline": name in BASELINES}

@@ -470,7 +470,7 @@ def test_a_chain_that_gives_no_number_has_failed(cube: View, monkeypatch: pytest
 def test_seed_3_as_published_is_ambient_light_times_transmittance(
     cube: View, training: tuple[View, ...], tmp_path: Path
 ) -> None:
-    (one,) = (each for each in candidates.materials([]) if each.name == "seed 3")
+    (one,) = (each for each in candidates.materials([]) if each.name == "Unity ice")
     made = chain(one, cube, tmp_path)
     asked = measure.problem_of("material", cube)
     assert asked is not None
@@ -497,11 +497,11 @@ def test_seed_0_mistakes_a_cube_and_a_march_to_the_light_does_not() -> None:
     fitted_to = [View(one.name, replace(one, size=SIZE)) for one in references.training(cube)]
     error: dict[str, float] = {}
     for one in candidates.thickness():
-        if one.name == "seed0_thinness" or one.label == "march_light, 16 steps":
+        if one.name == "cheap_sss_thinness" or one.label == "march_light, 16 steps":
             found = measure.measured(one, measure.fitted(one, fitted_to), [View("own", cube)])["error"]["value"]
             error[one.name] = min(error.get(one.name, np.inf), found)
     assert error["march_light"] < 0.2
-    assert error["seed0_thinness"] > 0.6
+    assert error["cheap_sss_thinness"] > 0.6
 
 
 def slides(name: str) -> dict[str, float]:
@@ -519,14 +519,14 @@ def test_seed_4_corrected_is_exact_on_a_plane_and_nearly_on_a_ball() -> None:
     plane, ball = slides("inlay_plate"), slides("inlay_ball")
     assert plane["parallax_refracted"] < 1e-6
     assert plane["parallax_straight"] > 0.05
-    assert plane["seed4_parallax"] < 1e-6  # with the right index of refraction, which its source never says
+    assert plane["subsurface_parallax"] < 1e-6  # with the right index of refraction, which its source never says
     assert plane["none"] > 1.0
     assert 1e-3 < ball["parallax_refracted"] < ball["none"]
 
 
 @pytest.mark.slow
 def test_light_transport_ranks_the_techniques_as_it_must() -> None:
-    # real references: the exact thickness with a lobe comes nearer than nothing, and than seed 3
+    # real references: the exact thickness with a lobe comes nearer than nothing, and than the Unity ice lobe
     pytest.importorskip("mitsuba")
     cube = small("cube")
 
@@ -535,10 +535,10 @@ def test_light_transport_ranks_the_techniques_as_it_must() -> None:
         return View(one.name, one, tuple(references.transport(one, n, 64, 0) for n in range(len(one.lights))), "64 0")
 
     fitted_to, own = [view(one) for one in references.training(cube)], [view(cube)]
-    listed = [each for each in candidates.materials([]) if each.name in ("none", "seed 3")]
+    listed = [each for each in candidates.materials([]) if each.name in ("none", "Unity ice")]
     listed.append(candidate("exact_thickness", "absorption_tint"))
     error = {one.name: measure.measured(one, measure.fitted(one, fitted_to), own)["error"]["value"] for one in listed}
-    assert error["absorption_tint"] < 0.8 * min(error["none"], error["seed 3"])
+    assert error["absorption_tint"] < 0.8 * min(error["none"], error["Unity ice"])
 
 
 def test_a_view_keeps_the_size_and_the_lanes_of_its_pixels() -> None:

@@ -58,7 +58,7 @@ LOBES: dict[str, tuple[dict[str, Any], Callable[[], Array]]] = {
         {"V": V, "N": N, "L": L, "through": THROUGH, **CONTROLS},
         lambda: glow(front(dot(V, -unit(half_vector()))) ** 5),
     ),
-    "seed3_lobe": (
+    "unity_ice_lobe": (
         {"N": N, "L": L, "through": THROUGH, **CONTROLS},
         lambda: glow(np.zeros(COUNT)),  # the lobe is 0 everywhere: constant ambient is left
     ),
@@ -68,7 +68,7 @@ LOBES: dict[str, tuple[dict[str, Any], Callable[[], Array]]] = {
             COLOR * ((10.0 * front(dot(V, -unit(half_vector(0.1)))) ** 2 + 0.2) * 0.1 * THROUGH)[:, None]
         ),
     ),
-    "seed1_lobe": (
+    "alisavakis_lobe": (
         {
             "V": V, "N": N, "L": L, "d": THROUGH,
             "distortion": 0.35, "concentration": 4.0, "scale": 2.0, "sss_color": COLOR,
@@ -106,7 +106,7 @@ def test_lobes(name: str) -> None:
 @pytest.mark.parametrize("distortion", [0.0, 0.2, 0.99])
 def test_seed_3_as_published_is_constant_ambient(distortion: float) -> None:
     values = {"ambient": 0.3, "attenuation": 0.5, "scale": 20.0, "distortion": distortion}
-    result = technique("seed3_lobe")(N=N, L=L, through=0.5, **values)
+    result = technique("unity_ice_lobe")(N=N, L=L, through=0.5, **values)
     close(result, 0.075, rtol=1e-14)
 
 
@@ -117,7 +117,7 @@ def test_the_three_js_port_is_lobe_normalized() -> None:
 
 
 def test_seed_1_as_published_is_dark_by_default() -> None:
-    assert not technique("seed1_lobe")(V=V, N=N, L=L, d=0.5).any()
+    assert not technique("alisavakis_lobe")(V=V, N=N, L=L, d=0.5).any()
 
 
 @pytest.mark.parametrize("g", [-0.95, -0.3, 0.0, 0.6, 0.9])

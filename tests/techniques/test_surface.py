@@ -33,7 +33,7 @@ def test_refracted_parallax_slides_as_the_table_says(ior: float) -> None:
     ours = technique("parallax_refracted")(uv=(0.3, 0.4), V=slanted(DEGREES), depth=0.1, ior=ior, **FLAT)
     close((0.3 - ours[:, 0]) / 0.1, OFFSETS[ior], atol=5.1e-6)
     close(ours[:, 1], 0.4)
-    theirs = technique("seed4_parallax")(uv=(0.3, 0.4), V=slanted(DEGREES), depth=0.1, eta=1.0 / ior, **FLAT)
+    theirs = technique("subsurface_parallax")(uv=(0.3, 0.4), V=slanted(DEGREES), depth=0.1, eta=1.0 / ior, **FLAT)
     close(theirs, ours, atol=1e-12)
     in_water = {"ior": ior * 1.2, "outside_ior": 1.2}
     close(technique("parallax_refracted")(uv=(0.3, 0.4), V=slanted(DEGREES), depth=0.1, **in_water, **FLAT), ours)
@@ -93,7 +93,7 @@ def test_parallax_is_exact_on_a_plane(frame: str, name: str, stretch: float) -> 
     if name == "parallax_refracted" and frame in ("sheared", "scaled", "all of it") and stretch == 1.0:
         above = (v @ n) > 0.0  # the published one, by the transpose, is wrong there
         frame_values = {key: values[key] for key in ("T", "B", "N", "depth")}
-        theirs = technique("seed4_parallax")(uv=(0.25, 0.75), V=v[above], eta=eta, **frame_values)
+        theirs = technique("subsurface_parallax")(uv=(0.25, 0.75), V=v[above], eta=eta, **frame_values)
         assert np.abs(theirs - result[above]).max() > 0.02
 
 
@@ -130,7 +130,7 @@ def test_refracted_parallax_is_bounded_and_fades_past_the_critical_angle() -> No
     critical = np.degrees(np.arcsin(1.0 / 1.5))
     assert not outwards[degrees > critical].any()
     assert np.isfinite(outwards).all() and np.abs(np.diff(outwards)).max() < 0.1
-    published = technique("seed4_parallax")(uv=(0.0, 0.0), V=slanted(60.0), eta=1.5, **FLAT)
+    published = technique("subsurface_parallax")(uv=(0.0, 0.0), V=slanted(60.0), eta=1.5, **FLAT)
     assert np.isnan(published).all()  # 0 / 0 past the critical angle
 
 

@@ -40,7 +40,7 @@ def on_torus(count: int) -> tuple[Array, Array]:
 
 # Taps along the normal
 
-OURS = 0.8 * 14.5 / 30.0  # what seed 0's mean is for no matter at all: sum(2 d_i) / 30
+OURS = 0.8 * 14.5 / 30.0  # what 42yeah's mean is for no matter at all: sum(2 d_i) / 30
 
 
 @pytest.mark.parametrize(("thickness", "raw"), [(0.01, 0.37700), (0.1, 0.29467), (0.4, 0.09333), (0.774, 0.0)])
@@ -48,7 +48,7 @@ OURS = 0.8 * 14.5 / 30.0  # what seed 0's mean is for no matter at all: sum(2 d_
 def test_thinness_of_a_slab_and_of_a_ball_half_as_large(thickness: float, raw: float, ball: bool) -> None:
     shape: dict[str, Any] = {"center": (0.0, -thickness / 2, 0.0), "radius": thickness / 2} if ball else slab(thickness)
     name = "sphere" if ball else "box"
-    published = technique("seed0_thinness", body_distance=name)(P=ORIGIN, N=UP, **shape)
+    published = technique("cheap_sss_thinness", body_distance=name)(P=ORIGIN, N=UP, **shape)
     close(published, raw, atol=6e-6)
     close(technique("thinness_uniform", body_distance=name)(P=ORIGIN, N=UP, **shape), published / OURS, atol=1e-12)
 
@@ -56,19 +56,19 @@ def test_thinness_of_a_slab_and_of_a_ball_half_as_large(thickness: float, raw: f
 @pytest.mark.parametrize(("edge", "raw"), [(0.0, 0.19333), (0.2, 0.04667)])
 def test_thinness_of_a_cube_depends_on_the_nearest_edge(edge: float, raw: float) -> None:
     at = np.array([[0.5 - edge, 0.5, 0.0], [0.1, 0.5, edge - 0.5]])
-    close(technique("seed0_thinness", body_distance="box")(P=at, N=UP), raw, atol=6e-6)
+    close(technique("cheap_sss_thinness", body_distance="box")(P=at, N=UP), raw, atol=6e-6)
     close(technique("thinness_uniform", body_distance="box")(P=at, N=UP), raw / OURS, atol=2e-5)
 
 
 def test_seed_0_attenuated_reads_matter_where_there_is_none() -> None:
-    close(technique("seed0_attenuated", body_distance=HALF_SPACE)(P=ORIGIN, N=UP), 0.160681, atol=6e-7)
-    close(technique("seed0_thinness", body_distance=HALF_SPACE)(P=ORIGIN, N=UP), 0.0, atol=1e-15)
+    close(technique("cheap_sss_attenuated", body_distance=HALF_SPACE)(P=ORIGIN, N=UP), 0.160681, atol=6e-7)
+    close(technique("cheap_sss_thinness", body_distance=HALF_SPACE)(P=ORIGIN, N=UP), 0.0, atol=1e-15)
     weights = 0.9 ** np.arange(30)
     d = 0.4 * np.arange(30) / 30
     p, n = on_torus(50)
     taps = torus_distance((p[None] - n[None] * d[:, None, None]).reshape(-1, 3)).reshape(30, -1)
     expected = np.mean(d[:, None] + weights[:, None] * taps, axis=0)
-    close(technique("seed0_attenuated", body_distance="torus")(P=p, N=n), expected)
+    close(technique("cheap_sss_attenuated", body_distance="torus")(P=p, N=n), expected)
     # "the mean, not brought to 0..1, is 0.22844 th": the source's mean as it should be, over the 29 taps that count
     right = (weights[:, None] * (d[:, None] + taps))[1:].sum(axis=0) / weights[1:].sum()
     close(right, 0.22844 * technique("thinness_attenuated", body_distance="torus")(P=p, N=n), rtol=2e-5)
@@ -244,7 +244,7 @@ def ball_texture(size: int, low: Array, high: Array, center: Array, radius: floa
 
 
 def test_march_through_a_texture_of_a_box_off_the_origin() -> None:
-    """Not a cube, and its smallest corner above 0: seed 2's (p + |min|) / size would look elsewhere."""
+    """Not a cube, and its smallest corner above 0: the article's (p + |min|) / size would look elsewhere."""
     low, high, center = np.array([0.5, 1.0, -2.0]), np.array([2.9, 3.2, 0.4]), np.array([1.7, 2.1, -0.8])
     n = units(30)
     values = {"box_min": low, "box_max": high, "distance_range": 3.0, "view_steps": 32, "light_steps": 32}
@@ -274,7 +274,7 @@ def test_march_in_a_flat_box_is_finite() -> None:
 
 def test_seed_2_as_published() -> None:
     """Its sums; that deep voxels count least, so that more matter reads as less; and its uvw for a box above 0."""
-    march = technique("seed2_march", distance_at="sphere:sphere_object")
+    march = technique("distance_field_march", distance_at="sphere:sphere_object")
     p, v, light = 0.4 * units(20), units(20)[::-1], np.roll(units(20), 3, axis=0)
     box = {"box_min": np.array([-1.0, -1.0, -1.0]), "box_max": np.array([1.0, 2.0, 3.0])}
     uvw = (p + 1.0) / (box["box_max"] - box["box_min"])

@@ -39,9 +39,9 @@ LIMITS = {
     # the technique's own `limits`: no pow(0, 0), no 0 / 0, no half vector of length 0
     ("gltf_volume", "attenuation_color"): (0.01, 1.0),
     ("gltf_volume", "attenuation_distance"): (0.01, 10.0),
-    ("seed1_lobe", "concentration"): (0.01, 32.0),
+    ("alisavakis_lobe", "concentration"): (0.01, 32.0),
     ("three_js_port", "thickness_power"): (0.01, 32.0),
-    ("seed4_parallax", "eta"): (0.3, 0.99),
+    ("subsurface_parallax", "eta"): (0.3, 0.99),
     ("", "distortion"): (0.0, 0.99),
     ("", "thickness_distortion"): (0.0, 0.99),
     # "about one texel", of the textures here

@@ -1,7 +1,8 @@
 """Where an inlay is seen through a clear surface: true refraction in three dimensions, on flat and curved bodies.
 
 The inlay lies `depth` below the surface, along its normal, all over. A ray refracts where it enters, goes straight on,
-and meets the layer; the place seen is the one on the surface right above. On a plane this is seed 4's formula.
+and meets the layer; the place seen is the one on the surface right above. On a plane this is the formula of
+On Subsurface Parallax Shading.
 """
 
 from __future__ import annotations

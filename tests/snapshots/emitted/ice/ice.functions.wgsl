@@ -198,7 +198,7 @@ fn glow(lobe: f32, through: f32, subsurface_color: vec3f, attenuation: f32, scal
     return subsurface_color * (attenuation * (lobe * scale + ambient) * through);
 }
 
-// The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
+// The back-light lobe with a unit half vector: the lobe of Alisavakis and Unity ice, corrected.
 fn lobe_normalized(V: vec3f, N: vec3f, L: vec3f, through: f32, distortion: f32, subsurface_color: vec3f,
     attenuation: f32, scale: f32, ambient: f32, power: f32) -> vec3f {
     let bent = safe_normalize_vec3(L + N * distortion);

@@ -191,7 +191,7 @@ vec3 glow(float lobe, float through, vec3 subsurface_color, float attenuation, f
     return subsurface_color * (attenuation * (lobe * scale + ambient) * through);
 }
 
-// The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
+// The back-light lobe with a unit half vector: the lobe of Alisavakis and Unity ice, corrected.
 vec3 lobe_normalized(vec3 V, vec3 N, vec3 L, float through, float distortion, vec3 subsurface_color,
     float attenuation, float scale, float ambient, float power) {
     vec3 bent = safe_normalize(L + N * distortion);

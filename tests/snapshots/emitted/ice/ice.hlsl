@@ -224,7 +224,7 @@ float3 glow(float lobe, float through) {
     return subsurface_color * (attenuation * (lobe * scale + ambient) * through);
 }
 
-// The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
+// The back-light lobe with a unit half vector: the lobe of Alisavakis and Unity ice, corrected.
 float3 lobe_normalized(float3 V, float3 N, float3 L, float through) {
     float3 bent = safe_normalize(L + N * distortion);
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through);

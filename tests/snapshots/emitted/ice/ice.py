@@ -187,7 +187,7 @@ def glow(lobe, through):
     return subsurface_color * (attenuation * (lobe * scale + ambient) * through)
 
 def lobe_normalized(V, N, L, through):
-    """The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected."""
+    """The back-light lobe with a unit half vector: the lobe of Alisavakis and Unity ice, corrected."""
     bent = safe_normalize_vec3(L + N * distortion)
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through)
 

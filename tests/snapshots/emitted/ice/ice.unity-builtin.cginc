@@ -195,7 +195,7 @@ float3 glow(float lobe, float through, float3 subsurface_color, float attenuatio
     return subsurface_color * (attenuation * (lobe * scale + ambient) * through);
 }
 
-// The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
+// The back-light lobe with a unit half vector: the lobe of Alisavakis and Unity ice, corrected.
 float3 lobe_normalized(float3 V, float3 N, float3 L, float through, float distortion,
     float3 subsurface_color, float attenuation, float scale, float ambient, float power) {
     float3 bent = safe_normalize(L + N * distortion);

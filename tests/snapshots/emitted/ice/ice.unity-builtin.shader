@@ -263,7 +263,7 @@ Shader "sssgen/Ice" {
             return _SubsurfaceColor * (_Attenuation * (lobe * _Scale + _Ambient) * through);
         }
 
-        // The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
+        // The back-light lobe with a unit half vector: the lobe of Alisavakis and Unity ice, corrected.
         float3 lobe_normalized(float3 V, float3 N, float3 L, float through) {
             float3 bent = safe_normalize(L + N * _Distortion);
             return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), _Power), through);

@@ -226,7 +226,7 @@ fn glow(lobe: f32, through: f32) -> vec3f {
         * (material.attenuation * (lobe * material.scale + material.ambient) * through);
 }
 
-// The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
+// The back-light lobe with a unit half vector: the lobe of Alisavakis and Unity ice, corrected.
 fn lobe_normalized(V: vec3f, N: vec3f, L: vec3f, through: f32) -> vec3f {
     let bent = safe_normalize_vec3(L + N * material.distortion);
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), material.power), through);

@@ -157,7 +157,7 @@ def glow(lobe, through, subsurface_color, attenuation, scale, ambient):
     return subsurface_color * (attenuation * (lobe * scale + ambient) * through)
 
 def lobe_normalized(V, N, L, through, distortion, subsurface_color, attenuation, scale, ambient, power):
-    """The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected."""
+    """The back-light lobe with a unit half vector: the lobe of Alisavakis and Unity ice, corrected."""
     bent = safe_normalize_vec3(L + N * distortion)
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through, subsurface_color, attenuation, scale,
         ambient)

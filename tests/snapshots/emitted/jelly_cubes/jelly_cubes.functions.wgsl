@@ -49,14 +49,14 @@ fn turned_cube(p: vec3f) -> f32 {
     return length(max(q, vec3f(0.0))) + min(max(q.x, max(q.y, q.z)), 0.0);
 }
 
-// The two jelly cubes of seed 0, without the floor: the body that light shines through.
+// The two jelly cubes of 42yeah, without the floor: the body that light shines through.
 fn jelly_cubes(p: vec3f) -> f32 {
     // each is the other's mirror image in the plane between them, so the nearer one is all there is to ask
     let middle = 0.5 * CUBE_SPACING;
     return turned_cube(vec3f(abs(p.x - middle) - middle, p.y - CUBE_HEIGHT, p.z));
 }
 
-// The scene of seed 0: two jelly cubes on the ground.
+// The scene of 42yeah: two jelly cubes on the ground.
 fn jelly_scene(p: vec3f) -> f32 {
     let ground = ground_plane(p);
     // where the ground is nearer than their box, the cubes need no look
@@ -120,7 +120,7 @@ fn thinness_traced(P: vec3f, N: vec3f, reach: f32) -> f32 {
     return min(0.5 * (area + way * here) / (reach * reach), 1.0);
 }
 
-// The colours of seed 0's scene: jelly cubes on a faint checker floor, through which no light comes.
+// The colours of 42yeah's scene: jelly cubes on a faint checker floor, through which no light comes.
 fn jelly_surface(P: vec3f, albedo: ptr<function, vec3f>, th: ptr<function, f32>, jelly_color: vec3f) {
     *albedo = jelly_color;
     if (ground_plane(P) < jelly_cubes(P)) {

@@ -52,14 +52,14 @@ float turned_cube(float3 p) {
     return length(max(q, 0.0)) + min(max(q.x, max(q.y, q.z)), 0.0);
 }
 
-// The two jelly cubes of seed 0, without the floor: the body that light shines through.
+// The two jelly cubes of 42yeah, without the floor: the body that light shines through.
 float jelly_cubes(float3 p) {
     // each is the other's mirror image in the plane between them, so the nearer one is all there is to ask
     float middle = 0.5 * CUBE_SPACING;
     return turned_cube(float3(abs(p.x - middle) - middle, p.y - CUBE_HEIGHT, p.z));
 }
 
-// The scene of seed 0: two jelly cubes on the ground.
+// The scene of 42yeah: two jelly cubes on the ground.
 float jelly_scene(float3 p) {
     float ground = ground_plane(p);
     // where the ground is nearer than their box, the cubes need no look
@@ -125,7 +125,7 @@ float thinness_traced(float3 P, float3 N, float reach) {
     return min(0.5 * (area + way * here) / (reach * reach), 1.0);
 }
 
-// The colours of seed 0's scene: jelly cubes on a faint checker floor, through which no light comes.
+// The colours of 42yeah's scene: jelly cubes on a faint checker floor, through which no light comes.
 void jelly_surface(float3 P, out float3 albedo, inout float th, float3 jelly_color) {
     albedo = jelly_color;
     if (ground_plane(P) < jelly_cubes(P)) {

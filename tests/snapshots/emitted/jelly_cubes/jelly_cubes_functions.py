@@ -42,13 +42,13 @@ def turned_cube(p):
     return length(max(q, 0.0)) + min(max(q[0], max(q[1], q[2])), 0.0)
 
 def jelly_cubes(p):
-    """The two jelly cubes of seed 0, without the floor: the body that light shines through."""
+    """The two jelly cubes of 42yeah, without the floor: the body that light shines through."""
     # each is the other's mirror image in the plane between them, so the nearer one is all there is to ask
     middle = 0.5 * CUBE_SPACING
     return turned_cube(vec(abs(p[0] - middle) - middle, p[1] - CUBE_HEIGHT, p[2]))
 
 def jelly_scene(p):
-    """The scene of seed 0: two jelly cubes on the ground."""
+    """The scene of 42yeah: two jelly cubes on the ground."""
     CUBES_HALF = vec(1.4322, 0.5, 0.7072)
     ground = ground_plane(p)
     # where the ground is nearer than their box, the cubes need no look
@@ -108,7 +108,7 @@ def thinness_traced(P, N, reach):
     return min(0.5 * (area + way * here) / (reach * reach), 1.0)
 
 def jelly_surface(P, th, jelly_color):
-    """The colours of seed 0's scene: jelly cubes on a faint checker floor, through which no light comes."""
+    """The colours of 42yeah's scene: jelly cubes on a faint checker floor, through which no light comes."""
     albedo = jelly_color
     mask = ground_plane(P) < jelly_cubes(P)
     tile = mod(floor(P * 2.0), 2.0)

@@ -62,7 +62,7 @@ fn glow(lobe: f32, through: f32, subsurface_color: vec3f, scale: f32) -> vec3f {
     return subsurface_color * (lobe * scale * through);
 }
 
-// The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
+// The back-light lobe with a unit half vector: the lobe of Alisavakis and Unity ice, corrected.
 fn lobe_normalized(V: vec3f, N: vec3f, L: vec3f, through: f32, distortion: f32, subsurface_color: vec3f,
     scale: f32, power: f32) -> vec3f {
     let bent = safe_normalize(L + N * distortion);

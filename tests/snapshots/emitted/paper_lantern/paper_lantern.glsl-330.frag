@@ -73,7 +73,7 @@ vec3 glow(float lobe, float through) {
     return subsurface_color * (lobe * scale * through);
 }
 
-// The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
+// The back-light lobe with a unit half vector: the lobe of Alisavakis and Unity ice, corrected.
 vec3 lobe_normalized(vec3 V, vec3 N, vec3 L, float through) {
     vec3 bent = safe_normalize(L + N * distortion);
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through);

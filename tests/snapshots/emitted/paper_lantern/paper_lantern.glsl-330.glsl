@@ -60,7 +60,7 @@ vec3 glow(float lobe, float through, vec3 subsurface_color, float scale) {
     return subsurface_color * (lobe * scale * through);
 }
 
-// The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected.
+// The back-light lobe with a unit half vector: the lobe of Alisavakis and Unity ice, corrected.
 vec3 lobe_normalized(vec3 V, vec3 N, vec3 L, float through, float distortion, vec3 subsurface_color,
     float scale, float power) {
     vec3 bent = safe_normalize(L + N * distortion);

@@ -63,7 +63,7 @@ def glow(lobe, through):
     return subsurface_color * (lobe * scale * through)
 
 def lobe_normalized(V, N, L, through):
-    """The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected."""
+    """The back-light lobe with a unit half vector: the lobe of Alisavakis and Unity ice, corrected."""
     bent = safe_normalize(L + N * distortion)
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through)
 

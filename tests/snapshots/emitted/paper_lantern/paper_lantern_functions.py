@@ -50,7 +50,7 @@ def glow(lobe, through, subsurface_color, scale):
     return subsurface_color * (lobe * scale * through)
 
 def lobe_normalized(V, N, L, through, distortion, subsurface_color, scale, power):
-    """The back-light lobe with a unit half vector: the lobe of seeds 1 and 3, corrected."""
+    """The back-light lobe with a unit half vector: the lobe of Alisavakis and Unity ice, corrected."""
     bent = safe_normalize(L + N * distortion)
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through, subsurface_color, scale)
 

@@ -1,4 +1,4 @@
-"""Seed 0's scene: what the compiler makes of jelly_cubes, against the same scene written by hand in float64."""
+"""42yeah's scene: what the compiler makes of jelly_cubes, against the same scene written by hand in float64."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import sssgen
-from s0_by_hand import LEVEL, Array, Scene, image
+from jelly_cubes_by_hand import LEVEL, Array, Scene, image
 from sssgen.targets.numpy_values import precision
 
 WIDTH, HEIGHT = 80, 60

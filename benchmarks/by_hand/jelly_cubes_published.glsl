@@ -1,5 +1,5 @@
 #version 330 core
-// Seed 0's scene as published, written by hand from its description: 42yeah, Raymarching Cheap Subsurface Scattering.
+// 42yeah's scene as published, written by hand from its description: 42yeah, Raymarching Cheap Subsurface Scattering.
 // Thirty taps in one field with the floor, a field that carries what it is of, normals by backward differences, and
 // everything computed for every pixel, whatever it shows.
 
