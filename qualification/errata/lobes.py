@@ -107,7 +107,7 @@ UNITY_ICE = (
         "Unity ice",
         f"The largest lobe over {_COUNT:,} random N, L and `distortion` below 1, without `ambient`; the eye where it "
         "should peak, at 1",
-        Measure("unity_ice_lobe", (_NO_EYE,), _largest),
+        Measure("ice_shader_lobe", (_NO_EYE,), _largest),
         (0.0,),
         Measure("lobe_normalized", (_SPREAD,), _largest),
         (about(1.0, 1e-4),),
@@ -117,7 +117,7 @@ UNITY_ICE = (
         "Unity ice",
         "The light before, beside and behind; `attenuation` .5, `ambient` .1, map .8, `scale` 2, `power` 4: always "
         "attenuation · ambient · map. Ours: a glow with the light behind",
-        Measure("unity_ice_lobe", ({**_LIGHTS, **_ICE},), _white),
+        Measure("ice_shader_lobe", ({**_LIGHTS, **_ICE},), _white),
         (0.04, 0.04, 0.04),
         Measure("lobe_normalized", ({**_LIGHTS, **_ICE, "V": _FRONT},), _white),
         (about(0.04, 1e-6), about(0.04, 1e-6), about(0.84, 1e-5)),

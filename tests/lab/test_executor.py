@@ -280,7 +280,7 @@ def test_stress_is_the_same_when_it_is_shared_out(
     scheduler = request.getfixturevalue("dask").scheduler_address if where == "dask" else ""
     missing = ["browser"] if where == "processes" else []
     monkeypatch.setenv("SSSGEN_CHROMIUM", "/nowhere/chromium")
-    chosen, names = specimens(["resin_inlay", "unity_ice_lobe"]), ["numpy-f32", *missing]
+    chosen, names = specimens(["resin_inlay", "ice_shader_lobe"]), ["numpy-f32", *missing]
     settings = Settings(samples=500)
     with Machines(names) as machines:
         rows = [stress(one, machines, settings) for one in chosen]

@@ -40,7 +40,7 @@ PLAIN = point(("constant_thickness", "beer_lambert", "lobe_exp2"), 50.0, 0.5)
 MAP = point(("thickness_map", "beer_lambert", "lobe_exp2"), 60.0, 0.3)
 MARCH = point(("march_light", "beer_lambert", "lobe_gdc2011"), 400.0, 0.1)
 DEAR = point(("march_light", "beer_lambert", "lobe_normalized"), 500.0, 0.2)
-PUBLISHED = point(("transmittance_map", "unity_ice_lobe"), 5.0, 0.01)
+PUBLISHED = point(("transmittance_map", "ice_shader_lobe"), 5.0, 0.01)
 BROKEN = point(("thinness_map", "lobe_exp2"), 6.0, 0.01, failed="4 of 72 points are not finite")
 ELSEWHERE = point(("wrap_lighting",), 2.0, 0.001, scene="torus")
 RECORD = {"points": [DEAR, PUBLISHED, MARCH, BROKEN, NONE, ELSEWHERE, MAP, WRAP, PLAIN]}
@@ -87,7 +87,7 @@ def test_published_forms_and_failed_points_are_never_picked() -> None:
             assert PUBLISHED not in found and BROKEN not in found and ELSEWHERE not in found
     # which of the library's are
     kept = {technique.name for technique in candidates.of_role("translucency") if candidates.is_published(technique)}
-    assert {"alisavakis_lobe", "unity_ice_lobe", "gltf_volume", "three_js_port"} <= kept and "lobe_gdc2011" not in kept
+    assert {"alisavakis_lobe", "ice_shader_lobe", "gltf_volume", "three_js_port"} <= kept and "lobe_gdc2011" not in kept
 
 
 def test_equally_good_the_cheaper_and_equally_dear_the_better() -> None:

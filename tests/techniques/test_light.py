@@ -58,7 +58,7 @@ LOBES: dict[str, tuple[dict[str, Any], Callable[[], Array]]] = {
         {"V": V, "N": N, "L": L, "through": THROUGH, **CONTROLS},
         lambda: glow(front(dot(V, -unit(half_vector()))) ** 5),
     ),
-    "unity_ice_lobe": (
+    "ice_shader_lobe": (
         {"N": N, "L": L, "through": THROUGH, **CONTROLS},
         lambda: glow(np.zeros(COUNT)),  # the lobe is 0 everywhere: constant ambient is left
     ),
@@ -106,7 +106,7 @@ def test_lobes(name: str) -> None:
 @pytest.mark.parametrize("distortion", [0.0, 0.2, 0.99])
 def test_seed_3_as_published_is_constant_ambient(distortion: float) -> None:
     values = {"ambient": 0.3, "attenuation": 0.5, "scale": 20.0, "distortion": distortion}
-    result = technique("unity_ice_lobe")(N=N, L=L, through=0.5, **values)
+    result = technique("ice_shader_lobe")(N=N, L=L, through=0.5, **values)
     close(result, 0.075, rtol=1e-14)
 
 
