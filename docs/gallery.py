@@ -37,7 +37,7 @@ CAPTIONS = {
     "paper_lantern": "Alisavakis's simple subsurface scattering, on paper and wood. The lamp is inside, so "
     "that every side is lit from behind; a map says how thick the paper is, fibre by fibre, and the hoops let nothing "
     "through.",
-    "wax_suzanne": "Subsurface scattering with 3-D distance fields, on a candle. The way of the light through "
+    "wax_mouse": "Subsurface scattering with 3-D distance fields, on a candle. The way of the light through "
     "the wax is marched through a 3-D distance texture, which is measured on the geometry: the ears glow, the body "
     "stays deep. For those who have Blender's monkey: `scene_mesh.toml`, in the same folder.",
     "ice": "Ice after Zucconi's fast subsurface scattering. Voronoi facets give thickness and normals, the sun "
@@ -54,7 +54,7 @@ CAPTIONS = {
 SHOWN = {
     "jelly_cubes": "Two red cubes of jelly on a checkered floor, their edges lit by the evening sky behind them",
     "paper_lantern": "A round paper lantern with dark wooden hoops and a red tassel, lit from inside, at dusk",
-    "wax_suzanne": "A sitting mouse of amber wax with large round ears that glow in the light behind it",
+    "wax_mouse": "A sitting mouse of amber wax with large round ears that glow in the light behind it",
     "ice": "A broken sheet of blue ice with bright facets, snow at its foot and holes near its top",
     "resin_inlay": "A square tile of walnut with an inlaid compass rose, under glossy resin with round edges",
     "ice_inlay": "Autumn leaves in a round disc of ice, with the sun behind it",

@@ -58,7 +58,7 @@ def test_every_back_end_draws_the_same(name: str, other: str, backend: Callable[
 
 def test_light_comes_through() -> None:
     """What the pictures are for: thin parts are brighter than thick ones with the lamp behind them."""
-    wax = drawn("wax_suzanne", "numpy").encoded
+    wax = drawn("wax_mouse", "numpy").encoded
     ear, belly = wax[10, 39], wax[30, 33]
     assert ear.mean() > belly.mean() + 0.15
     lantern = drawn("paper_lantern", "numpy").encoded.mean(axis=2)

@@ -161,14 +161,14 @@ def test_a_material_with_its_own_camera_draws_its_picture(opengl: Backend) -> No
 
 
 def test_costs_of_materials() -> None:
-    cheap, dear = (scene_loading.load(name) for name in ("resin_inlay", "wax_suzanne"))
+    cheap, dear = (scene_loading.load(name) for name in ("resin_inlay", "wax_mouse"))
     points = [gpu_programs.Point(one.material, one.material, one) for one in (cheap, dear)]
     found = gpu_programs.costs(points, size=SIZE, rounds=3)
-    assert found.ratio("wax_suzanne", "resin_inlay").median > 3.0
+    assert found.ratio("wax_mouse", "resin_inlay").median > 3.0
 
 
 def test_a_camera_that_sees_nothing() -> None:
-    shown = scene_loading.load("wax_suzanne")
+    shown = scene_loading.load("wax_mouse")
     away = Camera(position=shown.camera.position, target=(0.0, 100.0, 0.0), field_of_view=1.0)
     with pytest.raises(SssgenError, match="sees nothing"):
         gpu_programs.surface_points(dataclasses.replace(shown, camera=away), SIZE)
