@@ -243,4 +243,4 @@ def test_without_numpy(tmp_path: Path) -> None:
     )
     done = python(tmp_path, "-m", "pytest", "-rs", "-p", "no:cacheprovider", CI="")
     assert "1 passed, 1 skipped" in done
-    assert "the package numpy is missing: pip install 'sssgen[render]'" in done
+    assert "the package 'numpy' is missing: pip install \"sssgen[render]\"" in done

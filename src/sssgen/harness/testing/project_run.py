@@ -28,6 +28,7 @@ from sssgen.lang.loader import read_text
 from sssgen.material.library import ROLES
 from sssgen.support import json_source
 from sssgen.support.diagnostics import SssgenError, failure
+from sssgen.support.extras import install_hint
 from sssgen.support.paths import posix, stem
 
 EVAL = ".eval.json"
@@ -143,7 +144,7 @@ class Run:
         except SssgenError as error:
             outcome = _failed(error)
         except ImportError as error:
-            outcome = lacking("a package", f"{error}: pip install 'sssgen[render]'")
+            outcome = lacking(f"the package '{error.name}'", install_hint("render"))
         except Exception as error:  # the others are checked all the same
             outcome = Outcome("failed", f"a fault of sssgen; please report it: {type(error).__name__}: {error}")
         return Ran(case, outcome, perf_counter() - start)

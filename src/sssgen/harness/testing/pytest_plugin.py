@@ -250,11 +250,12 @@ def _need(module: str) -> None:
     from importlib import import_module
 
     from sssgen.harness.testing.outcome import lacking
+    from sssgen.support.extras import install_hint
 
     try:
         import_module(module)
     except ImportError as error:
-        outcome = lacking(f"the package {error.name}", "pip install 'sssgen[render]'")
+        outcome = lacking(f"the package '{error.name}'", install_hint("render"))
     else:
         return
     _end(outcome)

@@ -1,0 +1,115 @@
+"""Without the optional packages every command works, or names the extra of the project that installs what it needs."""
+
+from __future__ import annotations
+
+import ast
+import json
+import re
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from sssgen.cli.main import COMMANDS, WRONG_INPUT
+
+ROOT = next(folder for folder in Path(__file__).parents if (folder / "pyproject.toml").is_file())
+EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+
+ALONE = """
+import sys
+from sssgen.cli.main import main
+
+class Blocked:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in {"sssgen", "jinja2", "markupsafe", "lark", *sys.stdlib_module_names}:
+            return None
+        raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+
+sys.meta_path.insert(0, Blocked())
+sys.exit(main(sys.argv[1:]))
+"""
+"""A process with the required packages only."""
+
+MATERIAL = '[material]\nname = "wax"\n[thickness]\ntechnique = "transmittance_map"\n'
+NEEDS: dict[str, str | None] = {
+    "list techniques": None,
+    "list targets": None,
+    "list materials": None,
+    "show beer_lambert": None,
+    "emit wax.toml -t all -o out": None,
+    "check mine.frag": None,
+    "transpile half.glsl -t wgsl": None,
+    "transpile half.glsl --as technique": None,
+    "transpile half.glsl --verify": "numpy",
+    "lint half.glsl --no-examples --all": None,
+    "lint half.glsl": "numpy",
+    "eval lobe_exp2 --samples 10": "numpy",
+    "stress lobe_exp2 --samples 10": "numpy",
+    "render ice": "render",
+    "render --compare a.png b.png": "render",
+    "ci .": None,
+    "chart cube": "chart",
+    "pick cube --max-error 0.5": "chart",
+    "fit cube lobe_exp2": "chart",
+    "bake sdf a.obj -o a.npy": "bake",
+    "bake thickness a.obj -o a.npy": "bake",
+    "bake depth a.obj --direction 0,0,1 -o a.npy": "bake",
+    "bake voronoi -o a.png": "bake",
+    "bake normal a.png -o b.png": "bake",
+    "bake pack --red 0.5 -o b.png": "bake",
+    "new wood": None,
+}
+"""Command → the extra that it needs."""
+
+
+def test_every_command_is_here() -> None:
+    assert {command.split()[0] for command in NEEDS} == set(COMMANDS)
+
+
+@pytest.mark.parametrize("command", NEEDS)
+def test_a_command_without_the_optional_packages(command: str, tmp_path: Path) -> None:
+    (tmp_path / "wax.toml").write_text(MATERIAL, encoding="utf-8")
+    (tmp_path / "half.glsl").write_text("float halved(float x) { return 1.0 / x; }\n", encoding="utf-8")
+    (tmp_path / "mine.frag").write_text("#version 330\nout vec4 c;\nvoid main() { c = vec4(1.0); }\n", encoding="utf-8")
+    words = [sys.executable, "-c", ALONE, *command.split(), "--json"]
+    done = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, check=False, encoding="utf-8")
+    result = json.loads(done.stdout)
+    extra = NEEDS[command]
+    if extra is None:
+        assert done.returncode in (0, 1), done
+        assert "diagnostics" not in result or result["ok"]
+    else:
+        assert done.returncode == WRONG_INPUT, done
+        (diagnostic,) = result["diagnostics"]
+        assert diagnostic["message"] == "the package 'numpy' is missing"
+        assert diagnostic["help"] == f'pip install "sssgen[{extra}]"'
+
+
+def named_extras() -> Iterator[tuple[str, str]]:
+    """The extras that hints and documents name, each with its place."""
+    for path in [*(ROOT / "src").rglob("*.py"), ROOT / "README.md", *(ROOT / "docs").glob("*.md")]:
+        text = path.read_text(encoding="utf-8")
+        for listed in re.findall(r"sssgen\[([\w,-]+)\]", text):
+            yield from ((name, path.name) for name in listed.split(","))
+        if path.suffix == ".py":
+            yield from ((name, path.name) for name in extras_of_calls(ast.parse(text)))
+    yield from ((command.extra, name) for name, command in COMMANDS.items())
+
+
+def extras_of_calls(tree: ast.Module) -> Iterator[str]:
+    """The extras that are passed to `need` and `install_hint`."""
+    position = {"need": 2, "install_hint": 0}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in position:
+            arguments = node.args[position[node.func.id] :][:1]
+            arguments += [keyword.value for keyword in node.keywords if keyword.arg == "extra"]
+            yield from (str(argument.value) for argument in arguments if isinstance(argument, ast.Constant))
+
+
+def test_every_named_extra_exists() -> None:
+    named = list(named_extras())
+    assert {"numpy", "render", "chart", "bake", "cluster", "reference"} <= {name for name, _ in named}
+    assert [place for place in named if place[0] not in EXTRAS] == []
