@@ -15,6 +15,7 @@ from sssgen.harness.verify.stage_variables import plain
 from sssgen.harness.verify.verification import load, verify
 from sssgen.harness.verify.verification_report import BACKENDS, Found, Report, Row
 from sssgen.ir.nodes import Module
+from sssgen.ir.old_names import OLD_NAMES
 from sssgen.support.diagnostics import SssgenError
 
 SAMPLES = 200
@@ -303,6 +304,22 @@ def test_old_names_are_renamed_for_the_driver_alone() -> None:
     assert "#define texture2D texture\n" in found.for_driver("450 core")
     assert "#define texture2D" not in found.text
     assert "#define texture2D texture\n" not in plain("#define texture2D tex\nvec4 v = texture2D(a);").for_driver("330")
+
+
+def test_the_driver_gets_the_new_name_of_every_old_one() -> None:
+    for old, (new, _) in OLD_NAMES.items():
+        text = plain(f"float f(float x) {{ return {old}(x); }}").for_driver("330")
+        assert f"#define {old} {new}\n" in text
+
+
+def test_reads_by_their_old_names_run() -> None:
+    text = """
+vec4 graded(sampler2D map, vec2 p) { return texture2DGradARB(map, p, vec2(0.1, 0.0), vec2(0.0, 0.1)); }
+vec4 fetched(sampler3D map) { return texelFetch3D(map, ivec3(1, 2, 0), 0); }
+int width(sampler2D map) { return textureSize2D(map, 0).x; }
+vec4 projected(sampler2D map, vec3 p) { return texture2DProjGradEXT(map, vec3(p.xy, 2.0), vec2(0.1), vec2(0.2)); }
+"""
+    assert all(row.ok for row in rows(text).values())
 
 
 def test_includes_are_written_out_once(tmp_path: Path) -> None:

@@ -12,6 +12,8 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
+from sssgen.ir.old_names import OLD_NAMES
+
 MAIN = "sssgen_written_main"
 """What `main` is called."""
 
@@ -28,15 +30,6 @@ STAGE = {
     "gl_InstanceID": ("int", "sssgen_instance"),
 }
 """The variables of the stages: their types, and their names here."""
-
-OLD = {
-    "texture1D": "texture", "texture2D": "texture", "texture3D": "texture", "textureCube": "texture",
-    "texture2DLod": "textureLod", "texture2DLodEXT": "textureLod", "textureCubeLod": "textureLod",
-    "textureCubeLodEXT": "textureLod", "texture3DLod": "textureLod", "texture2DGradEXT": "textureGrad",
-    "textureCubeGradEXT": "textureGrad", "texture2DProj": "textureProj", "texture2DProjLod": "textureProjLod",
-    "texture2DProjLodEXT": "textureProjLod",
-}  # fmt: skip
-"""What GLSL 1.00 and 1.20 call functions that newer drivers know by other names."""
 
 _PART = re.compile(
     r"(?P<skip>//[^\n]*|/\*.*?\*/|^[ \t]*\#(?:\\\n|[^\n])*)|(?P<name>[A-Za-z_]\w*)|(?P<mark>[{}()])",
@@ -69,7 +62,7 @@ class Plain(NamedTuple):
 
     def for_driver(self, version: str) -> str:
         """The text with this `#version`, and with new names for what that version knows by other names."""
-        named = [f"#define {old} {new}" for old, new in OLD.items() if _uses(self.text, old)]
+        named = [f"#define {old} {new}" for old, (new, _) in OLD_NAMES.items() if _uses(self.text, old)]
         extensions = _EXTENSION.findall(self.text)
         text = _EXTENSION.sub("", self.text)
         precision = _ES_PRECISION if version.endswith("es") else []

@@ -13,9 +13,9 @@ from pathlib import Path
 
 import pytest
 
+from folders import ROOT
 from sssgen.cli.main import COMMANDS, WRONG_INPUT
 
-ROOT = next(folder for folder in Path(__file__).parents if (folder / "pyproject.toml").is_file())
 EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
 
 ALONE = """
