@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from contextlib import suppress
 from importlib.resources import files
 from pathlib import Path
@@ -192,9 +191,3 @@ def test_polyfills_are_valid() -> None:
                 assert verify(module, linked=True) == [], name
                 found += 1
     assert found > 50
-
-
-def test_ir_imports_nothing_of_the_project() -> None:
-    folder = Path(str(files("sssgen"))) / "ir"
-    for path in folder.glob("*.py"):
-        assert not re.search(r"^\s*(from \.\.|import sssgen|from sssgen)", path.read_text("utf-8"), re.MULTILINE), path

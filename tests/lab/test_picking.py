@@ -235,7 +235,10 @@ def test_wrong_arguments(
 
 
 def test_a_process_of_its_own_answers_from_the_cache(charted: str) -> None:
-    code = "from sssgen import cli; from sssgen.lab import situation; situation.SIDE = 12; raise SystemExit(cli.main())"
+    code = (
+        "from sssgen.cli.main import main; from sssgen.lab.scene import measured_scene; measured_scene.SIDE = 12; "
+        "raise SystemExit(main())"
+    )
     wanted = ["pick", "inlay_plate", "--samples", "8", "--max-error", "0.01"]
     environment = {**os.environ, "SSSGEN_CACHE": charted}
     made = subprocess.run(

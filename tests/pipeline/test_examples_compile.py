@@ -53,7 +53,7 @@ def test_functions_stay_short_and_keep_their_names(name: str) -> None:
 
 SCRIPT = """
 import hashlib, sssgen
-from sssgen.material import examples
+from sssgen.material.material_loading import examples
 digest = hashlib.sha256()
 for name in examples():
     for target in sssgen.all_targets():
