@@ -10,7 +10,7 @@ import pytest
 import sssgen
 from amounts import COUNTED
 from sssgen.support.diagnostics import SssgenError
-from sssgen.targets import descriptor, sandbox
+from sssgen.targets import registry, sandbox
 from watchdog import bounded, roomy
 
 ESCAPES = {
@@ -163,9 +163,9 @@ def test_our_templates_cost_little(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 
 def test_what_a_template_does_to_the_target_is_its_own(tmp_path: Path) -> None:
-    before = repr(descriptor.load("glsl-330").table)
+    before = repr(registry.load("glsl-330"))
     rendered(tmp_path, "{% set _ = target.types.clear() %}{% set _ = target.update({'version': 'x'}) %}")
-    assert repr(descriptor.load("glsl-330").table) == before
+    assert repr(registry.load("glsl-330")) == before
 
 
 @pytest.mark.parametrize("mark", ["\x02999999\x03", "\x02abc\x03", "\x02", "\x03\x02", "\x020\x03", "\x02٣\x03"])

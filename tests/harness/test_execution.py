@@ -121,7 +121,7 @@ def test_uniforms_lie_where_the_reflection_says(gpu: Backend, tmp_path: Path) ->
     block, values = uniforms_of(made.reflection)
     assert isinstance(gpu, DrawingBackend)
     bare, layout = drawing(gpu.target, Text(text), [call], {})
-    blocks = {"Material": Block(block, Place(gpu.target.table.get("material_group", 0), 0))} if block else {}
+    blocks = {"Material": Block(block, Place(gpu.target.material_group, 0))} if block else {}
     filled = bare._replace(blocks=blocks, values={name: np.array(value) for name, value in values.items()})
     (got,) = results([call], layout, gpu.draw(filled))
 

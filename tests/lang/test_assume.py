@@ -32,7 +32,7 @@ from sssgen.passes.names import rename
 from sssgen.passes.prune import prune
 from sssgen.pipeline.compiler import GUARDS, transpile
 from sssgen.support.diagnostics import SssgenError
-from sssgen.targets import descriptor
+from sssgen.targets import registry
 from sssgen.targets.numpy_values import grid, precision
 
 SOURCE = """
@@ -128,7 +128,7 @@ def test_inline_hoist_and_names_keep_it() -> None:
         assert verify(made) == [] and assumptions(made), print_module(made, spans=False)
 
 
-@pytest.mark.parametrize("target", descriptor.names())
+@pytest.mark.parametrize("target", registry.names())
 def test_no_target_prints_it(target: str) -> None:
     for mode in GUARDS:
         made = transpile(module_of(SOURCE), target, "case", guards=mode)

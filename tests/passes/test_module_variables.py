@@ -24,8 +24,8 @@ from sssgen.passes.prune import prune
 from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
 from sssgen.pipeline.compiler import transpile
 from sssgen.pipeline.programs import plain_module
-from sssgen.targets import descriptor
 from sssgen.targets import numpy_runtime as rt
+from sssgen.targets import registry
 from whole_shaders import FRAGMENT, FUNCTIONS, OLD, SEVERAL, VERTEX
 
 
@@ -111,7 +111,7 @@ def outcome(module: Module, a: float, b: float) -> tuple[Any, ...]:
 
 
 def legal(target: str) -> Callable[[Module], Module]:
-    chosen = descriptor.load(target)
+    chosen = registry.load(target)
     return lambda module: legalise(module, chosen.dialect, chosen.capabilities, polyfill)
 
 

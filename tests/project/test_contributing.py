@@ -15,7 +15,11 @@ import pytest
 
 from documents import Reader, blocks, programs, read, uncommented
 from folders import ROOT
-from sssgen.targets import descriptor
+from sssgen import SssgenError
+from sssgen.lang.check.shader_interface import BUILTIN_VARIABLES
+from sssgen.material.chain_assembly import INPUTS
+from sssgen.passes.capabilities import Capabilities
+from sssgen.targets import descriptor, registry
 
 CONTRIBUTING = ROOT / "CONTRIBUTING.md"
 COPIED = ("src", "targets", "templates", "examples", "tests", "pyproject.toml", "README.md", "LICENSE")
@@ -95,19 +99,19 @@ def plugin(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, st
 
     monkeypatch.syspath_prepend(str(tmp_path))
     monkeypatch.delitem(sys.modules, "toy_target", raising=False)
-    for cached in (descriptor.names, descriptor._plugins, descriptor.load):
+    for cached in (registry.names, registry._plugins, registry.load):
         cached.cache_clear()
-        monkeypatch.setattr(descriptor, cached.__name__, cached.__wrapped__)
+        monkeypatch.setattr(registry, cached.__name__, cached.__wrapped__)
     return install
 
 
-TOY = "from sssgen.targets import descriptor\ndef toy():\n    return descriptor.load('glsl-330')._replace(name='{}')\n"
+TOY = "from sssgen.targets import registry\ndef toy():\n    return registry.load('glsl-330')._replace(name='{}')\n"
 
 
 def test_a_plugin_may_give_a_target(plugin: Callable[[str, str], None]) -> None:
     plugin("toy = toy_target:toy", TOY.format("toy"))
-    assert "toy" in descriptor.names()
-    assert descriptor.load("toy").language == "glsl"
+    assert "toy" in registry.names()
+    assert registry.load("toy").language == "glsl"
 
 
 @pytest.mark.parametrize(
@@ -122,20 +126,73 @@ def test_a_plugin_may_give_a_target(plugin: Callable[[str, str], None]) -> None:
     ],
 )
 def test_a_faulty_plugin_is_named(plugin: Callable[[str, str], None], entry: str, module: str, said: str) -> None:
-    from sssgen import SssgenError
-
     plugin(entry, module)
     with pytest.raises(SssgenError) as error:
-        descriptor.load("toy")
+        registry.load("toy")
     (found,) = error.value.diagnostics
     assert said in found.render()
 
 
 def test_a_faulty_descriptor_is_named(tmp_path: Path) -> None:
-    from sssgen import SssgenError
-
     path = tmp_path / "toy.toml"
     for text in ("title = 1\n", "title = 'T'\nlanguage = 'glsl'\n[types]\n[names]\nreserved = 3\n[files]\n", "= 1"):
         path.write_text(text, encoding="utf-8")
         with pytest.raises(SssgenError, match="target descriptor"):
             descriptor.read(path)
+
+
+def changed(old: str, new: str, tmp_path: Path) -> str:
+    """The error for the toy's descriptor with one text replaced."""
+    text = (ROOT / "examples/plugin/vulkan/sssgen_vulkan/vulkan.toml").read_text(encoding="utf-8")
+    assert text.count(old) == 1
+    path = tmp_path / "vulkan.toml"
+    path.write_text(text.replace(old, new), encoding="utf-8")
+    with pytest.raises(SssgenError) as error:
+        descriptor.read(path)
+    return error.value.diagnostics[0].render()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "section", "nearest"),
+    [
+        ("ternary =", "ternery =", " in [capabilities]", "ternary"),
+        ("color_space =", "colour_space =", " in [conventions]", "color_space"),
+        ("lighting =", "lightning =", "", "lighting"),
+        ("[conventions]", "[convention]", "", "conventions"),
+        ("reserved =", "reserve =", " in [names]", "reserved"),
+        ("ray_origin =", "rayorigin =", " in [inputs]", "ray_origin"),
+        ("samplerCube =", "samplercube =", " in [types]", "samplerCube"),
+        ('template = "vulkan', 'templates = "vulkan', " in [files.shader]", "template"),
+        ("[inputs]", "[limits]\nsampler = 16\n[inputs]", " in [limits]", "samplers"),
+        ("[inputs]", "[textures]\nparameters = ''\n[inputs]", " in [textures]", "parameter"),
+        ("[inputs]", "[stage_builtins]\ngl_position = ''\n[inputs]", " in [stage_builtins]", "gl_Position"),
+    ],
+)
+def test_a_misspelt_key_is_named(tmp_path: Path, old: str, new: str, section: str, nearest: str) -> None:
+    told = changed(old, new, tmp_path)
+    assert "the target descriptor has an unknown key '" in told and f"'{section}\n" in told
+    assert f"did you mean '{nearest}'?" in told
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "wrong"),
+    [
+        ("ternary = true", "ternary = 1", "needs true or false for 'ternary' in [capabilities]"),
+        ("clip_z = [0.0, 1.0]", "clip_z = 0.0", "needs a list for 'clip_z' in [conventions]"),
+        ('uv = "v_uv"', "uv = 1", "needs a text for 'uv' in [inputs]"),
+    ],
+)
+def test_a_value_of_the_wrong_type_is_named(tmp_path: Path, old: str, new: str, wrong: str) -> None:
+    assert wrong in changed(old, new, tmp_path)
+
+
+def test_own_descriptors_declare_every_capability() -> None:
+    for name in registry.names():
+        path = ROOT / "targets" / f"{name}.toml"
+        assert list(descriptor.table_of(str(path))["capabilities"]) == list(Capabilities._fields), name
+    assert not any(Capabilities())
+
+
+def test_the_keys_of_descriptors_are_what_the_front_end_and_the_chain_know() -> None:
+    assert set(descriptor.CHAIN_INPUTS) == {*INPUTS, "surface", "color"}
+    assert set(descriptor.STAGE_BUILTINS) < set(BUILTIN_VARIABLES)

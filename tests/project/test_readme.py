@@ -17,7 +17,7 @@ from documents import Block, Reader, blocks, programs, read, uncommented
 from folders import ROOT
 from sssgen.cli.main import COMMANDS, command_parser
 from sssgen.harness import compilers
-from sssgen.targets import descriptor
+from sssgen.targets import registry
 
 README = ROOT / "README.md"
 DOCUMENTS = [README, ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -67,8 +67,8 @@ def test_the_table_of_targets() -> None:
         "python": "Python",
     }
     words |= {"unity": "C preprocessor"}
-    assert list(rows) == [name for name in rows if name in descriptor.names()]
-    for name in descriptor.names():
+    assert list(rows) == [name for name in rows if name in registry.names()]
+    for name in registry.names():
         if (ROOT / "targets" / f"{name}.toml").is_file():
             assert all(words[one] in rows[name] for one in compilers.readers(name)), name
 

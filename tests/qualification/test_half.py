@@ -27,7 +27,7 @@ from sssgen.lang.loader import load_text
 from sssgen.material import library
 from sssgen.pipeline.compiler import transpile
 from sssgen.support.diagnostics import SssgenError
-from sssgen.targets import descriptor
+from sssgen.targets import registry
 from sssgen.targets.wgsl_half import half_text
 
 TARGET = "wgsl-f16"
@@ -62,9 +62,9 @@ def call(gpu: Backend, source: str, result: Type, *args: Array) -> Array:
 
 
 def test_half_is_no_target_for_users() -> None:
-    target = descriptor.load(TARGET)
-    assert target.table["precision"] == "half" and set(target.files) == {"functions"}
-    assert TARGET not in descriptor.names()
+    target = registry.load(TARGET)
+    assert target.half_of == "wgsl" and set(target.files) == {"functions"}
+    assert TARGET not in registry.names()
 
 
 def test_every_half_is_read_back_from_its_text() -> None:
@@ -123,7 +123,7 @@ def test_every_builtin(name: str, backend: Get) -> None:
 def test_arguments_are_rounded_before_they_are_sent(target: str, dtype: type) -> None:
     """WGSL lets a conversion round either way."""
     given = np.array([0.1, 2049.5, 1e6, -1.0 / 3.0])
-    program, _ = drawing(descriptor.load(target), Text(""), [Call("f", (FLOAT,), FLOAT, (given,))], {})
+    program, _ = drawing(registry.load(target), Text(""), [Call("f", (FLOAT,), FLOAT, (given,))], {})
     sent = program.textures["sssgen_data"].data
     assert isinstance(sent, np.ndarray)
     with np.errstate(over="ignore"):

@@ -18,7 +18,7 @@ from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Module
 from sssgen.ir.signatures import overload, parse
 from sssgen.pipeline.compiler import transpile
-from sssgen.targets.descriptor import load
+from sssgen.targets.registry import load
 from texts_of_glsl_4 import LATER
 from texts_of_reads import READS
 from validate import SAMPLERS, TARGETS, module_of, validate_all

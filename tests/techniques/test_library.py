@@ -22,7 +22,7 @@ from sssgen.material.model import Material
 from sssgen.material.slots import candidates
 from sssgen.pipeline.compiler import FORMS, Compiled
 from sssgen.pipeline.compiler import compile as compile_material
-from sssgen.targets import descriptor
+from sssgen.targets import registry
 
 NAMES = sorted(library.index())
 
@@ -182,7 +182,7 @@ def test_every_technique_makes_a_material(name: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("form", FORMS)
-@pytest.mark.parametrize("target", descriptor.names())
+@pytest.mark.parametrize("target", registry.names())
 def test_every_technique_compiles(target: str, form: str, compiler: Callable[[str], Compiler]) -> None:
     """On every target, by every compiler for it; all that is wrong is reported together."""
     wrong = []

@@ -169,14 +169,14 @@ def _bare(old: str) -> str:
 
 def _why(old: str, target: str) -> str:
     """Why a name was changed, in a few words."""
-    from sssgen.targets.descriptor import load, names
+    from sssgen.targets.registry import load, names
 
     bare = _bare(old)
     if "(" in old:
         return "overloads need names of their own there"
     language = load(target).language
     near = sorted(names(), key=lambda name: (name != target, load(name).language != language))
-    reserving = [name for name in near if bare in load(name).reserved]
+    reserving = [name for name in near if bare in load(name).names.exact]
     if target == "numpy" and keyword.iskeyword(bare):
         return "Python reserves it"
     if reserving:

@@ -24,7 +24,7 @@ from sssgen.passes.ranges.sites import Site
 from sssgen.pipeline.compiler import guarded_sites
 from sssgen.pipeline.programs import library_sites
 from sssgen.support.diagnostics import Diagnostic, did_you_mean, failure
-from sssgen.targets import descriptor
+from sssgen.targets import registry
 
 LONGEST = 40
 """Characters of an operand that are shown in place of its letter."""
@@ -145,7 +145,7 @@ def _technique(name: str) -> Any:
 def _stages(name: str) -> list[Any]:
     from sssgen.harness.stress.subject import named
 
-    return [*named(name), _technique(descriptor.load("glsl-330").lighting)]
+    return [*named(name), _technique(registry.load("glsl-330").lighting)]
 
 
 def _found(sites: list[Site], specimens: list[Any], guarded: bool = True) -> list[Finding]:

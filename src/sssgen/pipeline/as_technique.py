@@ -11,7 +11,7 @@ from sssgen.lang.loader import load_text
 from sssgen.material.library import ROLES
 from sssgen.pipeline.programs import make_library
 from sssgen.support.diagnostics import did_you_mean, failure
-from sssgen.targets import descriptor
+from sssgen.targets import registry
 
 _LANGUAGE = "glsl-es-300"
 """The target whose text is the language of techniques, but for uniforms."""
@@ -28,9 +28,7 @@ def technique_file(module: Module, shown: str, wanted: str = "") -> tuple[str, s
     outside of itself.
     """
     function = _chosen(module, shown, wanted)
-    program = make_library(
-        module, descriptor.load(_LANGUAGE)._replace(parameters=()), "none", [function.key], keep=True
-    )
+    program = make_library(module, registry.load(_LANGUAGE)._replace(parameters=()), "none", [function.key], keep=True)
     if program.module.variables:
         name = program.module.variables[0].name
         hint = "hand it to the function as a parameter"

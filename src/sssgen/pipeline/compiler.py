@@ -20,7 +20,7 @@ from sssgen.support import cache
 from sssgen.support.diagnostics import Diagnostic
 from sssgen.support.gc_pause import paused
 from sssgen.support.paths import place
-from sssgen.targets import descriptor
+from sssgen.targets import registry
 from sssgen.targets.assemble import About, Program, emit
 from sssgen.targets.descriptor import Target
 from sssgen.targets.reflection import as_text, reflect
@@ -56,7 +56,7 @@ _KEPT = 128
 
 def all_targets() -> dict[str, Target]:
     """Every target by name, plug-ins too."""
-    return {name: descriptor.load(name) for name in descriptor.names()}
+    return {name: registry.load(name) for name in registry.names()}
 
 
 def compile(
@@ -87,7 +87,7 @@ def compile(
 
         raise failure(f"unknown form '{form}'", did_you_mean(form, FORMS) or "forms: shader, functions")
     _check_guards(guards)
-    chosen = descriptor.load(target)
+    chosen = registry.load(target)
     key = (id(material), target, form, guards)
     known = _compiled.get(key) if templates is None else None
     if known is not None and known[0] is material:
@@ -122,7 +122,7 @@ def transpile(
     from sssgen.pipeline.programs import make_library
 
     _check_guards(guards)
-    chosen = descriptor.load(target)
+    chosen = registry.load(target)
     about = About(name, name, head=tuple(head))
     with paused():
         program = make_library(module, chosen, guards, called, at, chained, keep)._replace(about=about)
@@ -133,7 +133,7 @@ def guarded_sites(material: Material, target: str = "glsl-330", form: str = "sha
     """Every operation with a domain in a material's program, and what is known of it. Raises SssgenError."""
     from sssgen.pipeline.programs import sites_of
 
-    return sites_of(material, descriptor.load(target), form)
+    return sites_of(material, registry.load(target), form)
 
 
 def _check_guards(guards: str) -> None:

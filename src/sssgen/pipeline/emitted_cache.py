@@ -36,9 +36,9 @@ def recall(materials: Sequence[str], target: str, form: str, guards: str) -> Mad
 
 def remember(materials: Sequence[str], target: str, form: str, guards: str, made: Made, files: Iterable[str]) -> None:
     """Keeps what a command made, unless a plug-in may have had a part in it, whose files are not known here."""
-    from sssgen.targets import descriptor
+    from sssgen.targets import registry
 
-    if descriptor.has_plugins():
+    if registry.has_plugins():
         return
     cache.write(_name(materials, target, form, guards), cache.pickled((installation(), _state(files), tuple(made))))
 

@@ -47,9 +47,10 @@ from sssgen.passes.stage.vertex_reads import with_levels
 from sssgen.passes.undefined_constants import undefined_constants
 from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
 from sssgen.support.diagnostics import Diagnostic, SssgenError
-from sssgen.targets import descriptor
+from sssgen.targets import registry
 from sssgen.targets.assemble import About, Program, print_parts
-from sssgen.targets.descriptor import Target, Words
+from sssgen.targets.descriptor import Names, Target
+from sssgen.targets.registry import ReservedNames
 
 
 class _Middle(NamedTuple):
@@ -123,13 +124,12 @@ def _prepared(module: Module, kind: str, target: Target) -> tuple[Module, list[N
 
 def _stage_builtins(module: Module, target: Target) -> set[str]:
     """The values that a stage of the target can be given and give; a descriptor that lists none has GLSL's own."""
-    own = {one.builtin for one in module.variables}
-    return set(target.table.get("stage_builtins", own))
+    return set(target.stage_builtins) or {variable.builtin for variable in module.variables}
 
 
 def _turned(target: Target) -> bool:
     """Whether the target's framebuffer counts y from the top."""
-    return bool(target.table.get("conventions", {}).get("framebuffer_y") == "down")
+    return target.conventions.framebuffer_y == "down"
 
 
 def _kept(module: Module, target: Target, called: Sequence[str] | None) -> tuple[Module, list[Note], list[str]]:
@@ -170,13 +170,12 @@ def plain_module(module: Module) -> tuple[Module, list[Note], list[str]]:
 
 def format_of(target: Target) -> Format:
     """What the target's text computes in."""
-    return FLOAT16 if target.table.get("precision") == "half" else FLOAT32
+    return FLOAT16 if target.half_of else FLOAT32
 
 
 def _middle_of(material: Material, structure: str, target: Target, form: str, guards: str) -> _Middle:
     """Links, assembles, folds, prunes, hoists and guards; kept for the other targets of the same kind."""
-    encodes = bool(target.table.get("engine_encodes"))
-    key = (structure, target.lighting, encodes, form, guards, format_of(target).name)
+    key = (structure, target.lighting, target.engine_encodes, form, guards, format_of(target).name)
     middle = _middles.get(key) if structure else None
     if middle is None:
         if len(_middles) >= _KEPT:
@@ -207,7 +206,7 @@ def _stages(material: Material, target: Target) -> list[_Stage]:
         added = LinkStage(technique.name, "lighting", technique.module, technique.function, {}, {}, frozenset())
         stages.append(_Stage(added, technique.function.span, len(stages)))
     engine = {"lighting"} if lit and not target.lighting else set()
-    engine |= {"output"} if target.table.get("engine_encodes") else set()
+    engine |= {"output"} if target.engine_encodes else set()
     return [stage for stage in stages if stage.link.role not in engine]
 
 
@@ -308,7 +307,7 @@ def _finish(middle: _Middle, target: Target, form: str, keep: bool = False) -> P
         _reserved(target, main, keep),
         _uniform_style(target),
         not target.capabilities.overloads,
-        (descriptor.reserved_of(target.language) if keep else descriptor.reserved_everywhere())[1] | target.folded,
+        _others_names(target, keep).folded | target.names.folded,
         target.capabilities.matrix_overloads,
     )
     try:
@@ -339,17 +338,22 @@ def _entry_name(target: Target, form: str) -> str:
     return target.files[form][0].stages[form] if form in ("vertex", "fragment") else ""
 
 
-def _reserved(target: Target, entry: str, keep: bool) -> Words:
-    """The words that are not free for names.
+def _reserved(target: Target, entry: str, keep: bool) -> ReservedNames:
+    """The names that are not free.
 
-    Kept names keep clear of the words of the target's language alone. A shader whose entry is the author's has that
-    name, and no shell of ours around it.
+    Kept names avoid those of the target's language alone. A shader whose entry is the author's has that name, and no
+    shell around it.
     """
-    exact, _, prefixes = descriptor.reserved_of(target.language) if keep else descriptor.reserved_everywhere()
-    words, prefixes = exact | target.reserved, prefixes + target.prefixes
+    others = _others_names(target, keep)
+    names, prefixes = others.exact | target.names.exact, others.prefixes + target.names.prefixes
     if entry == "main":
-        return Words(words - {"main", *target.table.get("names", {}).get("shell", "").split()}, prefixes)
-    return Words(words | {"main"}, prefixes)
+        return ReservedNames(names - target.names.shell - {"main"}, prefixes)
+    return ReservedNames(names | {"main"}, prefixes)
+
+
+def _others_names(target: Target, keep: bool) -> Names:
+    """The names that other targets reserve and that this target's texts avoid, too."""
+    return registry.reserved_of(target.language) if keep else registry.reserved_everywhere()
 
 
 def _stage(module: Module, target: Target, form: str, renames: Mapping[str, str]) -> Stage | None:

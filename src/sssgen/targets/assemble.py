@@ -182,7 +182,7 @@ def _context(target: Target, program: Program, printer: Printer, form: str, code
     surface = program.surface
     return {
         "material": program.about._asdict(),
-        "target": {**target.table, "name": target.name},
+        "target": target,
         "form": form,
         "header": _header(target, program),
         "code": code,

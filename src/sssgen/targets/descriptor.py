@@ -1,172 +1,199 @@
-"""Target descriptors: what is known of a language or engine beside its printer, read from `targets/*.toml`.
+"""Target descriptors: what is known of a language or engine apart from its printer, read from a TOML file.
 
-A plug-in brings a target through the entry-point group `sssgen.targets`: an entry named like the target that gives a
-`Target`, or the path of a descriptor file with its templates beside it.
+The records below are the sections of the file, their fields its keys: a key that no record has is an error.
 """
 
 from __future__ import annotations
 
-import contextlib
-import functools
-import importlib
 import os
-import sys
+from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple, TypeVar
 
+from sssgen.ir.types import BY_NAME
 from sssgen.passes.capabilities import Capabilities
-from sssgen.support import cache
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
-from sssgen.support.paths import place, stem
+from sssgen.support.paths import stem
 
 _Record = TypeVar("_Record", bound=NamedTuple)
 
+CHAIN_INPUTS = (
+    "uv", "P", "N", "V", "T", "B", "L", "P_object", "N_object", "V_object", "L_object", "time", "light_color",
+    "ray_origin", "ray_direction", "surface", "color",
+)  # fmt: skip
+"""The values that a shell passes to the assembled functions; `color` is what `evaluate_output` encodes."""
+
+STAGE_BUILTINS = (
+    "gl_Position", "gl_FragCoord", "gl_FrontFacing", "gl_FragDepth", "gl_VertexID", "gl_InstanceID", "gl_PointSize",
+    "gl_PointCoord",
+)  # fmt: skip
+"""GLSL's variables that a stage of another language may have as inputs and outputs."""
+
 
 class OutputFile(NamedTuple):
-    """One file that a target writes: its name with `{material}`, its template, and its stages' entry points."""
+    """One file that a target writes."""
 
-    name: str
-    template: str
-    stages: dict[str, str]
+    name: str = ""
+    """With `{material}` for the material's name."""
+    template: str = ""
+    stages: Mapping[str, str] = {}
+    """Stage (vertex, fragment, library) → its entry point; '' for a library."""
+
+
+class Names(NamedTuple):
+    """The names that identifiers must avoid: lists in the descriptor, or texts of names between blanks."""
+
+    reserved: frozenset[str] = frozenset()
+    """The language's own."""
+    shell: frozenset[str] = frozenset()
+    """Those of the templates."""
+    case_insensitive: frozenset[str] = frozenset()
+    """Reserved in any case, as some of HLSL's words are."""
+    prefixes: tuple[str, ...] = ()
+    """Every name that starts with one of these is reserved."""
+
+    @property
+    def exact(self) -> frozenset[str]:
+        """The reserved names, without those that are reserved in any case."""
+        return self.reserved | self.shell
+
+    @property
+    def folded(self) -> frozenset[str]:
+        """The names that are reserved in any case, in lower case."""
+        return frozenset(name.lower() for name in self.case_insensitive)
+
+
+class Conventions(NamedTuple):
+    """The conventions of a language or engine; the reflection lists those that are declared."""
+
+    matrices: str = ""
+    clip_y: str = ""
+    clip_z: tuple[float, ...] = ()
+    """The nearest and the farthest depth in clip space, divided by w."""
+    framebuffer_y: str = ""
+    """The sign of dFdy: `up`, `down`, or a text where it depends on the platform."""
+    uv_origin: str = ""
+    color_space: str = ""
+    attributes: str = ""
+    """The locations of a vertex's attributes (GLSL)."""
+    semantics: str = ""
+    """The same in HLSL."""
+    locations: str = ""
+    """The same in WGSL."""
+
+
+class Limits(NamedTuple):
+    """What every device of the target supports at least; 0: not known."""
+
+    samplers: int = 0
+    textures: int = 0
+    varyings: int = 0
+    uniform_components: int = 0
+    uniform_vectors: int = 0
+    uniform_block: int = 0
+    """In bytes."""
+
+
+class TextureTexts(NamedTuple):
+    """How a texture is written: `{name}`, `{type}`, `{sampler}`, `{sampler_type}`, `{dim}` and `{binding}` are its."""
+
+    declaration: str = "{type} {name};"
+    parameter: str = "{type} {name}"
+    argument: str = "{name}"
+    sampler: str = "{name}_sampler"
+    """The name of its sampler."""
+    bare: str = "{name}"
+    """The texture itself, where an engine wraps it into a struct."""
+    bare_sampler: str = "{name}"
+    """The same for the sampler."""
+
+
+class Bindings(NamedTuple):
+    """Where HLSL's constant buffer of the material goes; without a block the members alone are declared."""
+
+    material_block: str = ""
+    material_register: str = ""
+
+
+class Port(NamedTuple):
+    """A port of Shader Graph's node."""
+
+    type: str = ""
+    wire: str = ""
+    """What to connect to it, for people."""
 
 
 class Target(NamedTuple):
-    """One target. The fields are keys of the descriptor file; all of it is in `table`, for templates and printers."""
+    """One target. All fields but the last two are keys and sections of the descriptor; templates see them all."""
 
-    name: str
-    title: str
-    language: str
+    name: str = ""
+    title: str = ""
+    language: str = ""
     """Which printer prints it: glsl, hlsl, wgsl or python, or `module:Class` of a plug-in."""
-    dialect: str
-    """The intrinsic table's language: glsl, hlsl, hlsl-dx9, hlsl-macros, wgsl."""
-    types: dict[str, str]
-    """Type as our language spells it → as the target does."""
-    files: dict[str, list[OutputFile]]
-    """Form (shader, functions) → the files it writes."""
-    inputs: dict[str, str]
+    dialect: str = ""
+    """The intrinsic table's language: glsl, glsl-330, hlsl, hlsl-dx9, hlsl-macros, wgsl, python."""
+    types: Mapping[str, str] = {}
+    """Type as sssgen spells it → as the target does."""
+    files: Mapping[str, tuple[OutputFile, ...]] = {}
+    """Form (shader, functions, vertex, fragment) → the files it writes."""
+    inputs: Mapping[str, str] = {}
     """Chain input → the shell's expression for it."""
-    light_inputs: dict[str, str]
+    light_inputs: Mapping[str, str] = {}
     """The same, where it differs inside the loop over the lights."""
-    reserved: frozenset[str]
-    folded: frozenset[str]
-    """Reserved in any case, as some of HLSL's words are; lower case here."""
-    prefixes: tuple[str, ...]
-    """Names that begin so are reserved."""
-    capabilities: Capabilities
+    names: Names = Names()
+    capabilities: Capabilities = Capabilities()
     """What the language can express; the passes rewrite the rest."""
-    lighting: str
-    """The technique that lights a lit material where the target brings no lighting."""
-    output: str
-    """The technique that encodes the final colour for a display; '' where the engine or framebuffer does that."""
-    uniform_style: str
+    conventions: Conventions = Conventions()
+    limits: Limits = Limits()
+    textures: TextureTexts = TextureTexts()
+    stage_builtins: Mapping[str, str] = {}
+    """GLSL's variable → its semantic or attribute here; empty: the language has GLSL's own."""
+    bindings: Bindings = Bindings()
+    material_group: int = 0
+    """WGSL: the group of the material's uniform block, textures and samplers."""
+    ports: Mapping[str, Port] = {}
+    """Shader Graph: chain input → its port, in the order of the node."""
+    lighting: str = ""
+    """The technique that lights a lit material; '' where the engine does."""
+    engine_encodes: bool = False
+    """Whether the engine encodes the final colour for a display, so that `output` techniques are left out."""
+    uniform_style: str = "plain"
     """plain keeps `distortion`; unity makes `_Distortion`."""
-    layout: str
+    layout: str = ""
     """The rule for offsets in a uniform block: std140, hlsl, or '' where there is none."""
-    parameters: tuple[str, ...]
+    parameters: tuple[str, ...] = ("functions",)
     """The forms in which uniforms are passed to every function instead of being read as globals."""
-    textures: dict[str, str]
-    """How a texture is declared, passed and named: declaration, parameter, argument, sampler."""
-    table: dict[str, Any]
-    folder: str
-    """Where the descriptor lies; a plug-in keeps its `templates` there."""
+    version: str = ""
+    """GLSL: the `#version` line."""
+    precision: str = ""
+    """GLSL: the precision statements."""
+    integer_property: str = ""
+    """Unity: the type of an integer property."""
+    folder: str = ""
+    """Where the descriptor is; a plug-in keeps its `templates` there."""
+    half_of: str = ""
+    """The target of which this one is the variant in half precision; '' for every other."""
 
 
-@functools.cache
-def names() -> tuple[str, ...]:
-    """The names of all targets, the project's own first."""
-    own = tuple(sorted(stem(name) for name in os.listdir(place("targets")) if name.endswith(".toml")))
-    return own + tuple(sorted(name for name in _plugins() if name not in own))
-
-
-@functools.cache
-def _plugins() -> dict[str, Any]:
-    """The plug-ins' entry points. `importlib.metadata` takes longer to import than a shader to emit, so it is asked
-    only where some installed package mentions our group."""
-    if not any(_mentions_targets(root or ".") for root in sys.path):
-        return {}
-    from importlib.metadata import entry_points
-
-    return {entry.name: entry for entry in entry_points(group="sssgen.targets")}
-
-
-def has_plugins() -> bool:
-    """Whether other packages bring targets."""
-    return bool(_plugins())
-
-
-def _mentions_targets(root: str) -> bool:
-    """Whether a package installed in this folder has an entry point of our group."""
-    try:
-        infos = [entry.path for entry in os.scandir(root) if entry.name.endswith("-info")]
-    except OSError:
-        return False
-    for info in infos:
-        with contextlib.suppress(OSError), open(f"{info}/entry_points.txt", "rb") as file:
-            if b"[sssgen.targets]" in file.read():
-                return True
-    return False
-
-
-@functools.cache
-def load(name: str) -> Target:
-    """A target by name. Raises SssgenError for an unknown one."""
-    path = os.path.join(place("targets"), f"{name}.toml")
-    table = _tables().get(name)
-    if table is not None:
-        return _target(table, path)
-    if os.path.isfile(path):
-        return read(path)
-    if name in _plugins():
-        return _from_plugin(name)
-    if name in _INTERNAL:
-        found: Target = importlib.import_module(_INTERNAL[name], __package__).target()
-        return found
-    raise failure(f"unknown target '{name}'", did_you_mean(name, names()) or f"targets: {', '.join(names())}")
-
-
-_INTERNAL = {"wgsl-f16": ".wgsl_half", "numpy-f16": ".numpy_half"}
-"""Targets that the harness runs and that no list of targets has: the module whose `target()` gives each."""
-
-
-def _from_plugin(name: str) -> Target:
-    """The target that an entry point gives. Raises SssgenError for whatever goes wrong in the plug-in."""
-    entry = _plugins()[name]
-    try:
-        made = entry.load()
-        made = made() if callable(made) else made
-        target = made if isinstance(made, Target) else read(made)
-    except SssgenError:
-        raise
-    except Exception as error:  # the plug-in's code: anything may be wrong in it
-        message = f"the plug-in of target '{name}' cannot be loaded: {type(error).__name__}: {error}"
-        raise failure(message, f"its entry point is {entry.value}") from None
-    if target.name != name:
-        message = f"the plug-in of target '{name}' gives a target called '{target.name}'"
-        raise failure(message, "give the entry point and the descriptor the same name")
-    return target
-
-
-@functools.cache
-def _tables() -> dict[str, dict[str, Any]]:
-    """The contents of the project's own descriptors that have no fault."""
-    tables: dict[str, dict[str, Any]] = cache.kept("targets", cache.stamp(place("targets")), _read_tables)
-    return tables
-
-
-def _read_tables() -> dict[str, dict[str, Any]]:
-    tables = {}
-    for name in os.listdir(place("targets")):
-        with contextlib.suppress(SssgenError):
-            tables[stem(name)] = _table(os.path.join(place("targets"), name))
-    return tables
+_REQUIRED = ("title", "language", "types", "files")
+_KEYS: dict[str, Collection[str]] = {
+    "": Target._fields[:-2],
+    "types": (*BY_NAME, "sampler", "samplerShadow"),
+    "inputs": CHAIN_INPUTS,
+    "light_inputs": CHAIN_INPUTS,
+    "ports": CHAIN_INPUTS,
+    "stage_builtins": STAGE_BUILTINS,
+}
+"""The keys of a section that is no record of its own."""
 
 
 def read(path: str | os.PathLike[str]) -> Target:
     """Reads a descriptor file. Raises SssgenError where it is faulty."""
     path = os.fspath(path)
-    return _target(_table(path), path)
+    return target_of(table_of(path), path)
 
 
-def _table(path: str) -> dict[str, Any]:
+def table_of(path: str) -> dict[str, Any]:
+    """The contents of a descriptor file. Raises SssgenError where it is no TOML."""
     import tomllib
 
     try:
@@ -176,78 +203,72 @@ def _table(path: str) -> dict[str, Any]:
         raise failure(f"cannot read the target descriptor: {error}", file=os.path.basename(path)) from None
 
 
-def _target(table: dict[str, Any], path: str) -> Target:
-    names = table.get("names", {})
-    try:
-        return Target(
-            name=table.get("name", stem(path)),
-            title=table["title"],
-            language=table["language"],
-            dialect=table.get("dialect", table["language"]),
-            types=table["types"],
-            files={form: [OutputFile(**entry) for entry in entries] for form, entries in table["files"].items()},
-            inputs=table.get("inputs", {}),
-            light_inputs=table.get("light_inputs", {}),
-            reserved=frozenset((names.get("reserved", "") + " " + names.get("shell", "")).split()),
-            folded=frozenset(word.lower() for word in names.get("case_insensitive", ())),
-            prefixes=tuple(names.get("prefixes", ())),
-            capabilities=_record(Capabilities(), table.get("capabilities", {}), "capabilities", path),
-            lighting=table.get("lighting", ""),
-            output=table.get("output", ""),
-            uniform_style=table.get("uniform_style", "plain"),
-            layout=table.get("layout", ""),
-            parameters=tuple(table.get("parameters", ("functions",))),
-            textures=table.get("textures", {}),
-            table=table,
-            folder=os.path.dirname(path),
+def target_of(table: Mapping[str, Any], path: str) -> Target:
+    """The target that the contents of the descriptor at `path` describe. Raises SssgenError where they are faulty."""
+    return _Reader(os.path.basename(path)).target(table)._replace(folder=os.path.dirname(path))
+
+
+class _Reader:
+    """Makes records of tables. Raises SssgenError for an unknown key and for a value of the wrong type."""
+
+    def __init__(self, file: str) -> None:
+        self.file = file
+
+    def target(self, table: Mapping[str, Any]) -> Target:
+        missing = [key for key in _REQUIRED if key not in table]
+        if missing:
+            raise self.wrong(f"is incomplete: it has no {' and no '.join(missing)}")
+        simple = {key: value for key, value in table.items() if key not in ("files", "ports")}
+        target = self.record(Target(name=stem(self.file), dialect=table["language"]), simple, "")
+        files = {
+            form: tuple([self.record(OutputFile(), entry, f"files.{form}") for entry in self.is_a(list, entries, form)])
+            for form, entries in self.is_a(dict, table["files"], "files").items()
+        }
+        self.check_keys(ports := self.is_a(dict, table.get("ports", {}), "ports"), _KEYS["ports"], "ports")
+        return target._replace(
+            files=files, ports={name: self.record(Port(), port, f"ports.{name}") for name, port in ports.items()}
         )
-    except (KeyError, TypeError, AttributeError) as error:
-        raise failure(f"the target descriptor is incomplete: {error}", file=os.path.basename(path)) from None
+
+    def record(self, defaults: _Record, table: object, section: str) -> _Record:
+        """The record with the values of a table."""
+        values = self.is_a(dict, table, section)
+        self.check_keys(values, _KEYS.get(section, defaults._fields), section)
+        own = defaults._asdict()
+        return defaults._replace(**{key: self.value(own[key], value, key, section) for key, value in values.items()})
+
+    def value(self, default: Any, value: Any, key: str, section: str) -> Any:
+        """A value of the default's type."""
+        if hasattr(default, "_fields"):
+            return self.record(default, value, key)
+        if isinstance(default, frozenset):
+            return frozenset(value.split() if isinstance(value, str) else self.is_a(list, value, key, section))
+        if isinstance(default, tuple):
+            return tuple(self.is_a(list, value, key, section))
+        if key in _KEYS:
+            self.check_keys(self.is_a(dict, value, key, section), _KEYS[key], key)
+            for name, text in value.items():
+                self.is_a(str, text, name, key)
+        return self.is_a(dict if isinstance(default, Mapping) else type(default), value, key, section)
+
+    def is_a(self, kind: type, value: Any, key: str, section: str = "") -> Any:
+        """The value, if it is of that kind."""
+        if type(value) is not kind:
+            where = f" in [{section}]" if section else ""
+            raise self.wrong(f"needs {_KINDS[kind]} for '{key}'{where}")
+        return value
+
+    def check_keys(self, table: Mapping[str, Any], keys: Collection[str], section: str) -> None:
+        for key in table:
+            if key not in keys:
+                where = f" in [{section}]" if section else ""
+                raise self.wrong(f"has an unknown key '{key}'{where}", did_you_mean(key, keys) or _listed(keys))
+
+    def wrong(self, message: str, hint: str = "") -> SssgenError:
+        return failure(f"the target descriptor {message}", hint, self.file)
 
 
-def _record(empty: _Record, table: dict[str, Any], section: str, path: str) -> _Record:
-    """A section of a descriptor as a record. Raises SssgenError for an unknown key or a value of the wrong type."""
-    defaults = empty._asdict()
-    file = os.path.basename(path)
-    for key, value in table.items():
-        if key not in defaults:
-            hint = did_you_mean(key, defaults) or f"its keys: {', '.join(defaults)}"
-            raise failure(f"the target descriptor has an unknown key '{key}' in [{section}]", hint, file)
-        if not isinstance(value, type(defaults[key])):
-            wanted = type(defaults[key]).__name__
-            raise failure(f"the target descriptor needs a {wanted} for '{key}' in [{section}]", "", file)
-    return empty._replace(**table)
+_KINDS = {bool: "true or false", int: "an integer", str: "a text", list: "a list", dict: "a table"}
 
 
-class Words:
-    """The names that are not free: words, words in any case, and whatever begins with certain letters."""
-
-    def __init__(self, words: frozenset[str], prefixes: tuple[str, ...]) -> None:
-        self.words, self.prefixes = words, prefixes
-
-    def __contains__(self, name: object) -> bool:
-        return name in self.words or (isinstance(name, str) and name.startswith(self.prefixes))
-
-
-@functools.cache
-def reserved_everywhere() -> tuple[frozenset[str], frozenset[str], tuple[str, ...]]:
-    """What the project's own targets reserve: words, words in any case, prefixes. Names keep clear of all of it."""
-    return _reserved([target for target in _own() if target.language != "python"])
-
-
-@functools.cache
-def reserved_of(language: str) -> tuple[frozenset[str], frozenset[str], tuple[str, ...]]:
-    """What a language reserves by itself, without engines: the first of the project's own targets says it."""
-    own = [target for target in _own() if target.language == language]
-    return _reserved(own[:1])
-
-
-def _own() -> list[Target]:
-    """The project's own targets, in the order of their names."""
-    return [load(name) for name in names() if os.path.isfile(os.path.join(place("targets"), f"{name}.toml"))]
-
-
-def _reserved(shaders: list[Target]) -> tuple[frozenset[str], frozenset[str], tuple[str, ...]]:
-    exact = frozenset().union(*(target.reserved for target in shaders))
-    folded = frozenset().union(*(target.folded for target in shaders))
-    return exact, folded, tuple(sorted({prefix for target in shaders for prefix in target.prefixes}))
+def _listed(keys: Collection[str]) -> str:
+    return f"the keys there are: {', '.join(keys)}"

@@ -61,9 +61,8 @@ class GlslPrinter(Printer):
 
     def print_textures(self, textures: list[ir.Uniform]) -> list[Line]:
         """The samplers, one a line; ES has no default precision for all of them."""
-        precision = self.target.table.get("sampler_precision", {})
         lines = []
         for texture in textures:
             type_ = self.type(texture.type)
-            lines.append(documented(f"uniform {precision.get(type_, '')}{type_} {texture.name};", texture))
+            lines.append(documented(f"uniform {type_} {texture.name};", texture))
         return lines

@@ -91,8 +91,8 @@ class HlslPrinter(Printer):
     def print_uniforms(self, members: list[Member]) -> list[Line]:
         """The constant buffer; where a shell has one of its own (Unity), its members alone."""
         lines: list[Line] = []
-        bindings = self.target.table.get("bindings")
-        pad = "    " if bindings is not None else ""
+        bindings = self.target.bindings
+        pad = "    " if bindings.material_block else ""
         for member in members:
             lines += [Line(f"{pad}float padding_{member.offset}_{index};") for index in range(member.padding)]
             type_ = block_type(member.uniform.type, self.target.capabilities)
@@ -100,14 +100,14 @@ class HlslPrinter(Printer):
             major = "row_major " if of_matrices and not self.engine_matrices else ""
             declared = self.variable(type_, member.uniform.name)
             lines.append(documented(f"{pad}{major}{declared};", member.uniform))
-        if lines and bindings is not None:
-            head = f"cbuffer {bindings['material_block']} : register({bindings['material_register']}) {{"
+        if lines and bindings.material_block:
+            head = f"cbuffer {bindings.material_block} : register({bindings.material_register}) {{"
             lines = [Line(head), *lines, Line("};")]
         return lines
 
     def print_textures(self, textures: list[ir.Uniform]) -> list[Line]:
         """The textures and their samplers, as the descriptor writes them."""
-        pattern = self.target.textures.get("declaration", "{type} {name};")
+        pattern = self.target.textures.declaration
         lines: list[Line] = []
         for binding, texture in enumerate(textures):
             text = pattern.format(
@@ -126,6 +126,6 @@ class HlslPrinter(Printer):
         return print_entry(self, self.stage, name, self.stage.resolution)
 
     def binding(self, index: int) -> dict[str, int | str]:
-        if "bindings" not in self.target.table:
+        if not self.target.bindings.material_block:
             return {}
         return {"texture": f"t{index}", "sampler": f"s{index}"}

@@ -29,7 +29,7 @@ _MADE = {"vertex": "TEXCOORD", "fragment": "SV_Target"}
 def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> list[Line]:
     """The lines of the entry `name`; `resolution` is how that uniform is read."""
     taken = names_of(printer.module) | {name}
-    builtins = printer.target.table["stage_builtins"]
+    builtins = printer.target.stage_builtins
     given = parameters(stage, taken)
 
     def declared(slot: Slot, name: str, semantics: str) -> str:

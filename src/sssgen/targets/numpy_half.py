@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from sssgen.targets.descriptor import Target, load
+from sssgen.targets.descriptor import Target
+from sssgen.targets.registry import load
 
 
 def target() -> Target:
     """The target `numpy`, told that its numbers are halves."""
     double = load("numpy")
-    return double._replace(
-        name="numpy-f16", title="NumPy in half precision", table={**double.table, "precision": "half"}
-    )
+    return double._replace(name="numpy-f16", title="NumPy in half precision", half_of=double.name)

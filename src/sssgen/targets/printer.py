@@ -202,7 +202,7 @@ class Printer:
     def argument(self, arg: ir.Expr, param: ir.Param) -> str:
         """What is passed for a parameter of one of the module's own functions."""
         if isinstance(arg.type, Sampler) and isinstance(arg, ir.Global | ir.Local):
-            return self.target.textures.get("argument", "{name}").format(name=arg.name, sampler=self.sampler(arg.name))
+            return self.target.textures.argument.format(name=arg.name, sampler=self.sampler(arg.name))
         return self.expr(arg)
 
     def intrinsic(self, call: ir.Intrinsic) -> tuple[str, int]:
@@ -213,12 +213,12 @@ class Printer:
         named = {}
         first = call.args[0]
         if isinstance(first, ir.Global | ir.Local) and isinstance(first.type, Sampler):
-            texture, sampler, bare = first.name, self.sampler(first.name), self.target.textures.get("bare", "{name}")
+            texture, sampler, bare = first.name, self.sampler(first.name), self.target.textures.bare
             named = {
                 "texture": texture,
                 "sampler": sampler,
                 "bare_texture": bare.format(name=texture),
-                "bare_sampler": self.target.textures.get("bare_sampler", "{name}").format(name=sampler),
+                "bare_sampler": self.target.textures.bare_sampler.format(name=sampler),
                 "dim": first.type.dim.upper(),
                 "channel": _channel(call.args[-1]),
             }
@@ -234,7 +234,7 @@ class Printer:
 
     def sampler(self, texture: str) -> str:
         """The name of a texture's sampler, where they are two things."""
-        return self.target.textures.get("sampler", "{name}_sampler").format(name=texture)
+        return self.target.textures.sampler.format(name=texture)
 
     # Statements
 
@@ -318,7 +318,7 @@ class Printer:
     def param(self, param: ir.Param) -> str:
         """A parameter of a function."""
         if isinstance(param.type, Sampler):
-            pattern = self.target.textures.get("parameter", "{type} {name}")
+            pattern = self.target.textures.parameter
             return pattern.format(
                 name=param.name,
                 sampler=self.sampler(param.name),

@@ -72,7 +72,7 @@ def reflect(
         "proven_safe": program.guards.get("proven", 0),
         "guards": program.guards.get("guarded", []),
         "renames": dict(program.renames),
-        "conventions": target.table.get("conventions", {}),
+        "conventions": _conventions(target),
         "source_map": {
             name: {str(line): f"{span.file}:{span.line}:{span.column}" for line, span in lines.items()}
             for name, lines in emitted.lines.items()
@@ -95,6 +95,12 @@ def _stage(program: Program) -> dict[str, Any]:
         ]
         for name, slots in both.items()
     }
+
+
+def _conventions(target: Target) -> dict[str, Any]:
+    """The conventions that the descriptor declares."""
+    declared = {name: value for name, value in target.conventions._asdict().items() if value}
+    return {name: list(value) if isinstance(value, tuple) else value for name, value in declared.items()}
 
 
 def as_text(data: dict[str, Any]) -> str:

@@ -122,7 +122,7 @@ class WgslPrinter(Printer):
         for member in members:
             text = self.type(block_type(member.uniform.type, self.target.capabilities))
             lines.append(documented(f"    {member.uniform.name}: {text},", member.uniform))
-        place = f"@group({self.target.table['material_group']}) @binding(0)"
+        place = f"@group({self.target.material_group}) @binding(0)"
         return [*lines, Line("}"), Line(f"{place} var<uniform> material: Material;")]
 
     def print_textures(self, textures: list[ir.Uniform]) -> list[Line]:
@@ -139,7 +139,7 @@ class WgslPrinter(Printer):
         return lines
 
     def binding(self, index: int) -> dict[str, int | str]:
-        return {"group": self.target.table["material_group"], "texture": 1 + 2 * index, "sampler": 2 + 2 * index}
+        return {"group": self.target.material_group, "texture": 1 + 2 * index, "sampler": 2 + 2 * index}
 
 
 def _has_open_less(text: str) -> bool:

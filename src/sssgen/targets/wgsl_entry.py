@@ -23,7 +23,7 @@ _INTERPOLATION = {"flat": "flat", "noperspective": "linear", "centroid": "perspe
 def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> list[Line]:
     """The lines of the entry `name`; `resolution` is how that uniform is read."""
     taken = names_of(printer.module) | {name}
-    builtins = printer.target.table["stage_builtins"]
+    builtins = printer.target.stage_builtins
     given = parameters(stage, taken)
 
     def declared(slot: Slot, name: str, varying: bool) -> str:

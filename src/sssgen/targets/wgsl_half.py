@@ -12,8 +12,9 @@ from sssgen.ir.formats import FLOAT16
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import FLOAT, Sampler, kind_of
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
-from sssgen.targets.descriptor import OutputFile, Target, load
+from sssgen.targets.descriptor import OutputFile, Target
 from sssgen.targets.printer import PRIMARY, Line, shortest
+from sssgen.targets.registry import load
 from sssgen.targets.uniform_layout import Member
 from sssgen.targets.wgsl import WgslPrinter
 
@@ -35,8 +36,8 @@ def target() -> Target:
         title="WGSL in half precision",
         language=f"{__name__}:{WgslHalfPrinter.__name__}",
         types={**single.types, "float": "f16", **halves},
-        files={"functions": [library]},
-        table={**single.table, "precision": "half", "single": single.name},
+        files={"functions": (library,)},
+        half_of=single.name,
     )
 
 
@@ -45,7 +46,7 @@ class WgslHalfPrinter(WgslPrinter):
 
     def __init__(self, target: Target, module: ir.Module) -> None:
         super().__init__(target, module)
-        self.single = WgslPrinter(load(target.table["single"]), module)
+        self.single = WgslPrinter(load(target.half_of), module)
 
     def literal(self, literal: ir.Literal) -> str:
         if literal.type != FLOAT:

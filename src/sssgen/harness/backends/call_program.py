@@ -13,8 +13,9 @@ import numpy as np
 
 from sssgen.harness.backends.backend_interface import Array, Bound, Call, Drawing, Place, Stage, Text
 from sssgen.ir.types import Matrix, Sampler, Scalar, Type, Vector, components, kind_of, spell, vector_of
-from sssgen.targets.descriptor import Target, load
+from sssgen.targets.descriptor import Target
 from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.registry import load
 
 WIDTH = 4096
 """The most lanes to a row; every driver takes pictures twice as wide."""
@@ -174,8 +175,8 @@ class _Writer:
     def __init__(self, target: Target, grid: Grid) -> None:
         self.target, self.grid = target, grid
         self.language = LANGUAGES[_family(target)]
-        self.half = target.table.get("precision") == "half"
-        self.single = load(target.table["single"]).types if self.half else target.types
+        self.half = bool(target.half_of)
+        self.single = load(target.half_of).types if self.half else target.types
         if self.half:
             bits, words = {**self.language.bits, **_HALF["bits"]}, {**self.language.words, **_HALF["words"]}
             self.language = self.language._replace(bits=bits, words=words)
@@ -189,7 +190,7 @@ class _Writer:
         for index, (type_, arg) in enumerate(zip(call.params, call.args, strict=True)):
             name = f"a{number}_{index}"
             if isinstance(arg, str):
-                args.append(self.target.textures.get("argument", "{name}").format(name=arg, sampler=f"{arg}_sampler"))
+                args.append(self.target.textures.argument.format(name=arg, sampler=f"{arg}_sampler"))
                 continue
             before.append(self._declare(type_, name, self._read(type_, len(self.data) * self.grid.rows)))
             args.append(name)

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from sssgen.harness.backends import call_program as programs
 from sssgen.harness.backends.backend_interface import Array, Backend, Call, Drawing, Text, gave_up
-from sssgen.targets import descriptor
+from sssgen.targets import registry
 from sssgen.targets.numpy_textures import Texture
 
 
@@ -23,7 +23,7 @@ class DrawingBackend(Backend):
 
     def __init__(self, name: str, target: str) -> None:
         self.name = name
-        self.target = descriptor.load(target)
+        self.target = registry.load(target)
 
     def check(self, drawing: Drawing) -> None:
         """Raises SssgenError for a texture or a picture that the driver does not take: not all drivers say so."""

@@ -14,7 +14,7 @@ from sssgen.harness.backends import Array, Backend, Call, CompilerMissing, Drawi
 from sssgen.harness.backends.backend_interface import gave_up
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.worker_process import LostError, Process
-from sssgen.targets import descriptor
+from sssgen.targets import registry
 from sssgen.targets.numpy_textures import Texture
 
 SECONDS = 300.0
@@ -39,7 +39,7 @@ class Isolated(DrawingBackend):
             self.facts: _Facts = self.process.start()
         except LostError as reason:
             raise gave_up(name, f"the back end {reason} as it started") from None
-        self.target = descriptor.load(self.facts.target)
+        self.target = registry.load(self.facts.target)
         self.top_first = self.facts.top_first
 
     def device(self) -> str:

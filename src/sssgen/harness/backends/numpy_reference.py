@@ -10,7 +10,7 @@ import numpy as np
 
 from sssgen.harness.backends import call_program as programs
 from sssgen.harness.backends.backend_interface import Array, Backend, Call, Text, gave_up
-from sssgen.targets import descriptor
+from sssgen.targets import registry
 from sssgen.targets.numpy_textures import Texture
 from sssgen.targets.numpy_values import grid, precision
 
@@ -20,7 +20,7 @@ class Reference(Backend):
 
     def __init__(self, name: str, dtype: str = "float64") -> None:
         self.name, self.dtype = name, dtype
-        self.target = descriptor.load("numpy-f16" if dtype == "float16" else "numpy")
+        self.target = registry.load("numpy-f16" if dtype == "float16" else "numpy")
 
     def device(self) -> str:
         return f"NumPy {np.__version__}, {self.dtype}"

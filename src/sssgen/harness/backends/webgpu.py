@@ -30,7 +30,7 @@ class WebGPU(DrawingBackend):
         naga = compilers.get("naga")
         assert isinstance(naga, Naga)
         self.start(naga)
-        if self.target.table.get("precision") == "half" and "shader-f16" not in self.gpu.features:
+        if self.target.half_of and "shader-f16" not in self.gpu.features:
             raise CompilerMissing(f"a WebGPU adapter with the feature shader-f16, which {self.device()} has not")
 
     def start(self, naga: Naga) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import cast
 
 from sssgen.harness.compilers import Source, Stage
-from sssgen.targets import descriptor
+from sssgen.targets import descriptor, registry
 
 _OTHER_STAGE = {"vertex": "fragment", "fragment": "vertex"}
 
@@ -38,7 +38,7 @@ def outputs(name: str) -> list[tuple[descriptor.Target, str, descriptor.OutputFi
     matches = []
     known: set[tuple[str, str]] = set()
     base = name.rpartition("/")[2]
-    for target in map(descriptor.load, descriptor.names()):
+    for target in map(registry.load, registry.names()):
         for output in (entry for entries in target.files.values() for entry in entries):
             pattern = re.escape(output.name).replace(re.escape("{material}"), r"(\w+)")
             match = re.fullmatch(pattern, base)

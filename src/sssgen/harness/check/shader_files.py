@@ -15,7 +15,7 @@ from sssgen.material.material_loading import load_material
 from sssgen.pipeline.compiler import FORMS, compile
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.support.paths import posix
-from sssgen.targets import descriptor
+from sssgen.targets import registry
 
 REFLECTION = "reflection.json"
 
@@ -68,7 +68,7 @@ def of_material(argument: str, targets: Sequence[str]) -> list[Shader]:
     """Both forms of a material for each target; all that a compiler reads, where none is named."""
     material = load_material(argument)
     found: list[Shader] = []
-    for target in targets or [name for name in descriptor.names() if readers(name)]:
+    for target in targets or [name for name in registry.names() if readers(name)]:
         for form in FORMS:
             made = compile(material, target, form)
             found += _shaders(made.files, sources(made.files), made.reflection["source_map"])
@@ -91,7 +91,7 @@ def of_files(files: Mapping[str, str], asked: set[str], targets: Sequence[str]) 
         elif language := _language(path, text, path in asked, targets):
             found += hand_written(text, language, path)
         elif path in asked:
-            hint = f"say it with --target T: {', '.join(descriptor.names())}"
+            hint = f"say it with --target T: {', '.join(registry.names())}"
             wrong += failure("the language of the file cannot be told", hint, path).diagnostics
     if wrong:
         raise SssgenError(wrong)

@@ -110,7 +110,7 @@ def _surface(
 
 def _matrix(scene: Scene, backend: Backend, aspect: float) -> Array:
     """World to clip space in the language's own depth range."""
-    low = backend.target.table.get("conventions", {}).get("clip_z", [-1.0])[0]
+    low = (backend.target.conventions.clip_z or (-1.0,))[0]
     return scene.camera.view_projection(aspect, zero_to_one=low == 0.0)
 
 

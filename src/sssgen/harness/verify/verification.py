@@ -43,7 +43,7 @@ from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
 from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
 from sssgen.pipeline.compiler import transpile
 from sssgen.support.diagnostics import SssgenError, failure
-from sssgen.targets import descriptor
+from sssgen.targets import registry
 from sssgen.targets.numpy_textures import Texture
 
 SAMPLES = 1000
@@ -252,7 +252,7 @@ class _Case:
         made = [
             self.call(probe, probe.name, [leaf.name for leaf in probe.leaves], inputs) for probe in self.case.probes
         ]
-        target = descriptor.load("glsl-es-300" if version.endswith("es") else "glsl-330")
+        target = registry.load("glsl-es-300" if version.endswith("es") else "glsl-330")
         drawing, layout = calls.drawing(target, text, made, inputs.textures)
         uniforms = self.uniforms()
         bound = {name: Bound(inputs.textures[name], Place(0, 0)) for name in uniforms if name in inputs.textures}

@@ -1,0 +1,143 @@
+"""All targets by their names: the project's own, those of plug-ins, and those that only the harness runs.
+
+A plug-in brings a target through the entry-point group `sssgen.targets`: an entry with the target's name that gives a
+`Target`, or the path of a descriptor file with its templates in the same folder.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import importlib
+import os
+import sys
+from typing import Any
+
+from sssgen.support import cache
+from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
+from sssgen.support.paths import place, stem
+from sssgen.targets.descriptor import Names, Target, read, table_of, target_of
+
+HALF_PRECISION = {"wgsl-f16": "sssgen.targets.wgsl_half", "numpy-f16": "sssgen.targets.numpy_half"}
+"""Targets for the harness only, which `names` leaves out: the module whose `target()` makes each."""
+
+
+@functools.cache
+def names() -> tuple[str, ...]:
+    """The names of all targets for users, the project's own first."""
+    own = _own_names()
+    return own + tuple(sorted(name for name in _plugins() if name not in own))
+
+
+@functools.cache
+def load(name: str) -> Target:
+    """A target by name. Raises SssgenError for an unknown one."""
+    path = os.path.join(place("targets"), f"{name}.toml")
+    table = _tables().get(name)
+    if table is not None:
+        return target_of(table, path)
+    if os.path.isfile(path):
+        return read(path)
+    if name in _plugins():
+        return _from_plugin(name)
+    if name in HALF_PRECISION:
+        target: Target = importlib.import_module(HALF_PRECISION[name]).target()
+        return target
+    raise failure(f"unknown target '{name}'", did_you_mean(name, names()) or f"targets: {', '.join(names())}")
+
+
+def has_plugins() -> bool:
+    """Whether other packages bring targets."""
+    return bool(_plugins())
+
+
+class ReservedNames:
+    """The names that are not free: a set, and everything that starts with certain letters."""
+
+    def __init__(self, names: frozenset[str], prefixes: tuple[str, ...]) -> None:
+        self.names, self.prefixes = names, prefixes
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.names or (isinstance(name, str) and name.startswith(self.prefixes))
+
+
+@functools.cache
+def reserved_everywhere() -> Names:
+    """What the project's own targets reserve together. No emitted name is among them."""
+    return _reserved([target for target in map(load, _own_names()) if target.language != "python"])
+
+
+@functools.cache
+def reserved_of(language: str) -> Names:
+    """What a language reserves by itself, without engines: its first own target, by name, declares that."""
+    return _reserved([target for target in map(load, _own_names()) if target.language == language][:1])
+
+
+def _reserved(targets: list[Target]) -> Names:
+    return Names(
+        reserved=frozenset().union(*(target.names.exact for target in targets)),
+        case_insensitive=frozenset().union(*(target.names.case_insensitive for target in targets)),
+        prefixes=tuple(sorted({prefix for target in targets for prefix in target.names.prefixes})),
+    )
+
+
+@functools.cache
+def _own_names() -> tuple[str, ...]:
+    return tuple(sorted(stem(name) for name in os.listdir(place("targets")) if name.endswith(".toml")))
+
+
+@functools.cache
+def _tables() -> dict[str, dict[str, Any]]:
+    """The contents of the project's own descriptors that can be read."""
+    tables: dict[str, dict[str, Any]] = cache.kept("targets", cache.stamp(place("targets")), _read_tables)
+    return tables
+
+
+def _read_tables() -> dict[str, dict[str, Any]]:
+    tables = {}
+    for name in _own_names():
+        with contextlib.suppress(SssgenError):
+            tables[name] = table_of(os.path.join(place("targets"), f"{name}.toml"))
+    return tables
+
+
+@functools.cache
+def _plugins() -> dict[str, Any]:
+    """The plug-ins' entry points. `importlib.metadata` takes longer to import than a shader takes to emit, so it is
+    used only where some installed package mentions the group."""
+    if not any(_mentions_targets(root or ".") for root in sys.path):
+        return {}
+    from importlib.metadata import entry_points
+
+    return {entry.name: entry for entry in entry_points(group="sssgen.targets")}
+
+
+def _mentions_targets(root: str) -> bool:
+    """Whether a package installed in this folder has an entry point of the group."""
+    try:
+        folders = [entry.path for entry in os.scandir(root) if entry.name.endswith("-info")]
+    except OSError:
+        return False
+    for folder in folders:
+        with contextlib.suppress(OSError), open(f"{folder}/entry_points.txt", "rb") as file:
+            if b"[sssgen.targets]" in file.read():
+                return True
+    return False
+
+
+def _from_plugin(name: str) -> Target:
+    """The target that an entry point gives. Raises SssgenError for whatever goes wrong in the plug-in."""
+    entry = _plugins()[name]
+    try:
+        loaded = entry.load()
+        loaded = loaded() if callable(loaded) else loaded
+        target = loaded if isinstance(loaded, Target) else read(loaded)
+    except SssgenError:
+        raise
+    except Exception as error:  # the plug-in's code may fail in any way
+        message = f"the plug-in of target '{name}' cannot be loaded: {type(error).__name__}: {error}"
+        raise failure(message, f"its entry point is {entry.value}") from None
+    if target.name != name:
+        message = f"the plug-in of target '{name}' gives a target called '{target.name}'"
+        raise failure(message, "give the entry point and the descriptor the same name")
+    return target
