@@ -21,11 +21,11 @@ from sssgen.harness.compilers.calling_entry import glsl_entry
 from sssgen.harness.compilers.gl_driver import with_version
 from sssgen.harness.verify.inline_includes import expanded
 from sssgen.harness.verify.stage_variables import without_interface
-from sssgen.lang.loader import read_text
 from sssgen.lang.plain_glsl import load_glsl
 from sssgen.lang.shadertoy import UNIFORMS
 from sssgen.pipeline.compiler import transpile
 from sssgen.support.diagnostics import SssgenError
+from sssgen.support.text_files import read_text
 
 BATCH = 40
 """Texts to a process of glslang."""

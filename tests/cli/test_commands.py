@@ -18,7 +18,7 @@ from sssgen.cli import main as cli
 from sssgen.ir.nodes import Module, Span
 from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
-from sssgen.pipeline import emitted_cache as emitted
+from sssgen.pipeline import emitted_cache
 from sssgen.support import file_writer as output
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.support.file_writer import write_files
@@ -78,8 +78,8 @@ class FakeCompiler(types.ModuleType):
 def compiler(monkeypatch: pytest.MonkeyPatch) -> FakeCompiler:
     fake = FakeCompiler()
     monkeypatch.setitem(sys.modules, "sssgen.pipeline.compiler", fake)
-    monkeypatch.setattr(emitted, "recall", lambda *_: None)
-    monkeypatch.setattr(emitted, "remember", lambda *_: None)
+    monkeypatch.setattr(emitted_cache, "load", lambda *_: None)
+    monkeypatch.setattr(emitted_cache, "store", lambda *_: None)
     return fake
 
 

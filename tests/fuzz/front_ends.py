@@ -32,7 +32,7 @@ from sssgen.ir.nodes import Span
 from sssgen.ir.text import print_module
 from sssgen.ir.text_reader import TextError, read_module
 from sssgen.lab.scene import measured_scene as situation
-from sssgen.lang.loader import load_file, load_text, read_text
+from sssgen.lang.loader import load_file, load_text
 from sssgen.lang.plain_glsl import load_glsl
 from sssgen.material import baked
 from sssgen.material.library import TECHNIQUES, load_path
@@ -40,6 +40,7 @@ from sssgen.material.material_loading import load_material
 from sssgen.pipeline.compiler import compile, transpile
 from sssgen.support import paths as data
 from sssgen.support.diagnostics import Diagnostic, SssgenError
+from sssgen.support.text_files import read_text
 from sssgen.targets.texture_import import import_settings
 from watchdog import bounded
 

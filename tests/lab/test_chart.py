@@ -41,12 +41,12 @@ def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]
     work._own.cache_clear()
     in_cache(tmp_path / "cache", monkeypatch)
     yield
-    cache._known = False
+    cache._folder = None
 
 
 def in_cache(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SSSGEN_CACHE", str(folder))
-    monkeypatch.setattr(cache, "_known", False)
+    monkeypatch.setattr(cache, "_folder", None)
 
 
 @pytest.fixture(autouse=True)

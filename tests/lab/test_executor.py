@@ -120,7 +120,6 @@ def test_damaged_entries_are_made_again(tmp_path: Path) -> None:
 
 def test_no_cache_folder_is_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sssgen.support.cache._folder", "")
-    monkeypatch.setattr("sssgen.support.cache._known", True)
     store = Store()
     run([Item("executor_items:echo", (1,))], processes=0, store=store)
     assert not store.folder and len(store.memory) == 1

@@ -59,10 +59,10 @@ SIZE = (12, 12)
 @pytest.fixture(autouse=True, scope="module")
 def no_cache() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(cache, "_known", False)
+        patch.setattr(cache, "_folder", None)
         patch.setenv("SSSGEN_CACHE", "")
         yield
-    cache._known = False
+    cache._folder = None
 
 
 def small(name: str) -> Situation:

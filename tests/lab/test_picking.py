@@ -150,7 +150,7 @@ def charted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 
     folder = tmp_path / "cache"
     monkeypatch.setenv("SSSGEN_CACHE", str(folder))
-    monkeypatch.setattr(cache, "_known", False)
+    monkeypatch.setattr(cache, "_folder", None)
     monkeypatch.setattr(situation, "SIDE", 12)
     chart.charted([situation.load("inlay_plate")], Settings(8, processes=0))
     return str(folder)
@@ -161,7 +161,7 @@ def known_anew() -> Any:
     from sssgen.support import cache
 
     yield
-    cache._known = False
+    cache._folder = None
 
 
 def run(*arguments: str) -> int:

@@ -33,10 +33,10 @@ CAMERA = Camera(position=(1.5, 1.2, 4.0), target=(0.3, 0.2, 0.1), field_of_view=
 
 @pytest.fixture(autouse=True)
 def no_cache(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    monkeypatch.setattr(cache, "_known", False)
+    monkeypatch.setattr(cache, "_folder", None)
     monkeypatch.setenv("SSSGEN_CACHE", "")
     yield
-    monkeypatch.setattr(cache, "_known", False)
+    monkeypatch.setattr(cache, "_folder", None)
 
 
 def grey(albedo: float, extinction: float = 1.0, anisotropy: float = 0.0) -> Medium:
@@ -399,7 +399,7 @@ def test_what_is_kept_is_not_rendered_again(folder: Path, monkeypatch: pytest.Mo
     many = render(200)
     assert numbers == list(range(13))
     monkeypatch.setenv("SSSGEN_CACHE", "")
-    monkeypatch.setattr(cache, "_known", False)
+    monkeypatch.setattr(cache, "_folder", None)
     for kept, fresh in ((few, render(128)), (again, render(128)), (many, render(200))):
         assert (kept.mean == fresh.mean).all() and (kept.error == fresh.error).all()
         assert kept.samples == fresh.samples

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from sssgen.cli.options import add_guards, add_targets
 from sssgen.cli.output import OK, print_json, print_warnings
-from sssgen.pipeline import emitted_cache as emitted
-from sssgen.pipeline.emitted_cache import Made
+from sssgen.pipeline import emitted_cache
+from sssgen.pipeline.emitted_cache import EmittedFiles
 from sssgen.support import file_memo as watch
 from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean, failure
 from sssgen.support.file_writer import write_files
@@ -38,7 +38,7 @@ def add_options(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Compiles everything, then writes everything: where one text fails, none is written."""
-    made = _recalled_or_made(arguments)
+    made = _cached_or_compiled(arguments)
     written = write_files(arguments.output, made.files)
     if arguments.json:
         rows = [
@@ -54,20 +54,20 @@ def run(arguments: Namespace) -> int:
     return OK
 
 
-def _recalled_or_made(arguments: Namespace) -> Made:
+def _cached_or_compiled(arguments: Namespace) -> EmittedFiles:
     """What the same command made before, where nothing has changed since; with templates of one's own, always anew."""
     if arguments.templates is not None:
-        return _made(arguments)
+        return _compile_all(arguments)
     command = (arguments.MATERIAL, arguments.target, arguments.form, arguments.guards)
-    known = emitted.recall(*command)
+    known = emitted_cache.load(*command)
     if known is not None:
         return known
-    made, files = watch.watched(lambda: _made(arguments))
-    emitted.remember(*command, made, files)
+    made, files = watch.watched(lambda: _compile_all(arguments))
+    emitted_cache.store(*command, made, files)
     return made
 
 
-def _made(arguments: Namespace) -> Made:
+def _compile_all(arguments: Namespace) -> EmittedFiles:
     """Compiles every material for every target. Raises SssgenError with all that is wrong."""
     from sssgen.pipeline.compiler import compile
 
@@ -89,7 +89,7 @@ def _made(arguments: Namespace) -> Made:
                 warnings += compiled.warnings
     if wrong:
         raise SssgenError(dict.fromkeys(wrong))
-    return Made(files, sources, list(dict.fromkeys(warnings)))
+    return EmittedFiles(files, sources, list(dict.fromkeys(warnings)))
 
 
 def chosen_targets(text: str, wrong: list[Diagnostic]) -> list[str]:

@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING, Any
 from sssgen.cli.emit import chosen_targets
 from sssgen.cli.options import add_guards, add_seed
 from sssgen.cli.output import CHECK_FAILED, OK, print_json, print_warnings
-from sssgen.lang.loader import load_file, read_text
+from sssgen.lang.loader import load_file
 from sssgen.lang.plain_glsl import Loaded, load_glsl
 from sssgen.material.library import TECHNIQUES
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.support.file_writer import write_files
 from sssgen.support.paths import posix
+from sssgen.support.text_files import read_text
 
 if TYPE_CHECKING:
     from sssgen.ir.nodes import Module

@@ -15,8 +15,8 @@ from sssgen.ir.nodes import Function, Module
 from sssgen.ir.types import Matrix, Scalar, Vector, Void
 from sssgen.ir.walk import operands
 from sssgen.lang.check.termination import endless
-from sssgen.lang.loader import source_line
 from sssgen.lang.plain_glsl import load_glsl
+from sssgen.lang.source_lines import source_line
 from sssgen.material import library
 from sssgen.material.material_loading import examples, load_material
 from sssgen.passes.guards import remedy

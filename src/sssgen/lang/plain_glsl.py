@@ -11,13 +11,14 @@ from sssgen.ir.nodes import Module
 from sssgen.ir.spans import Span
 from sssgen.lang import shadertoy
 from sssgen.lang.check.module_checker import check_plain
-from sssgen.lang.loader import keep_lines, read_text
 from sssgen.lang.preprocess.preprocessor import Preprocessed, preprocess
+from sssgen.lang.source_lines import keep_lines
 from sssgen.lang.syntax.doc_comments import words_of
 from sssgen.lang.syntax.parser import parse_tokens
 from sssgen.lang.syntax.tokens import Comment, Token
 from sssgen.support.diagnostics import Diagnostic, Reporter, SssgenError, did_you_mean, failure
 from sssgen.support.gc_pause import paused
+from sssgen.support.text_files import read_text
 
 ENTRIES = ("shadertoy",)
 """The conventions by which a file may be entered, beside `main()`."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 
-from sssgen.lang.loader import read_text
 from sssgen.material.material_reader import read_material
 from sssgen.material.model import Material
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.file_memo import Kept, note, remembered
 from sssgen.support.paths import place, posix
+from sssgen.support.text_files import read_text
 
 
 def examples() -> dict[str, str]:

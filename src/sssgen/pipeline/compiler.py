@@ -1,7 +1,7 @@
 """From a material to shader text: its program (`programs`), the values of its parameters, the target's templates.
 
-A program is kept by what it depends on. The values of free parameters are not among that: they only stand in the
-declarations, in an engine's properties and in the reflection, so that a variant of a material costs no pass.
+A program is cached under everything that it depends on. The values of free parameters are not part of this: they
+appear only in declarations, in an engine's properties and in the reflection. So a variant of a material runs no pass.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 FORMS = ("shader", "functions")
 GUARDS = ("auto", "all", "none")
-"""Where operations that may go wrong are made safe: where that is not proven, everywhere, nowhere."""
+"""Which operations that can fail get a guard: those not proven safe, all of them, none."""
 
 
 class Compiled(NamedTuple):
@@ -42,16 +42,16 @@ class Compiled(NamedTuple):
 
     @property
     def reflection(self) -> dict[str, Any]:
-        """The reflection, read from its file: yours to change."""
+        """The reflection, parsed anew at each access; the caller may change it."""
         import json
 
-        found: dict[str, Any] = json.loads(list(self.files.values())[-1])
-        return found
+        reflection: dict[str, Any] = json.loads(list(self.files.values())[-1])
+        return reflection
 
 
 _compiled: dict[tuple[int, str, str, str], tuple[Material, Compiled]] = {}
 _programs: dict[tuple[str, str, str, str], Program] = {}
-_KEPT = 128
+_CACHE_SIZE = 128
 
 
 def all_targets() -> dict[str, Target]:
@@ -69,13 +69,13 @@ def compile(
     """Compiles a material for a target.
 
     `material` is a checked material, the path of a material file, or the name of an example; `form` is `shader` (a
-    complete shader) or `functions` (a library to paste); `templates` a folder whose templates go before ours;
-    `guards` puts them where they are needed (`auto`), everywhere (`all`), or nowhere (`none`).
+    complete shader) or `functions` (a library to paste); `templates` is a folder whose templates replace those of the
+    same name; `guards` are added where they are needed (`auto`), everywhere (`all`), or nowhere (`none`).
     Raises SssgenError for anything wrong with the input.
 
     >>> import sssgen
-    >>> made = sssgen.compile("paper_lantern", "glsl-330")
-    >>> sorted(made.files)[0]
+    >>> shader = sssgen.compile("paper_lantern", "glsl-330")
+    >>> sorted(shader.files)[0]
     'paper_lantern.glsl-330.frag'
     """
     if not isinstance(material, Material):
@@ -89,21 +89,21 @@ def compile(
     _check_guards(guards)
     chosen = registry.load(target)
     key = (id(material), target, form, guards)
-    known = _compiled.get(key) if templates is None else None
-    if known is not None and known[0] is material:
-        return _copy(known[1])
+    cached = _compiled.get(key) if templates is None else None
+    if cached is not None and cached[0] is material:
+        return _copy(cached[1])
     program = _program_of(material, chosen, form, guards)._replace(about=_about(material))
-    made = _finish(program, chosen, form, os.fspath(templates) if templates else None)
+    compiled = _finish(program, chosen, form, os.fspath(templates) if templates else None)
     if templates is None:
-        if len(_compiled) >= _KEPT:
+        if len(_compiled) >= _CACHE_SIZE:
             _compiled.clear()
-        _compiled[key] = material, made
-    return _copy(made)
+        _compiled[key] = material, compiled
+    return _copy(compiled)
 
 
-def _copy(made: Compiled) -> Compiled:
-    """The caller's own: what is done to it is not done to what is kept."""
-    return Compiled(dict(made.files), list(made.warnings))
+def _copy(compiled: Compiled) -> Compiled:
+    """A copy for the caller, who may change it without a change of the cached one."""
+    return Compiled(dict(compiled.files), list(compiled.warnings))
 
 
 def transpile(
@@ -112,12 +112,12 @@ def transpile(
 ) -> Compiled:  # fmt: skip
     """The functions form of a module of plain functions (no chain), or a whole shader where it has a `void main()`.
 
-    It is what `sssgen transpile` writes. With `keep` the text stays as it was written, but for what the target cannot
-    say, and `called` only leaves functions out. `head` is what its author says at its head.
+    This is what `sssgen transpile` writes. With `keep` the text stays as its author wrote it, except where the target
+    has no such construct, and `called` only omits functions. `head` are the comment lines at the head of the source.
 
-    `called` are the keys of the functions that are called from outside, with any argument that they allow; None: all.
-    `chained`: they are techniques, whose parameters have the meaning of their names. `at` is that of
-    `passes.guards.guard`.
+    `called` are the keys of the functions that are called from outside, with any argument that their types allow; None
+    means all. `chained` means that they are techniques, whose parameters have the meaning of their names. `at` is the
+    parameter of `passes.guards.guard`.
     """
     from sssgen.pipeline.programs import make_library
 
@@ -130,7 +130,10 @@ def transpile(
 
 
 def guarded_sites(material: Material, target: str = "glsl-330", form: str = "shader") -> list[Site]:
-    """Every operation with a domain in a material's program, and what is known of it. Raises SssgenError."""
+    """Every operation with a domain in a material's program, and what the range analysis proved of it.
+
+    Raises SssgenError.
+    """
     from sssgen.pipeline.programs import sites_of
 
     return sites_of(material, registry.load(target), form)
@@ -152,7 +155,7 @@ def _program_of(material: Material, target: Target, form: str, guards: str) -> P
     program = _programs.get(key) if structure else None
     if program is None:
         program = _stored_program(bare, structure, target, form, guards)
-        if len(_programs) >= _KEPT:
+        if len(_programs) >= _CACHE_SIZE:
             _programs.clear()
         _programs[key] = program
     uniforms = tuple([_with_value(uniform, program, material) for uniform in program.module.uniforms])
@@ -160,30 +163,30 @@ def _program_of(material: Material, target: Target, form: str, guards: str) -> P
 
 
 def _stored_program(bare: Material, structure: str, target: Target, form: str, guards: str) -> Program:
-    """A program from the cache folder, or made: of each material's file, that of the newest structure is kept."""
+    """A program from the cache folder, or a new one. One entry per material file, target, form and guards is kept."""
 
-    def made() -> Program:
+    def make_program() -> Program:
         from sssgen.pipeline.programs import make
 
         return make(bare, structure, target, form, guards)
 
-    if not structure or target.folder != place("targets"):  # what a plug-in's program depends on is not known here
-        return made()
+    if not structure or target.folder != place("targets"):  # it is unknown which files a plug-in's program depends on
+        return make_program()
     name = "\0".join([os.path.abspath(bare.file), target.name, form, guards])
-    program: Program = cache.kept(f"program-{cache.digest(name)}", [installation(), structure], made)
+    program: Program = cache.load_or_make(f"program-{cache.digest(name)}", [installation(), structure], make_program)
     return program
 
 
 def _bare(stage: Stage, fixed: set[str]) -> Stage:
-    """A stage without the values that no pass looks at."""
+    """A stage without the values that no pass reads."""
     modules = [stage.technique.module, *(binding.module for binding in stage.bindings.values())]
     uniforms = [uniform for module in modules for uniform in module.uniforms]
-    seen = fixed | {uniform.name for uniform in uniforms if kind_of(uniform.type) in ("int", "uint")}
-    return stage._replace(values={name: value for name, value in stage.values.items() if name in seen})
+    read = fixed | {uniform.name for uniform in uniforms if kind_of(uniform.type) in ("int", "uint")}
+    return stage._replace(values={name: value for name, value in stage.values.items() if name in read})
 
 
 def _structure(bare: Material, target: Target) -> str:
-    """What the program of a material depends on; '' where that cannot be told."""
+    """Everything that the program of a material depends on, as text; '' where this is unknown."""
     modules = [library.load(target.lighting).module] if target.lighting else []
     parts: list[object] = [bare.shading, bare.alpha_mode]
     for stage in bare.stages:

@@ -1,6 +1,6 @@
-"""What `sssgen emit` made, kept between processes: the same command on the same files need not compile again.
+"""The files of earlier `sssgen emit` commands: an equal command on unchanged files compiles nothing.
 
-An entry holds for as long as every file that went into it has the same content, and sssgen itself is the same.
+An entry is valid while every file that was read for it has the same content and sssgen itself is unchanged.
 """
 
 from __future__ import annotations
@@ -16,53 +16,59 @@ from sssgen.support.diagnostics import Diagnostic
 from sssgen.support.paths import PACKAGE, place
 
 
-class Made(NamedTuple):
+class EmittedFiles(NamedTuple):
     """The texts of a command, not yet written."""
 
     files: dict[str, str]
     sources: dict[str, tuple[str, str]]
-    """File name → the material and the target that it is for."""
+    """File name → the material and the target of the text."""
     warnings: list[Diagnostic]
 
 
-def recall(materials: Sequence[str], target: str, form: str, guards: str) -> Made | None:
-    """What the command made, if nothing has changed since."""
-    found = cache.unpickled(cache.read(_name(materials, target, form, guards)))
-    if not isinstance(found, tuple) or found[0] != installation():
+def load(materials: Sequence[str], target: str, form: str, guards: str) -> EmittedFiles | None:
+    """The files of the command, if nothing that they depend on has changed."""
+    entry = cache.unpickled(cache.read(_entry_name(materials, target, form, guards)))
+    if not isinstance(entry, tuple) or entry[0] != installation():
         return None
-    _, state, made = found
-    return Made(*made) if _state(state) == state else None
+    _, digests, emitted = entry
+    return EmittedFiles(*emitted) if _digests(digests) == digests else None
 
 
-def remember(materials: Sequence[str], target: str, form: str, guards: str, made: Made, files: Iterable[str]) -> None:
-    """Keeps what a command made, unless a plug-in may have had a part in it, whose files are not known here."""
+def store(
+    materials: Sequence[str], target: str, form: str, guards: str, emitted: EmittedFiles, read: Iterable[str]
+) -> None:
+    """Writes the files of a command to the cache; `read` are the paths that were read for them.
+
+    Nothing is stored while plug-ins are installed: it is unknown which files their text depends on.
+    """
     from sssgen.targets import registry
 
     if registry.has_plugins():
         return
-    cache.write(_name(materials, target, form, guards), cache.pickled((installation(), _state(files), tuple(made))))
+    entry = (installation(), _digests(read), tuple(emitted))
+    cache.write(_entry_name(materials, target, form, guards), cache.pickled(entry))
 
 
-def _state(files: Iterable[str]) -> dict[str, str]:
-    """The content of each file, shortened; '' for one that is not there."""
-    found = {}
-    for path in files:
+def _digests(paths: Iterable[str]) -> dict[str, str]:
+    """Path → digest of the file's content; '' for a missing file."""
+    digests = {}
+    for path in paths:
         try:
             with open(path, "rb") as file:
-                found[path] = cache.digest(file.read())
+                digests[path] = cache.digest(file.read())
         except OSError:
-            found[path] = ""
-    return found
+            digests[path] = ""
+    return digests
 
 
-def _name(materials: Sequence[str], target: str, form: str, guards: str) -> str:
+def _entry_name(materials: Sequence[str], target: str, form: str, guards: str) -> str:
     return "emitted-" + cache.digest("\0".join([os.getcwd(), target, form, guards, *materials]))
 
 
 @functools.cache
 def installation() -> list[object]:
-    """Tells one state of sssgen, and of the Python that it runs in, from another."""
+    """The state of sssgen's files and of the Python that runs it, to compare with that of an entry."""
     packages = [path for path in sys.path if path.endswith("-packages") and os.path.isdir(path)]
     folders = (PACKAGE, place("targets"), place("templates"))
-    changed = [(path, os.stat(path).st_mtime_ns) for path in packages]  # where a plug-in may have come
+    changed = [(path, os.stat(path).st_mtime_ns) for path in packages]  # a plug-in may have been installed there
     return [sys.version, changed, *map(cache.stamp, folders)]

@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 from sssgen.ir.formats import FLOAT16, FLOAT32, Format
 from sssgen.ir.nodes import Function, Local, Module, Return, Span
 from sssgen.ir.types import Struct
-from sssgen.lang.loader import comment_behind, comments_before, source_line
 from sssgen.lang.polyfills import guard as guard_source
 from sssgen.lang.polyfills import polyfill
+from sssgen.lang.source_lines import comment_behind, comments_before, source_line
 from sssgen.material import library
 from sssgen.material.chain_assembly import TAKEN, ChainStage, Entry, assemble
 from sssgen.material.model import Material

@@ -6,13 +6,11 @@ tomllib reads the values and finds wrong syntax; a small scanner over the same t
 from __future__ import annotations
 
 import functools
-import os
 import re
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from sssgen.ir.nodes import Span
-from sssgen.support import cache
 from sssgen.support.diagnostics import Reporter
 
 MAX_CHARACTERS = 1 << 18
@@ -58,10 +56,8 @@ class Document:
 
 
 def parse(text: str, file: str) -> Document:
-    """Reads a TOML text, and keeps what it found. Raises SssgenError with every syntax error found."""
-    status = os.stat(__file__)
-    stamp = (status.st_size, status.st_mtime_ns, text)
-    data, places = cache.kept(f"toml-{cache.digest(file)}", stamp, lambda: _parse(text, file))
+    """Reads a TOML text. Raises SssgenError with every syntax error found."""
+    data, places = _parse(text, file)
     return Document(data, places, Reporter(file, text))
 
 

@@ -13,7 +13,6 @@ import os
 import sys
 from typing import Any
 
-from sssgen.support import cache
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.paths import place, stem
 from sssgen.targets.descriptor import Names, Target, read, table_of, target_of
@@ -89,11 +88,6 @@ def _own_names() -> tuple[str, ...]:
 @functools.cache
 def _tables() -> dict[str, dict[str, Any]]:
     """The contents of the project's own descriptors that can be read."""
-    tables: dict[str, dict[str, Any]] = cache.kept("targets", cache.stamp(place("targets")), _read_tables)
-    return tables
-
-
-def _read_tables() -> dict[str, dict[str, Any]]:
     tables = {}
     for name in _own_names():
         with contextlib.suppress(SssgenError):

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from sssgen.harness.compilers import Message
 from sssgen.ir.spans import Span
 from sssgen.ir.types import Type
-from sssgen.lang.loader import source_line
+from sssgen.lang.source_lines import source_line
 from sssgen.pipeline.compiler import Compiled
 from sssgen.support.diagnostics import Diagnostic, SssgenError
 from sssgen.targets.descriptor import Target

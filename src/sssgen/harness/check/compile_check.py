@@ -10,10 +10,10 @@ from typing import Any
 from sssgen.harness.check.shader_files import Shader
 from sssgen.harness.compilers import LANGUAGES, CompilerMissing, Message, Source, errors, readers
 from sssgen.harness.compilers.compiler_process import Worker
-from sssgen.lang.loader import read_text
 from sssgen.material.library import TECHNIQUES
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.paths import place, posix
+from sssgen.support.text_files import read_text
 
 
 @dataclass(frozen=True)

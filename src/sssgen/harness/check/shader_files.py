@@ -10,11 +10,11 @@ from dataclasses import dataclass, field
 from sssgen.harness.check.compiler_inputs import outputs, sources
 from sssgen.harness.check.handwritten import LANGUAGES_OF, hand_written, language_of
 from sssgen.harness.compilers import Source, readers
-from sssgen.lang.loader import read_text
 from sssgen.material.material_loading import load_material
 from sssgen.pipeline.compiler import FORMS, compile
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.support.paths import posix
+from sssgen.support.text_files import read_text
 from sssgen.targets import registry
 
 REFLECTION = "reflection.json"

@@ -11,9 +11,9 @@ import numpy as np
 
 from sssgen.harness.evaluate.probes import Subject
 from sssgen.harness.pictures import images
-from sssgen.lang.loader import MAX_BYTES, refuse_special
 from sssgen.support import json_source
 from sssgen.support.diagnostics import failure
+from sssgen.support.text_files import MAX_BYTES, refuse_special
 from sssgen.targets.numpy_textures import Texture
 
 

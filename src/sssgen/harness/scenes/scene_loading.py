@@ -6,10 +6,10 @@ import os
 
 from sssgen.harness.scenes.scene import Scene
 from sssgen.harness.scenes.scene_reader import read_scene
-from sssgen.lang.loader import read_text
 from sssgen.material.material_loading import examples
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import posix
+from sssgen.support.text_files import read_text
 from sssgen.support.toml_source import parse
 
 

@@ -24,12 +24,12 @@ from typing import Any, Literal, NamedTuple
 
 from sssgen.harness.testing.compile_outcome import compiled
 from sssgen.harness.testing.outcome import Outcome, beside, lacking
-from sssgen.lang.loader import read_text
 from sssgen.material.library import ROLES
 from sssgen.support import json_source
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.extras import install_hint
 from sssgen.support.paths import posix, stem
+from sssgen.support.text_files import read_text
 
 EVAL = ".eval.json"
 

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from sssgen.harness.scenes.toml_table import Table
-from sssgen.lang.loader import read_text
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import posix
+from sssgen.support.text_files import read_text
 from sssgen.support.toml_source import parse
 
 Spectrum = tuple[float, float, float]
