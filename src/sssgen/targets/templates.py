@@ -1,6 +1,7 @@
-"""Renders templates: the user's folder stands before a plug-in's, and that before ours.
+"""Renders templates: a file in the user's folder comes before that of a plug-in, and this before the project's own.
 
-What Jinja compiles from them is kept in the cache folder.
+A user's templates are rendered in Jinja's sandbox: they reach neither Python's internals nor other files. Nothing
+bounds their time and memory. What Jinja compiles is kept in the cache folder.
 """
 
 from __future__ import annotations
@@ -19,28 +20,25 @@ if TYPE_CHECKING:
 _environments: dict[tuple[str | None, str], Environment] = {}
 
 
-def render(template: str, context: dict[str, Any], templates: str | None, beside: str) -> str:
+def render(template: str, context: dict[str, Any], templates: str | None, folder: str) -> str:
     """A template's text. Raises SssgenError for a faulty template.
 
-    `templates` is the user's folder, whose templates are rendered in Jinja's sandbox; `beside` that of the descriptor.
+    `templates` is the user's folder, `folder` that of the descriptor.
     """
     from jinja2 import TemplateNotFound, TemplateSyntaxError
 
-    environment = _environment(templates, beside)
+    environment = _environment(templates, folder)
     if templates is not None:
         from copy import deepcopy
 
-        from sssgen.targets.sandbox import begin
-
-        begin()
-        context = deepcopy(context)  # what a template does to it is not done to the target
+        context = deepcopy(context)  # the template may change it, the target must stay the same
     try:
         return environment.get_template(template).render(context)
     except TemplateNotFound as error:
         raise _failure(f"there is no template '{error.name}'", "", _place(error) or (template, 0)) from None
     except TemplateSyntaxError as error:
         raise _failure(str(error.message), "", (error.filename or template, error.lineno)) from None
-    except Exception as error:  # whatever a template's expressions lead to
+    except Exception as error:  # a template's expressions may fail in any way
         message = f"the template cannot be rendered: {str(error) or type(error).__name__}"
         hint = "docs/templates.md lists what a template may use"
         raise _failure(message, hint, _place(error) or (template, 0)) from None
@@ -52,35 +50,36 @@ def _failure(message: str, hint: str, place: tuple[str, int]) -> SssgenError:
 
 
 def _place(error: BaseException) -> tuple[str, int] | None:
-    """The template and the line that an error came up in: the innermost frame of a template in its traceback."""
-    found, frames = None, error.__traceback__
+    """The template and the line of an error: the innermost frame of a template in its traceback."""
+    innermost, frames = None, error.__traceback__
     while frames is not None:
         name = frames.tb_frame.f_code.co_filename
         if name.endswith(".j2"):
-            found = name, frames.tb_lineno
+            innermost = name, frames.tb_lineno
         frames = frames.tb_next
-    return found
+    return innermost
 
 
-def _environment(templates: str | None, beside: str) -> Environment:
+def _environment(templates: str | None, folder: str) -> Environment:
     """Jinja's environment; its compiled templates are kept on disk."""
-    key = (templates, beside)
+    key = (templates, folder)
     if key not in _environments:
         from jinja2 import FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
 
         if templates is not None:
-            from sssgen.targets.sandbox import Sandbox as Chosen
+            from jinja2.sandbox import SandboxedEnvironment as Chosen
         else:
-            from jinja2 import Environment as Chosen  # type: ignore[assignment]  # the same without a bound
-        places = [templates] if templates is not None else []
-        kept = cache.folder()
+            from jinja2 import Environment as Chosen  # type: ignore[assignment]  # the base class
+        users = [templates] if templates is not None else []
+        cached = cache.folder()
+        pattern = f"{Chosen.__name__.lower()}_%s.cache"
         _environments[key] = Chosen(
-            loader=FileSystemLoader([*places, os.path.join(beside, "templates"), place("templates")]),
+            loader=FileSystemLoader([*users, os.path.join(folder, "templates"), place("templates")]),
             undefined=StrictUndefined,
             trim_blocks=True,
             lstrip_blocks=True,
             keep_trailing_newline=True,
-            bytecode_cache=FileSystemBytecodeCache(str(kept), f"{Chosen.__name__.lower()}_%s.cache") if kept else None,
+            bytecode_cache=FileSystemBytecodeCache(cached, pattern) if cached else None,
             auto_reload=templates is not None,
         )
     return _environments[key]
