@@ -46,4 +46,4 @@ def assert_compiles() -> Callable[[Source], None]:
 def pytest_report_header() -> list[str]:
     """Which Unity headers the run was against, and what is not there."""
     named = os.environ.get("SSSGEN_UNITY_INCLUDES")
-    return [f"Unity headers: {f'real ones, {named}' if named else 'the stand-ins of tests/unity_standin'}"]
+    return [f"Unity headers: {f'real ones, {named}' if named else 'the stand-ins of harness/compilers/unity_standin'}"]

@@ -11,12 +11,13 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from folders import UNITY_STANDIN
+from folders import UNITY_SAMPLES
 from sssgen.cli import main as cli
 from sssgen.harness.check import compile_check as check
 from sssgen.harness.check.shader_files import of_files, of_material, read
 from sssgen.harness.compilers import Compiler, Source
 from sssgen.harness.compilers.compiler_process import Worker
+from sssgen.harness.compilers.unity_compiler import STANDIN
 from sssgen.support.file_writer import write_files
 
 FRAGMENT = "in vec2 v_uv;\nout vec4 color;\nvoid main() {\n    color = vec4(v_uv, 0.0, 1.0);\n}\n"
@@ -236,7 +237,7 @@ def test_an_error_in_the_other_stage_is_that_ones(run: Run, compiler: Callable[[
 
 def test_an_error_outside_of_the_file_has_no_line_of_it(compiler: Callable[[str], Compiler]) -> None:
     unity = compiler("unity")
-    text = (UNITY_STANDIN / "samples" / "surface.shader").read_text(encoding="utf-8")
+    text = (UNITY_SAMPLES / "surface.shader").read_text(encoding="utf-8")
     assert not unity.check(Source(text, "unity-builtin", name='a "quoted": name.shader'))
     found = unity.check(Source(text.replace("LightingBacklit_GI", "LightingOther_GI"), "unity-builtin"))
     assert any("surface entries:" in message.text for message in found), found
@@ -344,13 +345,13 @@ def test_a_pipe_is_not_waited_for(run: Run) -> None:
 
 def test_which_headers_of_unity(run: Run, compiler: Callable[[str], Compiler]) -> None:
     compiler("unity")
-    text = (UNITY_STANDIN / "samples" / "surface.shader").read_text(encoding="utf-8")
+    text = (UNITY_SAMPLES / "surface.shader").read_text(encoding="utf-8")
     write({"a.shader": text})
     assert "the project's stand-in headers" in run("a.shader").out
     own = Path("headers")
     own.mkdir()
     for part in ("CGIncludes", "Packages"):
-        (own / part).symlink_to(UNITY_STANDIN / part)
+        (own / part).symlink_to(STANDIN / part)
     ran = run("a.shader", "--unity-includes", "headers")
     assert ran.status == 0
     assert f"Unity's own headers in {own.resolve()}" in ran.out

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
-from folders import UNITY_STANDIN
+from folders import UNITY_SAMPLES as SAMPLES
 from sssgen.harness import compilers
 from sssgen.harness.check.compiler_inputs import sources
 from sssgen.harness.compilers import (
@@ -23,7 +23,6 @@ from sssgen.harness.compilers import (
     surface_shader as surface,
 )
 
-SAMPLES = UNITY_STANDIN / "samples"
 GLSL = "in vec2 v_uv;\nout vec4 color;\nuniform sampler2D t;\nvoid main() {\n    color = texture(t, v_uv);\n}"
 GLSL_VERTEX = "out vec2 v_uv;\nvoid main() {\n    v_uv = vec2(0.0);\n    gl_Position = vec4(0.0);\n}\n"
 GLSL_LIBRARY = """\

@@ -9,6 +9,7 @@ import sys
 import tomllib
 import venv
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -101,6 +102,21 @@ def test_the_wheel_emits_what_the_checkout_emits(installed: Path, tmp_path: Path
     theirs = {path.name: path.read_bytes() for path in (tmp_path / "wheel").iterdir()}
     assert len(ours) > len(names)
     assert theirs == ours
+
+
+def test_the_wheel_checks_and_runs_unitys_text(
+    wheel: Path, tmp_path: Path, compiler: Callable[[str], object], backend: Callable[[str], object]
+) -> None:
+    """Outside of a checkout the stand-in headers are found."""
+    compiler("unity"), backend("unity-urp")
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(tmp_path / "installed")
+    own = {"PYTHONPATH": str(tmp_path / "installed"), "SSSGEN_UNITY_INCLUDES": ""}
+    program = [sys.executable, "-m", "sssgen"]
+    checked = run(*program, "check", "ice", "--target", "unity-urp", cwd=tmp_path, **own)
+    assert "the project's stand-in headers" in checked
+    evaluated = run(*program, "eval", "beer_lambert", "--samples", "9", "-b", "unity,unity-urp", cwd=tmp_path, **own)
+    assert evaluated.count("the project's stand-in headers") == 2
 
 
 def test_the_installed_program(installed: Path, tmp_path: Path) -> None:

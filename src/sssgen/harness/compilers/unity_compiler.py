@@ -1,9 +1,8 @@
 """Unity's shaders, compiled outside Unity: preprocessed with Unity's headers, then given to glslang or DXC.
 
-The headers are Unity's and no part of this project. SSSGEN_UNITY_INCLUDES names a folder that holds
-`CGIncludes/` and `Packages/com.unity.render-pipelines.{core,universal}/` (an installed Unity has both);
-without it the project's own stand-in headers serve, which declare only what is used. `version()` says
-which.
+Unity's headers are not part of this project. SSSGEN_UNITY_INCLUDES names a folder with `CGIncludes/` and
+`Packages/com.unity.render-pipelines.{core,universal}/` (an installed Unity has both); without it the stand-in headers
+of `unity_standin/` are used, which declare only what is needed. `version()` states which.
 
 Built-in pipeline: HLSL with DX9 samplers, so glslang reads it. URP and Shader Graph: DXC.
 """
@@ -22,6 +21,9 @@ from sssgen.harness.compilers.compiler_interface import LANGUAGES, Compiler, Com
 
 _TEXT = "sssgen-text"
 """What the text is called in `#line`. A name of the user's could hold a quote, or be a header's."""
+
+STANDIN = Path(__file__).with_name("unity_standin")
+"""The project's own headers, which stand in for Unity's."""
 
 HEADERS = "CGIncludes/ and Packages/com.unity.render-pipelines.*/"
 
@@ -257,15 +259,11 @@ def find() -> Unity:
     """The headers, a C preprocessor, glslang and DXC. Raises CompilerMissing where one of them is lacking."""
     import os
 
-    from sssgen.support.paths import folder
-
     named = os.environ.get("SSSGEN_UNITY_INCLUDES")
-    standin = folder("tests") / "unity_standin"
-    root = Path(named).expanduser() if named else standin
+    root = Path(named).expanduser() if named else STANDIN
     if not holds_headers(root):
-        where = "" if named else "without a checkout of the project, "
-        raise CompilerMissing(f"{where}SSSGEN_UNITY_INCLUDES must name a folder with {HEADERS}")
-    return Unity(root.resolve(), root.resolve() != standin.resolve(), _preprocessor())
+        raise CompilerMissing(f"SSSGEN_UNITY_INCLUDES must name a folder with {HEADERS}")
+    return Unity(root.resolve(), root.resolve() != STANDIN.resolve(), _preprocessor())
 
 
 def holds_headers(root: Path) -> bool:
