@@ -9,13 +9,14 @@ from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter
 
+from sssgen.passes.inline import inline
+
 from sssgen.ir.nodes import Module
 from sssgen.ir.transform import rewrite_module
 from sssgen.ir.walk import all_expressions
 from sssgen.material.material_loading import load_material
 from sssgen.passes.fold import fold
 from sssgen.passes.hoist import hoist
-from sssgen.passes.inline import inline
 from sssgen.passes.names import rename
 from sssgen.passes.prune import prune
 from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters

@@ -25,9 +25,9 @@ from sssgen.ir.walk import statements
 from sssgen.lang.check.module_checker import check
 from sssgen.lang.syntax.parser import parse
 from sssgen.material import library
+from sssgen.passes.conversions import drop_conversions
 from sssgen.passes.fold import fold
 from sssgen.passes.hoist import hoist
-from sssgen.passes.inline import inline
 from sssgen.passes.names import rename
 from sssgen.passes.prune import prune
 from sssgen.pipeline.compiler import GUARDS, transpile
@@ -117,12 +117,12 @@ def test_prune_keeps_no_variable_for_it() -> None:
     assert_is(pruned, "float f(float x) { float b = x + 1.0; assume(b > 0.0); return b; }")
 
 
-def test_inline_hoist_and_names_keep_it() -> None:
+def test_conversions_hoist_and_names_keep_it() -> None:
     source = "float g(float x) { assume(x > 0.0); float r = sqrt(x); return r; }\n"
     source += "float f(float v) { float a = v; return g(a); }"
     module = module_of(source)
     for made in (
-        inline(module, lambda function: function.name == "g", True), hoist(module, [key(module, "f")])[0],
+        drop_conversions(module), hoist(module, [key(module, "f")])[0],
         rename(module, {"x", "v", "a"}, str, True)[0],
     ):  # fmt: skip
         assert verify(made) == [] and assumptions(made), print_module(made, spans=False)

@@ -16,9 +16,9 @@ from sssgen.ir.nodes import Module
 from sssgen.ir.text import print_module, read_module
 from sssgen.ir.verify import check_module, verify
 from sssgen.lang.polyfills import polyfill
+from sssgen.passes.conversions import drop_conversions
 from sssgen.passes.fold import fold
 from sssgen.passes.hoist import hoist
-from sssgen.passes.inline import inline
 from sssgen.passes.legal.legalise import legalise
 from sssgen.passes.prune import prune
 from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
@@ -120,8 +120,7 @@ PASSES: dict[str, Callable[[Module], Module]] = {
     "prune": lambda module: prune(module, [KEY]),
     "fold and prune": lambda module: prune(fold(module), [KEY]),
     "hoist": lambda module: hoist(module, [KEY])[0],
-    "inline": lambda module: inline(module, lambda _: True),
-    "inline, with variables": lambda module: inline(module, lambda _: True, insist=True),
+    "conversions": drop_conversions,
     "wgsl": legal("wgsl"),
     "hlsl": legal("hlsl"),
     "glsl": legal("glsl-es-300"),

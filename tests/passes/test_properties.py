@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 from ir_interpreter import BUILTINS, Discarded, Interpreter, componentwise, flat
 from pass_cases import key
 from shaded_programs import module_for
-from sssgen.ir.nodes import Function, Module
+from sssgen.ir.nodes import Module
 from sssgen.ir.verify import verify
+from sssgen.passes.conversions import drop_conversions
 from sssgen.passes.fold import fold
 from sssgen.passes.hoist import hoist
-from sssgen.passes.inline import inline
 from sssgen.passes.names import rename
 from sssgen.passes.prune import prune
 from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
@@ -83,12 +83,9 @@ def test_fold(seed: int, discards: bool) -> None:
     same(seed, discards, fold)
 
 
-@given(SEEDS, st.booleans(), st.booleans())
-def test_inline(seed: int, discards: bool, insist: bool) -> None:
-    def chosen(function: Function) -> bool:
-        return function.name != "f"
-
-    same(seed, discards, lambda module: inline(module, chosen, insist))
+@given(SEEDS, st.booleans())
+def test_conversions(seed: int, discards: bool) -> None:
+    same(seed, discards, drop_conversions)
 
 
 @given(SEEDS, st.booleans())
@@ -124,7 +121,7 @@ def test_all_together(seed: int, discards: bool) -> None:
     def change(module: Module) -> Module:
         module = prune(fold(module, {"mode": (1,)}), [key(module, "f")])
         module = hoist(module, [key(module, "f")])[0]
-        module = prune(inline(module, lambda function: function.name == "twice"), [key(module, "f")])
+        module = prune(drop_conversions(module), [key(module, "f")])
         return rename(module, {"a", "b"}, str, True)[0]
 
     same(seed, discards, change, linked=True)

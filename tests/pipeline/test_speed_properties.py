@@ -39,7 +39,7 @@ MATERIAL = '[material]\nname = "plain"\n[surface]\ntechnique = "plain.sss"\n'
 def fresh(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
     """No program and no result to begin with, in memory or on disk."""
     monkeypatch.setattr(cache, "folder", lambda: str(tmp_path))
-    for memory in (compiler._programs, compiler._compiled, programs._middles):
+    for memory in (compiler._programs, compiler._compiled, programs._material_programs):
         memory.clear()
     yield
     compiler._programs.clear()

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from sssgen.material.model import Material
     from sssgen.pipeline.compiler import Compiled
+    from sssgen.pipeline.trace import Trace
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -33,12 +34,20 @@ def add_options(parser: ArgumentParser) -> None:
         help="whole shaders (default), or functions to include in your own shader",
     )
     add_guards(parser)
+    parser.add_argument(
+        "--trace", action="store_true", help="also write the IR after each pass to DIR/NAME.TARGET.trace/NN-PASS.ir"
+    )
     parser.add_argument("--templates", metavar="DIR", help="a folder of templates that take precedence over ours")
 
 
 def run(arguments: Namespace) -> int:
     """Compiles everything, then writes everything: where one text fails, none is written."""
-    made = _cached_or_compiled(arguments)
+    traces: list[Trace] = []
+    try:
+        made = _cached_or_compiled(arguments, traces)
+    finally:
+        for trace in traces:
+            trace.write(arguments.output)
     written = write_files(arguments.output, made.files)
     if arguments.json:
         rows = [
@@ -54,22 +63,23 @@ def run(arguments: Namespace) -> int:
     return OK
 
 
-def _cached_or_compiled(arguments: Namespace) -> EmittedFiles:
-    """What the same command made before, where nothing has changed since; with templates of one's own, always anew."""
-    if arguments.templates is not None:
-        return _compile_all(arguments)
+def _cached_or_compiled(arguments: Namespace, traces: list[Trace]) -> EmittedFiles:
+    """The cached result of the same command; with templates of one's own or a trace it is compiled again."""
+    if arguments.templates is not None or arguments.trace:
+        return _compile_all(arguments, traces)
     command = (arguments.MATERIAL, arguments.target, arguments.form, arguments.guards)
     known = emitted_cache.load(*command)
     if known is not None:
         return known
-    made, files = watch.watched(lambda: _compile_all(arguments))
+    made, files = watch.watched(lambda: _compile_all(arguments, traces))
     emitted_cache.store(*command, made, files)
     return made
 
 
-def _compile_all(arguments: Namespace) -> EmittedFiles:
-    """Compiles every material for every target. Raises SssgenError with all that is wrong."""
+def _compile_all(arguments: Namespace, traces: list[Trace]) -> EmittedFiles:
+    """Compiles every material for every target, and adds to `traces`. Raises SssgenError with all that is wrong."""
     from sssgen.pipeline.compiler import compile
+    from sssgen.pipeline.trace import Trace
 
     wrong: list[Diagnostic] = []
     names = chosen_targets(arguments.target, wrong)
@@ -80,8 +90,10 @@ def _compile_all(arguments: Namespace) -> EmittedFiles:
     warnings: list[Diagnostic] = []
     for material in materials:
         for name in names:
+            trace = Trace(f"{material.name}.{name}.trace") if arguments.trace else None
+            traces += [trace] if trace is not None else []
             try:
-                compiled = compile(material, name, arguments.form, templates, arguments.guards)
+                compiled = compile(material, name, arguments.form, templates, arguments.guards, trace)
             except SssgenError as error:
                 wrong += error.diagnostics
             else:

@@ -54,6 +54,11 @@ def add_options(parser: ArgumentParser) -> None:
     add_guards(parser, default="none")
     add("-o", "--output", metavar="FILE", help="the file to write; its reflection is written next to it")
     add(
+        "--trace",
+        action="store_true",
+        help="also write the IR after each pass to FILE.trace/NN-PASS.ir, where -o is FILE",
+    )
+    add(
         "--verify", action="store_true", help="run every function as written and as translated, and compare the results"
     )
     add(
@@ -109,6 +114,12 @@ def _targets(arguments: Namespace, wrong: list[Diagnostic]) -> list[str]:
         wrong.append(Diagnostic("error", "which target?", hint="write --target wgsl; there are: sssgen list targets"))
         return []
     names = chosen_targets(arguments.target, wrong)
+    if arguments.trace and arguments.output in (None, "-"):
+        wrong.append(
+            Diagnostic(
+                "error", "--trace needs an output file", hint="write -o FILE: the trace is written to FILE.trace"
+            )
+        )
     if len(names) > 1:
         message = "transpile takes one target"
         wrong.append(Diagnostic("error", message, hint=f"write --target {names[0]}"))
@@ -128,6 +139,7 @@ def _macros(given: list[str]) -> dict[str, str]:
 
 def _translate(arguments: Namespace, module: Module, loaded: Loaded | None, target: str, path: Path) -> int:
     from sssgen.pipeline.compiler import transpile
+    from sssgen.pipeline.trace import Trace
 
     called = None
     if arguments.prune:
@@ -136,7 +148,12 @@ def _translate(arguments: Namespace, module: Module, loaded: Loaded | None, targ
     options: dict[str, Any] = {"called": called} if called else {}
     if loaded is not None:  # a technique's text is made shorter, an author's is kept
         options |= {"keep": True, "head": loaded.head}
-    compiled = transpile(module, target, _title(path), arguments.guards, **options)
+    trace = Trace(f"{os.path.basename(arguments.output)}.trace") if arguments.trace else None
+    try:
+        compiled = transpile(module, target, _title(path), arguments.guards, trace=trace, **options)
+    finally:
+        if trace is not None:
+            trace.write(os.path.dirname(arguments.output) or ".")
     renamed = [
         {"from": old, "to": new, "why": _why(old, target)}
         for old, new in compiled.reflection.get("renames", {}).items()

@@ -18,7 +18,7 @@ must be valid (`ir.verify`).
 
 A span follows the first token of a statement or declaration and the last of an expression:
 `@file:line:column-`, then `column` or `line:column` of its end. No span means NOWHERE. Without spans, modules
-are equal if their texts are.
+are equal if their texts are. `//` begins a comment, which is not read.
 """
 
 from __future__ import annotations

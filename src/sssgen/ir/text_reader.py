@@ -62,7 +62,7 @@ def read_module(text: str) -> Module:
 
 
 _TOKEN = re.compile(
-    r"""(?P<space>\s+)
+    r"""(?P<space>\s+|//[^\n]*)
     | (?P<span>@\d+:\d+:\d+-\d+(?::\d+)?)
     | (?P<number>-?\d+(?:\.\d+)?(?:e[+-]?\d+)?u?)
     | (?P<name>\$?[A-Za-z_]\w*)

@@ -27,6 +27,7 @@ from sssgen.targets.reflection import as_text, reflect
 
 if TYPE_CHECKING:
     from sssgen.passes.ranges.sites import Site
+    from sssgen.pipeline.trace import Trace
 
 FORMS = ("shader", "functions")
 GUARDS = ("auto", "all", "none")
@@ -65,12 +66,14 @@ def compile(
     form: str = "shader",
     templates: str | os.PathLike[str] | None = None,
     guards: str = "auto",
+    trace: Trace | None = None,
 ) -> Compiled:
     """Compiles a material for a target.
 
     `material` is a checked material, the path of a material file, or the name of an example; `form` is `shader` (a
     complete shader) or `functions` (a library to paste); `templates` is a folder whose templates replace those of the
     same name; `guards` are added where they are needed (`auto`), everywhere (`all`), or nowhere (`none`).
+    `trace` records the IR after each pass; then no cache is used.
     Raises SssgenError for anything wrong with the input.
 
     >>> import sssgen
@@ -89,10 +92,10 @@ def compile(
     _check_guards(guards)
     chosen = registry.load(target)
     key = (id(material), target, form, guards)
-    cached = _compiled.get(key) if templates is None else None
+    cached = _compiled.get(key) if templates is None and trace is None else None
     if cached is not None and cached[0] is material:
         return _copy(cached[1])
-    program = _program_of(material, chosen, form, guards)._replace(about=_about(material))
+    program = _program_of(material, chosen, form, guards, trace)._replace(about=_about(material))
     compiled = _finish(program, chosen, form, os.fspath(templates) if templates else None)
     if templates is None:
         if len(_compiled) >= _CACHE_SIZE:
@@ -109,6 +112,7 @@ def _copy(compiled: Compiled) -> Compiled:
 def transpile(
     module: Module, target: str, name: str, guards: str = "none", called: Sequence[str] | None = None,
     at: Callable[[Site], str] | None = None, chained: bool = False, keep: bool = False, head: Sequence[str] = (),
+    trace: Trace | None = None,
 ) -> Compiled:  # fmt: skip
     """The functions form of a module of plain functions (no chain), or a whole shader where it has a `void main()`.
 
@@ -125,7 +129,7 @@ def transpile(
     chosen = registry.load(target)
     about = About(name, name, head=tuple(head))
     with paused():
-        program = make_library(module, chosen, guards, called, at, chained, keep)._replace(about=about)
+        program = make_library(module, chosen, guards, called, at, chained, keep, trace)._replace(about=about)
         return _finish(program, chosen, program.stage.kind if program.stage else "functions", None)
 
 
@@ -146,15 +150,15 @@ def _check_guards(guards: str) -> None:
         raise failure(f"unknown guards '{guards}'", did_you_mean(guards, GUARDS) or "guards: auto, all, none")
 
 
-def _program_of(material: Material, target: Target, form: str, guards: str) -> Program:
+def _program_of(material: Material, target: Target, form: str, guards: str, trace: Trace | None) -> Program:
     """The program of a material, with the material's values as the uniforms' defaults."""
     fixed = {name for stage in material.stages for name in stage.fixed}
     bare = material._replace(stages=tuple([_bare(stage, fixed) for stage in material.stages]))
-    structure = _structure(bare, target)
+    structure = _structure(bare, target) if trace is None else ""
     key = (structure, target.name, form, guards)
     program = _programs.get(key) if structure else None
     if program is None:
-        program = _stored_program(bare, structure, target, form, guards)
+        program = _stored_program(bare, structure, target, form, guards, trace)
         if len(_programs) >= _CACHE_SIZE:
             _programs.clear()
         _programs[key] = program
@@ -162,13 +166,15 @@ def _program_of(material: Material, target: Target, form: str, guards: str) -> P
     return program._replace(module=program.module._replace(uniforms=uniforms))
 
 
-def _stored_program(bare: Material, structure: str, target: Target, form: str, guards: str) -> Program:
+def _stored_program(
+    bare: Material, structure: str, target: Target, form: str, guards: str, trace: Trace | None
+) -> Program:
     """A program from the cache folder, or a new one. One entry per material file, target, form and guards is kept."""
 
     def make_program() -> Program:
         from sssgen.pipeline.programs import make
 
-        return make(bare, structure, target, form, guards)
+        return make(bare, structure, target, form, guards, trace)
 
     if not structure or target.folder != place("targets"):  # it is unknown which files a plug-in's program depends on
         return make_program()

@@ -37,6 +37,7 @@ from sssgen.passes.legal.part_stores import is_dynamic_store, is_swizzle_store, 
 from sssgen.passes.lift_calls import Calls, awkward, lift
 from sssgen.passes.scopes import assigned, declared, outs_of
 from sssgen.passes.substitute import in_place, is_cheap
+from sssgen.passes.unsupported import Unsupported
 from sssgen.passes.variable_effects import effects
 
 Polyfill = Callable[[str, Sequence[Type]], ir.Module]
@@ -45,14 +46,6 @@ Polyfill = Callable[[str, Sequence[Type]], ir.Module]
 
 _EVERYWHERE = frozenset(("+", "-", "*", "<", ">", "<=", ">=", "&&", "||"))
 """The operators that mean the same in every language, but on matrices."""
-
-
-class Unsupported(Exception):
-    """Something that the target has no way to say; `more` are those of other functions."""
-
-    def __init__(self, message: str, span: ir.Span, more: Sequence[Unsupported] = ()) -> None:
-        super().__init__(message)
-        self.message, self.span, self.more = message, span, tuple(more)
 
 
 class _OutOfOrder(Exception):

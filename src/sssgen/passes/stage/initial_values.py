@@ -6,25 +6,18 @@ Place: before `legalise`, to which the assignments are ordinary code.
 
 from __future__ import annotations
 
-from sssgen.ir.nodes import Assign, Global, Intrinsic, Module, Span, Variable
+from sssgen.ir.nodes import Assign, Global, Intrinsic, Module, Variable
 from sssgen.ir.walk import subexpressions
+from sssgen.passes.unsupported import Unsupported
 
 _SURROUNDINGS = ("texture", "texel")
 """How the builtins begin that no constant can use."""
 
 
-class NoEntry(Exception):
-    """A variable whose value nothing can set, with its place."""
-
-    def __init__(self, message: str, span: Span) -> None:
-        super().__init__(message)
-        self.message, self.span = message, span
-
-
 def set_at_start(module: Module, entry: str, all_of_them: bool = False) -> Module:
     """The module with its variables' values set first in the function with the key `entry`, in their order.
 
-    Only those that are no constants, unless it is to be `all_of_them`. Raises NoEntry where `entry` is ''.
+    Only those that are no constants, unless it is to be `all_of_them`. Raises Unsupported where `entry` is ''.
     """
     constants = {constant.name for constant in module.constants}
     moved = [one for one in module.variables if one.value is not None and (all_of_them or _varies(one, constants))]
@@ -32,7 +25,7 @@ def set_at_start(module: Module, entry: str, all_of_them: bool = False) -> Modul
         return module
     if not entry:
         message = f"the value of '{moved[0].name}' is not constant, and there is no main() that could set it"
-        raise NoEntry(message, moved[0].span)
+        raise Unsupported(message, moved[0].span)
     names = {variable.name for variable in moved}
     variables = tuple([one._replace(value=None) if one.name in names else one for one in module.variables])
     stmts = tuple(map(_set, moved))

@@ -17,6 +17,7 @@ from sssgen.ir.transform import rewrite_module
 from sssgen.ir.types import VOID, Array, Matrix, Struct, Type, Vector
 from sssgen.ir.walk import all_expressions, builtins_of, operands
 from sssgen.passes.capabilities import Capabilities
+from sssgen.passes.unsupported import Unsupported
 from sssgen.passes.variable_effects import effects
 
 ENTRY = "main()"
@@ -27,14 +28,6 @@ RESOLUTION = "iResolution"
 
 COLORS = ("gl_FragColor", "gl_FragData")
 """Builtins that are colours of the framebuffer at the locations from 0 on."""
-
-
-class StageError(Exception):
-    """Something that a stage of the target cannot have, with its place."""
-
-    def __init__(self, message: str, span: Span) -> None:
-        super().__init__(message)
-        self.message, self.span = message, span
 
 
 class Slot(NamedTuple):
@@ -78,7 +71,7 @@ def stage_kind(module: Module) -> str:
 
 
 def interface(module: Module, kind: str, function: str, builtins: Collection[str], turned: bool) -> Stage:
-    """The interface of a module with its final names. Raises StageError for what no stage of the target is given.
+    """The interface of a module with its final names. Raises Unsupported for what no stage of the target is given.
 
     `function` is the key of its main function, `builtins` are those that the target has a value for; of an output
     that it has not nothing comes out. `turned`: the framebuffer's y counts from the top.
@@ -87,7 +80,7 @@ def interface(module: Module, kind: str, function: str, builtins: Collection[str
     made = [variable for variable in module.variables if variable.storage == "out"]
     for variable in given:
         if variable.builtin and variable.builtin not in builtins:
-            raise StageError(f"a {kind} shader of this target is given no {variable.builtin}", variable.span)
+            raise Unsupported(f"a {kind} shader of this target is given no {variable.builtin}", variable.span)
     made = [one for one in made if not one.builtin or one.builtin in builtins or one.builtin in COLORS]
     resolution = resolution_of(module) if turned and kind == "fragment" else ""
     return Stage(kind, function, _slots(given), _slots(made), resolution)
@@ -185,7 +178,7 @@ def _parts(variable: Variable, type_: Type, path: tuple[int, ...] = ()) -> list[
     """The scalars and vectors of a variable, with the indices that lead to each."""
     inner = type_.element if isinstance(type_, Array) else type_
     if isinstance(inner, Struct):
-        raise StageError(f"'{variable.name}' is made of structs, which go from stage to stage nowhere", variable.span)
+        raise Unsupported(f"'{variable.name}' is made of structs, which go from stage to stage nowhere", variable.span)
     if not isinstance(type_, Array | Matrix):
         return [(path, type_)]
     found = element_type(type_)

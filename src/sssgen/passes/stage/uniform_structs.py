@@ -35,17 +35,10 @@ from sssgen.ir.transform import rewrite, rewrite_module
 from sssgen.ir.types import INT, Array, Struct, Type, components
 from sssgen.ir.walk import operands, subexpressions, with_operands
 from sssgen.passes.scopes import fresh
+from sssgen.passes.unsupported import Unsupported
 
 Path = tuple[str, ...]
 """A uniform's name and those of its members, down to one of them."""
-
-
-class Unreadable(Exception):
-    """A whole element that is read at an index which must not be computed twice, with its place."""
-
-    def __init__(self, message: str, span: Span) -> None:
-        super().__init__(message)
-        self.message, self.span = message, span
 
 
 class _Leaf(NamedTuple):
@@ -62,7 +55,7 @@ class _Leaf(NamedTuple):
 
 
 def uniform_structs(module: Module) -> Module:
-    """The module without uniforms that hold structs. Raises Unreadable."""
+    """The module without uniforms that hold structs. Raises Unsupported."""
     if not any(_holds_struct(uniform.type) for uniform in module.uniforms):
         return module
     return _Splitter(module).run()
@@ -140,7 +133,7 @@ class _Splitter:
             return self.element(leaf, indices, node.span)
         for index in indices:
             if any(isinstance(part, Call) for part in subexpressions(index)):
-                raise Unreadable("this index is needed more than once: keep it in a variable", index.span)
+                raise Unsupported("this index is needed more than once: keep it in a variable", index.span)
         if isinstance(node.type, Struct):
             values = [self.read(Member(field.type, node, field.name, node.span)) for field in node.type.fields]
             return Construct(node.type, tuple(values), node.span)

@@ -1,0 +1,15 @@
+"""The error of a pass that meets what the target cannot express."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from sssgen.ir.nodes import Span
+
+
+class Unsupported(Exception):
+    """Something that the target cannot express, with its place; `more` are further errors of the same pass."""
+
+    def __init__(self, message: str, span: Span, more: Sequence[Unsupported] = ()) -> None:
+        super().__init__(message)
+        self.message, self.span, self.more = message, span, tuple(more)

@@ -1,0 +1,162 @@
+"""The passes of every way into the pipeline, in their order, as data.
+
+>>> from sssgen.pipeline import pass_list
+>>> print(pass_list.describe(pass_list.MATERIAL).splitlines()[5])
+ 6  prune         remove what is not used, so that nothing of it is moved or renamed
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from sssgen.ir.nodes import Module
+from sssgen.lang.source_lines import source_line
+from sssgen.passes.link import LinkError
+from sssgen.passes.unsupported import Unsupported
+from sssgen.pipeline import steps
+from sssgen.pipeline.state import State
+from sssgen.pipeline.trace import Trace
+from sssgen.support.diagnostics import Diagnostic, SssgenError
+
+
+class Condition(NamedTuple):
+    """When a pass runs."""
+
+    text: str
+    holds: Callable[[State], bool]
+
+
+class Pass(NamedTuple):
+    """One step from a module to the next. An analysis returns the same module and stores its result in the state."""
+
+    name: str
+    step: Callable[[State], Module]
+    reason: str
+    """What it does, and why it stands here, in one line."""
+    when: Condition | None = None
+    """None: always."""
+
+
+_SHADER = Condition("it is a whole shader", lambda state: state.whole_shader)
+_Y_DOWN = Condition("it is a whole shader and y counts down", lambda state: state.whole_shader and state.y_down)
+_NO_VERTEX_LEVELS = Condition(
+    "it is a vertex shader and the target has no implicit levels there",
+    lambda state: state.form == "vertex" and not state.target.capabilities.implicit_levels,
+)
+_CALLED = Condition("the called functions are given", lambda state: state.called is not None)
+_NO_LEVELS = Condition(
+    "the target has no derivatives in non-uniform flow", lambda state: not state.target.capabilities.implicit_levels
+)
+_NO_UNDEFINED = Condition(
+    "the target refuses undefined constants", lambda state: not state.target.capabilities.undefined_constants
+)
+_NO_VARIABLES = Condition(
+    "the target has no module variables", lambda state: not state.target.capabilities.module_variables
+)
+_CONSTANT_VALUES = Condition(
+    "a module variable can only begin with a constant",
+    lambda state: state.target.capabilities.module_variables and not state.target.capabilities.variable_values,
+)
+_PARAMETERS = Condition("the form passes uniforms as parameters", lambda state: state.form in state.target.parameters)
+_MASKS = Condition(
+    "the target has no control flow per lane", lambda state: not state.target.capabilities.lane_control_flow
+)
+
+_FOLD = Pass("fold", steps.fold_constants, "compute constants; before prune, which removes the dead branches' uses")
+_UNDEFINED = Pass(
+    "undefined", steps.refuse_undefined_constants, "refuse constants without a value; fold has left exactly these"
+)
+_PRUNE = Pass("prune", steps.prune_unused, "remove what is not used, so that nothing of it is moved or renamed")
+_HOIST = Pass("hoist", steps.hoist_derivatives, "move derivatives and texture reads out of non-uniform flow")
+_GUARDS = Pass(
+    "guards", steps.insert_guards, "guard operations that may fail; the program is final and uniforms have their hints"
+)
+
+MATERIAL: tuple[Pass, ...] = (
+    Pass("link", steps.link_stages, "bind slots and put the techniques into one module, which all others need"),
+    Pass("chain", steps.assemble_chain, "assemble the functions that the shell calls, from the linked functions"),
+    _FOLD,
+    _UNDEFINED,
+    Pass("conversions", steps.remove_conversions, "remove conversions, which serve the type check alone"),
+    _PRUNE,
+    _HOIST,
+    _GUARDS,
+    Pass("cost", steps.count_cost, "count the operations of the program that all targets get"),
+)
+"""A material. Of the target they depend on its lighting, on whether the engine encodes colours, and on its precision:
+their result is kept for all targets that agree in these."""
+
+_SHADER_INPUT: tuple[Pass, ...] = (
+    Pass("uniform_structs", steps.split_uniform_structs, "split uniforms of structs; no other pass knows these"),
+    Pass("color_outputs", steps.shorten_color_outputs, "shorten gl_FragData to the elements in use", _SHADER),
+    Pass("vertical_derivatives", steps.negate_vertical_derivatives, "negate dFdy, which keeps its sign", _Y_DOWN),
+    Pass("vertex_levels", steps.read_level_zero, "read textures at level 0, as GLSL does there", _NO_VERTEX_LEVELS),
+    Pass("differences", steps.note_differences, "report what the target's stage cannot have", _SHADER),
+)
+
+SIMPLIFY: tuple[Pass, ...] = (
+    Pass("roots", steps.find_roots, "take every function as called from outside"),
+    _FOLD,
+    _UNDEFINED,
+    _PRUNE,
+    _HOIST,
+)
+"""Plain functions without anything that depends on a target."""
+
+PLAIN: tuple[Pass, ...] = (*_SHADER_INPUT, *SIMPLIFY, _GUARDS)
+"""A module of plain functions, or a whole shader."""
+
+KEPT: tuple[Pass, ...] = (
+    *_SHADER_INPUT,
+    Pass("called", steps.drop_uncalled, "leave out the functions that the called ones do not need", _CALLED),
+    Pass("roots", steps.find_roots, "take every function as called from outside"),
+    _UNDEFINED._replace(reason="refuse constants without a value", when=_NO_UNDEFINED),
+    _HOIST._replace(step=steps.hoist_derivatives_of_entry, when=_NO_LEVELS),
+    _GUARDS,
+)
+"""The same, where the text stays as its author wrote it."""
+
+TARGET: tuple[Pass, ...] = (
+    Pass(
+        "variable_parameters", steps.pass_variables, "pass module variables to functions as parameters", _NO_VARIABLES
+    ),
+    Pass("initial_values", steps.set_variables_at_start, "set module variables in main()", _CONSTANT_VALUES),
+    Pass("uniform_parameters", steps.pass_uniforms, "pass uniforms as parameters", _PARAMETERS),
+    Pass("legalise", steps.legalise_nodes, "rewrite what the target cannot express; printing is then a table"),
+    Pass("masks", steps.convert_to_masks, "replace control flow by masks; no other pass expects these", _MASKS),
+    Pass("names", steps.make_names_legal, "make names legal; every pass before may bring new ones"),
+    Pass("interface", steps.find_interface, "place inputs and outputs, under their final names", _SHADER),
+)
+"""What follows for one target, after each of the others."""
+
+
+def run(passes: Sequence[Pass], state: State, trace: Trace | None = None) -> State:
+    """Runs the passes on the state. Raises SssgenError."""
+    for one in passes:
+        try:
+            if one.when is None or one.when.holds(state):
+                state.module = one.step(state)
+        except LinkError as error:
+            raise SssgenError([_error(error.message, error)]) from None
+        except Unsupported as error:
+            errors = [_error(f"{each.message} ({state.target.name})", each) for each in (error, *error.more)]
+            raise SssgenError(errors) from None
+        if trace is not None:
+            trace.record(one.name, one.reason, state.module)
+    return state
+
+
+def _error(message: str, error: LinkError | Unsupported) -> Diagnostic:
+    return Diagnostic("error", message, error.span, "", source_line(error.span))
+
+
+def describe(passes: Sequence[Pass]) -> str:
+    """The passes as a table: number, name, condition, reason."""
+    rows = [(one.name, f"if {one.when.text}" if one.when else "", one.reason) for one in passes]
+    names, conditions = (max(len(row[column]) for row in rows) for column in (0, 1))
+    lines = [
+        f"{number:2}  {name:{names}}   {condition:{conditions}}   {reason}"
+        for number, (name, condition, reason) in enumerate(rows, 1)
+    ]
+    return "\n".join(lines)

@@ -1,0 +1,235 @@
+"""The passes as steps of the pipeline: each calls its pass with what the state holds, and stores what it found out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from sssgen.ir.nodes import Module
+from sssgen.lang.polyfills import guard as guard_source
+from sssgen.lang.polyfills import polyfill
+from sssgen.lang.source_lines import source_line
+from sssgen.material.chain_assembly import TAKEN, ChainStage, assemble
+from sssgen.passes.conversions import drop_conversions
+from sssgen.passes.cost import cost_of
+from sssgen.passes.fold import fold
+from sssgen.passes.guards import guard
+from sssgen.passes.hoist import Note, hoist
+from sssgen.passes.legal.legalise import legalise
+from sssgen.passes.link import link
+from sssgen.passes.names import rename
+from sssgen.passes.numpy.predicate import predicate
+from sssgen.passes.prune import only, prune, used
+from sssgen.passes.stage.initial_values import set_at_start
+from sssgen.passes.stage.stage_interface import (
+    ENTRY,
+    colors_in_use,
+    entry_of,
+    interface,
+    remarks,
+    turned_derivatives,
+)
+from sssgen.passes.stage.uniform_structs import uniform_structs
+from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
+from sssgen.passes.stage.vertex_reads import with_levels
+from sssgen.passes.undefined_constants import undefined_constants
+from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
+from sssgen.pipeline.material_stages import slot_functions, stages_for
+from sssgen.pipeline.state import State
+from sssgen.support.diagnostics import Diagnostic, SssgenError
+from sssgen.targets import registry
+from sssgen.targets.descriptor import Names
+from sssgen.targets.registry import ReservedNames
+
+# The beginning of a material
+
+
+def link_stages(state: State) -> Module:
+    material = state.material
+    assert material is not None
+    state.stages = stages_for(material, state.target)
+    linked = link([stage.link for stage in state.stages], TAKEN)
+    own = range(len(material.stages))
+    state.linked, state.fixed, state.owners = linked.functions, linked.fixed, linked.owners
+    state.settings = {
+        name: [(state.stages[index].number, old) for index, old in places if state.stages[index].number in own]
+        for name, places in linked.settings.items()
+    }
+    state.slots = slot_functions(material, linked.module)
+    return linked.module
+
+
+def assemble_chain(state: State) -> Module:
+    material = state.material
+    assert material is not None
+    stages = [
+        ChainStage(stage.link.role, stage.link.technique, function, stage.span, stage.glows)
+        for stage, function in zip(state.stages, state.linked, strict=True)
+    ]
+    chain = assemble(state.module, stages, material.shading == "lit", material.alpha_mode == "opaque")
+    state.entries = dict(chain.entries)
+    state.roots = [entry.function.key for entry in chain.entries.values()]
+    return chain.module
+
+
+# The beginning of plain GLSL
+
+
+def split_uniform_structs(state: State) -> Module:
+    return uniform_structs(state.module)
+
+
+def shorten_color_outputs(state: State) -> Module:
+    return colors_in_use(state.module)
+
+
+def negate_vertical_derivatives(state: State) -> Module:
+    return turned_derivatives(state.module)
+
+
+def read_level_zero(state: State) -> Module:
+    return with_levels(state.module)
+
+
+def note_differences(state: State) -> Module:
+    found = remarks(state.module, state.stage_builtins, state.y_down, state.target.capabilities)
+    state.notes += [Note(*remark) for remark in found]
+    return state.module
+
+
+def drop_uncalled(state: State) -> Module:
+    return used(only(state.module, state.called or ()))
+
+
+def find_roots(state: State) -> Module:
+    state.roots = [function.key for function in state.module.functions if function.body is not None]
+    return state.module
+
+
+# For both
+
+
+def fold_constants(state: State) -> Module:
+    return fold(state.module, state.fixed)
+
+
+def refuse_undefined_constants(state: State) -> Module:
+    wrong = undefined_constants(state.module)
+    if wrong:
+        hint = "WGSL refuses it, and the others compute inf or NaN"
+        raise SssgenError([Diagnostic("error", message, span, hint, source_line(span)) for message, span in wrong])
+    return state.module
+
+
+def remove_conversions(state: State) -> Module:
+    return drop_conversions(state.module)
+
+
+def prune_unused(state: State) -> Module:
+    return prune(state.module, state.roots)
+
+
+def hoist_derivatives(state: State) -> Module:
+    module, notes = hoist(state.module, state.roots)
+    state.notes += notes
+    return module
+
+
+def hoist_derivatives_of_entry(state: State) -> Module:
+    """The same, where the functions that main() calls are called from there alone."""
+    entry = entry_of(state.module)
+    if entry is not None:
+        reached = {function.key for function in only(state.module, [entry.key]).functions}
+        module, notes = hoist(state.module, [entry.key, *(key for key in state.roots if key not in reached)])
+    else:
+        module, notes = hoist(state.module, state.roots)
+    state.notes += notes
+    return module
+
+
+def insert_guards(state: State) -> Module:
+    called = list(state.called or state.roots)
+    if state.form == "functions":
+        remaining = {function.key for function in state.module.functions}
+        called += [function.key for function in state.linked if function.key in remaining]
+    state.guarded = guard(
+        state.module, called, state.guards, guard_source, polyfill, state.format, state.fate,
+        state.chained or state.material is not None,
+    )  # fmt: skip
+    return state.guarded.module
+
+
+def count_cost(state: State) -> Module:
+    state.costs = {
+        kind: cost_of(state.module, entry.function.key, state.slots) for kind, entry in state.entries.items()
+    }
+    return state.module
+
+
+# For one target
+
+
+def pass_variables(state: State) -> Module:
+    return variables_to_parameters(state.module, _start(state)).module
+
+
+def set_variables_at_start(state: State) -> Module:
+    return set_at_start(state.module, _start(state))
+
+
+def _start(state: State) -> str:
+    return ENTRY if entry_of(state.module) is not None else ""
+
+
+def pass_uniforms(state: State) -> Module:
+    return uniforms_to_parameters(state.module)
+
+
+def legalise_nodes(state: State) -> Module:
+    capabilities = state.target.capabilities
+    if state.keep:  # kept operators mean what GLSL says, which leaves some results open
+        capabilities = capabilities._replace(integer_division=True)
+    return legalise(state.module, state.target.dialect, capabilities, polyfill)
+
+
+def convert_to_masks(state: State) -> Module:
+    return predicate(state.module)
+
+
+def make_names_legal(state: State) -> Module:
+    target = state.target
+    others = registry.reserved_of(target.language) if state.keep else registry.reserved_everywhere()
+    module, state.renames = rename(
+        state.module,
+        _reserved(state, others),
+        _uniform_style(target.uniform_style),
+        not target.capabilities.overloads,
+        others.folded | target.names.folded,
+        target.capabilities.matrix_overloads,
+    )
+    names = zip(module.uniforms, state.module.uniforms, strict=True)
+    state.source_names = {new.name: old.name for new, old in names}
+    return module
+
+
+def _reserved(state: State, others: Names) -> ReservedNames:
+    """The names that are not free: those of the target and of `others`, whose names its texts avoid, too.
+
+    A shader whose entry is the author's `main` has that name, and no shell around it.
+    """
+    own = state.target.names
+    names, prefixes = others.exact | own.exact, others.prefixes + own.prefixes
+    if state.entry_name == "main":
+        return ReservedNames(names - own.shell - {"main"}, prefixes)
+    return ReservedNames(names | {"main"}, prefixes)
+
+
+def _uniform_style(style: str) -> Callable[[str], str]:
+    if style == "unity":
+        return lambda name: "_" + "".join(word[:1].upper() + word[1:] for word in name.split("_"))
+    return lambda name: name
+
+
+def find_interface(state: State) -> Module:
+    main = state.renames.get(ENTRY) or state.renames.get("main", "main")
+    state.stage = interface(state.module, state.form, f"{main}()", state.stage_builtins, state.y_down)
+    return state.module

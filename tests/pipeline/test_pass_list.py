@@ -1,0 +1,59 @@
+"""The list of passes, and the trace of what they did."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from sssgen.cli.main import main
+from sssgen.ir.text import print_module, read_module
+from sssgen.pipeline import pass_list
+from sssgen.pipeline.pass_list import KEPT, MATERIAL, PLAIN, TARGET, Pass
+
+
+@pytest.mark.parametrize("passes", [MATERIAL, PLAIN, KEPT, TARGET])
+def test_a_list_names_each_pass_once_with_its_reason(passes: tuple[Pass, ...]) -> None:
+    names = [one.name for one in passes]
+    assert len(set(names)) == len(names)
+    lines = pass_list.describe(passes).splitlines()
+    assert len(lines) == len(passes)
+    for one, line in zip(passes, lines, strict=True):
+        assert one.name in line and one.reason in line and (one.when is None or f"if {one.when.text}" in line)
+
+
+def test_the_trace_of_emit_shows_each_pass_that_changed_the_module(tmp_path: Path) -> None:
+    command = ["emit", "ice", "--target", "wgsl,numpy", "-o", str(tmp_path)]
+    assert main(command) == 0
+    untraced = (tmp_path / "ice.wgsl").read_text("utf-8")
+    assert not list(tmp_path.glob("*.trace"))
+    for _ in range(2):  # no cache hides it
+        assert main([*command, "--trace"]) == 0
+        files = sorted((tmp_path / "ice.wgsl.trace").iterdir())
+        names = [path.name for path in files]
+        assert names[:3] == ["01-link.ir", "02-chain.ir", "03-fold.ir"] and names[-1].endswith("-names.ir")
+        (tmp_path / "ice.wgsl.trace" / "99-old.ir").write_text("of an earlier run", "utf-8")
+    assert (tmp_path / "ice.wgsl").read_text("utf-8") == untraced
+    assert any(path.name.endswith("-masks.ir") for path in (tmp_path / "ice.numpy.trace").iterdir())
+    for path in files:
+        text = path.read_text("utf-8")
+        assert text.startswith(f"// {path.stem[3:]}: ")
+    fold = (tmp_path / "ice.wgsl.trace" / "03-fold.ir").read_text("utf-8")
+    assert fold.partition("\n\n")[2] == print_module(read_module(fold), spans=False)
+
+
+def test_the_trace_of_a_failure_ends_before_the_pass_that_failed(tmp_path: Path) -> None:
+    source = tmp_path / "f.glsl"
+    source.write_text("float k = 1.0 / 0.0;\nfloat f(float x) { return x / 0.0 + 0.0 / 0.0; }\n", "utf-8")
+    command = ["transpile", str(source), "--target", "wgsl", "-o", str(tmp_path / "f.wgsl"), "--trace"]
+    assert main(command) == 2
+    assert [path.name for path in (tmp_path / "f.wgsl.trace").iterdir()] == ["00-input.ir"]
+    assert not (tmp_path / "f.wgsl").exists()
+
+
+def test_the_trace_of_transpile_needs_an_output_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    source = tmp_path / "f.glsl"
+    source.write_text("float f(float x) { return x; }\n", "utf-8")
+    for output in ([], ["-o", "-"]):
+        assert main(["transpile", str(source), "--target", "wgsl", "--trace", *output]) == 2
+        assert "--trace needs an output file" in capsys.readouterr().err
