@@ -131,7 +131,7 @@ WRONG: dict[str, tuple[Callable[[], ir.Module], str]] = {
     # Names
     "unknown local": (lambda: evaluated(local(FLOAT)), "'p' is not declared here"),
     "local of another type": (
-        lambda: body(ir.Declare("q", INT, local(INT), NOWHERE), params=(param(FLOAT),)), "'p' is a float, not a int"),
+        lambda: body(ir.Declare("q", INT, local(INT), NOWHERE), params=(param(FLOAT),)), "'p' is a float, not an int"),
     "unknown global": (lambda: evaluated(module_global(FLOAT, "zork")), "'zork' is not declared here"),
     "global of another type": (lambda: evaluated(module_global(VEC2, "density")), "'density' is a float, not a vec2"),
     "used before it is declared": (
@@ -211,12 +211,12 @@ WRONG: dict[str, tuple[Callable[[], ir.Module], str]] = {
         lambda: evaluated(ir.Select(MAP, TRUE, module_global(MAP, "map"), module_global(MAP, "map"), NOWHERE)),
         "a sampler can only be named"),
     # Statements
-    "declared value": (lambda: body(ir.Declare("q", FLOAT, whole(1), NOWHERE)), "'q' is a float, but gets a int"),
+    "declared value": (lambda: body(ir.Declare("q", FLOAT, whole(1), NOWHERE)), "'q' is a float, but gets an int"),
     "variable of nothing": (lambda: body(ir.Declare("q", VOID, None, NOWHERE)), "this cannot be Void()"),
     "variable of a sampler": (lambda: body(ir.Declare("q", MAP, None, NOWHERE)), "this cannot be Sampler"),
     "assigned value": (
         lambda: body(assigned(local(FLOAT), whole(1)), params=(param(FLOAT),)),
-        "an assignment is a float, but gets a int"),
+        "an assignment is a float, but gets an int"),
     "assigned global": (
         lambda: body(assigned(module_global(FLOAT, "density"), number(1.0))), "a Global of type float cannot be"),
     "assigned literal": (lambda: body(assigned(number(1.0), number(1.0))), "a Literal of type float cannot be"),
@@ -244,7 +244,7 @@ WRONG: dict[str, tuple[Callable[[], ir.Module], str]] = {
     "break outside": (lambda: body(ir.Break(NOWHERE)), "break outside a loop"),
     "continue outside": (lambda: body(ir.If(TRUE, (ir.Continue(NOWHERE),), (), NOWHERE)), "continue outside a loop"),
     "returned value": (
-        lambda: body(ir.Return(whole(1), NOWHERE), result=FLOAT), "the return is a float, but gets a int"),
+        lambda: body(ir.Return(whole(1), NOWHERE), result=FLOAT), "the return is a float, but gets an int"),
     "returned nothing": (
         lambda: body(ir.Return(None, NOWHERE), result=FLOAT), "the return is a float, but gets a void"),
     "returned from nothing": (lambda: body(ir.Return(number(1.0), NOWHERE)), "the return is a void, but gets a float"),
@@ -290,7 +290,7 @@ WRONG: dict[str, tuple[Callable[[], ir.Module], str]] = {
     "default between integers": (
         lambda: ir.Module(uniforms=(UNIFORM._replace(type=INT),)), "a default that no int holds"),
     "constant's value": (
-        lambda: ir.Module(constants=(ir.Constant("x", FLOAT, whole(1), NOWHERE),)), "'x' is a float, but gets a int"),
+        lambda: ir.Module(constants=(ir.Constant("x", FLOAT, whole(1), NOWHERE),)), "'x' is a float, but gets an int"),
     "constant of a uniform": (
         lambda: ir.Module(constants=(ir.Constant("x", FLOAT, module_global(FLOAT, "density"), NOWHERE),),
                           uniforms=(UNIFORM,)),
@@ -324,7 +324,7 @@ def test_verifier_rejects(name: str) -> None:
 
 def test_verifier_names_the_place() -> None:
     problems = verify(body(ir.Return(whole(1), ir.Span("a.sss", 7, 3, 7, 9)), result=FLOAT))
-    assert problems == ["a.sss:7:3: the return is a float, but gets a int (in wrong())"]
+    assert problems == ["a.sss:7:3: the return is a float, but gets an int (in wrong())"]
     with pytest.raises(InvalidIR, match=r"a\.sss:7:3"):
         check_module(body(ir.Return(whole(1), ir.Span("a.sss", 7, 3, 7, 9)), result=FLOAT))
     check_module(SAMPLE_MODULE)

@@ -6,6 +6,7 @@ import pytest
 
 from checked_source import checked, text_of
 from sssgen.ir import nodes as ir
+from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.support.diagnostics import SssgenError
 
 
@@ -233,3 +234,9 @@ def test_line_ends_of_windows() -> None:
 def test_empty_files() -> None:
     for source in ("", "\n\n", "// nothing", "/* nothing */", ";;"):
         assert checked(source) == ir.Module()
+
+
+def test_builtin_block_with_an_instance() -> None:
+    """The block of GLSL's own outputs may have a name; its members are declared anyway."""
+    source = "out gl_PerVertex { vec4 gl_Position; } gl_out;\nvoid main() { gl_Position = vec4(0.0); }\n"
+    assert [variable.name for variable in load_glsl_text(source, "a.vert").module.variables] == ["gl_Position"]

@@ -109,6 +109,11 @@ def spell(type: Type) -> str:
     raise TypeError(f"not an IR type: {type!r}")
 
 
+def with_article(noun: str) -> str:
+    """A type's name (or another noun) with its article, for messages: `a float`, `an ivec2`, `a uint`."""
+    return f"{'an' if noun[0] in 'aeioAEIO' else 'a'} {noun}"
+
+
 def vector_of(kind: str, size: int) -> Type:
     """The scalar (size 1) or vector type with `size` components of `kind`."""
     return Scalar(kind) if size == 1 else Vector(kind, size)

@@ -42,7 +42,21 @@ from sssgen.ir.nodes import (
     While,
 )
 from sssgen.ir.rules import FLOAT_MAX, constructs, element_type, inferred, is_type, operator_type, returns
-from sssgen.ir.types import BOOL, FLOAT, INT, UINT, VOID, Array, Sampler, Struct, Type, components, kind_of, spell
+from sssgen.ir.types import (
+    BOOL,
+    FLOAT,
+    INT,
+    UINT,
+    VOID,
+    Array,
+    Sampler,
+    Struct,
+    Type,
+    components,
+    kind_of,
+    spell,
+    with_article,
+)
 from sssgen.ir.walk import callees, operands, subexpressions
 
 _READS_SURROUNDINGS = ("texture", "texel", "dF", "fwidth")
@@ -255,7 +269,7 @@ class _Verifier:
             self.assign(stmt)
         elif isinstance(stmt, Evaluate):
             if not isinstance(stmt.call, Call):
-                self.report(stmt.span, f"a {type(stmt.call).__name__} is evaluated and dropped")
+                self.report(stmt.span, f"{with_article(type(stmt.call).__name__)} is evaluated and dropped")
             self.expression(stmt.call, nothing=True)
         elif isinstance(stmt, Assume):
             self.condition(stmt.condition)
@@ -294,7 +308,7 @@ class _Verifier:
                 if isinstance(part, allowed):
                     self.statement(part, False)
                 else:
-                    self.report(stmt.span, f"a {type(part).__name__} in the head of a for")
+                    self.report(stmt.span, f"{with_article(type(part).__name__)} in the head of a for")
         if stmt.condition is not None:
             self.condition(stmt.condition)
         self.inner(stmt.body, True)
@@ -313,7 +327,7 @@ class _Verifier:
 
     def same(self, found: Type, wanted: Type, span: Span, what: str) -> None:
         if found != wanted:
-            self.report(span, f"{what} is a {_name(wanted)}, but gets a {_name(found)}")
+            self.report(span, f"{what} is {_a_type(wanted)}, but gets {_a_type(found)}")
 
     # Expressions
 
@@ -325,7 +339,7 @@ class _Verifier:
             inner = inner.value
         variable = isinstance(inner, Local) or (isinstance(inner, Global) and inner.name in self.written)
         if not variable or isinstance(target.type, Sampler):
-            what = f"a {type(inner).__name__} of type {_name(target.type)}"
+            what = f"{with_article(type(inner).__name__)} of type {_name(target.type)}"
             self.report(target.span, f"{what} cannot be assigned to")
 
     def expression(self, expr: Expr, nothing: bool = False) -> None:
@@ -362,7 +376,7 @@ class _Verifier:
                 yield f"{_what(node)} is not defined for {_names(operands(node))}"
             elif wanted != node.type:
                 given = _names(operands(node))
-                yield f"{_what(node)} of {given} is a {_name(wanted)}, not a {_name(node.type)}"
+                yield f"{_what(node)} of {given} is {_a_type(wanted)}, not {_a_type(node.type)}"
             elif isinstance(node, Index) and isinstance(node.index, Literal):
                 found = element_type(node.value.type)
                 if found is not None and not 0 <= node.index.value < found[1]:
@@ -372,7 +386,7 @@ class _Verifier:
         if declared is None:
             yield f"'{node.name}' is not declared here"
         elif declared != node.type:
-            yield f"'{node.name}' is a {_name(declared)}, not a {_name(node.type)}"
+            yield f"'{node.name}' is {_a_type(declared)}, not {_a_type(node.type)}"
 
     def call(self, node: Call) -> Iterator[str]:
         function = self.functions.get(node.function)
@@ -382,7 +396,7 @@ class _Verifier:
         if [param.type for param in function.params] != [arg.type for arg in node.args]:
             yield f"{node.function} is called with {_names(node.args)}"
         if function.result != node.type:
-            yield f"{node.function} gives a {_name(function.result)}, not a {_name(node.type)}"
+            yield f"{node.function} gives {_a_type(function.result)}, not {_a_type(node.type)}"
         for param, arg in zip(function.params, node.args, strict=False):
             if param.direction != "in":
                 self.writable(arg)
@@ -407,6 +421,10 @@ def _fits(value: float, kind: str) -> bool:
 
 def _name(type_: Type) -> str:
     return spell(type_) if is_type(type_) else repr(type_)
+
+
+def _a_type(type_: Type) -> str:
+    return with_article(_name(type_))
 
 
 def _names(args: Iterable[Expr]) -> str:

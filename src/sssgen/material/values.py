@@ -8,7 +8,7 @@ from typing import Any
 
 from sssgen.ir.contracts import of_uniform
 from sssgen.ir.nodes import Uniform
-from sssgen.ir.types import Array, Matrix, Sampler, Type, components, kind_of, spell
+from sssgen.ir.types import Array, Matrix, Sampler, Type, components, kind_of, spell, with_article
 
 _LARGEST = 3.4028234663852886e38
 _LIMITS = {"int": (-(2**31), 2**31 - 1), "uint": (0, 2**32 - 1), "float": (-_LARGEST, _LARGEST)}
@@ -131,7 +131,7 @@ def _number(uniform: Uniform, raw: Any, index: int | None) -> float:
             if abs(raw) > 1e300
             else f"{raw:g}"
         )
-        raise WrongValue(f"'{name}' cannot be {what}", f"a {kind} has 32 bits", index)
+        raise WrongValue(f"'{name}' cannot be {what}", f"{with_article(kind)} has 32 bits", index)
     for hint, args in uniform.hints:
         if hint == "hint_range" and not float(args[0]) <= raw <= float(args[1]):
             default = ", ".join(f"{value:g}" for value in dict.fromkeys(uniform.default))

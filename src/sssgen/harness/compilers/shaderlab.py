@@ -11,6 +11,7 @@ import re
 from dataclasses import dataclass, field
 
 from sssgen.harness.compilers.compiler_interface import Message
+from sssgen.ir.types import with_article
 
 _BLOCK = re.compile(r"^[ \t]*(CG|HLSL)(PROGRAM|INCLUDE)\b[ \t]*\n(.*?)^[ \t]*END(CG|HLSL)\b", re.DOTALL | re.MULTILINE)
 _STRAY = re.compile(r"^[ \t]*(?:CG|HLSL)(?:PROGRAM|INCLUDE)\b|^[ \t]*END(?:CG|HLSL)\b", re.MULTILINE)
@@ -163,7 +164,8 @@ def _read_properties(shell: str, shader: Shader) -> None:
         if kind not in _DEFAULTS:
             shader.messages.append(_error(shell, found.start(3), f"unknown property type {found[3]}"))
         elif not re.fullmatch(_DEFAULTS[kind], default, re.DOTALL):
-            shader.messages.append(_error(shell, found.start(4), f"{default} is no default for a {found[3]}"))
+            message = f"{default} is no default for {with_article(found[3])}"
+            shader.messages.append(_error(shell, found.start(4), message))
         if name in shader.properties:
             shader.messages.append(_error(shell, found.start(2), f"property {name} is there twice"))
         shader.properties[name] = kind

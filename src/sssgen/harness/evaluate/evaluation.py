@@ -19,7 +19,7 @@ from sssgen.harness.backends import Array, Backend, Call, Text, emitted
 from sssgen.harness.evaluate.probes import Subject
 from sssgen.ir.nodes import Param
 from sssgen.ir.types import Array as ArrayType
-from sssgen.ir.types import Matrix, Sampler, Type, Vector, components, kind_of, spell
+from sssgen.ir.types import Matrix, Sampler, Type, Vector, components, kind_of, spell, with_article
 from sssgen.passes.ranges.sites import Site
 from sssgen.pipeline.compiler import transpile
 from sssgen.support.diagnostics import did_you_mean, failure
@@ -192,7 +192,7 @@ def _texture(subject: Subject, name: str, type_: Sampler, given: Any) -> Texture
         except ValueError as error:
             raise failure(f"texture '{name}': {error}", "(height, width, channels), in 3-D (depth, …)") from None
     if given.dim != type_.dim:
-        raise failure(f"texture '{name}' is {given.dim}, and {subject.name} takes a {spell(type_)}")
+        raise failure(f"texture '{name}' is {given.dim}, and {subject.name} takes {with_article(spell(type_))}")
     if not all(np.isfinite(level).all() for level in given.levels):
         raise failure(f"texture '{name}' has NaN or infinity in it")
     return half(given)

@@ -14,6 +14,7 @@ from sssgen.harness.render.shell_values import Shell
 from sssgen.harness.scenes.geometry import Geometry
 from sssgen.harness.scenes.scene import DistanceTexture, Picture, Scene, placement
 from sssgen.ir.nodes import Uniform
+from sssgen.ir.types import with_article
 from sssgen.material import baked
 from sssgen.material.baked import Baked
 from sssgen.material.model import Material
@@ -160,5 +161,6 @@ def _suggested(material: Material, texture: Mapping[str, Any]) -> str:
 def _picture(file: str, wrap: str, texture: Mapping[str, Any]) -> Texture:
     made = inputs.texture(file, wrap, srgb=texture["color_space"] == "sRGB")
     if made.dim != texture["type"].removeprefix("sampler"):
-        raise failure(f"this is a {made.dim} texture, and '{texture['source_name']}' is a {texture['type']}", file=file)
+        type_ = with_article(texture["type"])
+        raise failure(f"this is a {made.dim} texture, and '{texture['source_name']}' is {type_}", file=file)
     return half(made)

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from sssgen.ir.nodes import Function, Module
-from sssgen.ir.types import FLOAT, VOID, Array, Sampler, Struct, Type, spell
+from sssgen.ir.types import FLOAT, VOID, Array, Sampler, Struct, Type, spell, with_article
 from sssgen.passes.variable_effects import NONE, effects
 
 MOST_INPUTS = 64
@@ -127,7 +127,7 @@ def _unfit(inputs: list[Type], outputs: list[Type]) -> str:
     for type_ in inputs:
         for _, part in leaves(type_):
             if isinstance(part, Sampler) and (part is not type_ or part not in TEXTURES):
-                return f"it takes a {spell(part)}, which cannot be given"
+                return f"it takes {with_article(spell(part))}, which cannot be given"
     taken, given = (sum([len(list(leaves(type_))) for type_ in types]) for types in (inputs, outputs))
     if taken > MOST_INPUTS:
         return f"it takes {taken} numbers, vectors and matrices; at most {MOST_INPUTS} can be given"

@@ -8,7 +8,7 @@ named conversion. The idea of spaces as types is Gator's ("Geometry types for gr
 
 from __future__ import annotations
 
-from sssgen.ir.types import FLOAT, VEC2, VEC3, Type, spell
+from sssgen.ir.types import FLOAT, VEC2, VEC3, Type, spell, with_article
 
 SPACES = ("world", "object", "tangent", "uv")
 
@@ -45,7 +45,7 @@ def words(quantity: str) -> str:
     """A quantity as a person would say it: `a world direction`."""
     if not quantity:
         return "a plain value"
-    return f"{'an' if quantity.startswith('object') else 'a'} {quantity.replace('_', ' ')}"
+    return with_article(quantity.replace("_", " "))
 
 
 def space(quantity: str) -> str:

@@ -6,14 +6,25 @@ import re
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.signatures import candidates, resolve
-from sssgen.ir.types import FLOAT, INT, Scalar, Struct, Type, Vector, components, kind_of, spell, vector_of
+from sssgen.ir.types import (
+    FLOAT,
+    INT,
+    Scalar,
+    Struct,
+    Type,
+    Vector,
+    components,
+    kind_of,
+    spell,
+    vector_of,
+    with_article,
+)
 from sssgen.lang.check.name_scope import Signature
 
 
 def a_type(type_: Type) -> str:
     """A type with its article."""
-    name = spell(type_)
-    return f"{'an' if name[0] in 'aeio' else 'a'} {name}"
+    return with_article(spell(type_))
 
 
 def declared(name: str, signature: Signature) -> str:
