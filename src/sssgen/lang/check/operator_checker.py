@@ -85,15 +85,15 @@ class OperatorChecker:
         condition = self.expressions.check_as(conditional.condition, BOOL, "", "a condition")
         yes, before_yes = self.expressions.with_prelude(conditional.yes, self.expressions.check)
         no, before_no = self.expressions.with_prelude(conditional.no, self.expressions.check)
-        if yes.expr.type != no.expr.type and self.context.plain:
-            one, other = common_kind(yes.expr, no.expr)
-            yes, no = yes._replace(expr=one), no._replace(expr=other)
         if yes.expr.type != no.expr.type:
-            raise self.context.fail(
-                conditional.span,
-                f"the two arms differ: {a_type(yes.expr.type)} and {a_type(no.expr.type)}",
-                mixed_hint(yes.expr, no.expr),
-            )
+            one, other = common_kind(yes.expr, no.expr) if self.context.plain else (yes.expr, no.expr)
+            if one.type != other.type:
+                raise self.context.fail(
+                    conditional.span,
+                    f"the two arms differ: {a_type(yes.expr.type)} and {a_type(no.expr.type)}",
+                    mixed_hint(yes.expr, no.expr),
+                )
+            yes, no = yes._replace(expr=one), no._replace(expr=other)
         if isinstance(yes.expr.type, Sampler | Void):
             raise self.context.fail(conditional.span, f"'?:' cannot choose {a_type(yes.expr.type)}")
         if yes.quantity and no.quantity and yes.quantity != no.quantity:
