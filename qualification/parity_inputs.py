@@ -7,7 +7,7 @@ same seed and number of lanes give the same arguments everywhere.
 from __future__ import annotations
 
 import zlib
-from collections.abc import Mapping
+from collections.abc import Callable
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -37,8 +37,6 @@ TEXTURES = {
     "usampler2DArray": "uint_layers",
 }  # fmt: skip
 """Sampler type → the name of its texture."""
-UNIT = {"reflect": (1,), "refract": (0, 1)}
-"""Arguments that are unit vectors."""
 
 _PI = float(np.float32(np.pi))
 _SIZES = [
@@ -80,21 +78,6 @@ _SIZES += [_PI / 4.0, _PI / 2.0, _PI, 2.0 * _PI, 1e-40, 2.0**-149, 1.0 - 2.0**-1
 EDGES: Array = np.array([sign * size for size in _SIZES for sign in (1.0, -1.0)], np.float32)
 """Zeros, powers of two and their neighbours, integers, halves, parts of pi, denormals, and the ends of the domains."""
 INTEGERS = [0, 1, 2, 3, 7, 255, 32767, 32768, 65535, 65536, 2**24, 2**24 + 1, 2**31 - 1, 2**31, 2**32 - 1]
-
-INTERVALS: Mapping[str, Any] = {
-    "sin": (-_PI, _PI), "cos": (-_PI, _PI), "tan": (-1.0, 1.0), "asin": (-1.0, 1.0), "acos": (-1.0, 1.0),
-    "sinh": (-88.0, 88.0), "cosh": (-88.0, 88.0), "tanh": (-44.0, 44.0), "atanh": (-1.0, 1.0), "acosh": (1.0, 1e18),
-    "pow": ((0.0, MAX), (-64.0, 64.0)), "exp": (-88.0, 88.0), "exp2": (-126.0, 127.9), "log": (0.0, MAX),
-    "log2": (0.0, MAX), "sqrt": (0.0, MAX), "inversesqrt": (0.0, MAX), "mix": ((-MAX, MAX), (-MAX, MAX), (0.0, 1.0)),
-    "refract": ((-1.0, 1.0), (-1.0, 1.0), (0.0, 4.0)), "unpackNormal": (0.0, 1.0),
-}  # fmt: skip
-"""The domain's ends: for all arguments, or for one after the other; else every finite number."""
-
-_BITS = (0, 32)
-WHOLE: Mapping[str, Mapping[int, tuple[int, int]]] = {
-    "bitfieldExtract": {1: _BITS, 2: _BITS}, "bitfieldInsert": {2: _BITS, 3: _BITS}, "ldexp": {1: (-126, 127)},
-}  # fmt: skip
-"""The same for integers, argument by argument; both ends are among them."""
 
 
 class Case(NamedTuple):
@@ -164,14 +147,10 @@ def textures() -> dict[str, Texture]:
     return found
 
 
-def evaluated(expression: str, args: tuple[Any, ...]) -> Array:
-    """A row's `inside` or `size` for float64 arguments: the largest, or all, of a value's components; over the lanes.
-
-    An argument that the overload lacks is 1.
-    """
-    names = dict.fromkeys("xyzw", 1.0) | dict(zip("xyzw", args, strict=False))
-    with runtime.precision("float64"):
-        value = np.asarray(eval(expression, vars(runtime) | {"np": np}, names))  # the table's own text
+def evaluated(function: Callable[..., Any], args: tuple[Any, ...]) -> Array:
+    """A row's `inside` or `size` for float64 arguments, lane by lane: the largest, or all, of a value's components."""
+    with runtime.precision("float64"), np.errstate(all="ignore"):
+        value = np.asarray(function(runtime, *args))
     axes = tuple(range(value.ndim - 1))
     lanes = max(arg.shape[-1] for arg in args)
     return np.broadcast_to(value.all(axes) if value.dtype.kind == "b" else np.abs(value).max(axes), (lanes,))
@@ -189,13 +168,13 @@ def _drawn(row: Builtin, params: tuple[Type, ...], lanes: int) -> tuple[Array, .
     """Test vectors, and numbers from the domain: those that fall out of it are drawn again."""
     rng = np.random.default_rng([7, zlib.crc32(f"{row.name}({', '.join(map(spell, params))})".encode())])
     vectors = _vectors(row, params)
-    parts = [tuple(arg[..., _inside(row, vectors)] for arg in vectors)]
+    parts = [tuple(arg[..., inside(row, vectors)] for arg in vectors)]
     wanted = lanes - parts[0][0].shape[-1]
     for _ in range(32):
-        pool = [_column(row.name, index, type_, max(4 * lanes, 256), rng) for index, type_ in enumerate(params)]
+        pool = [_column(row, index, type_, max(4 * lanes, 256), rng) for index, type_ in enumerate(params)]
         pool = [arg if index == 0 else _mixed(arg, rng) for index, arg in enumerate(pool)]
         _repeat(pool, params, rng)
-        chosen = rng.permutation(np.flatnonzero(_inside(row, tuple(pool))))[: max(wanted, 0)]
+        chosen = rng.permutation(np.flatnonzero(inside(row, tuple(pool))))[: max(wanted, 0)]
         parts.append(tuple(arg[..., chosen] for arg in pool))
         wanted -= len(chosen)
         if wanted <= 0:
@@ -203,24 +182,25 @@ def _drawn(row: Builtin, params: tuple[Type, ...], lanes: int) -> tuple[Array, .
     raise ValueError(f"{row.name}: too few arguments fall into its domain")
 
 
-def _inside(row: Builtin, args: tuple[Array, ...]) -> Array:
-    """Lanes inside of a row's domain."""
+def inside(row: Builtin, args: tuple[Array, ...]) -> Array:
+    """The lanes in which the parity of a row is measured."""
     return evaluated(row.inside, widened(args)) if row.inside else np.ones(args[0].shape[-1], bool)
 
 
-def _column(name: str, index: int, type_: Type, count: int, rng: np.random.Generator) -> Array:
+def _column(row: Builtin, index: int, type_: Type, count: int, rng: np.random.Generator) -> Array:
     """One argument: a third each of edges, even numbers and even magnitudes."""
-    kind, size = kind_of(type_), (*shape_of(type_), count)
+    kind, size, samples = kind_of(type_), (*shape_of(type_), count), row.samples
     if kind == "bool":
         return rng.random(size) < 0.5
-    if isinstance(type_, Matrix) and name in ("determinant", "inverse"):
+    if isinstance(type_, Matrix) and samples.invertible:
         regular = 2.0 * np.eye(type_.size)[..., None] + rng.uniform(-0.5, 0.5, size)
         return (regular * 2.0 ** rng.integers(-4, 5, count)).astype(np.float32)
     third = (*size[:-1], count // 3)
     rest = (*size[:-1], count - 2 * (count // 3))
     if kind in ("int", "uint"):
-        if index in (ends := WHOLE.get(name, {})):
-            return rng.integers(ends[index][0], ends[index][1] + 1, size).astype(DTYPES[kind])
+        if index in samples.integers:
+            low, high = samples.integers[index]
+            return rng.integers(low, high + 1, size).astype(DTYPES[kind])
         info = np.iinfo(DTYPES[kind])
         edges = np.array([sign * one for one in INTEGERS for sign in (1, -1)], np.int64)
         edges = edges[(edges >= info.min) & (edges <= info.max)]
@@ -228,10 +208,9 @@ def _column(name: str, index: int, type_: Type, count: int, rng: np.random.Gener
         drawn = [_each(edges, third, rng), rng.integers(low, 10, third), rng.integers(info.min, info.max, rest)]
         found: Array = np.concatenate(drawn, axis=-1).astype(DTYPES[kind])
         return found
-    interval = INTERVALS.get(name, (-MAX, MAX))
-    low_end, high_end = interval[index] if isinstance(interval[0], tuple) else interval
+    low_end, high_end = samples.interval(index) or (-MAX, MAX)
     edges = np.append(EDGES, [low_end, high_end]).astype(np.float32)
-    if name in ("isnan", "isinf"):
+    if samples.special:
         edges = np.append(edges, np.array([np.nan, np.inf, -np.inf], np.float32))
     edges = edges[~((edges < low_end) | (edges > high_end))]
     even = rng.uniform(max(low_end, -8.0), min(high_end, 8.0), third)
@@ -239,10 +218,10 @@ def _column(name: str, index: int, type_: Type, count: int, rng: np.random.Gener
     signs = np.where(rng.random(rest) < 0.5, 1.0 if high_end > 0.0 else -1.0, -1.0 if low_end < 0.0 else 1.0)
     value = np.concatenate([_each(edges, third, rng), even, np.maximum(signs * sizes, low_end)], axis=-1)
     value = value.astype(np.float32)
-    if index in UNIT.get(name, ()):
+    if index in samples.unit:
         with np.errstate(invalid="ignore"):
             value = value / np.linalg.norm(value.astype(np.float64), axis=0) if value.ndim > 1 else np.sign(value)
-    if name == "packHalf2x16":
+    if samples.halves:
         value = np.clip(value, -65504.0, 65504.0).astype(np.float16)
     return value.astype(np.float32)
 
@@ -315,7 +294,9 @@ def reads(row: Builtin, params: tuple[Type, ...]) -> tuple[Any, ...]:
     layer = rng.integers(0, 3, FEW)
     reference = (rng.integers(40, 216, FEW) + 0.5) / 256.0  # between the texels, which are multiples of 1/256
     linear, slopes = _over_the_image(texture)
-    if row.domain != "uniform control flow" and "Grad" not in row.name:
+    gradients = sum(isinstance(type_, Vector) and type_.kind == "float" for type_ in params) == 3
+    offsets = [params[index] for index in row.constant if index < len(params) and isinstance(params[index], Vector)]
+    if not row.uniform_flow and not gradients:
         linear = rng.uniform(-1.0, 2.0, linear.shape)
         if texture.dim == "Cube":
             linear[1] = 3.0  # to the middle of a cube's face
@@ -327,23 +308,23 @@ def reads(row: Builtin, params: tuple[Type, ...]) -> tuple[Any, ...]:
             value = CONSTANTS[spell(type_)][..., None] * np.ones(FEW, np.int32)
         elif isinstance(type_, Vector) and type_.kind == "int":
             value = np.concatenate([rng.integers(0, 2, (texture.axes, FEW)), [layer]])[: type_.size]
-            value -= CONSTANTS[spell(type_)][..., None] * ("Offset" in row.name)  # what is read lies inside
+            value -= CONSTANTS[spell(type_)][..., None] * bool(offsets)  # the texel that is read lies inside
         elif index == 1 and isinstance(type_, Vector):
             further = [layer + 0.25] * texture.layers + [reference] * texture.compare
             value = np.concatenate([linear, *(one[None] for one in further)])[: type_.size]
         elif isinstance(type_, Vector):
             value = slopes[index - params.index(type_, 2)]
-        elif last_int and ("Fetch" in row.name or "Size" in row.name):
+        elif last_int and kind_of(params[1]) == "int":
             value = np.full(FEW, min(1, len(texture.levels) - 1))
         elif type_ == INT:
             value = layer
-        elif "Compare" in row.name:
+        elif sampler.shadow and components(params[1]) == texture.axes:
             value = reference
-        elif row.domain == "uniform control flow":
-            value = np.full(FEW, 1.0 if "Offset" in row.name else 0.5)  # a bias
+        elif row.uniform_flow:
+            value = np.full(FEW, 1.0 if offsets else 0.5)  # a bias
         else:
             value = rng.uniform(0.0, 3.0, FEW)  # a level
-            value = np.floor(value) if "Offset" in row.name else value  # SwiftShader mistakes those between
+            value = np.floor(value) if offsets else value  # SwiftShader mistakes those between
         args.append(value.astype(DTYPES[kind_of(type_)]))
     return tuple(args)
 

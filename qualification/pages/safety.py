@@ -92,7 +92,7 @@ def guards(found: list[Mutant]) -> list[str]:
         cells = [one.seen.get(name, "").replace("another value", "other") or "–" for name in BACKENDS]
         trial = one.witness.trial if one.witness else "none found"
         place = f"{one.site.place.rsplit(':', 1)[0]}"
-        says = one.site.guard.says
+        says = one.site.guard.problem
         lines.append(f"| {one.site.what} | {one.specimen.title} ({place}) | {says} | {trial} | {' | '.join(cells)} |")
     return [*lines, ""]
 

@@ -19,9 +19,9 @@ from sssgen.ir.formats import FLOAT32
 from sssgen.ir.intervals import Range, rounded
 from sssgen.ir.intrinsics import BUILTINS, Builtin
 from sssgen.ir.types import Scalar, Type, Vector, components, kind_of, spell
+from sssgen.ir.vector_ranges import Value
 from sssgen.passes.ranges import builtin_ranges
 from sssgen.passes.ranges.range_pass import _Analysis
-from sssgen.passes.ranges.vector_ranges import Value
 from sssgen.pipeline.compiler import transpile
 from sssgen.targets import numpy_runtime as runtime
 

@@ -21,12 +21,12 @@ from sssgen.ir.formats import FLOAT32
 from sssgen.ir.intervals import Range, widened
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import Array, Matrix, Scalar, Struct, Type, Vector, kind_of
+from sssgen.ir.vector_ranges import Value as Known
 from sssgen.passes.ranges import builtin_ranges
 from sssgen.passes.ranges.range_pass import _Analysis
 from sssgen.passes.ranges.range_state import SUMS
 from sssgen.passes.ranges.scalar_parts import scalars
 from sssgen.passes.ranges.sites import COUNT, SIGNED_COUNT
-from sssgen.passes.ranges.vector_ranges import Value as Known
 from sssgen.targets import numpy_runtime as runtime
 
 LARGEST = FLOAT32.largest

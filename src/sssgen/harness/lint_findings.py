@@ -50,7 +50,7 @@ class Finding(NamedTuple):
         if self.verdict == PROVEN:
             return f"{self.site.what}: proven safe"
         unseen = "not proven, and no input found that does it" if self.searched else "not proven"
-        return f"{self.site.what}: {self.site.guard.says}{f' ({unseen})' if self.verdict == UNKNOWN else ''}"
+        return f"{self.site.what}: {self.site.guard.problem}{f' ({unseen})' if self.verdict == UNKNOWN else ''}"
 
     @property
     def severity(self) -> str:

@@ -9,25 +9,12 @@ outside nobody has seen to that: its thickness may be any number.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
 
 from sssgen.ir.formats import FLOAT32, Format
 from sssgen.ir.nodes import Param, Uniform
 from sssgen.ir.types import FLOAT, VEC3, VEC4, Array, Matrix, Sampler, kind_of
+from sssgen.ir.vector_ranges import LENGTH, Contract
 
-
-class Contract(NamedTuple):
-    """Lowest and highest value of each component, and the greatest length of a vector (infinite: none is known)."""
-
-    low: float
-    high: float
-    length: float = float("inf")
-    finite: bool = True
-    """False for texels of a texture that holds data: a float format may hold NaN and infinity."""
-
-
-LENGTH = 1.001
-"""The greatest length of a direction. Interpolated normals are shorter than 1, missing ones 0."""
 LONG = 300.0
 """The length up to which a direction that is none may be passed in half precision. In float32 no length matters."""
 ONE = 1.0 + 2.0**-10

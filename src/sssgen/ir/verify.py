@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from math import isfinite
 
+from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import (
     Assign,
     Assume,
@@ -58,9 +59,6 @@ from sssgen.ir.types import (
     with_article,
 )
 from sssgen.ir.walk import callees, operands, subexpressions
-
-_READS_SURROUNDINGS = ("texture", "texel", "dF", "fwidth")
-"""How the builtins begin that no constant can use."""
 
 
 class InvalidIR(AssertionError):
@@ -141,7 +139,7 @@ class _Verifier:
             self.expression(constant.value)
             self.same(constant.value.type, constant.type, constant.span, f"constant '{constant.name}'")
             for part in subexpressions(constant.value):
-                reads = isinstance(part, Intrinsic) and part.name.startswith(_READS_SURROUNDINGS)
+                reads = isinstance(part, Intrinsic) and BUILTINS[part.name].reads_neighbours_or_textures
                 varies = isinstance(part, Global) and part.name not in constants
                 if reads or varies or isinstance(part, Local | Call):
                     self.report(part.span, f"the value of '{constant.name}' is not constant")

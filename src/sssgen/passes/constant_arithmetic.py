@@ -2,16 +2,17 @@
 
 Floats are float32: operands are rounded to it, the result is computed in float64 and rounded once. Nothing
 gives inf, NaN or a denormal (which GPUs may flush to 0), nothing divides by zero. Ints and uints are of 32
-bits and wrap. Builtins are computed within the domain that the intrinsic table gives.
+bits and wrap. Builtins are computed by `fold` of the intrinsic table, within their domains.
 """
 
 from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from struct import Struct
 
+from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import Type, components, kind_of
 
 Number = float | int | bool
@@ -73,43 +74,43 @@ def unary(op: str, value: Numbers, kind: str) -> Numbers | None:
 
 
 def builtin(name: str, args: Sequence[Numbers], types: Sequence[Type], result: Type) -> Numbers | None:
-    """A builtin of constant arguments; None for those that are not computed here, or outside their domain."""
-    reduce = _REDUCED.get(name)
-    kind = kind_of(result)
-    if reduce is not None:
-        try:
-            values = reduce(*args)
-        except (ArithmeticError, ValueError):
-            return None
-        return _rounded(values, kind)
-    compute = _COMPONENTWISE.get(name)
-    if compute is None or (name == "mix" and kind_of(types[2]) == "bool"):
+    """A builtin of constant arguments; None where it is not folded, or the arguments are outside of its domain."""
+    try:
+        values = _values(name, args)
+    except (ArithmeticError, ValueError):
         return None
-    found = _each(compute, args, kind)
+    found = _rounded(values, kind_of(result)) if values is not None else None
     return found if found is not None and len(found) == components(result) else None
 
 
 def outside(name: str, args: Sequence[Numbers]) -> bool:
     """Whether constant arguments lie outside a builtin's domain, or its result outside the floats."""
     try:
-        if name in _REDUCED:
-            values = _REDUCED[name](*args)
-        elif name in _COMPONENTWISE:
-            size = max(map(len, args))
-            wide = [arg if len(arg) == size else arg * size for arg in args]
-            values = [_COMPONENTWISE[name](*parts) for parts in zip(*wide, strict=True)]
-        else:
-            return False
-        return any(not abs(value) <= _LARGEST for value in values)
+        return any(not abs(value) <= _LARGEST for value in _values(name, args) or ())
     except (ArithmeticError, ValueError):
         return True
 
 
-def _each(compute: Callable[..., Number], args: Sequence[Numbers], kind: str) -> Numbers | None:
+def _values(name: str, args: Sequence[Numbers]) -> Sequence[Number] | None:
+    """The unrounded components of a builtin's result; None where the table has no `fold` for it."""
+    row = BUILTINS[name]
+    if row.fold is None:
+        return None
+    if not row.componentwise:
+        values: Sequence[Number] = row.fold(*args)
+        return values
+    return [row.fold(*parts) for parts in _by_component(args)]
+
+
+def _by_component(args: Sequence[Numbers]) -> Iterator[tuple[Number, ...]]:
+    """The arguments of each component; a scalar counts for all of them."""
     size = max(map(len, args))
-    wide = [arg if len(arg) == size else arg * size for arg in args]
+    return zip(*[arg if len(arg) == size else arg * size for arg in args], strict=True)
+
+
+def _each(compute: Callable[..., Number], args: Sequence[Numbers], kind: str) -> Numbers | None:
     try:
-        return _rounded([compute(*parts) for parts in zip(*wide, strict=True)], kind)
+        return _rounded([compute(*parts) for parts in _by_component(args)], kind)
     except (ArithmeticError, ValueError):
         return None
 
@@ -125,13 +126,6 @@ def _rounded(values: Sequence[Number], kind: str) -> Numbers | None:
         else:
             result.append(bool(value) if kind == "bool" else wrapped(int(value), kind))
     return tuple(result)
-
-
-def _within(condition: bool, value: float) -> float:
-    """`value`; ValueError where the domain's condition does not hold."""
-    if not condition:
-        raise ValueError
-    return value
 
 
 # Operators
@@ -175,80 +169,3 @@ _INTEGER: dict[str, Callable[..., Number]] = {
 _BOOL: dict[str, Callable[..., Number]] = {
     "&&": lambda x, y: x and y, "||": lambda x, y: x or y, "^^": operator.xor,
 }  # fmt: skip
-
-
-# Builtins
-
-
-def _atan(y: float, x: float | None = None) -> float:
-    if x is None:
-        return math.atan(y)
-    return _within(x != 0.0 or y != 0.0, math.atan2(y, x))
-
-
-def _pow(x: float, y: float) -> float:
-    if x < 0.0 or (x == 0.0 and y <= 0.0):
-        raise ValueError
-    return math.pow(x, y)
-
-
-def _sign(x: float) -> float:
-    return (x > 0) - (x < 0)
-
-
-def _clamp(x: float, low: float, high: float) -> float:
-    return _within(low <= high, min(max(x, low), high))
-
-
-def _smoothstep(low: float, high: float, x: float) -> float:
-    t = min(max((x - low) / (high - low), 0.0), 1.0)
-    return _within(low < high, t * t * (3.0 - 2.0 * t))
-
-
-def _abs(x: float) -> float:
-    return _within(x != -0x80000000 or isinstance(x, float), abs(x))
-
-
-_COMPONENTWISE: dict[str, Callable[..., Number]] = {
-    "radians": lambda x: x * math.pi / 180.0, "degrees": lambda x: x * 180.0 / math.pi,
-    "sin": math.sin, "cos": math.cos, "tan": math.tan, "asin": math.asin, "acos": math.acos, "atan": _atan,
-    "sinh": math.sinh, "cosh": math.cosh, "tanh": math.tanh,
-    "asinh": math.asinh, "acosh": math.acosh, "atanh": math.atanh,
-    "pow": _pow, "exp": math.exp, "log": math.log, "exp2": lambda x: 2.0**x, "log2": math.log2,
-    "sqrt": math.sqrt, "inversesqrt": lambda x: 1.0 / math.sqrt(x),
-    "abs": _abs, "sign": _sign, "floor": math.floor, "ceil": math.ceil, "trunc": math.trunc,
-    "round": round, "roundEven": round, "fract": lambda x: x - math.floor(x),
-    "mod": lambda x, y: x - y * math.floor(x / y), "fmod": lambda x, y: x - y * math.trunc(x / y),
-    "min": min, "max": max, "clamp": _clamp, "saturate": lambda x: min(max(x, 0.0), 1.0),
-    "mix": lambda x, y, t: x * (1.0 - t) + y * t, "step": lambda edge, x: 0.0 if x < edge else 1.0,
-    "smoothstep": _smoothstep,
-    "lessThan": operator.lt, "lessThanEqual": operator.le, "greaterThan": operator.gt,
-    "greaterThanEqual": operator.ge, "equal": operator.eq, "notEqual": operator.ne, "not": operator.not_,
-}  # fmt: skip
-
-
-def _dot(x: Sequence[float], y: Sequence[float]) -> float:
-    return math.fsum(one * other for one, other in zip(x, y, strict=True))
-
-
-def _length(x: Sequence[float]) -> float:
-    return math.sqrt(_dot(x, x))
-
-
-def _normalize(x: Sequence[float]) -> list[float]:
-    return [one / _length(x) for one in x]
-
-
-def _cross(x: Sequence[float], y: Sequence[float]) -> list[float]:
-    return [x[i] * y[j] - x[j] * y[i] for i, j in ((1, 2), (2, 0), (0, 1))]
-
-
-_REDUCED: dict[str, Callable[..., Sequence[Number]]] = {
-    "dot": lambda x, y: [_dot(x, y)],
-    "length": lambda x: [_length(x)],
-    "distance": lambda x, y: [_length([one - other for one, other in zip(x, y, strict=True)])],
-    "normalize": _normalize,
-    "cross": _cross,
-    "any": lambda x: [any(x)],
-    "all": lambda x: [all(x)],
-}

@@ -46,7 +46,7 @@ def implicit() -> frozenset[str]:
     """The builtins that want uniform control flow, as the intrinsic table says."""
     from sssgen.ir.intrinsics import BUILTINS
 
-    return frozenset(name for name, row in BUILTINS.items() if row.domain == "uniform control flow")
+    return frozenset(name for name, row in BUILTINS.items() if row.uniform_flow)
 
 
 @cache
@@ -54,8 +54,8 @@ def varying_builtins() -> frozenset[str]:
     """The builtins whose results differ from pixel to pixel whatever they are given."""
     from sssgen.ir.intrinsics import BUILTINS
 
-    kinds = ("fetch", "derivative")
-    return frozenset(name for name, row in BUILTINS.items() if row.kind in kinds and name != "textureSize")
+    rows = BUILTINS.items()
+    return frozenset(name for name, row in rows if row.reads_neighbours_or_textures and not row.size_query)
 
 
 class Summary(NamedTuple):

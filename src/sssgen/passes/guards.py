@@ -151,7 +151,7 @@ class _Guarder:
         if not chosen.text:
             return self.with_safe_divisions(node)
         args = operands(node)
-        name = _NAMES.get(site.what) or f"safe_{site.what}"
+        name = chosen.function or f"safe_{site.what}"
         types = [arg.type for arg in args]
         module, letters = self.source(chosen, name, types, node.type, self.format, site.limits)
         given = (node,) if chosen.replaces == "result" else tuple([args["xyz".index(letter)] for letter in letters])
@@ -256,7 +256,3 @@ def _close(one: ir.Expr, other: ir.Expr, roughly: bool) -> ir.Expr:
     if size == 1:
         return ir.Binary(BOOL, "<=", apart, limit, span)
     return ir.Intrinsic(result, "lessThanEqual", (apart, limit), span)
-
-
-_NAMES = {"/": "nonzero", "mod": "nonzero", "fmod": "nonzero", "overflow": "bounded", "texel": "valid_texel"}
-"""What helpers of these operations are called; the others `safe_` and the builtin's name."""

@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
+from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import (
     Assign,
     Assume,
@@ -339,22 +340,22 @@ class _Hoister:
 
     def explicit(self, expr: Intrinsic) -> Expr:
         """A builtin that cannot be moved, without the comparison of neighbours."""
-        if not expr.name.startswith("texture"):
+        row = BUILTINS[expr.name]
+        if row.kind == "derivative":
             self.note(f"{expr.name} is taken as 0 here", expr.span)
             return _zero(expr.type, expr.span)
         map_, at, *rest = expr.args
         assert isinstance(map_.type, Sampler)
-        known = expr.name in ("texture", "textureOffset")
-        if not known or (map_.type.shadow and map_.type != Sampler("2D", shadow=True)):
+        if row.with_level is None or not row.with_gradients:
             return expr  # there is none with a level of its own
-        offset = rest[:1] if expr.name == "textureOffset" else []
-        bias = rest[len(offset) :]
-        ending = "Offset" if offset else ""
+        if map_.type.shadow and map_.type != Sampler("2D", shadow=True):
+            return expr  # there is none with a level of its own
+        offset, bias = rest[: len(row.constant)], rest[len(row.constant) :]
         coordinates = self.start(at) if not map_.type.shadow else None
         if coordinates is None or not any(map(self.may_vary, subexpressions(coordinates))):
             self.note(f"{_words(map_)} is read at level 0 here", expr.span)
             level = bias[0] if bias else Literal(FLOAT, 0.0, expr.span)
-            return Intrinsic(expr.type, f"textureLod{ending}", (map_, at, level, *offset), expr.span)
+            return Intrinsic(expr.type, row.with_level.name, (map_, at, level, *offset), expr.span)
         name = coordinates.name if isinstance(coordinates, Local) else "coordinates"
         if map_.type.array:  # the layer has no slope
             letters = "xyzw"[: components(at.type) - 1]
@@ -367,7 +368,7 @@ class _Hoister:
             scale = Intrinsic(FLOAT, "exp2", (bias[0],), expr.span)
             slopes = [Binary(slope.type, "*", slope, scale, expr.span) for slope in slopes]
         self.note(f"{_words(map_)} is read here at the level that its coordinates had before", expr.span)
-        return Intrinsic(expr.type, f"textureGrad{ending}", (map_, at, *slopes, *offset), expr.span)
+        return Intrinsic(expr.type, row.with_gradients, (map_, at, *slopes, *offset), expr.span)
 
     def may_vary(self, part: Expr) -> bool:
         """Whether it is a variable."""
@@ -407,9 +408,10 @@ def _base_name(expr: Call | Intrinsic) -> str:
         return f"{expr.function.split('(')[0]}_value"
     subject = expr.args[0]
     name = subject.name if isinstance(subject, Local | Global) else ""
-    if expr.name.startswith("texture"):
+    row = BUILTINS[expr.name]
+    if row.kind == "fetch":
         return f"{name or 'texture'}_sample"
-    return f"{name or 'value'}_{ {'dFdx': 'dx', 'dFdy': 'dy'}.get(expr.name, 'width') }"
+    return f"{name or 'value'}_{f'd{row.axis}' if row.axis else 'width'}"
 
 
 def _words(map: Expr) -> str:

@@ -18,12 +18,6 @@ from sssgen.targets.registry import load
 from sssgen.targets.uniform_layout import Member
 from sssgen.targets.wgsl import WgslPrinter
 
-_BITS = frozenset(("floatBitsToInt", "floatBitsToUint", "intBitsToFloat", "uintBitsToFloat")) | {
-    f"{way}{form}"
-    for way in ("pack", "unpack")
-    for form in ("Half2x16", "Snorm2x16", "Unorm2x16", "Snorm4x8", "Unorm4x8")
-}
-
 
 def target() -> Target:
     """The target `wgsl` in half precision. It has the functions form alone: uniform blocks hold float32."""
@@ -78,7 +72,7 @@ class WgslHalfPrinter(WgslPrinter):
 
 def in_single(name: str) -> bool:
     """Whether WGSL has the builtin for float32 alone."""
-    return name in _BITS or BUILTINS[name].kind in ("fetch", "derivative")
+    return BUILTINS[name].float32_bits or BUILTINS[name].reads_neighbours_or_textures
 
 
 def half_text(value: float) -> str:

@@ -13,10 +13,10 @@ from sssgen.harness.backends import Array
 from sssgen.harness.evaluate.evaluation import Inputs, default_texture, shape_of
 from sssgen.harness.stress.subject import Specimen
 from sssgen.ir import contracts
-from sssgen.ir.contracts import LENGTH, Contract
 from sssgen.ir.formats import FLOAT32, Format
 from sssgen.ir.nodes import Param, Uniform
 from sssgen.ir.types import Matrix, Sampler, kind_of, spell
+from sssgen.ir.vector_ranges import LENGTH, Contract
 from sssgen.targets.numpy_textures import Texture
 
 TINY = 1e-45

@@ -2,11 +2,47 @@
 
 from __future__ import annotations
 
-from sssgen.ir.intrinsics.table import F1, FINITE, INF, NAN, NONZERO, Builtin, Guard
+import math
+from typing import Any
+
+from sssgen.ir.component_ranges import (
+    any_number,
+    floored_remainder,
+    fused_product_sum,
+    linear_blend,
+    power_of_two_product,
+    truncated_remainder,
+    within,
+)
+from sssgen.ir.intervals import INF, Range, absolute, clip, fraction, maximum, minimum, rising, signs
+from sssgen.ir.intrinsics.table import F1, LARGEST, NAN, NONZERO, NOT_FINITE_BITS, Builtin, Guard, Samples, checked
 
 _PLAIN = F1[0], "genI(genI)"
 _ONES = ("float", "int", "uint")
 _PAIR = tuple(f"gen{k}(gen{k}, {other})" for k, one in zip("FIU", _ONES) for other in (f"gen{k}", one))
+
+
+def _blend(x: float, y: float, z: float | bool) -> float:
+    return (y if z else x) if isinstance(z, bool) else x * (1.0 - z) + y * z
+
+
+def _smoothstep(x: float, y: float, z: float) -> float:
+    t = min(max((z - x) / (y - x), 0.0), 1.0)
+    return float(checked(x < y, t * t * (3.0 - 2.0 * t)))
+
+
+def _off_integer_quotients(rt: Any, x: Any, y: Any, rounding: float = 2.0**-20) -> Any:
+    """Where x/y is not within `rounding` of an integer."""
+    quotient = x / y
+    distance = abs(quotient - rt.round(quotient))
+    return (y != 0.0) & ((x == 0.0) | (abs(quotient) > 1e-36)) & (distance >= rounding * abs(quotient))
+
+
+_REMAINDER = Guard(
+    lambda F, x, y: not y.has_zero(), "a remainder of division by 0", NONZERO, "y", function="nonzero",
+    argument=lambda F, y: Range(y.low, y.high, max(y.gap, F.divisor)),
+    result=lambda F, found: found,  # not finite, where the quotient overflows
+)  # fmt: skip
 
 
 def _choice(scalar: str, vector: str) -> str:
@@ -24,47 +60,48 @@ def _choice(scalar: str, vector: str) -> str:
 # fmt: off
 ROWS = (
     Builtin("abs", _PLAIN, "Absolute value.",
-        range="absolute(x)",
-        inside="x != -2147483648",
+        fold=lambda x: checked(x != -0x80000000 or isinstance(x, float), abs(x)), relation="abs",
+        same_quantity=3, quantity="argument", range=lambda F, x: absolute(x),
+        inside=lambda rt, x: x != -2147483648,
         domain="for an int: x > -2147483648",
         ulp=0.0, vectors=(((-1.5,), 1.5), ((0.0,), 0.0), ((-7,), 7), (((1, -2),), (1, 2))),
     ),
     Builtin("sign", _PLAIN, "1 for x > 0, -1 for x < 0, else 0.",
-        range="signs(x)",
+        fold=lambda x: (x > 0) - (x < 0), range=lambda F, x: signs(x),
         texts={"hlsl/genF": "{type}(sign({0}))"},
         ulp=0.0, vectors=(((-2.5,), -1.0), ((0.0,), 0.0), ((0.125,), 1.0), ((-3,), -1), ((0,), 0)),
     ),
     Builtin("floor", F1, "Largest integer not above x.",
-        range="rising(math.floor, x)",
+        fold=math.floor, range=lambda F, x: rising(math.floor, x),
         ulp=0.0, vectors=(((1.75,), 1.0), ((-0.25,), -1.0), ((-2.0,), -2.0)),
     ),
     Builtin("ceil", F1, "Smallest integer not below x.",
-        range="rising(math.ceil, x)",
+        fold=math.ceil, range=lambda F, x: rising(math.ceil, x),
         ulp=0.0, vectors=(((1.25,), 2.0), ((-1.75,), -1.0), ((2.0,), 2.0)),
     ),
     Builtin("trunc", F1, "Nearest integer not larger in size: x rounded towards 0.",
-        range="rising(math.trunc, x)",
+        fold=math.trunc, range=lambda F, x: rising(math.trunc, x),
         ulp=0.0, vectors=(((1.75,), 1.0), ((-1.75,), -1.0), ((3.0,), 3.0)),
     ),
     Builtin("round", F1,
         "Nearest integer; of two, the even one (GLSL leaves that choice open, so it is written roundEven there).",
-        range="rising(round, x)",
+        fold=round, range=lambda F, x: rising(round, x),
         texts={"glsl": "roundEven"}, ulp=0.0, vectors=(((1.75,), 2.0), ((0.5,), 0.0), ((-1.5,), -2.0), ((2.5,), 2.0)),
     ),
     Builtin("roundEven", F1, "Nearest integer; of two, the even one.",
-        range="rising(round, x)",
+        fold=round, range=lambda F, x: rising(round, x),
         texts={"hlsl": "round", "wgsl": "round"},
         ulp=0.0, vectors=(((1.25,), 1.0), ((0.5,), 0.0), ((1.5,), 2.0), ((-2.5,), -2.0)),
     ),
     Builtin("fract", F1, "x - floor(x), in [0, 1); may round to 1 for a tiny negative x.",
-        range="fraction(x)",
+        fold=lambda x: x - math.floor(x), range=lambda F, x: fraction(x),
         texts={"hlsl": "frac"}, vectors=(((1.75,), 0.75), ((-0.25,), 0.75), ((-3.0,), 0.0)),
     ),
     Builtin("mod", ("genF(genF, genF)", "genF(genF, float)"),
         "Floored remainder x - y·floor(x/y); has the sign of y. Not HLSL's fmod, which truncates.",
-        range="remainder(x, y)",
-        guards=(Guard("not y.has_zero()", "a remainder of division by 0", NONZERO, "y"),),
-        inside="(y != 0.0) & ((x == 0.0) | (abs(x / y) > 1e-36)) & (abs(x / y - round(x / y)) >= 2.0**-20 * abs(x / y))", size="max(abs(x), abs(y))",
+        fold=lambda x, y: x - y * math.floor(x / y), overflow_is_nan=True, range=floored_remainder,
+        guards=(_REMAINDER,),
+        inside=_off_integer_quotients, size=lambda rt, x, y: rt.max(abs(x), abs(y)),
         domain="y != 0; where x/y is within rounding of an integer the result may wrap", texts={"hlsl": "", "wgsl": ""},
         polyfill="""
 genF mod(genF x, genF y) { return x - y * floor(x / y); }
@@ -78,9 +115,9 @@ vecF mod(vecF x, float y) { return x - y * floor(x / y); }
     Builtin("fmod", ("genF(genF, genF)", "genF(genF, float)"),
         "Truncated remainder x - y·trunc(x/y), as in C and HLSL; has the sign of x. Written out in HLSL, where glslang "
         "takes fmod for the floored one.",
-        range="truncated(x, y)",
-        guards=(Guard("not y.has_zero()", "a remainder of division by 0", NONZERO, "y"),),
-        inside="(y != 0.0) & ((x == 0.0) | (abs(x / y) > 1e-36)) & (abs(x / y - round(x / y)) >= 2.0**-20 * abs(x / y))", size="max(abs(x), abs(y))",
+        fold=lambda x, y: x - y * math.trunc(x / y), overflow_is_nan=True, range=truncated_remainder,
+        guards=(_REMAINDER,),
+        inside=_off_integer_quotients, size=lambda rt, x, y: rt.max(abs(x), abs(y)),
         domain="y != 0; where x/y is within rounding of an integer the result may wrap", texts={"glsl": "", "hlsl": "", "wgsl": "op:%"},
         polyfill="""
 genF fmod(genF x, genF y) { return x - y * trunc(x / y); }
@@ -92,14 +129,14 @@ vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
         ),
     ),
     Builtin("min", _PAIR, "The smaller; either one where one is NaN.",
-        range="minimum(x, y)",
+        fold=min, relation="min", same_quantity=3, quantity="argument", range=lambda F, x, y: minimum(x, y),
         domain="neither is NaN",
         ulp=0.0, vectors=(
             ((1.0, -2.0), -2.0), ((3, 3), 3), (((1.0, 4.0), 2.0), (1.0, 2.0)), (((1, -4), (-1, 2)), (-1, -4)),
         ),
     ),
     Builtin("max", _PAIR, "The larger; either one where one is NaN.",
-        range="maximum(x, y)",
+        fold=max, relation="max", same_quantity=3, quantity="argument", range=lambda F, x, y: maximum(x, y),
         domain="neither is NaN",
         ulp=0.0, vectors=(
             ((1.0, -2.0), 1.0), ((3, 3), 3), (((1.0, 4.0), 2.0), (2.0, 4.0)), (((1, -4), (-1, 2)), (1, 2)),
@@ -108,9 +145,10 @@ vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
     Builtin("clamp",
         tuple(f"gen{k}(gen{k}, {bound}, {bound})" for k, one in zip("FIU", _ONES) for bound in (f"gen{k}", one)),
         "min(max(x, y), z).",
-        range="clip(x, y, z)",
-        guards=(Guard("y.high <= z.low or ordered(y, z)", "the lower bound above the upper one", "min(max(x, y), z)"),),
-        inside="y <= z",
+        fold=lambda x, y, z: checked(y <= z, min(max(x, y), z)), same_quantity=3, quantity="argument",
+        range=lambda F, x, y, z: clip(x, y, z),
+        guards=(Guard(lambda F, x, y, z: y.high <= z.low, "the lower bound above the upper one", "min(max(x, y), z)", ordered=(1, 2)),),
+        inside=lambda rt, x, y, z: y <= z,
         domain="y <= z; x is not NaN", cost=2,
         ulp=0.0, vectors=(
             ((0.5, 0.0, 1.0), 0.5), ((-0.5, 0.0, 1.0), 0.0), ((7, 1, 4), 4),
@@ -118,7 +156,8 @@ vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
         ),
     ),
     Builtin("saturate", F1, "clamp(x, 0, 1). Of our own: HLSL and WGSL have it, GLSL has not.",
-        range="clip(x, 0.0, 1.0)",
+        fold=lambda x: min(max(x, 0.0), 1.0), same_quantity=3, quantity="argument",
+        range=lambda F, x: clip(x, 0.0, 1.0),
         domain="x is not NaN", texts={"glsl": ""},
         polyfill="genF saturate(genF x) { return clamp(x, 0.0, 1.0); }",
         ulp=0.0, vectors=(((0.25,), 0.25), ((-1.0,), 0.0), ((1.5,), 1.0), (((2.0, -0.0, 1.0),), (1.0, 0.0, 1.0))),
@@ -126,8 +165,9 @@ vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
     Builtin("mix",
         ("genF(genF, genF, genF)", "genF(genF, genF, float)", *(f"gen{k}(gen{k}, gen{k}, genB)" for k in "FIUB")),
         "Linear blend x·(1 - z) + y·z; with a bool, z ? y : x, where the other one may be infinite or NaN.",
-        range="blend(x, y, z)",
-        inside="(np.asarray(z).dtype == bool) | (max(abs(x), abs(y)) * max(abs(z), 1.0) < 1e38)", size="max(abs(x), abs(y)) * max(abs(z), 1.0)",
+        fold=_blend, samples=Samples(floats=((-LARGEST, LARGEST), (-LARGEST, LARGEST), (0.0, 1.0))),
+        same_quantity=2, quantity="blend", overflow_is_nan=True, range=linear_blend,
+        inside=lambda rt, x, y, z: (z.dtype == bool) | (rt.max(abs(x), abs(y)) * rt.max(abs(z), 1.0) < 1e38), size=lambda rt, x, y, z: rt.max(abs(x), abs(y)) * rt.max(abs(z), 1.0),
         domain="x and y finite, unless z is a bool",
         texts={
             "hlsl": "lerp", **{f"glsl/gen{k},gen{k},genB": "" for k in "IUB"},
@@ -142,22 +182,22 @@ vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
         ),
     ),
     Builtin("step", ("genF(genF, genF)", "genF(float, genF)"), "0 for y < x, else 1.",
-        range="hull(0, 1)",
+        fold=lambda x, y: 0.0 if y < x else 1.0, same_quantity=2, range=within(0.0, 1.0),
         ulp=0.0, vectors=(((0.5, 0.25), 0.0), ((0.5, 0.5), 1.0), ((1.0, (0.0, 2.0)), (0.0, 1.0))),
     ),
     Builtin("smoothstep", ("genF(genF, genF, genF)", "genF(float, float, genF)"),
         "Cubic step t·t·(3 - 2·t) with t = clamp((z - x)/(y - x), 0, 1).",
-        range="hull(0, 1)",
-        guards=(Guard("(y - x).low > 0.0 and (y - x).high <= F.largest", "edges in the wrong order, or one", "{ genF t = clamp((z - x) / clamp(y - x, DIVISOR, LARGEST), 0.0, 1.0); return t * t * (3.0 - 2.0 * t); }",
+        fold=_smoothstep, same_quantity=3, range=within(0.0, 1.0),
+        guards=(Guard(lambda F, x, y, z: (y - x).low > 0.0 and (y - x).high <= F.largest, "edges in the wrong order, or one", "{ genF t = clamp((z - x) / clamp(y - x, DIVISOR, LARGEST), 0.0, 1.0); return t * t * (3.0 - 2.0 * t); }",
             doc="smoothstep; with edges in the wrong order or one, a step."),),
-        inside="(x < y) & (y - x < 1e30)",
+        inside=lambda rt, x, y, z: (x < y) & (y - x < 1e30),
         domain="x < y", cost=8, ulp=16.0,
         clause="WGSL, Vulkan: that of the formula, with 2.5 ulp for the division",
         vectors=(((0.0, 2.0, 0.5), 0.15625), ((0.0, 1.0, 0.0), 0.0), ((0.0, 1.0, (0.5, 3.0)), (0.5, 1.0))),
     ),
     Builtin("isnan", ("genB(genF)",),
         "Whether x is not a number, by its bits: compilers may take it that no NaN occurs.",
-        range="hull(0, 1)",
+        samples=Samples(special=True), range=within(0.0, 1.0),
         texts={"glsl": "", "hlsl": "", "wgsl": ""},
         polyfill="""
 bool isnan(float x) { return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u; }
@@ -166,7 +206,7 @@ vecB isnan(vecF x) { return greaterThan(floatBitsToUint(x) & vecU(0x7fffffffu), 
         cost=2, vectors=(((NAN,), True), ((INF,), False), ((0.0,), False), (((1.0, NAN),), (False, True))),
     ),
     Builtin("isinf", ("genB(genF)",), "Whether x is infinite, by its bits, as isnan.",
-        range="hull(0, 1)",
+        samples=Samples(special=True), range=within(0.0, 1.0),
         texts={"glsl": "", "hlsl": "", "wgsl": ""},
         polyfill="""
 bool isinf(float x) { return (floatBitsToUint(x) & 0x7fffffffu) == 0x7f800000u; }
@@ -176,30 +216,34 @@ vecB isinf(vecF x) { return equal(floatBitsToUint(x) & vecU(0x7fffffffu), vecU(0
         vectors=(((-INF,), True), ((NAN,), False), ((2.0**127,), False), (((1.0, INF),), (False, True))),
     ),
     Builtin("floatBitsToInt", ("genI(genF)",), "The float32's bits, as an int.",
+        float32_bits=True, range=any_number,
         texts={"hlsl": "asint", "wgsl": "bitcast<{type}>({0})"},
         vectors=(((1.0,), 0x3F800000), ((-2.0,), -0x40000000), ((0.0,), 0)),
     ),
     Builtin("floatBitsToUint", ("genU(genF)",), "The float32's bits, as a uint.",
+        float32_bits=True, range=any_number,
         texts={"hlsl": "asuint", "wgsl": "bitcast<{type}>({0})"},
         vectors=(((1.0,), 0x3F800000), ((-2.0,), 0xC0000000), ((0.0,), 0)),
     ),
     Builtin("intBitsToFloat", ("genF(genI)",), "The float32 with these bits.",
-        guards=(Guard("False", "bits of no finite number", FINITE, "result"),),
-        inside="abs(intBitsToFloat(x)) < 1e39",
+        float32_bits=True, range=any_number,
+        guards=(NOT_FINITE_BITS,),
+        inside=lambda rt, x: abs(rt.intBitsToFloat(x)) < 1e39,
         domain="the bits are those of a finite float",
         texts={"hlsl": "asfloat", "wgsl": "bitcast<{type}>({0})"},
         ulp=0.0, vectors=(((0x3F800000,), 1.0), ((-0x40000000,), -2.0), ((0,), 0.0)),
     ),
     Builtin("uintBitsToFloat", ("genF(genU)",), "The float32 with these bits.",
-        guards=(Guard("False", "bits of no finite number", FINITE, "result"),),
-        inside="abs(uintBitsToFloat(x)) < 1e39",
+        float32_bits=True, range=any_number,
+        guards=(NOT_FINITE_BITS,),
+        inside=lambda rt, x: abs(rt.uintBitsToFloat(x)) < 1e39,
         domain="the bits are those of a finite float",
         texts={"hlsl": "asfloat", "wgsl": "bitcast<{type}>({0})"},
         ulp=0.0, vectors=(((0x3F800000,), 1.0), ((0xC0000000,), -2.0), ((0,), 0.0)),
     ),
     Builtin("fma", ("genF(genF, genF, genF)",), "x·y + z, rounded once or twice.",
-        range="x * y + z + hull(-1.0, 1.0) * (F.epsilon * (x * y).size + F.tiny)",
-        inside="abs(x * y) + abs(z) < 1e38", size="max(abs(x * y), abs(z))",
+        range=fused_product_sum,
+        inside=lambda rt, x, y, z: abs(x * y) + abs(z) < 1e38, size=lambda rt, x, y, z: rt.max(abs(x * y), abs(z)),
         texts={"glsl": "", "hlsl": "mad"},
         polyfill="genF fma(genF x, genF y, genF z) { return x * y + z; }", cost=2,
         vectors=(
@@ -207,12 +251,12 @@ vecB isinf(vecF x) { return equal(floatBitsToUint(x) & vecU(0x7fffffffu), vecU(0
         ),
     ),
     Builtin("ldexp", ("genF(genF, genI)",), "x·2^y.",
-        range="x * rising(math.exp2, y)",
+        samples=Samples(integers={1: (-126, 127)}), range=power_of_two_product,
         guards=(
-            Guard("y.low >= -126.0 and y.high <= 127.0 and (absolute(x) * rising(math.exp2, y)).high < F.largest", "the power is beyond the exponents of a float, or the product overflows",
+            Guard(lambda F, x, y: y.low >= -126.0 and y.high <= 127.0 and (absolute(x) * rising(math.exp2, y)).high < F.largest, "the power is beyond the exponents of a float, or the product overflows",
                 "clamp(ldexp(x, clamp(y, -126, 127)), -LARGEST, LARGEST)"),
         ),
-        inside="(y >= -126) & (y <= 127) & (abs(ldexp(x, y)) < 1e38) & ((x == 0.0) | (abs(ldexp(x, y)) > 1e-37))",
+        inside=lambda rt, x, y: (y >= -126) & (y <= 127) & (abs(rt.ldexp(x, y)) < 1e38) & ((x == 0.0) | (abs(rt.ldexp(x, y)) > 1e-37)),
         domain="-126 <= y <= 127, and the result is 0 or a normal number", texts={"glsl": "", "hlsl": ""},
         polyfill="""
 genF ldexp(genF x, genI y) {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from sssgen.ir.intervals import absolute
 from sssgen.ir.intrinsics.table import F1, Builtin
 
 _HOW = {"Fine": "for each pair of pixels by itself", "Coarse": "perhaps one for each quad of pixels"}
@@ -10,28 +11,27 @@ _HOW = {"Fine": "for each pair of pixels by itself", "Coarse": "perhaps one for 
 # fmt: off
 ROWS = (
     Builtin("dFdx", F1, "Change of x from one pixel to the next, to the right.",
-        range="x - x",
-        domain="uniform control flow", texts={"hlsl": "ddx", "wgsl": "dpdx"}, kind="derivative",
+        axis="x", range=lambda F, x: x - x,
+        uniform_flow=True, texts={"hlsl": "ddx", "wgsl": "dpdx"}, kind="derivative",
     ),
     Builtin("dFdy", F1,
         "Change of x from one pixel to the next along framebuffer y: up in OpenGL, down in D3D and WebGPU.",
-        range="x - x",
-        domain="uniform control flow", texts={"hlsl": "ddy", "wgsl": "dpdy"}, kind="derivative",
+        axis="y", range=lambda F, x: x - x,
+        uniform_flow=True, texts={"hlsl": "ddy", "wgsl": "dpdy"}, kind="derivative",
     ),
     Builtin("fwidth", F1, "abs(dFdx(x)) + abs(dFdy(x)).",
-        range="absolute(x - x) * 2.0",
-        domain="uniform control flow", kind="derivative", cost=3,
+        range=lambda F, x: absolute(x - x) * 2.0, uniform_flow=True, kind="derivative", cost=3,
     ),
     *(
         Builtin(f"dFd{axis}{how}", F1, f"dFd{axis}, {said}; where a language has no such choice, as dFd{axis}.",
-            range="x - x", domain="uniform control flow", kind="derivative",
+            range=lambda F, x: x - x, uniform_flow=True, axis=axis, kind="derivative",
             texts={"glsl": f"dFd{axis}", "hlsl": f"dd{axis}_{how.lower()}", "hlsl-dx9": f"dd{axis}", "wgsl": f"dpd{axis}{how}"},
         )
         for axis in "xy" for how, said in _HOW.items()
     ),
     *(
         Builtin(f"fwidth{how}", F1, f"abs(dFdx{how}(x)) + abs(dFdy{how}(x)).",
-            range="absolute(x - x) * 2.0", domain="uniform control flow", kind="derivative", cost=3,
+            range=lambda F, x: absolute(x - x) * 2.0, uniform_flow=True, kind="derivative", cost=3,
             texts={"glsl": "fwidth", "hlsl": "", "hlsl-dx9": "fwidth"},
             polyfill=f"genF fwidth{how}(genF x) {{ return abs(dFdx{how}(x)) + abs(dFdy{how}(x)); }}",
         )

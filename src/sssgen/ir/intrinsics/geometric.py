@@ -2,24 +2,37 @@
 
 from __future__ import annotations
 
-from sssgen.ir.intrinsics.table import Builtin, Guard
+import math
+from collections.abc import Sequence
+
+from sssgen.ir import vector_ranges
+from sssgen.ir.intrinsics.table import Builtin, Guard, Samples
 
 _REDUCE = ("float(vecF, vecF)", "float(float, float)")
 _SUM = "WGSL, Vulkan: that of the formula, whose sum rounds in any order"
+
+
+def _dot(x: Sequence[float], y: Sequence[float]) -> float:
+    return math.fsum(a * b for a, b in zip(x, y))
+
+
+def _length(x: Sequence[float]) -> float:
+    return math.sqrt(_dot(x, x))
+
 
 # A table: several fields to a line.
 # fmt: off
 ROWS = (
     Builtin("length", ("float(genF)",), "Euclidean length.",
-        range="whole: length(x)",
-        inside="(dot(x, x) < 1e38) & ((dot(x, x) > 1e-30) | (dot(x, x) == 0.0))",
+        fold=lambda x: [_length(x)], relation="length", componentwise=False, range=vector_ranges.length,
+        inside=lambda rt, x: (rt.dot(x, x) < 1e38) & ((rt.dot(x, x) > 1e-30) | (rt.dot(x, x) == 0.0)),
         domain="dot(x, x) does not overflow: |x| < 1e19", kind="transcendental", cost=2, once=4, ulp=8.0,
         clause="WGSL, Vulkan: that of sqrt(dot(x, x))",
         vectors=((((3.0, 4.0),), 5.0), (((0.0, 0.0, 0.0),), 0.0), ((-2.0,), 2.0)),
     ),
     Builtin("distance", _REDUCE, "Length of x - y.",
-        range="whole: length(x, y)",
-        inside="(dot(x - y, x - y) < 1e38) & ((dot(x - y, x - y) > 1e-30) | (dot(x - y, x - y) == 0.0))",
+        fold=lambda x, y: [_length([a - b for a, b in zip(x, y)])], componentwise=False, range=vector_ranges.distance,
+        inside=lambda rt, x, y: (rt.dot(x - y, x - y) < 1e38) & ((rt.dot(x - y, x - y) > 1e-30) | (rt.dot(x - y, x - y) == 0.0)),
         domain="|x - y| < 1e19", texts={"hlsl/float,float": ""}, polyfill="float distance(float x, float y) { return abs(x - y); }",
         kind="transcendental", cost=3, once=4, ulp=8.0, clause="WGSL, Vulkan: that of length(x - y)",
         vectors=(
@@ -27,16 +40,18 @@ ROWS = (
         ),
     ),
     Builtin("dot", _REDUCE, "Sum of the products of the components.",
-        range="whole: dot(x, y)",
-        inside="dot(abs(x), abs(y)) < 1e38", size="dot(abs(x), abs(y))",
+        fold=lambda x, y: [_dot(x, y)], overflow_is_nan=True, relation="squares",
+        componentwise=False, range=vector_ranges.dot,
+        inside=lambda rt, x, y: rt.dot(abs(x), abs(y)) < 1e38, size=lambda rt, x, y: rt.dot(abs(x), abs(y)),
         texts={"hlsl/float,float": "op:*", "wgsl/float,float": "op:*"}, cost=2,
         vectors=(
             (((1.0, 2.0, 3.0), (4.0, -5.0, 6.0)), 12.0), (((0.0, 1.0), (1.0, 0.0)), 0.0), ((2.0, -3.0), -6.0),
         ),
     ),
     Builtin("cross", ("vec3(vec3, vec3)",), "Cross product, right-handed: x-axis with y-axis gives z-axis.",
-        range="whole: cross(x, y)",
-        inside="length(x) * length(y) < 1e38", size="max(abs(x * y[[1, 2, 0]]), abs(y * x[[1, 2, 0]]))",
+        fold=lambda x, y: [x[i] * y[j] - x[j] * y[i] for i, j in ((1, 2), (2, 0), (0, 1))], overflow_is_nan=True,
+        quantity="direction", componentwise=False, range=vector_ranges.cross,
+        inside=lambda rt, x, y: rt.length(x) * rt.length(y) < 1e38, size=lambda rt, x, y: rt.max(abs(x * y[[1, 2, 0]]), abs(y * x[[1, 2, 0]])),
         cost=3,
         vectors=(
             (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)), (0.0, 0.0, 1.0)),
@@ -45,10 +60,11 @@ ROWS = (
         ),
     ),
     Builtin("normalize", ("vecF(vecF)", "float(float)"), "x / length(x).",
-        range="whole: unit(x)",
-        guards=(Guard("F.square**0.5 < x.low and x.high < F.largest**0.5", "the direction of a zero vector", "x * inversesqrt(max(dot(x, x), SQUARE))",
+        fold=lambda x: [a / _length(x) for a in x], quantity="direction",
+        componentwise=False, range=vector_ranges.normalize,
+        guards=(Guard(lambda F, x: F.square**0.5 < x.low and x.high < F.largest**0.5, "the direction of a zero vector", "x * inversesqrt(max(dot(x, x), SQUARE))",
             doc="The direction of `x`; of a zero vector, 0."),),
-        inside="(dot(x, x) < 1e38) & (dot(x, x) > 1e-30)",
+        inside=lambda rt, x: (rt.dot(x, x) < 1e38) & (rt.dot(x, x) > 1e-30),
         domain="dot(x, x) > 0 and does not overflow", texts={"hlsl/float": "", "wgsl/float": ""},
         polyfill="float normalize(float x) { return sign(x); }", kind="transcendental", cost=3, once=4, ulp=8.0,
         clause="WGSL, Vulkan: that of x / length(x)",
@@ -60,8 +76,8 @@ ROWS = (
     ),
     Builtin("faceforward", ("vecF(vecF, vecF, vecF)", "float(float, float, float)"),
         "x where dot(z, y) < 0, else -x: the normal x turned against the direction of incidence y.",
-        range="whole: turned(x)",
-        inside="(dot(abs(z), abs(y)) < 1e38) & ((dot(abs(z), abs(y)) == 0.0) | (abs(dot(z, y)) > max(1e-30, 1e-6 * dot(abs(z), abs(y)))))",
+        quantity="direction", componentwise=False, range=vector_ranges.faceforward,
+        inside=lambda rt, x, y, z: (rt.dot(abs(z), abs(y)) < 1e38) & ((rt.dot(abs(z), abs(y)) == 0.0) | (abs(rt.dot(z, y)) > rt.max(1e-30, 1e-6 * rt.dot(abs(z), abs(y))))),
         texts={"hlsl/float,float,float": "", "wgsl": "faceForward", "wgsl/float,float,float": ""},
         polyfill="float faceforward(float x, float y, float z) { return z * y < 0.0 ? x : -x; }", cost=4,
         ulp=0.0, vectors=(
@@ -72,8 +88,9 @@ ROWS = (
     ),
     Builtin("reflect", ("vecF(vecF, vecF)", "float(float, float)"),
         "x - 2·dot(y, x)·y: direction x mirrored at the unit normal y.",
-        range="whole: reflected(x, y)",
-        inside="(abs(dot(y, y) - 1.0) < 1e-6) & (abs(x) < 1e38)", size="max(abs(x), 2.0 * dot(abs(x), abs(y)) * abs(y))",
+        samples=Samples(unit=(1,)), overflow_is_nan=True, quantity="direction",
+        componentwise=False, range=vector_ranges.reflect,
+        inside=lambda rt, x, y: (abs(rt.dot(y, y) - 1.0) < 1e-6) & (abs(x) < 1e38), size=lambda rt, x, y: rt.max(abs(x), 2.0 * rt.dot(abs(x), abs(y)) * abs(y)),
         domain="dot(y, y) = 1", texts={"hlsl/float,float": "", "wgsl/float,float": ""},
         polyfill="float reflect(float x, float y) { return x - 2.0 * y * x * y; }", cost=4, ulp=8.0,
         clause=_SUM,
@@ -84,8 +101,9 @@ ROWS = (
     ),
     Builtin("refract", ("vecF(vecF, vecF, float)", "float(float, float, float)"),
         "Direction x refracted at the unit normal y, z = n_from/n_into; 0 on total internal reflection.",
-        range="whole: refracted(x, y, z)",
-        inside="(abs(dot(x, x) - 1.0) < 1e-6) & (abs(dot(y, y) - 1.0) < 1e-6) & (z > 0.0) & (abs(1.0 - z * z * (1.0 - dot(x, y) ** 2)) > 0.1)", size="max(z * z, 1.0)",
+        samples=Samples(floats=((-1.0, 1.0), (-1.0, 1.0), (0.0, 4.0)), unit=(0, 1)), overflow_is_nan=True,
+        quantity="direction", componentwise=False, range=vector_ranges.refract,
+        inside=lambda rt, x, y, z: (abs(rt.dot(x, x) - 1.0) < 1e-6) & (abs(rt.dot(y, y) - 1.0) < 1e-6) & (z > 0.0) & (abs(1.0 - z * z * (1.0 - rt.dot(x, y) ** 2)) > 0.1), size=lambda rt, x, y, z: rt.max(z * z, 1.0),
         domain="dot(x, x) = dot(y, y) = 1 and z > 0",
         texts={"hlsl/float,float,float": "", "wgsl/float,float,float": ""},
         polyfill="""

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from sssgen.ir.intrinsics.table import Builtin, Guard
+from sssgen.ir import vector_ranges
+from sssgen.ir.intrinsics.table import Builtin, Guard, Samples
+from sssgen.ir.vector_ranges import any_numbers
 
 # A table: several fields to a line.
 # fmt: off
 ROWS = (
     Builtin("matrixCompMult", ("mat(mat, mat)",), "Componentwise product.",
-        range="x * y",
-        inside="abs(x * y) < 1e38",
+        range=lambda F, x, y: x * y,
+        inside=lambda rt, x, y: abs(x * y) < 1e38,
         texts={"hlsl": "", "wgsl": ""},
         polyfill="""
 mat2 matrixCompMult(mat2 x, mat2 y) { return mat2(x[0] * y[0], x[1] * y[1]); }
@@ -24,8 +26,8 @@ mat4 matrixCompMult(mat4 x, mat4 y) { return mat4(x[0] * y[0], x[1] * y[1], x[2]
     ),
     Builtin("outerProduct", ("mat2(vec2, vec2)", "mat3(vec3, vec3)", "mat4(vec4, vec4)"),
         "The matrix whose column i is x·y[i].",
-        range="whole: outer(x, y)",
-        inside="length(x) * length(y) < 1e38",
+        componentwise=False, range=vector_ranges.outer_product,
+        inside=lambda rt, x, y: rt.length(x) * rt.length(y) < 1e38,
         texts={"hlsl": "", "wgsl": ""},
         polyfill="""
 mat2 outerProduct(vec2 x, vec2 y) { return mat2(x * y.x, x * y.y); }
@@ -39,7 +41,7 @@ mat4 outerProduct(vec4 x, vec4 y) { return mat4(x * y.x, x * y.y, x * y.z, x * y
         ),
     ),
     Builtin("transpose", ("mat(mat)",), "Rows for columns.",
-        range="whole: transposed(x)",
+        componentwise=False, range=vector_ranges.transpose,
         cost=0,
         ulp=0.0, vectors=(
             ((((1.0, 2.0), (3.0, 4.0)),), ((1.0, 3.0), (2.0, 4.0))),
@@ -48,7 +50,7 @@ mat4 outerProduct(vec4 x, vec4 y) { return mat4(x * y.x, x * y.y, x * y.z, x * y
         ),
     ),
     Builtin("determinant", ("float(mat)",), "Determinant.",
-        range="whole: determinant(x)",
+        samples=Samples(invertible=True), overflow_is_nan=True, componentwise=False, range=vector_ranges.determinant,
         cost=8, ulp=32.0, clause="WGSL: no bound",
         vectors=(
             ((((1.0, 2.0), (3.0, 4.0)),), -2.0), ((((1.0, 2.0), (2.0, 4.0)),), 0.0),
@@ -56,7 +58,8 @@ mat4 outerProduct(vec4 x, vec4 y) { return mat4(x * y.x, x * y.y, x * y.z, x * y
         ),
     ),
     Builtin("inverse", ("mat(mat)",), "Inverse matrix.",
-        guards=(Guard("False", "a matrix without an inverse", "", doc="The inverse; of a matrix without one, large numbers."),),
+        samples=Samples(invertible=True), componentwise=False, range=any_numbers,
+        guards=(Guard(None, "a matrix without an inverse", "", doc="The inverse; of a matrix without one, large numbers."),),
         domain="determinant(x) != 0, and well away from it for accuracy", texts={"hlsl": "", "wgsl": ""},
         polyfill="""
 mat2 inverse(mat2 x) {

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import operator
+from collections.abc import Callable
+
+from sssgen.ir.component_ranges import within
 from sssgen.ir.intrinsics.table import Builtin
+from sssgen.ir.vector_ranges import all_within
 
 
-def _relation(name: str, op: str, below: bool, same: bool, above: bool) -> Builtin:
+def _relation(name: str, op: str, fold: Callable[..., bool], below: bool, same: bool, above: bool) -> Builtin:
     """A componentwise comparison, and what it gives for x below, the same as, and above y."""
     kinds = "FIUB" if op in ("==", "!=") else "FIU"
     vectors = (
@@ -17,7 +22,8 @@ def _relation(name: str, op: str, below: bool, same: bool, above: bool) -> Built
         name,
         tuple(f"vecB(vec{k}, vec{k})" for k in kinds),
         f"Componentwise x {op} y.",
-        range="hull(0, 1)",
+        fold=fold,
+        range=within(0.0, 1.0),
         texts={"hlsl": f"op:{op}", "wgsl": f"op:{op}"},
         vectors=vectors,
     )
@@ -26,22 +32,22 @@ def _relation(name: str, op: str, below: bool, same: bool, above: bool) -> Built
 # A table: several fields to a line.
 # fmt: off
 ROWS = (
-    _relation("lessThan", "<", True, False, False),
-    _relation("lessThanEqual", "<=", True, True, False),
-    _relation("greaterThan", ">", False, False, True),
-    _relation("greaterThanEqual", ">=", False, True, True),
-    _relation("equal", "==", False, True, False),
-    _relation("notEqual", "!=", True, False, True),
+    _relation("lessThan", "<", operator.lt, True, False, False),
+    _relation("lessThanEqual", "<=", operator.le, True, True, False),
+    _relation("greaterThan", ">", operator.gt, False, False, True),
+    _relation("greaterThanEqual", ">=", operator.ge, False, True, True),
+    _relation("equal", "==", operator.eq, False, True, False),
+    _relation("notEqual", "!=", operator.ne, True, False, True),
     Builtin("any", ("bool(vecB)",), "Whether some component is true.",
-        range="hull(0, 1)",
+        fold=lambda x: [any(x)], componentwise=False, range=all_within(0.0, 1.0),
         vectors=((((False, True),), True), (((False, False, False),), False), (((True, True),), True)),
     ),
     Builtin("all", ("bool(vecB)",), "Whether every component is true.",
-        range="hull(0, 1)",
+        fold=lambda x: [all(x)], componentwise=False, range=all_within(0.0, 1.0),
         vectors=((((False, True),), False), (((False, False, False),), False), (((True, True),), True)),
     ),
     Builtin("not", ("vecB(vecB)",), "Componentwise negation.",
-        range="hull(0, 1)",
+        fold=operator.not_, range=within(0.0, 1.0),
         texts={"hlsl": "op:!", "wgsl": "op:!"},
         vectors=(
             (((False, True),), (True, False)), (((True, True, True),), (False, False, False)),

@@ -1,39 +1,51 @@
-"""What a row of the intrinsic table is, and what rows share."""
+"""The types of the intrinsic table: a row, and its parts."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import Any, Literal, NamedTuple
 
+from sssgen.ir import component_ranges, vector_ranges
 from sssgen.ir.formats import Format
+from sssgen.ir.intervals import INF, Range, clip
+
+Interval = tuple[float, float]
 
 
 class Guard(NamedTuple):
-    """What arguments must keep to, and what stands in the call's place where the range pass cannot prove it."""
+    """What makes a call safe, and what replaces it where the range pass cannot prove that it is safe."""
 
-    needs: str
-    """Python over the ranges (`passes.intervals`) x, y, z of the arguments (lengths, of vectors that a builtin takes
-    whole) and the format F; true where nothing can go wrong."""
-    says: str
+    safe: Callable[..., bool] | None
+    """Whether nothing can go wrong, for the format F and the ranges x, y, z of the arguments (of their lengths, if the
+    builtin is not componentwise). None: never proven here."""
+    problem: str
     """What goes wrong otherwise, for people."""
     text: str
     """An expression of the language in x, y, z, or a function's body, with the constants TINY (smallest normal number),
-    DIVISOR, SQUARE, EPSILON, EXPONENT (the largest of exp2), LARGEST and ROOT (its square root). '' means that it is the
-    polyfill with its own divisions guarded."""
+    DIVISOR, SQUARE, EPSILON, EXPONENT (the largest of exp2), LARGEST and ROOT (its square root). '' means the polyfill
+    with its own divisions guarded."""
     replaces: str = ""
-    """The argument that `text` stands for; `result`: the call's own, x in it; '' means the whole call."""
+    """The argument that `text` replaces; `result`: the call's own, as x; '' means the whole call."""
     scalar: str = ""
     """The text for a single number, where that reads better."""
     doc: str = ""
-    """The comment of the function that it becomes where it is too long to stand in the text."""
+    """The comment of the function that it becomes where it is too long for an expression."""
+    function: str = ""
+    """The name of that function; '' means `safe_` and the builtin's name."""
+    ordered: tuple[int, int] | None = None
+    """Two arguments: the call is also safe if the first is known to be no larger than the second."""
+    argument: Callable[[Format, Range], Range] | None = None
+    """The range of the replaced argument behind the guard, where the row's range function needs it."""
+    result: Callable[[Format, Range], Range] = lambda F, range: clip(range, -F.largest, F.largest)
+    """The range of the call's result behind the guard: by default it is finite."""
 
 
-def with_constants(text: str, format: Format, limits: tuple[float, float], shown: Callable[[float], str] = repr) -> str:
-    """A guard's text with the format's numbers for its constants, times the factor that stands before one.
+def with_constants(text: str, format: Format, limits: Interval, shown: Callable[[float], str] = repr) -> str:
+    """A guard's text with the format's numbers for its constants, multiplied by the factor before one.
 
-    LOW and HIGH are the `limits` of the place, LAST the upper one as an int.
+    LOW and HIGH are the `limits` of the operation, LAST the upper one as an int.
     """
     numbers = {
         "TINY": format.tiny, "DIVISOR": format.divisor, "SQUARE": format.square, "EPSILON": format.epsilon,
@@ -41,11 +53,42 @@ def with_constants(text: str, format: Format, limits: tuple[float, float], shown
         "LOW": limits[0], "HIGH": limits[1],
     }  # fmt: skip
 
-    def number(found: re.Match[str]) -> str:
-        factor, name = found.groups()
+    def number(match: re.Match[str]) -> str:
+        factor, name = match.groups()
         return str(int(limits[1])) if name == "LAST" else shown(float(factor or 1.0) * numbers[name])
 
     return re.sub(rf"(?:([\d.]+) \* )?\b({'|'.join(numbers)}|LAST)\b", number, text)
+
+
+class Samples(NamedTuple):
+    """The arguments for which the parity is measured; whatever is not limited here: every finite number."""
+
+    floats: tuple[Interval, ...] = ()
+    """The interval of all float arguments, or one for each argument."""
+    integers: Mapping[int, tuple[int, int]] = MappingProxyType({})
+    """The position of an integer argument → its lowest and highest value."""
+    unit: tuple[int, ...] = ()
+    """The positions of arguments that are unit vectors."""
+    invertible: bool = False
+    """Matrices are well-conditioned."""
+    special: bool = False
+    """NaN and infinity are among the floats."""
+    halves: bool = False
+    """Floats are rounded to float16."""
+
+    def interval(self, index: int) -> Interval | None:
+        """The interval of one float argument; None: every finite number."""
+        return self.floats[index if len(self.floats) > 1 else 0] if self.floats else None
+
+
+class Level(NamedTuple):
+    """The builtin that reads the same at a given level."""
+
+    name: str
+    position: int
+    """The position of the level among its arguments."""
+    explicit: bool = True
+    """False: the level is 0, without an argument."""
 
 
 class Builtin(NamedTuple):
@@ -54,47 +97,105 @@ class Builtin(NamedTuple):
     name: str
     signatures: tuple[str, ...]
     doc: str
+    # What it computes
     domain: str = ""
-    """Where the result is defined, with x, y, z for the arguments in their order; '' means everywhere."""
-    range: str = ""
-    """The range of a component of the result, as Python over those of the arguments' components (`passes.intervals`);
-    after `whole:`, of the result from the whole arguments (`passes.builtin_ranges`); '' means any number."""
+    """Where the result is defined, for people, with x, y, z for the arguments; '' means everywhere."""
+    componentwise: bool = True
+    """Each component of the result depends only on the same component of the arguments; `range`, `fold` and the guards'
+    `safe` are then functions of components, otherwise of whole values."""
+    fold: Callable[..., Any] | None = None
+    """The result for constants, in float64: a number (not componentwise: a sequence of them) from numbers (sequences).
+    It may raise ArithmeticError or ValueError outside of the domain. None: constants are not folded."""
+    vectors: tuple[tuple[tuple[object, ...], object], ...] = ()
+    """At least three test vectors: (arguments, result); vectors are tuples, matrices tuples of columns."""
+    # Value ranges and guards
+    range: Callable[..., Any] | None = None
+    """The range of the result from the format and those of the arguments: a function as in `ir.component_ranges`, or,
+    if not componentwise, in `ir.vector_ranges`. Every row has one; `any_number` and `any_numbers` state nothing."""
     guards: tuple[Guard, ...] = ()
-    """Where it may give inf or NaN, or what languages leave undefined; the first one needed is put in."""
-    inside: str = ""
-    """The domain as Python, for each component, over the functions of the NumPy runtime; '' means every finite number.
-    It is where the parity is measured, and so leaves out where intermediate results overflow or underflow."""
-    size: str = ""
-    """What the error is measured in ulp of, as Python: the size of terms that may cancel; '' means the result."""
+    """Where it may give inf or NaN, or what languages leave undefined; the first one that is needed is inserted."""
+    exact_bounds: Interval = (-INF, INF)
+    """(low, high): where the exact result is not below `low` (not above `high`), no device's result is."""
+    overflow_is_nan: bool = False
+    """Terms of opposite signs may overflow in it, so that an overflow may give NaN."""
+    relation: Literal["", "abs", "min", "max", "length", "squares"] = ""
+    """What a condition on the result implies for the arguments (`passes.ranges.facts`); `squares`: of dot(x, x)."""
+    # How languages have it
     texts: Mapping[str, str] = MappingProxyType({})
     polyfill: str = ""
     constant: tuple[int, ...] = ()
     """The positions of arguments that must be constant expressions."""
     splat: tuple[str, ...] = ("wgsl",)
-    """Languages in which a scalar beside vectors must be widened to a vector first."""
-    kind: str = "alu"
-    """What it costs: alu, transcendental, fetch or derivative."""
+    """Languages in which a scalar among vectors must be widened to a vector first."""
+    float32_bits: bool = False
+    """It converts from or to the bits of a number, which WGSL has for float32 only."""
+    # What it costs
+    kind: Literal["alu", "transcendental", "fetch", "derivative"] = "alu"
     cost: int = 1
     """Operations per component, for the static cost."""
     once: int = 0
-    """Operations beside these, once a call: the one root of a length."""
+    """Operations in addition to these, once a call: the one root of a length."""
+    # Where it may be called
+    uniform_flow: bool = False
+    """It compares neighbouring pixels, so control flow must be uniform."""
+    axis: str = ""
+    """The screen axis, x or y, of a derivative that has a sign."""
+    with_level: Level | None = None
+    with_gradients: str = ""
+    """The builtin that reads the same with given derivatives, which come directly behind the coordinates."""
+    size_query: bool = False
+    """It asks for a texture's size, which is the same in all pixels."""
+    # Quantities
+    same_quantity: int = 0
+    """How many arguments, from the first, must be of the same quantity."""
+    quantity: Literal["", "argument", "direction", "blend"] = ""
+    """The quantity of the result: none; that of the arguments; the same if all are directions; that of the first two
+    arguments if they agree."""
+    # How exact it is
     ulp: float = 4.0
     """The float32 error allowed against the float64 oracle, in units in the last place of the result's magnitude."""
     absolute: float = 0.0
     """The absolute error allowed instead, where that is larger."""
     clause: str = ""
-    """Where a specification allows more than 4 ulp: which, and what it says."""
-    vectors: tuple[tuple[tuple[object, ...], object], ...] = ()
-    """At least three test vectors: (arguments, result); vectors are tuples, matrices tuples of columns."""
+    """Where a specification allows more than 4 ulp: which one, and what it says."""
+    inside: Callable[..., Any] | None = None
+    """Where the parity is measured: for each component, from the module `rt` of the NumPy runtime and the arguments. It
+    leaves out where intermediate results overflow or underflow. None: every finite number."""
+    size: Callable[..., Any] | None = None
+    """The magnitude that `ulp` refers to, from the same arguments, where terms may cancel. None: the result's."""
+    samples: Samples = Samples()
+
+    @property
+    def reads_neighbours_or_textures(self) -> bool:
+        """Whether the result depends on more than the arguments' values."""
+        return self.kind in ("fetch", "derivative")
+
+    @property
+    def reads_texels(self) -> bool:
+        return self.range is vector_ranges.texels
+
+    @property
+    def unbounded(self) -> bool:
+        """Whether nothing is known about the range of the result."""
+        return self.range in (component_ranges.any_number, vector_ranges.any_numbers)
 
 
 NONZERO = "max(abs(y), DIVISOR) * (2.0 * step(0.0, y) - 1.0)"
 """A divisor of the same sign (0 counts as positive) that is not 0."""
 FINITE = "mix(clamp(x, -LARGEST, LARGEST), genF(0.0), isnan(x))"
 """The largest number in place of infinity, 0 in place of NaN."""
-
+NOT_FINITE_BITS = Guard(None, "bits of no finite number", FINITE, "result")
 
 F1 = ("genF(genF)",)
 F2 = ("genF(genF, genF)",)
-NAN, INF = float("nan"), float("inf")
+NAN = float("nan")
 HALF_PI, PI = 1.5707963267948966, 3.141592653589793
+LARGEST = 2.0**128 - 2.0**104
+"""The largest float32."""
+
+
+def checked(condition: bool, value: Any) -> Any:
+    """For `fold`: the value; ValueError where a condition of the domain does not hold."""
+    if not condition:
+        raise ValueError
+    return value

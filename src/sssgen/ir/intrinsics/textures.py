@@ -10,7 +10,9 @@ printer makes a function of that, `texture_size`. For how many levels there are 
 
 from __future__ import annotations
 
-from sssgen.ir.intrinsics.table import Builtin
+from sssgen.ir import vector_ranges
+from sssgen.ir.intrinsics.table import Builtin, Level, Samples
+from sssgen.ir.vector_ranges import all_within, any_numbers, texels
 
 _SAMPLE = ("vec4(sampler2D, vec2", "vec4(sampler3D, vec3", "vec4(samplerCube, vec3")
 _LAYERS = ("vec4(sampler2DArray, vec3", "vec4(samplerCubeArray, vec4")
@@ -36,8 +38,8 @@ def _offsets(extra: str = "") -> tuple[str, ...]:
 ROWS = (
     Builtin("unpackNormal", ("vec3(vec4)",),
         "The tangent-space normal of a normal map's texel, y up. Unity may pack it when it imports the map.",
-        range="whole: normal_texel(x)",
-        size="max(2.0 * abs(x[:3]), 1.0)",
+        samples=Samples(floats=((0.0, 1.0),)), componentwise=False, range=vector_ranges.normal_of_texel,
+        size=lambda rt, x: rt.max(2.0 * abs(x[:3]), 1.0),
         texts={"glsl": "", "hlsl": "", "wgsl": "", "hlsl-dx9": "UnpackNormal", "hlsl-macros": "UnpackNormal"},
         polyfill="vec3 unpackNormal(vec4 texel) { return texel.xyz * 2.0 - 1.0; }", cost=2,
         vectors=(
@@ -52,7 +54,7 @@ ROWS = (
             "ivec3(samplerCubeArray, int)", "ivec2(sampler2DShadow, int)", "ivec2(samplerCubeShadow, int)", "ivec3(sampler2DArrayShadow, int)",
         ),
         "Size in texels of level y, and how many layers there are.",
-        range="hull(0, 65536)", domain="the level exists",
+        size_query=True, componentwise=False, range=all_within(0.0, 65536.0), domain="the level exists",
         texts={
             "hlsl": "texture_size({bare_texture}, {1})", "hlsl-dx9": "", "wgsl": "{type}(textureDimensions({texture}, {1}))",
             **{
@@ -63,12 +65,14 @@ ROWS = (
         splat=(), kind="fetch",
     ),
     Builtin("textureQueryLevels", ("int(sampler2D)", "int(sampler3D)", "int(samplerCube)", "int(sampler2DArray)"),
-        "How many levels there are.", range="hull(0, 32)",
+        "How many levels there are.", componentwise=False, range=all_within(0.0, 32.0),
+        size_query=True,
         texts={"glsl": "", "hlsl": "", "wgsl": "{type}(textureNumLevels({texture}))"}, kind="fetch",
     ),
     Builtin("textureQueryLod", ("vec2(sampler2D, vec2)", "vec2(sampler3D, vec3)"),
         "The level that a read would take at y, and the one that derivatives give. HLSL has it alone.",
-        domain="uniform control flow", kind="fetch", absolute=0.01, clause="D3D, GLSL: no bound",
+        componentwise=False, range=any_numbers,
+        uniform_flow=True, kind="fetch", absolute=0.01, clause="D3D, GLSL: no bound",
         texts={
             "glsl": "", "wgsl": "", "hlsl-dx9": "",
             "hlsl": "float2({bare_texture}.CalculateLevelOfDetail({bare_sampler}, {1}), {bare_texture}.CalculateLevelOfDetailUnclamped({bare_sampler}, {1}))",
@@ -83,8 +87,8 @@ ROWS = (
         ),
         "Filtered texture read; the level comes from screen-space derivatives, with z added to it. Of a texture that "
         "compares: how much of it is not below the reference.",
-        range="whole: texels(x)",
-        domain="uniform control flow",
+        with_level=Level("textureLod", 2), with_gradients="textureGrad", componentwise=False, range=texels,
+        uniform_flow=True,
         texts={
             "hlsl": "{texture}.Sample({sampler}, {1})",
             **{f"hlsl/{_params(read)},float": "{texture}.SampleBias({sampler}, {1}, {2})" for read in (*_SAMPLE, *_LAYERS)},
@@ -114,7 +118,7 @@ float texture(sampler2DArrayShadow map, vec4 P) { return textureCompare(map, P.x
     ),
     Builtin("textureLod", (*(f"{read}, float)" for read in (*_SAMPLE, *_LAYERS)), "float(sampler2DShadow, vec3, float)"),
         "Filtered texture read at level z; HLSL and WGSL compare at level 0 only.",
-        range="whole: texels(x)", domain="z = 0 for a texture that compares",
+        componentwise=False, range=texels, domain="z = 0 for a texture that compares",
         texts={
             "hlsl": "{texture}.SampleLevel({sampler}, {1}, {2})", "hlsl/sampler2DShadow,vec3,float": "",
             "hlsl-dx9": "tex{dim}lod({texture}, float4({1}, {2}))",
@@ -136,7 +140,7 @@ float textureLod(sampler2DShadow map, vec3 P, float level) { return textureCompa
             "vec4(sampler2DArray, vec3, vec2, vec2)", "vec4(samplerCubeArray, vec4, vec3, vec3)",
         ),
         "Filtered texture read; the level comes from the given derivatives of the coordinate along screen x and y.",
-        range="whole: texels(x)",
+        componentwise=False, range=texels,
         texts={
             "hlsl": "{texture}.SampleGrad({sampler}, {1}, {2}, {3})",
             "hlsl-dx9": "tex{dim}grad({texture}, {1}, {2}, {3})",
@@ -154,7 +158,8 @@ vec4 textureGrad(samplerCubeArray map, vec4 P, vec3 dx, vec3 dy) { return textur
     # The same, some texels off
     Builtin("textureOffset", (*_offsets(), *(f"{one[:-1]}, float)" for one in _offsets())),
         "As texture, with z added to the place in texels, and w to the level.",
-        range="whole: texels(x)", constant=(2,), domain="uniform control flow",
+        with_level=Level("textureLodOffset", 2), with_gradients="textureGradOffset",
+        componentwise=False, range=texels, constant=(2,), uniform_flow=True,
         texts={
             "hlsl": "{bare_texture}.Sample({bare_sampler}, {1}, {2})",
             **{f"hlsl/{_params(one)[:-1]},float": "{bare_texture}.SampleBias({bare_sampler}, {1}, {3}, {2})" for one in _offsets()},
@@ -165,7 +170,7 @@ vec4 textureGrad(samplerCubeArray map, vec4 P, vec3 dx, vec3 dy) { return textur
         splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
     ),
     Builtin("textureLodOffset", _offsets(", float"), "As textureLod, with w added to the place in texels.",
-        range="whole: texels(x)", constant=(3,),
+        componentwise=False, range=texels, constant=(3,),
         texts={
             "hlsl": "{bare_texture}.SampleLevel({bare_sampler}, {1}, {2}, {3})", "hlsl-dx9": "",
             "wgsl": "textureSampleLevel({texture}, {sampler}, {1}, {2}, {3})",
@@ -175,7 +180,7 @@ vec4 textureGrad(samplerCubeArray map, vec4 P, vec3 dx, vec3 dy) { return textur
     Builtin("textureGradOffset",
         ("vec4(sampler2D, vec2, vec2, vec2, ivec2)", "vec4(sampler3D, vec3, vec3, vec3, ivec3)"),
         "As textureGrad, with the last argument added to the place in texels.",
-        range="whole: texels(x)", constant=(4,),
+        componentwise=False, range=texels, constant=(4,),
         texts={
             "hlsl": "{bare_texture}.SampleGrad({bare_sampler}, {1}, {2}, {3}, {4})", "hlsl-dx9": "",
             "wgsl": "textureSampleGrad({texture}, {sampler}, {1}, {2}, {3}, {4})",
@@ -186,7 +191,7 @@ vec4 textureGrad(samplerCubeArray map, vec4 P, vec3 dx, vec3 dy) { return textur
     Builtin("texelFetch",
         tuple(f"{kind}vec4({kind}sampler{place}, int)" for kind in _KINDS for place in ("2D, ivec2", "3D, ivec3", "2DArray, ivec3")),
         "The texel at y of level z, unfiltered.",
-        range="whole: texels(x)",
+        componentwise=False, range=texels,
         domain="the texel and the level exist",
         texts={
             "hlsl": "{texture}.Load(int3({1}, {2}))", "hlsl-dx9": "",
@@ -203,7 +208,7 @@ vec4 textureGrad(samplerCubeArray map, vec4 P, vec3 dx, vec3 dy) { return textur
     ),
     Builtin("texelFetchOffset", ("vec4(sampler2D, ivec2, int, ivec2)", "vec4(sampler3D, ivec3, int, ivec3)"),
         "As texelFetch, at y + w.",
-        range="whole: texels(x)", constant=(3,), domain="the texel and the level exist",
+        componentwise=False, range=texels, constant=(3,), domain="the texel and the level exist",
         texts={"hlsl": "", "wgsl": ""},
         polyfill="""
 vec4 texelFetchOffset(sampler2D map, ivec2 P, int level, ivec2 offset) { return texelFetch(map, P + offset, level); }
@@ -214,7 +219,7 @@ vec4 texelFetchOffset(sampler3D map, ivec3 P, int level, ivec3 offset) { return 
     Builtin("textureGather", ("vec4(sampler2D, vec2)", "vec4(sampler2D, vec2, int)"),
         "One channel, the first or z, of the four texels around y at level 0: those at (0, 1), (1, 1), (1, 0), (0, 0) "
         "from the lower left one.",
-        range="whole: texels(x)", constant=(2,),
+        componentwise=False, range=texels, constant=(2,),
         texts={
             "glsl": "",
             "hlsl": "{bare_texture}.Gather{channel}({bare_sampler}, {1})", "hlsl-dx9": "",
@@ -229,7 +234,7 @@ vec4 textureGather(sampler2D map, vec2 P, int channel) { return textureGatherOff
     ),
     Builtin("textureGatherOffset", ("vec4(sampler2D, vec2, ivec2)", "vec4(sampler2D, vec2, ivec2, int)"),
         "As textureGather, with z added to the places in texels; the channel is w.",
-        range="whole: texels(x)", constant=(2, 3),
+        componentwise=False, range=texels, constant=(2, 3),
         texts={
             "glsl": "",
             "hlsl": "{bare_texture}.Gather{channel}({bare_sampler}, {1}, {2})", "hlsl-dx9": "",
@@ -262,7 +267,7 @@ vec4 textureGatherOffset(sampler2D map, vec2 P, ivec2 offset, int channel) {
     # Of our own: layers and references as arguments of their own
     Builtin("textureLayer", (*(f"{read})" for read in _OWN_LAYER), *(f"{read}, float)" for read in _OWN_LAYER)),
         "As texture, of layer z, with w added to the level. Of our own.",
-        range="whole: texels(x)", domain="uniform control flow",
+        with_level=Level("textureLayerLod", 3), componentwise=False, range=texels, uniform_flow=True,
         texts={
             "glsl/sampler2DArray,vec2,int": "texture({texture}, vec3({1}, float({2})))",
             "glsl/sampler2DArray,vec2,int,float": "texture({texture}, vec3({1}, float({2})), {3})",
@@ -278,7 +283,7 @@ vec4 textureGatherOffset(sampler2D map, vec2 P, ivec2 offset, int channel) {
         splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
     ),
     Builtin("textureLayerLod", tuple(f"{read}, float)" for read in _OWN_LAYER), "As textureLod at level w, of layer z. Of our own.",
-        range="whole: texels(x)",
+        componentwise=False, range=texels,
         texts={
             "glsl/sampler2DArray,vec2,int,float": "textureLod({texture}, vec3({1}, float({2})), {3})",
             "glsl/samplerCubeArray,vec3,int,float": "textureLod({texture}, vec4({1}, float({2})), {3})",
@@ -290,7 +295,7 @@ vec4 textureGatherOffset(sampler2D map, vec2 P, ivec2 offset, int channel) {
     ),
     Builtin("textureLayerGrad", ("vec4(sampler2DArray, vec2, int, vec2, vec2)", "vec4(samplerCubeArray, vec3, int, vec3, vec3)"),
         "As textureGrad, of layer z. Of our own.",
-        range="whole: texels(x)",
+        componentwise=False, range=texels,
         texts={
             "glsl/sampler2DArray,vec2,int,vec2,vec2": "textureGrad({texture}, vec3({1}, float({2})), {3}, {4})",
             "glsl/samplerCubeArray,vec3,int,vec3,vec3": "textureGrad({texture}, vec4({1}, float({2})), {3}, {4})",
@@ -302,7 +307,7 @@ vec4 textureGatherOffset(sampler2D map, vec2 P, ivec2 offset, int channel) {
     ),
     Builtin("texelFetchLayer", tuple(f"{kind}vec4({kind}sampler2DArray, ivec2, int, int)" for kind in _KINDS),
         "As texelFetch at level w, of layer z. Of our own.",
-        range="whole: texels(x)", domain="the texel, the layer and the level exist",
+        componentwise=False, range=texels, domain="the texel, the layer and the level exist",
         texts={
             "glsl": "texelFetch({texture}, ivec3({1}, {2}), {3})", "hlsl": "{texture}.Load(int4({1}, {2}, {3}))",
             "wgsl": "textureLoad({texture}, {1}, {2}, {3})",
@@ -312,7 +317,8 @@ vec4 textureGatherOffset(sampler2D map, vec2 P, ivec2 offset, int channel) {
     Builtin("textureCompare",
         ("float(sampler2DShadow, vec2, float)", "float(samplerCubeShadow, vec3, float)", "float(sampler2DArrayShadow, vec2, int, float)"),
         "As texture of a texture that compares; the reference is the last argument. Of our own.",
-        range="hull(0, 1)", domain="uniform control flow",
+        with_level=Level("textureCompareLod", 3, explicit=False),
+        componentwise=False, range=all_within(0.0, 1.0), uniform_flow=True,
         texts={
             "glsl/sampler2DShadow,vec2,float": "texture({texture}, vec3({1}, {2}))",
             "glsl/samplerCubeShadow,vec3,float": "texture({texture}, vec4({1}, {2}))",
@@ -326,7 +332,7 @@ vec4 textureGatherOffset(sampler2D map, vec2 P, ivec2 offset, int channel) {
     ),
     Builtin("textureCompareLod", ("float(sampler2DShadow, vec2, float)",),
         "As textureCompare, at level 0. Of our own.",
-        range="hull(0, 1)",
+        componentwise=False, range=all_within(0.0, 1.0),
         texts={
             "glsl": "textureLod({texture}, vec3({1}, {2}), 0.0)", "hlsl": "{texture}.SampleCmpLevelZero({sampler}, {1}, {2})",
             "wgsl": "textureSampleCompareLevel({texture}, {sampler}, {1}, {2})",

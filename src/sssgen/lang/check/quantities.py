@@ -8,6 +8,7 @@ named conversion. The idea of spaces as types is Gator's ("Geometry types for gr
 
 from __future__ import annotations
 
+from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import FLOAT, VEC2, VEC3, Type, spell, with_article
 
 SPACES = ("world", "object", "tangent", "uv")
@@ -113,28 +114,23 @@ def of_operator(op: str, left: str, right: str, scaling: bool = False) -> str:
     return left if op in ("+", "-") else ""
 
 
-_KEEP_DIRECTION = ("normalize", "cross", "reflect", "refract", "faceforward")
-_KEEP_BOUND = ("min", "max", "clamp", "abs", "saturate")
-_COMPARED = {**dict.fromkeys((*_KEEP_BOUND, "smoothstep"), 3), "mix": 2, "step": 2}
-"""How many of a builtin's arguments, from the first, must measure the same: a blend's factor need not."""
-
-
 def of_intrinsic(name: str, args: list[str]) -> str:
     """The quantity of a builtin's result, from those of its arguments. Raises Mixup where they do not go together."""
     given = [quantity for quantity in args if quantity]
     if not given:
         return ""
     _check_one_space(given)
-    compared = [quantity for quantity in args[: _COMPARED.get(name, 0)] if quantity]
+    row = BUILTINS[name]
+    compared = [quantity for quantity in args[: row.same_quantity] if quantity]
     for quantity in compared[1:]:
         if quantity != compared[0]:
             message = f"{words(compared[0])} and {words(quantity)} do not go together in {name}"
             raise Mixup(message, conversion(quantity, compared[0]))
-    if name in _KEEP_DIRECTION:
+    if row.quantity == "direction":
         return given[0] if all(quantity.endswith("_direction") for quantity in given) else ""
-    if name in _KEEP_BOUND:
+    if row.quantity == "argument":
         return given[0]
-    if name == "mix":
+    if row.quantity == "blend":
         return args[0] if args[0] == args[1] else ""
     return ""
 

@@ -6,17 +6,18 @@ from collections.abc import Callable
 from typing import Any, cast
 
 from sssgen.ir import nodes as ir
+from sssgen.ir import vector_ranges as vectors
 from sssgen.ir.contracts import INTEGERS
 from sssgen.ir.formats import FLOAT32
 from sssgen.ir.intervals import ANY, INF, Range, as_range, clip, hull, square, widened
+from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.rules import element_type
 from sssgen.ir.types import BOOL, Array, Matrix, Struct, kind_of
-from sssgen.passes.ranges import vector_ranges as vectors
-from sssgen.passes.ranges.call_ranges import FETCHES, Builtins
+from sssgen.ir.vector_ranges import Value, length_of
+from sssgen.passes.ranges.call_ranges import Builtins
 from sssgen.passes.ranges.range_state import State
 from sssgen.passes.ranges.scalar_parts import field_at, hull_of, matrix_product, scalars
 from sssgen.passes.ranges.sites import COUNT, DIVISION, ELEMENT, SIGNED_COUNT, TEXEL, WHOLE_NUMBER
-from sssgen.passes.ranges.vector_ranges import Value, length_of
 
 
 class Expressions(Builtins):
@@ -312,7 +313,7 @@ class Expressions(Builtins):
 
     def swizzle(self, node: ir.Swizzle) -> Value:
         inner = node.value
-        if isinstance(inner, ir.Intrinsic) and inner.name in FETCHES:
+        if isinstance(inner, ir.Intrinsic) and BUILTINS[inner.name].reads_texels:
             args = tuple([self.expr(arg) for arg in inner.args])
             value = self.builtin(inner, args, False)
             texel = args[0].texel

@@ -9,11 +9,11 @@ from __future__ import annotations
 from sssgen.ir import nodes as ir
 from sssgen.ir.intervals import INF, Range, clip
 from sssgen.ir.types import kind_of
+from sssgen.ir.vector_ranges import Value, length_of
 from sssgen.ir.walk import calls_of, root, statements
 from sssgen.passes.ranges.expression_ranges import Expressions
 from sssgen.passes.ranges.range_state import Loop, State
 from sssgen.passes.ranges.scalar_parts import scalars
-from sssgen.passes.ranges.vector_ranges import Value, length_of
 
 _ROUNDS = 3
 """Joins of a loop's state before it is widened."""

@@ -16,17 +16,16 @@ from typing import NamedTuple, cast
 
 from sssgen.ir import contracts
 from sssgen.ir import nodes as ir
-from sssgen.ir.contracts import Contract
 from sssgen.ir.formats import FLOAT32, Format
 from sssgen.ir.intervals import clip, rounded
 from sssgen.ir.types import VOID, Array, Struct, kind_of
+from sssgen.ir.vector_ranges import Contract, Value
 from sssgen.ir.walk import root
 from sssgen.passes.ranges.facts import Facts
 from sssgen.passes.ranges.loop_ranges import Loops
 from sssgen.passes.ranges.range_state import Frame, State
 from sssgen.passes.ranges.scalar_parts import field_at, hull_of, innermost, scalars
 from sssgen.passes.ranges.sites import BOUNDS, Site
-from sssgen.passes.ranges.vector_ranges import Value
 
 
 class Findings(NamedTuple):

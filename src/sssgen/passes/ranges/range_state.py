@@ -7,15 +7,15 @@ from typing import Any, NamedTuple, cast
 
 from sssgen.ir import contracts
 from sssgen.ir import nodes as ir
-from sssgen.ir.contracts import INTEGERS, Contract
+from sssgen.ir.contracts import INTEGERS
 from sssgen.ir.formats import Format
 from sssgen.ir.intervals import ANY, INF, Range, clip, rounded
-from sssgen.ir.intrinsics import FINITE
+from sssgen.ir.intrinsics import BUILTINS, FINITE
 from sssgen.ir.types import Matrix, Sampler, Type, kind_of
+from sssgen.ir.vector_ranges import Contract, Value, length_of
 from sssgen.passes.ranges.facts import Facts, Numbers
 from sssgen.passes.ranges.scalar_parts import innermost, scalar_kinds, scalars
 from sssgen.passes.ranges.sites import OVERFLOW, Site
-from sssgen.passes.ranges.vector_ranges import Value, length_of
 
 SUMS = OVERFLOW._replace(text=FINITE, doc="A finite number in place of infinity; 0 in place of NaN.")
 """Of what has products inside whose sum may be infinity less infinity."""
@@ -23,7 +23,7 @@ SUMS = OVERFLOW._replace(text=FINITE, doc="A finite number in place of infinity;
 
 def _is_sum(node: ir.Expr) -> bool:
     if isinstance(node, ir.Intrinsic):
-        return node.name in ("dot", "cross", "reflect", "refract", "mix", "mod", "fmod", "determinant")
+        return BUILTINS[node.name].overflow_is_nan
     return isinstance(node, ir.Binary) and node.op == "*" and Matrix in (type(node.left.type), type(node.right.type))
 
 

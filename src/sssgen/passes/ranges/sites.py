@@ -9,23 +9,26 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.intervals import Range
 from sssgen.ir.intrinsics import NONZERO, Guard
 
-OVERFLOW = Guard("", "a number too large for its format", "clamp(x, -LARGEST, LARGEST)", "result")
+OVERFLOW = Guard(None, "a number too large for its format", "clamp(x, -LARGEST, LARGEST)", "result", function="bounded")
 """Beside the table's: what any sum or product may do."""
 TEXEL = Guard(
-    "",
+    None,
     "a texel of a float texture that is no number",
     "mix(clamp(x, LOW, HIGH), genF(0.0), isnan(x))",
     "result",
     scalar="isnan(x) ? 0.0 : clamp(x, LOW, HIGH)",
     doc="A texel within its range; 0 in place of NaN.",
+    function="valid_texel",
 )
-BOUNDS = Guard("", "a quantity beyond its range", "clamp(x, LOW, HIGH)", "result")
-DIVISION = Guard("", "a division by 0", NONZERO, "y", doc="A divisor that is not 0, with the sign of `y`.")
-COUNT = Guard("", "a division by a count of 0", "max(y, 1.0)", "y")
+BOUNDS = Guard(None, "a quantity beyond its range", "clamp(x, LOW, HIGH)", "result")
+DIVISION = Guard(
+    None, "a division by 0", NONZERO, "y", doc="A divisor that is not 0, with the sign of `y`.", function="nonzero"
+)  # fmt: skip
+COUNT = Guard(None, "a division by a count of 0", "max(y, 1.0)", "y", function="nonzero")
 SIGNED_COUNT = COUNT._replace(text=NONZERO.replace("DIVISOR", "1.0"), doc=DIVISION.doc)
 """Of a count that may be below 0."""
-WHOLE_NUMBER = Guard("", "a float too large for an integer", "clamp(x, LOW, HIGH)", "x")
-ELEMENT = Guard("", "an index beyond the elements", "clamp(y, 0, LAST)", "y")
+WHOLE_NUMBER = Guard(None, "a float too large for an integer", "clamp(x, LOW, HIGH)", "x")
+ELEMENT = Guard(None, "an index beyond the elements", "clamp(y, 0, LAST)", "y")
 
 
 class Site(NamedTuple):
@@ -74,6 +77,7 @@ def _shown(range: Range) -> str:
 def report(sites: Sequence[Site], guarded: Sequence[Site]) -> dict[str, Any]:
     """For the reflection: how many are proven safe, and each that has a guard."""
     rows = [
-        {"at": site.place, "operation": site.what, "reason": site.guard.says, "found": site.found} for site in guarded
+        {"at": site.place, "operation": site.what, "reason": site.guard.problem, "found": site.found}
+        for site in guarded
     ]
     return {"proven": sum(site.proven for site in sites), "guarded": rows}

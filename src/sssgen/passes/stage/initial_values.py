@@ -6,12 +6,10 @@ Place: before `legalise`, to which the assignments are ordinary code.
 
 from __future__ import annotations
 
+from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Assign, Global, Intrinsic, Module, Variable
 from sssgen.ir.walk import subexpressions
 from sssgen.passes.unsupported import Unsupported
-
-_SURROUNDINGS = ("texture", "texel")
-"""How the builtins begin that no constant can use."""
 
 
 def set_at_start(module: Module, entry: str, all_of_them: bool = False) -> Module:
@@ -45,6 +43,6 @@ def _varies(variable: Variable, constants: set[str]) -> bool:
     assert variable.value is not None
     return any(
         (isinstance(part, Global) and part.name not in constants)
-        or (isinstance(part, Intrinsic) and part.name.startswith(_SURROUNDINGS))
+        or (isinstance(part, Intrinsic) and BUILTINS[part.name].reads_neighbours_or_textures)
         for part in subexpressions(variable.value)
     )

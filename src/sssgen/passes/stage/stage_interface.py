@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
+from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Expr, Function, Global, Index, Intrinsic, Literal, Module, Span, Unary, Variable
 from sssgen.ir.rules import element_type
 from sssgen.ir.transform import rewrite_module
@@ -98,11 +99,11 @@ def turned_derivatives(module: Module) -> Module:
     """The module for a framebuffer whose y counts from the top: dFdy keeps its meaning, and is negated."""
 
     def change(expr: Expr) -> Expr:
-        if isinstance(expr, Intrinsic) and expr.name.startswith("dFdy"):
+        if isinstance(expr, Intrinsic) and BUILTINS[expr.name].axis == "y":
             return Unary(expr.type, "-", expr, expr.span)
         return expr
 
-    turned = any(name.startswith("dFdy") for name in builtins_of(module))
+    turned = any(BUILTINS[name].axis == "y" for name in builtins_of(module))
     return rewrite_module(module, change) if turned else module
 
 

@@ -6,6 +6,7 @@ Place: before `hoist`, which then finds nothing to move.
 
 from __future__ import annotations
 
+from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Expr, Intrinsic, Literal, Module
 from sssgen.ir.signatures import resolve
 from sssgen.ir.transform import rewrite_module
@@ -18,20 +19,12 @@ def with_levels(module: Module) -> Module:
 
 
 def _with_level(expr: Expr) -> Expr:
-    if not isinstance(expr, Intrinsic) or expr.name not in _LEVEL_AT:
+    row = BUILTINS[expr.name] if isinstance(expr, Intrinsic) else None
+    if not isinstance(expr, Intrinsic) or row is None or row.with_level is None:
         return expr
-    name, place, after = _LEVEL_AT[expr.name]
-    level = (Literal(FLOAT, 0.0, expr.span),) if name != "textureCompareLod" else ()
-    # a bias, which comes last, is of no meaning here
-    args = (*expr.args[:place], *level, *expr.args[place : place + after])
+    name, position, explicit = row.with_level
+    level = (Literal(FLOAT, 0.0, expr.span),) if explicit else ()
+    # a constant offset comes next; a bias, which comes last, has no meaning here
+    args = (*expr.args[:position], *level, *expr.args[position : position + len(row.constant)])
     known = resolve(name, [arg.type for arg in args]) == expr.type
     return Intrinsic(expr.type, name, args, expr.span) if known else expr
-
-
-_LEVEL_AT = {
-    "texture": ("textureLod", 2, 0),
-    "textureOffset": ("textureLodOffset", 2, 1),
-    "textureLayer": ("textureLayerLod", 3, 0),
-    "textureCompare": ("textureCompareLod", 3, 0),
-}
-"""A read → the one with a level, behind how many arguments that stands, and how many are behind it."""

@@ -1,0 +1,206 @@
+"""Ranges of whole values: vectors with a bound on their Euclidean length, matrices, textures.
+
+The first part is arithmetic. The second part has the ranges of builtins that are not componentwise, for the rows of
+the intrinsic table: each takes the format and the values of the arguments, and returns the ranges of the result's
+components (the caller takes as many as the result has) and of its length, with the rounding errors of the formula.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+from sssgen.ir.formats import Format
+from sssgen.ir.intervals import ANY, INF, UNIT, Range, absolute, hull, square, widened
+
+
+class Contract(NamedTuple):
+    """What an input may be: lowest and highest component, and greatest length of a vector (infinite: unknown)."""
+
+    low: float
+    high: float
+    length: float = INF
+    finite: bool = True
+    """False for texels of a texture that holds data: a float format may hold NaN and infinity."""
+
+
+LENGTH = 1.001
+"""The greatest length of a direction. Interpolated normals are shorter than 1, missing ones 0."""
+
+
+class Value(NamedTuple):
+    """What is known of a value: of each scalar in it (a struct's fields and a matrix's columns one after another)."""
+
+    parts: tuple[Range, ...]
+    numbers: tuple[int, ...]
+    length: Range = ANY
+    """The length of a vector of floats; it holds in addition to what the components imply."""
+    texel: Contract | None = None
+    """The possible texels of a texture."""
+
+
+Result = tuple[list[Range], Range]
+"""The ranges of a result's components and of its length (ANY: no more than the components imply)."""
+
+
+def length_of(parts: tuple[Range, ...]) -> Range:
+    """The length that the components allow."""
+    if len(parts) == 1:
+        return absolute(parts[0])
+    low = math.sqrt(sum(part.gap * part.gap for part in parts))
+    size = max(part.size for part in parts)
+    if size == INF:
+        return Range(low, INF)
+    return Range(low, size * math.sqrt(sum((part.size / size) ** 2 for part in parts)) if size else 0.0)
+
+
+def exact_dot(x: Value, y: Value) -> Range:
+    """The unrounded dot product: from the components, and from the lengths (Cauchy-Schwarz)."""
+    if x.numbers == y.numbers:
+        return square(x.length)
+    total = Range(0.0, 0.0)
+    for a, b in zip(x.parts, y.parts, strict=True):
+        total = total + a * b
+    most = _length_product(x, y)
+    return total.met(Range(-most, most)) if most < INF else total
+
+
+def total_length(x: Range, y: Range) -> Range:
+    """The length of a sum of vectors, by the triangle inequality."""
+    least = max(x.low - y.high, y.low - x.high, 0.0)
+    return Range(least if least < INF else 0.0, x.high + y.high)
+
+
+def _length_product(x: Value, y: Value) -> float:
+    return x.length.high * y.length.high if x.length.high and y.length.high else 0.0
+
+
+# Builtins
+
+
+def all_within(low: float, high: float) -> Callable[..., Result]:
+    """The range function of a builtin whose components always lie in one interval."""
+    parts = [Range(low, high)] * 4
+    return lambda F, *arguments: (parts, ANY)
+
+
+def any_numbers(F: Format, *arguments: Value) -> Result:
+    """The range of a builtin about whose result nothing is known."""
+    return [ANY] * 16, ANY
+
+
+def _slack(format: Format) -> float:
+    """The error of a sum of up to four products, relative to the size of its terms."""
+    return 8.0 * format.epsilon
+
+
+def length(format: Format, x: Value) -> Result:
+    return _rounded_length(format, x.length)
+
+
+def distance(format: Format, x: Value, y: Value) -> Result:
+    difference = tuple([a - b for a, b in zip(x.parts, y.parts, strict=True)])
+    # each component of the difference rounds
+    error = _slack(format) * (x.length.high + y.length.high)
+    exact = length_of(difference).met(total_length(x.length, y.length))
+    found = widened(exact, 0.0, error if error < INF else 0.0)
+    return _rounded_length(format, Range(max(found.low, 0.0), found.high))
+
+
+def _rounded_length(format: Format, length: Range) -> Result:
+    # the squares in it may overflow, or be too small
+    low = length.low if length.low > format.tiny**0.5 else 0.0
+    high = length.high if length.high < format.largest**0.5 else INF
+    return [widened(Range(low, high), _slack(format))], ANY
+
+
+def dot(format: Format, x: Value, y: Value) -> Result:
+    total, slack = exact_dot(x, y), _slack(format)
+    if x.numbers == y.numbers:
+        return [widened(total, slack)], ANY
+    products = [a * b for a, b in zip(x.parts, y.parts, strict=True)]
+    if all(part.low >= 0.0 for part in products) or len(products) == 1:
+        return [widened(total, slack)], ANY
+    size = min(sum(part.size for part in products), x.length.high * y.length.high if x.length.high else 0.0)
+    return [widened(total, 0.0, slack * size + format.tiny) if size < INF else ANY], ANY
+
+
+def cross(format: Format, x: Value, y: Value) -> Result:
+    a, b = x.parts, y.parts
+    most = _length_product(x, y)
+    parts = [a[i] * b[j] - a[j] * b[i] for i, j in ((1, 2), (2, 0), (0, 1))]
+    length = Range(0.0, most)
+    if most == INF:
+        return parts, length
+    error = _slack(format) * most + format.tiny
+    parts = [widened(part.met(Range(-most, most)), 0.0, error) for part in parts]
+    return parts, widened(length, _slack(format))
+
+
+def normalize(format: Format, x: Value) -> Result:
+    slack = 2.0 * _slack(format)
+    # beyond these limits the result is that of the guard, which may be shorter
+    sure = x.length.low > format.square**0.5 and x.length.high < format.largest**0.5
+    least = x.length.low if sure else 0.0
+    parts = []
+    for part in x.parts:
+        low = max(part.low / least, -1.0) if least > 0.0 else -1.0
+        high = min(part.high / least, 1.0) if least > 0.0 else 1.0
+        low, high = (low if part.low < 0.0 else 0.0), (high if part.high > 0.0 else 0.0)
+        parts.append(widened(Range(low, high), slack))
+    return parts, Range(1.0 - slack if sure else 0.0, 1.0 + slack)
+
+
+def faceforward(format: Format, x: Value, y: Value, z: Value) -> Result:
+    return [part.joined(-part) for part in x.parts], x.length
+
+
+def reflect(format: Format, x: Value, y: Value) -> Result:
+    factor = exact_dot(y, x) * 2.0
+    parts = [a - factor * b for a, b in zip(x.parts, y.parts, strict=True)]
+    slack = 2.0 * _slack(format)
+    if INF in (x.length.high, y.length.high):
+        return [ANY for _ in parts], ANY
+    terms = x.length.high * (1.0 + 2.0 * y.length.high * y.length.high)
+    most = x.length.high if y.length.high <= 1.0 + slack else terms
+    error = slack * terms + format.tiny
+    return [widened(part.met(hull(-most, most)), 0.0, error) for part in parts], hull(0.0, most + 2.0 * error)
+
+
+def refract(format: Format, x: Value, y: Value, z: Value) -> Result:
+    eta = absolute(z.parts[0]).high
+    cosine = absolute(exact_dot(y, x)).high
+    if not eta * cosine < format.largest**0.5 or x.length.high == INF or y.length.high == INF:
+        return [ANY for _ in x.parts], ANY  # its square overflows
+    root = math.sqrt(1.0 + eta * eta * cosine * cosine)
+    most = eta * x.length.high + (eta * cosine + root) * y.length.high
+    if eta <= 1.0 and x.length.high <= LENGTH and y.length.high <= LENGTH:
+        most = min(most, 2.3)
+    most *= 1.0 + 4.0 * _slack(format)
+    return [hull(-most, most) for _ in x.parts], hull(0.0, most * 2.0)
+
+
+def outer_product(format: Format, x: Value, y: Value) -> Result:
+    return [a * b for b in y.parts for a in x.parts], ANY
+
+
+def transpose(format: Format, x: Value) -> Result:
+    size = math.isqrt(len(x.parts))
+    return [x.parts[column * size + row] for row in range(size) for column in range(size)], ANY
+
+
+def determinant(format: Format, x: Value) -> Result:
+    size = math.isqrt(len(x.parts))
+    largest = max(part.size for part in x.parts)
+    most = math.factorial(size) * largest**size if largest < 1e60 else INF
+    return [widened(hull(-most, most), 4.0 * _slack(format))], ANY
+
+
+def normal_of_texel(format: Format, x: Value) -> Result:
+    return [part * 2.0 - 1.0 for part in x.parts[:3]], ANY
+
+
+def texels(format: Format, x: Value, *coordinates: Value) -> Result:
+    texel = UNIT if x.texel is None else hull(x.texel.low, x.texel.high)
+    return [texel] * 4, ANY
