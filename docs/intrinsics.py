@@ -39,7 +39,7 @@ def page() -> str:
         limit = f"{row.ulp:g} ulp" if row.ulp > 4 else ""
         if row.absolute:
             limit = f"{limit or '4 ulp'} or {row.absolute:.2g}"
-        cells += [_escaped(row.domain), f"{limit}: {_escaped(row.clause)}" if row.clause else limit]
+        cells += [_domain(row), f"{limit}: {_escaped(row.clause)}" if row.clause else limit]
         lines.append(f"| {' | '.join(cells)} |")
     return "\n".join([*lines, *_guards()]) + "\n"
 
@@ -52,20 +52,23 @@ def _guards() -> list[str]:
         "",
         "## Guards",
         "",
-        "What a call needs of the ranges of its arguments (lengths, of vectors that a builtin takes whole), and what",
-        "stands in its place, or in that of one argument, where the range pass cannot prove it",
+        "What replaces a call or one of its arguments where the range pass cannot prove that nothing goes wrong",
         f"([guards.md](guards.md)). In float32: {', '.join(named)}.",
         "",
-        "| Builtin | Goes wrong | Needs | In place of | Guard |",
-        "|---|---|---|---|---|",
+        "| Builtin | Goes wrong | In place of | Guard |",
+        "|---|---|---|---|",
     ]
     for row in BUILTINS.values():
         for guard in row.guards:
-            needs = f"`{_escaped(guard.needs)}`" if guard.needs != "False" else "never proven"
+            problem = guard.problem if guard.safe is not None else f"{guard.problem} (always guarded)"
             place = {"": "the call", "result": "the result, x"}.get(guard.replaces, guard.replaces)
             text = f"`{_escaped(guard.text)}`" if guard.text else "its polyfill, whose divisions are guarded"
-            lines.append(f"| `{row.name}` | {guard.says} | {needs} | {place} | {text} |")
+            lines.append(f"| `{row.name}` | {problem} | {place} | {text} |")
     return lines
+
+
+def _domain(row: Builtin) -> str:
+    return "uniform control flow" if row.uniform_flow else _escaped(row.domain)
 
 
 def _signatures(row: Builtin) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import zlib
 from collections.abc import Callable
 from functools import cache
@@ -11,16 +12,16 @@ import numpy as np
 import pytest
 
 from pass_cases import module_of
-from qualification.parity_inputs import DTYPES, EDGES, INTERVALS, UNIT, evaluated, widened
+from qualification.parity_inputs import DTYPES, EDGES, evaluated, inside, widened
 from sssgen.harness.backends import Array, Backend, Call, Text
 from sssgen.ir import nodes as ir
 from sssgen.ir import signatures
+from sssgen.ir.component_ranges import within
 from sssgen.ir.formats import FLOAT32
-from sssgen.ir.intervals import Range, rounded
+from sssgen.ir.intervals import UNIT, Range, rising, rounded
 from sssgen.ir.intrinsics import BUILTINS, Builtin
-from sssgen.ir.types import Scalar, Type, Vector, components, kind_of, spell
-from sssgen.ir.vector_ranges import Value
-from sssgen.passes.ranges import builtin_ranges
+from sssgen.ir.types import BY_NAME, Scalar, Type, Vector, components, kind_of, spell
+from sssgen.ir.vector_ranges import Value, length
 from sssgen.passes.ranges.range_pass import _Analysis
 from sssgen.pipeline.compiler import transpile
 from sssgen.targets import numpy_runtime as runtime
@@ -53,8 +54,7 @@ def a_box(rng: np.random.Generator, row: Builtin, index: int, type_: Type) -> li
         ends = [-(2**31) + 1, 2**31 - 1, -7, 5] if kind == "int" else [0, 2**32 - 1, 7, 5]
         low, high = sorted(float(rng.choice([*ends, 0, int(rng.integers(0, 99))])) for _ in range(2))
         return [Range(low, high)] * components(type_)
-    found = INTERVALS.get(row.name, (-1e3, 1e3))
-    least, most = found[index] if isinstance(found[0], tuple) else found
+    least, most = row.samples.interval(index) or (-1e3, 1e3)
     boxes = []
     for _ in range(components(type_)):
         edges = np.array([edge for edge in EDGES if least <= edge <= most and abs(edge) < 1e12])
@@ -105,7 +105,7 @@ def assert_inside(found: Value, result: Type, made: Array, said: object) -> None
         assert (lengths >= found.length.low * (1.0 - 1e-12)).all(), (said, found.length, lengths.min())
 
 
-@pytest.mark.parametrize("row", [row for row in COMPUTED if row.range], ids=lambda row: row.name)
+@pytest.mark.parametrize("row", [row for row in COMPUTED if not row.unbounded], ids=lambda row: row.name)
 def test_results_lie_in_the_range(row: Builtin) -> None:
     """For all members of random boxes; and finite where the table says that nothing can go wrong."""
     rng = np.random.default_rng(zlib.crc32(row.name.encode()))
@@ -113,18 +113,18 @@ def test_results_lie_in_the_range(row: Builtin) -> None:
     for params, result in overloads(row):
         for number in range(BOXES):
             boxes = [a_box(rng, row, index, type_) for index, type_ in enumerate(params)]
-            same = number % 4 == 0 and len(set(params)) == 1 and row.name not in UNIT
+            same = number % 4 == 0 and len(set(params)) == 1 and not row.samples.unit
             if same:
                 boxes = [boxes[0]] * len(boxes)
             args = tuple(drawn(rng, box, type_) for box, type_ in zip(boxes, params, strict=True))
             args = (args[0],) * len(args) if same else args
-            if row.name in UNIT and kind_of(params[0]) == "float" and isinstance(params[0], Vector):
-                args = tuple(_unit(arg) if index in UNIT[row.name] else arg for index, arg in enumerate(args))
-                boxes = [_hull(arg) if index in UNIT[row.name] else box
+            if isinstance(params[0], Vector):
+                args = tuple(_unit(arg) if index in row.samples.unit else arg for index, arg in enumerate(args))
+                boxes = [_hull(arg) if index in row.samples.unit else box
                          for index, (arg, box) in enumerate(zip(args, boxes, strict=True))]  # fmt: skip
             found, sites = analysed(row, params, result, boxes, same)
             made = called(row.name, args)
-            if row.guards and row.guards[0].needs == "False":  # the guard is always there
+            if row.guards and row.guards[0].safe is None:  # the guard is always there
                 made = np.nan_to_num(made, nan=0.0)
             elif not all(site.proven for site in sites):
                 continue
@@ -146,15 +146,28 @@ def _hull(arg: Array) -> list[Range]:
 def test_a_narrower_range_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     """The test above fails for a wrong row."""
     for name, wrong in (
-        ("cos", "hull(0, 1)"),
-        ("mix", "x"),
-        ("exp2", "rising(math.exp, x)"),
-        ("dot", "whole: length(x)"),
+        ("cos", within(0.0, 1.0)),
+        ("mix", lambda F, x, y, z: x),
+        ("exp2", lambda F, x: rising(math.exp, x)),
+        ("dot", lambda F, x, y: length(F, x)),
     ):
         with monkeypatch.context() as patch:
             patch.setitem(BUILTINS, name, BUILTINS[name]._replace(range=wrong))
             with pytest.raises(AssertionError):
                 test_results_lie_in_the_range(BUILTINS[name])
+
+
+def test_a_result_of_whole_vectors_is_not_that_of_one_component() -> None:
+    """Value numbers: what differs in any component may differ in the result; so do components of one result."""
+    analysis = _Analysis(ir.Module(), FLOAT32)
+    x, y, z = (analysis.numbers.fresh() for _ in range(3))
+    for name, type_, result in (("any", "bvec2", "bool"), ("packSnorm2x16", "vec2", "uint")):
+        node = ir.Intrinsic(BY_NAME[result], name, (ir.Local(BY_NAME[type_], "v", ir.NOWHERE),), ir.NOWHERE)
+        one, other = (analysis.value((UNIT, UNIT), numbers) for numbers in ((x, y), (x, z)))
+        assert analysis.builtin(node, (one,), False).numbers != analysis.builtin(node, (other,), False).numbers
+    node = ir.Intrinsic(BY_NAME["vec2"], "unpackSnorm2x16", (ir.Local(BY_NAME["uint"], "u", ir.NOWHERE),), ir.NOWHERE)
+    numbers = analysis.builtin(node, (analysis.value((UNIT,), (x,)),), False).numbers
+    assert len(set(numbers)) == 2
 
 
 # Guards
@@ -224,19 +237,18 @@ def run(backend: Backend, mode: str, chosen: tuple[Guarded, ...]) -> list[Array]
 
 
 def safe_lanes(case: Guarded) -> Array:
-    """Lanes whose arguments keep to the domain, by the table's `needs`, and where parity is measured."""
-    whole = case.row.range.startswith("whole:")
+    """Lanes whose arguments keep to the domain, by `safe` of the table's guards, and where parity is measured."""
+    whole = not case.row.componentwise
     lanes = case.args[0].shape[-1]
     flat = [arg.reshape(-1, lanes).astype(np.float64) for arg in case.args]
     count = 1 if whole else max(len(arg) for arg in flat)
     good = np.ones(lanes, bool)
+    guards = [guard for guard in case.row.guards if guard.replaces != "y" or len(flat) > 1]
     for lane in range(lanes):
         for at in range(count):
             points = [_point(arg[:, lane] if whole else arg[at % len(arg), lane : lane + 1]) for arg in flat]
-            good[lane] &= all(builtin_ranges.evaluated(one.needs, FLOAT32, points, _ordered) for one in case.row.guards)
-    if case.row.inside:
-        with np.errstate(all="ignore"):
-            good &= evaluated(case.row.inside, widened(case.args))
+            good[lane] &= all(one.safe is not None and one.safe(FLOAT32, *points) for one in guards)
+    good &= inside(case.row, case.args)
     tiny = [((np.abs(arg) > 0.0) & (np.abs(arg) < 1e-30)).any(axis=0) for arg in flat]
     return good & ~np.any(tiny, axis=0)
 
@@ -244,10 +256,6 @@ def safe_lanes(case: Guarded) -> Array:
 def _point(numbers: Array) -> Range:
     size = float(np.sqrt((numbers**2).sum())) if len(numbers) > 1 else float(numbers[0])
     return rounded(Range(size, size), FLOAT32)
-
-
-def _ordered(low: Range, high: Range) -> bool:
-    return low.high <= high.low
 
 
 def assert_safe(case: Guarded, got: Array) -> int:
@@ -280,7 +288,7 @@ def test_guarded_builtins_are_finite_and_the_same_in_the_domain(
     inside: dict[str, int] = {}
     for case, got in zip(chosen, run(backend(name), mode, chosen), strict=True):
         inside[case.row.name] = inside.get(case.row.name, 0) + assert_safe(case, got)
-    never = {row.name for row in COMPUTED for guard in row.guards if guard.needs == "False"}
+    never = {row.name for row in COMPUTED for guard in row.guards if guard.safe is None}
     few = {name: count for name, count in inside.items() if count < 20 and name not in never}
     assert not few, few
 
@@ -302,8 +310,7 @@ HUGE = np.array([sign * size for size in [*_SIZES, 1e10, 1e19, 1e20, 1e30, 1e38]
 @pytest.mark.parametrize("name", ["numpy-f32", "gl"])
 def test_guarded_builtins_of_huge_numbers(name: str, backend: Callable[[str], Backend]) -> None:
     """A thickness from outside may be any finite number; of those whose differences are, too."""
-    rows = [row for row in COMPUTED if row.range and any(set(params) == {Scalar("float")} and result == Scalar("float")
-            for params, result in overloads(row))]  # fmt: skip
+    rows = [row for row in COMPUTED if not row.unbounded]
     lines, calls, chosen = [], [], []
     rng = np.random.default_rng(5)
     for row in rows:
@@ -324,17 +331,13 @@ def test_guarded_builtins_of_huge_numbers(name: str, backend: Callable[[str], Ba
         assert not len(wrong), (title, [arg[wrong[0]] for arg in call.args], got[wrong[0]])
 
 
-def test_needs_are_true_somewhere_and_false_somewhere() -> None:
-    """Each is Python that knows the ranges; none is always true."""
+def test_guards_are_needed_somewhere_and_superfluous_somewhere() -> None:
     wide, narrow = Range(-LARGEST, LARGEST), Range(1.25, 1.25)
     for row in COMPUTED:
         for guard in row.guards:
+            if guard.safe is None:
+                continue
             count = max(len(params) for params, _ in overloads(row))
-            at = [
-                builtin_ranges.evaluated(guard.needs, FLOAT32, [part] * count, lambda *_: False)
-                for part in (wide, narrow)
-            ]
-            assert not at[0], (row.name, guard.needs)
             fixed = [Range(0.5, 0.5), Range(1.5, 1.5), Range(2.0, 2.0)][:count]
-            good = builtin_ranges.evaluated(guard.needs, FLOAT32, fixed, lambda *_: False)
-            assert at[1] or good or guard.needs == "False", (row.name, guard.needs)
+            assert not guard.safe(FLOAT32, *[wide] * count), (row.name, guard.problem)
+            assert guard.safe(FLOAT32, *[narrow] * count) or guard.safe(FLOAT32, *fixed), (row.name, guard.problem)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import inspect
 import keyword
+import math
 import re
 import subprocess
 import sys
@@ -81,13 +83,67 @@ def dtype_of(type: Type, floating: str) -> str:
     return {"float": floating, "int": "int32", "uint": "uint32", "bool": "bool"}[kind_of(type)]
 
 
+def missing(row: Builtin) -> list[str]:
+    """What a row lacks."""
+    present = {
+        "signatures": row.signatures,
+        "a doc that ends with a full stop": row.doc.endswith("."),
+        "range (any_number or any_numbers if nothing is known)": row.range,
+        "three test vectors": len(row.vectors) >= 3 or row.reads_neighbours_or_textures,
+        "a kind of cost": row.kind in ("alu", "transcendental", "fetch", "derivative"),
+        "a clause for more than 4 ulp": (row.ulp <= 4.0 and not row.absolute) or row.clause,
+        "a function in targets/numpy_runtime.py": hasattr(rt, row.name + "_" * keyword.iskeyword(row.name)),
+        "a polyfill": row.polyfill or all(
+            text or (row.name, key.partition("/")[0]) in REFUSED for key, text in row.texts.items()
+        ),
+    }  # fmt: skip
+    return [field for field, there in present.items() if not there]
+
+
+@pytest.mark.parametrize("row", BUILTINS.values(), ids=lambda row: row.name)
+def test_row_is_complete(row: Builtin) -> None:
+    assert not missing(row), f"{row.name} lacks {', '.join(missing(row))}"
+
+
+def test_what_a_row_lacks_is_named() -> None:
+    lacking = missing(Builtin("no_such", ("genF(genF)",), "Of no use."))
+    assert [field.split()[0] for field in lacking] == ["range", "three", "a"]
+    assert missing(BUILTINS["sin"]._replace(clause="", vectors=())) == [
+        "three test vectors",
+        "a clause for more than 4 ulp",
+    ]
+    assert missing(BUILTINS["mod"]._replace(polyfill="")) == ["a polyfill"]
+
+
+@pytest.mark.parametrize("row", BUILTINS.values(), ids=lambda row: row.name)
+def test_functions_of_a_row_take_the_arguments_of_every_overload(row: Builtin) -> None:
+    for params in signatures.overloads(row.name):
+        for taken, also in ((row.range, 1), (row.inside, 1), (row.size, 1), (row.fold, 0)):
+            if taken not in (None, min, max, math.log):  # these have no signature
+                inspect.signature(taken).bind(*range(also + len(params)))
+        for guard in row.guards:
+            if guard.safe is not None and (guard.replaces != "y" or len(params) > 1):
+                inspect.signature(guard.safe).bind(*range(1 + len(params)))
+
+
+@pytest.mark.parametrize("row", [row for row in BUILTINS.values() if row.componentwise], ids=lambda row: row.name)
+def test_a_componentwise_builtin_computes_each_component_alone(row: Builtin) -> None:
+    """Arguments with their components in reverse give the result in reverse."""
+    for params, (result, _) in signatures.overloads(row.name).items():
+        shapes = {type(type_) for type_ in (*params, result) if not isinstance(type_, Scalar)}
+        assert len(shapes) <= 1 and (not shapes or not isinstance(result, Scalar)), "of vectors it gives a vector"
+    for arguments, _ in row.vectors:
+        types, _ = overload_of(row, arguments)
+        kinds = [dtype_of(type, "float64") for type in types]
+        values = [np.asarray(value, kind)[..., None] for value, kind in zip(arguments, kinds, strict=True)]
+        reverse = [value[::-1] if value.ndim > 1 else value for value in values]
+        with np.errstate(all="ignore"):
+            once, other = function(row.name)(*values), function(row.name)(*reverse)
+        np.testing.assert_array_equal(other[::-1] if other.ndim > 1 else other, once)
+
+
 @pytest.mark.parametrize("row", BUILTINS.values(), ids=lambda row: row.name)
 def test_row_is_sane(row: Builtin) -> None:
-    assert row.doc.endswith(".")
-    assert row.kind in ("alu", "transcendental", "fetch", "derivative")
-    assert len(row.vectors) >= (0 if row.kind in ("fetch", "derivative") else 3)
-    assert (row.ulp <= 4.0 and not row.absolute) or row.clause
-    assert callable(function(row.name))
     params = {",".join(parse(signature)[1:]) for signature in row.signatures}
     assert len(params) == len(row.signatures)
     for key, value in row.texts.items():
@@ -96,8 +152,6 @@ def test_row_is_sane(row: Builtin) -> None:
         assert not which or which in params
         for place in re.findall(r"\{(\w+)\}", value):
             assert place in PLACES or int(place) < max(p.count(",") + 1 for p in params)
-        if value == "":
-            assert row.polyfill or (row.name, language) in REFUSED
     assert all(index < max(params_.count(",") + 1 for params_ in params) for index in row.constant)
     for definition in re.findall(r"^\w+ (\w+)\(", row.polyfill, re.MULTILINE):
         assert definition == row.name

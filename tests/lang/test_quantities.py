@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import FLOAT, VEC3, Type, spell
 from sssgen.ir.verify import verify
 from sssgen.lang.check import quantities as q
@@ -205,8 +204,3 @@ def test_scaling_in_place_keeps_a_quantity() -> None:
     for statement in ("d += 1.0;", "d++;", "d += t;", "v *= m;", "v *= vec3(1.0);", "v += P;"):
         with pytest.raises(SssgenError):
             checked(f"void f(thickness d, thinness t, world_direction v, world_position P, mat3 m) {{ {statement} }}")
-
-
-def test_quantities_of_builtins_are_builtins() -> None:
-    """The rules name builtins that there are."""
-    assert set(q._COMPARED) | set(q._KEEP_DIRECTION) | set(q._KEEP_BOUND) <= set(BUILTINS)

@@ -22,7 +22,6 @@ from sssgen.ir.intervals import Range, widened
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import Array, Matrix, Scalar, Struct, Type, Vector, kind_of
 from sssgen.ir.vector_ranges import Value as Known
-from sssgen.passes.ranges import builtin_ranges
 from sssgen.passes.ranges.range_pass import _Analysis
 from sssgen.passes.ranges.range_state import SUMS
 from sssgen.passes.ranges.scalar_parts import scalars
@@ -190,13 +189,14 @@ class Checker(Interpreter):
 
     def intrinsic(self, expr: ir.Intrinsic, args: list[Value]) -> Value:
         row = BUILTINS[expr.name]
-        whole = row.range.startswith("whole:")
+        whole = not row.componentwise
         site = self.proven.get((id(expr), expr.name))
         if site is not None:
             lanes = 1 if whole else max(len(flat(arg)) for arg in args)
             for lane in range(lanes):
                 points = [_point(arg, whole, lane) for arg in args]
-                fits = all(builtin_ranges.evaluated(guard.needs, FLOAT32, points, _in_order) for guard in row.guards)
+                guards = [guard for guard in row.guards if guard.replaces != "y" or len(args) > 1]
+                fits = all(guard.safe is not None and guard.safe(FLOAT32, *points) for guard in guards)
                 assert not site or fits, f"{expr}\n: {args} is outside of the domain, which was proven"
         if expr.name == "normalize" and not site:
             return self.direction(args[0])
@@ -230,10 +230,6 @@ def _point(value: Value, whole: bool, lane: int) -> Range:
     numbers = [float(part) for part in flat(value)]
     number = math.sqrt(sum(part * part for part in numbers)) if whole else numbers[lane % len(numbers)]
     return Range(number, number)
-
-
-def _in_order(low: Range, high: Range) -> bool:
-    return low.high <= high.low
 
 
 def _lane(value: Value) -> Any:

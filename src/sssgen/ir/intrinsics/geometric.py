@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 from sssgen.ir import vector_ranges
 from sssgen.ir.intrinsics.table import Builtin, Guard, Samples
@@ -18,6 +19,17 @@ def _dot(x: Sequence[float], y: Sequence[float]) -> float:
 
 def _length(x: Sequence[float]) -> float:
     return math.sqrt(_dot(x, x))
+
+
+def _signed_dot(rt: Any, x: Any, y: Any, z: Any, rounding: float = 1e-6) -> Any:
+    """Where the sign of dot(z, y) does not depend on rounding."""
+    terms = rt.dot(abs(z), abs(y))
+    return (terms < 1e38) & ((terms == 0.0) | (abs(rt.dot(z, y)) > rt.max(1e-30, rounding * terms)))
+
+
+def _away_from_total_reflection(rt: Any, x: Any, y: Any, z: Any, rounding: float = 1e-6) -> Any:
+    unit = (abs(rt.dot(x, x) - 1.0) < rounding) & (abs(rt.dot(y, y) - 1.0) < rounding)
+    return unit & (z > 0.0) & (abs(1.0 - z * z * (1.0 - rt.dot(x, y) ** 2)) > 0.1)
 
 
 # A table: several fields to a line.
@@ -77,7 +89,7 @@ ROWS = (
     Builtin("faceforward", ("vecF(vecF, vecF, vecF)", "float(float, float, float)"),
         "x where dot(z, y) < 0, else -x: the normal x turned against the direction of incidence y.",
         quantity="direction", componentwise=False, range=vector_ranges.faceforward,
-        inside=lambda rt, x, y, z: (rt.dot(abs(z), abs(y)) < 1e38) & ((rt.dot(abs(z), abs(y)) == 0.0) | (abs(rt.dot(z, y)) > rt.max(1e-30, 1e-6 * rt.dot(abs(z), abs(y))))),
+        inside=_signed_dot,
         texts={"hlsl/float,float,float": "", "wgsl": "faceForward", "wgsl/float,float,float": ""},
         polyfill="float faceforward(float x, float y, float z) { return z * y < 0.0 ? x : -x; }", cost=4,
         ulp=0.0, vectors=(
@@ -90,7 +102,7 @@ ROWS = (
         "x - 2·dot(y, x)·y: direction x mirrored at the unit normal y.",
         samples=Samples(unit=(1,)), overflow_is_nan=True, quantity="direction",
         componentwise=False, range=vector_ranges.reflect,
-        inside=lambda rt, x, y: (abs(rt.dot(y, y) - 1.0) < 1e-6) & (abs(x) < 1e38), size=lambda rt, x, y: rt.max(abs(x), 2.0 * rt.dot(abs(x), abs(y)) * abs(y)),
+        inside=lambda rt, x, y, rounding=1e-6: (abs(rt.dot(y, y) - 1.0) < rounding) & (abs(x) < 1e38), size=lambda rt, x, y: rt.max(abs(x), 2.0 * rt.dot(abs(x), abs(y)) * abs(y)),
         domain="dot(y, y) = 1", texts={"hlsl/float,float": "", "wgsl/float,float": ""},
         polyfill="float reflect(float x, float y) { return x - 2.0 * y * x * y; }", cost=4, ulp=8.0,
         clause=_SUM,
@@ -103,7 +115,7 @@ ROWS = (
         "Direction x refracted at the unit normal y, z = n_from/n_into; 0 on total internal reflection.",
         samples=Samples(floats=((-1.0, 1.0), (-1.0, 1.0), (0.0, 4.0)), unit=(0, 1)), overflow_is_nan=True,
         quantity="direction", componentwise=False, range=vector_ranges.refract,
-        inside=lambda rt, x, y, z: (abs(rt.dot(x, x) - 1.0) < 1e-6) & (abs(rt.dot(y, y) - 1.0) < 1e-6) & (z > 0.0) & (abs(1.0 - z * z * (1.0 - rt.dot(x, y) ** 2)) > 0.1), size=lambda rt, x, y, z: rt.max(z * z, 1.0),
+        inside=_away_from_total_reflection, size=lambda rt, x, y, z: rt.max(z * z, 1.0),
         domain="dot(x, x) = dot(y, y) = 1 and z > 0",
         texts={"hlsl/float,float,float": "", "wgsl/float,float,float": ""},
         polyfill="""
