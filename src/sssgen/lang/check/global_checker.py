@@ -110,7 +110,7 @@ class GlobalChecker:
     def is_constant(self, part: ir.Expr) -> bool:
         """Whether a part of an expression is known before the shader runs."""
         if isinstance(part, ir.Intrinsic):
-            return BUILTINS[part.name].kind not in ("fetch", "derivative")
+            return not BUILTINS[part.name].reads_neighbours_or_textures
         return not isinstance(part, ir.Call) and (
             not isinstance(part, ir.Global) or self.context.globals[part.name].constant
         )
