@@ -12,6 +12,7 @@ What is public: `compile`, `load_material`, `load_technique`, `all_targets`, `Co
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from sssgen.version import VERSION as __version__
@@ -49,7 +50,5 @@ def __getattr__(name: str) -> Any:
     """Loads a public name when it is first used, so that `import sssgen` costs next to nothing."""
     if name not in _PLACES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from importlib import import_module
-
     module, attribute = _PLACES[name]
     return getattr(import_module(f".{module}", __name__), attribute)

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from snapshot import check_snapshot
+from sssgen.cli import listing, show, transpile
 from sssgen.cli import main as cli
 from sssgen.ir.nodes import Module, Span
 from sssgen.material.material_loading import load_material
@@ -78,6 +79,8 @@ class FakeCompiler(types.ModuleType):
 def compiler(monkeypatch: pytest.MonkeyPatch) -> FakeCompiler:
     fake = FakeCompiler()
     monkeypatch.setitem(sys.modules, "sssgen.pipeline.compiler", fake)
+    monkeypatch.setattr(listing, "all_targets", fake.all_targets)
+    monkeypatch.setattr(transpile, "transpile", fake.transpile)
     monkeypatch.setattr(emitted_cache, "load", lambda *_: None)
     monkeypatch.setattr(emitted_cache, "store", lambda *_: None)
     return fake
@@ -197,8 +200,6 @@ def fail(error: BaseException) -> Callable[[Any], int]:
 
 
 def test_an_internal_error_is_short(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    from sssgen.cli import show
-
     monkeypatch.setattr(show, "run", fail(ZeroDivisionError("one\ntwo")))
     ran = run("show", "sphere")
     assert (ran.status, ran.err.count("\n")) == (cli.INTERNAL_ERROR, 2)
@@ -209,8 +210,6 @@ def test_an_internal_error_is_short(run: Run, monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_ctrl_c(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    from sssgen.cli import show
-
     monkeypatch.setattr(show, "run", fail(KeyboardInterrupt()))
     assert run("show", "sphere") == (130, "", "interrupted\n")
 

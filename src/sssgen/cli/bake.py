@@ -11,6 +11,7 @@ from sssgen.cli.options import add_json, add_seed, add_workers
 from sssgen.cli.output import OK, print_json
 from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix
+from sssgen.support.progress import Bar
 from sssgen.targets.texture_import import import_settings
 
 CHANNELS = ("red", "green", "blue", "alpha")
@@ -88,7 +89,6 @@ def _sdf(arguments: Namespace) -> Done:
     from sssgen.bake import baked_files as output
     from sssgen.bake.distance_texture import sdf
     from sssgen.harness.scenes.mesh_distance import MIXED
-    from sssgen.support.progress import Bar
 
     format = output.volume_format(arguments.output, arguments.format)
     output.check_apart(arguments.output, [arguments.MESH])
@@ -139,7 +139,6 @@ def _thickness(arguments: Namespace) -> Done:
     from sssgen.bake import bake_light as light
     from sssgen.bake import baked_files as output
     from sssgen.bake.thickness_map import Request, thickness_map, warnings
-    from sssgen.support.progress import Bar
 
     output.picture_suffix(arguments.output)
     output.check_apart(arguments.output, [arguments.MESH, arguments.direction or ""])
@@ -181,7 +180,6 @@ def _depth(arguments: Namespace) -> Done:
     from sssgen.bake import bake_light as light
     from sssgen.bake import baked_files as output
     from sssgen.bake.depth_map import depth_map
-    from sssgen.support.progress import Bar
 
     output.picture_suffix(arguments.output, (".exr", ".npy"))
     output.check_apart(arguments.output, [arguments.MESH, arguments.direction])

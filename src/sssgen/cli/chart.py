@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from sssgen.cli.options import add_seed, add_workers
 from sssgen.cli.output import OK, print_json
 from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.support.progress import Bar
 
 if TYPE_CHECKING:
     from sssgen.lab.chart.charting import Settings
@@ -72,7 +73,6 @@ def settings_of(arguments: Namespace) -> Settings:
     """How to measure, from a command's options. Raises SssgenError."""
     from sssgen.lab.chart.charting import Settings
     from sssgen.lab.measure import candidates
-    from sssgen.support.progress import Bar
 
     if not 2 <= arguments.samples <= MOST_SAMPLES:
         raise failure(f"--samples {arguments.samples} is not a number of samples", f"from 2 to {MOST_SAMPLES}")

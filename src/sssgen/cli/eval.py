@@ -8,6 +8,7 @@ from typing import Any
 
 from sssgen.cli.options import add_guards, add_seed
 from sssgen.cli.output import CHECK_FAILED, OK, print_json
+from sssgen.harness.testing.outcome import in_ci
 from sssgen.support.diagnostics import failure
 
 SHOWN = 12
@@ -102,7 +103,6 @@ def _one(subject: Any, fit: Any, name: str, as_json: bool, guards: str) -> int:
 
 def _several(subject: Any, fit: Any, names: list[str], as_json: bool, listed: bool, guards: str) -> int:
     from sssgen.harness.evaluate.deviation import GOAL, compared
-    from sssgen.harness.testing.outcome import in_ci
 
     oracle, rows = compared(subject, fit, names, guards)
     here = [row for row in rows if not row.missing]

@@ -7,6 +7,8 @@ from typing import Any
 
 from sssgen.cli.output import OK, print_json
 from sssgen.material import library
+from sssgen.material.material_loading import examples, load_material
+from sssgen.pipeline.compiler import all_targets
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import posix
 
@@ -58,14 +60,10 @@ def _techniques() -> list[dict[str, Any]]:
 
 
 def _targets() -> list[dict[str, Any]]:
-    from sssgen.pipeline.compiler import all_targets
-
     return [{"name": name, "summary": target.title} for name, target in all_targets().items()]
 
 
 def _materials() -> list[dict[str, Any]]:
-    from sssgen.material.material_loading import examples, load_material
-
     loaded = [load_material(name) for name in examples()]
     return [
         {

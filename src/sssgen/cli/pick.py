@@ -8,9 +8,13 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from sssgen.cli.chart import add_reference_options, settings_of
+from sssgen.cli.emit import chosen_targets
 from sssgen.cli.options import add_targets
 from sssgen.cli.output import CHECK_FAILED, OK, print_json
+from sssgen.material.material_loading import parse_material
+from sssgen.pipeline.compiler import compile
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
+from sssgen.support.file_writer import write_files
 
 if TYPE_CHECKING:
     from sssgen.lab.chart.picking import Pick
@@ -60,11 +64,7 @@ def run(arguments: Namespace) -> int:
 
 def _emitted(one: Situation, picked: Pick, folder: str, targets: str) -> list[str]:
     """Writes the material and its shaders. Raises SssgenError."""
-    from sssgen.cli.emit import chosen_targets
     from sssgen.lab.chart.picked_material import material_files
-    from sssgen.material.material_loading import parse_material
-    from sssgen.pipeline.compiler import compile
-    from sssgen.support.file_writer import write_files
 
     name = "".join(character if character.isalnum() and character.isascii() else "_" for character in one.name)
     name = name if name[:1].isalpha() else f"m_{name}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 from argparse import ArgumentParser, Namespace
+from time import perf_counter
 
 from sssgen.cli.options import add_guards
 from sssgen.cli.output import OK, print_json
@@ -42,8 +43,6 @@ def run(arguments: Namespace) -> int:
 
 
 def _render(arguments: Namespace) -> int:
-    from time import perf_counter
-
     from sssgen.harness import backends
     from sssgen.harness.pictures import images
     from sssgen.harness.render.scene_render import render

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from argparse import ArgumentParser, Namespace
 from typing import Any
 
@@ -80,8 +81,6 @@ def _default(uniform: Uniform) -> list[float] | list[int] | list[bool]:
 
 
 def _text(facts: dict[str, Any]) -> str:
-    import textwrap
-
     def wrapped(text: str, indent: str) -> list[str]:
         return textwrap.wrap(text, WIDTH, initial_indent=indent, subsequent_indent=indent, break_on_hyphens=False)
 

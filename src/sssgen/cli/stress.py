@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from argparse import ArgumentParser, Namespace
 from collections.abc import Sequence
@@ -9,7 +10,9 @@ from typing import TYPE_CHECKING
 
 from sssgen.cli.options import add_guards, add_seed, add_workers
 from sssgen.cli.output import CHECK_FAILED, OK, print_json
+from sssgen.harness.testing.outcome import in_ci
 from sssgen.support.diagnostics import failure
+from sssgen.support.file_writer import write_files
 
 if TYPE_CHECKING:
     from sssgen.harness.stress.stress_report import Report
@@ -52,7 +55,6 @@ def run(arguments: Namespace) -> int:
     from sssgen.harness.stress import stress_report as report
     from sssgen.harness.stress.stress_run import Settings
     from sssgen.harness.stress.subject import specimens
-    from sssgen.harness.testing.outcome import in_ci
 
     if not 1 <= arguments.samples <= MOST_SAMPLES:
         raise failure(f"--samples {arguments.samples} is not a number of samples", f"from 1 to {MOST_SAMPLES}")
@@ -136,10 +138,7 @@ def _suffix(path: str, known: tuple[str, ...]) -> str:
 
 def _write(path: str, suffix: str, made: Report) -> None:
     """The report's file, whole or not at all."""
-    import json
-
     from sssgen.harness.stress import stress_report as report
-    from sssgen.support.file_writer import write_files
 
     text = report.as_markdown(made)
     if suffix == ".json":
@@ -150,7 +149,6 @@ def _write(path: str, suffix: str, made: Report) -> None:
 
 def _print(made: Report, written: str | None) -> None:
     from sssgen.harness.stress import stress_report as report
-    from sssgen.harness.testing.outcome import in_ci
 
     for line in report.summary(made):
         print(line)

@@ -8,21 +8,23 @@ import re
 import sys
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sssgen.cli.emit import chosen_targets
 from sssgen.cli.options import add_guards, add_seed
 from sssgen.cli.output import CHECK_FAILED, OK, print_json, print_warnings
+from sssgen.ir.nodes import Module
 from sssgen.lang.loader import load_file
 from sssgen.lang.plain_glsl import Loaded, load_glsl
 from sssgen.material.library import TECHNIQUES
+from sssgen.pipeline.as_technique import technique_file
+from sssgen.pipeline.compiler import transpile
+from sssgen.pipeline.trace import Trace
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.support.file_writer import write_files
 from sssgen.support.paths import posix
 from sssgen.support.text_files import read_text
-
-if TYPE_CHECKING:
-    from sssgen.ir.nodes import Module
+from sssgen.targets.registry import load, names
 
 REFLECTION = ".reflection.json"
 
@@ -138,9 +140,6 @@ def _macros(given: list[str]) -> dict[str, str]:
 
 
 def _translate(arguments: Namespace, module: Module, loaded: Loaded | None, target: str, path: Path) -> int:
-    from sssgen.pipeline.compiler import transpile
-    from sssgen.pipeline.trace import Trace
-
     called = None
     if arguments.prune:
         called = [function.key for function in module.functions if function.span.file == path.as_posix()]
@@ -187,8 +186,6 @@ def _bare(old: str) -> str:
 
 def _why(old: str, target: str) -> str:
     """Why a name was changed, in a few words."""
-    from sssgen.targets.registry import load, names
-
     bare = _bare(old)
     if "(" in old:
         return "overloads need names of their own there"
@@ -255,8 +252,6 @@ def _verify(arguments: Namespace, path: Path) -> int:
 
 def _technique(arguments: Namespace, module: Module, path: Path) -> int:
     """A function of the file as a technique's file, its doc comment to be filled in."""
-    from sssgen.pipeline.as_technique import technique_file
-
     name, text = technique_file(module, path.as_posix(), arguments.function)
     if arguments.output is None:
         if arguments.json:

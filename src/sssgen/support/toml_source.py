@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import functools
 import re
+from bisect import bisect_right
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
@@ -179,8 +180,6 @@ class _Positions:
         self.starts = [0, *(match.end() for match in re.finditer("\n", text))]
 
     def __call__(self, start: int, end: int) -> Span:
-        from bisect import bisect_right
-
         line, end_line = bisect_right(self.starts, start), bisect_right(self.starts, end)
         return Span(self.file, line, start - self.starts[line - 1] + 1, end_line, end - self.starts[end_line - 1] + 1)
 

@@ -10,10 +10,12 @@ Both are pickled over the process's standard input and output; what drivers prin
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import importlib
 import os
 import pickle
+import signal
 import subprocess
 import sys
 import threading
@@ -38,8 +40,6 @@ class Process:
 
     def start(self) -> Any:
         """Starts the process anew; its first answer. Raises LostError, and what `serve` raises."""
-        import atexit
-
         self.close()
         self.process = subprocess.Popen(
             self.command,
@@ -62,8 +62,6 @@ class Process:
 
     def close(self) -> None:
         """Ends the process, and what it started."""
-        import atexit
-
         process, self.process = self.process, None
         if process is None:
             return
@@ -104,16 +102,12 @@ class Process:
 
 def _kill(process: subprocess.Popen[bytes]) -> None:
     if hasattr(os, "killpg"):
-        import signal
-
         with contextlib.suppress(OSError):
             os.killpg(process.pid, signal.SIGKILL)
     process.kill()
 
 
 def _ending(status: int) -> str:
-    import signal
-
     if status < 0:
         with contextlib.suppress(ValueError):
             return signal.Signals(-status).name

@@ -24,6 +24,7 @@ from sssgen.passes.fold import fold
 from sssgen.passes.link import LinkStage, link
 from sssgen.pipeline.compiler import transpile
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
+from sssgen.targets.numpy_values import precision
 
 PROJECTIONS = {"spherical": spherical, "planar": planar}
 """Points (n, 3) → their uv (n, 2) and the gradients of u and of v, (n, 3) each, up to a positive factor."""
@@ -68,8 +69,6 @@ class Distance(Geometry):
     @cached_property
     def function(self) -> Callable[[Array], Any]:
         """The function on points (3, n). Raises SssgenError."""
-        from sssgen.targets.numpy_values import precision
-
         module, function = find_function(self.technique, self.folder)
         values = _values(self.technique, uniforms_of(module, function), self.parameters)
         linked = link([LinkStage(function.name, "", module, function, {}, values, frozenset(values))])

@@ -1,0 +1,91 @@
+"""Imports inside functions: each module that has them is listed here, with the reason."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+from folders import ROOT
+
+EMIT = "`sssgen emit` with a warm cache does not need it, and would take noticeably longer (benchmarks/bench_emit.py)"
+EXTRA = "an optional package: what does not need it works without it"
+HELP = "the module is imported for its options, too: `--help` works without optional packages"
+PLUGIN = "a plug-in that is chosen by name: the others, and what they need, are not imported"
+
+MOVE = "to be moved to the top of the module"
+
+LAZY_IMPORTS = {
+    "sssgen.cli.bake": HELP,
+    "sssgen.cli.chart": HELP,
+    "sssgen.cli.ci": EXTRA,
+    "sssgen.cli.emit": EMIT,
+    "sssgen.cli.eval": HELP,
+    "sssgen.cli.fit": HELP,
+    "sssgen.cli.lint": HELP,
+    "sssgen.cli.main": "only an internal error needs it, and `sssgen emit` starts faster",
+    "sssgen.cli.output": EMIT,
+    "sssgen.cli.pick": HELP,
+    "sssgen.cli.render": HELP,
+    "sssgen.cli.stress": HELP,
+    "sssgen.cli.transpile": EXTRA,
+    "sssgen.harness.backends": PLUGIN,
+    "sssgen.harness.backends.opengl": EXTRA,
+    "sssgen.harness.backends.webgpu": EXTRA,
+    "sssgen.harness.compilers": PLUGIN,
+    "sssgen.harness.compilers.dxc": EXTRA,
+    "sssgen.harness.compilers.gl_driver": EXTRA,
+    "sssgen.harness.compilers.naga": EXTRA,
+    "sssgen.harness.lint_findings": EXTRA,
+    "sssgen.harness.testing.project_run": EXTRA,
+    "sssgen.harness.testing.pytest_plugin": "pytest imports it in every test run, of other projects, too",
+    "sssgen.lab.chart.drawing": EXTRA,
+    "sssgen.lab.jobs.executor": EXTRA,
+    "sssgen.lang.loader": EMIT,
+    "sssgen.lang.syntax.grammar_tables": "only building the tables needs lark",
+    "sssgen.material.model": EMIT,
+    "sssgen.pipeline.compiler": EMIT,
+    "sssgen.pipeline.emitted_cache": EMIT,
+    "sssgen.support.diagnostics": EMIT,
+    "sssgen.support.paths": EMIT,
+    "sssgen.support.progress": EXTRA,
+    "sssgen.support.toml_source": EMIT,
+    "sssgen.targets.assemble": EMIT,
+    "sssgen.targets.descriptor": EMIT,
+    "sssgen.targets.reflection": EMIT,
+    "sssgen.targets.registry": EMIT,
+    "sssgen.targets.templates": EMIT,
+    # Not yet cleared
+    "sssgen.harness.backends.browser_page": MOVE,
+    "sssgen.harness.backends.hlsl_spirv": MOVE,
+    "sssgen.harness.check.compile_check": MOVE,
+    "sssgen.harness.compilers.glslang": MOVE,
+    "sssgen.harness.compilers.python_syntax": MOVE,
+    "sssgen.harness.compilers.tint": MOVE,
+    "sssgen.harness.compilers.unity_compiler": MOVE,
+    "sssgen.harness.stress.rows_field": MOVE,
+    "sssgen.ir.nodes": MOVE,
+    "sssgen.lab.chart.drawing.page": MOVE,
+    "sssgen.lab.jobs.result_store": MOVE,
+    "sssgen.lab.jobs.work_items": MOVE,
+    "sssgen.lang.polyfills": MOVE,
+    "sssgen.material.baked": MOVE,
+    "sssgen.material.chain_assembly": MOVE,
+    "sssgen.passes.divergence": MOVE,
+    "sssgen.passes.names": MOVE,
+}
+"""Module → why it imports inside a function."""
+
+
+def modules_with_lazy_imports() -> Iterator[str]:
+    source = ROOT / "src"
+    for path in sorted(source.rglob("*.py")):
+        functions = [node for node in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(node, ast.FunctionDef)]
+        inside = [node for function in functions for node in ast.walk(function)]
+        if any(isinstance(node, ast.Import | ast.ImportFrom) for node in inside):
+            parts = path.relative_to(source).with_suffix("").parts
+            yield ".".join(part for part in parts if part != "__init__")
+
+
+def test_imports_inside_functions_are_listed() -> None:
+    found = set(modules_with_lazy_imports())
+    assert found - LAZY_IMPORTS.keys() == set(), "import at the top of the module, or list the reason"
