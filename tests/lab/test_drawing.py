@@ -22,9 +22,7 @@ from hypothesis import strategies as st
 from sssgen.harness.backends.browser_page import find
 from sssgen.lab.chart import drawing
 from sssgen.lab.chart.drawing import figure
-from sssgen.lab.chart.drawing.layout import LONGEST_NOTE, NOTE, Chart, chart, series, styles
-from sssgen.lab.chart.drawing.scale import number, scale, tick
-from sssgen.lab.chart.drawing.summary import medians
+from sssgen.lab.chart.drawing.panels import COLORS, charts_of, label_texts, medians, number, styles
 from sssgen.lab.chart.record import checked, front, hypervolume, measures, to_csv, to_json
 from sssgen.support.diagnostics import SssgenError
 
@@ -175,73 +173,104 @@ def test_medians() -> None:
     assert other["failed"] == "fails on 2 of 3 scenes" and not other["front"]
 
 
-@pytest.mark.parametrize(
-    ("values", "texts"),
-    [
-        ([1.0, 1000.0], ["1", "10", "100", "1,000"]),
-        ([0.02, 0.2], ["0.02", "0.05", "0.1", "0.2"]),
-        ([0.0, 0.1, 1.0], ["0.1", "0.2", "0.5", "1", "<10⁻⁶"]),
-        ([1e-5, 1e9], ["10⁻⁴", "1", "10,000", "10⁸"]),
-    ],
-)
-def test_ticks(values: list[float], texts: list[str]) -> None:
-    made = scale(values, 0.0, 0.0)
-    assert [text for _, text in made.ticks()] == texts
-    assert all(-1e-9 <= place <= 1.0 + 1e-9 for place, _ in made.ticks())
-    assert made.at(max(values)) == pytest.approx(1.0) and made.at(min(values)) == pytest.approx(0.0)
-
-
 def test_numbers_for_people() -> None:
-    assert [number(value) for value in (None, 0.0, 12.345, 123456.7, 2.5e-6)] == [
-        "–",
-        "0",
-        "12.3",
-        "123,457",
-        "2.5e-06",
+    values = (None, 0.0, 12.345, 123456.7, 2.5e-6)
+    assert [number(value) for value in values] == ["–", "0", "12.3", "123,457", "2.5e-06"]
+
+
+def gpu_record() -> dict[str, Any]:
+    """A record with long notes and units."""
+    made = record(scenes=("slab", "ball"))
+    made |= {"cost": "gpu", "cost_unit": "ms at 1920 × 1080, the median of 50 runs of 20 frames each"}
+    made["record"] |= {"device": "A GPU with a name that is quite long", "driver": "1.2.3" * 12, "software": True}
+    return made
+
+
+DOCS = Path(__file__).parents[len(Path(__file__).parts) - Path(__file__).parts.index("tests") - 1] / "docs"
+CHARTS = {
+    "two roles": lambda: charts_of(checked(record(("thickness", "material")))),
+    "one scene": lambda: charts_of(checked(record(scenes=("slab",)))),
+    "long notes": lambda: charts_of(checked(gpu_record())),
+    "docs": lambda: charts_of(checked(json.loads((DOCS / "accuracy" / "chart.json").read_text(encoding="utf-8")))),
+}
+
+
+@pytest.mark.parametrize("name", CHARTS)
+def test_texts_overlap_nothing(name: str) -> None:
+    """No text of a chart covers another one or a marker, or crosses the picture's edge; few labels are left out."""
+    pytest.importorskip("textalloc")
+    for chart in CHARTS[name]():
+        with figure.settings():
+            drawn = figure.figure_of(chart)
+            drawn.draw_without_rendering()
+            texts = [text for text in visible_texts(drawn) if text.get_text()]
+            boxes = [text.get_window_extent() for text in texts]
+            edge = drawn.bbox
+            for text, box in zip(texts, boxes, strict=True):
+                inside = edge.x0 <= box.x0 and box.x1 <= edge.x1 and edge.y0 <= box.y0 and box.y1 <= edge.y1
+                assert inside, text.get_text()
+            for (one, box), (other, other_box) in itertools.combinations(zip(texts, boxes, strict=True), 2):
+                assert not box.shrunk(0.98, 0.9).overlaps(other_box), (one.get_text(), other.get_text())
+            assert len(drawn.axes) == len(chart.panels)
+            for axes, panel in zip(drawn.axes, chart.panels, strict=True):
+                markers = axes.transData.transform([measures(point) for point in panel.points])
+                labels = axes.texts[1:]
+                for label in labels:
+                    box = label.get_window_extent()
+                    assert not any(box.contains(x, y) for x, y in markers), label.get_text()
+                front_points = [point for point in panel.points if point["front"]]
+                written = [label.get_text().replace("\n", " ") for label in labels]
+                assert set(written) <= set(label_texts(front_points))
+                assert len(labels) >= 0.4 * len(front_points) > 0
+            assert sum(len(axes.texts) - 1 for axes in drawn.axes) >= 0.7 * sum(
+                bool(point["front"]) for panel in chart.panels for point in panel.points
+            )
+
+
+def visible_texts(drawn: Any) -> list[Any]:
+    """All texts of a figure, without ticks outside the limits."""
+    texts = [drawn._suptitle, *drawn.legends[0].get_texts(), drawn.legends[0].get_title()]
+    for axes in drawn.axes:
+        texts += [axes.title, axes._left_title, axes.xaxis.label, axes.yaxis.label, *axes.texts]
+        for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+            texts += [tick.label1 for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high]
+    return texts
+
+
+def test_axes_show_every_point() -> None:
+    pytest.importorskip("textalloc")
+    for chart in [chart for make in CHARTS.values() for chart in make()]:
+        with figure.settings():
+            drawn = figure.figure_of(chart)
+        for axes, panel in zip(drawn.axes, chart.panels, strict=True):
+            (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+            finite = [measures(point) for point in panel.points if not point["failed"]]
+            assert all(left < cost < right and low < error < high for cost, error in finite)
+            assert panel.points == sorted(panel.points, key=measures)
+            assert axes.get_xscale() == "log" and axes.get_yscale() in ("log", "symlog")
+        names = [text.get_text() for text in drawn.legends[0].get_texts()]
+        assert names == list(chart.styles)
+
+
+def test_rows_of_the_charts_are_consecutive() -> None:
+    panels = [panel for chart in CHARTS["two roles"]() for panel in chart.panels]
+    assert [panel.first_row for panel in panels] == [
+        sum(len(before.points) for before in panels[:index]) for index in range(len(panels))
     ]
-    assert tick(5.0, -7) == "5·10⁻⁷"
-
-
-def all_charts() -> list[Chart]:
-    made = checked(record(("thickness", "material")))
-    return [chart(made, "thickness"), chart(made, "material"), chart(checked(record(scenes=("slab",))), "thickness")]
-
-
-@pytest.mark.parametrize("which", range(3))
-def test_everything_has_its_place(which: int) -> None:
-    made = all_charts()[which]
-    assert len(made.panels) == (1 if which == 2 else 4)
-    for panel in made.panels:
-        plot = panel.plot
-        assert 0.0 < plot.left < plot.right < made.width and 0.0 < plot.top < plot.bottom < made.height
-        assert all(plot.has(dot.x, dot.y) for dot in panel.dots)
-        best = [dot for dot in panel.dots if not dot.faint]
-        assert best == panel.dots[-len(best) :] and not any(dot.failed for dot in best)
-        assert len(panel.labels) >= 0.8 * len(best) > 0
-        for label, style in panel.labels:
-            assert plot.has(*label.box[:2]) and plot.has(*label.box[2:])
-            of_it = [str(dot.point["label"]) for dot in best if dot.style == style]
-            assert any(shown.endswith(label.text) for shown in of_it)
-            assert not any(label.box.has(dot.x, dot.y) for dot in best)
-        for (one, _), (other, _) in itertools.combinations(panel.labels, 2):
-            assert not one.box.overlap(other.box)
-        for dot in panel.dots:  # nothing lies below the front's line
-            assert dot.failed or any(dot.x >= x - 1e-9 and dot.y <= y + 1e-9 for x, y in panel.front)
-    names = [style.name for _, style in made.key]
-    assert sorted(names) == sorted({series(dot.point) for panel in made.panels for dot in panel.dots})
+    assert [panel.title for panel in panels[:2]] == ["All 3 scenes", SCENES["slab"]]
 
 
 def test_techniques_look_different() -> None:
     points = [point(1.0, 1.0, name=f"technique {at:02}", baseline=at > 20) for at in range(42)]
     looks = styles(points).values()
     assert len({(style.color, style.marker) for style in looks}) == 42
-    assert [style.hollow for style in looks] == [False] * 21 + [True] * 21
+    assert [style.baseline for style in looks] == [False] * 21 + [True] * 21
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A drawn record of two roles."""
-    pytest.importorskip("matplotlib")
+    pytest.importorskip("textalloc")
     made = tmp_path_factory.mktemp("drawn")
     paths = drawing.write(record(("thickness", "translucency")), made)
     assert sorted(paths) == sorted(map(str, made.iterdir()))
@@ -267,88 +296,81 @@ def test_pictures(folder: Path) -> None:
     with image.open(folder / "chart_thickness.png") as picture:
         assert picture.width == 1800  # twice what a README shows
         colors = {color for _, color in picture.convert("RGB").getcolors(1 << 24)}
-    assert {tuple(bytes.fromhex(color[1:])) for color in figure.COLORS} <= colors
+    assert {tuple(bytes.fromhex(color[1:])) for color in COLORS} <= colors
     text = (folder / "chart_thickness.svg").read_text()
     assert text.count("<svg") == 1 and "dc:date" not in text and 'width="648pt"' in text
 
 
-def test_page_is_whole_and_safe(folder: Path) -> None:
+def test_page_is_complete_and_safe(folder: Path) -> None:
     text = (folder / "chart.html").read_text(encoding="utf-8")
-    assert not re.search(r"""(src|href)=["'](?!#)|url\(|@import|https?:""", text)
+    namespaces = re.compile(r' xmlns(:xlink)?="[^"]*"')
+    assert not re.search(r"""(src|href)=["'](?!#)|url\((?!#)|@import|https?:""", namespaces.sub("", text))
     assert "A slab <b>&" not in text and "A slab &lt;b&gt;&amp;" in text
     points = 2 * (len(record()["points"]) + len(medians(record(), "thickness")))
-    assert text.count("<tr id=") == points == text.count("data-row=")
-    assert "12 of 4096 points are NaN" in text and "prefers-color-scheme: dark" in text
+    assert text.count("<tr id=") == points == len(re.findall('<a xlink:href="#row[0-9]+"><title>', text))
+    assert "12 of 4096 points are NaN" in text
+    ids = re.findall(r'\bid="([^"]+)"', text)
+    assert len(set(ids)) == len(ids)
 
 
 DRIVE = """
 <script>
 const said = {};
-const press = (key) => document.activeElement.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
 const visible = () => [...document.querySelectorAll("#numbers tbody tr")].filter((row) => !row.hidden);
-const panels = [...document.querySelectorAll(".panel")];
-panels[1].focus();
-press("ArrowRight");
-said.first = document.activeElement.getAttribute("aria-label");
-said.tip = tip.innerText;
-press("End");
-said.last = document.activeElement.getAttribute("aria-label");
-press("Enter");
-said.chosen = document.querySelector("tr.chosen").innerText;
-said.hidden = tip.hidden;
+const link = document.querySelector("#thickness a");
+said.title = link.querySelector("title").textContent;
+link.focus();
+said.focused = document.activeElement === link;
 const form = document.forms[0];
 form.elements.role.value = "thickness";
 form.elements.scene.value = form.elements.scene.options[2].value;
-form.elements.text.value = "UNIFORM";
+form.elements.technique.value = "UNIFORM";
 form.dispatchEvent(new Event("input"));
 said.rows = visible().length;
 said.output = form.querySelector("output").textContent;
 const heads = [...document.querySelectorAll("thead th")];
-const at = heads.findIndex((head) => head.textContent === "error");
-const column = () => visible().map((row) => Number(row.cells[at].dataset.key));
-heads[at].firstChild.click();
+const index = heads.findIndex((head) => head.textContent === "error");
+const column = () => visible().map((row) => Number(row.cells[index].dataset.key));
+heads[index].firstChild.click();
 said.up = column();
-heads[at].firstChild.click();
+heads[index].firstChild.click();
 said.down = column();
+location.hash = link.getAttribute("xlink:href");
+dispatchEvent(new HashChangeEvent("hashchange"));
+said.target = document.querySelector("tr:target").innerText;
+said.shown = visible().length;
 document.title = JSON.stringify(said);
 </script>
 """
 
 
-def test_page_by_keyboard(folder: Path, tmp_path: Path) -> None:
+def test_page_in_a_browser(folder: Path, tmp_path: Path) -> None:
     if not (chromium := find()):
         pytest.skip("there is no Chromium")
     page = tmp_path / "driven.html"
     page.write_text((folder / "chart.html").read_text(encoding="utf-8") + DRIVE, encoding="utf-8")
     command = [chromium, "--headless", "--no-sandbox", "--dump-dom", page.as_uri()]
     dom = subprocess.run(command, capture_output=True, text=True, timeout=60, check=True).stdout
-    found = re.search("<title>(.*?)</title>", dom, re.S)
+    found = re.search("<title>({.*?)</title>", dom, re.S)
     assert found
     said = json.loads(html.unescape(found[1]))
-    assert "A slab <b>&: cost" in said["first"] and said["first"] != said["last"]
-    assert "A slab <b>&" in said["tip"] and "cost" in said["tip"]
-    assert said["chosen"].split("\t")[2].removesuffix(" (baseline)") in said["last"] and said["hidden"]
-    assert said["rows"] == 4 == len(said["up"]) and said["output"].startswith("4 of ")
+    assert said["title"].startswith("All 3 scenes\n") and "cost " in said["title"] and said["focused"]
+    assert said["target"].split("\t")[2].removesuffix(" (baseline)") in said["title"]
+    assert said["rows"] == 4 == len(said["up"]) and said["output"].startswith("4 of ") and said["shown"] > 4
     assert said["up"] == sorted(said["up"]) == said["down"][::-1] and len(set(said["up"])) == 4
 
 
 def test_without_points_or_matplotlib(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(SssgenError, match="no points"):
         drawing.write({**record(), "points": []}, tmp_path)
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    monkeypatch.setitem(sys.modules, "textalloc", None)
     with pytest.raises(SssgenError, match=r"sssgen\[chart\]"):
         drawing.write(record(), tmp_path)
     assert not list(tmp_path.iterdir())
 
 
-def test_long_units_and_devices_go_into_the_notes() -> None:
-    made = record(scenes=("slab", "ball"))
-    made |= {"cost": "gpu", "cost_unit": "ms at 1920 × 1080, the median of 50 runs of 20 frames each"}
-    made["record"] |= {"device": "A GPU with a name that is quite long", "driver": "1.2.3", "software": True}
-    found = chart(checked(made), "thickness")
-    assert found.x_title == "cost" and made["cost_unit"] in found.notes[1]
-    assert "a driver in software" in " ".join(found.notes) and len(found.notes) == 3
-    assert all(len(note) <= LONGEST_NOTE for note in found.notes)
-    shorter = chart(checked(record(scenes=("slab", "ball"))), "thickness")
-    assert shorter.x_title == "cost, operations (weighted)"
-    assert found.panels[0].plot.top - shorter.panels[0].plot.top == NOTE * (3 - len(shorter.notes))
+def test_a_long_device_and_unit_are_shown() -> None:
+    made = gpu_record()
+    (chart,) = charts_of(checked(made))
+    assert chart.cost_unit == made["cost_unit"] and made["record"]["driver"] in chart.note
+    assert "a software driver" in chart.note

@@ -5,34 +5,34 @@ from __future__ import annotations
 import os
 from typing import Any
 
-from sssgen.lab.chart.record import checked, roles, to_csv, to_json
+from sssgen.lab.chart.record import checked, to_csv, to_json
 from sssgen.support.file_writer import write_files
 
 
 def write(record: Any, folder: str | os.PathLike[str], stem: str = "chart") -> list[str]:
-    """Writes `stem`_ROLE.png and .svg for each role, `stem`.html, .csv and .json into the folder; their paths.
+    """Writes `stem`_ROLE.png and .svg for each role, `stem`.html, .csv and .json into the folder; returns their paths.
 
-    All of them are written, or none. Drawing the JSON file again gives the same files. Raises SssgenError for what is
-    no record (see record.py), for a record without points, where matplotlib is missing, and where the folder refuses.
+    Either all files are written or none. The same JSON file always gives the same files. Raises SssgenError for an
+    invalid record (see record.py), a record without points, a missing library, and a folder that cannot be written.
     """
-    files = drawn(record, stem)
-    return [written.path for written in write_files(folder, files)]
+    return [written.path for written in write_files(folder, drawn(record, stem))]
 
 
 def drawn(record: Any, stem: str = "chart") -> dict[str, str | bytes]:
     """The files that `write` writes, by name."""
     from sssgen.lab.chart.drawing import figure, page
-    from sssgen.lab.chart.drawing.layout import chart
+    from sssgen.lab.chart.drawing.panels import charts_of
     from sssgen.support.diagnostics import failure
 
     record = checked(record)
     if not record["points"]:
         raise failure("there is nothing to draw: the record has no points")
-    charts = [chart(record, role) for role in roles(record)]
+    charts = charts_of(record)
+    pictures = {chart.role: figure.drawn(chart) for chart in charts}
     files: dict[str, str | bytes] = {}
-    for one in charts:
-        files |= {f"{stem}_{one.role}.{suffix}": data for suffix, data in figure.drawn(one).items()}
-    files[f"{stem}.html"] = page.written(record, charts)
+    for role, picture in pictures.items():
+        files |= {f"{stem}_{role}.png": picture.png, f"{stem}_{role}.svg": picture.svg}
+    files[f"{stem}.html"] = page.written(record, charts, [picture.svg for picture in pictures.values()])
     files[f"{stem}.csv"] = to_csv(record)
     files[f"{stem}.json"] = to_json(record)
     return files
