@@ -7,7 +7,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -17,6 +16,7 @@ import pytest
 
 import bake_meshes as meshes
 from bake_meshes import Made, write
+from processes import HANG, wait_until, wait_until_busy
 from sssgen.cli.main import main
 
 pytest.importorskip("trimesh", reason="trimesh is missing: pip install 'sssgen[bake]'")
@@ -375,24 +375,24 @@ def test_ctrl_c_ends_all_of_it(arguments: list[str]) -> None:
     heed = "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler); "
     command = [sys.executable, "-c", f"{heed}from sssgen.cli.main import main; sys.exit(main())", "bake", *arguments]
     with subprocess.Popen(command, start_new_session=True, stderr=subprocess.PIPE, text=True) as process:
-        time.sleep(10.0)
-        assert process.poll() is None, "it ended before it was interrupted"
+        wait_until_busy(process, 8.0)
         os.killpg(process.pid, signal.SIGINT)
         try:
-            _, told = process.communicate(timeout=60.0)
+            _, told = process.communicate(timeout=HANG)
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
             raise
     assert process.returncode == 130 and told.strip() == "interrupted"
     assert there() == before
-    for _ in range(50):
+
+    def all_ended() -> bool:
         try:
             os.killpg(process.pid, 0)
         except ProcessLookupError:
-            return
-        time.sleep(0.1)
-    os.killpg(process.pid, signal.SIGKILL)
-    raise AssertionError("a worker is left")
+            return True
+        return False
+
+    wait_until(all_ended, "the workers to end")
 
 
 def test_processes_make_no_difference() -> None:

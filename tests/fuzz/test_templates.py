@@ -72,7 +72,7 @@ def rendered(folder: Path, text: str) -> str:
     (folder / "common").mkdir(exist_ok=True)
     (folder / "common" / "header.j2").write_bytes(text.encode("utf-8", "surrogateescape"))
     COUNTED["templates"] += 1
-    with bounded(20, "the template"), roomy(1024):
+    with bounded(what="the template"), roomy(1024):
         return sssgen.compile("jelly_cubes", "glsl-330", templates=folder).files["jelly_cubes.glsl-330.frag"]
 
 

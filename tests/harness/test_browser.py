@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -15,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from processes import wait_until
 from sssgen.harness.backends import Backend, Block, Bound, Call, CompilerMissing, Drawing, Place, Stage, Text
 from sssgen.harness.backends.browser import Browser
 from sssgen.ir.types import BY_NAME, FLOAT, INT, VEC2, VEC3, VEC4
@@ -191,10 +191,7 @@ def test_nothing_is_left_behind_by_a_killed_python(browser: Browser, tmp_path: P
         assert python.stdout.readline().startswith("Tint in Chromium")
         assert list(tmp_path.glob("sssgen-browser-*"))
         python.kill()
-    until = time.monotonic() + 10.0
-    while list(tmp_path.glob("sssgen-browser-*")) and time.monotonic() < until:
-        time.sleep(0.05)
-    assert not list(tmp_path.glob("sssgen-browser-*"))
+    wait_until(lambda: not list(tmp_path.glob("sssgen-browser-*")), "the browser's folder to be removed")
 
 
 def test_a_missing_browser() -> None:

@@ -9,7 +9,6 @@ import shlex
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -18,6 +17,7 @@ import numpy as np
 import pytest
 
 from folders import DOCS
+from processes import HANG, heed_interrupts, wait_until_busy
 from sssgen.cli.main import main
 from sssgen.harness.backends import Backend
 from sssgen.harness.evaluate.evaluation import Inputs
@@ -143,8 +143,13 @@ def test_dangerous_row_lamp_at_surface_in_the_shell(backend: Callable[[str], Bac
 def test_a_planted_nan_is_caught_and_shrunk(
     name: str, planted: Callable[..., str], machines: Callable[[str], Machines]
 ) -> None:
-    """The simplest input of each: 10 is the first plain number above 3; nothing else matters."""
+    """The simplest input of each: 10 is the first plain number above 3; nothing else matters.
+
+    The square root of a negative number is undefined in a shader: a driver may give a number.
+    """
     faults = told(technique(planted()), machines(name), Settings(2000, guards="none"))
+    if name != "numpy-f32" and not faults:
+        pytest.skip(f"{name} has a number for sqrt(-7)")
     fault = next(fault for fault in faults if fault.kind == "non-finite")
     assert non_finite(fault.got).any() and fault.inputs.lanes == 1
     values = {key: value.ravel().tolist() for key, value in fault.inputs.values.items()}
@@ -380,21 +385,16 @@ def test_a_missing_back_end_is_said() -> None:
         assert done.returncode == 1
 
 
-def _interruptible() -> None:
-    """A process of a shell in the background ignores interrupts, and so would its own."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-
-
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")
 def test_an_interrupted_run_leaves_no_report(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "sssgen", "stress", "beer_lambert", "--samples", "900000000", "-b", "numpy-f32"]
     process = subprocess.Popen(
-        [*command, "-o", str(tmp_path / "report.md")], stderr=subprocess.PIPE, preexec_fn=_interruptible
+        [*command, "-o", str(tmp_path / "report.md")], stderr=subprocess.PIPE, preexec_fn=heed_interrupts
     )
     try:
-        time.sleep(4.0)
+        wait_until_busy(process, 4.0)
         process.send_signal(signal.SIGINT)
-        _, said = process.communicate(timeout=30)
+        _, said = process.communicate(timeout=HANG)
     finally:
         process.kill()
     assert process.returncode == 130 and b"interrupted" in said

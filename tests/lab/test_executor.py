@@ -8,16 +8,16 @@ import re
 import signal
 import subprocess
 import sys
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from executor_items import items, runs
+from executor_items import GATE, items, open_gate, runs
 from folders import TESTS
+from processes import HANG, heed_interrupts, wait_until
 from sssgen.cli import main as cli
 from sssgen.harness.stress.stress_report import Report, as_json
 from sssgen.harness.stress.stress_run import Machines, Settings, stress
@@ -50,13 +50,6 @@ def test_a_worker_with_other_code_is_refused(monkeypatch: pytest.MonkeyPatch) ->
 def as_bytes(results: list[Any]) -> list[bytes]:
     assert not failures(results), failures(results)
     return [encoded(result) for result in results]
-
-
-def wait_until(true: Callable[[], Any], seconds: float = 20.0) -> None:
-    end = time.monotonic() + seconds
-    while not true():
-        assert time.monotonic() < end
-        time.sleep(0.01)
 
 
 def test_same_bytes_in_processes_as_here(tmp_path: Path) -> None:
@@ -163,41 +156,28 @@ def test_interrupt_here_keeps_what_is_done() -> None:
     assert len(store.memory) == 2
 
 
-# a process of a shell in the background ignores interrupts, and so would its own
-LONG_RUN = """
-import signal, sys
-from pathlib import Path
-from sssgen.lab.jobs.executor import run
-from sssgen.lab.jobs.store import Store
-from executor_items import items
-signal.signal(signal.SIGINT, signal.default_int_handler)
-run(items(Path(sys.argv[1]), 10, 0.15), processes=2, store=Store(sys.argv[2]))
-"""
-
-
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
 def test_an_interrupted_run_goes_on(tmp_path: Path, how: int) -> None:
     noted, folder = tmp_path / "runs", tmp_path / "store"
     noted.mkdir()
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(TESTS / "tools"), *filter(None, sys.path)])}
-    command = [sys.executable, "-c", LONG_RUN, str(noted), str(folder)]
-    process = subprocess.Popen(command, env=environment, stderr=subprocess.PIPE)
+    code = "import sys, executor_items; executor_items.run_behind_gate(*sys.argv[1:])"
+    command = [sys.executable, "-c", code, str(noted), str(folder)]
+    process = subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL, preexec_fn=heed_interrupts)
 
     def kept() -> list[Path]:
         return [path for path in folder.rglob("*") if path.is_file() and path.suffix != ".tmp"]
 
-    wait_until(lambda: len(kept()) >= 3)
+    wait_until(lambda: len(kept()) == GATE or process.poll() is not None, "the items before the gate")
+    assert process.poll() is None
     process.send_signal(how)
-    assert process.wait(timeout=10) != 0
-    assert process.stderr is not None
-    process.stderr.close()
+    open_gate(noted)
+    assert process.wait(timeout=HANG) != 0
     started, done = len(runs(noted)), len(kept())
-    assert 3 <= done < 10 and started <= done + 4  # what its two workers had in their hands or had just handed over
-    time.sleep(0.4)
-    assert len(runs(noted)) == started  # nobody goes on without it
-    todo = items(noted, 10, 0.15)
+    assert GATE <= done < 12 and started <= done + 4  # its two workers had items in hand, or had just finished them
+    todo = items(noted, 12, "measure_behind_gate")
     results = run(todo, processes=2, store=Store(str(folder)))
-    assert len(runs(noted)) == started + 10 - done
+    assert len(runs(noted)) == started + 12 - done  # no worker went on alone
     assert as_bytes(results) == as_bytes(run(todo, processes=0, store=Store(str(folder))))
 
 
@@ -247,13 +227,14 @@ def test_same_bytes_on_dask_though_a_worker_dies(tmp_path: Path, dask: Any) -> N
     ]
     assert runs(local) == sorted([*range(4)] * 2)
 
-    todo = [*items(remote, 12, 0.1), Item("executor_items:fail", ("said",), "said")]
+    todo = [*items(remote, 12, name="measure_behind_gate"), Item("executor_items:fail", ("said",), "said")]
     store, killed = Store(str(tmp_path / "store")), []
 
     def kill(done: int, total: int, name: str) -> None:
         if done == 3:
             killed.append(next(iter(dask.workers.values())).pid)
             os.kill(killed[0], signal.SIGKILL)
+            open_gate(remote)
 
     *results, failed = run(todo, dask.scheduler_address, store=store, progress=kill)
     assert killed and failed == Failure("said", "the scene has no light")

@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 
+from processes import HANG
 from sssgen.cli.main import main
 from sssgen.lab.chart import charting as chart
 from sssgen.lab.chart.charting import Settings
@@ -243,7 +244,7 @@ def test_a_process_of_its_own_answers_from_the_cache(charted: str) -> None:
     environment = {**os.environ, "SSSGEN_CACHE": charted}
     made = subprocess.run(
         [sys.executable, "-X", "importtime", "-c", code, *wanted],
-        capture_output=True, text=True, check=False, timeout=120, env=environment,
+        capture_output=True, text=True, check=False, timeout=HANG, env=environment,
     )  # fmt: skip
     assert made.returncode == 0, made.stderr
     # what measures is not even loaded

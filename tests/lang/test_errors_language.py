@@ -6,7 +6,6 @@ import ast
 import inspect
 import random
 import re
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -27,6 +26,7 @@ from sssgen.lang.check.module_checker import check
 from sssgen.lang.syntax.parser import MAX_DEPTH, parse
 from sssgen.support import diagnostics
 from sssgen.support.diagnostics import Diagnostic, Reporter, SssgenError, did_you_mean
+from watchdog import bounded
 
 LANG = Path(inspect.getfile(lang)).parent
 
@@ -212,11 +212,10 @@ HOSTILE = {
 
 @pytest.mark.parametrize("name", HOSTILE)
 def test_hostile_text(name: str) -> None:
-    """It ends within a second or so (of the processor's: the machine may be busy), with errors that can be shown."""
+    """It ends soon, with errors that can be shown."""
     check(parse("float f() { return 1.0; }", ""), "")  # the grammar's tables are not what is measured
-    start = time.process_time()
-    error = errors_of(HOSTILE[name])
-    assert time.process_time() - start < 3.0
+    with bounded():
+        error = errors_of(HOSTILE[name])
     assert len(str(error)) < 100_000
     str(error).encode()
     assert all(line.isprintable() for line in str(error).split("\n"))

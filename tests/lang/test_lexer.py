@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -12,6 +10,7 @@ from sssgen.ir.operators import PRECEDENCE
 from sssgen.lang.syntax.lexer import MAX_WORDS, scan
 from sssgen.lang.syntax.tokens import Comment
 from sssgen.support.diagnostics import MAX_ERRORS, SssgenError
+from watchdog import bounded
 
 
 def types(text: str) -> list[str]:
@@ -145,12 +144,11 @@ def test_a_text_of_too_many_words_is_refused() -> None:
     "repeated", ["a + ", "/", "/**/", '"', "1", "1e", "\\\n", "x", "/*", "//\\", " ", "0x", "é", "1."]
 )
 def test_a_line_of_a_megabyte_takes_no_long(repeated: str) -> None:
-    began = time.process_time()
     try:
-        scan(repeated * (1_000_000 // len(repeated)), "f")
+        with bounded():  # quadratic algorithms take minutes
+            scan(repeated * (1_000_000 // len(repeated)), "f")
     except SssgenError as error:
         assert len(str(error)) < 100_000
-    assert time.process_time() - began < 10  # seconds; what is quadratic takes minutes
 
 
 PIECES = ["vec3", "in", "x", ".", "1", "1.5", ".5e3", "0x", "+", "++", "+=", "<<", "<<=", "/", "*", "//", "/*", "*/"]

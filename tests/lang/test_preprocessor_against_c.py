@@ -9,6 +9,7 @@ import subprocess
 import pytest
 
 from preprocessed import run
+from processes import HANG
 from skips import or_skip
 from sssgen.harness.compilers import CompilerMissing
 from sssgen.lang.syntax.lexer import scan
@@ -81,7 +82,7 @@ def test_random_macros_become_what_c_makes_of_them(seed: int) -> None:
     compared = kept = 0
     for _ in range(80):
         text = program(chance)
-        theirs = subprocess.run(command, input=text, capture_output=True, text=True, timeout=20, check=False)
+        theirs = subprocess.run(command, input=text, capture_output=True, text=True, timeout=HANG, check=False)
         try:
             ours = run(text)
         except SssgenError:  # C has words that GLSL has not (1B), and we refuse directives between arguments

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import time
-
 import pytest
 
 from preprocessed import faults, run, words
 from sssgen.lang.preprocess.preprocessor import MAX_CONDITIONALS
 from sssgen.support.diagnostics import SssgenError
+from watchdog import bounded
 
 DOUBLED = "".join(f"#define a{n} a{n - 1} a{n - 1}\n" for n in range(1, 21))
 
@@ -72,9 +71,8 @@ def test_includes_that_multiply_are_refused() -> None:
 )
 @pytest.mark.slow
 def test_hostile_texts_take_no_long(text: str) -> None:
-    began = time.process_time()
     try:
-        run(text)
+        with bounded():  # quadratic algorithms take minutes
+            run(text)
     except SssgenError as error:
         assert error.diagnostics
-    assert time.process_time() - began < 20  # seconds; what is quadratic takes minutes

@@ -11,7 +11,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.lab.jobs.executor import Item
+from sssgen.lab.jobs.executor import run
+from sssgen.lab.jobs.result_store import Store
+from sssgen.lab.jobs.work_items import Item
 from sssgen.support.diagnostics import failure
 
 
@@ -33,13 +35,33 @@ def runs(folder: str | Path) -> list[int]:
     return sorted(int(path.name.partition("-")[0]) for path in Path(folder).glob("*-*"))
 
 
-def measure(folder: str, number: int, seconds: float = 0.0) -> Measured:
+def measure(folder: str, number: int) -> Measured:
     """Numbers from a seed, some of them the same object twice, and an array that does not lie as it reads."""
     note(folder, number)
-    time.sleep(seconds)
+    return _measured(number)
+
+
+def _measured(number: int) -> Measured:
     numbers = np.random.default_rng(number).normal(size=(3, 4))
     label = f"item {number}"
     return Measured(label, numbers.T @ numbers, {"label": label, "mean": float(numbers.mean()), "rows": numbers.T})
+
+
+GATE = 5
+"""The items before the gate."""
+
+
+def measure_behind_gate(folder: str, number: int) -> Measured:
+    """As `measure`; from number GATE on it waits until `open_gate` is called."""
+    note(folder, number)
+    while number >= GATE and not Path(folder, "gate").exists():
+        time.sleep(0.01)
+    return _measured(number)
+
+
+def open_gate(folder: Path) -> None:
+    """Lets the items behind the gate run."""
+    (folder / "gate").touch()
 
 
 def echo(value: Any) -> Any:
@@ -77,6 +99,11 @@ def interrupted(number: int) -> int:
     return number
 
 
-def items(folder: Path, count: int, seconds: float = 0.0, name: str = "measure") -> list[Item]:
-    rest = (seconds,) if seconds else ()
-    return [Item(f"executor_items:{name}", (str(folder), number, *rest), f"item {number}") for number in range(count)]
+def items(folder: Path, count: int, name: str = "measure") -> list[Item]:
+    """`count` items that call a function of this module."""
+    return [Item(f"executor_items:{name}", (str(folder), number), f"item {number}") for number in range(count)]
+
+
+def run_behind_gate(noted: str, store: str) -> None:
+    """Twelve items, of which those from number GATE on wait, in two processes."""
+    run(items(Path(noted), 12, "measure_behind_gate"), processes=2, store=Store(store))

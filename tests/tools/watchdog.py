@@ -1,4 +1,4 @@
-"""A limit on the time and the memory of one input; what exceeds it is reported with the input."""
+"""Limits on the processor time and the memory of one input; an input that exceeds them is reported."""
 
 from __future__ import annotations
 
@@ -13,34 +13,36 @@ try:
 except ImportError:  # Windows
     resource = None  # type: ignore[assignment]  # a module's name holds None
 
-SECONDS = 10
-"""How long one input may take: ten times what the slowest takes on a machine that does nothing else."""
+SECONDS = 30
+"""The processor time of one input: ten times what the slowest takes."""
+HANG = 600
+"""The seconds of the clock after which an input hangs, for instance in a read of a pipe that nobody writes to."""
 
 
 class TooSlow(BaseException):
-    """An input took longer than it may. No `except Exception` on the way up swallows it."""
+    """An input took longer than it may. It is no Exception, so that the code under test cannot catch it."""
 
 
 @contextlib.contextmanager
 def bounded(seconds: int = SECONDS, what: str = "the input") -> Iterator[None]:
-    """Raises TooSlow in the block, where the system has signals, once `seconds` of the clock have gone by.
-
-    A system call that waits (a pipe that nobody writes to) is interrupted, too.
-    """
-    if not hasattr(signal, "SIGALRM"):
+    """Raises TooSlow in the block, where the system has signals, once it has used `seconds` of processor time."""
+    if not hasattr(signal, "setitimer"):
         yield
         return
 
-    def ring(number: int, frame: FrameType | None) -> None:
-        raise TooSlow(f"{what} took longer than {seconds} seconds")
+    def too_slow(number: int, frame: FrameType | None) -> None:
+        raise TooSlow(f"{what} took more than {seconds} seconds of processor time, or {HANG} seconds in all")
 
-    before = signal.signal(signal.SIGALRM, ring)
-    signal.alarm(seconds)
+    timers = ((signal.SIGPROF, signal.ITIMER_PROF, seconds), (signal.SIGALRM, signal.ITIMER_REAL, HANG))
+    handlers = [signal.signal(number, too_slow) for number, _, _ in timers]
+    for _, timer, limit in timers:
+        signal.setitimer(timer, limit)
     try:
         yield
     finally:
-        signal.alarm(0)
-        signal.signal(signal.SIGALRM, before)
+        for (number, timer, _), handler in zip(timers, handlers, strict=True):
+            signal.setitimer(timer, 0)
+            signal.signal(number, handler)
 
 
 @contextlib.contextmanager
