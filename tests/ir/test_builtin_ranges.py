@@ -22,7 +22,7 @@ from sssgen.ir.intervals import UNIT, Range, rising, rounded
 from sssgen.ir.intrinsics import BUILTINS, Builtin
 from sssgen.ir.types import BY_NAME, Scalar, Type, Vector, components, kind_of, spell
 from sssgen.ir.vector_ranges import Value, length
-from sssgen.passes.ranges.range_pass import _Analysis
+from sssgen.passes.ranges.range_pass import RangeAnalysis
 from sssgen.pipeline.compiler import transpile
 from sssgen.targets import numpy_runtime as runtime
 
@@ -83,7 +83,7 @@ def drawn(rng: np.random.Generator, box: list[Range], type_: Type) -> Array:
 
 def analysed(row: Builtin, params: tuple[Type, ...], result: Type, boxes: list[list[Range]], same: bool) -> Any:
     """What the analysis makes of a call: the value, and the places where something may go wrong."""
-    analysis = _Analysis(ir.Module(), FLOAT32)
+    analysis = RangeAnalysis(ir.Module(), FLOAT32)
     values: list[Value] = []
     for box in boxes:
         numbers = values[0].numbers if same and values else tuple(analysis.numbers.fresh() for _ in box)
@@ -159,7 +159,7 @@ def test_a_narrower_range_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_result_of_whole_vectors_is_not_that_of_one_component() -> None:
     """Value numbers: what differs in any component may differ in the result; so do components of one result."""
-    analysis = _Analysis(ir.Module(), FLOAT32)
+    analysis = RangeAnalysis(ir.Module(), FLOAT32)
     x, y, z = (analysis.numbers.fresh() for _ in range(3))
     for name, type_, result in (("any", "bvec2", "bool"), ("packSnorm2x16", "vec2", "uint")):
         node = ir.Intrinsic(BY_NAME[result], name, (ir.Local(BY_NAME[type_], "v", ir.NOWHERE),), ir.NOWHERE)

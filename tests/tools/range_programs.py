@@ -22,7 +22,7 @@ from sssgen.ir.intervals import Range, widened
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import Array, Matrix, Scalar, Struct, Type, Vector, kind_of
 from sssgen.ir.vector_ranges import Value as Known
-from sssgen.passes.ranges.range_pass import _Analysis
+from sssgen.passes.ranges.range_pass import RangeAnalysis
 from sssgen.passes.ranges.range_state import SUMS
 from sssgen.passes.ranges.scalar_parts import scalars
 from sssgen.passes.ranges.sites import COUNT, SIGNED_COUNT
@@ -31,7 +31,7 @@ from sssgen.targets import numpy_runtime as runtime
 LARGEST = FLOAT32.largest
 
 
-class Recorder(_Analysis):
+class Recorder(RangeAnalysis):
     """The analysis, with the ranges that it found for each node."""
 
     def __init__(self, module: ir.Module) -> None:

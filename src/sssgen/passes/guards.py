@@ -1,9 +1,8 @@
-"""Makes safe what the range pass could not prove, and nothing else; takes the author's assumptions out.
+"""Inserts guards around operations that the range pass could not prove safe, and removes the author's assumptions.
 
-Each guard is one of the intrinsic table, put around an argument, around the result, or in the call's place. What it
-lets through is the limit that the table documents.
-Place: after `hoist`, as the ranges are found there; before `parameters` and `legalise`, to which a guard is ordinary
-code.
+The intrinsic table has the guards. A guard replaces an argument, the result, or the whole call.
+Place: after `hoist`, on whose result the ranges are computed; before `parameters` and `legalise`, which treat guards as
+ordinary code.
 """
 
 from __future__ import annotations
@@ -14,15 +13,15 @@ from typing import NamedTuple
 from sssgen.ir import nodes as ir
 from sssgen.ir.formats import FLOAT32, Format
 from sssgen.ir.intrinsics import Guard, with_constants
-from sssgen.ir.transform import rewrite_function, rewrite_module
+from sssgen.ir.transform import Transformer, rewrite_function
 from sssgen.ir.types import BOOL, FLOAT, UINT, Matrix, Type, components, kind_of, spell, vector_of
-from sssgen.ir.walk import operands, statements, with_operands
+from sssgen.ir.walk import operands, with_operands
 from sssgen.passes.ranges.range_pass import Findings, analyse
 from sssgen.passes.ranges.sites import BOUNDS, DIVISION, Site
-from sssgen.passes.substitute import in_place, widened_bound
+from sssgen.passes.substitute import inlined, with_larger_bound
 
 Source = Callable[[Guard, str, Sequence[Type], Type, Format, tuple[float, float]], tuple[ir.Module, str]]
-"""Gives the module of a guard's function, and the letters of the arguments that it takes."""
+"""Returns the module of a guard's function, and the letters of the arguments that it takes."""
 Polyfill = Callable[[str, Sequence[Type]], ir.Module]
 
 
@@ -33,7 +32,7 @@ class Guarded(NamedTuple):
     sites: list[Site]
     """Every operation with a domain."""
     guarded: list[Site]
-    """Those of them that got a guard."""
+    """Those that have a guard."""
 
 
 def guard(
@@ -42,36 +41,43 @@ def guard(
 ) -> Guarded:  # fmt: skip
     """The module with guards where `mode` wants them: `auto` those that are needed, `all` everywhere, `none`.
 
-    `roots` are the keys of the functions that are called from outside. `at` tells what becomes of a single guard:
-    `keep`, `drop` it, or `poison`: NaN wherever the guard would have changed anything, to see whether that is reached.
+    `roots` are the keys of the functions called from outside. `at` decides about each guard: `keep`, `drop`, or
+    `poison`: NaN wherever the guard would change anything, which shows whether that is reached.
     """
     if mode == "none":
         return Guarded(_without_assumptions(module), [], [])
-    found = analyse(module, roots, format, chained)
-    chosen = [site for site in found.sites if mode == "all" or not site.proven]
+    findings = analyse(module, roots, format, chained)
+    chosen = [site for site in findings.sites if mode == "all" or not site.proven]
     poisoned = {id(site) for site in chosen if at is not None and at(site) == "poison"}
     chosen = [site for site in chosen if at is None or at(site) != "drop"]
     if not chosen:
-        return Guarded(_without_assumptions(module), found.sites, [])
-    guarder = _Guarder(module, found, chosen, poisoned, source, polyfill, format)
-    return Guarded(guarder.run(), found.sites, chosen)
+        return Guarded(_without_assumptions(module), findings.sites, [])
+    guarder = _Guarder(module, findings, chosen, poisoned, source, polyfill, format)
+    return Guarded(guarder.run(), findings.sites, chosen)
 
 
 def _without_assumptions(module: ir.Module) -> ir.Module:
-    def restate(stmt: ir.Stmt) -> ir.Block | None:
-        return () if isinstance(stmt, ir.Assume) else None
-
-    if not any(isinstance(stmt, ir.Assume) for one in module.functions for stmt in statements(one.body or ())):
-        return module
-    return rewrite_module(module, lambda expr: expr, restate)
+    remover = _AssumptionRemover()
+    return module._replace(functions=tuple([remover.function(function) for function in module.functions]))
 
 
-class _Guarder:
+class _AssumptionRemover(Transformer):
+    def assume(self, stmt: ir.Assume) -> None:
+        return None
+
+    def expression(self, expr: ir.Expr) -> ir.Expr:
+        return expr
+
+
+class _Guarder(Transformer):
+    """Inserts the guards of the chosen sites, and removes assumptions."""
+
     def __init__(
-        self, module: ir.Module, found: Findings, chosen: list[Site], poisoned: set[int], source: Source,
+        self, module: ir.Module, findings: Findings, chosen: list[Site], poisoned: set[int], source: Source,
         polyfill: Polyfill, format: Format,
     ) -> None:  # fmt: skip
-        self.module, self.found, self.format = module, found, format
+        super().__init__()
+        self.module, self.findings, self.format = module, findings, format
         self.poisoned, self.source, self.polyfill = poisoned, source, polyfill
         self.sites: dict[int, list[Site]] = {}
         for site in chosen:
@@ -82,61 +88,24 @@ class _Guarder:
         """A polyfill's key → the function with its divisions guarded."""
 
     def run(self) -> ir.Module:
-        functions = [
-            function if function.body is None else function._replace(body=self.block(function.body))
-            for function in self.module.functions
-        ]
+        functions = [self.function(function) for function in self.module.functions]
         return self.module._replace(functions=(*self.helpers.values(), *functions))
 
-    # Statements
+    def assume(self, stmt: ir.Assume) -> None:
+        return None
 
-    def block(self, block: ir.Block) -> ir.Block:
-        new = [self.statement(stmt) for stmt in block if not isinstance(stmt, ir.Assume)]
-        same = len(new) == len(block) and all(one is other for one, other in zip(new, block, strict=True))
-        return block if same else tuple(new)
+    def assign(self, stmt: ir.Assign) -> ir.Stmt | None:
+        compound = self.findings.compounds.get(id(stmt))
+        sites = self.sites.get(id(compound)) if compound is not None else None
+        if not sites:
+            return super().assign(stmt)
+        target, value = self.expression(stmt.target), self.expression(stmt.value)
+        operation = ir.Binary(stmt.target.type, stmt.op, target, value, stmt.span)
+        return ir.Assign(target, "", self.guarded(operation, sites), stmt.span)
 
-    def statement(self, stmt: ir.Stmt) -> ir.Stmt:
-        if isinstance(stmt, ir.Declare) and stmt.value is not None:
-            value = self.expr(stmt.value)
-            return stmt if value is stmt.value else stmt._replace(value=value)
-        if isinstance(stmt, ir.Assign):
-            return self.assign(stmt)
-        if isinstance(stmt, ir.Return) and stmt.value is not None:
-            value = self.expr(stmt.value)
-            return stmt if value is stmt.value else ir.Return(value, stmt.span)
-        if isinstance(stmt, ir.Evaluate):
-            call = self.expr(stmt.call)
-            return stmt if call is stmt.call else ir.Evaluate(call, stmt.span)
-        if isinstance(stmt, ir.If):
-            condition = self.expr(stmt.condition)
-            return ir.If(condition, self.block(stmt.then), self.block(stmt.otherwise), stmt.span)
-        if isinstance(stmt, ir.While):
-            return ir.While(self.expr(stmt.condition), self.block(stmt.body), stmt.span)
-        if isinstance(stmt, ir.For):
-            init = self.statement(stmt.init) if stmt.init is not None else None
-            test = self.expr(stmt.condition) if stmt.condition is not None else None
-            step = self.statement(stmt.step) if stmt.step is not None else None
-            return ir.For(init, test, step, self.block(stmt.body), stmt.span)
-        return stmt
-
-    def assign(self, stmt: ir.Assign) -> ir.Stmt:
-        target, value = self.expr(stmt.target), self.expr(stmt.value)
-        compound = self.found.compounds.get(id(stmt))
-        if compound is not None and id(compound) in self.sites:
-            plain = ir.Binary(stmt.target.type, stmt.op, target, value, stmt.span)
-            return ir.Assign(target, "", self.guarded(plain, self.sites[id(compound)]), stmt.span)
-        same = target is stmt.target and value is stmt.value
-        return stmt if same else ir.Assign(target, stmt.op, value, stmt.span)
-
-    # Expressions
-
-    def expr(self, node: ir.Expr) -> ir.Expr:
-        old = operands(node)
-        new = tuple([self.expr(operand) for operand in old])
-        result = node
-        if any(one is not other for one, other in zip(new, old, strict=True)):
-            result = with_operands(node, new)
-        sites = self.sites.get(id(node))
+    def expression(self, expr: ir.Expr) -> ir.Expr:
+        result = super().expression(expr)
+        sites = self.sites.get(id(expr))
         return self.guarded(result, sites) if sites else result
 
     def guarded(self, node: ir.Expr, sites: list[Site]) -> ir.Expr:
@@ -147,38 +116,38 @@ class _Guarder:
         return node
 
     def apply(self, node: ir.Expr, site: Site) -> ir.Expr:
-        chosen = guard_of(site)
-        if not chosen.text:
+        guard = guard_of(site)
+        if not guard.text:
             return self.with_safe_divisions(node)
         args = operands(node)
-        name = chosen.function or f"safe_{site.what}"
+        name = guard.function or f"safe_{site.what}"
         types = [arg.type for arg in args]
-        module, letters = self.source(chosen, name, types, node.type, self.format, site.limits)
-        given = (node,) if chosen.replaces == "result" else tuple([args["xyz".index(letter)] for letter in letters])
-        made = widened_bound(module, given) or in_place(module, given, node.span, twice=bool(chosen.replaces))
-        if made is None:
+        module, letters = self.source(guard, name, types, node.type, self.format, site.limits)
+        passed = (node,) if guard.replaces == "result" else tuple([args["xyz".index(letter)] for letter in letters])
+        safe = with_larger_bound(module, passed) or inlined(module, passed, node.span, may_repeat=bool(guard.replaces))
+        if safe is None:
             function = self.helper(module.functions[-1])
-            made = ir.Call(function.result, function.key, given, node.span)
-        if chosen.replaces in ("result", ""):
-            return made
-        at = "xyz".index(chosen.replaces)
-        return with_operands(node, (*args[:at], made, *args[at + 1 :]))
+            safe = ir.Call(function.result, function.key, passed, node.span)
+        if guard.replaces in ("result", ""):
+            return safe
+        index = "xyz".index(guard.replaces)
+        return with_operands(node, (*args[:index], safe, *args[index + 1 :]))
 
     def helper(self, function: ir.Function) -> ir.Function:
-        """A guard's function, under a name that the module has not."""
+        """A guard's function, under a name that is unique in the module."""
         name, count = function.name, 2
         while True:
             named = function._replace(name=name)
-            known = self.helpers.get(named.key)
-            if known is not None and known.body is function.body:
-                return known
-            if known is None and named.key not in self.keys:
+            existing = self.helpers.get(named.key)
+            if existing is not None and existing.body is function.body:
+                return existing
+            if existing is None and named.key not in self.keys:
                 self.helpers[named.key] = named
                 return named
             name, count = f"{function.name}_{count}", count + 1
 
     def with_safe_divisions(self, node: ir.Expr) -> ir.Expr:
-        """A builtin as its polyfill, whose divisions have guards."""
+        """A builtin replaced by its polyfill, whose divisions have guards."""
         assert isinstance(node, ir.Intrinsic)
         module = self.polyfill(node.name, [arg.type for arg in node.args])
         function = module.functions[-1]
@@ -189,50 +158,50 @@ class _Guarder:
             site = Site(part, "/", False, DIVISION, ())
             return self.apply(part, site)
 
-        made = self.safe.get(function.key)
-        if made is None:
-            made = self.helper(rewrite_function(function, change)._replace(name=f"safe_{node.name}"))
-            self.safe[function.key] = made
-        return ir.Call(made.result, made.key, node.args, node.span)
+        safe = self.safe.get(function.key)
+        if safe is None:
+            safe = self.helper(rewrite_function(function, change)._replace(name=f"safe_{node.name}"))
+            self.safe[function.key] = safe
+        return ir.Call(safe.result, safe.key, node.args, node.span)
 
 
 def guard_of(site: Site) -> Guard:
-    """The guard of a site: the least that its ranges ask for."""
-    found = site.guard
-    if found is DIVISION and site.args:
+    """The guard of a site: the weakest one that its ranges require."""
+    guard = site.guard
+    if guard is DIVISION and site.args:
         divisor = site.args[1]
         if divisor.low >= 0.0:
-            return found._replace(text="max(y, DIVISOR)")
+            return guard._replace(text="max(y, DIVISOR)")
         if divisor.high <= 0.0:
-            return found._replace(text="min(y, -DIVISOR)")
-    if found is BOUNDS:
+            return guard._replace(text="min(y, -DIVISOR)")
+    if guard is BOUNDS:
         low, high = site.limits
         if site.args[0].high <= high:
-            return found._replace(text="max(x, LOW)")
+            return guard._replace(text="max(x, LOW)")
         if site.args[0].low >= low:
-            return found._replace(text="min(x, HIGH)")
-    return found
+            return guard._replace(text="min(x, HIGH)")
+    return guard
 
 
 def remedy(site: Site, format: Format) -> str:
-    """What stands in for the argument, the result or the call, for people."""
-    found = guard_of(site)
-    text = found.text or found.doc
+    """What replaces the argument, the result or the call, for people."""
+    guard = guard_of(site)
+    text = guard.text or guard.doc
     text = with_constants(text, format, site.limits, "{:g}".format).replace("genF", spell(site.node.type))
-    if found.replaces == "result":
+    if guard.replaces == "result":
         return f"{text}, x its result"
-    return f"{text} in place of {found.replaces or 'the call'}"
+    return f"{text} in place of {guard.replaces or 'the call'}"
 
 
 def poisoned(plain: ir.Expr, safe: ir.Expr, guard: Guard) -> ir.Expr:
-    """`plain` where its guard changes nothing, else NaN, by component; integers and matrices: the plain value."""
+    """`plain` where its guard changes nothing, else NaN, per component. Integers and matrices stay plain."""
     if kind_of(plain.type) != "float" or isinstance(plain.type, Matrix):
         return plain
     span, size = plain.span, components(plain.type)
     before, after = plain, safe
     if guard.replaces in ("x", "y", "z"):
-        at = "xyz".index(guard.replaces)
-        before, after = operands(plain)[at], operands(safe)[at]
+        index = "xyz".index(guard.replaces)
+        before, after = operands(plain)[index], operands(safe)[index]
     same = _close(before, after, guard.replaces == "")
     nan: ir.Expr = ir.Intrinsic(FLOAT, "uintBitsToFloat", (ir.Literal(UINT, 0x7FC00000, span),), span)
     if components(before.type) != size:  # one argument for all components
@@ -243,16 +212,16 @@ def poisoned(plain: ir.Expr, safe: ir.Expr, guard: Guard) -> ir.Expr:
 
 
 def _close(one: ir.Expr, other: ir.Expr, roughly: bool) -> ir.Expr:
-    """Whether two values are the same, by component; `roughly`: to rounding."""
+    """Whether two values are equal, per component; `roughly`: except for rounding."""
     size, span = components(one.type), one.span
     result = vector_of("bool", size)
     if not roughly:
         return (
             ir.Binary(BOOL, "==", one, other, span) if size == 1 else ir.Intrinsic(result, "equal", (one, other), span)
         )
-    apart = ir.Intrinsic(one.type, "abs", (ir.Binary(one.type, "-", one, other, span),), span)
+    difference = ir.Intrinsic(one.type, "abs", (ir.Binary(one.type, "-", one, other, span),), span)
     part = ir.Binary(one.type, "*", ir.Intrinsic(one.type, "abs", (one,), span), ir.Literal(FLOAT, 1e-3, span), span)
     limit = ir.Intrinsic(one.type, "max", (part, ir.Literal(FLOAT, 1e-6, span)), span)
     if size == 1:
-        return ir.Binary(BOOL, "<=", apart, limit, span)
-    return ir.Intrinsic(result, "lessThanEqual", (apart, limit), span)
+        return ir.Binary(BOOL, "<=", difference, limit, span)
+    return ir.Intrinsic(result, "lessThanEqual", (difference, limit), span)

@@ -1,4 +1,4 @@
-"""Puts a short function of the intrinsic table (a polyfill, a guard) in the place of its call."""
+"""Replaces the call of a short function of the intrinsic table (a polyfill, a guard) by its expression."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.transform import rewrite
 from sssgen.ir.walk import subexpressions
 
-_OURS = ("intrinsics/", "guards/")
+_OF_THE_TABLE = ("intrinsics/", "guards/")
 
 
 def is_cheap(expr: ir.Expr) -> bool:
-    """Whether writing an expression twice costs nothing."""
+    """Whether evaluating an expression twice costs nothing."""
     if isinstance(expr, ir.Swizzle | ir.Member):
         return is_cheap(expr.value)
     if isinstance(expr, ir.Construct) and len(expr.args) == 1:
@@ -20,11 +20,11 @@ def is_cheap(expr: ir.Expr) -> bool:
     return isinstance(expr, ir.Local | ir.Global | ir.Literal)
 
 
-def in_place(module: ir.Module, args: Sequence[ir.Expr], span: ir.Span, twice: bool = True) -> ir.Expr | None:
-    """The expression that the module's only function returns, of these arguments; None where a call is better.
+def inlined(module: ir.Module, args: Sequence[ir.Expr], span: ir.Span, may_repeat: bool = True) -> ir.Expr | None:
+    """The expression that the module's only function returns for these arguments; None where a call is better.
 
-    It is one where an argument would stand in it `twice` that is dear, or any if that is not wanted, and where the
-    function is no single expression.
+    A call is better if the function is not a single expression, or if it would repeat an argument: an expensive one,
+    or, unless `may_repeat`, any.
     """
     function = module.functions[-1]
     body = function.body or ()
@@ -35,16 +35,16 @@ def in_place(module: ir.Module, args: Sequence[ir.Expr], span: ir.Span, twice: b
     for part in subexpressions(value):
         if isinstance(part, ir.Local):
             uses[part.name] = uses.get(part.name, 0) + 1
-    given = {param.name: arg for param, arg in zip(function.params, args, strict=True)}
-    if any(uses.get(name, 0) > 1 and not (twice and is_cheap(arg)) for name, arg in given.items()):
+    arguments = {param.name: arg for param, arg in zip(function.params, args, strict=True)}
+    if any(uses.get(name, 0) > 1 and not (may_repeat and is_cheap(arg)) for name, arg in arguments.items()):
         return None
-    placed = rewrite(value, lambda part: given[part.name] if isinstance(part, ir.Local) else part)
-    # what it computes stems from its call
-    return rewrite(placed, lambda part: part._replace(span=span) if part.span.file.startswith(_OURS) else part)
+    result = rewrite(value, lambda part: arguments[part.name] if isinstance(part, ir.Local) else part)
+    # in the source it is the call
+    return rewrite(result, lambda part: part._replace(span=span) if part.span.file.startswith(_OF_THE_TABLE) else part)
 
 
-def widened_bound(module: ir.Module, args: Sequence[ir.Expr]) -> ir.Expr | None:
-    """`max(x, bound)` of what has a lower bound already, with the larger one in its place; None for anything else."""
+def with_larger_bound(module: ir.Module, args: Sequence[ir.Expr]) -> ir.Expr | None:
+    """`max(x, bound)` of an argument that is itself a `max` or `clamp`: that with the larger bound; otherwise None."""
     body = module.functions[-1].body or ()
     value = body[0].value if len(body) == 1 and isinstance(body[0], ir.Return) else None
     if not isinstance(value, ir.Intrinsic) or value.name != "max" or not isinstance(value.args[1], ir.Literal):

@@ -36,7 +36,7 @@ from sssgen.passes.legal.matrix_columns import by_whole_columns, needs_columns
 from sssgen.passes.legal.part_stores import is_dynamic_store, is_swizzle_store, parts_of, whole_store
 from sssgen.passes.lift_calls import Calls, awkward, lift
 from sssgen.passes.scopes import assigned, declared, outs_of
-from sssgen.passes.substitute import in_place, is_cheap
+from sssgen.passes.substitute import inlined, is_cheap
 from sssgen.passes.unsupported import Unsupported
 from sssgen.passes.variable_effects import effects
 
@@ -376,7 +376,7 @@ class _Legaliser:
     def call_polyfill(self, call: ir.Intrinsic, module: ir.Module) -> ir.Expr:
         """The polyfill's expression itself where it is short and its arguments are cheap, else a call of it."""
         function = module.functions[-1]
-        placed = in_place(module, call.args, call.span)
+        placed = inlined(module, call.args, call.span)
         if placed is not None:
             return self.expr(placed)
         for helper in module.functions:

@@ -10,13 +10,13 @@ from sssgen.ir.intervals import ANY, Range, rounded, widened
 from sssgen.ir.intrinsics import BUILTINS, Builtin, Guard
 from sssgen.ir.types import Matrix, kind_of
 from sssgen.ir.vector_ranges import Value
-from sssgen.passes.ranges.range_state import Known
+from sssgen.passes.ranges.range_state import AnalysisState
 from sssgen.passes.ranges.scalar_parts import hull_of, scalars
 from sssgen.passes.ranges.sites import TEXEL
 
 
-class Builtins(Known):
-    """The builtins' part of the analysis."""
+class CallRanges(AnalysisState):
+    """The part of the analysis for calls of builtins."""
 
     def builtin(self, node: ir.Intrinsic, args: tuple[Value, ...], as_texel: bool) -> Value:
         row = BUILTINS[node.name]

@@ -14,14 +14,14 @@ from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.rules import element_type
 from sssgen.ir.types import BOOL, Array, Matrix, Struct, kind_of
 from sssgen.ir.vector_ranges import Value, length_of
-from sssgen.passes.ranges.call_ranges import Builtins
+from sssgen.passes.ranges.call_ranges import CallRanges
 from sssgen.passes.ranges.range_state import State
 from sssgen.passes.ranges.scalar_parts import field_at, hull_of, matrix_product, scalars
 from sssgen.passes.ranges.sites import COUNT, DIVISION, ELEMENT, SIGNED_COUNT, TEXEL, WHOLE_NUMBER
 
 
-class Expressions(Builtins):
-    """The expressions' part of the analysis."""
+class ExpressionRanges(CallRanges):
+    """The part of the analysis for expressions."""
 
     def expr(self, node: ir.Expr) -> Value:
         return _METHODS[type(node)](self, node)
@@ -31,19 +31,19 @@ class Expressions(Builtins):
         return Value((Range(number, number),), (self.numbers.of("constant", number),), Range(abs(number), abs(number)))
 
     def local(self, node: ir.Local) -> Value:
-        found = self.state.env.get(node.name)
-        if found is None:
-            return self.unknown(node.type)
-        return found if found.texel is not None or not self.state.facts.ranges else self.known(found)
+        value = self.state.env.get(node.name)
+        return self.unknown(node.type) if value is None else self.refined(value)
 
-    def known(self, found: Value) -> Value:
-        return self.value(found.parts, found.numbers, found.length)
+    def refined(self, value: Value) -> Value:
+        """A value with the facts at this point."""
+        if value.texel is not None or not self.state.facts.ranges:
+            return value
+        return self.value(value.parts, value.numbers, value.length)
 
     def global_(self, node: ir.Global) -> Value:
-        if node.name in self.variables:  # what it holds, any function may have changed
+        if node.name in self.variables:  # any function may have changed it
             return self.unknown(node.type)
-        found = self.globals[node.name]
-        return found if found.texel is not None or not self.state.facts.ranges else self.known(found)
+        return self.refined(self.globals[node.name])
 
     def unary(self, node: ir.Unary) -> Value:
         value = self.expr(node.operand)
@@ -53,7 +53,7 @@ class Expressions(Builtins):
         if node.op == "~":
             return self.unknown(node.type)
         kind = kind_of(node.type)
-        # the negative of an integer may wrap
+        # negation of an integer may wrap
         numbers = [self.negated(n) if kind == "float" else self.numbers.of("negated", kind, n) for n in value.numbers]
         return self.computed(node, [-part for part in value.parts], numbers, value.length)
 
@@ -69,7 +69,7 @@ class Expressions(Builtins):
     def logic(self, node: ir.Binary) -> Value:
         left = self.expr(node.left)
         outer = self.state
-        if node.op != "^^":  # the right side runs where the left one has not decided
+        if node.op != "^^":  # the right side runs only if the left one does not decide
             self.state = outer.copy()
             self.learn(left.numbers[0], node.op == "&&")
         right = self.expr(node.right)
@@ -104,7 +104,7 @@ class Expressions(Builtins):
                 parts.append(self.product(a, m, b, n) if kind == "float" else square(a) if m == n else a * b)
                 if m == n and kind == "float":
                     numbers.append(self.numbers.of("squares", m))
-                else:  # an integer's product may wrap, unlike that of the floats with the same numbers
+                else:  # a product of integers may wrap, unlike one of floats with the same numbers
                     numbers.append(self.numbers.of("*", *sorted((m, n)), kind))
             else:
                 parts.append(self.sum(a, m, b, n, op))
@@ -112,7 +112,7 @@ class Expressions(Builtins):
         return self.computed(node, parts, numbers, self.length_after(op, left, right))
 
     def product(self, a: Range, m: int, b: Range, n: int) -> Range:
-        """A product of floats: of a number with itself, with its negative, with another."""
+        """A product of floats, which may be of a number with itself or with its negative."""
         if m == n:
             return square(a)
         return -square(a) if self.negated(m) == n or self.negated(n) == m else a * b
@@ -120,7 +120,7 @@ class Expressions(Builtins):
     def sum(self, a: Range, m: int, b: Range, n: int, op: str) -> Range:
         if op == "+":
             return a + b
-        # a compiler may fuse a product with the sum, and then it is not the rounded one that was compared
+        # a compiler may fuse a product into the sum, which then is not the rounded product that was compared
         products = any(self.numbers.definitions[one][0] in ("*", "squares") for one in (m, n))
         fused = self.format.epsilon * (a.size + b.size) if products else 0.0
         if m == n:
@@ -135,14 +135,14 @@ class Expressions(Builtins):
     def slack(self, a: Range, b: Range, sum: Range, kind: str) -> float:
         """How far a sum of a and b may be from the exact one."""
         limits = self.limits(kind)
-        if sum.low < limits.low or sum.high > limits.high:  # it wraps, or is clamped
+        if sum.low < limits.low or sum.high > limits.high:  # the sum wraps, or is clamped
             return INF
         return self.format.epsilon * (a.size + b.size) if kind == "float" else 0.0
 
     def length_after(self, op: str, left: Value, right: Value) -> Range:
-        """The length of a vector's sum or of its product with a number."""
+        """The length of a sum of vectors, or of a vector's product with a scalar."""
         if len(left.parts) == len(right.parts) and op in "+-":
-            slack = 8.0 * self.format.epsilon  # the difference of lengths rounds by a part of their sum
+            slack = 8.0 * self.format.epsilon  # rounding is relative to the sum of the lengths
             return widened(
                 vectors.total_length(left.length, right.length), 0.0, slack * (left.length.high + right.length.high)
             )
@@ -163,7 +163,7 @@ class Expressions(Builtins):
             b, n = right.parts[index % len(right.parts)], right.numbers[index % len(right.numbers)]
             safe = b.gap >= least
             proven &= safe
-            if not safe:  # as the guard makes it
+            if not safe:  # the range behind the guard
                 gap = max(b.gap, smallest)
                 b = Range(gap if b.low >= 0.0 else min(b.low, -gap), max(b.high, gap), gap)
             part = widened(a / b, 3.0 * self.format.epsilon)
@@ -177,7 +177,7 @@ class Expressions(Builtins):
         return self.computed(node, parts, numbers)
 
     def ratio(self, a: Range, m: int, b: Range, n: int) -> float | None:
-        """The most that a/b may be, b above 0, from what is known of a - b: a/b = 1 + (a - b)/b."""
+        """The upper bound of a/b for b above 0 that follows from facts about a - b: a/b = 1 + (a - b)/b."""
         facts = self.state.facts
         if not facts.upper:
             return None
@@ -187,7 +187,7 @@ class Expressions(Builtins):
         return widened(as_range(1.0 + over / (b.low if over > 0.0 else b.high)), 3.0 * self.format.epsilon).high
 
     def integer(self, node: ir.Binary, left: Value, right: Value) -> Value:
-        """Integer operators without a rule of their own; what languages leave undefined, `legalise` defines."""
+        """The other integer operators. `legalise` defines what languages leave undefined."""
         size = max(len(left.parts), len(right.parts))
         parts, numbers = [], []
         for index in range(size):
@@ -226,14 +226,14 @@ class Expressions(Builtins):
         for truth, arm in ((True, node.yes), (False, node.no)):
             self.state = outer.copy()
             self.learn(condition.numbers[0], truth)
-            arms.append((self.known(self.expr(arm)), self.state))
+            arms.append((self.refined(self.expr(arm)), self.state))
         self.state = self.after_either(outer, [state for _, state in arms])
         if condition.parts[0].low == 1.0 or condition.parts[0].high == 0.0:
             return arms[0 if condition.parts[0].low == 1.0 else 1][0]
         return self.joined(arms[0][0], arms[1][0], arms[0][1].facts, arms[1][1].facts)
 
     def after_either(self, before: State, after: list[State]) -> State:
-        """The state behind parts of which one or none ran: what their calls wrote."""
+        """The state after parts of which at most one ran; their calls may have written variables."""
         for state in after:
             if any(value is not state.env[name] for name, value in before.env.items()):
                 return cast(State, self.join_all([before, *after]))
@@ -322,7 +322,7 @@ class Expressions(Builtins):
         else:
             value = self.expr(inner)
         at = ["xyzw".index(letter) for letter in node.components]
-        length = ANY  # of a component twice, what the components say
+        length = ANY  # with a repeated component, only the components bound it
         if len(set(at)) == len(at):
             length = value.length if len(at) == len(value.parts) else Range(0.0, value.length.high)
         return self.value(tuple([value.parts[i] for i in at]), tuple([value.numbers[i] for i in at]), length)
@@ -357,21 +357,21 @@ class Expressions(Builtins):
 
 
 def _is_count(node: ir.Expr) -> bool:
-    """Whether this is an integer made a float."""
+    """Whether this is an integer converted to float."""
     return isinstance(node, ir.Construct) and len(node.args) == 1 and kind_of(node.args[0].type) in ("int", "uint")
 
 
 _METHODS: dict[type, Callable[[Any, Any], Value]] = {
-    ir.Literal: Expressions.literal,
-    ir.Local: Expressions.local,
-    ir.Global: Expressions.global_,
-    ir.Unary: Expressions.unary,
-    ir.Binary: Expressions.binary,
-    ir.Select: Expressions.select,
+    ir.Literal: ExpressionRanges.literal,
+    ir.Local: ExpressionRanges.local,
+    ir.Global: ExpressionRanges.global_,
+    ir.Unary: ExpressionRanges.unary,
+    ir.Binary: ExpressionRanges.binary,
+    ir.Select: ExpressionRanges.select,
     ir.Call: lambda self, node: cast(Value, self.call(node)),
-    ir.Intrinsic: Expressions.intrinsic,
-    ir.Construct: Expressions.construct,
-    ir.Swizzle: Expressions.swizzle,
-    ir.Index: Expressions.index,
-    ir.Member: Expressions.member,
+    ir.Intrinsic: ExpressionRanges.intrinsic,
+    ir.Construct: ExpressionRanges.construct,
+    ir.Swizzle: ExpressionRanges.swizzle,
+    ir.Index: ExpressionRanges.index,
+    ir.Member: ExpressionRanges.member,
 }

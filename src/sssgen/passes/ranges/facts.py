@@ -1,7 +1,7 @@
-"""What is known of values at one point of a program: value numbers, and facts that conditions establish.
+"""Value numbers, and the facts about them that conditions establish.
 
-Two expressions with the same number have the same value, as in `x * x` or in a condition and what stands under it. A
-fact bounds a number; `upper` bounds a sum of numbers, as `i < n` does with `i - n`.
+Two expressions with the same number have the same value, such as the operands of `x * x`, or an expression in a
+condition and in the code below it. A fact bounds a number; `upper` bounds a sum of numbers: `i < n` bounds `i - n`.
 """
 
 from __future__ import annotations
@@ -12,39 +12,39 @@ from sssgen.ir.intervals import INF, Range, maximum, minimum
 
 Key = tuple[object, ...]
 Terms = tuple[tuple[int, float], ...]
-"""A sum of numbers, each times a factor, in the order of the numbers."""
+"""A sum of numbers, each multiplied by a factor, ordered by number."""
 _TERMS = 8
-"""The most terms of a sum; a longer one is a term itself."""
+"""The largest number of terms of a sum; a longer sum is a term itself."""
 
 
 class Sum(NamedTuple):
-    """What a value is made of by sums and differences."""
+    """A value written as a sum of other values."""
 
     terms: Terms
     constant: float = 0.0
     slack: float = 0.0
-    """How far the value may be from that, by rounding."""
+    """The largest difference from the value, by rounding."""
 
 
 class Numbers:
-    """Value numbers: each definition has one."""
+    """Assigns value numbers: the same definition gets the same number."""
 
     def __init__(self, tiny: float) -> None:
         self.tiny = tiny
-        """Squares below this may be 0."""
-        self.known: dict[Key, int] = {}
+        """Squares below this number may be flushed to 0."""
+        self.existing: dict[Key, int] = {}
         self.definitions: list[Key] = []
         self.sums: dict[int, Sum] = {}
 
     def of(self, *key: object) -> int:
-        found = self.known.get(key)
+        found = self.existing.get(key)
         if found is None:
-            found = self.known[key] = len(self.definitions)
+            found = self.existing[key] = len(self.definitions)
             self.definitions.append(key)
         return found
 
     def fresh(self) -> int:
-        """The number of a value of which nothing is known: an input, or what meets at the end of branches."""
+        """The number of a value about which nothing is known: an input, or a join at the end of branches."""
         self.definitions.append(("new",))
         return len(self.definitions) - 1
 
@@ -61,7 +61,7 @@ class Numbers:
         return found
 
     def sum_of(self, number: int) -> Sum:
-        """A value as a sum; what is none is its only term."""
+        """A value as a sum; a value that is no sum is its only term."""
         key = self.definitions[number]
         if key[0] == "constant":
             return Sum((), float(key[1]))  # type: ignore[arg-type]  # a constant's definition holds its value
@@ -81,7 +81,7 @@ def _added(one: Terms, two: Terms, sign: float) -> Terms:
 
 
 class Facts(NamedTuple):
-    """What holds at a point."""
+    """The facts at one point of the program."""
 
     ranges: dict[int, Range]
     upper: dict[Terms, float]
@@ -90,7 +90,7 @@ class Facts(NamedTuple):
         return Facts(dict(self.ranges), dict(self.upper))
 
     def joined(self, other: Facts) -> Facts:
-        """What holds on both ways."""
+        """The facts that hold on both paths."""
         if self.ranges is other.ranges:
             return self
         ranges = {n: r.joined(other.ranges[n]) for n, r in self.ranges.items() if n in other.ranges}
@@ -98,7 +98,7 @@ class Facts(NamedTuple):
         return Facts(ranges, upper)
 
     def learn(self, numbers: Numbers, number: int, range: Range) -> None:
-        """Notes that a number lies in a range, and what follows for what it was made of."""
+        """Adds that a number lies in a range, and what follows for the operands that it was computed from."""
         known = self.ranges.get(number)
         range = range if known is None else known.met(range)
         self.ranges[number] = range
@@ -114,14 +114,14 @@ class Facts(NamedTuple):
             for operand in key[1:]:
                 self.learn(numbers, _number(operand), Range(range.low, INF))
         elif key[0] == "squares":
-            # a little more and less, for the rounding of the sum
+            # a little wider, for the rounding of the sum
             low, high = max(range.low, 0.0) ** 0.5 * 0.999, max(range.high, numbers.tiny) ** 0.5 * 1.001
             self.learn(numbers, numbers.of("length", *key[1:]), Range(low, high))
 
     def compare(
         self, numbers: Numbers, left: tuple[int, Range], op: str, right: tuple[int, Range], whole: bool
     ) -> None:
-        """Notes `left op right`; `whole` where both are integers."""
+        """Adds `left op right`; `whole` says that both are integers."""
         (a, x), (b, y) = left, right
         if op in (">", ">="):
             (a, x), (b, y), op = (b, y), (a, x), "<" if op == ">" else "<="
@@ -140,7 +140,7 @@ class Facts(NamedTuple):
             self.learn(numbers, a, Range(-INF, INF, 1.0))
 
     def bound(self, numbers: Numbers, left: int, right: int) -> float:
-        """The most that `left - right` may be."""
+        """The upper bound of `left - right`."""
         known = self.upper.get(_pair(left, right))
         if known is not None:
             return known
@@ -149,7 +149,7 @@ class Facts(NamedTuple):
 
 
 def _pair(left: int, right: int) -> Terms:
-    """The key of `left - right` of two numbers as they are."""
+    """The key of `left - right` of two numbers that are not expanded into sums."""
     return (left, 1.0), (right, -1.0)
 
 

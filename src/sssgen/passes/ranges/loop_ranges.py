@@ -1,7 +1,7 @@
 """Ranges through loops.
 
-A loop is interpreted once as its first round, then until nothing new is found; a variable that is only added to grows
-by what is added, times the rounds.
+The first iteration of a loop is interpreted alone, then all others together until the ranges no longer grow. The range
+of a variable that is only added to is what is added, times the number of iterations.
 """
 
 from __future__ import annotations
@@ -11,19 +11,19 @@ from sssgen.ir.intervals import INF, Range, clip
 from sssgen.ir.types import kind_of
 from sssgen.ir.vector_ranges import Value, length_of
 from sssgen.ir.walk import calls_of, root, statements
-from sssgen.passes.ranges.expression_ranges import Expressions
+from sssgen.passes.ranges.expression_ranges import ExpressionRanges
 from sssgen.passes.ranges.range_state import Loop, State
 from sssgen.passes.ranges.scalar_parts import scalars
 
-_ROUNDS = 3
-"""Joins of a loop's state before it is widened."""
+_JOINS = 3
+"""How often a loop's state is joined before it is widened."""
 _UNROLLED = 8
-"""The most rounds of a loop that are interpreted one by one."""
+"""The largest number of iterations that are interpreted one by one."""
 _STEPS = (0.0, 1.0, 10.0, 1e3, 1e6, 1e12, 1e20, 1e30)
 
 
-class Loops(Expressions):
-    """The loops' part of the analysis."""
+class LoopRanges(ExpressionRanges):
+    """The part of the analysis for loops."""
 
     def loop(self, stmt: ir.For | ir.While) -> State | None:
         state: State | None = self.state
@@ -32,17 +32,17 @@ class Loops(Expressions):
         assert state is not None
         trips = self.trips(stmt)
         ways: list[State | None] = []
-        # the first round as it is: what it adds keeps sums from being 0; of a short loop, all of them
+        # the first iteration alone, as what it adds keeps sums away from 0; of a short loop, all iterations
         for _ in range(int(trips) if trips <= _UNROLLED else 1):
-            frame, after, left = self.round(stmt, state.copy(), trips)
+            frame, after, left = self.iteration(stmt, state.copy(), trips)
             ways += [left, *frame.broken]
             if after is None:
                 return self.join_all(ways)
             state = after
-        return self.join_all([*ways, *self.rounds(stmt, state, max(trips - 1.0, 1.0))])
+        return self.join_all([*ways, *self.iterations(stmt, state, max(trips - 1.0, 1.0))])
 
-    def round(self, stmt: ir.For | ir.While, state: State, trips: float) -> tuple[Loop, State | None, State | None]:
-        """One round: the loop's ways out, the state at its end, and the state in which it does not run."""
+    def iteration(self, stmt: ir.For | ir.While, state: State, trips: float) -> tuple[Loop, State | None, State | None]:
+        """One iteration: the loop's exits, the state at its end, and the state in which it does not run."""
         loop = Loop(trips)
         self.state = state
         left: State | None = None
@@ -67,8 +67,8 @@ class Loops(Expressions):
         self.loops.pop()
         return loop, after, left
 
-    def rounds(self, stmt: ir.For | ir.While, entry: State, trips: float) -> list[State | None]:
-        """Any number of rounds from `entry`: the ways out."""
+    def iterations(self, stmt: ir.For | ir.While, entry: State, trips: float) -> list[State | None]:
+        """Any number of iterations from `entry`: the states at the exits."""
         block = (*stmt.body, *((stmt.step,) if isinstance(stmt, ir.For) and stmt.step is not None else ()))
         if stmt.condition is not None:  # its calls may write
             block = (*block, ir.Return(stmt.condition, stmt.span))
@@ -78,14 +78,14 @@ class Loops(Expressions):
         ranges = {name: entry.env[name].parts for name in written if name in entry.env}
         for attempt in range(24):
             head = self.head(entry, ranges, numbers)
-            # what a narrower attempt finds, a wider one finds too: all may be noted
-            loop, after, left = self.round(stmt, head, trips + 1.0)
+            # a wider attempt finds all that a narrower one finds, so each may record sites
+            loop, after, left = self.iteration(stmt, head, trips + 1.0)
             if after is None:
                 return [left, *loop.broken]
             found = {
                 name: self.grown(entry.env[name].parts, loop.added.get(name, {}), trips, sums[name])
                 if sums[name]
-                else self.after(after, name, ranges[name])
+                else self.at_end(after, name, ranges[name])
                 for name in ranges
             }
             if all(a.within(b) for name in ranges for a, b in zip(found[name], ranges[name], strict=True)):
@@ -98,18 +98,18 @@ class Loops(Expressions):
             }  # fmt: skip
         anything = Range(-self.format.largest, self.format.largest)
         ranges = {name: (anything,) * len(parts) for name, parts in ranges.items()}
-        loop, _, left = self.round(stmt, self.head(entry, ranges, numbers), trips + 1.0)
+        loop, _, left = self.iteration(stmt, self.head(entry, ranges, numbers), trips + 1.0)
         return [left, *loop.broken]
 
     def head(self, entry: State, ranges: dict[str, tuple[Range, ...]], numbers: dict[str, list[int]]) -> State:
-        """The state at the beginning of a later round."""
+        """The state at the start of a later iteration."""
         env = dict(entry.env)
         for name, parts in ranges.items():
             env[name] = Value(parts, tuple(numbers[name]), length_of(parts))
         return State(env, entry.facts.copy())
 
-    def after(self, state: State, name: str, before: tuple[Range, ...]) -> tuple[Range, ...]:
-        """A variable's ranges at a round's end, and those at its beginning."""
+    def at_end(self, state: State, name: str, before: tuple[Range, ...]) -> tuple[Range, ...]:
+        """A variable's ranges at the end of an iteration, joined with those at its start."""
         facts, value = state.facts.ranges, state.env[name]
         parts = [p.met(facts[n]) if n in facts else p for p, n in zip(value.parts, value.numbers, strict=True)]
         return tuple([part.joined(old) for part, old in zip(parts, before, strict=True)])
@@ -117,7 +117,7 @@ class Loops(Expressions):
     def grown(
         self, start: tuple[Range, ...], added: dict[int, tuple[list[Range], float]], trips: float, kind: str
     ) -> tuple[Range, ...]:
-        """A sum after any number of rounds."""
+        """The ranges of a sum after any number of iterations."""
         found = list(start)
         grows = [(False, False)] * len(found)
         total = 0.0
@@ -129,22 +129,22 @@ class Loops(Expressions):
                 grows[index] = grows[index][0] or low < 0.0, grows[index][1] or high > 0.0
             total += trips * times
         if kind != "float":
-            limits = self.limits(kind)  # beyond them it wraps
+            limits = self.limits(kind)  # beyond these it wraps
             return tuple([part if part.low >= limits.low and part.high <= limits.high else limits for part in found])
-        # each sum rounds; what grows one way keeps its other end
+        # each sum rounds; a sum that grows in one direction keeps its other end
         error = min(self.format.epsilon * total, 1.0)
         for index, (part, (falls, rises)) in enumerate(zip(found, grows, strict=True)):
             off = error * min(part.size, self.format.largest)
-            found[index] = self.held(Range(part.low - off * falls, part.high + off * rises))
+            found[index] = self.finite(Range(part.low - off * falls, part.high + off * rises))
         return tuple(found)
 
-    def held(self, part: Range) -> Range:
+    def finite(self, part: Range) -> Range:
         return clip(part, -self.format.largest, self.format.largest)
 
     def wider(self, old: Range, new: Range, attempt: int) -> Range:
-        """A range for the next attempt: what was found, then more and more."""
+        """A range for the next attempt: the joined one, later a wider one."""
         both = old.joined(new)
-        if attempt < _ROUNDS:
+        if attempt < _JOINS:
             return both
         largest = max(self.format.largest, 2.0**32)
         low = old.low if new.low >= old.low else next((-s for s in _STEPS if -s <= new.low), -largest)
@@ -155,7 +155,7 @@ class Loops(Expressions):
         return Range(low, high, gap)
 
     def add(self, name: str, stmt: ir.Assign, value: Value) -> None:
-        """Notes what a statement adds to a variable, for every loop around it."""
+        """Records what a statement adds to a variable, for every enclosing loop."""
         parts = [-part for part in value.parts] if stmt.op == "-" else list(value.parts)
         parts = parts * (scalars(stmt.target.type) // len(parts))
         times = 1.0
@@ -198,7 +198,7 @@ class Loops(Expressions):
         return kind
 
     def trips(self, stmt: ir.For | ir.While) -> float:
-        """The most rounds of a loop, as its header says; infinite where it does not."""
+        """The largest number of iterations that a loop's header allows; infinite if it states none."""
         if not isinstance(stmt, ir.For) or not isinstance(stmt.step, ir.Assign) or stmt.step.op not in ("+", "-"):
             return INF
         counter = stmt.step.target
@@ -221,7 +221,7 @@ class Loops(Expressions):
         return most
 
     def steps(self, start: Range, op: str, end: Range, step: Range) -> float:
-        """How often `counter op end` may hold where the counter goes on by `step`; infinite where that says nothing."""
+        """How often `counter op end` may hold if the counter changes by `step` each time; infinite if unknown."""
         if step.high < 0.0:
             start, end, step, op = -start, -end, -step, op.translate(str.maketrans("<>", "><"))
         if step.low <= 0.0 or op not in ("<", "<=", "!=") or (op == "!=" and end.low < start.high):

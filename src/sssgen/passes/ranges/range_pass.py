@@ -1,12 +1,10 @@
-"""Value ranges: interprets a program over ranges and says of each operation with a domain whether it can go wrong.
+"""Value ranges: interprets a program over ranges and finds which operations with a domain can go wrong.
 
-Sound under the rounding of the format: every value that a run may have lies in the range found, as long as the inputs
-keep to their contracts (`ir.contracts`) and each operation found unsafe is guarded, or happens not to occur: behind
-such an operation the analysis goes on with what the guard would let through. Functions are interpreted at each call,
-with the ranges there. A loop is interpreted once as its first round, then until nothing new is found; a variable
-that is only added to grows by what is added, times the rounds.
-Place: after `hoist`, since the program is then the one that every target gets; before `parameters`, which takes the
-uniforms' hints away.
+The analysis is sound under the rounding of the format: every value of a run lies in its range if the inputs are within
+their contracts (`ir.contracts`), and if each unsafe operation is guarded or does not occur; after such an operation the
+analysis continues with the range behind its guard. Functions are interpreted at each call, with the ranges there.
+Place: after `hoist`, when the program is the one that every target gets; before `parameters`, which removes the
+uniforms' hints.
 """
 
 from __future__ import annotations
@@ -22,36 +20,36 @@ from sssgen.ir.types import VOID, Array, Struct, kind_of
 from sssgen.ir.vector_ranges import Contract, Value
 from sssgen.ir.walk import root
 from sssgen.passes.ranges.facts import Facts
-from sssgen.passes.ranges.loop_ranges import Loops
+from sssgen.passes.ranges.loop_ranges import LoopRanges
 from sssgen.passes.ranges.range_state import Frame, State
 from sssgen.passes.ranges.scalar_parts import field_at, hull_of, innermost, scalars
 from sssgen.passes.ranges.sites import BOUNDS, Site
 
 
 class Findings(NamedTuple):
-    """What the analysis found."""
+    """The result of the analysis."""
 
     sites: list[Site]
-    """Every operation with a domain that was reached, in the order in which it was."""
+    """Every operation with a domain that was reached, in the order of the first visit."""
     compounds: dict[int, ir.Binary]
     """The operations of compound assignments, by the identity of the statement."""
 
 
 def analyse(module: ir.Module, roots: Iterable[str], format: Format = FLOAT32, chained: bool = True) -> Findings:
     """Interprets the functions with the keys `roots`, their parameters within their contracts."""
-    analysis = _Analysis(module, format, chained)
+    analysis = RangeAnalysis(module, format, chained)
     for key in roots:
         analysis.root(key)
     return Findings(list(analysis.sites.values()), analysis.compounds)
 
 
-class _Analysis(Loops):
-    """The whole: functions and statements."""
+class RangeAnalysis(LoopRanges):
+    """The complete analysis: adds functions and statements."""
 
     # Functions
 
     def root(self, key: str) -> None:
-        """Interprets a function whose parameters keep to their contracts."""
+        """Interprets a function whose parameters are within their contracts."""
         function = self.functions[key]
         if function.body is None:
             return
@@ -62,10 +60,10 @@ class _Analysis(Loops):
         self.enter(function, args)
 
     def outside(self, param: ir.Param) -> Value:
-        """What a caller that is not ours may pass; of a struct, in each of its fields."""
+        """What a caller outside of the module may pass; of a struct, in each of its fields."""
         inner = innermost(param.type)
         if not isinstance(inner, Struct):
-            return self.given(inner, contracts.from_outside(param._replace(type=inner), self.format, self.chained))
+            return self.input(inner, contracts.from_outside(param._replace(type=inner), self.format, self.chained))
         fields = [
             self.outside(ir.Param(field.name, field.type, "in", field.quantity, param.span)) for field in inner.fields
         ]
@@ -83,7 +81,7 @@ class _Analysis(Loops):
             frame.returned.append((end, None))
         self.frames.pop()
         self.loops = loops
-        if not frame.returned:  # every way is a discard
+        if not frame.returned:  # every path ends in a discard
             self.state = outer
             return (None if function.result == VOID else self.unknown(function.result)), list(args)
         state, found = frame.returned[0]
@@ -102,7 +100,7 @@ class _Analysis(Loops):
             self.unknown(param.type) if param.direction == "out" else self.expr(arg)
             for param, arg in zip(function.params, node.args, strict=True)
         ]
-        # an index among them may be written by the call
+        # the call may write an index that a target uses
         written = [
             self.places(arg) if param.direction != "in" and root(arg) is not None else None
             for param, arg in zip(function.params, node.args, strict=True)
@@ -116,7 +114,7 @@ class _Analysis(Loops):
     # Statements
 
     def block(self, block: ir.Block, state: State | None) -> State | None:
-        """The state at a block's end; None where control does not come there."""
+        """The state at a block's end; None if that is unreachable."""
         for stmt in block:
             if state is None:
                 return None
@@ -153,7 +151,7 @@ class _Analysis(Loops):
         return self.state
 
     def returned(self, expr: ir.Expr) -> Value:
-        """What a function gives: a quantity in its range."""
+        """A function's result: a quantity is kept in its range."""
         value = self.expr(expr)
         quantity = self.frames[-1].function.quantity
         contract = contracts.made(quantity, None, self.format) if kind_of(expr.type) == "float" else None
@@ -169,32 +167,32 @@ class _Analysis(Loops):
             node = self.compound_of(stmt)
             value = self.operation(node, self.expr(stmt.target), value)
         param = self.out_param(variable) if kind_of(node.type) == "float" else None
-        contract = self.made(param) if param is not None else None
+        contract = self.output_contract(param) if param is not None else None
         if param is not None and contract is not None:
             value = self.bounded(node, value, param.quantity or param.name, contract)
         self.store(stmt.target, value)
 
     def out_param(self, variable: ir.Local | None) -> ir.Param | None:
-        """The out parameter that is assigned to."""
+        """The out parameter that a variable is, if any."""
         if variable is None or not self.frames:
             return None
         params = self.frames[-1].function.params
         return next((param for param in params if param.name == variable.name and param.direction != "in"), None)
 
-    def made(self, param: ir.Param) -> Contract | None:
-        """What an out parameter is kept to."""
+    def output_contract(self, param: ir.Param) -> Contract | None:
+        """The contract that an out parameter is kept to."""
         return contracts.made(param.quantity, param if self.chained else None, self.format)
 
     def compound_of(self, stmt: ir.Assign) -> ir.Binary:
-        """The operation of `target op= value`, one and the same each time."""
-        known = self.compounds.get(id(stmt))
-        if known is None:
-            known = ir.Binary(stmt.target.type, stmt.op, stmt.target, stmt.value, stmt.span)
-            self.compounds[id(stmt)] = known
-        return known
+        """The operation of `target op= value`, the same node each time."""
+        operation = self.compounds.get(id(stmt))
+        if operation is None:
+            operation = ir.Binary(stmt.target.type, stmt.op, stmt.target, stmt.value, stmt.span)
+            self.compounds[id(stmt)] = operation
+        return operation
 
     def bounded(self, node: ir.Expr, value: Value, what: str, contract: Contract) -> Value:
-        """A value that others rely on: within its contract."""
+        """A value that others rely on, kept within its contract."""
         limits = (contract.low, min(contract.high, 1.0) if contract.high == contracts.ONE else contract.high)
         inside = all(part.low >= contract.low and part.high <= contract.high for part in value.parts)
         self.note(node, what, inside, BOUNDS, (hull_of(value.parts),), limits)
@@ -218,8 +216,8 @@ class _Analysis(Loops):
 
     # Stores
 
-    def store(self, target: ir.Expr, value: Value, known: tuple[list[int], bool] | None = None) -> None:
-        """Writes to a variable or a part of one; `known` is what `places` has said of it."""
+    def store(self, target: ir.Expr, value: Value, places: tuple[list[int], bool] | None = None) -> None:
+        """Writes to a variable or a part of one; `places` is the result of `places`, if it is known already."""
         variable = root(target)
         if variable is None or variable.name not in self.state.env:
             return
@@ -227,16 +225,16 @@ class _Analysis(Loops):
             self.state.env[variable.name] = value
             return
         old = self.state.env[variable.name]
-        places, sure = known or self.places(target)
+        indices, sure = places or self.places(target)
         parts, numbers = list(old.parts), list(old.numbers)
-        for index, place in enumerate(places):
+        for index, place in enumerate(indices):
             part, number = value.parts[index % len(value.parts)], value.numbers[index % len(value.numbers)]
             parts[place] = part if sure else part.joined(parts[place])
             numbers[place] = number if sure else self.numbers.fresh()
         self.state.env[variable.name] = self.value(tuple(parts), tuple(numbers))
 
     def places(self, target: ir.Expr) -> tuple[list[int], bool]:
-        """Which scalars of its variable a target is, and whether it is sure to be these and all of these."""
+        """Which scalars of its variable a target is, and whether it certainly is all of these and no others."""
         if isinstance(target, ir.Local):
             return list(range(scalars(target.type))), True
         assert isinstance(target, ir.Swizzle | ir.Member | ir.Index)
@@ -254,6 +252,6 @@ class _Analysis(Loops):
             if index.low != index.high or not 0 <= index.low < count // size:
                 return inner, False
             chosen = list(range(int(index.low) * size, (int(index.low) + 1) * size))
-        # of a column that is not sure there are as many as the matrix has
+        # an unknown column has as many candidates as the matrix has columns
         width = scalars(target.value.type)
         return [inner[base + at] for base in range(0, len(inner), width) for at in chosen], sure

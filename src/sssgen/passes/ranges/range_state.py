@@ -1,4 +1,4 @@
-"""What a program's analysis knows where it stands: variables, facts, and what it found."""
+"""The state of the range analysis: variables and facts at one point of the program, and the sites found so far."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from sssgen.passes.ranges.scalar_parts import innermost, scalar_kinds, scalars
 from sssgen.passes.ranges.sites import OVERFLOW, Site
 
 SUMS = OVERFLOW._replace(text=FINITE, doc="A finite number in place of infinity; 0 in place of NaN.")
-"""Of what has products inside whose sum may be infinity less infinity."""
+"""For operations with sums of products, which may give infinity minus infinity."""
 
 
 def _is_sum(node: ir.Expr) -> bool:
@@ -28,7 +28,7 @@ def _is_sum(node: ir.Expr) -> bool:
 
 
 class State(NamedTuple):
-    """What is known where control stands."""
+    """What is known at one point of the program."""
 
     env: dict[str, Value]
     facts: Facts
@@ -38,31 +38,31 @@ class State(NamedTuple):
 
 
 class Frame(NamedTuple):
-    """A function's way out."""
+    """The exits of the function that is being interpreted."""
 
     function: ir.Function
     returned: list[tuple[State, Value | None]]
 
 
 class Loop:
-    """A loop's ways out, and what its rounds add to variables."""
+    """A loop's exits, and what its iterations add to variables."""
 
     def __init__(self, trips: float) -> None:
         self.trips = trips
         self.broken: list[State] = []
         self.continued: list[State] = []
         self.added: dict[str, dict[int, tuple[list[Range], float]]] = {}
-        """A variable → each statement that adds to it: what, and how often in one round."""
+        """A variable → each statement that adds to it: the ranges added, and how often in one iteration."""
 
 
-class Known:
-    """The state of an analysis."""
+class AnalysisState:
+    """The state of an analysis, and what every part of the analysis needs."""
 
     def __init__(self, module: ir.Module, format: Format, chained: bool = True) -> None:
         self.functions = {function.key: function for function in module.functions}
         self.format = format
         self.chained = chained
-        """Whether names of parameters have the chain's meaning."""
+        """Whether the names of parameters have the meaning that they have in a chain."""
         self.numbers = Numbers(format.tiny)
         self.sites: dict[tuple[int, str], Site] = {}
         self.compounds: dict[int, ir.Binary] = {}
@@ -74,7 +74,7 @@ class Known:
         for uniform in module.uniforms:
             inner = innermost(uniform.type)
             contract = contracts.of_uniform(uniform, format)
-            value = self.given(inner, contract)
+            value = self.input(inner, contract)
             if (at := contracts.alpha_at(uniform)) is not None:
                 value = value._replace(parts=(*value.parts[:at], Range(0.0, 1.0)))
             self.globals[uniform.name] = value
@@ -83,8 +83,8 @@ class Known:
 
     # Values
 
-    def given(self, type_: Type, contract: Contract) -> Value:
-        """An input that keeps to a contract."""
+    def input(self, type_: Type, contract: Contract) -> Value:
+        """An input within its contract."""
         if isinstance(type_, Sampler):
             return Value((), (), ANY, contract)
         count = scalars(type_)
@@ -93,7 +93,7 @@ class Known:
         return self.value(parts, tuple([self.numbers.fresh() for _ in parts]), length)
 
     def unknown(self, type_: Type) -> Value:
-        """A value of which its type is known."""
+        """A value of which only the type is known."""
         parts = tuple([self.limits(kind) for kind in scalar_kinds(type_)])
         return self.value(parts, tuple([self.numbers.fresh() for _ in parts]))
 
@@ -102,15 +102,15 @@ class Known:
         return Range(low, high)
 
     def value(self, parts: tuple[Range, ...], numbers: tuple[int, ...], length: Range = ANY) -> Value:
-        """A value, with what the facts say of its components and its length."""
+        """A value, refined by the facts about its components and its length."""
         facts = self.state.facts.ranges
         if facts:
             parts = tuple([part.met(facts[n]) if n in facts else part for part, n in zip(parts, numbers, strict=True)])
         if parts:
             length = length.met(length_of(parts)) if length is not ANY else length_of(parts)
-            known = facts.get(self.numbers.known.get(("length", *numbers), -1)) if facts else None
-            if known is not None:
-                length = length.met(known)
+            fact = facts.get(self.numbers.existing.get(("length", *numbers), -1)) if facts else None
+            if fact is not None:
+                length = length.met(fact)
                 parts = tuple([clip(part, -length.high, length.high) for part in parts])
         return Value(parts, numbers, length)
 
@@ -133,9 +133,10 @@ class Known:
         self, node: ir.Expr, what: str, proven: bool, guard: Any, args: tuple[Range, ...],
         limits: tuple[float, float] = (0.0, 0.0),
     ) -> None:  # fmt: skip
+        """Records what was found about an operation; a second visit widens it."""
         site = Site(node, what, proven, guard, args, limits)
-        known = self.sites.get((id(node), what))
-        self.sites[id(node), what] = site if known is None else known.joined(site)
+        earlier = self.sites.get((id(node), what))
+        self.sites[id(node), what] = site if earlier is None else earlier.joined(site)
 
     # Joins
 
@@ -175,7 +176,7 @@ class Known:
     # Conditions
 
     def learn(self, number: int, truth: bool) -> None:
-        """Notes that a condition is true or false."""
+        """Adds the facts that follow from a condition's truth value."""
         key = self.numbers.definitions[number]
         facts = self.state.facts
         facts.ranges[number] = Range(float(truth), float(truth))
@@ -190,8 +191,7 @@ class Known:
                 op = {"<": ">=", ">": "<=", "<=": ">", ">=": "<", "==": "!=", "!=": "=="}[op]
             facts.compare(self.numbers, (left, x), op, (right, y), whole)
 
-    # What the others bring: `expr` is Expressions', `call` and `block` are the whole analysis's. They call each other,
-    # and these say so to the type checker.
+    # Defined by subclasses, which call each other
 
     def expr(self, node: ir.Expr) -> Value:
         """The value of an expression."""
@@ -202,5 +202,5 @@ class Known:
         raise NotImplementedError
 
     def block(self, block: ir.Block, state: State | None) -> State | None:
-        """The state at a block's end; None where control does not come there."""
+        """The state at a block's end; None if that is unreachable."""
         raise NotImplementedError

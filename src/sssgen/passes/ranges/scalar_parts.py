@@ -1,4 +1,4 @@
-"""The scalars that a value is made of, in one order: what ranges are kept for."""
+"""The scalars of a value, in a fixed order; each has a range."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from sssgen.ir.types import Array, Matrix, Scalar, Struct, Type, components, kin
 
 
 def scalars(type_: Type) -> int:
-    """How many ranges a value of this type has: an array's elements share those of one."""
+    """How many ranges a value of this type has: all elements of an array share those of one."""
     if isinstance(type_, Array):
         return scalars(type_.element)
     if isinstance(type_, Struct):
@@ -27,14 +27,14 @@ def scalar_kinds(type_: Type) -> list[str]:
 
 
 def innermost(type_: Type) -> Type:
-    """The type of an array's elements, of those arrays where they are arrays; any other as it is."""
+    """The element type of an array (of arrays); any other type unchanged."""
     while isinstance(type_, Array):
         type_ = type_.element
     return type_
 
 
 def field_at(type_: Struct, name: str) -> tuple[int, int]:
-    """Where a field's scalars begin in its struct's, and how many there are."""
+    """The index of a field's first scalar in its struct, and how many scalars it has."""
     start = 0
     for field in type_.fields:
         count = scalars(field.type)
@@ -47,25 +47,26 @@ def field_at(type_: Struct, name: str) -> tuple[int, int]:
 def matrix_product(
     left: Type, a: tuple[Range, ...], right: Type, b: tuple[Range, ...], slack: float
 ) -> list[Range] | None:
-    """The components of a matrix product, whose sums round by `slack` of their terms; None for one with a number."""
+    """The components of a matrix product, whose sums round by `slack` of their terms; None if a factor is a scalar."""
     if isinstance(left, Scalar) or isinstance(right, Scalar):
         return None
     size = left.size if isinstance(left, Matrix) else cast(Matrix, right).size
     rows = [[a[k * size + row] for k in range(size)] for row in range(size)] if isinstance(left, Matrix) else [list(a)]
     columns = [list(b[c * size : (c + 1) * size]) for c in range(size)] if isinstance(right, Matrix) else [list(b)]
-    found = []
+    parts = []
     for column in columns:
         for row in rows:
             products = [x * y for x, y in zip(row, column, strict=True)]
             total, terms = Range(0.0, 0.0), 0.0
             for product in products:
                 total, terms = total + product, terms + product.size
-            found.append(widened(total, 0.0, slack * terms) if terms < INF else total)
-    return found
+            parts.append(widened(total, 0.0, slack * terms) if terms < INF else total)
+    return parts
 
 
 def hull_of(parts: tuple[Range, ...]) -> Range:
-    found = parts[0] if parts else ANY
+    """The smallest range that contains all of these."""
+    hull = parts[0] if parts else ANY
     for part in parts[1:]:
-        found = found.joined(part)
-    return found
+        hull = hull.joined(part)
+    return hull

@@ -1,4 +1,4 @@
-"""The places of a program where something may go wrong, and what is known of each."""
+"""The operations of a program that may go wrong, and what the analysis found about each."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from sssgen.ir.intervals import Range
 from sssgen.ir.intrinsics import NONZERO, Guard
 
 OVERFLOW = Guard(None, "a number too large for its format", "clamp(x, -LARGEST, LARGEST)", "result", function="bounded")
-"""Beside the table's: what any sum or product may do."""
+"""For any sum or product; the guards of builtins are in the intrinsic table."""
 TEXEL = Guard(
     None,
     "a texel of a float texture that is no number",
@@ -26,7 +26,7 @@ DIVISION = Guard(
 )  # fmt: skip
 COUNT = Guard(None, "a division by a count of 0", "max(y, 1.0)", "y", function="nonzero")
 SIGNED_COUNT = COUNT._replace(text=NONZERO.replace("DIVISOR", "1.0"), doc=DIVISION.doc)
-"""Of a count that may be below 0."""
+"""For a count that may be below 0."""
 WHOLE_NUMBER = Guard(None, "a float too large for an integer", "clamp(x, LOW, HIGH)", "x")
 ELEMENT = Guard(None, "an index beyond the elements", "clamp(y, 0, LAST)", "y")
 
@@ -40,12 +40,12 @@ class Site(NamedTuple):
     proven: bool
     guard: Guard
     args: tuple[Range, ...]
-    """What was found of the arguments (of each: all its components), or of the result."""
+    """The ranges of the arguments (of each: the hull of all its components), or of the result."""
     limits: tuple[float, float] = (0.0, 0.0)
     """LOW and HIGH of the guard's text."""
 
     def joined(self, other: Site) -> Site:
-        """What holds in both contexts: the guard that is needed in either, the ranges of both."""
+        """The site in both contexts: the guard that either needs, the joined ranges."""
         args = tuple([a.joined(b) for a, b in zip(self.args, other.args, strict=True)])
         if self.proven != other.proven:
             worse = other if self.proven else self
@@ -57,13 +57,13 @@ class Site(NamedTuple):
 
     @property
     def place(self) -> str:
-        """Where it stands, as `file:line:column`."""
+        """Its position, as `file:line:column`."""
         span = self.node.span
         return f"{span.file}:{span.line}:{span.column}"
 
     @property
     def found(self) -> str:
-        """The ranges that were found, for people."""
+        """The ranges, for people."""
         if self.guard.replaces == "result" or not self.args:
             return f"{_shown(self.args[0])}" if self.args and self.what != "texel" else ""
         return ", ".join([f"{letter} in {_shown(arg)}" for letter, arg in zip("xyz", self.args, strict=False)])
@@ -75,7 +75,7 @@ def _shown(range: Range) -> str:
 
 
 def report(sites: Sequence[Site], guarded: Sequence[Site]) -> dict[str, Any]:
-    """For the reflection: how many are proven safe, and each that has a guard."""
+    """For the reflection: how many sites are proven safe, and each site that has a guard."""
     rows = [
         {"at": site.place, "operation": site.what, "reason": site.guard.problem, "found": site.found}
         for site in guarded
