@@ -20,7 +20,7 @@ from sssgen.lab.chart import charting as chart
 from sssgen.lab.chart import drawing
 from sssgen.lab.chart.charting import Settings
 from sssgen.lab.gpu import chart_times as chart_gpu
-from sssgen.lab.scene import measured_scene as situation
+from sssgen.lab.scene import measured_scene
 from sssgen.support.file_writer import write_files
 from sssgen.support.progress import Bar
 
@@ -54,7 +54,7 @@ def main() -> int:
     if given.gpu:
         return timed()
     settings = Settings(scheduler=given.scheduler, processes=given.processes, shown=Bar)
-    record = chart.charted([situation.load(name) for name in scenes()], settings)
+    record = chart.charted([measured_scene.load(name) for name in scenes()], settings)
     trial = pick_trial.tried(settings)
     page(record, trial)
     return 0
@@ -100,7 +100,7 @@ def timed() -> int:
     def told(done: int, of: int, name: str) -> None:
         print(f"{done} of {of}: {name}", file=sys.stderr, flush=True)
 
-    found = chart_gpu.with_gpu_cost(some, [situation.load(name) for name in wanted], told=told)
+    found = chart_gpu.with_gpu_cost(some, [measured_scene.load(name) for name in wanted], told=told)
     write_files(str(FOLDER), {GPU_CHART: drawing.record.to_json(found)})
     print(found["record"]["device"], found["record"]["rank_correlation"])
     return 0

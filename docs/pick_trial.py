@@ -18,7 +18,7 @@ from sssgen.lab.chart import charting as chart
 from sssgen.lab.chart.charting import Settings
 from sssgen.lab.chart.picking import allowed, chosen, cost_of
 from sssgen.lab.scene import media
-from sssgen.lab.scene.measured_scene import Situation
+from sssgen.lab.scene.measured_scene import MeasuredScene
 
 SCENES = 5
 LIMITS = 8
@@ -32,7 +32,7 @@ TRUE_SEED, TIMES = 1001, 2
 Row = Mapping[str, Any]
 
 
-def drawn(number: int) -> Situation:
+def drawn(number: int) -> MeasuredScene:
     """A scene drawn by lot."""
     rng = np.random.default_rng([20, number])
     turn = tuple(float(angle) for angle in rng.uniform(-60.0, 60.0, 3))
@@ -48,7 +48,7 @@ def drawn(number: int) -> Situation:
     camera = Camera((0.0, float(rng.uniform(-0.5, 1.2)), 3.4), (0.0, 0.0, 0.0), 28.0)
     name = f"lot {number + 1}"
     title = f"{type(shape).__name__.lower()} of {medium.name}"
-    return Situation(name, title, shape, camera, tuple(lights), medium, None)
+    return MeasuredScene(name, title, shape, camera, tuple(lights), medium, None)
 
 
 def shapes(rng: np.random.Generator, turn: Any) -> list[Geometry]:
@@ -65,12 +65,12 @@ def shapes(rng: np.random.Generator, turn: Any) -> list[Geometry]:
 
 def tried(settings: Settings) -> list[Row]:
     """A row for each scene and limit."""
-    situations = [drawn(number) for number in range(SCENES)]
-    record = chart.charted(situations, settings._replace(roles=("thickness", "material")))
+    scenes = [drawn(number) for number in range(SCENES)]
+    record = chart.charted(scenes, settings._replace(roles=("thickness", "material")))
     truth = settings._replace(samples=TIMES * settings.samples, seed=TRUE_SEED)
-    true = chart.remeasured(record, situations, truth)
+    true = chart.remeasured(record, scenes, truth)
     rows: list[Row] = []
-    for one in situations:
+    for one in scenes:
         points = [point for point in record["points"] if point["scene"] == one.name and point["role"] == "material"]
         mine = [point for point in points if allowed(point)]
         errors = [true[one.name, point["label"]] for point in mine]

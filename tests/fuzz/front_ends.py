@@ -31,7 +31,7 @@ from sssgen.harness.verify.inline_includes import expanded
 from sssgen.ir.nodes import Span
 from sssgen.ir.text import print_module
 from sssgen.ir.text_reader import TextError, read_module
-from sssgen.lab.scene import measured_scene as situation
+from sssgen.lab.scene import measured_scene
 from sssgen.lang.loader import load_file, load_text
 from sssgen.lang.plain_glsl import load_glsl
 from sssgen.material import baked
@@ -231,7 +231,7 @@ FRONT_ENDS = {
     "plain glsl": FrontEnd(".glsl", _plain, _plain_sources),
     "material": FrontEnd(".toml", _material, lambda: _examples("*/[!s]*.toml", but="lab")),
     "scene": FrontEnd(".toml", lambda path: scene_loading.load(path), lambda: _examples("*/scene*.toml")),
-    "measured scene": FrontEnd(".toml", lambda path: situation.load(str(path)), lambda: _examples("lab/*.toml")),
+    "measured scene": FrontEnd(".toml", lambda path: measured_scene.load(str(path)), lambda: _examples("lab/*.toml")),
     "ci table": FrontEnd(".eval.json", _ci, _tables),
     "ci folder": FrontEnd(".toml", _ci_folder, lambda: _examples("ci/*/*.toml")),
     "module": FrontEnd(".ir", _module, _modules),

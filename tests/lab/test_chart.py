@@ -23,8 +23,8 @@ from sssgen.lab.jobs.executor import Failure
 from sssgen.lab.measure import candidates
 from sssgen.lab.measure import measurement as measure
 from sssgen.lab.measure import scene_references as references
-from sssgen.lab.scene import measured_scene as situation
-from sssgen.lab.scene.measured_scene import Situation
+from sssgen.lab.scene import measured_scene
+from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.support import cache
 from sssgen.support.diagnostics import SssgenError
 
@@ -53,7 +53,7 @@ def in_cache(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def few(monkeypatch: pytest.MonkeyPatch) -> None:
     """Small pictures, two thickness techniques, and of the materials those that follow from them."""
     monkeypatch.setattr(references, "TRAINING_SIDE", 8)
-    monkeypatch.setattr(situation, "SIDE", 8)
+    monkeypatch.setattr(measured_scene, "SIDE", 8)
     lengths, lights, whole = candidates.thickness, candidates.translucency, candidates.materials
     some = ("constant_thickness", "march_light, 4 steps", "march_light, 6 steps")
     kept = (
@@ -72,8 +72,8 @@ def settings(**more: Any) -> Settings:
     return Settings(SAMPLES, **{"processes": 0, **more})
 
 
-def cube() -> Situation:
-    return situation.load("cube")
+def cube() -> MeasuredScene:
+    return measured_scene.load("cube")
 
 
 def counted(monkeypatch: pytest.MonkeyPatch) -> list[str]:
@@ -129,7 +129,7 @@ def test_no_light_is_followed_for_roles_that_need_none(monkeypatch: pytest.Monke
 
 @pytest.mark.slow
 def test_the_same_bytes_in_processes_as_here(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    scenes, roles = [cube(), situation.load("inlay_ball")], ("coordinates", "translucency")
+    scenes, roles = [cube(), measured_scene.load("inlay_ball")], ("coordinates", "translucency")
     here = to_json(chart.charted(scenes, settings(roles=roles)))
     in_cache(tmp_path / "other", monkeypatch)
     measure._problems.clear()
@@ -138,7 +138,7 @@ def test_the_same_bytes_in_processes_as_here(monkeypatch: pytest.MonkeyPatch, tm
 
 
 def test_a_record_is_sound_and_says_what_was_done() -> None:
-    scenes = [cube(), situation.load("inlay_plate")]
+    scenes = [cube(), measured_scene.load("inlay_plate")]
     record = chart.charted(scenes, settings())
     assert checked(record) == record == json.loads(to_json(record))
     assert [scene["name"] for scene in record["scenes"]] == ["cube", "inlay_plate"]
@@ -224,7 +224,7 @@ def test_what_fails_is_named() -> None:
 
 def test_two_scenes_that_say_the_same_are_measured_once(monkeypatch: pytest.MonkeyPatch) -> None:
     ran = counted(monkeypatch)
-    plate = situation.load("inlay_plate")
+    plate = measured_scene.load("inlay_plate")
     chart.charted([plate, replace(plate)], settings())
     assert ran and len(set(ran)) == len(ran)
 
@@ -279,7 +279,7 @@ def test_a_scene_of_ones_own_is_timed(tmp_path: Path, backend: Callable[[str], B
     backend("gl")
     text = '[inlay]\ndepth = 0.1\n[geometry]\nkind = "box"\n[camera]\nposition = [0.5, 1.0, 3.0]\n'
     (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
-    one = situation.load(str(tmp_path / "mine.toml"))
+    one = measured_scene.load(str(tmp_path / "mine.toml"))
     record = chart.charted([one], settings())
     timed = chart_gpu.with_gpu_cost(record, [one], (32, 32), 2)
     assert timed["record"]["device"] and timed["record"]["size"] == [32, 32]

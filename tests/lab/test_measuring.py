@@ -20,15 +20,13 @@ from sssgen.lab.chart.picking import Pick
 from sssgen.lab.measure import (
     candidates,
     problem,
+    scene_inputs,
 )
 from sssgen.lab.measure import (
     fitting as fit,
 )
 from sssgen.lab.measure import (
     measurement as measure,
-)
-from sssgen.lab.measure import (
-    scene_inputs as supply,
 )
 from sssgen.lab.measure import (
     scene_references as references,
@@ -39,8 +37,8 @@ from sssgen.lab.measure.measured_chain import Chain, Stage, material_of, materia
 from sssgen.lab.measure.measurement import View
 from sssgen.lab.measure.problem import Problem, Seen
 from sssgen.lab.reference.inside_lengths import thickness
-from sssgen.lab.scene import measured_scene as situation
-from sssgen.lab.scene.measured_scene import Situation
+from sssgen.lab.scene import measured_scene
+from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.lab.scene.media import Medium
 from sssgen.lab.scene.scene_body import body
 from sssgen.lab.scene.view_points import points
@@ -65,11 +63,11 @@ def no_cache() -> Iterator[None]:
     cache._folder = None
 
 
-def small(name: str) -> Situation:
-    return replace(situation.load(name), size=SIZE)
+def small(name: str) -> MeasuredScene:
+    return replace(measured_scene.load(name), size=SIZE)
 
 
-def made_up(one: Situation, name: str = "own") -> View:
+def made_up(one: MeasuredScene, name: str = "own") -> View:
     """A view with a made-up reference: light that falls off with the thickness, more from the front, and noise."""
     at = points(one)
     seen: list[Seen] = []
@@ -91,7 +89,7 @@ def cube() -> View:
 
 @pytest.fixture(scope="module")
 def training() -> tuple[View, ...]:
-    return tuple(made_up(replace(one, size=SIZE), one.name) for one in references.training(situation.load("cube")))
+    return tuple(made_up(replace(one, size=SIZE), one.name) for one in references.training(measured_scene.load("cube")))
 
 
 def candidate(*chain: str, role: str = "material", settings: tuple[tuple[str, int], ...] = ()) -> Candidate:
@@ -99,7 +97,7 @@ def candidate(*chain: str, role: str = "material", settings: tuple[tuple[str, in
 
 
 def chain(one: Candidate, view: View, folder: Path) -> Chain:
-    found = measure.chain_of(one, body(view.situation.geometry), str(folder))
+    found = measure.chain_of(one, body(view.scene.geometry), str(folder))
     assert found is not None
     return found
 
@@ -176,12 +174,12 @@ def test_the_text_of_a_chain_says_what_its_stages_do() -> None:
 
 def test_the_mean_chord_of_a_ball_is_four_thirds_of_its_radius() -> None:
     one = replace(small("cube"), geometry=Ball(0.6, scale=1.5))
-    assert supply.mean_chord(one) == pytest.approx(np.full(points(one).count, 4.0 / 3.0 * 0.9), rel=2e-3)
+    assert scene_inputs.mean_chord(one) == pytest.approx(np.full(points(one).count, 4.0 / 3.0 * 0.9), rel=2e-3)
 
 
 def test_each_point_reads_its_own_texel() -> None:
     one = small("bracket")
-    given, chord = supply.of_scene(one), supply.mean_chord(one)
+    given, chord = scene_inputs.of_scene(one), scene_inputs.mean_chord(one)
     uv = given.inputs["uv"]
     read = {name: given.textures[name].sample(uv)[0] for name in given.textures if name.endswith("_texture")}
     assert read["thickness_texture"] == pytest.approx(chord / chord.max())
@@ -189,7 +187,7 @@ def test_each_point_reads_its_own_texel() -> None:
     assert read["transmittance_texture"] == pytest.approx(np.exp(-chord / np.median(chord)))
 
 
-def thickness_error(one: Situation, *names: str, **settings: int) -> float:
+def thickness_error(one: MeasuredScene, *names: str, **settings: int) -> float:
     """The error of a thickness technique on a scene, with its own parameters as they are."""
     asked = candidate(*names, "shown_thickness", role="thickness", settings=tuple(settings.items()))
     point = measure.measured(asked, Fitted({}, (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), 0.0), [View("own", one)])
@@ -378,7 +376,7 @@ CHAINS = {
 }
 
 
-def picked(one: Situation, point: Mapping[str, Any]) -> Pick:
+def picked(one: MeasuredScene, point: Mapping[str, Any]) -> Pick:
     return Pick(one.name, point, None, (), None, None, True)
 
 
@@ -397,7 +395,7 @@ def test_the_emitted_material_gives_the_light_that_was_measured(
     assert asked is not None
     shown = found.apply(asked.values(chain(one, cube, tmp_path), fit.exact(found.parameters)), asked)
 
-    files = material_files(cube.situation, picked(cube.situation, point), "mine")
+    files = material_files(cube.scene, picked(cube.scene, point), "mine")
     for name, text in files.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     emitted = Chain(parse_material(files["mine.toml"], str(tmp_path / "mine.toml")))
@@ -414,7 +412,7 @@ def test_the_emitted_material_compiles_for_every_target(
 ) -> None:
     one = candidate(*names)
     point = measure.measured(one, measure.fitted(one, training[:1]), [cube])
-    files = material_files(cube.situation, picked(cube.situation, point), "mine")
+    files = material_files(cube.scene, picked(cube.scene, point), "mine")
     assert ("body.sss" in files) == (names[0] == "march_light")
     for name, text in files.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
@@ -464,7 +462,7 @@ def test_a_chain_that_gives_no_number_has_failed(cube: View, monkeypatch: pytest
 
     monkeypatch.setattr(Problem, "values", broken)
     point = measure.measured(one, Fitted({}, (1.0,) * 3, (0.0,) * 3, 0.0), [cube])
-    assert point["failed"] == f"4 of {points(cube.situation).count} points are not finite"
+    assert point["failed"] == f"4 of {points(cube.scene).count} points are not finite"
 
 
 def test_seed_3_as_published_is_ambient_light_times_transmittance(
@@ -530,7 +528,7 @@ def test_light_transport_ranks_the_techniques_as_it_must() -> None:
     pytest.importorskip("mitsuba")
     cube = small("cube")
 
-    def view(one: Situation) -> View:
+    def view(one: MeasuredScene) -> View:
         one = replace(one, size=SIZE)
         return View(one.name, one, tuple(references.transport(one, n, 64, 0) for n in range(len(one.lights))), "64 0")
 

@@ -19,7 +19,7 @@ from sssgen.lab.chart.charting import Settings
 from sssgen.lab.chart.picking import Pick, allowed, chosen, limit_of, pick
 from sssgen.lab.jobs import executor
 from sssgen.lab.measure import candidates
-from sssgen.lab.scene import measured_scene as situation
+from sssgen.lab.scene import measured_scene
 from sssgen.support.diagnostics import SssgenError
 
 
@@ -152,8 +152,8 @@ def charted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     folder = tmp_path / "cache"
     monkeypatch.setenv("SSSGEN_CACHE", str(folder))
     monkeypatch.setattr(cache, "_folder", None)
-    monkeypatch.setattr(situation, "SIDE", 12)
-    chart.charted([situation.load("inlay_plate")], Settings(8, processes=0))
+    monkeypatch.setattr(measured_scene, "SIDE", 12)
+    chart.charted([measured_scene.load("inlay_plate")], Settings(8, processes=0))
     return str(folder)
 
 

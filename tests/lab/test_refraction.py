@@ -10,7 +10,7 @@ import pytest
 from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Ball, Box, Geometry, Slab
 from sssgen.lab.reference.inlay_refraction import plane_offset, refracted, seen
-from sssgen.lab.scene.measured_scene import Inlay, Situation
+from sssgen.lab.scene.measured_scene import Inlay, MeasuredScene
 from sssgen.lab.scene.view_points import points
 
 ANGLES = np.radians([15.0, 30.0, 45.0, 60.0, 75.0, 85.0])
@@ -21,9 +21,9 @@ PUBLISHED = {
 """offset / depth at these angles"""
 
 
-def looking_at(shape: Geometry, eye: tuple[float, float, float], inlay: Inlay, view: float = 24.0) -> Situation:
+def looking_at(shape: Geometry, eye: tuple[float, float, float], inlay: Inlay, view: float = 24.0) -> MeasuredScene:
     camera = Camera(eye, shape.position, view)
-    return Situation("one", "One", shape, camera, (), None, inlay, (24, 24))
+    return MeasuredScene("one", "One", shape, camera, (), None, inlay, (24, 24))
 
 
 @pytest.mark.parametrize("n", PUBLISHED)

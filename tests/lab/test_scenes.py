@@ -16,10 +16,9 @@ from sssgen.harness.evaluate.evaluation import half
 from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
 from sssgen.harness.scenes.scene_loading import parse_scene
 from sssgen.lab.measure import scene_references as references
-from sssgen.lab.scene import measured_scene as situation
-from sssgen.lab.scene import media
+from sssgen.lab.scene import measured_scene, media
 from sssgen.lab.scene import scene_body as body
-from sssgen.lab.scene.measured_scene import Inlay, Situation
+from sssgen.lab.scene.measured_scene import Inlay, MeasuredScene
 from sssgen.lab.scene.view_points import points
 from sssgen.support.diagnostics import SssgenError
 from sssgen.targets.numpy_textures import Texture
@@ -29,8 +28,8 @@ LIT = "[[light]]\ndirection = [0, 0, -2]\n"
 UNION = '[medium]\npreset = "cream"\n[geometry]\nkind = "union"\n'
 
 
-def measured(text: str) -> Situation:
-    return situation.of_scene(parse_scene(text, "my_scene.toml"), "my_scene.toml")
+def measured(text: str) -> MeasuredScene:
+    return measured_scene.of_scene(parse_scene(text, "my_scene.toml"), "my_scene.toml")
 
 
 # --- the file ---
@@ -51,8 +50,8 @@ def test_a_capsule_and_a_union_arrive() -> None:
 
 
 def test_every_scene_of_ours_is_one() -> None:
-    for name in situation.names():
-        one = situation.load(name)
+    for name in measured_scene.names():
+        one = measured_scene.load(name)
         assert one.name == name and one.title
         assert (one.medium is None) == name.startswith("inlay") == (one.inlay is not None)
         assert points(replace(one, size=(12, 12))).count > 10
@@ -83,18 +82,18 @@ def test_situations_are_what_they_say(tmp_path: Path) -> None:
     found = []
     for radius in ("0.5", "0.6"):
         file.write_text(f"float figure(vec3 p)\n{{\n    return length(p) - {radius};\n}}\n", encoding="utf-8")
-        found.append(situation.of_scene(parse_scene(scene, tmp_path / "s.toml"), "s.toml"))
+        found.append(measured_scene.of_scene(parse_scene(scene, tmp_path / "s.toml"), "s.toml"))
     assert found[0] != found[1] and found[0].geometry == found[1].geometry
 
 
 def test_the_held_out_view_is_turned_about_the_vertical_through_the_target() -> None:
-    one = situation.load("bracket")
+    one = measured_scene.load("bracket")
     aside = one.held_out()
     before, after = (np.subtract(each.camera.position, one.camera.target) for each in (one, aside))
     assert after[1] == pytest.approx(before[1])
     assert np.linalg.norm(after) == pytest.approx(np.linalg.norm(before))
     turned = np.degrees(np.arctan2(after[0], after[2]) - np.arctan2(before[0], before[2]))
-    assert turned == pytest.approx(situation.HELD_OUT)
+    assert turned == pytest.approx(measured_scene.HELD_OUT)
     above = replace(one, camera=replace(one.camera, position=(0.0, 4.0, 0.0)))
     assert above.held_out().camera.position[0] != 0.0  # not the same view again
 
@@ -143,7 +142,7 @@ def test_what_is_wrong_is_said_at_its_place(text: str, message: str, line: int) 
 
 def test_an_unknown_scene_gets_a_suggestion() -> None:
     with pytest.raises(SssgenError) as caught:
-        situation.load("brackt")
+        measured_scene.load("brackt")
     assert "did you mean 'bracket'" in str(caught.value)
 
 

@@ -47,18 +47,18 @@ def run(arguments: Namespace) -> int:
     settings = settings_of(arguments)
     from sssgen.lab.chart import charting as chart
     from sssgen.lab.chart import drawing
-    from sssgen.lab.scene import measured_scene as situation
+    from sssgen.lab.scene import measured_scene
 
-    situations = [situation.load(name) for name in arguments.SCENE or chart.DEFAULTS]
-    names = [one.name for one in situations]
+    scenes = [measured_scene.load(name) for name in arguments.SCENE or chart.DEFAULTS]
+    names = [one.name for one in scenes]
     for name in names:
         if names.count(name) > 1:
             raise failure(f"two scenes are called '{name}'", "a scene is called as its file: rename one")
-    record = chart.charted(situations, settings)
+    record = chart.charted(scenes, settings)
     if arguments.cost == "gpu":
         from sssgen.lab.gpu.chart_times import by_gpu, with_gpu_cost
 
-        record = by_gpu(with_gpu_cost(record, situations))
+        record = by_gpu(with_gpu_cost(record, scenes))
     files = drawing.write(record, arguments.output) if arguments.output else []
     if arguments.json:
         print_json({"ok": True, "files": files, **record})

@@ -23,9 +23,9 @@ def run(arguments: Namespace) -> int:
     settings = settings_of(arguments)._replace(roles=("coordinates", "translucency"))
     from sssgen.lab.chart import charting as chart
     from sssgen.lab.measure import candidates
-    from sssgen.lab.scene import measured_scene as situation
+    from sssgen.lab.scene import measured_scene
 
-    one = situation.load(arguments.SCENE)
+    one = measured_scene.load(arguments.SCENE)
     wanted = set(arguments.TECHNIQUE)
     known = {technique.name for role in settings.roles for technique in candidates.of_role(role)}
     for name in sorted(wanted - known):

@@ -18,7 +18,7 @@ from sssgen.support.file_writer import write_files
 
 if TYPE_CHECKING:
     from sssgen.lab.chart.picking import Pick
-    from sssgen.lab.scene.measured_scene import Situation
+    from sssgen.lab.scene.measured_scene import MeasuredScene
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -46,9 +46,9 @@ def run(arguments: Namespace) -> int:
     settings = settings_of(arguments)
     from sssgen.lab.chart import charting as chart
     from sssgen.lab.chart.picking import pick
-    from sssgen.lab.scene import measured_scene as situation
+    from sssgen.lab.scene import measured_scene
 
-    one = situation.load(arguments.SCENE)
+    one = measured_scene.load(arguments.SCENE)
     record = chart.charted([one], settings)
     picked = pick(record, one.name, arguments.max_error, arguments.max_cost)
     files = _emitted(one, picked, arguments.emit, arguments.target) if arguments.emit else []
@@ -62,7 +62,7 @@ def run(arguments: Namespace) -> int:
     return OK if picked.met else CHECK_FAILED
 
 
-def _emitted(one: Situation, picked: Pick, folder: str, targets: str) -> list[str]:
+def _emitted(one: MeasuredScene, picked: Pick, folder: str, targets: str) -> list[str]:
     """Writes the material and its shaders. Raises SssgenError."""
     from sssgen.lab.chart.picked_material import material_files
 
@@ -81,7 +81,7 @@ def _emitted(one: Situation, picked: Pick, folder: str, targets: str) -> list[st
     return [os.path.join(folder, file) for file in files]
 
 
-def shown(one: Situation, picked: Pick, max_error: float | None, max_cost: float | None) -> str:
+def shown(one: MeasuredScene, picked: Pick, max_error: float | None, max_cost: float | None) -> str:
     """The choice, as text."""
     limit = f"an error of at most {max_error:g}" if max_error is not None else f"a cost of at most {max_cost:g}"
     lines = [f"{one.title}: {limit}" + ("" if picked.met else ", which nothing keeps; this is the nearest")]

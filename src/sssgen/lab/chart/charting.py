@@ -1,7 +1,7 @@
 """Charts: every candidate on every scene, fitted, measured, and set beside the others, as a record to draw or to pick
 from.
 
-    record = charted([situation.load("cube")], Settings())
+    record = charted([measured_scene.load("cube")], Settings())
 
 The points of a scene are kept in the cache folder; what an interrupted run has measured is not measured again.
 """
@@ -24,7 +24,7 @@ from sssgen.lab.measure import scene_references as references
 from sssgen.lab.measure.candidates import Candidate
 from sssgen.lab.measure.fitting import Fitted
 from sssgen.lab.measure.measurement import View
-from sssgen.lab.scene.measured_scene import Situation
+from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.support import cache
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.version import VERSION
@@ -54,24 +54,24 @@ class Settings(NamedTuple):
     shown: Callable[[], AbstractContextManager[Progress]] = lambda: nullcontext(lambda *_: None)
     """Makes a progress bar for each stage of the work"""
 
-    def kept(self, one: Situation) -> str:
+    def kept(self, one: MeasuredScene) -> str:
         """Where the points of a scene lie in the cache."""
         said = repr((one.key, self.samples, self.seed, self.roles, code_stamp(__name__)))
         return f"chart-{cache.digest(said)}.json"
 
 
-def charted(situations: Sequence[Situation], settings: Settings) -> dict[str, Any]:
+def charted(scenes: Sequence[MeasuredScene], settings: Settings) -> dict[str, Any]:
     """The record of a chart: all points of these scenes, those of each from the cache where it has them.
 
     Raises SssgenError for scenes that cannot be measured, and for packages that are missing.
     """
-    known = {one.key: kept(one, settings) for one in situations}
-    new = [one for one in {one.key: one for one in situations}.values() if known[one.key] is None]
+    known = {one.key: kept(one, settings) for one in scenes}
+    new = [one for one in {one.key: one for one in scenes}.values() if known[one.key] is None]
     if new:
         for one, made in zip(new, _measured(new, settings), strict=True):
             known[one.key] = made
             cache.write(settings.kept(one), json.dumps(made).encode())
-    each = [known[one.key] for one in situations]
+    each = [known[one.key] for one in scenes]
     points = _on_fronts([point for made in each if made for point in made["points"]])
     return {
         "format": FORMAT, "record": about(settings), "cost": "static",
@@ -81,7 +81,7 @@ def charted(situations: Sequence[Situation], settings: Settings) -> dict[str, An
     }  # fmt: skip
 
 
-def kept(one: Situation, settings: Settings) -> dict[str, Any] | None:
+def kept(one: MeasuredScene, settings: Settings) -> dict[str, Any] | None:
     """The scene's points from the cache; None where it has none."""
     try:
         found: dict[str, Any] = json.loads(cache.read(settings.kept(one)) or b"null")
@@ -90,30 +90,30 @@ def kept(one: Situation, settings: Settings) -> dict[str, Any] | None:
     return found
 
 
-def _measured(situations: Sequence[Situation], settings: Settings) -> list[dict[str, Any]]:
+def _measured(scenes: Sequence[MeasuredScene], settings: Settings) -> list[dict[str, Any]]:
     """The points of scenes, measured."""
-    views = _views(situations, settings)
-    found: dict[str, list[dict[str, Any]]] = {one.key: [] for one in situations}
+    views = _views(scenes, settings)
+    found: dict[str, list[dict[str, Any]]] = {one.key: [] for one in scenes}
     for role in settings.roles:
         if role == "material":
             continue
-        jobs = [(one, candidate) for one in situations for candidate in _asked(role, one)]
+        jobs = [(one, candidate) for one in scenes for candidate in _asked(role, one)]
         for one, point in _points(jobs, views, settings, {}):
             found[one.key].append(point)
     if "material" in settings.roles:
         jobs = []
         before: dict[tuple[str, tuple[str, ...], Any], Mapping[str, tuple[float, ...]]] = {}
-        for one in situations:
+        for one in scenes:
             if one.medium is not None:
                 lengths = paying([point for point in found[one.key] if point["role"] == "thickness"])
                 jobs += [(one, candidate) for candidate in candidates.materials(lengths)]
                 before |= {(one.key, *first): given for first, given in dear(found[one.key]).items()}
         for one, point in _points(jobs, views, settings, before):
             found[one.key].append(point)
-    return [{"scene": _scene(one, views[one.key]), "points": found[one.key]} for one in situations]
+    return [{"scene": _scene(one, views[one.key]), "points": found[one.key]} for one in scenes]
 
 
-def _asked(role: str, one: Situation) -> list[Candidate]:
+def _asked(role: str, one: MeasuredScene) -> list[Candidate]:
     """The candidates of a role that a scene asks for."""
     if role == "coordinates":
         return candidates.coordinates() if one.inlay is not None else []
@@ -131,30 +131,30 @@ class _Views(NamedTuple):
     training: tuple[View, ...]
 
 
-def _views(situations: Sequence[Situation], settings: Settings) -> dict[str, _Views]:
+def _views(scenes: Sequence[MeasuredScene], settings: Settings) -> dict[str, _Views]:
     """Each scene's views and what it is fitted to, with their references."""
     lit = bool(LIT.intersection(settings.roles))
-    own = seen_views({one.key: sides(one) for one in situations}, settings, lit)
-    training = {one.key: references.training(one) if one.medium is not None else [] for one in situations}
+    own = seen_views({one.key: sides(one) for one in scenes}, settings, lit)
+    training = {one.key: references.training(one) if one.medium is not None else [] for one in scenes}
     cheap = settings._replace(samples=settings.samples // 2)
     fitted_to = seen_views({key: [(one.name, one) for one in ones] for key, ones in training.items()}, cheap, lit)
-    plates = {one.key: (View("plate", references.plate(one)),) for one in situations if one.inlay is not None}
-    return {one.key: _Views(own[one.key], fitted_to[one.key] + plates.get(one.key, ())) for one in situations}
+    plates = {one.key: (View("plate", references.plate(one)),) for one in scenes if one.inlay is not None}
+    return {one.key: _Views(own[one.key], fitted_to[one.key] + plates.get(one.key, ())) for one in scenes}
 
 
-def sides(one: Situation) -> list[tuple[str, Situation]]:
+def sides(one: MeasuredScene) -> list[tuple[str, MeasuredScene]]:
     """A scene's two views, and what they are called."""
     return list(zip(VIEWS, (one, one.held_out()), strict=True))
 
 
 def seen_views(
-    named: Mapping[str, Sequence[tuple[str, Situation]]], settings: Settings, lit: bool = True
+    named: Mapping[str, Sequence[tuple[str, MeasuredScene]]], settings: Settings, lit: bool = True
 ) -> dict[str, tuple[View, ...]]:
     """Views by what they belong to: with their references of light transport where these are asked for (`lit`)."""
     each = {one.key: one for group in named.values() for _, one in group if lit}
     wanted = list(each.values())
     results = _all(references.items(wanted, settings.samples, settings.seed), settings)
-    seen = references.by_situation(wanted, results)
+    seen = references.by_scene(wanted, results)
     stamp = f"{settings.samples} {settings.seed}"
     return {
         key: tuple(View(name, one, tuple(seen.get(one.key, ())), stamp) for name, one in group)
@@ -163,8 +163,8 @@ def seen_views(
 
 
 def _points(
-    jobs: Sequence[tuple[Situation, Candidate]], views: dict[str, _Views], settings: Settings, before: Before
-) -> Iterable[tuple[Situation, dict[str, Any]]]:
+    jobs: Sequence[tuple[MeasuredScene, Candidate]], views: dict[str, _Views], settings: Settings, before: Before
+) -> Iterable[tuple[MeasuredScene, dict[str, Any]]]:
     """The jobs' points: parameters are fitted once for all scenes that are fitted to the same.
 
     `before` has those of first techniques that are fitted already.
@@ -196,13 +196,13 @@ def _points(
 
 
 def remeasured(
-    record: Mapping[str, Any], situations: Sequence[Situation], settings: Settings
+    record: Mapping[str, Any], scenes: Sequence[MeasuredScene], settings: Settings
 ) -> dict[tuple[str, str], float]:
     """The materials' errors against another reference, as `settings` have it, with the parameters that were fitted.
 
     (scene, label) → the worst of the views; infinite where a chain fails.
     """
-    views = seen_views({one.name: sides(one) for one in situations}, settings)
+    views = seen_views({one.name: sides(one) for one in scenes}, settings)
     points = [point for point in record["points"] if point["role"] == "material" and point["scene"] in views]
     items = [
         Item(
@@ -290,7 +290,7 @@ def paying(points: Sequence[dict[str, Any]]) -> list[Candidate]:
     return found
 
 
-def _scene(one: Situation, views: _Views) -> dict[str, Any]:
+def _scene(one: MeasuredScene, views: _Views) -> dict[str, Any]:
     """What a record says of a scene."""
     found: dict[str, Any] = {"name": one.name, "title": one.title, "key": one.key}
     if one.medium is not None:

@@ -13,12 +13,12 @@ from sssgen.lab.chart.charting import candidate_of
 from sssgen.lab.chart.picking import Pick
 from sssgen.lab.measure.candidates import load
 from sssgen.lab.measure.measured_chain import Stage, material_text
-from sssgen.lab.scene.measured_scene import Situation
+from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.lab.scene.scene_body import Body, body
 from sssgen.material.slots import needs
 
 
-def material_files(one: Situation, picked: Pick, name: str) -> dict[str, str]:
+def material_files(one: MeasuredScene, picked: Pick, name: str) -> dict[str, str]:
     """The material's file, and those that it names, to lie beside it: name → text."""
     of = body(one.geometry)
     stages: list[Stage] = []
@@ -44,7 +44,7 @@ def stages_of(point: Mapping[str, Any], of: Body) -> list[Stage]:
     return [_with(stage, _given(load(name), point)) for name, stage in stages]
 
 
-def _slide(one: Situation, point: Mapping[str, Any], of: Body) -> list[Stage]:
+def _slide(one: MeasuredScene, point: Mapping[str, Any], of: Body) -> list[Stage]:
     assert one.inlay is not None
     stages = []
     for stage in stages_of(point, of)[:1]:

@@ -22,7 +22,7 @@ from sssgen.lab.gpu import timed_programs as gpu_programs
 from sssgen.lab.gpu.gpu_timing import Measured
 from sssgen.lab.measure.measured_chain import Stage, material_of
 from sssgen.lab.scene import scene_body as body
-from sssgen.lab.scene.measured_scene import Situation
+from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import compile
 
@@ -39,7 +39,7 @@ Told = Callable[[int, int, str], None]
 
 def with_gpu_cost(
     record: Mapping[str, Any],
-    situations: Sequence[Situation],
+    scenes: Sequence[MeasuredScene],
     size: tuple[int, int] = gpu_cost.SIZE,
     rounds: int = gpu_cost.ROUNDS,
     told: Told = lambda *_: None,
@@ -51,7 +51,7 @@ def with_gpu_cost(
     points = [dict(point) for point in record["points"]]
     about = dict(record["record"])
     done = 0
-    for one in situations:
+    for one in scenes:
         own = [point for point in points if point["scene"] == one.name and not point["failed"]]
         for start in range(0, len(own), AT_ONCE):
             some = own[start : start + AT_ONCE]
@@ -90,7 +90,7 @@ def by_gpu(record: Mapping[str, Any]) -> dict[str, Any]:
     return {**record, "points": points, "cost": "gpu", "cost_unit": unit}
 
 
-def _timed(one: Situation, points: Sequence[Mapping[str, Any]], size: tuple[int, int], rounds: int) -> Measured:
+def _timed(one: MeasuredScene, points: Sequence[Mapping[str, Any]], size: tuple[int, int], rounds: int) -> Measured:
     scene = _scene(one)
     at = gpu_programs.surface_points(scene, size)
     of = body.body(one.geometry)
@@ -109,13 +109,13 @@ def _timed(one: Situation, points: Sequence[Mapping[str, Any]], size: tuple[int,
     return gpu_cost.measure(programs, size, rounds)
 
 
-def _scene(one: Situation) -> Scene:
-    """The situation as a scene to draw."""
+def _scene(one: MeasuredScene) -> Scene:
+    """The scene as a scene to draw."""
     scene = parse_scene("[medium]", f"{one.name}.toml")  # all else is as a scene has it that does not say
     return dataclasses.replace(scene, geometry=one.geometry, camera=one.camera, lights=one.lights)
 
 
-def _fitting(scene: Scene, one: Situation, material: Material) -> Scene:
+def _fitting(scene: Scene, one: MeasuredScene, material: Material) -> Scene:
     """The scene with those parameters and textures of the body that the material's shader reads."""
     reflection = compile(material, gpu_programs.TARGET).reflection
     texture = body.distance_texture(one.geometry)

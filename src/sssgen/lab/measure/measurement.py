@@ -18,7 +18,7 @@ from sssgen.lab.measure.candidates import PROBES, Candidate, load, most_counts
 from sssgen.lab.measure.fitting import Fitted
 from sssgen.lab.measure.measured_chain import Chain, material_of
 from sssgen.lab.measure.problem import Problem, Seen
-from sssgen.lab.scene.measured_scene import Situation
+from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.lab.scene.scene_body import Body, body
 from sssgen.lab.scene.view_points import points
 from sssgen.passes.cost import Cost, cost_of
@@ -34,10 +34,10 @@ Parameters = Mapping[str, tuple[float, ...]]
 
 
 class View(NamedTuple):
-    """A situation with its references, and what the chart calls it."""
+    """A scene with its references, and what the chart calls it."""
 
     name: str
-    situation: Situation
+    scene: MeasuredScene
     seen: tuple[Seen, ...] = ()
     reference: str = ""
     """What the references were made with: samples and seed"""
@@ -49,7 +49,7 @@ _KEPT = 48
 
 def problem_of(role: str, view: View, summed: bool = True) -> Problem | None:
     """What a role is asked for on a view; None where the view does not ask. Kept for the next candidate."""
-    key = (role, view.situation.key, view.reference, summed)
+    key = (role, view.scene.key, view.reference, summed)
     if key not in _problems:
         if len(_problems) >= _KEPT:
             _problems.clear()
@@ -59,12 +59,12 @@ def problem_of(role: str, view: View, summed: bool = True) -> Problem | None:
 
 def _problem_of(role: str, view: View, summed: bool) -> Problem | None:
     if role == "coordinates":
-        return problem.of_coordinates(view.situation)
+        return problem.of_coordinates(view.scene)
     if role == "thickness":
-        return problem.of_thickness(view.situation)
+        return problem.of_thickness(view.scene)
     if role == "translucency":
-        return problem.of_light(view.situation, view.seen)
-    return problem.of_material(view.situation, view.seen, summed)
+        return problem.of_light(view.scene, view.seen)
+    return problem.of_material(view.scene, view.seen, summed)
 
 
 def fitted(candidate: Candidate, training: Sequence[View], before: Parameters | None = None) -> Fitted:
@@ -77,7 +77,7 @@ def fitted(candidate: Candidate, training: Sequence[View], before: Parameters | 
     if not asked:
         raise failure("no light comes through what is fitted to", "the medium scatters nothing, or absorbs all")
     problems = [one.thinned(fit.LANES) for _, one in asked]
-    bodies = [body(view.situation.geometry) for view, _ in asked]
+    bodies = [body(view.scene.geometry) for view, _ in asked]
     rest = candidate
     with tempfile.TemporaryDirectory() as folder:
         if before is not None:
@@ -115,16 +115,15 @@ def measured(candidate: Candidate, found: Fitted, views: Sequence[View]) -> dict
     """
     asked = [(view, one) for view in views if (one := problem_of(candidate.role, view)) is not None]
     if not asked:
-        scene = views[0].situation.name
-        raise failure(f"no light comes through the body of '{scene}'", "light it from behind, too")
+        raise failure(f"no light comes through the body of '{views[0].scene.name}'", "light it from behind, too")
     with tempfile.TemporaryDirectory() as folder:
-        chain = chain_of(candidate, body(views[0].situation.geometry), folder)
+        chain = chain_of(candidate, body(views[0].scene.geometry), folder)
         given = [_values(chain, found, one) for _, one in asked]
         cost = static_cost(chain)
         own = asked[0][1]
         implementation = {
             kind: apart(_values(other, found, own), given[0])
-            for kind, other in _others(candidate, body(views[0].situation.geometry), folder)
+            for kind, other in _others(candidate, body(views[0].scene.geometry), folder)
         }
     bad = sum(int((~np.isfinite(values)).any(axis=0).sum()) for values in given)
     lanes = sum(values.shape[1] for values in given)
@@ -140,7 +139,7 @@ def measured(candidate: Candidate, found: Fitted, views: Sequence[View]) -> dict
         each[view.name] = {key: of_view[key] for key in ("value", "low", "high")}
     if candidate.role == "material":
         flips = [
-            metrics.flip(points(view.situation).picture(picture), points(view.situation).picture(one.target))
+            metrics.flip(points(view.scene).picture(picture), points(view.scene).picture(one.target))
             for picture, (view, one) in zip(pictures, asked, strict=True)
         ]
         error["flip"] = float(np.mean(flips))

@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sssgen.harness.backends import Array
-from sssgen.lab.measure import scene_inputs as supply
+from sssgen.lab.measure import scene_inputs
 from sssgen.lab.measure.measured_chain import Chain
 from sssgen.lab.reference import inlay_refraction as refraction
 from sssgen.lab.reference.inside_lengths import thickness
-from sssgen.lab.scene.measured_scene import Situation
+from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.lab.scene.view_points import Points, points
 from sssgen.support.diagnostics import failure
 from sssgen.targets.numpy_textures import Texture
@@ -152,24 +152,24 @@ def _lanes(part: Part, own: Array, count: int) -> Part:
     return part._replace(inputs=cut(part.inputs), light=cut(part.light), values=cut(part.values))
 
 
-def of_thickness(situation: Situation) -> Problem:
+def of_thickness(scene: MeasuredScene) -> Problem:
     """Thickness towards each light, in parts of its mean, where light has matter to pass."""
-    at = points(situation)
-    parts = tuple(_part(situation, at, direction, np.ones((3, 1))) for direction in _directions(situation))
+    at = points(scene)
+    parts = tuple(_part(scene, at, direction, np.ones((3, 1))) for direction in _directions(scene))
     exact = np.concatenate([np.asarray(part.values["exact_length"]) for part in parts])[None]
     keep = np.flatnonzero(exact[0] > 1e-4 * max(float(exact.max(initial=0.0)), 1e-12))
     if not len(keep):
-        raise failure(f"no light passes through the body of '{situation.name}'", "light it from behind, too")
+        raise failure(f"no light passes through the body of '{scene.name}'", "light it from behind, too")
     gain = 1.0 / float(exact[:, keep].mean())
     target = gain * exact[:, keep]
     nothing = np.zeros_like(target)
     return Problem("thickness", parts, False, target, nothing, nothing, keep, gain)
 
 
-def of_light(situation: Situation, seen: Sequence[Seen]) -> Problem | None:
+def of_light(scene: MeasuredScene, seen: Sequence[Seen]) -> Problem | None:
     """The light that comes through where a light is behind; None where none is."""
-    at = points(situation)
-    parts = [_part(situation, at, direction, np.ones((3, 1))) for direction in _directions(situation)]
+    at = points(scene)
+    parts = [_part(scene, at, direction, np.ones((3, 1))) for direction in _directions(scene)]
     facing = np.concatenate([np.einsum("cn,cn->n", at.inputs["N"], part.light["L"]) for part in parts])
     keep = np.flatnonzero(facing <= 0.0)
     target, noise = (np.concatenate([one[k] for one in seen], axis=1)[:, keep] for k in (0, 1))
@@ -180,16 +180,16 @@ def of_light(situation: Situation, seen: Sequence[Seen]) -> Problem | None:
     return Problem("translucency", tuple(parts), False, gain * target, gain * noise, lambert, keep, gain)
 
 
-def of_material(situation: Situation, seen: Sequence[Seen], summed: bool) -> Problem:
+def of_material(scene: MeasuredScene, seen: Sequence[Seen], summed: bool) -> Problem:
     """All light that leaves the surface; the lights' together where `summed`, else one by one."""
-    at = points(situation)
+    at = points(scene)
     parts, front, colored = [], [], []
-    for light, direction, (mean, error) in zip(situation.lights, _directions(situation), seen, strict=True):
+    for light, direction, (mean, error) in zip(scene.lights, _directions(scene), seen, strict=True):
         color = np.array(light.color)[:, None] if summed else np.ones((3, 1))
-        part = _part(situation, at, direction, color)
+        part = _part(scene, at, direction, color)
         facing = np.maximum(np.einsum("cn,cn->n", at.inputs["N"], part.light["L"]), 0.0)
         parts.append(part)
-        front.append(color * facing * _visible(situation, at, direction))
+        front.append(color * facing * _visible(scene, at, direction))
         colored.append((color * mean, color * error))
     if summed:
         target = np.sum([mean for mean, _ in colored], axis=0)
@@ -209,19 +209,19 @@ def exposure(target: Array) -> float:
     return WHITE / bright if bright > 0.0 else 1.0
 
 
-def of_coordinates(situation: Situation) -> Problem:
+def of_coordinates(scene: MeasuredScene) -> Problem:
     """Where refraction says that the inlay is seen, in depths along T and B from the point itself."""
-    at = points(situation)
-    found = refraction.seen(situation, at)
+    at = points(scene)
+    found = refraction.seen(scene, at)
     keep = np.flatnonzero(found.hit)
     if not len(keep):
-        raise failure(f"no ray meets the inlay of '{situation.name}'", "it lies deeper than the body is thick")
+        raise failure(f"no ray meets the inlay of '{scene.name}'", "it lies deeper than the body is thick")
     inputs = {**at.inputs, "uv": np.zeros_like(at.inputs["uv"])}
-    assert situation.inlay is not None
+    assert scene.inlay is not None
     # with uv 0 at each point and one uv a depth, what comes out is the way in depths
     values = {
-        **situation.inlay.parameters, "uv_per_unit": np.full((2, 1), 1.0 / found.depth),
-        "depth 1": 1.0, "eta": situation.inlay.outside_ior / situation.inlay.ior,
+        **scene.inlay.parameters, "uv_per_unit": np.full((2, 1), 1.0 / found.depth),
+        "depth 1": 1.0, "eta": scene.inlay.outside_ior / scene.inlay.ior,
     }  # fmt: skip
     part = Part(inputs, {}, values, {}, np.ones((3, 1)))
     target = found.offset[:, keep] / found.depth
@@ -229,20 +229,20 @@ def of_coordinates(situation: Situation) -> Problem:
     return Problem("coordinates", (part,), False, target, nothing, nothing, keep)
 
 
-def _part(situation: Situation, at: Points, direction: tuple[float, float, float], color: Array) -> Part:
-    scene, light = supply.of_scene(situation), supply.of_light(situation, direction)
-    inputs = {**at.inputs, **scene.inputs}
+def _part(scene: MeasuredScene, at: Points, direction: tuple[float, float, float], color: Array) -> Part:
+    body, light = scene_inputs.of_scene(scene), scene_inputs.of_light(scene, direction)
     return Part(
-        inputs, at.light(direction), {**scene.values, **light.values}, {**scene.textures, **light.textures}, color
-    )
+        {**at.inputs, **body.inputs}, at.light(direction), {**body.values, **light.values},
+        {**body.textures, **light.textures}, color,
+    )  # fmt: skip
 
 
-def _visible(situation: Situation, at: Points, direction: tuple[float, float, float]) -> Array:
+def _visible(scene: MeasuredScene, at: Points, direction: tuple[float, float, float]) -> Array:
     """Whether nothing stands between a point that faces the light and the light: the engine's shadow, (n,)."""
     place = np.ascontiguousarray((at.inputs["P"] + 1e-4 * at.inputs["N"]).T)
     way = np.broadcast_to(np.array(direction), place.shape).copy()
-    return (thickness(situation.geometry, place, way) < 1e-3).astype(float)
+    return (thickness(scene.geometry, place, way) < 1e-3).astype(float)
 
 
-def _directions(situation: Situation) -> list[tuple[float, float, float]]:
-    return [light.direction for light in situation.lights if light.direction is not None]
+def _directions(scene: MeasuredScene) -> list[tuple[float, float, float]]:
+    return [light.direction for light in scene.lights if light.direction is not None]

@@ -17,7 +17,7 @@ from sssgen.harness.evaluate.evaluation import half
 from sssgen.harness.scenes.light_view import from_afar
 from sssgen.lab.reference.inside_lengths import intervals, thickness
 from sssgen.lab.scene import scene_body as body
-from sssgen.lab.scene.measured_scene import Situation
+from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.lab.scene.view_points import points
 from sssgen.targets.numpy_textures import Texture
 
@@ -28,7 +28,7 @@ DEPTH_MAP = 256
 
 
 @dataclass(eq=False)
-class Supply:
+class SceneInputs:
     """Parameters and textures by the names that techniques give them; inputs that take the place of the points'."""
 
     values: dict[str, Any] = field(default_factory=dict)
@@ -37,11 +37,11 @@ class Supply:
 
 
 @lru_cache(48)
-def of_scene(situation: Situation) -> Supply:
+def of_scene(scene: MeasuredScene) -> SceneInputs:
     """What does not depend on a light."""
-    geometry, at = situation.geometry, points(situation)
+    geometry, at = scene.geometry, points(scene)
     distances = body.distance_texture(geometry)
-    chord = mean_chord(situation)
+    chord = mean_chord(scene)
     # a texel for each point, and no filter: what a faultless bake has there
     texels = (np.arange(at.count) + 0.5) / at.count
     longest = max(float(chord.max(initial=0.0)), 1e-9)
@@ -59,22 +59,22 @@ def of_scene(situation: Situation) -> Supply:
         "thinness_texture": ideal(1.0 - chord / longest),
         "transmittance_texture": ideal(np.exp(-chord / typical)),
     }
-    return Supply(values, textures, {"uv": np.stack([texels, np.full(at.count, 0.5)])})
+    return SceneInputs(values, textures, {"uv": np.stack([texels, np.full(at.count, 0.5)])})
 
 
 @lru_cache(192)
-def of_light(situation: Situation, direction: tuple[float, float, float]) -> Supply:
+def of_light(scene: MeasuredScene, direction: tuple[float, float, float]) -> SceneInputs:
     """What depends on a light from afar: the exact thickness towards it, and its depth map."""
-    geometry, at = situation.geometry, points(situation)
+    geometry, at = scene.geometry, points(scene)
     towards = np.broadcast_to(np.array(direction), (at.count, 3)).copy()
     exact = thickness(geometry, np.ascontiguousarray(at.inputs["P"].T), towards)
-    values, textures = _depth_map(situation, np.array(direction))
-    return Supply(values | {"exact_length": exact}, textures)
+    values, textures = _depth_map(scene, np.array(direction))
+    return SceneInputs(values | {"exact_length": exact}, textures)
 
 
-def mean_chord(situation: Situation) -> Array:
+def mean_chord(scene: MeasuredScene) -> Array:
     """The mean length inside the body over inward directions, weighted by their cosine to −N: (n,)."""
-    at = points(situation)
+    at = points(scene)
     frame = np.stack([at.inputs["T"], np.cross(at.inputs["N"].T, at.inputs["T"].T).T, -at.inputs["N"]])
     # a Fibonacci spiral on the disc, raised to the hemisphere: density follows the cosine
     number = np.arange(RAYS)
@@ -82,13 +82,13 @@ def mean_chord(situation: Situation) -> Array:
     ways = np.stack([radius * np.cos(angle), radius * np.sin(angle), np.sqrt(1.0 - radius**2)])
     directions = np.einsum("kr,kcn->rnc", ways, frame).reshape(-1, 3)
     places = np.tile(at.inputs["P"].T, (RAYS, 1))
-    mean: Array = thickness(situation.geometry, places, np.ascontiguousarray(directions)).reshape(RAYS, -1).mean(axis=0)
+    mean: Array = thickness(scene.geometry, places, np.ascontiguousarray(directions)).reshape(RAYS, -1).mean(axis=0)
     return mean
 
 
-def _depth_map(situation: Situation, towards: Array) -> tuple[dict[str, Any], dict[str, Texture]]:
+def _depth_map(scene: MeasuredScene, towards: Array) -> tuple[dict[str, Any], dict[str, Texture]]:
     """The light's view without perspective: matrices for the techniques, and the depth of the first surface."""
-    geometry = situation.geometry
+    geometry = scene.geometry
     view = from_afar(body.placed_corners(geometry), towards, (DEPTH_MAP, DEPTH_MAP))
     inwards = geometry.to_object()
     local = view.origins @ inwards[:3, :3].T + inwards[:3, 3]

@@ -15,7 +15,7 @@ from sssgen.lab.measure.problem import Seen
 from sssgen.lab.reference.transport import radiance_along
 from sssgen.lab.reference.transport_mitsuba import Light as Beam
 from sssgen.lab.scene import scene_body as body
-from sssgen.lab.scene.measured_scene import Situation
+from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.lab.scene.media import Medium
 from sssgen.lab.scene.view_points import points
 
@@ -28,67 +28,67 @@ SLAB_LIGHTS = ((0.0, 0.0, -1.0), (0.6, 0.35, -0.72), (-0.3, 0.5, 0.8))
 """From behind, from the side, from the front: towards the light."""
 
 
-def transport(situation: Situation, light: int, samples: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """The reference of one light on a situation's points: mean and standard error of π L / E, (3, n) in float32."""
-    assert situation.medium is not None
-    at, direction = points(situation), situation.lights[light].direction
+def transport(scene: MeasuredScene, light: int, samples: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """The reference of one light on a scene's points: mean and standard error of π L / E, (3, n) in float32."""
+    assert scene.medium is not None
+    at, direction = points(scene), scene.lights[light].direction
     assert direction is not None
     origins = np.broadcast_to(at.origin, (at.count, 3))
     rays = np.ascontiguousarray(-at.inputs["V"].T)
-    found = radiance_along(situation.geometry, situation.medium, Beam(direction), origins, rays, samples, seed)
+    found = radiance_along(scene.geometry, scene.medium, Beam(direction), origins, rays, samples, seed)
     return found.mean.T.astype(np.float32), found.error.T.astype(np.float32)
 
 
-def items(situations: Sequence[Situation], samples: int = SAMPLES, seed: int = 0) -> list[Item]:
+def items(scenes: Sequence[MeasuredScene], samples: int = SAMPLES, seed: int = 0) -> list[Item]:
     """The work of their references, a light each, in order; those without a medium have none."""
     return [
         Item("sssgen.lab.measure.scene_references:transport", (one, number, samples, seed), f"reference of {one.name}")
-        for one in situations
+        for one in scenes
         if one.medium is not None
         for number in range(len(one.lights))
     ]
 
 
-def by_situation(situations: Sequence[Situation], results: Sequence[Seen]) -> dict[str, list[Seen]]:
-    """The results of `items` by their situations' keys."""
+def by_scene(scenes: Sequence[MeasuredScene], results: Sequence[Seen]) -> dict[str, list[Seen]]:
+    """The results of `items` by their scenes' keys."""
     found: dict[str, list[Seen]] = {}
     waiting = iter(results)
-    for one in situations:
+    for one in scenes:
         if one.medium is not None:
             found[one.key] = [next(waiting) for _ in one.lights]
     return found
 
 
-def training(situation: Situation) -> list[Situation]:
+def training(scene: MeasuredScene) -> list[MeasuredScene]:
     """What a scene's chains are fitted to: balls and slabs of its medium, large and small beside its body.
 
     Sizes go in steps of two, so that scenes of one medium share them.
     """
-    assert situation.medium is not None
-    corners = body.placed_corners(situation.geometry)
+    assert scene.medium is not None
+    corners = body.placed_corners(scene.geometry)
     size = 2.0 ** round(float(np.log2(max(np.ptp(corners, axis=0).max(), 1e-6))))
     found = []
     for part in (size, 0.4 * size):
         ball, slab = Ball(0.5 * part), Slab(1.4 * part, 1.4 * part, 0.3 * part)
-        found.append(_lit("ball", ball, situation.medium, (0.0, 0.4 * part, 3.2 * part), BALL_LIGHTS))
-        found.append(_lit("slab", slab, situation.medium, (0.9 * part, 0.7 * part, 3.0 * part), SLAB_LIGHTS))
+        found.append(_lit("ball", ball, scene.medium, (0.0, 0.4 * part, 3.2 * part), BALL_LIGHTS))
+        found.append(_lit("slab", slab, scene.medium, (0.9 * part, 0.7 * part, 3.0 * part), SLAB_LIGHTS))
     return found
 
 
 def _lit(
     name: str, geometry: Geometry, medium: Medium, eye: tuple[float, float, float], lights: Sequence[Sequence[float]]
-) -> Situation:
+) -> MeasuredScene:
     directions = [np.array(light) / np.linalg.norm(light) for light in lights]
     lamps = tuple(Light(None, (float(x), float(y), float(z)), (1.0, 1.0, 1.0)) for x, y, z in directions)
     view = Camera(eye, (0.0, 0.0, 0.0), 26.0)
-    return Situation(name, name, geometry, view, lamps, medium, None, (TRAINING_SIDE, TRAINING_SIDE))
+    return MeasuredScene(name, name, geometry, view, lamps, medium, None, (TRAINING_SIDE, TRAINING_SIDE))
 
 
-def plate(situation: Situation) -> Situation:
+def plate(scene: MeasuredScene) -> MeasuredScene:
     """What parallax is fitted to: a plane over the scene's inlay, seen from many sides."""
-    assert situation.inlay is not None
-    depth = situation.inlay.depth
+    assert scene.inlay is not None
+    depth = scene.inlay.depth
     slab = Slab(400.0 * depth, 400.0 * depth, 10.0 * depth)
     eye = (12.0 * depth, 6.0 * depth, 20.0 * depth)
     view = Camera(eye, (0.0, 0.0, 5.0 * depth), 60.0)
-    return dataclasses.replace(situation, name="plate", title="plate", geometry=slab, camera=view, contents="")
+    return dataclasses.replace(scene, name="plate", title="plate", geometry=slab, camera=view, contents="")

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sssgen.harness.backends import Array
-from sssgen.lab.scene.measured_scene import Situation
+from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.lab.scene.view_points import Points
 
 STEPS = 400
@@ -48,10 +48,10 @@ def plane_offset(sine: Array, depth: float, n: float) -> Array:
     return depth * sine / np.sqrt(n**2 - sine**2)
 
 
-def seen(situation: Situation, at: Points) -> Seen:
-    """What the situation's points show of its inlay. Its geometry's distance must be exact inside."""
-    assert situation.inlay is not None
-    geometry, inlay = situation.geometry, situation.inlay
+def seen(scene: MeasuredScene, at: Points) -> Seen:
+    """What the scene's points show of its inlay. Its geometry's distance must be exact inside."""
+    assert scene.inlay is not None
+    geometry, inlay = scene.geometry, scene.inlay
     N, T, B = at.inputs["N"], at.inputs["T"], at.inputs["B"]
     inwards, scale = geometry.to_object(), geometry.scale
     depth = inlay.depth / scale
@@ -70,7 +70,7 @@ def seen(situation: Situation, at: Points) -> Seen:
             break
         t = np.where(going, t + np.maximum(left, 0.0), t)
     layer = start + t * ray
-    outward = _outward(situation, layer, depth)
+    outward = _outward(scene, layer, depth)
     chord = scale * turn.T @ (layer + depth * outward - start)
     # along the surface the way is an arc: as on the ball that has these two normals
     half = 0.5 * np.arccos(np.clip((outward * (turn @ N)).sum(axis=0), -1.0, 1.0))
@@ -80,10 +80,10 @@ def seen(situation: Situation, at: Points) -> Seen:
     return Seen(hit, along * np.where(length > 0.0, arc / np.where(length > 0.0, length, 1.0), 0.0), inlay.depth)
 
 
-def _outward(situation: Situation, layer: Array, depth: float) -> Array:
+def _outward(scene: MeasuredScene, layer: Array, depth: float) -> Array:
     """The surface's unit normals right above places of the layer, by the gradient of the distance: (3, n)."""
     step = 1e-5 * max(depth, 1e-3)
-    distance = situation.geometry.distance
+    distance = scene.geometry.distance
     slopes = np.stack([
         distance((layer + step * way[:, None]).T) - distance((layer - step * way[:, None]).T) for way in np.eye(3)
     ])  # fmt: skip

@@ -1,4 +1,4 @@
-"""Situations: scenes that say what is physically there, so that materials can be measured on them.
+"""Measured scenes: scenes that say what is physically there, so that materials can be measured on them.
 
 A scene file with `[medium]` (what the body is made of) or `[inlay]` (a picture below a clear surface) is one. Its body
 is lit by lights from afar.
@@ -50,7 +50,7 @@ class Inlay:
 
 
 @dataclass(frozen=True, eq=False)
-class Situation:
+class MeasuredScene:
     """What is measured on. Two that say the same, of files with the same content, are equal."""
 
     name: str
@@ -73,12 +73,12 @@ class Situation:
         return {one.name: getattr(self, one.name) for one in dataclasses.fields(self)}
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Situation) and self.key == other.key
+        return isinstance(other, MeasuredScene) and self.key == other.key
 
     def __hash__(self) -> int:
         return hash(self.key)
 
-    def held_out(self) -> Situation:
+    def held_out(self) -> MeasuredScene:
         """The same, seen from the side: nothing is fitted to this view."""
         turn = np.radians(HELD_OUT)
         x, y, z = np.subtract(self.camera.position, self.camera.target)
@@ -90,13 +90,13 @@ class Situation:
 
 
 def names() -> dict[str, str]:
-    """The situations that come with the project: name → path."""
+    """The scenes that come with the project: name → path."""
     folder = os.path.join(place("examples"), "lab")
     return {stem(name): os.path.join(folder, name) for name in sorted(os.listdir(folder)) if name.endswith(".toml")}
 
 
-def load(name: str) -> Situation:
-    """The situation of a scene file, or one of ours by name. Raises SssgenError with all that is wrong with it."""
+def load(name: str) -> MeasuredScene:
+    """The scene of a scene file, or one of ours by name. Raises SssgenError with all that is wrong with it."""
     known = names()
     if not name.endswith(".toml") and "/" not in name and os.sep not in name:
         if name not in known:
@@ -106,8 +106,8 @@ def load(name: str) -> Situation:
     return of_scene(load_scene(name), name)
 
 
-def of_scene(scene: Scene, path: str) -> Situation:
-    """The situation that a scene describes. Raises SssgenError where it says too little to be measured."""
+def of_scene(scene: Scene, path: str) -> MeasuredScene:
+    """The scene that a scene describes. Raises SssgenError where it says too little to be measured."""
     document, shown = scene.document, posix(path)
     if not scene.measured:
         hint = 'add [medium] with preset = "marble", say; or [inlay] with depth = 0.02: docs/accuracy.md'
@@ -129,7 +129,7 @@ def of_scene(scene: Scene, path: str) -> Situation:
     name = stem(path)
     title = scene.title or name.replace("_", " ").capitalize()
     geometry, camera, lights = scene.geometry, scene.camera, scene.lights
-    return Situation(name, title, geometry, camera, lights, medium, inlay, size, contents(geometry))
+    return MeasuredScene(name, title, geometry, camera, lights, medium, inlay, size, contents(geometry))
 
 
 def contents(geometry: Geometry) -> str:

@@ -1,4 +1,4 @@
-"""The places that a situation's view shows, with all that a chain reads there. Arrays have their lanes last.
+"""The places that a scene's view shows, with all that a chain reads there. Arrays have their lanes last.
 
 One ray a pixel, through its centre: the reference follows the very same rays, so that nothing differs but the light.
 """
@@ -12,7 +12,7 @@ import numpy as np
 
 from sssgen.harness.backends import Array
 from sssgen.harness.scenes.placed import Bools
-from sssgen.lab.scene.measured_scene import Situation
+from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.support.diagnostics import failure
 
 GRAZING = 1e-3
@@ -61,19 +61,19 @@ class Points:
 
 
 @lru_cache(64)
-def points(situation: Situation) -> Points:
-    """The places of a situation. Raises SssgenError for geometry that cannot be read, or seen."""
-    width, height = situation.size
-    origin, directions = situation.camera.rays(width, height)
-    hits = situation.geometry.hits(origin, directions)
+def points(scene: MeasuredScene) -> Points:
+    """The places of a scene. Raises SssgenError for geometry that cannot be read, or seen."""
+    width, height = scene.size
+    origin, directions = scene.camera.rays(width, height)
+    hits = scene.geometry.hits(origin, directions)
     keep = hits.hit & (np.abs(np.einsum("nc,nc->n", hits.normal, directions)) > GRAZING)
     if not keep.any():
-        raise failure(f"the camera of '{situation.name}' sees nothing of its body", "turn it: [camera] target = […]")
+        raise failure(f"the camera of '{scene.name}' sees nothing of its body", "turn it: [camera] target = […]")
     place, normal, ray = hits.position[keep].T, hits.normal[keep].T, directions[keep].T
     tangent, uv = hits.tangent[keep].T, hits.uv[keep].T
-    model = situation.geometry.to_world()
-    inwards = situation.geometry.to_object()
-    turn = inwards[:3, :3] * situation.geometry.scale
+    model = scene.geometry.to_world()
+    inwards = scene.geometry.to_object()
+    turn = inwards[:3, :3] * scene.geometry.scale
     inputs = {
         "P": place, "N": normal, "V": -ray, "T": tangent[:3], "B": np.cross(normal.T, tangent[:3].T).T * tangent[3],
         "P_object": inwards[:3, :3] @ place + inwards[:3, 3:], "N_object": turn @ normal, "V_object": turn @ -ray,
