@@ -22,7 +22,7 @@ from sssgen.lab.chart.charting import Settings
 from sssgen.lab.gpu import chart_times as chart_gpu
 from sssgen.lab.scene import measured_scene
 from sssgen.support.file_writer import write_files
-from sssgen.support.progress import Bar
+from sssgen.support.progress import ProgressBar
 
 HERE = Path(__file__).parent
 FOLDER = HERE / "accuracy"
@@ -53,7 +53,7 @@ def main() -> int:
     given = options.parse_args()
     if given.gpu:
         return timed()
-    settings = Settings(scheduler=given.scheduler, processes=given.processes, shown=Bar)
+    settings = Settings(scheduler=given.scheduler, processes=given.processes, shown=ProgressBar)
     record = chart.charted([measured_scene.load(name) for name in scenes()], settings)
     trial = pick_trial.tried(settings)
     page(record, trial)

@@ -22,7 +22,7 @@ from sssgen.lab.jobs.result_store import Store
 from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
 from sssgen.support.file_writer import write_files
-from sssgen.support.progress import Bar
+from sssgen.support.progress import ProgressBar
 
 PAGE = Path(__file__).with_name("gallery.md")
 PICTURES = Path(__file__).with_name("gallery")
@@ -176,7 +176,7 @@ def main() -> None:
     add_workers(parser)
     where = parser.parse_args()
     processes = where.processes if where.scheduler or where.processes else 0
-    with Bar() as told:
+    with ProgressBar() as told:
         results = run(items(), where.scheduler, processes, Store(""), told)
     if failed := failures(results):
         raise SystemExit("\n".join(f"{one.name}: {one.message}" for one in failed))

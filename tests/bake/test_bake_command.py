@@ -344,7 +344,7 @@ def test_an_interrupt_leaves_nothing(monkeypatch: pytest.MonkeyPatch, arguments:
 
     before = there()
     with monkeypatch.context() as patch:
-        patch.setattr(progress.Bar, "__call__", interrupt)
+        patch.setattr(progress.ProgressBar, "__call__", interrupt)
         assert main(["bake", *arguments]) == 130
     assert there() == before
 

@@ -29,7 +29,7 @@ from sssgen.lab.jobs.result_store import Store, decoded, encoded
 from sssgen.lab.jobs.stress_items import spread
 from sssgen.lab.jobs.work_items import execute, task
 from sssgen.support.diagnostics import SssgenError
-from sssgen.support.progress import Bar
+from sssgen.support.progress import ProgressBar
 
 
 @pytest.fixture(autouse=True)
@@ -79,7 +79,7 @@ def test_keys() -> None:
     one = Item("executor_items:echo", (1,), "one")
     assert task(one).key == task(one._replace(name="another name")).key
     others = [one._replace(arguments=(2,)), one._replace(function="executor_items:fail")]
-    others += [one._replace(function="sssgen.support.progress:Bar")]
+    others += [one._replace(function="sssgen.support.progress:ProgressBar")]
     assert len({task(other).key for other in [one, *others]}) == 4
 
 
@@ -182,21 +182,27 @@ def test_an_interrupted_run_goes_on(tmp_path: Path, how: int) -> None:
 
 
 def test_bar_is_silent_where_there_is_no_terminal(capfd: pytest.CaptureFixture[str]) -> None:
-    with Bar() as told:
+    with ProgressBar() as told:
         run([Item("executor_items:echo", (1,))], processes=0, store=Store(""), progress=told)
     assert capfd.readouterr() == ("", "")
 
 
-@pytest.mark.parametrize("rich", [True, False])
-def test_bar_on_a_terminal(rich: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_bar_on_a_terminal(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("rich")
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     monkeypatch.setenv("TERM", "xterm")
-    if not rich:
-        monkeypatch.setitem(sys.modules, "rich.console", None)
-    with Bar() as told:
-        told(3, 4, "cube [one]")
+    with ProgressBar() as progress:
+        progress(3, 4, "cube [one]")
     shown = capsys.readouterr()
     assert not shown.out and "3/4" in shown.err and "cube [one]" in shown.err
+
+
+def test_no_bar_without_rich(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    monkeypatch.setitem(sys.modules, "rich.console", None)
+    with ProgressBar() as progress:
+        progress(3, 4, "cube")
+    assert capsys.readouterr() == ("", "")
 
 
 @pytest.fixture(scope="module")

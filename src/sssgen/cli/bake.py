@@ -11,7 +11,7 @@ from sssgen.cli.options import add_json, add_seed, add_workers
 from sssgen.cli.output import OK, print_json
 from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix
-from sssgen.support.progress import Bar
+from sssgen.support.progress import ProgressBar
 from sssgen.targets.texture_import import import_settings
 
 CHANNELS = ("red", "green", "blue", "alpha")
@@ -92,7 +92,7 @@ def _sdf(arguments: Namespace) -> Done:
 
     format = output.volume_format(arguments.output, arguments.format)
     output.check_apart(arguments.output, [arguments.MESH])
-    with Bar() as bar:
+    with ProgressBar() as bar:
         made = sdf(
             arguments.MESH,
             _wholes(arguments.resolution, "resolution"),
@@ -150,7 +150,7 @@ def _thickness(arguments: Namespace) -> Done:
         arguments.seed,
     )
     size = _size(arguments.size)
-    with Bar() as bar:
+    with ProgressBar() as bar:
         made = thickness_map(
             arguments.MESH, size, wanted, arguments.unwrap, arguments.processes, arguments.scheduler, bar
         )
@@ -184,7 +184,7 @@ def _depth(arguments: Namespace) -> Done:
     output.picture_suffix(arguments.output, (".exr", ".npy"))
     output.check_apart(arguments.output, [arguments.MESH, arguments.direction])
     towards, size = light.read(arguments.direction), _size(arguments.size)
-    with Bar() as bar:
+    with ProgressBar() as bar:
         values, facts = depth_map(arguments.MESH, towards, size, bar)
     paths = output.write_picture(arguments.output, values, facts)
     low, high = facts["range"]

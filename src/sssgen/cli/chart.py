@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from sssgen.cli.options import add_seed, add_workers
 from sssgen.cli.output import OK, print_json
 from sssgen.support.diagnostics import did_you_mean, failure
-from sssgen.support.progress import Bar
+from sssgen.support.progress import ProgressBar
 
 if TYPE_CHECKING:
     from sssgen.lab.chart.charting import Settings
@@ -85,7 +85,7 @@ def settings_of(arguments: Namespace) -> Settings:
             raise failure(f"no chart has the role '{role}'", hint)
     if "material" in roles and "thickness" not in roles:
         roles = ("thickness", *roles)
-    return Settings(arguments.samples, arguments.seed, roles, arguments.scheduler, arguments.processes, Bar)
+    return Settings(arguments.samples, arguments.seed, roles, arguments.scheduler, arguments.processes, ProgressBar)
 
 
 def summary(record: Mapping[str, Any]) -> str:

@@ -107,19 +107,19 @@ def _backends(given: str, half: bool) -> list[str]:
 
 
 def _stressed(chosen: list[Specimen], names: list[str], settings: Settings) -> Report:
-    """Everything, with a progress line; a technique at a time on all back ends."""
-    from sssgen.harness.stress.stress_progress import Progress
+    """Stresses one technique after the other, each on all back ends, with a progress bar."""
     from sssgen.harness.stress.stress_report import Report
     from sssgen.harness.stress.stress_run import Machines, stress
+    from sssgen.support.progress import ProgressBar
 
-    with Machines(names) as machines, Progress(len(chosen)) as progress:
+    with Machines(names) as machines, ProgressBar() as progress:
         rows = []
-        for one in chosen:
+        for index, specimen in enumerate(chosen):
 
-            def told(what: str, done: int, title: str = one.title) -> None:
-                progress(title, what, done / settings.samples)
+            def report(what: str, done: int, index: int = index, title: str = specimen.title) -> None:
+                progress(index + done / settings.samples, len(chosen), f"{title}: {what}")
 
-            rows.append(stress(one, machines, settings, told))
+            rows.append(stress(specimen, machines, settings, report))
         devices = {name: backend.device() for name, backend in machines.here.items()}
     return Report(settings, devices, machines.missing, rows)
 

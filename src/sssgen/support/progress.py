@@ -1,4 +1,4 @@
-"""A progress bar on a terminal; nothing elsewhere."""
+"""A progress bar on a terminal, by rich (https://github.com/Textualize/rich)."""
 
 from __future__ import annotations
 
@@ -6,42 +6,38 @@ import contextlib
 import sys
 from types import TracebackType
 
-WIDTH = 20
-"""Of the bar that is drawn without the package rich, in columns."""
 
+class ProgressBar:
+    """`with ProgressBar() as progress: run(items, progress=progress)`: on the standard error stream, erased at the end.
 
-class Bar:
-    """`with Bar() as told: run(items, progress=told)`: on the standard error stream, and gone when it ends."""
+    It shows nothing where that is no terminal, and without rich.
+    """
 
     def __init__(self) -> None:
-        self.shown = sys.stderr is not None and sys.stderr.isatty()
-        self.rich = None
-        if self.shown:
+        self.bar = None
+        if sys.stderr is not None and sys.stderr.isatty():
             with contextlib.suppress(ImportError):
                 from rich.console import Console
                 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
                 columns = (BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(), TextColumn("{task.description}"))
-                self.rich = Progress(*columns, console=Console(stderr=True), transient=True)
-                self.task = self.rich.add_task("", total=None)
+                self.bar = Progress(*columns, console=Console(stderr=True), transient=True)
+                self.task = self.bar.add_task("", total=None)
 
-    def __enter__(self) -> Bar:
-        if self.rich is not None:
-            self.rich.start()
+    def __enter__(self) -> ProgressBar:
+        if self.bar is not None:
+            self.bar.start()
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
-        if self.rich is not None:
-            self.rich.stop()
-        elif self.shown:
-            print("\r\033[K", end="", file=sys.stderr, flush=True)
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self.bar is not None:
+            self.bar.stop()
 
-    def __call__(self, done: int, total: int, name: str) -> None:
-        """So many are done of so many, the last of them called `name`."""
-        if self.rich is not None:
+    def __call__(self, done: float, total: int, name: str) -> None:
+        """Shows how many of `total` items are done, and the name of the current one."""
+        if self.bar is not None:
             from rich.markup import escape
 
-            self.rich.update(self.task, completed=done, total=total, description=escape(name))
-        elif self.shown:
-            bar = "#" * round(WIDTH * done / max(total, 1))
-            print(f"\r\033[K[{bar:.<{WIDTH}}] {done}/{total} {name}", end="", file=sys.stderr, flush=True)
+            self.bar.update(self.task, completed=done, total=total, description=escape(name))

@@ -1,7 +1,7 @@
 """Runs work items: here, in processes of this machine, or on a Dask cluster, with the same results to the byte.
 
     items = [Item("sssgen.lab.chart.charting:measured", (technique, setting, scene), f"{technique} on {scene}") for ...]
-    with Bar() as told:
+    with ProgressBar() as told:
         results = run(items, progress=told)
 
 Results are kept under a digest of the function, the arguments and the code, so that a run that was interrupted goes on

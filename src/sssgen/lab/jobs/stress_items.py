@@ -15,7 +15,7 @@ from sssgen.harness.stress.subject import Specimen
 from sssgen.lab.jobs.executor import Item, failures, run
 from sssgen.lab.jobs.result_store import Store
 from sssgen.support.diagnostics import Diagnostic, SssgenError
-from sssgen.support.progress import Bar
+from sssgen.support.progress import ProgressBar
 
 _one = threading.Lock()
 """A worker's back ends answer one question at a time."""
@@ -33,7 +33,7 @@ def spread(
     Raises SssgenError where the scheduler does not answer, and for a technique whose worker dies each time.
     """
     items = [Item(f"{__name__}:stressed", (one, tuple(names), settings), one.title) for one in chosen]
-    with Bar() as told:
+    with ProgressBar() as told:
         results = run(items, scheduler, processes, Store(""), told)
     if failed := failures(results):
         raise SssgenError([Diagnostic("error", f"{one.name}: {one.message}") for one in failed])
