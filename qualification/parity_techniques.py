@@ -3,7 +3,8 @@
     for case in cases():
         measure(case, backends.get("gl"), lanes=10_000)
 
-What may be beyond `deviation.GOAL` stands in `KNOWN`, with its reason.
+A technique that may deviate by more than `deviation.GOAL` declares the reason and its limits: `deviation` and
+`deviation_bounds` in its file.
 """
 
 from __future__ import annotations
@@ -35,81 +36,15 @@ class Case(NamedTuple):
     bind: tuple[tuple[str, str], ...] = ()
 
 
-class Known(NamedTuple):
-    """What is known to be beyond the goal, and why."""
+class Limits(NamedTuple):
+    """What the results of a technique may deviate on a back end."""
 
-    techniques: tuple[str, ...]
-    reason: str
-    backends: tuple[str, ...] = BACKENDS
     largest: float = GOAL
-    """The largest deviation of lanes that are not excused."""
+    """The largest deviation of lanes that are not excluded."""
     share: float = SHARE
     """The largest share of lanes that are."""
     bound_share: float = SHARE
     """The same, where other functions are bound to the slots."""
-
-
-KNOWN = (
-    Known(
-        ("standard",),
-        "A mirror's peak, thousands high: at roughness 0.045 the last bits of N and H are 3e-5 of its width.",
-    ),
-    Known(
-        ("alpha_erosion", "normal_from_height"),
-        "Slopes are differences of texture reads a texel apart, divided by that texel.",
-    ),
-    Known(
-        ("depth_map_absorption",),
-        "A baseline: exp(-sigma_t x), where x is a difference of lengths and sigma_t up to 100. It may be large.",
-    ),
-    Known(("parallax_refracted",), "Near the critical angle, on the way into a thinner body: a square root near 0."),
-    Known(
-        ("distance_texture",), "The difference 2 texel - 1 near the surface, times a `distance_range` of up to 100."
-    ),
-    Known(
-        ("march_distance_texture", "studio"), "A way that just touches a surface, or the side of the box."
-    ),
-    Known(
-        ("distance_field_march",), "With a `stored_range` of 0.001 what is stored is steep: its step at 0.5 moves."
-    ),
-    Known(("alisavakis_lobe",), "A power below 1 is steep where the lobe begins."),
-    Known(
-        ("voronoi_thickness", "voronoi_normal"),
-        "The last bit of `uv * cell_count` (up to 400 cells) is 3e-5 of a cell, and the slopes of narrow bevels are "
-        "steep.",
-        share=0.15,
-    ),
-    Known(
-        ("raymarch",),
-        "Its normal is made of differences of distances 0.001 apart, so that the roundings of these turn it by up to "
-        "1e-4 on most of a curved body (2e-4 from a texture), and on 1 % of a box; more on an edge. P, where a ray "
-        "goes far and meets nothing.",
-        largest=1e-4,
-        share=0.02,
-        bound_share=1.0,
-    ),
-    Known(
-        ("cheap_sss_raymarch",),
-        "A baseline without a far limit: where the ray meets nothing P grows beyond float32.",
-        share=0.3,
-    ),
-    Known(
-        ("xt95_thickness",),
-        "A baseline with a hash from `fract(sin(n) * 3538.5453)`, as published: it multiplies what the sine rounds.",
-        largest=1e-3,
-        share=0.7,
-    ),
-    Known(
-        ("xt95_thickness",), "The same, with the browser's coarse sine.", ("browser",), largest=0.5, share=0.7
-    ),
-    Known(
-        ("camera_orbit",),
-        "SwiftShader's sine and cosine are off by up to 2e-4; WGSL allows 5e-4.",
-        ("browser",),
-        largest=2e-3,
-        share=0.05,
-    ),
-)  # fmt: skip
 
 
 def cases() -> list[Case]:
@@ -122,10 +57,10 @@ def cases() -> list[Case]:
     return found
 
 
-def known(technique: str, backend: str) -> Known:
-    """What is known of a technique on a back end; the later entries are the more special ones."""
-    found = [one for one in KNOWN if technique in one.techniques and backend in one.backends]
-    return found[-1] if found else Known((technique,), "")
+def limits(technique: str, backend: str) -> Limits:
+    """The limits of a technique on a back end: the usual ones, or those that its `deviation_bounds` declare."""
+    declared = library.load(technique).attributes.deviation_bounds
+    return Limits(**declared.get(backend, declared.get("", {})))
 
 
 def measure(case: Case, backend: Backend, lanes: int = LANES, seed: int = SEED) -> Deviation:
@@ -136,7 +71,7 @@ def measure(case: Case, backend: Backend, lanes: int = LANES, seed: int = SEED) 
 
 def excess(case: Case, backend: str, found: Deviation, lanes: int) -> str:
     """What of a deviation is neither within the goal nor known, in words; nothing where all is well."""
-    limit = known(case.technique, backend)
+    limit = limits(case.technique, backend)
     title = " ".join([case.technique, *("=".join(pair) for pair in case.bind)])
     if not found.largest <= limit.largest:
         where = f"{found.output}[{found.lane}] is {found.got.tolist()}, not {found.wanted.tolist()}"

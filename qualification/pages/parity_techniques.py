@@ -9,10 +9,11 @@ from pathlib import Path
 from textwrap import wrap
 from typing import NamedTuple
 
-from qualification.parity_techniques import BACKENDS, BOUND_LANES, KNOWN, LANES, SEED, Known, cases, excess, measure
+from qualification.parity_techniques import BACKENDS, BOUND_LANES, LANES, SEED, cases, excess, measure
 from sssgen.harness import backends
 from sssgen.harness.backends import Backend
 from sssgen.harness.evaluate.deviation import DRAWS, GOAL, MARGIN, Deviation
+from sssgen.material import library
 
 PAGE = Path(__file__).parents[2] / "docs" / "parity_techniques.md"
 
@@ -86,11 +87,8 @@ def _plain(value: float) -> str:
 def _reasons(name: str, row: Row) -> str:
     if not row.share and max(row.largest.values()) <= GOAL:
         return ""
-    told: list[Known] = [one for one in KNOWN if name in one.techniques]
-    reasons = [
-        one.reason if len(one.backends) == len(BACKENDS) else f"{', '.join(one.backends)}: {one.reason}" for one in told
-    ]
-    return "<br>".join(reasons) or "Single lanes just where a decision turns, or nearly equal numbers are subtracted."
+    reason = library.load(name).attributes.deviation
+    return reason or "Single lanes just where a decision turns, or nearly equal numbers are subtracted."
 
 
 if __name__ == "__main__":

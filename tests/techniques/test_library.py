@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable
 from functools import cache
+from itertools import permutations
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,8 @@ from sssgen.harness.check.compiler_inputs import sources
 from sssgen.harness.compilers import Compiler, errors
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Matrix, Sampler, Scalar
+from sssgen.lang.check.quantities import SCALARS
+from sssgen.lang.check.suggested_conversions import suggested_conversions
 from sssgen.lang.loader import load_file
 from sssgen.material import library
 from sssgen.material.library import Technique
@@ -22,6 +25,7 @@ from sssgen.material.model import Material
 from sssgen.material.slots import candidates
 from sssgen.pipeline.compiler import FORMS, Compiled
 from sssgen.pipeline.compiler import compile as compile_material
+from sssgen.support.diagnostics import SssgenError
 from sssgen.targets import registry
 
 NAMES = sorted(library.index())
@@ -30,21 +34,57 @@ NAMES = sorted(library.index())
 # Documented
 
 SECTIONS = {"summary", "role", "formula", "source", "units"}
-KNOWN = SECTIONS | {"limits", "corrects", "baseline", "uncharted", "glows"}
+STRUCTURED = {"role", "formula", "superseded_by", "suggested", "legend", "shape", "deviation_bounds"}
+"""Sections that are no sentences."""
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_doc_comment_says_all(name: str) -> None:
     technique = library.load(name)
     doc = technique.doc
-    assert doc.keys() >= SECTIONS and doc.keys() <= KNOWN, sorted(doc)
+    assert doc.keys() >= SECTIONS, sorted(doc)
     assert doc.keys() & {"limits", "corrects", "baseline"}, "neither limits nor corrects"
-    assert all(text and (key in ("role", "formula") or text.endswith(".")) for key, text in doc.items()), doc
+    assert all(text and (key in STRUCTURED or text.endswith(".")) for key, text in doc.items()), doc
     folder = Path(technique.path).parent.name
     assert doc["role"] == folder or (folder == "baselines" and technique.baseline)
-    if technique.baseline:
-        corrected = doc["baseline"].partition("Corrected: ")[2].rstrip(".")
-        assert all(word in library.index() for word in corrected.replace(" and ", ", ").split(", ") if word), corrected
+    assert (folder == "baselines") == bool(technique.attributes.superseded_by)
+
+
+def test_each_conversion_is_suggested_once() -> None:
+    suggested = {one.attributes.suggested: one.name for one in library.load_all() if one.attributes.suggested}
+    assert sorted(suggested) == sorted(permutations(SCALARS, 2))
+    assert suggested_conversions() == suggested
+
+
+WRONG_ATTRIBUTES = {
+    "limts: None.": ("unknown attribute 'limts'", "did you mean 'limits'?"),
+    "units: a\nunits: b": ("attribute 'units' is given twice", ""),
+    "shape: boxx": ("unknown shape 'boxx'", "did you mean 'box'?"),
+    "suggested: thickness": ("'thickness' is no conversion", "write `suggested: thinness to thickness`, say"),
+    "suggested: thickness to thinnes": ("unknown quantity 'thinnes'", "did you mean 'thinness'?"),
+    "suggested: thickness to thinness": ("'f' does not convert thickness to thinness", ""),
+    "superseded_by: beer_lambert": ("superseded_by is for baselines", "write `baseline: TEXT`, too"),
+    "baseline: One.\nsuperseded_by: beer_lamber": (
+        "unknown technique 'beer_lamber' in superseded_by",
+        "did you mean 'beer_lambert'?",
+    ),
+    "deviation_bounds: largest 1": ("deviation_bounds without deviation", "write the reason: `deviation: TEXT`"),
+    "deviation: Why.\ndeviation_bounds: most 1": ("unknown bound 'most'", "bounds: largest, share, bound_share"),
+    "deviation: Why.\ndeviation_bounds: largest": (
+        "'largest' is no bound",
+        "write `largest 0.001, share 0.02`, say",
+    ),
+}
+
+
+@pytest.mark.parametrize("attributes", WRONG_ATTRIBUTES)
+def test_attributes_are_checked(attributes: str, tmp_path: Path) -> None:
+    lines = "".join(f"/// {line}\n" for line in ["A test.", "role: distance", *attributes.split("\n")])
+    (tmp_path / "f.sss").write_text(f"{lines}float f(float x) {{ return x; }}\n", encoding="utf-8")
+    with pytest.raises(SssgenError) as caught:
+        library.load(str(tmp_path / "f.sss"))
+    (found,) = caught.value.diagnostics
+    assert (found.message, found.hint) == WRONG_ATTRIBUTES[attributes]
 
 
 UNBOUNDED = {

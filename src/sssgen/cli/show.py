@@ -13,6 +13,8 @@ from sssgen.material import library, slots
 from sssgen.material.library import Technique
 
 WIDTH = 100
+_OTHERWISE_SHOWN = ("hint_range", "unit", "alias", "holds", "sample_range", "bound_range")
+"""Hints that are shown elsewhere, and those of tests."""
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -65,7 +67,7 @@ def _uniform(uniform: Uniform) -> dict[str, Any]:
         facts["range"] = list(hints["hint_range"])
     if "unit" in hints:
         facts["unit"] = hints["unit"][0]
-    others = [name for name in hints if name not in ("hint_range", "unit", "alias", "holds")]
+    others = [name for name in hints if name not in _OTHERWISE_SHOWN]
     if others:
         facts["hints"] = others
     if uniform.quantity:

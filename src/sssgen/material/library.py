@@ -9,6 +9,8 @@ from typing import NamedTuple
 
 from sssgen.ir.nodes import Function, Module, Uniform
 from sssgen.lang.loader import load_file
+from sssgen.material import attributes
+from sssgen.material.attributes import Attributes
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.file_memo import Kept, remembered
 from sssgen.support.paths import PACKAGE, posix, stem
@@ -39,11 +41,13 @@ class Technique(NamedTuple):
     function: Function
     doc: dict[str, str]
     """The doc comment's sections: `summary` and its `key: text` entries."""
+    attributes: Attributes
+    """The values of the sections that are more than text."""
 
     @property
     def baseline(self) -> bool:
-        """Whether this is a source as published, kept to be compared with."""
-        return "baseline" in self.doc
+        """Whether this is a formula as its source published it."""
+        return self.attributes.baseline
 
     @property
     def slots(self) -> tuple[Function, ...]:
@@ -105,14 +109,27 @@ def _read_technique(path: str) -> Technique:
     function = next((f for f in reversed(module.functions) if f.name == name and f.body is not None), None)
     if function is None:
         raise failure(f"the file has no function '{name}'", "a technique is named like its file", shown)
-    doc = sections(function.doc)
+    doc = attributes.sections(function.doc, shown)
     role = doc.get("role", folder_of(path))
     if "role" not in doc and role not in ROLES:
         hint = "write `role: translucency`, say, in the doc comment that stands directly before the function"
         raise failure(f"the technique '{name}' has no role", hint, shown)
     if role not in ROLES:
         raise failure(f"unknown role '{role}'", did_you_mean(role, ROLES) or f"roles: {', '.join(ROLES)}", shown)
-    return Technique(name, role, path, module, function, doc)
+    declared = attributes.read(doc, shown)
+    _check_attributes(declared, function, shown)
+    return Technique(name, role, path, module, function, doc, declared)
+
+
+def _check_attributes(declared: Attributes, function: Function, shown: str) -> None:
+    """Raises SssgenError where attributes do not agree with the library or the function."""
+    for name in declared.superseded_by:
+        if name not in index():
+            raise failure(f"unknown technique '{name}' in superseded_by", did_you_mean(name, index()), shown)
+    if declared.suggested:
+        source, target = declared.suggested
+        if [param.quantity for param in function.params] != [source] or function.quantity != target:
+            raise failure(f"'{function.name}' does not convert {source} to {target}", "", shown)
 
 
 def load_all() -> Iterator[Technique]:
@@ -125,17 +142,3 @@ def load_all() -> Iterator[Technique]:
             wrong += error.diagnostics
     if wrong:
         raise SssgenError(wrong)
-
-
-def sections(doc: str) -> dict[str, str]:
-    """A doc comment's first paragraph as `summary`, and its `key: text` sections."""
-    found: dict[str, str] = {}
-    key = "summary"
-    for line in doc.splitlines():
-        word, colon, rest = line.partition(":")
-        if colon and word.isidentifier() and word.islower() and not line.startswith(" "):
-            key = word
-            found[key] = rest.strip()
-        elif line.strip():
-            found[key] = f"{found.get(key, '')} {line.strip()}".strip()
-    return found

@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 from sssgen.ir.nodes import Param, Span
 from sssgen.ir.types import BOOL, FLOAT, VEC3, VOID, Type, spell
-from sssgen.lang.check.quantities import SCALARS, conversion, words
+from sssgen.lang.check.quantities import SCALARS, words
+from sssgen.lang.check.suggested_conversions import suggested_conversions
 from sssgen.material.chain_assembly import DEFAULTS, INPUTS
 from sssgen.material.library import Technique, folder_of, index, load_path
 from sssgen.support.diagnostics import did_you_mean
@@ -124,8 +125,7 @@ def _check_given(technique: Technique, quantity: str, given: dict[str, str], spa
     if quantity in given:
         return
     for source in reversed(list(given)):
-        remedy = conversion(source, quantity)
-        name = remedy.removeprefix("convert it with ").removesuffix("(…)")
+        name = suggested_conversions()[source, quantity]
         hint = f"add a conversion stage after '{given[source]}': [[thickness]] technique = \"{name}\""
         report(span, f"'{technique.name}' takes {words(quantity)}, but the chain has {words(source)}", hint)
         return

@@ -136,3 +136,16 @@ def candidates(slot: Function) -> list[str]:
             offered = [one.name for one in own if one.name == name or any(param.quantity for param in one.params)]
             found += [name if one == name else f"{name}:{one}" for one in offered]
     return found
+
+
+def body(shape: str, place: str) -> str:
+    """The library's distance function of a `shape` for positions of the quantity `place`, as a material writes it.
+
+    '' where there is none: `body("box", "object_position")` is `box:box_object`.
+    """
+    for technique in library.load_all():
+        own = [one for one in technique.module.functions if one.span.file == library.shown_name(technique.path)]
+        for function in own if technique.attributes.shape == shape else ():
+            if [param.quantity for param in function.params] == [place]:
+                return technique.name if function.name == technique.name else f"{technique.name}:{function.name}"
+    return ""

@@ -26,7 +26,7 @@ class MaterialStage(NamedTuple):
 def stages_for(material: Material, target: Target) -> list[MaterialStage]:
     """The material's stages without what the engine does, with the lighting that the target adds."""
     stages = [
-        MaterialStage(_link_stage(stage), stage.span, number, "glows" in stage.technique.doc)
+        MaterialStage(_link_stage(stage), stage.span, number, stage.technique.attributes.glows)
         for number, stage in enumerate(material.stages)
     ]
     lit = material.shading == "lit"

@@ -2,8 +2,9 @@
 
 Each parameter has numbers of its own, which depend on its name and the seed alone: directions are unit vectors (some
 lie nearly along or against one another), a scalar quantity is in its range (with exactly 0 and 1 among it), a uniform
-goes over its `hint_range`, or around its default where it has none. Textures hold float16 numbers, smooth on one half
-and hard on the other; 3-D ones are distance fields.
+goes over its `sample_range` (where another technique has declared it, its `bound_range`), its `hint_range`, or around
+its default where it has neither. Textures hold float16 numbers, smooth on one half and hard on the other; 3-D ones are
+distance fields.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from sssgen.harness.evaluate.evaluation import shape_of
 from sssgen.harness.evaluate.probes import Subject
 from sssgen.ir.nodes import Param, Uniform
 from sssgen.ir.types import Matrix, Sampler, Scalar, Vector, kind_of
+from sssgen.support.paths import stem
 from sssgen.targets.numpy_textures import Texture
 
 ENDS = 0.04
@@ -34,34 +36,6 @@ RANGES = {
     "thinness": (0.0, 1.0), "transmittance": (0.0, 1.0), "time": (0.0, 60.0), "light_color": (0.0, 4.0),
 }  # fmt: skip
 """Of parameters, by quantity or name: a scene of a few units, a texture that repeats, a minute. All others: 0 to 1."""
-
-LIMITS = {
-    # the technique's own `limits`: no pow(0, 0), no 0 / 0, no half vector of length 0
-    ("gltf_volume", "attenuation_color"): (0.01, 1.0),
-    ("gltf_volume", "attenuation_distance"): (0.01, 10.0),
-    ("alisavakis_lobe", "concentration"): (0.01, 32.0),
-    ("three_js_port", "thickness_power"): (0.01, 32.0),
-    ("subsurface_parallax", "eta"): (0.3, 0.99),
-    ("", "distortion"): (0.0, 0.99),
-    ("", "thickness_distortion"): (0.0, 0.99),
-    # "about one texel", of the textures here
-    ("", "texel_size"): (0.5 / TEXELS, 0.1),
-    # what the texture's 1 stands for, so that its ball is a distance field, and the scale that goes with the matrix
-    ("", "distance_range"): (0.25, 1.5),
-    ("", "object_scale"): (0.5, 1.0),
-    # a body in a scene of a few units
-    ("", "radius"): (0.2, 1.0),
-    ("", "ring_radius"): (0.5, 1.5),
-    ("", "tube_radius"): (0.1, 0.4),
-    # the techniques that stand alone, or only multiply by it, take it all
-    ("sphere", "radius"): (0.001, 100.0),
-    ("capsule", "radius"): (0.001, 100.0),
-    ("torus", "ring_radius"): (0.001, 100.0),
-    ("torus", "tube_radius"): (0.001, 100.0),
-    ("distance_texture", "distance_range"): (0.001, 100.0),
-    ("march_distance_texture", "object_scale"): (0.001, 1000.0),
-}
-"""Where less than a uniform's `hint_range` makes sense: (technique, or "" for all, and uniform) → lowest, highest."""
 
 
 def samples(subject: Subject, count: int, seed: int = 0) -> dict[str, Any]:
@@ -127,7 +101,7 @@ def _uniform(subject: Subject, uniform: Uniform, count: int, seed: int) -> Array
     rng, hints = _rng(uniform.name, seed), dict(uniform.hints)
     size = (count, *shape_of(uniform.type))
     default = np.array(uniform.default, np.float64).reshape(size[1:])
-    ends = LIMITS.get((subject.name, uniform.name)) or LIMITS.get(("", uniform.name)) or hints.get("hint_range")
+    ends = _ends(subject, uniform)
     if ends or "source_color" in hints:
         low, high = (float(end) for end in (ends or (0.0, 1.0))[:2])
     kind = kind_of(uniform.type)
@@ -145,6 +119,14 @@ def _uniform(subject: Subject, uniform: Uniform, count: int, seed: int) -> Array
         return moved
     spread = min(0.5 * np.abs(default).max(), 0.25) or 0.25
     return np.asarray(default + rng.uniform(-spread, spread, size))
+
+
+def _ends(subject: Subject, uniform: Uniform) -> tuple[float | str, ...]:
+    """The declared range of a uniform's random values, () for none; its own technique takes the whole `hint_range`."""
+    hints = dict(uniform.hints)
+    if "bound_range" in hints and stem(uniform.span.file) != subject.name:
+        return hints["bound_range"]
+    return hints.get("sample_range") or hints.get("hint_range") or ()
 
 
 def _within(rng: np.random.Generator, size: tuple[int, ...], low: float, high: float) -> Array:

@@ -13,28 +13,17 @@ from sssgen.harness.stress.contract_inputs import TEXELS
 from sssgen.harness.stress.subject import Specimen
 from sssgen.harness.stress.trial import Trial
 from sssgen.ir.types import kind_of
+from sssgen.material import library, slots
 from sssgen.targets.numpy_textures import Texture
 
-_FIELDS = ("distance_texture", "distance_texture_world")
 
-
-def _bound(specimen: Specimen, *functions: str) -> Specimen | None:
-    """The technique with the first of the functions that fits its slot."""
-    from sssgen.material import slots
-
-    for name in specimen.slots:
-        declared = next(slot for slot in _slots(specimen) if slot.name == name)
-        fitting = slots.candidates(declared)
-        for function in functions:
-            if function in fitting:
-                return specimen.rebound(name, function)
+def _bound(specimen: Specimen, shape: str) -> Specimen | None:
+    """The technique with the library's body of a shape in the first slot that it fits."""
+    for slot in library.load(specimen.technique).slots if specimen.slots else ():
+        function = slots.body(shape, slot.params[0].quantity if slot.params else "")
+        if function in slots.candidates(slot):
+            return specimen.rebound(slot.name, function)
     return None
-
-
-def _slots(specimen: Specimen) -> Any:
-    from sssgen.material import library
-
-    return library.load(specimen.technique).slots
 
 
 def _measures(specimen: Specimen) -> bool:
@@ -44,7 +33,7 @@ def _measures(specimen: Specimen) -> bool:
 
 def not_lipschitz(specimen: Specimen) -> Iterator[Trial]:
     """A field that is no distance: random texels, a hundred times too steep."""
-    if not _measures(specimen) or (steep := _bound(specimen, *_FIELDS)) is None:
+    if not _measures(specimen) or (steep := _bound(specimen, "texture")) is None:
         return
     rng = np.random.default_rng(17)
     texels = Texture(rng.integers(0, 2, (TEXELS,) * 3 + (1,)).astype(np.float16), wrap="clamp")
@@ -58,7 +47,7 @@ def not_lipschitz(specimen: Specimen) -> Iterator[Trial]:
 
 def medial_axis(specimen: Specimen) -> Iterator[Trial]:
     """Over the face of a box, across its diagonals: no jump. Where the slope has one, the technique says so."""
-    if _measures(specimen) and (boxed := _bound(specimen, "box", "box:box_object")):
+    if _measures(specimen) and (boxed := _bound(specimen, "box")):
         along = np.linspace(-0.45, 0.45, 2001)
         at = np.stack([along, np.full_like(along, 0.2), np.full_like(along, 0.5)])
         yield Trial("", boxed, plain(boxed, len(along), {"P": at, "P_object": at}), path=True)
@@ -66,7 +55,7 @@ def medial_axis(specimen: Specimen) -> Iterator[Trial]:
 
 def hit_offset(specimen: Specimen) -> Iterator[Trial]:
     """A hit that lies a little inside, or outside: about what the surface itself reads."""
-    if _measures(specimen) and (boxed := _bound(specimen, "box", "box:box_object")):
+    if _measures(specimen) and (boxed := _bound(specimen, "box")):
         off = np.linspace(-2e-3, 2e-3, 1001)
         at = np.stack([np.full_like(off, 0.1), np.full_like(off, 0.2), 0.5 + off])
         yield Trial("", boxed, plain(boxed, len(off), {"P": at, "P_object": at}), path=True)
@@ -74,7 +63,7 @@ def hit_offset(specimen: Specimen) -> Iterator[Trial]:
 
 def grazing_march(specimen: Specimen) -> Iterator[Trial]:
     """A march that starts on the surface of a ball and turns through its tangent."""
-    if _measures(specimen) and (ball := _bound(specimen, "sphere", "sphere:sphere_object")):
+    if _measures(specimen) and (ball := _bound(specimen, "sphere")):
         sine, cosine = angles(-5.0, 5.0)
         light = np.stack([cosine, 0.0 * sine, sine])
         given = {"P": (0, 0, 1), "P_object": (0, 0, 1), "L": light, "L_object": light, "V_object": -light}
@@ -100,7 +89,7 @@ def concave(specimen: Specimen) -> Iterator[Trial]:
     lit = {"L", "L_object"} & specimen.subject.params.keys()
     if not _measures(specimen) or not lit or specimen.quantity("result") != "thickness":
         return
-    if ring := _bound(specimen, "torus", "torus:torus_object"):
+    if ring := _bound(specimen, "torus"):
         many, few = np.array([128], np.int32), np.array([64], np.int32)
         given = {
             "P": (-1.25, 0, 0), "P_object": (-1.25, 0, 0), "L": (1, 0, 0), "L_object": (1, 0, 0),

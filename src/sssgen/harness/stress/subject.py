@@ -26,7 +26,7 @@ class Specimen(NamedTuple):
     role: str
     doc: Mapping[str, str]
     baseline: bool = False
-    """Whether this is a source as published, faults and all."""
+    """Whether this is a source as published, faults and all, for which the library has a better technique."""
     bind: Mapping[str, str] = {}
     """Slot → function, as `--bind` takes them."""
     settings: Mapping[str, tuple[float, ...]] = {}
@@ -64,8 +64,7 @@ def specimens(names: Sequence[str]) -> list[Specimen]:
     A name is a technique, a .sss file, FILE:FUNCTION, an example or a .toml file. Raises SssgenError.
     """
     if not names:
-        paths = library.index().items()
-        return [technique(name) for name, path in paths if library.folder_of(path) != "baselines"]
+        return [technique(one.name) for one in library.load_all() if not one.attributes.superseded_by]
     wrong, found = [], []
     for name in dict.fromkeys(names):
         try:
@@ -94,12 +93,7 @@ def technique(name: str, bind: Mapping[str, str] | None = None) -> Specimen:
     if name.rpartition(":")[0].endswith((".sss", ".glsl")):
         return Specimen(name, name, made, "distance", {}, bind=bind or {})
     found = library.load(name)
-    return Specimen(name, name, made, found.role, found.doc, _published(found), bind or {})
-
-
-def _published(technique: library.Technique) -> bool:
-    """Whether a technique of the library stands among the sources as published."""
-    return library.folder_of(technique.path) == "baselines"
+    return Specimen(name, name, made, found.role, found.doc, bool(found.attributes.superseded_by), bind or {})
 
 
 def stages(material: Material) -> list[Specimen]:
@@ -114,7 +108,9 @@ def stages(material: Material) -> list[Specimen]:
         settings = {name: stage.values[name] for name in stage.fixed if name in made.uniforms and name in stage.values}
         name = chosen.name if chosen.name in library.index() else chosen.path
         title = f"{material.name}: {chosen.name}"
-        found.append(Specimen(title, name, made, chosen.role, chosen.doc, _published(chosen), bind, settings))
+        found.append(
+            Specimen(title, name, made, chosen.role, chosen.doc, bool(chosen.attributes.superseded_by), bind, settings)
+        )
     return found
 
 

@@ -17,7 +17,7 @@ from sssgen.ir.types import Sampler, kind_of
 from sssgen.lab.measure.measured_chain import Stage
 from sssgen.lab.scene.scene_body import Body
 from sssgen.lang.check.quantities import SCALARS
-from sssgen.material import library
+from sssgen.material import library, slots
 from sssgen.material.library import Technique
 
 ROLES = ("coordinates", "thickness", "translucency", "material")
@@ -57,7 +57,7 @@ class Candidate(NamedTuple):
         bind, values = [], []
         for slot in technique.slots:
             in_world = slot.params[0].quantity == "world_position"
-            bind.append((slot.name, body.function if in_world else "distance_texture"))
+            bind.append((slot.name, body.function if in_world else slots.body("texture", slot.params[0].quantity)))
             values += list(body.parameters.items()) if in_world else []
         own = {key for key, _ in fixed}
         given = (*fixed, *((key, value) for key, value in values if key not in own))
@@ -94,7 +94,8 @@ def thickness() -> list[Candidate]:
         for to_length in routes(technique.function.quantity, "thickness"):
             for given in settings(technique):
                 chain = (technique.name, *to_length, "shown_thickness")
-                shown = label(technique.name, given) + (", as a slab" if "slab_from_thinness" in to_length else "")
+                legends = [load(name).attributes.legend for name in to_length]
+                shown = ", ".join([label(technique.name, given), *filter(None, legends)])
                 found.append(Candidate("thickness", technique.name, shown, given, chain, technique.baseline))
     return found
 
@@ -195,13 +196,13 @@ def quantity_taken(technique: Technique) -> str:
 def of_role(role: str) -> list[Technique]:
     """The library's techniques of a role that are charted, the published ones last."""
     loaded = [library.load(name) for name in library.index()]
-    of_it = [technique for technique in loaded if technique.role == role and "uncharted" not in technique.doc]
+    of_it = [technique for technique in loaded if technique.role == role and not technique.attributes.uncharted]
     return sorted(of_it, key=lambda technique: is_published(technique))
 
 
 def is_published(technique: Technique) -> bool:
-    """Whether a technique is a source's own form, kept for comparison."""
-    return library.folder_of(technique.path) == "baselines"
+    """Whether a technique is a source's own form, kept only for comparison."""
+    return bool(technique.attributes.superseded_by)
 
 
 def settings(technique: Technique) -> list[tuple[tuple[str, int], ...]]:

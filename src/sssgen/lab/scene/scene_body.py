@@ -16,6 +16,7 @@ import numpy as np
 from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
 from sssgen.harness.scenes.placed import Array, Vector
 from sssgen.harness.scenes.scene import DistanceTexture, placement
+from sssgen.material import slots
 from sssgen.support.diagnostics import failure
 
 TEXELS = 64
@@ -38,10 +39,10 @@ class Body:
 def body(geometry: Geometry) -> Body:
     """The body's distance function in world space. Raises SssgenError for a shape that has none."""
     if isinstance(geometry, Mesh):
-        return Body("distance_texture_world")
+        return Body(slots.body("texture", "world_position"))
     if isinstance(geometry, Distance):
         if not np.array_equal(geometry.to_world(), np.eye(4)):
-            return Body("distance_texture_world")
+            return Body(slots.body("texture", "world_position"))
         return _function_of(geometry)
     return Body(f"{FILE}:body", {FILE: text(geometry)})
 

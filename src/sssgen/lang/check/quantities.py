@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import FLOAT, VEC2, VEC3, Type, spell, with_article
+from sssgen.lang.check.suggested_conversions import suggested_conversions
 
 SPACES = ("world", "object", "tangent", "uv")
 
@@ -20,15 +21,6 @@ for _space in SPACES:
 SCALARS = ("thickness", "thinness", "transmittance")
 
 _TEXEL = "texel of "
-
-_CONVERSIONS = {
-    ("thickness", "transmittance"): "beer_lambert",
-    ("thickness", "thinness"): "thinness_from_thickness",
-    ("thinness", "thickness"): "thickness_from_thinness",
-    ("thinness", "transmittance"): "transmittance_from_thinness",
-    ("transmittance", "thinness"): "thinness_from_transmittance",
-    ("transmittance", "thickness"): "thickness_from_transmittance",
-}
 
 _FRAMES = {("world", "tangent"), ("tangent", "world"), ("world", "object"), ("object", "world")}
 """The spaces between which common/frames.sss turns directions, from one to the other."""
@@ -66,8 +58,8 @@ def channel_of(quantity: str) -> str:
 
 def conversion(source: str, target: str) -> str:
     """What to do to get `target` from `source`: the named conversion, in words."""
-    if (source, target) in _CONVERSIONS:
-        return f"convert it with {_CONVERSIONS[source, target]}(…)"
+    if name := suggested_conversions().get((source, target)):
+        return f"convert it with {name}(…)"
     if space(source) and space(target):
         turned = source.endswith("_direction") and target.endswith("_direction")
         if turned and (space(source), space(target)) in _FRAMES:

@@ -15,6 +15,8 @@ Hints = tuple[tuple[str, tuple[float | str, ...]], ...]
 # Hint → (minimum and maximum number of arguments, their kind, whether it is for textures; None: for both).
 HINTS = {
     "hint_range": (2, 3, float, False),
+    "sample_range": (2, 2, float, False),
+    "bound_range": (2, 2, float, False),
     "source_color": (0, 0, str, None),
     "unit": (1, 1, str, False),
     "alias": (1, 8, str, None),
@@ -51,6 +53,8 @@ def check_hints(
             raise context.fail(span, "source_color is for vec3, vec4 and textures only")
         if name == "hint_range":
             _check_range(context, span, hint.args, type_, default, uniform.value is not None)
+        if name in ("sample_range", "bound_range"):
+            _check_part(context, name, span, hint.args, type_, hints.get("hint_range"))
         if name == "holds":
             quantity = str(hint.args[0])
             if quantity not in q.SCALARS:
@@ -81,9 +85,28 @@ def _check_range(
             raise context.fail(span, message, "" if written else "it has no default of its own: give it one with =")
 
 
+def _check_part(
+    context: CheckContext,
+    name: str,
+    span: Span,
+    args: tuple[float | str, ...],
+    type_: Type,
+    whole: tuple[float | str, ...] | None,
+) -> None:
+    """Checks a part of the range: of numbers, not empty, and within the `hint_range` that stands before it."""
+    low, high = float(args[0]), float(args[1])
+    if kind_of(type_) not in ("float", "int", "uint"):
+        raise context.fail(span, f"{name} is for numbers only")
+    if not low < high:
+        raise context.fail(span, f"the range {low:g} to {high:g} is empty")
+    if whole is not None and not float(whole[0]) <= low < high <= float(whole[1]):
+        raise context.fail(span, f"{name} goes beyond hint_range")
+
+
 def _arguments(fewest: int, most: int, kind: type) -> str:
     if most == 0:
         return "no arguments"
     if most == 1:
         return "one number" if kind is float else "one name or text"
-    return f"{fewest} to {most} {'numbers' if kind is float else 'names or texts'}"
+    count = f"{most}" if fewest == most else f"{fewest} to {most}"
+    return f"{count} {'numbers' if kind is float else 'names or texts'}"

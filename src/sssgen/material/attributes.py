@@ -1,0 +1,127 @@
+"""The attributes of a technique: `key: text` sections of its doc comment, checked when the file is loaded.
+
+docs/language.md has the table of them. What the program must know about a technique stands here, never in a list of
+techniques' names elsewhere.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from sssgen.lang.check.quantities import SCALARS
+from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
+
+TEXTS = ("role", "formula", "source", "units", "limits", "corrects", "baseline", "uncharted", "glows", "legend")
+"""Attributes of free text; `role` is checked by the library."""
+
+ATTRIBUTES = (*TEXTS, "superseded_by", "suggested", "shape", "deviation", "deviation_bounds")
+
+SHAPES = ("box", "sphere", "torus", "texture")
+"""What a distance function can declare as its `shape`, for those who need a body of a known kind."""
+
+BOUNDS = ("largest", "share", "bound_share")
+"""What `deviation_bounds` can bound."""
+
+_CONVERSION = re.compile(r"(\w+) to (\w+)")
+_BOUND = re.compile(r"(\w+) ([0-9.e+-]+)")
+
+
+class Attributes(NamedTuple):
+    """What a technique declares, but for its texts."""
+
+    baseline: bool = False
+    """A formula as its source published it."""
+    superseded_by: tuple[str, ...] = ()
+    """The techniques to use in place of this baseline, which is kept only for comparison."""
+    uncharted: bool = False
+    """It measures nothing, so that charts cannot compare it with a reference."""
+    glows: bool = False
+    """Its light is not a factor on a lamp's colour: it is added once, to the emission."""
+    suggested: tuple[str, str] | None = None
+    """(source, target): error messages suggest it where this conversion is missing."""
+    legend: str = ""
+    """What a chart's legend adds to the name of a chain with this conversion."""
+    shape: str = ""
+    """The body whose distance it gives, one of `SHAPES`."""
+    deviation: str = ""
+    """Why back ends may deviate from the reference by more than the goal."""
+    deviation_bounds: Mapping[str, Mapping[str, float]] = {}
+    """Back end ('' for all) → the bounds that hold in place of the usual ones."""
+
+
+def sections(doc: str, shown: str = "") -> dict[str, str]:
+    """A doc comment's first paragraph as `summary`, and its `key: text` sections. Raises SssgenError."""
+    texts: dict[str, str] = {}
+    key = "summary"
+    for line in doc.splitlines():
+        word, colon, rest = line.partition(":")
+        if colon and word.isidentifier() and word.islower() and not line.startswith(" "):
+            key = word
+            if key not in ATTRIBUTES:
+                raise _wrong(f"unknown attribute '{key}'", key, ATTRIBUTES, "attributes", shown)
+            if key in texts:
+                raise failure(f"attribute '{key}' is given twice", "", shown)
+            texts[key] = rest.strip()
+        elif line.strip():
+            texts[key] = f"{texts.get(key, '')} {line.strip()}".strip()
+    return texts
+
+
+def read(texts: Mapping[str, str], shown: str) -> Attributes:
+    """The values of a doc comment's sections. Raises SssgenError where one does not follow its grammar."""
+    bounds = _bounds(texts["deviation_bounds"], shown) if "deviation_bounds" in texts else {}
+    if bounds and "deviation" not in texts:
+        raise failure("deviation_bounds without deviation", "write the reason: `deviation: TEXT`", shown)
+    shape = texts.get("shape", "")
+    if shape and shape not in SHAPES:
+        raise _wrong(f"unknown shape '{shape}'", shape, SHAPES, "shapes", shown)
+    superseded_by = tuple(name.strip() for name in texts.get("superseded_by", "").split(",") if name.strip())
+    if superseded_by and "baseline" not in texts:
+        raise failure("superseded_by is for baselines", "write `baseline: TEXT`, too", shown)
+    return Attributes(
+        baseline="baseline" in texts,
+        superseded_by=superseded_by,
+        uncharted="uncharted" in texts,
+        glows="glows" in texts,
+        suggested=_conversion(texts["suggested"], shown) if "suggested" in texts else None,
+        legend=texts.get("legend", ""),
+        shape=shape,
+        deviation=texts.get("deviation", ""),
+        deviation_bounds=bounds,
+    )
+
+
+def _conversion(text: str, shown: str) -> tuple[str, str]:
+    """`thinness to thickness`."""
+    match = _CONVERSION.fullmatch(text)
+    if match is None:
+        raise failure(f"'{text}' is no conversion", "write `suggested: thinness to thickness`, say", shown)
+    for quantity in match.groups():
+        if quantity not in SCALARS:
+            raise _wrong(f"unknown quantity '{quantity}'", quantity, SCALARS, "quantities", shown)
+    return match[1], match[2]
+
+
+def _bounds(text: str, shown: str) -> dict[str, dict[str, float]]:
+    """`largest 0.001, share 0.7; browser: largest 0.5`: clauses, each for all back ends or for the one named."""
+    bounds: dict[str, dict[str, float]] = {}
+    for clause in text.split(";"):
+        backend, _, rest = clause.rpartition(":")
+        own = bounds.setdefault(backend.strip(), {})
+        for item in rest.split(","):
+            match = _BOUND.fullmatch(item.strip())
+            if match is None:
+                raise failure(f"'{item.strip()}' is no bound", "write `largest 0.001, share 0.02`, say", shown)
+            if match[1] not in BOUNDS:
+                raise _wrong(f"unknown bound '{match[1]}'", match[1], BOUNDS, "bounds", shown)
+            try:
+                own[match[1]] = float(match[2])
+            except ValueError:
+                raise failure(f"'{match[2]}' is no number", "", shown) from None
+    return bounds
+
+
+def _wrong(message: str, word: str, names: tuple[str, ...], kind: str, shown: str) -> SssgenError:
+    return failure(message, did_you_mean(word, names) or f"{kind}: {', '.join(names)}", shown)
