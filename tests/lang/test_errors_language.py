@@ -23,6 +23,7 @@ from sssgen.ir.nodes import Span
 from sssgen.ir.verify import verify
 from sssgen.lang.check import quantities
 from sssgen.lang.check.module_checker import check
+from sssgen.lang.check.suggested_conversions import suggested_conversions
 from sssgen.lang.syntax.parser import MAX_DEPTH, parse
 from sssgen.support import diagnostics
 from sssgen.support.diagnostics import Diagnostic, Reporter, SssgenError, did_you_mean
@@ -133,7 +134,7 @@ def test_conversions_that_are_named_exist() -> None:
     """What a hint names is in the library."""
     library = LANG.parent / "techniques"
     text = "\n".join(path.read_text("utf-8") for path in library.rglob("*.sss"))
-    for name in quantities._CONVERSIONS.values():
+    for name in suggested_conversions().values():
         assert f"{name}(" in text
     for source, target in quantities._FRAMES:
         assert f"{target}_direction {target}_from_{source}({source}_direction " in text
