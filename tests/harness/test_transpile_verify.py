@@ -13,7 +13,7 @@ from sssgen.harness.evaluate.deviation import GOAL
 from sssgen.harness.verify.inline_includes import expanded
 from sssgen.harness.verify.stage_variables import plain
 from sssgen.harness.verify.verification import load, verify
-from sssgen.harness.verify.verification_report import BACKENDS, Found, Report, Row
+from sssgen.harness.verify.verification_report import BACKENDS, Comparison, Report, Row
 from sssgen.ir.nodes import Module
 from sssgen.ir.old_names import OLD_NAMES
 from sssgen.support.diagnostics import SssgenError
@@ -69,7 +69,7 @@ def test_every_function_runs_in_every_text() -> None:
     ]  # fmt: skip
     for row in found.values():
         assert row.ok, row
-        assert row.found.keys() == BACKENDS.keys()
+        assert row.comparisons.keys() == BACKENDS.keys()
         assert (row.lanes, row.undefined) == (SAMPLES, 0)
 
 
@@ -93,8 +93,8 @@ def test_what_is_read_wrong_is_found_in_every_text() -> None:
     found = rows(FUNCTIONS, misread(*MISTAKES))
     assert len(found) == len(MISTAKES)
     for row in found.values():
-        assert row.found.keys() == BACKENDS.keys()
-        for name, one in row.found.items():
+        assert row.comparisons.keys() == BACKENDS.keys()
+        for name, one in row.comparisons.items():
             assert one.deviation is not None and one.deviation > GOAL, (row.function, name)
             assert not one.close and "the author's text gives" in one.at
         assert not row.ok
@@ -104,9 +104,9 @@ def test_what_is_read_wrong_is_found_in_every_text() -> None:
 def test_a_hash_is_compared_where_it_can_be_and_a_wrong_one_is_not_passed() -> None:
     text = "float scatter(vec2 p) { return fract(sin(dot(p, vec2(12.9898, 78.233))) * 43758.5453); }"
     row = rows(text)["scatter(vec2)"]
-    assert row.ok and row.found["glsl"] == Found(0.0)
-    assert row.found["oracle"]._replace(inexact=(), limit=GOAL) == Found(None, SAMPLES)
-    assert row.found["oracle"].cell == "–"
+    assert row.ok and row.comparisons["glsl"] == Comparison(0.0)
+    assert row.comparisons["oracle"]._replace(inexact=(), limit=GOAL) == Comparison(None, SAMPLES)
+    assert row.comparisons["oracle"].cell == "–"
     wrong = rows(text, misread(("78.233", "78.133")))["scatter(vec2)"]
     assert not wrong.ok
 
@@ -131,7 +131,7 @@ def test_a_text_that_ends_nowhere_costs_its_own_row() -> None:
     text = f"float many({long}) {{ return x0; }}\nvoid nothing(float x) {{ }}\nfloat same(float x) {{ return x; }}"
     found = rows(text)
     assert "takes 70 numbers" in next(row.reason for name, row in found.items() if name.startswith("many"))
-    assert found["nothing(float)"].reason == "it gives nothing"
+    assert found["nothing(float)"].reason == "it has no outputs"
     assert found["same(float)"].ok
 
 
@@ -197,9 +197,9 @@ void main() {
 def test_what_drivers_give_roughly_is_no_excuse_for_more_than_that() -> None:
     text = "float f(float x) { return asin(clamp(x, -1.0, 1.0)); }"
     row = rows(text)["f(float)"]
-    assert row.ok and row.found["hlsl"].limit == GOAL < row.found["wgsl"].limit < 0.01
+    assert row.ok and row.comparisons["hlsl"].limit == GOAL < row.comparisons["wgsl"].limit < 0.01
     wrong = rows(text, misread(("asin(cl", "1.01 * asin(cl")))["f(float)"]
-    assert not any(found.ok for found in wrong.found.values())
+    assert not any(one.ok for one in wrong.comparisons.values())
 
 
 def test_what_a_variable_begins_with_needs_no_main() -> None:
@@ -227,8 +227,8 @@ def test_what_a_driver_does_not_take_is_said() -> None:
     text = "float f(sampler2DShadow map, vec3 p) { return texture(map, p); }"
     text += "\nfloat g(float x) { return later(x); }\nfloat later(float x) { return x; }"
     found = rows(text, misread(("later(x); }\nfloat", "x; }\nfloat")))
-    assert found["f(sampler2DShadow,vec3)"].reason == "it takes a sampler2DShadow, which cannot be given"
-    assert found["g(float)"].reason.startswith("the driver does not take it as it is written: gl: ")
+    assert found["f(sampler2DShadow,vec3)"].reason == "it takes a sampler2DShadow, which is not supported here"
+    assert found["g(float)"].reason.startswith("the driver refuses it as written: gl: ")
 
 
 @pytest.mark.slow
@@ -239,32 +239,40 @@ def test_the_same_seed_gives_the_same_rows() -> None:
 
 def test_the_report_says_it_all() -> None:
     rows = [
-        Row("f(float)", 1, 100, 3, {"glsl": Found(0.0), "hlsl": Found(float("inf"), 2, "result[0]: nan")}),
-        Row("g(float)", 2, reason="it gives nothing"),
+        Row("f(float)", 1, 100, 3, {"glsl": Comparison(0.0), "hlsl": Comparison(float("inf"), 2, "result[0]: nan")}),
+        Row("g(float)", 2, reason="it has no outputs"),
         Row(
             "i(float)",
             4,
             100,
-            found={"glsl": Found(0.0), "oracle": Found(1e-4, 0, "result[1]: 0", inexact=("sin",), limit=2e-3)},
+            comparisons={
+                "glsl": Comparison(0.0),
+                "oracle": Comparison(1e-4, 0, "result[1]: 0", inexact=("sin",), limit=2e-3),
+            },
         ),
-        Row("h(float)", 3, 100, found={"glsl": Found(None, 100), "hlsl": Found(None, error="no such thing")}),
+        Row(
+            "h(float)",
+            3,
+            100,
+            comparisons={"glsl": Comparison(None, 100), "hlsl": Comparison(None, error="no such thing")},
+        ),
     ]
     report = Report(rows, {"webgpu": "pip install wgpu"})
     lines = list(report.lines())
     assert lines == [
         "largest deviation     glsl     hlsl   oracle   of lanes (goal: 1e-05)",
-        "f(float)                 0      inf            100 but for 3 undefined, 2 that rounding decides in hlsl",
+        "f(float)                 0      inf            100 but for 3 undefined, 2 ill-conditioned in hlsl",
         "    hlsl result[0]: nan",
-        "g(float)           not run: it gives nothing",
+        "g(float)           not run: it has no outputs",
         "i(float)                 0            0.0001   100",
-        "    oracle result[1]: 0 (drivers give sin roughly)",
-        "h(float)                 –   failed            100 but for 100 that rounding decides in glsl",
+        "    oracle result[1]: 0 (the precision of sin differs between drivers)",
+        "h(float)                 –   failed            100 but for 100 ill-conditioned in glsl",
         "    hlsl does not run: no such thing",
         "webgpu is missing: pip install wgpu",
     ]
     told = json.loads(json.dumps(report.as_json(), allow_nan=False))
     assert [row["ok"] for row in told["functions"]] == [False, False, True, False] and not report.ok
-    assert told["functions"][1]["not_run"] == "it gives nothing"
+    assert told["functions"][1]["not_run"] == "it has no outputs"
     assert told["functions"][0]["texts"]["hlsl"]["deviation"] is None
 
 

@@ -37,7 +37,7 @@ QUICK = ("switches.glsl", "loops.glsl", "side_effects.glsl", "stores.glsl", "con
 HEADER = re.compile(r"^// \w+\n// Made by sssgen .*\n(// Paste .*\n)?\n?", re.MULTILINE)
 """What stands above each text, and would be taken for the first function's comment."""
 
-NOTHING_TO_COMPARE = ("it gives nothing", "it reads numbers, a texture that cannot be given")
+NOTHING_TO_COMPARE = ("it has no outputs", "it reads numbers, a texture of a type that is not supported here")
 """Why a function may not be run."""
 
 
@@ -108,11 +108,11 @@ def computed(name: str, samples: int) -> None:
     wrong = [
         f"{row.function} as {target}: {found.error or found.at}"
         for row in report.rows
-        for target, found in row.found.items()
+        for target, found in row.comparisons.items()
         if not found.ok and (name, target) not in REFUSED
     ]
     assert wrong == []
-    assert all(row.found or row.reason in NOTHING_TO_COMPARE for row in report.rows), "\n".join(report.lines())
+    assert all(row.comparisons or row.reason in NOTHING_TO_COMPARE for row in report.rows), "\n".join(report.lines())
 
 
 @pytest.fixture

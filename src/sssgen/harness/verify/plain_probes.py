@@ -1,8 +1,8 @@
-"""Functions of plain numbers around the functions of a shader's own text, written in GLSL.
+"""Probes: GLSL functions of numbers, vectors and matrices that call the functions of a shader's text.
 
-A probe sets the module variables that a function reads, calls it with arguments put together from numbers, and returns
-one number, vector or matrix of what it gave: of its result, of an `out` or `inout` parameter, or of a variable that it
-writes. As text behind the author's own, probes go through the driver and through our front end alike.
+A probe sets the module variables that a function reads, calls it with arguments assembled from its own parameters, and
+returns one number, vector or matrix: of the result, of an `out` or `inout` parameter, or of a variable that the
+function writes. Probes are appended to the author's text, so that the driver and our front end read the same text.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from sssgen.ir.nodes import Function, Module
 from sssgen.ir.types import FLOAT, VOID, Array, Sampler, Struct, Type, spell, with_article
 from sssgen.passes.variable_effects import NONE, effects
 
-MOST_INPUTS = 64
-"""How many numbers, vectors and matrices a function may be given: drivers have no room for many more."""
-MOST_OUTPUTS = 16
+MAX_INPUTS = 64
+"""The largest number of inputs (numbers, vectors, matrices): drivers do not support many more."""
+MAX_OUTPUTS = 16
 TEXTURES = [Sampler(dim) for dim in ("2D", "3D", "Cube")]
-"""What back ends can be given."""
+"""The textures that back ends support as inputs."""
 
 
 class Leaf(NamedTuple):
@@ -27,16 +27,16 @@ class Leaf(NamedTuple):
     name: str
     """The probe's parameter."""
     path: str
-    """Where it goes, as in `local_light.color` or `weights[2]`; '' where that is nowhere."""
+    """The part that it sets, such as `local_light.color` or `weights[2]`; '' for none."""
     type: Type
 
 
 class Probe(NamedTuple):
-    """A function that gives one thing."""
+    """A function that returns one output."""
 
     name: str
     output: str
-    """As `result`, `light.color`, `weights[2]`."""
+    """Such as `result`, `light.color`, `weights[2]`."""
     result: Type
     leaves: tuple[Leaf, ...]
     text: str
@@ -52,15 +52,15 @@ class Probed(NamedTuple):
 
 def probed(module: Module, functions: list[Function]) -> list[Probed]:
     """The probes of each function."""
-    known = effects(module)
+    effect_of = effects(module)
     variables = {variable.name: variable.type for variable in module.variables}
-    found = []
+    probes = []
     for number, function in enumerate(functions):
-        effect = known.get(function.key, NONE)
+        effect = effect_of.get(function.key, NONE)
         read = {name: variables[name] for name in sorted(effect.reads)}
         written = {name: variables[name] for name in sorted(effect.writes)}
-        found.append(_probed(function, f"sssgen_probe_{number}", read, written))
-    return found
+        probes.append(_probed(function, f"sssgen_probe_{number}", read, written))
+    return probes
 
 
 def leaves(type_: Type, path: str = "") -> Iterator[tuple[str, Type]]:
@@ -76,7 +76,7 @@ def leaves(type_: Type, path: str = "") -> Iterator[tuple[str, Type]]:
 
 
 def declared(type_: Type, name: str) -> str:
-    """A declaration as GLSL has it, an array's lengths behind the name."""
+    """A declaration in GLSL, with an array's lengths after the name."""
     lengths = ""
     while isinstance(type_, Array):
         lengths += f"[{type_.length}]"
@@ -86,23 +86,23 @@ def declared(type_: Type, name: str) -> str:
 
 def _probed(function: Function, name: str, read: Mapping[str, Type], written: Mapping[str, Type]) -> Probed:
     local = {param.name: f"local_{param.name}" for param in function.params}
-    given = [(local[param.name], param.type) for param in function.params if param.direction != "out"]
-    inputs = [*read.items(), *given]
+    arguments = [(local[param.name], param.type) for param in function.params if param.direction != "out"]
+    inputs = [*read.items(), *arguments]
     outs = [param for param in function.params if param.direction != "in"]
-    ends = [] if function.result == VOID else [("returned", "result", function.result)]
-    ends += [(local[param.name], param.name, param.type) for param in outs]
-    ends += [(variable, variable, type_) for variable, type_ in written.items()]
-    if reason := _unfit([type_ for _, type_ in inputs], [type_ for *_, type_ in ends]):
+    outputs = [] if function.result == VOID else [("returned", "result", function.result)]
+    outputs += [(local[param.name], param.name, param.type) for param in outs]
+    outputs += [(variable, variable, type_) for variable, type_ in written.items()]
+    if reason := _unfit([type_ for _, type_ in inputs], [type_ for *_, type_ in outputs]):
         return Probed(function, reason=reason)
-    taken = [leaf for path, type_ in inputs for leaf in leaves(type_, path)]
-    named = tuple([Leaf(f"given_{index}", path, type_) for index, (path, type_) in enumerate(taken)])
+    parts = [leaf for path, type_ in inputs for leaf in leaves(type_, path)]
+    named = tuple([Leaf(f"given_{index}", path, type_) for index, (path, type_) in enumerate(parts)])
     if not any(not isinstance(leaf.type, Sampler) for leaf in named):
-        named += (Leaf("given_lane", "", FLOAT),)  # there is one number at least: it tells how many lanes there are
+        named += (Leaf("given_lane", "", FLOAT),)  # one number at least is needed: its shape gives the number of lanes
     head = ", ".join([f"{spell(leaf.type)} {leaf.name}" for leaf in named])
     body = _body(function, local, named)
     probes: list[Probe] = []
-    for value, shown, whole in ends:
-        for suffix, type_ in leaves(whole):
+    for value, shown, output_type in outputs:
+        for suffix, type_ in leaves(output_type):
             title = f"{name}_{len(probes)}"
             lines = [f"{spell(type_)} {title}({head}) {{", *body, f"    return {value}{suffix};", "}"]
             probes.append(Probe(title, f"{shown}{suffix}", type_, named, "\n".join(lines) + "\n"))
@@ -110,27 +110,27 @@ def _probed(function: Function, name: str, read: Mapping[str, Type], written: Ma
 
 
 def _body(function: Function, local: Mapping[str, str], named: tuple[Leaf, ...]) -> list[str]:
-    """The statements before the return: the function's result is `returned`."""
+    """The statements before `return`: they put the function's result into `returned`."""
     textures = {leaf.path: leaf.name for leaf in named if isinstance(leaf.type, Sampler)}
     values = [param for param in function.params if not isinstance(param.type, Sampler)]
     lines = [f"    {declared(param.type, local[param.name])};" for param in values]
     lines += [f"    {leaf.path} = {leaf.name};" for leaf in named if leaf.path and leaf.path not in textures]
     args = ", ".join([textures.get(path, path) for path in local.values()])
-    kept = "" if function.result == VOID else f"{declared(function.result, 'returned')} = "
-    return [*lines, f"    {kept}{function.name}({args});"]
+    target = "" if function.result == VOID else f"{declared(function.result, 'returned')} = "
+    return [*lines, f"    {target}{function.name}({args});"]
 
 
 def _unfit(inputs: list[Type], outputs: list[Type]) -> str:
-    """Why a function with these cannot be run; '' where it can."""
+    """Why a function with these inputs and outputs cannot be run; '' where it can."""
     if not outputs:
-        return "it gives nothing"
+        return "it has no outputs"
     for type_ in inputs:
         for _, part in leaves(type_):
             if isinstance(part, Sampler) and (part is not type_ or part not in TEXTURES):
-                return f"it takes {with_article(spell(part))}, which cannot be given"
-    taken, given = (sum([len(list(leaves(type_))) for type_ in types]) for types in (inputs, outputs))
-    if taken > MOST_INPUTS:
-        return f"it takes {taken} numbers, vectors and matrices; at most {MOST_INPUTS} can be given"
-    if given > MOST_OUTPUTS:
-        return f"it gives {given} numbers, vectors and matrices; at most {MOST_OUTPUTS} are looked at"
+                return f"it takes {with_article(spell(part))}, which is not supported here"
+    input_count, output_count = (sum([len(list(leaves(type_))) for type_ in types]) for types in (inputs, outputs))
+    if input_count > MAX_INPUTS:
+        return f"it takes {input_count} numbers, vectors and matrices; at most {MAX_INPUTS} are supported"
+    if output_count > MAX_OUTPUTS:
+        return f"it returns {output_count} numbers, vectors and matrices; at most {MAX_OUTPUTS} are supported"
     return ""

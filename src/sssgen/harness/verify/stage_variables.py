@@ -1,10 +1,10 @@
-"""A whole shader's text as functions and variables: what a stage is given and gives becomes variables of the file.
+"""A whole shader's text as functions and variables: the inputs and outputs of the stage become variables of the file.
 
-A program around the text can then set what a function reads, call any function, `main` too, and read what it wrote.
-Only words at file scope change, so that the text may be given to a driver and to our own front end alike: `in`, `out`,
-`varying` and `attribute` go, and with them `layout(…)` and the words of interpolation; the stage's own variables
-(`gl_FragCoord`, …) get other names by macros. Uniforms that are numbers, vectors, matrices or textures stay; arrays,
-structs and blocks of them become variables.
+A program around the text can then set what a function reads, call any function, even `main`, and read what it wrote.
+Only tokens at file scope change, so that a driver and our own front end accept the text: `in`, `out`, `varying`,
+`attribute`, `layout(…)` and interpolation qualifiers are removed; macros rename the stage's own variables
+(`gl_FragCoord`, …). Uniforms that are numbers, vectors, matrices or textures stay; arrays, structs and blocks of
+uniforms become variables.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import NamedTuple
 from sssgen.ir.old_names import OLD_NAMES
 
 MAIN = "sssgen_written_main"
-"""What `main` is called."""
+"""The new name of `main`."""
 
 STAGE = {
     "gl_FragCoord": ("vec4", "sssgen_coordinates"),
@@ -29,7 +29,7 @@ STAGE = {
     "gl_VertexID": ("int", "sssgen_vertex"),
     "gl_InstanceID": ("int", "sssgen_instance"),
 }
-"""The variables of the stages: their types, and their names here."""
+"""The variables of the stages: their types and new names."""
 
 _PART = re.compile(
     r"(?P<skip>//[^\n]*|/\*.*?\*/|^[ \t]*\#(?:\\\n|[^\n])*)|(?P<name>[A-Za-z_]\w*)|(?P<mark>[{}()])",
@@ -51,9 +51,9 @@ class Plain(NamedTuple):
     """A text without a stage."""
 
     version: str
-    """What its `#version` says, as in `300 es`; '' where it has none."""
+    """Its `#version`, such as `300 es`; '' without one."""
     text: str
-    """Without `#version`; for our front end."""
+    """The text without `#version`, for our front end."""
 
     @property
     def is_es(self) -> bool:
@@ -61,12 +61,12 @@ class Plain(NamedTuple):
         return self.version.endswith("es")
 
     def for_driver(self, version: str) -> str:
-        """The text with this `#version`, and with new names for what that version knows by other names."""
-        named = [f"#define {old} {new}" for old, (new, _) in OLD_NAMES.items() if _uses(self.text, old)]
+        """The text with this `#version`; macros give old names of functions their new ones."""
+        renames = [f"#define {old} {new}" for old, (new, _) in OLD_NAMES.items() if _uses(self.text, old)]
         extensions = _EXTENSION.findall(self.text)
         text = _EXTENSION.sub("", self.text)
         precision = _ES_PRECISION if version.endswith("es") else []
-        return "\n".join([f"#version {version}", *extensions, *precision, *named, text])
+        return "\n".join([f"#version {version}", *extensions, *precision, *renames, text])
 
 
 _ES_PRECISION = [
@@ -82,19 +82,19 @@ def plain(text: str) -> Plain:
     head = [f"{STAGE[name][0]} {new};" for name, new in renamed.items()]
     renamed |= {"main": MAIN} if _uses(body, "main") else {}
     head += [f"#define {name} {new}" for name, new in renamed.items()]
-    tail = [f"#undef {name}" for name in renamed]  # what stands behind the text has a main of its own
+    tail = [f"#undef {name}" for name in renamed]  # the text that follows has its own main
     return Plain(f"{version[1]} {version[2]}".strip() if version else "", "\n".join([*head, body, *tail, ""]))
 
 
 def _uses(text: str, name: str) -> bool:
-    """Whether a name stands in a text that does not define it as a macro."""
+    """Whether a name occurs in a text that does not define it as a macro."""
     defined = re.search(rf"^[ \t]*#[ \t]*define[ \t]+{name}\b", text, re.MULTILINE)
     return defined is None and re.search(rf"\b{name}\b", text) is not None
 
 
 def without_interface(text: str) -> str:
-    """A text without the words that tie declarations at file scope to a stage."""
-    kept: list[str] = []
+    """A text without the qualifiers that connect declarations at file scope with a stage."""
+    parts: list[str] = []
     depth = done = 0
     for match in _PART.finditer(text):
         if match.start() < done:
@@ -102,16 +102,16 @@ def without_interface(text: str) -> str:
         if match["mark"]:
             depth += 1 if match["mark"] in "{(" else -1
         elif match["name"] and depth == 0:
-            found = _replaced(text, match)
-            if found is not None:
-                kept += [text[done : match.start()], found[0]]
-                done = found[1]
-    kept.append(text[done:])
-    return "".join(kept)
+            replacement = _replacement(text, match)
+            if replacement is not None:
+                parts += [text[done : match.start()], replacement[0]]
+                done = replacement[1]
+    parts.append(text[done:])
+    return "".join(parts)
 
 
-def _replaced(text: str, name: re.Match[str]) -> tuple[str, int] | None:
-    """What stands instead of what begins with a name, and where that ends; None where it stays."""
+def _replacement(text: str, name: re.Match[str]) -> tuple[str, int] | None:
+    """The replacement of the declaration or qualifier at a name, and where that ends; None to keep it."""
     if layout := _LAYOUT.match(text, name.start()):
         return "", layout.end()
     if again := _REQUALIFIED.match(text, name.start()):
