@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sssgen.ir.operators import PRECEDENCE
-from sssgen.lang.syntax.lexer import MAX_WORDS, scan
+from sssgen.lang.syntax.lexer import MAX_TOKENS, scan
 from sssgen.lang.syntax.tokens import Comment
 from sssgen.support.diagnostics import MAX_ERRORS, SssgenError
 from watchdog import bounded
@@ -109,13 +109,13 @@ def test_other_keywords_may_be_given() -> None:
 
 def test_every_fault_is_told_at_its_place() -> None:
     assert faults("a @ 1f\n 0x 3.x\n'é\n\"open\n/* open") == [
-        ("'@' has no meaning here", (1, 3, 1, 4), ""),
-        ("'1f' is no number", (1, 5, 1, 7), "write 1.0"),
-        ("'0x' is no number", (2, 2, 2, 4), ""),
-        ("'3.x' is no number", (2, 5, 2, 8), ""),
-        ('"\'" has no meaning here', (3, 1, 3, 2), ""),
-        ("'é' has no meaning here", (3, 2, 3, 3), ""),
-        ("this text is not closed on its line", (4, 1, 4, 6), ""),
+        ("unknown character '@'", (1, 3, 1, 4), ""),
+        ("'1f' is not a number", (1, 5, 1, 7), "write 1.0"),
+        ("'0x' is not a number", (2, 2, 2, 4), ""),
+        ("'3.x' is not a number", (2, 5, 2, 8), ""),
+        ('unknown character "\'"', (3, 1, 3, 2), ""),
+        ("unknown character 'é'", (3, 2, 3, 3), ""),
+        ("this string is not closed on its line", (4, 1, 4, 6), ""),
         ("this comment is not closed", (5, 1, 5, 3), "add */ at its end"),
     ]
 
@@ -136,8 +136,8 @@ def test_errors_are_counted() -> None:
     assert len(faults("@" * 1_000_000)) == MAX_ERRORS + 1
 
 
-def test_a_text_of_too_many_words_is_refused() -> None:
-    assert "words" in faults(";" * (MAX_WORDS + 1))[0][0]
+def test_a_text_of_too_many_tokens_is_refused() -> None:
+    assert "tokens" in faults(";" * (MAX_TOKENS + 1))[0][0]
 
 
 @pytest.mark.parametrize(

@@ -193,7 +193,7 @@ def test_quantities_in_arrays_and_structs() -> None:
     checked("thickness f(thickness list[2]) { return list[0] + list[1]; }")
     checked("struct S { thickness list[2]; };\nthickness f(S s) { s.list[0] = thickness(1.0); return s.list[1]; }")
     checked("float f() { thickness list[2] = float[2](thickness(1.0), thickness(2.0)); return list[0]; }")
-    with pytest.raises(SssgenError, match="a thickness is wanted here"):
+    with pytest.raises(SssgenError, match="this must be a thickness"):
         checked("float f() { thickness list[2] = float[2](1.0, 2.0); return list[0]; }")
 
 

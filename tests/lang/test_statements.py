@@ -329,4 +329,4 @@ void f(float a, int i, int j) {{ {loop} }}
 """
     with pytest.raises(SssgenError) as raised:
         checked(source)
-    assert [error.message for error in raised.value.diagnostics] == ["this loop cannot be seen to end"]
+    assert [error.message for error in raised.value.diagnostics] == ["this loop cannot be proven to end"]

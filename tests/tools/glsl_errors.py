@@ -27,9 +27,9 @@ _FALLING = "".join(f"case {number}: x += 1.0;\n" for number in range(int((2 * MA
 LONG = {
     "fall through to too many statements": f"void f(int n, float x) {{ switch (n) {{\n{_FALLING}}} }}\n",
     "conditions nested more than": "#if 1\n" * 10_000,
-    "macros stand in each other more than": "\n".join(f"#define A{n}(x) A{n + 1}(x)" for n in range(500)) + "\nA0(1)\n",
-    "this macro becomes more than": "\n".join(f"#define A{n} A{n + 1} A{n + 1}" for n in range(60)) + "\nA0\n",
-    "'##' makes a word of more than": "#define J(a, b) a ## b\n#define D(a) J(a, a)\nD(" + "x" * 100_000 + ")\n",
+    "macros nest more than": "\n".join(f"#define A{n}(x) A{n + 1}(x)" for n in range(500)) + "\nA0(1)\n",
+    "this macro expands to more than": "\n".join(f"#define A{n} A{n + 1} A{n + 1}" for n in range(60)) + "\nA0\n",
+    "'##' makes a token of more than": "#define J(a, b) a ## b\n#define D(a) J(a, a)\nD(" + "x" * 100_000 + ")\n",
 }
 """What is said of texts that are too long to be shown."""
 

@@ -150,5 +150,5 @@ class _Finder:
                 self.folders[shown] = os.path.dirname(path)
                 self.paths.append(path)
                 return shown, read_text(path, shown)
-        hint = "it is looked for beside the file and in the folders of -I"
+        hint = "it is searched for next to the file and in the folders of -I"
         raise SssgenError([Diagnostic("error", f"cannot find '{name}' to include", place, hint)])

@@ -30,7 +30,9 @@ class AccessChecker:
             return self.texture_of(index.value, index)
         value, position = self.expressions.operands((index.value, index.index))
         if position.expr.type not in (INT, UINT):
-            raise self.context.fail(index.index.span, f"an index is an int, but this is {a_type(position.expr.type)}")
+            raise self.context.fail(
+                index.index.span, f"an index must be an int, but this is {a_type(position.expr.type)}"
+            )
         type_ = value.expr.type
         element = element_type(type_)
         if element is None:
@@ -47,8 +49,12 @@ class AccessChecker:
         textures = self.context.texture_arrays[name.text]
         position = constant_int(self.context, index.index)
         if position is None or not 0 <= position < len(textures):
-            message = f"a texture of '{name.text}' is chosen by a constant from 0 to {len(textures) - 1}"
-            raise self.context.fail(index.index.span, message, "WebGPU has no arrays of textures: write the cases out")
+            message = f"a texture of '{name.text}' must be selected by a constant from 0 to {len(textures) - 1}"
+            raise self.context.fail(
+                index.index.span,
+                message,
+                "WebGPU has no arrays of textures: write a switch with a case for each texture",
+            )
         texture = self.context.globals[textures[position]]
         return Typed(ir.Global(texture.type, textures[position], index.span), texture.quantity)
 
@@ -83,4 +89,4 @@ class AccessChecker:
                 return Typed(ir.Swizzle(result, value.expr, parts, member.span), quantity)
         letters = _SWIZZLES[0][: type_.size]
         hint = f"its components are {letters}"
-        raise context.fail(member.name.span, f"'{name}' is no swizzle of {a_type(type_)}", hint)
+        raise context.fail(member.name.span, f"'{name}' is not a swizzle of {a_type(type_)}", hint)

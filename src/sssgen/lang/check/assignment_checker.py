@@ -75,7 +75,7 @@ class AssignmentChecker:
         type_, op, start = target.expr.type, assignment.op, len(context.function.prelude)
         if not op:
             assert assignment.value is not None
-            source = expressions.check_as(assignment.value, type_, target.quantity, "the assignment")
+            source = expressions.check_as(assignment.value, type_, target.quantity, "the assigned value")
             return ir.Assign(self.fixed_place(target.expr, source, start), op, source, span)
         if assignment.value is not None:
             right = expressions.check(assignment.value)
@@ -95,7 +95,7 @@ class AssignmentChecker:
             quantity = combined_quantity(context, op, target, right, span)
             if op not in ("*", "/") or not isinstance(value.type, Scalar):  # scaling in place keeps the quantity
                 scaled = target._replace(quantity=quantity)
-                expressions.require(scaled, type_, target.quantity, span, "the assignment")
+                expressions.require(scaled, type_, target.quantity, span, "the assigned value")
         return ir.Assign(target.expr, op, value, span)
 
     def fixed_place(self, target: ir.Expr, value: ir.Expr, start: int) -> ir.Expr:
@@ -130,8 +130,8 @@ def check_writable(context: CheckContext, target: ir.Expr, span: ir.Span) -> Non
         return
     if isinstance(inner, ir.Global) or isinstance(target.type, Sampler):
         name = inner.name if isinstance(inner, ir.Global | ir.Local) else "this"
-        raise context.fail(span, f"'{name}' cannot be changed here; copy it to a local variable")
+        raise context.fail(span, f"'{name}' cannot be assigned to; copy it to a local variable")
     if not isinstance(inner, ir.Local):
         raise context.fail(span, "this cannot be assigned to")
     if not context.function.scopes.visible[inner.name].writable:
-        raise context.fail(span, f"'{inner.name}' is const and cannot be changed")
+        raise context.fail(span, f"'{inner.name}' is const and cannot be assigned to")

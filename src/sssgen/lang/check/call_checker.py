@@ -108,7 +108,7 @@ class CallChecker:
                 return min(viable, key=lambda signature: _conversion_cost(signature, types))
         listed = ", ".join(declared(name, signature) for signature in overloads)
         shown = ", ".join(map(spell, types))
-        raise self.context.fail(call.span, f"no overload of {name} takes ({shown})", f"there are: {listed}")
+        raise self.context.fail(call.span, f"no overload of {name} takes ({shown})", f"its overloads are: {listed}")
 
     def call_function(self, name: str, signature: Signature, args: list[Typed], call: s.CallOf) -> Typed:
         """A call of one of the file's own functions."""
@@ -122,11 +122,13 @@ class CallChecker:
             if direction != "in":
                 value = arg.expr
                 if value.type != type_:
-                    message = f"{what} is {a_type(type_)}, but the variable {a_type(value.type)}"
-                    raise self.context.fail(written.span, message, "what is given back is not converted")
+                    message = f"{what} is {a_type(type_)}, but the variable is {a_type(value.type)}"
+                    raise self.context.fail(
+                        written.span, message, "an out argument is not converted: use a variable of the same type"
+                    )
                 check_writable(self.context, value, written.span)
                 if arg.quantity and quantity != arg.quantity:
-                    message = f"{what} gives {q.words(quantity)}, but the variable holds {q.words(arg.quantity)}"
+                    message = f"{what} returns {q.words(quantity)}, but the variable holds {q.words(arg.quantity)}"
                     raise self.context.fail(written.span, message, q.conversion(quantity, arg.quantity))
             values.append(value)
         return Typed(ir.Call(signature.result, signature.key, tuple(values), call.span), signature.quantity)
@@ -150,7 +152,7 @@ class CallChecker:
             if isinstance(values[0].type, Sampler):
                 quantity = q.texel_of(args[0].quantity)
                 if len(args) > 1 and args[1].quantity == "uv_direction":
-                    message = f"a texture is read at a position, but this is {q.words(args[1].quantity)}"
+                    message = f"a texture is sampled at a position, but this is {q.words(args[1].quantity)}"
                     raise q.Mixup(message, q.conversion(args[1].quantity, "uv_position"))
             else:
                 quantity = q.of_intrinsic(name, [arg.quantity for arg in args])

@@ -25,8 +25,8 @@ def report_deep_calls(functions: Mapping[str, ir.Function], reporter: Reporter) 
     for key, function in functions.items():
         depth[key] = 1 + max([depth.get(callee, 0) for callee in callees(function)], default=0)
         if depth[key] > MAX_CALL_DEPTH:
-            message = f"{function.name} calls functions more than {MAX_CALL_DEPTH} deep"
-            reporter.error(function.span, message, "join some of them")
+            message = f"{function.name} has calls that nest more than {MAX_CALL_DEPTH} deep"
+            reporter.error(function.span, message, "merge some of the functions")
             return
 
 

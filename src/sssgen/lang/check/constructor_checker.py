@@ -128,7 +128,7 @@ class ConstructorChecker:
             fields = type_.fields if isinstance(type_, Struct) else ()
             parts = _part_types(type_)
             if types != parts:
-                return f"{name}(…) wants ({', '.join(map(spell, parts))}), but gets ({', '.join(map(spell, types))})"
+                return f"{name}(…) takes ({', '.join(map(spell, parts))}), but gets ({', '.join(map(spell, types))})"
             for arg, field, written in zip(args, fields, call.args, strict=False):
                 self.expressions.require(arg, field.type, field.quantity, written.span, f"member '{field.name}'")
             return ""
@@ -148,7 +148,7 @@ class ConstructorChecker:
             return f"{name}(…) cannot be made from ({', '.join(map(spell, types))})"
         count = sum(components(argument) for argument in types)
         if count != components(type_):
-            return f"{name}(…) wants {components(type_)} components, but gets {count}"
+            return f"{name}(…) takes {components(type_)} components, but gets {count}"
         return ""
 
 

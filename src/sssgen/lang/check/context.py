@@ -91,7 +91,7 @@ class CheckContext:
             return AlreadyReported()
         hint = did_you_mean(name, candidates)
         if self.plain and name in shadertoy.UNIFORMS:
-            hint = "it is Shadertoy's: write --entry shadertoy"
+            hint = "it is a uniform of Shadertoy: add --entry shadertoy"
         return self.fail(span, f"unknown {kind} '{name}'", hint)
 
     def out_arguments(self, call: ir.Call) -> list[ir.Expr]:

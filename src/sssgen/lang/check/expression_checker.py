@@ -63,7 +63,7 @@ class ExpressionChecker:
         expr = typed.expr
         if expr.type != type_:
             if not self.context.plain or not converts(expr.type, type_):
-                message = f"{what} wants {a_type(type_)}, but this is {a_type(expr.type)}"
+                message = f"{what} must be {a_type(type_)}, but this is {a_type(expr.type)}"
                 raise self.context.fail(span, message, type_hint(expr, type_))
             expr = as_kind(expr, kind_of(type_))
         if quantity or typed.quantity:
@@ -81,10 +81,10 @@ class ExpressionChecker:
         else:
             element = element_type(type_)
             if element is None:
-                raise self.context.fail(listed.span, f"{what} wants {a_type(type_)}, which is not made of parts")
+                raise self.context.fail(listed.span, f"{what} must be {a_type(type_)}, which is not a list of values")
             types = [element[0]] * element[1]
         if len(types) != len(listed.items):
-            message = f"{what} wants {len(types)} parts for {a_type(type_)}, but gets {len(listed.items)}"
+            message = f"{what} needs {len(types)} values for {a_type(type_)}, but {len(listed.items)} are listed"
             raise self.context.fail(listed.span, message)
         parts = [self.check_as(item, part, "", what) for item, part in zip(listed.items, types, strict=True)]
         return ir.Construct(type_, tuple(parts), listed.span)
@@ -136,8 +136,8 @@ class ExpressionChecker:
             return Typed(ir.Literal(FLOAT, real, number.span))
         unsigned, value = number.text[-1] in "uU", integer_value(number.text)
         if value is None:
-            hint = "what begins with 0 is octal: leave the 0 out"
-            raise self.context.fail(number.span, f"{number.text} is no octal number", hint)
+            hint = "a number that begins with 0 is octal: remove the 0"
+            raise self.context.fail(number.span, f"{number.text} is not an octal number", hint)
         if value > 0xFFFFFFFF or (value > 0x7FFFFFFF and not unsigned and number.text[:2] not in ("0x", "0X")):
             shown = number.text if len(number.text) <= 40 else f"{number.text[:40]}…"
             raise self.context.fail(number.span, f"{shown} does not fit in {'a uint' if unsigned else 'an int'}")
@@ -159,19 +159,19 @@ class ExpressionChecker:
                 return Typed(ir.Literal(INT, value.value or 0, name.span))
             return Typed(ir.Global(value.type, name.text, name.span), value.quantity)
         if name.text in context.blocks:
-            raise context.fail(name.span, f"'{name.text}' is a block; name one of its members")
+            raise context.fail(name.span, f"'{name.text}' is a block; write the name of a member behind it")
         if name.text in context.functions or candidates(name.text):
             raise context.fail(name.span, f"'{name.text}' is a function; call it with (…)")
         raise context.unknown(name.span, "name", name.text, [*context.function.scopes.names(), *context.globals])
 
     def type_name(self, name: s.TypeName) -> Typed:
-        raise self.context.fail(name.span, f"'{name.name}' is a type; make a value of it with (…)")
+        raise self.context.fail(name.span, f"'{name.name}' is a type; construct a value with {name.name}(…)")
 
     def unsized(self, unsized: s.Unsized) -> Typed:
         raise self.context.fail(unsized.span, "an index is missing between the brackets")
 
     def listed(self, listed: s.Listed) -> Typed:
-        raise self.context.fail(listed.span, "{…} stands only as the value of a declaration")
+        raise self.context.fail(listed.span, "{…} is allowed only as the value of a declaration")
 
 
 def _item_count(value: s.Expression | None) -> int | None:

@@ -74,12 +74,12 @@ class FunctionChecker:
         earlier = next((signature for signature in overloads if signature.key == function.key), None)
         if earlier is not None:
             elsewhere = f" of {earlier.span.file}" if earlier.span.file != span.file else ""
-            there = f"first at line {earlier.span.line}{elsewhere}"
+            there = f"the first is at line {earlier.span.line}{elsewhere}"
             if has_body and earlier.span in self.defined:
                 raise context.fail(span, f"{function.key} is already defined", there)
             if earlier._replace(names=new.names, span=new.span) != new:
-                message = f"{function.key} is declared differently before"
-                raise context.fail(span, message, f"{there}; make the two agree")
+                message = f"{function.key} differs from its first declaration"
+                raise context.fail(span, message, f"{there}; make both agree")
             if not has_body:
                 return
             overloads.remove(earlier)
@@ -96,8 +96,8 @@ class FunctionChecker:
     def define_zeros(self, function: ir.Function) -> ir.Function:
         """A body of zeros for a function that the file expects from whoever includes it, with a warning."""
         span = function.span
-        message = f"'{function.name}' is declared and called, but has no body in this file: it gives zeros"
-        hint = "write its body in the translation, or give the file that has it"
+        message = f"'{function.name}' is declared and called, but has no body in this file: it returns zeros"
+        hint = "write its body in the translation, or include the file that defines it"
         self.context.reporter.warn(span, message, hint)
         body: list[ir.Stmt] = [
             ir.Assign(ir.Local(param.type, param.name, span), "", zero(param.type, span), span)

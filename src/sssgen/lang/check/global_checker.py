@@ -42,7 +42,7 @@ class GlobalChecker:
         if not declaration.declarators and declaration.type.struct is None:
             if "invariant" in words or "precise" in words:
                 return  # no other language has these
-            raise context.fail(declaration.type.span, "this declares nothing", "a type and a name are wanted")
+            raise context.fail(declaration.type.span, "this declares nothing", "write a type and a name")
         if declaration.type.struct is not None:
             declare_struct(context, declaration.type.struct)
         if "uniform" in words:
@@ -55,7 +55,7 @@ class GlobalChecker:
         elif context.plain:
             self.interface.declare(declaration, external.doc)
         else:
-            message = "a variable of the module is not in the language of techniques"
+            message = "a technique cannot declare global variables"
             raise context.fail(declaration.type.span, message, "make it const, a uniform, or a parameter")
 
     def uniform(self, declaration: s.Declaration, declarator: s.Declarator, doc: str) -> None:
@@ -84,7 +84,7 @@ class GlobalChecker:
         numbers = _components(self.expressions.require(typed, type_, "", value.span, f"'{declarator.name.text}'"))
         if numbers is None:
             hint = "write it as 0.2 or vec3(1.0, 0.5, 0.0)"
-            raise self.context.fail(value.span, "a default is made of literals", hint)
+            raise self.context.fail(value.span, "a default value must consist of literals", hint)
         return numbers
 
     def constant(self, declaration: s.Declaration, declarator: s.Declarator) -> None:

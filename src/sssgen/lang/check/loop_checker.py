@@ -10,7 +10,7 @@ from sssgen.lang.check.statement_checker import StatementChecker
 from sssgen.lang.check.termination import ends, skips
 from sssgen.lang.syntax import tree as s
 
-_LOOP_HINT = "write for (int i = 0; i < N; i++) with N that the body does not change, and step the counter nowhere else"
+_LOOP_HINT = "write for (int i = 0; i < N; i++) with a body that changes neither i nor N"
 
 
 class LoopChecker:
@@ -51,7 +51,7 @@ class LoopChecker:
             body, condition = (*tested, _break_unless(condition), *body), None
         bounded = condition is not None and step is not None and ends(condition, (step,), body, context.out_arguments)
         if not context.plain and not bounded:
-            raise context.fail(span, "this loop cannot be seen to end", _LOOP_HINT)
+            raise context.fail(span, "this loop cannot be proven to end", _LOOP_HINT)
         return [*before, ir.For(init, condition, step, body, span)]
 
     def while_(self, statement: s.WhileStatement) -> list[ir.Stmt]:
@@ -59,7 +59,7 @@ class LoopChecker:
         errors = len(context.reporter.diagnostics)
         if isinstance(statement.condition, s.Declaration):
             hint = "declare it before the loop"
-            raise context.fail(statement.condition.span, "a condition declares nothing here", hint)
+            raise context.fail(statement.condition.span, "a condition cannot declare a variable here", hint)
         condition, tested = self.expressions.with_prelude(statement.condition, self.statements.condition)
         body = self.loop_body(statement.body)
         if condition is None or len(context.reporter.diagnostics) > errors:
@@ -67,7 +67,7 @@ class LoopChecker:
         if tested:
             body, condition = (*tested, _break_unless(condition), *body), ir.Literal(BOOL, True, span)
         if not context.plain and (skips(body) or not ends(condition, body, (), context.out_arguments)):
-            raise context.fail(span, "this loop cannot be seen to end", _LOOP_HINT)
+            raise context.fail(span, "this loop cannot be proven to end", _LOOP_HINT)
         return [ir.While(condition, body, span)]
 
     def do(self, statement: s.DoStatement) -> list[ir.Stmt]:
@@ -78,7 +78,7 @@ class LoopChecker:
             return []
         if not self.context.plain:
             hint = "write for (int i = 0; i < N; i++)"
-            raise self.context.fail(statement.span, "this loop cannot be seen to end", hint)
+            raise self.context.fail(statement.span, "this loop cannot be proven to end", hint)
         if isinstance(condition, ir.Literal):  # while (false): the body runs once
             last = tested if condition.value else [*tested, ir.Break(condition.span)]
         else:

@@ -74,7 +74,7 @@ class OperatorChecker:
         inner = function.prelude[start:]
         del function.prelude[start:]
         for typed, part in ((left, infix.left), (right, infix.right)):
-            self.expressions.require(typed, BOOL, "", part.span, f"'{infix.op}'")
+            self.expressions.require(typed, BOOL, "", part.span, f"an operand of '{infix.op}'")
         result = function.temporary("both" if infix.op == "&&" else "either", left.expr)
         condition: ir.Expr = result if infix.op == "&&" else ir.Unary(BOOL, "!", result, infix.span)
         then = (*inner, ir.Assign(result, "", right.expr, infix.span))
@@ -95,7 +95,7 @@ class OperatorChecker:
                 )
             yes, no = yes._replace(expr=one), no._replace(expr=other)
         if isinstance(yes.expr.type, Sampler | Void):
-            raise self.context.fail(conditional.span, f"'?:' cannot choose {a_type(yes.expr.type)}")
+            raise self.context.fail(conditional.span, f"'?:' cannot select {a_type(yes.expr.type)}")
         if yes.quantity and no.quantity and yes.quantity != no.quantity:
             message = f"the two arms differ: {q.words(yes.quantity)} and {q.words(no.quantity)}"
             raise self.context.fail(conditional.span, message, q.conversion(no.quantity, yes.quantity))

@@ -65,23 +65,23 @@ def conversion(source: str, target: str) -> str:
         if turned and (space(source), space(target)) in _FRAMES:
             return f"convert it with {space(target)}_from_{space(source)}(…) of common/frames.sss"
         if space(source) != space(target):
-            return f"bring it there with a matrix or a function of your own, and name what comes out: {target}(…)"
-        return f"if it is meant as {words(target)}, write {target}({spell(QUANTITIES[target])}(…))"
+            return f"transform it with a matrix or your own function, and write {target}(…) around the result"
+        return f"if it is {words(target)}, write {target}({spell(QUANTITIES[target])}(…))"
     if not source:
-        return f"if it is {words(target)}, say so: {target}(…)"
+        return f"if it is {words(target)}, write {target}(…)"
     return f"{words(source)} cannot become {words(target)}"
 
 
 def check_assignable(source: str, target: str) -> None:
     """Raises Mixup unless a value of quantity `source` may be stored as `target`."""
     if target and source != target:
-        raise Mixup(f"{words(target)} is wanted here, but this is {words(source)}", conversion(source, target))
+        raise Mixup(f"this must be {words(target)}, but it is {words(source)}", conversion(source, target))
 
 
 def check_constructible(source: str, target: str) -> None:
     """Raises Mixup where a constructor would turn one quantity into another."""
     if source and not source.startswith(_TEXEL) and source != target:
-        raise Mixup(f"{words(source)} cannot be called {words(target)}", conversion(source, target))
+        raise Mixup(f"{words(target)} cannot be constructed from {words(source)}", conversion(source, target))
 
 
 def of_operator(op: str, left: str, right: str, scaling: bool = False) -> str:
@@ -100,7 +100,7 @@ def of_operator(op: str, left: str, right: str, scaling: bool = False) -> str:
     if op == "-" and left.endswith("_position") and right != left and "_" in right:
         return left
     if left != right:
-        raise Mixup(f"{words(left)} and {words(right)} do not go together in '{op}'", conversion(right, left))
+        raise Mixup(f"'{op}' cannot combine {words(left)} and {words(right)}", conversion(right, left))
     if left.endswith("_position"):
         return f"{space(left)}_direction" if op == "-" else ""
     return left if op in ("+", "-") else ""
@@ -116,7 +116,7 @@ def of_intrinsic(name: str, args: list[str]) -> str:
     compared = [quantity for quantity in args[: row.same_quantity] if quantity]
     for quantity in compared[1:]:
         if quantity != compared[0]:
-            message = f"{words(compared[0])} and {words(quantity)} do not go together in {name}"
+            message = f"{name} cannot combine {words(compared[0])} and {words(quantity)}"
             raise Mixup(message, conversion(quantity, compared[0]))
     if row.quantity == "direction":
         return given[0] if all(quantity.endswith("_direction") for quantity in given) else ""
@@ -131,4 +131,6 @@ def _check_one_space(quantities: tuple[str, ...] | list[str]) -> None:
     spaced = [quantity for quantity in quantities if space(quantity)]
     for quantity in spaced[1:]:
         if space(quantity) != space(spaced[0]):
-            raise Mixup(f"{words(spaced[0])} meets {words(quantity)}", conversion(quantity, spaced[0]))
+            raise Mixup(
+                f"{words(spaced[0])} cannot be combined with {words(quantity)}", conversion(quantity, spaced[0])
+            )

@@ -38,8 +38,10 @@ class ShaderInterface:
             name, span = declarator.name.text, declarator.name.span
             if name in BUILTIN_VARIABLES:
                 if any(item == "origin_upper_left" for item, _ in declaration.qualifiers.layout):
-                    hint = "take the picture's height minus it"
-                    raise context.fail(span, "gl_FragCoord cannot be made to count from the top", hint)
+                    hint = "subtract gl_FragCoord.y from the height of the picture"
+                    raise context.fail(
+                        span, "gl_FragCoord counts from the bottom: origin_upper_left is not possible", hint
+                    )
                 builtin_variable(context, declarator.name)  # redeclared for its qualifiers
                 continue
             check_global_name(context, declarator.name)
@@ -66,7 +68,7 @@ class ShaderInterface:
         expr, prelude = self.expressions.with_prelude(value, check)
         if prelude or any(isinstance(part, ir.Call) for part in subexpressions(expr)):
             hint = "set it at the beginning of main()"
-            raise self.context.fail(value.span, "a variable of the module begins with a plain value", hint)
+            raise self.context.fail(value.span, "the initial value of a global variable cannot call functions", hint)
         return expr
 
     def storage(self, words: tuple[str, ...]) -> str:
@@ -83,7 +85,7 @@ class ShaderInterface:
             if name == "location" and value is not None:
                 number = constant_int(self.context, value)
                 if number is None or not 0 <= number < 64:
-                    raise self.context.fail(value.span, "a location is a whole number from 0 to 63")
+                    raise self.context.fail(value.span, "a location must be an integer from 0 to 63")
                 return number
         return -1
 
@@ -97,7 +99,7 @@ class ShaderInterface:
             return [declarator]
         count = constant_int(context, lengths[0])
         if count is None or not 1 <= count <= 64:
-            raise context.fail(lengths[0].span, "an array of textures has a constant length from 1 to 64")
+            raise context.fail(lengths[0].span, "the length of an array of textures must be a constant from 1 to 64")
         names = [unused_global_name(context, f"{name.text}_{index}") for index in range(count)]
         context.texture_arrays[name.text] = names
         return [replace(declarator, name=replace(name, text=element), lengths=()) for element in names]
@@ -108,7 +110,7 @@ class ShaderInterface:
         """The members of a block, as separate uniforms, inputs or outputs."""
         context, words = self.context, block.qualifiers.words
         if not context.plain:
-            raise context.fail(block.name.span, "there are no blocks in the language of techniques", "write uniform …;")
+            raise context.fail(block.name.span, "a technique cannot declare blocks", "write uniform …;")
         if "buffer" in words:
             raise context.fail(block.name.span, "storage buffers belong to compute shaders")
         if block.lengths:

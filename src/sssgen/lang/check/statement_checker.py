@@ -147,7 +147,7 @@ class StatementChecker:
             self.assignments.calls_of(call)
             return []
         raise self.context.fail(
-            statement.span, "this computes a value and drops it", "assign it, or remove the statement"
+            statement.span, "the value of this expression is not used", "assign it, or remove the statement"
         )
 
     def assumption(self, call: s.Expression) -> list[ir.Stmt]:
@@ -157,8 +157,8 @@ class StatementChecker:
             raise self.context.fail(call.span, "assume takes one condition", "write assume(x > 0.0);")
         condition = self.condition(call.args[0])
         if condition is not None and any(isinstance(part, ir.Call) for part in subexpressions(condition)):
-            hint = "assume something of a variable's value"
-            raise self.context.fail(call.span, "an assumption calls no function", hint)
+            hint = "store its result in a variable, and assume a condition on that"
+            raise self.context.fail(call.span, "an assumption cannot call a function", hint)
         return [ir.Assume(condition, call.span)] if condition is not None else []
 
     def if_(self, statement: s.IfStatement) -> list[ir.Stmt]:
@@ -178,7 +178,7 @@ class StatementChecker:
         if jump.kind == "break" and function.switches:
             return [ir.Break(span)]
         if function.loop_depth == 0:
-            raise self.context.fail(span, f"{jump.kind} stands outside a loop")
+            raise self.context.fail(span, f"{jump.kind} must be inside a loop")
         if jump.kind == "break":
             return [ir.Break(span)]
         flags = [flag for flag in function.switches if flag is not None]
@@ -191,15 +191,15 @@ class StatementChecker:
         context, type_ = self.context, self.context.function.result
         if jump.value is None:
             if type_ != VOID:
-                raise context.fail(jump.span, f"this function returns {spell(type_)}", "write return value;")
+                raise context.fail(jump.span, f"this function must return {a_type(type_)}", "write return value;")
             return [ir.Return(None, jump.span)]
         if type_ == VOID:
             value = self.expressions.check(jump.value).expr if context.plain else None
             if value is not None and value.type == VOID:  # return f();
                 self.assignments.calls_of(value)
                 return [ir.Return(None, jump.span)]
-            raise context.fail(jump.span, "this function returns nothing")
-        value = self.expressions.check_as(jump.value, type_, context.function.quantity, "the return")
+            raise context.fail(jump.span, "this function is void and cannot return a value")
+        value = self.expressions.check_as(jump.value, type_, context.function.quantity, "the returned value")
         return [ir.Return(value, jump.span)]
 
 

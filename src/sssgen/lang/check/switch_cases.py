@@ -30,7 +30,7 @@ def cases_of(context: CheckContext, switch: s.SwitchStatement) -> list[Case]:
                 groups.append(([], []))
             groups[-1][0].append(statement)
         elif not groups:
-            raise context.fail(statement.span, "a switch begins with a case")
+            raise context.fail(statement.span, "a switch must begin with a case")
         else:
             groups[-1][1].append(statement)
     cases, default = list[Case](), None
@@ -44,7 +44,7 @@ def cases_of(context: CheckContext, switch: s.SwitchStatement) -> list[Case]:
         if all(label.value is not None for label in labels):
             cases.append(case)
         elif default is not None:
-            raise context.fail(labels[0].span, "there are two defaults in this switch")
+            raise context.fail(labels[0].span, "this switch has two defaults")
         else:
             default = case
     return [*cases, default] if default is not None else cases

@@ -26,7 +26,7 @@ class SwitchChecker:
         context, function, span = self.context, self.context.function, statement.span
         value = self.statements.expressions.check(statement.value).expr
         if value.type not in (INT, UINT):
-            raise context.fail(statement.value.span, f"a switch is over an int, but this is {a_type(value.type)}")
+            raise context.fail(statement.value.span, f"a switch takes an int, but this is {a_type(value.type)}")
         cases = cases_of(context, statement)
         is_loop = any(has_break(case.body) for case in cases)
         position = len(function.prelude)
@@ -64,14 +64,14 @@ class SwitchChecker:
                 return None
             number = constant_int(self.context, label.value)
             if number is None:
-                raise self.context.fail(label.value.span, "a case is a constant whole number")
+                raise self.context.fail(label.value.span, "a case label must be a constant integer")
             literal = ir.Literal(value.type, number & 0xFFFFFFFF if value.type == UINT else number, label.value.span)
             equal = ir.Binary(BOOL, "==", value, literal, label.span)
             test = equal if test is None else ir.Binary(BOOL, "||", test, equal, label.span)
         return test
 
     def label(self, label: s.Label) -> list[ir.Stmt]:
-        raise self.context.fail(label.span, "a case stands outside a switch")
+        raise self.context.fail(label.span, "a case must be inside a switch")
 
 
 def _assigns(stmt: ir.Stmt, variable: ir.Local) -> bool:

@@ -41,5 +41,5 @@ def array_type(context: CheckContext, element: Type, lengths: Sequence[s.Express
     length = lengths[0]
     count = items if isinstance(length, s.Unsized) else constant_int(context, length)
     if count is None or not 1 <= count <= 65536:
-        raise context.fail(length.span, "an array's length is a constant from 1 to 65536")
+        raise context.fail(length.span, "the length of an array must be a constant from 1 to 65536")
     return Array(element, count)

@@ -58,7 +58,7 @@ def check_hints(
         if name == "holds":
             quantity = str(hint.args[0])
             if quantity not in q.SCALARS:
-                known = f"it holds one of {', '.join(q.SCALARS)}"
+                known = f"it can hold {', '.join(q.SCALARS)}"
                 raise context.fail(span, f"a texture cannot hold '{quantity}'", known)
         hints[name] = hint.args
     return tuple(hints.items()), quantity
@@ -78,11 +78,11 @@ def _check_range(
     if not low < high:
         raise context.fail(span, f"the range {low:g} to {high:g} is empty")
     if not all(float(step) > 0.0 for step in args[2:]):
-        raise context.fail(span, "the step of a range is above 0")
+        raise context.fail(span, "the step of a range must be above 0")
     for value in default:
         if not low <= value <= high:
             message = f"the default {value:g} is outside the range {low:g} to {high:g}"
-            raise context.fail(span, message, "" if written else "it has no default of its own: give it one with =")
+            raise context.fail(span, message, "" if written else "it has no default value of its own: add one with =")
 
 
 def _check_part(
@@ -107,6 +107,6 @@ def _arguments(fewest: int, most: int, kind: type) -> str:
     if most == 0:
         return "no arguments"
     if most == 1:
-        return "one number" if kind is float else "one name or text"
+        return "one number" if kind is float else "one name or string"
     count = f"{most}" if fewest == most else f"{fewest} to {most}"
-    return f"{count} {'numbers' if kind is float else 'names or texts'}"
+    return f"{count} {'numbers' if kind is float else 'names or strings'}"

@@ -39,7 +39,7 @@ def type_hint(value: ir.Expr, wanted: Type) -> str:
     if isinstance(wanted, Vector) and value.type == Scalar(wanted.kind):
         return f"write {spell(wanted)}(…)"
     if isinstance(wanted, Vector) and isinstance(value.type, Vector) and value.type.size > wanted.size:
-        return f"take .{'xyzw'[: wanted.size]}"
+        return f"write .{'xyzw'[: wanted.size]}"
     return ""
 
 
@@ -52,14 +52,14 @@ def mixed_hint(left: ir.Expr, right: ir.Expr, op: str = "") -> str:
         if kinds == ("int", "uint") and isinstance(one.type, Scalar):
             return f"write {one.value}u" if isinstance(one, ir.Literal) else "write uint(…)"
     if isinstance(left.type, Vector) and isinstance(right.type, Vector) and op in ("<", ">", "<=", ">="):
-        return "componentwise comparison is lessThan(…), equal(…), and so on"
-    return "the remainder of floats is mod(…)" if op == "%" and kind_of(left.type) == "float" else ""
+        return "for a componentwise comparison, use lessThan(…), equal(…), …"
+    return "for the remainder of floats, use mod(…)" if op == "%" and kind_of(left.type) == "float" else ""
 
 
 def constructor_hint(type_: Type) -> str:
     """What a constructor takes."""
     if isinstance(type_, Struct):
-        return "members are given in order: " + ", ".join(f"{spell(f.type)} {f.name}" for f in type_.fields)
+        return "its members are: " + ", ".join(f"{spell(f.type)} {f.name}" for f in type_.fields)
     return ""
 
 
@@ -69,17 +69,17 @@ def overload_hint(name: str, args: list[ir.Expr]) -> str:
     if resolve(name, as_floats) is not None:
         return "there is no implicit conversion: write 1.0 for 1"
     listed = ", ".join(candidates(name))
-    known = {"gen": "float, vec2, vec3 or vec4 alike", "vec": "vec2, vec3 or vec4 alike"}
+    known = {"gen": "float, vec2, vec3 or vec4, the same throughout", "vec": "vec2, vec3 or vec4, the same throughout"}
     families = [f"{family}F is {words}" for family, words in known.items() if f"{family}F" in listed]
-    return "; ".join([f"there are: {listed}", *families])
+    return "; ".join([f"its overloads are: {listed}", *families])
 
 
 _NOT_HERE = (
     (r"double|d(vec|mat)[234](x[234])?", "WGSL has no floats of 64 bits"),
-    (r"[iu]?image\w+", "images are what compute shaders write"),
-    (r"[iu]?sampler(1D|2DRect|Buffer|2DMS)\w*", "WebGPU samples no such texture"),
-    (r"mat[234]x[234]", "matrices are square here"),
-    (r"atomic_uint", "atomics are of compute shaders"),
+    (r"[iu]?image\w+", "images belong to compute shaders"),
+    (r"[iu]?sampler(1D|2DRect|Buffer|2DMS)\w*", "WebGPU has no such textures"),
+    (r"mat[234]x[234]", "matrices must be square"),
+    (r"atomic_uint", "atomics belong to compute shaders"),
 )
 
 

@@ -74,7 +74,7 @@ class _Reader:
 
     def choice(self, depth: int) -> _Value:
         if depth > MAX_NESTED:
-            raise Fault(self.place, f"an expression nested more than {MAX_NESTED} levels deep")
+            raise Fault(self.place, f"this expression nests more than {MAX_NESTED} levels deep")
         condition = self.binary(depth)
         if self.text != "?":
             return condition
@@ -126,7 +126,7 @@ class _Reader:
         if token.type == "INT":
             return _wrapped(_number(token))
         if token.type == "FLOAT":
-            raise Fault(token.span, f"'{token.text}' is not a whole number", "#if compares whole numbers only")
+            raise Fault(token.span, f"'{token.text}' is not an integer", "#if compares integers only")
         if token.text.isidentifier():
             return 0
         self.at -= 1
@@ -139,7 +139,7 @@ class _Reader:
             self.at += 1
         token = self.take()
         if not token.text.isidentifier():
-            raise Fault(token.span, "'defined' wants the name of a macro")
+            raise Fault(token.span, "'defined' needs the name of a macro")
         if bracketed:
             self.expect(")")
         return token.text
@@ -153,7 +153,7 @@ def _number(token: Token) -> int:
         octal = digits.startswith("0") and digits.isdecimal()
         return int(digits, 16 if digits.startswith("0x") else 8 if octal else 10)
     except ValueError:
-        raise Fault(token.span, f"'{token.text}' is no number") from None
+        raise Fault(token.span, f"'{token.text}' is not a number") from None
 
 
 def _wrapped(value: int) -> int:
@@ -174,12 +174,12 @@ def _combined(operator: Token, left: _Value, right: _Value) -> _Value:
         return right
     if sign in ("/", "%"):
         if right == 0:
-            return Fault(operator.span, "a division by 0")
+            return Fault(operator.span, "division by 0")
         quotient = abs(left) // abs(right) * (1 if (left < 0) == (right < 0) else -1)  # towards 0, as in C
         return _wrapped(quotient if sign == "/" else left - quotient * right)
     if sign in ("<<", ">>"):
         if not 0 <= right < _BITS:
-            return Fault(operator.span, f"a shift by {right}: 0 to {_BITS - 1} are possible")
+            return Fault(operator.span, f"a shift by {right} bits: it must be 0 to {_BITS - 1}")
         return _wrapped(left << right if sign == "<<" else left >> right)
     return _wrapped(int(_PLAIN[sign](left, right)))
 

@@ -63,14 +63,14 @@ def builtin_macros(version: int, profile: str) -> dict[str, Macro]:
 def definition(words: Sequence[Token], place: Span) -> Macro:
     """The macro that the words behind a #define say; `place` is the directive's. Raises Fault."""
     if not words or not words[0].text.isidentifier():
-        raise Fault(words[0].span if words else place, "#define wants a name")
+        raise Fault(words[0].span if words else place, "#define needs a name")
     name, params, body = words[0], None, words[1:]
     if body and body[0].text == "(" and body[0].span[1:3] == name.span[3:5]:
         params = _params(body)
         body = body[max(2, 1 + 2 * len(params)) :]
     for edge in (*body[:1], *body[-1:]):
         if edge.type == "PASTE":
-            raise Fault(edge.span, "'##' stands between two words")
+            raise Fault(edge.span, "'##' must be between two tokens")
     return Macro(name.text, params, tuple(body), any(token.type == "PASTE" for token in body))
 
 
@@ -83,7 +83,7 @@ def _params(words: Sequence[Token]) -> tuple[str, ...]:
         if at % 2 == 0 and word.text.isidentifier() and word.text not in found:
             found.append(word.text)
         elif at % 2 == 0 or word.text != ",":
-            raise Fault(word.span, f"'{word.text}' is not expected here", "as in: #define name(first, second) …")
+            raise Fault(word.span, f"'{word.text}' is not expected here", "write #define name(first, second) …")
     raise Fault(words[0].span, "these parameters are not closed")
 
 
@@ -186,7 +186,7 @@ class Expander:
                 arguments, hidden = found[0], hidden & found[1]
             hidden |= {name}
             if len(hidden) > MAX_NESTED or depth > MAX_NESTED:
-                raise TooMuch(token.span, f"macros stand in each other more than {MAX_NESTED} levels deep")
+                raise TooMuch(token.span, f"macros nest more than {MAX_NESTED} levels deep")
             made = self._substituted(macro, arguments, hidden, token.span, depth)
             self._count(len(made) + 1, token.span)
             back += reversed(made)
@@ -195,9 +195,9 @@ class Expander:
     def _count(self, words: int, place: Span) -> None:
         self.made += words
         if self.made > MAX_TOKENS:
-            raise TooMuch(place, f"macros become more than {MAX_TOKENS} words", "functions say it once")
+            raise TooMuch(place, f"macros expand to more than {MAX_TOKENS} tokens", "use functions instead")
         if self.made > self.limit:
-            raise TooMuch(place, f"this macro becomes more than {MAX_EXPANSION} words", "a function says it once")
+            raise TooMuch(place, f"this macro expands to more than {MAX_EXPANSION} tokens", "use a function instead")
 
     def _arguments(self, macro: Macro, place: Span, stream: _Stream) -> tuple[list[list[_Word]], frozenset[str]] | None:
         """The arguments of a use, and the hide set of the bracket that closes them; nothing after an error."""
@@ -207,7 +207,7 @@ class Expander:
         while True:
             word = stream.take()
             if word is None:
-                hint = "no directive may stand between a macro's arguments"
+                hint = "a directive cannot be between a macro's arguments"
                 self.report(place, f"the arguments of '{macro.name}' are not closed", hint)
                 return None
             text = word[0].text
@@ -229,7 +229,7 @@ class Expander:
             return [], word[1]
         if wanted != len(arguments):
             takes = f"{wanted} argument{'s' * (wanted != 1)}"
-            self.report(place, f"'{macro.name}' takes {takes}, {len(arguments)} given", "")
+            self.report(place, f"'{macro.name}' takes {takes}, but gets {len(arguments)}", "")
             return None
         return arguments, word[1]
 
@@ -264,7 +264,7 @@ class Expander:
             elif words and len(made) > start:
                 (left, one), (right, other) = made.pop(), words[0]
                 if len(left.text) + len(right.text) > MAX_JOINED:
-                    raise TooMuch(place, f"'##' makes a word of more than {MAX_JOINED} characters")
+                    raise TooMuch(place, f"'##' makes a token of more than {MAX_JOINED} characters")
                 self.joined |= self.kept & ({left.text} & one | {right.text} & other)
                 made.append((self.join(left.text + right.text, place), (one & other) | hidden))
                 words = words[1:]

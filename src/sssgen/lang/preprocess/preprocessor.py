@@ -174,7 +174,7 @@ class _Run:
         except TooMuch as fault:
             self.stop(*fault.notes)
         if len(self.tokens) > MAX_TOKENS:
-            self.stop(tokens[-1].span, f"more than {MAX_TOKENS} words, with all that is included")
+            self.stop(tokens[-1].span, f"more than {MAX_TOKENS} tokens, with all included files")
 
     def split(self, lexer: Lexer, text: str, shown: str, line: int, column: int) -> list[Token]:
         tokens, comments = lexer.scan(text, shown, line, column, self.error)
@@ -234,10 +234,10 @@ class _Run:
         """The only word of a directive, which names a macro."""
         if words and words[0].text.isidentifier():
             if len(words) > 1:
-                hint = "#if defined(…) && … asks for more" if directive != "undef" else ""
+                hint = "to test several, write #if defined(…) && …" if directive != "undef" else ""
                 self.error(words[1].span, f"'{words[1].text}' is not expected here", hint)
             return words[0]
-        self.error(words[0].span if words else place, f"#{directive} wants the name of a macro")
+        self.error(words[0].span if words else place, f"#{directive} needs the name of a macro")
         return None
 
     def condition(self, file: SourceFile, name: str, rest: str, place: Span) -> None:
@@ -258,7 +258,7 @@ class _Run:
             branches.pop()
             return
         if branch.last:
-            self.error(place, f"#{name} behind #else", "the #else is the last branch")
+            self.error(place, f"#{name} after #else", "#else must be the last branch")
         branch.last = branch.last or name == "else"
         branch.live = False
         if branch.outside and not branch.taken:
@@ -284,7 +284,7 @@ class _Run:
     def include(self, file: SourceFile, rest: str, place: Span, start: int) -> None:
         match = _INCLUDED.match(rest)
         if match is None or plain(rest[match.end() :]):
-            self.error(place, '#include wants a file: "name" or <name>')
+            self.error(place, '#include needs a file: "name" or <name>')
             return
         angled = match["quoted"] is None
         group = "angled" if angled else "quoted"
@@ -304,18 +304,18 @@ class _Run:
             if shown in chain:
                 circle = " → ".join([*chain[len(chain) - 1 - chain[::-1].index(shown) :], shown])
                 message = f"'{shown}' includes itself: {circle}"
-            self.stop(where, message, "#pragma once in a file takes it once")
+            self.stop(where, message, "write #pragma once in a file to include it only once")
         if self.included > MAX_INCLUDES or self.characters + len(text) > MAX_CHARACTERS:
-            self.stop(where, "too much is included", "#pragma once in a file takes it once")
+            self.stop(where, "too much is included", "write #pragma once in a file to include it only once")
         self.read(text, shown)
 
     def set_version(self, words: str, place: Span) -> None:
         match = re.fullmatch(r"(\d{3})(?: (core|compatibility|es))?", words)
         if match is None:
-            self.error(place, f"'{words}' is no version", "such as: #version 330 core, #version 300 es")
+            self.error(place, f"'{words}' is not a version", "write for example #version 330 core or #version 300 es")
             return
         if self.version not in (0, int(match[1])):
-            self.error(place, f"the version is {self.version} already")
+            self.error(place, f"the version is already {self.version}")
         self.version = int(match[1])
         self.profile = "es" if self.version == 100 else match[2] or ""
         for name in builtin_macros(0, ""):
@@ -360,5 +360,5 @@ class _Run:
         words, _ = self.lexer.scan(text, place.file, 1, 1, lambda span, message, hint: faults.append(message))
         if len(words) == 1 and not faults and words[0].text == text:
             return Token(words[0].type, text, place)
-        self.error(place, f"'##' makes '{text}' here, which is no word")
+        self.error(place, f"'##' makes '{text}' here, which is not a token")
         return Token("NAME", text, place)

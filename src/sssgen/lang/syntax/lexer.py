@@ -13,7 +13,7 @@ from sssgen.ir.spans import Span
 from sssgen.lang.syntax.tokens import Comment, Token
 from sssgen.support.diagnostics import Reporter
 
-MAX_WORDS = 2_000_000
+MAX_TOKENS = 2_000_000
 """How many words, comments and lines one text may have. The longest shaders that people wrote stay below 100,000."""
 
 Report = Callable[[Span, str, str], None]
@@ -146,8 +146,8 @@ class Lexer(dict[str, tuple[str, str, int, int]]):
         pieces = _PIECE.findall(text)
         tokens: list[Token] = []
         comments: list[Comment] = []
-        if len(pieces) > MAX_WORDS:
-            report(Span(file, line, column, line, column + 1), f"more than {MAX_WORDS} words", "split the file")
+        if len(pieces) > MAX_TOKENS:
+            report(Span(file, line, column, line, column + 1), f"more than {MAX_TOKENS} tokens", "split the file")
             return tokens, comments
         append, make, token_type, span_type = tokens.append, tuple.__new__, Token, Span  # local names are the fastest
         for piece in pieces:
@@ -178,9 +178,9 @@ def _fault(word: str) -> tuple[str, str]:
     if first == "/":
         return "this comment is not closed", "add */ at its end"
     if first == '"':
-        return "this text is not closed on its line", ""
+        return "this string is not closed on its line", ""
     if first.isdecimal():
-        return f"'{word}' is no number", f"write {word[:-1]}.0" if re.fullmatch(r"\d+[fF]", word) else ""
+        return f"'{word}' is not a number", f"write {word[:-1]}.0" if re.fullmatch(r"\d+[fF]", word) else ""
     if first == "#":
-        return f"'{word}' has no meaning here", "a directive stands first on its line"
-    return f"{word!r} has no meaning here", ""
+        return f"'{word}' is not expected here", "a directive must be first on its line"
+    return f"unknown character{'s' * (len(word) > 1)} {word!r}", ""

@@ -24,7 +24,7 @@ recurse over what is nested, and a stack of Python's own 1000 frames must be eno
 
 _TOO_DEEP = (
     f"nested more than {MAX_DEPTH} levels deep",
-    "name a part of it in a local variable or a function of its own",
+    "move a part of it to a local variable or a function",
 )
 
 MAX_OPERATORS = 1000
@@ -35,7 +35,7 @@ MAX_SYNTAX_ERRORS = 20
 _TOKEN_NAMES = {
     "NAME": "a name", "INT": "a number", "FLOAT": "a number", "TYPE": "a type", "SEMICOLON": "';'", "LPAR": "'('",
     "RPAR": "')'", "LBRACE": "'{'", "RBRACE": "'}'", "RSQB": "']'", "COMMA": "','", "ASSIGN": "'='", "COLON": "':'",
-    "DOT": "'.'", "LSQB": "'['", "OPERATOR": "an operator", "STRING": "a quoted text", "WHILE": "'while'",
+    "DOT": "'.'", "LSQB": "'['", "OPERATOR": "an operator", "STRING": "a string", "WHILE": "'while'",
 }  # fmt: skip
 
 _DIRECTIVE = re.compile(r'^[ \t]*#[ \t]*(?:include[ \t]+"[^"\n]*"|version[^\n]*)', re.MULTILINE)
@@ -58,8 +58,8 @@ def _without_directives(found: Diagnostic) -> Diagnostic:
     """What the lexer says of a `#`, for a technique's author."""
     if not found.message.startswith("'#'"):
         return found
-    hint = 'but for #include "file.sss"; write a const, a function or a uniform instead'
-    return found._replace(message="there is no preprocessor", hint=hint)
+    hint = 'only #include "file.sss" is possible; write a const, a function or a uniform instead'
+    return found._replace(message="a technique has no preprocessor", hint=hint)
 
 
 def parse_tokens(
@@ -169,7 +169,7 @@ def _report(error: Unexpected, tokens: list[Token], reporter: Reporter) -> None:
     message = f"'{_shorten(token.text)}' is not expected here"
     if 0 < len(wanted) <= 4:
         message += f"; expected {' or '.join(wanted)}"
-    hint = "it is a word of GLSL: choose another name" if "NAME" in accepted and token.text[0].isalpha() else ""
+    hint = "it is a keyword of GLSL: choose another name" if "NAME" in accepted and token.text[0].isalpha() else ""
     reporter.error(token.span, message, hint)
 
 
