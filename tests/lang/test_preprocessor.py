@@ -246,9 +246,9 @@ def test_errors_of_people_and_of_directives() -> None:
         ("the arguments of 'f' are not closed", "main", 3, 14),
     ]
     assert faults("#define A ## b\n#define B b ##\n#define C(x) x ## ;\nC(1)") == [
-        ("'##' stands between two words", "main", 1, 11),
-        ("'##' stands between two words", "main", 2, 13),
-        ("'##' makes '1;' here, which is no word", "main", 4, 1),
+        ("'##' must be between two tokens", "main", 1, 11),
+        ("'##' must be between two tokens", "main", 2, 13),
+        ("'##' makes '1;' here, which is not a token", "main", 4, 1),
     ]
     assert faults("#define A @\n#endif /* x") == [
         ("unknown character '@'", "main", 1, 11),
@@ -256,7 +256,7 @@ def test_errors_of_people_and_of_directives() -> None:
         ("this comment is not closed", "main", 2, 8),
     ]
     assert faults('#define A "x\n#define B /* y') == [
-        ("this text is not closed on its line", "main", 1, 11),
+        ("this string is not closed on its line", "main", 1, 11),
         ("this comment is not closed", "main", 2, 11),
     ]
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.rules import element_type
-from sssgen.ir.types import BOOL, FLOAT, INT, UINT, VOID, Array, Sampler, Scalar, Struct, Type, kind_of, spell
+from sssgen.ir.types import BOOL, FLOAT, INT, UINT, VOID, Array, Sampler, Scalar, Struct, Type, kind_of
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check.assignment_checker import AssignmentChecker
 from sssgen.lang.check.constant_integers import constant_int
