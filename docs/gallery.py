@@ -27,7 +27,7 @@ from sssgen.support.progress import ProgressBar
 PAGE = Path(__file__).with_name("gallery.md")
 PICTURES = Path(__file__).with_name("gallery")
 
-BACKENDS = ("gl", "webgpu", "browser", "hlsl")
+BACKENDS = tuple(name for name in backends.DEFAULT if backends.BACKENDS[name].driver)
 SMALL = (160, 120)
 """The size in pixels of the pictures that are compared."""
 
@@ -109,7 +109,7 @@ def page(present: list[Backend], small: dict[str, list[Apart]], large: dict[str,
         f"|---|{'---|' * len(present)}",
     ]
     lines += [_row(name, [f"{one.beyond}" for one in far]) for name, far in large.items()]
-    lines += ["", *(f"- `{one.name}`: {backends.NAMES[one.name]}; {one.device()}" for one in present)]
+    lines += ["", *(f"- `{one.name}`: {backends.BACKENDS[one.name].description}; {one.device()}" for one in present)]
     return "\n".join(lines) + "\n"
 
 

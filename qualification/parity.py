@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from qualification.parity_inputs import FEW, MAX, MIN, Case, cases, evaluated, textures, widened
-from sssgen.harness.backends import Array, Backend, Call, Text
+from sssgen.harness.backends import DRIVERS, Array, Backend, Call, Text
 from sssgen.harness.backends.call_program import grid
 from sssgen.ir import signatures
 from sssgen.ir.intrinsics import Builtin
@@ -38,10 +38,8 @@ from sssgen.targets import numpy_runtime as runtime
 
 __all__ = ["BACKENDS", "FULL", "Case", "Figure", "cases", "measure", "oracle", "run", "supported"]
 
-BACKENDS = (
-    "gl", "gl-es", "webgpu", "browser", "hlsl", "hlsl-glslang", "unity", "unity-urp", "numpy-f32",
-)  # fmt: skip
-"""What is measured: every back end but the oracle, and but float16, which has other limits."""
+BACKENDS = (*DRIVERS, "numpy-f32")
+"""The back ends that are measured: all that compute in float32."""
 
 FULL = 4000
 """Lanes to an overload in a full measurement."""

@@ -13,14 +13,14 @@ from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from sssgen.harness.backends import Array, Backend, get
+from sssgen.harness.backends import DRIVERS, Array, Backend, get
 from sssgen.harness.evaluate.deviation import GOAL, Deviation, blur, deviation
 from sssgen.harness.evaluate.evaluation import Inputs, fitted, run
 from sssgen.harness.evaluate.probes import Subject, subject
 from sssgen.harness.evaluate.random_inputs import samples
 from sssgen.material import library, slots
 
-BACKENDS = ("gl", "gl-es", "webgpu", "browser", "hlsl", "hlsl-glslang", "unity", "unity-urp")
+BACKENDS = DRIVERS
 LANES, SEED = 10_000, 1
 BOUND_LANES = 2_000
 """For a technique with other functions in its slots, where the technique itself has had its `LANES`."""

@@ -46,7 +46,7 @@ def page() -> str:
         "",
         "The devices:",
         "",
-        *(f"- `{backend.name}`: {backends.NAMES[backend.name]}; {backend.device()}" for backend in found),
+        *(f"- `{one.name}`: {backends.BACKENDS[one.name].description}; {one.device()}" for one in found),
         "",
         "How to read it: a figure is the largest error in ulp, units in the last place, in float32, of the result (of",
         "a vector: of its largest component; where terms may cancel, as in `dot`, of the terms: the table's `size`).",

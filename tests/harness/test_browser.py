@@ -204,4 +204,4 @@ def test_a_missing_browser() -> None:
 def test_a_program_that_is_no_browser(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SSSGEN_CHROMIUM", sys.executable)
     with pytest.raises(CompilerMissing, match=r"ended as it started \(exit status 2\)"):
-        Browser("browser")
+        Browser("browser", "wgsl")

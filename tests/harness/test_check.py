@@ -15,6 +15,7 @@ from folders import UNITY_SAMPLES
 from sssgen.cli import main as cli
 from sssgen.harness.check import compile_check as check
 from sssgen.harness.check.shader_files import of_files, of_material, read
+from sssgen.harness.compiler_registry import COMPILERS
 from sssgen.harness.compilers import Compiler, Source
 from sssgen.harness.compilers.compiler_process import Worker
 from sssgen.harness.compilers.unity_compiler import STANDIN
@@ -116,7 +117,7 @@ def test_a_material_in_both_forms(run: Run, compiler: Callable[[str], Compiler])
 
 def test_a_material_means_every_target_that_a_compiler_reads() -> None:
     found = {source.language for shader in of_material("ice", ()) for source in shader.sources}
-    assert found == {language for languages in check.LANGUAGES.values() for language in languages}
+    assert found == {language for record in COMPILERS.values() for language in record.languages}
 
 
 def test_a_folder_takes_what_is_a_shader(run: Run) -> None:

@@ -69,7 +69,7 @@ def test_outputs_of_the_oracle(capsys: pytest.CaptureFixture[str], given: Callab
 def test_all_back_ends_agree(capsys: pytest.CaptureFixture[str], given: Callable[..., str]) -> None:
     found = answer(capsys, "lobe_gdc2011", "-i", given(LOBE), "--backend", "all")
     rows = {row["name"]: row for row in found["backends"]}
-    assert list(rows) == list(backends.NAMES)
+    assert list(rows) == list(backends.BACKENDS)
     for name, row in rows.items():
         assert row.get("missing") or row["deviation"] <= (1e-3 if name.endswith("f16") else 1e-6), row
 

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from qualification.parity_inputs import DTYPES, textures
-from sssgen.harness.backends import Array, Backend, Call, Text
+from sssgen.harness.backends import SINGLE, Array, Backend, Call, Text
 from sssgen.ir.out_builtins import OUT_BUILTINS, is_out_builtin, out_builtin
 from sssgen.ir.types import FLOAT, VEC2, VEC3, VEC4, Sampler, Type, kind_of, spell, vector_of
 from sssgen.lang.loader import load_text
 from sssgen.pipeline.compiler import transpile
 
-BACKENDS = ("numpy", "numpy-f32", "gl", "gl-es", "webgpu", "browser", "hlsl", "hlsl-glslang", "unity", "unity-urp")
+BACKENDS = ("numpy", *SINGLE)
 LANES = 64
 
 KINDS: dict[str, tuple[str, ...]] = {

@@ -10,7 +10,7 @@ from sssgen.cli.output import CHECK_FAILED, OK, print_json
 from sssgen.harness.check import compile_check as check
 from sssgen.harness.check.compile_check import Report, Result
 from sssgen.harness.check.shader_files import Shader, read
-from sssgen.harness.compilers import LANGUAGES, readers
+from sssgen.harness.compiler_registry import COMPILERS, readers
 from sssgen.ir.spans import Span
 from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean, failure, visible
 
@@ -53,8 +53,8 @@ def run(arguments: Namespace) -> int:
 def _compilers(names: list[str], wrong: list[Diagnostic]) -> list[str]:
     found = [name.strip() for text in names for name in text.split(",")]
     for name in found:
-        if name not in LANGUAGES:
-            hint = did_you_mean(name, LANGUAGES) or f"compilers: {', '.join(LANGUAGES)}"
+        if name not in COMPILERS:
+            hint = did_you_mean(name, COMPILERS) or f"compilers: {', '.join(COMPILERS)}"
             wrong += failure(f"unknown compiler '{name}'", hint).diagnostics
     return found
 

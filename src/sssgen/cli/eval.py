@@ -8,6 +8,7 @@ from typing import Any
 
 from sssgen.cli.options import add_guards, add_seed
 from sssgen.cli.output import CHECK_FAILED, OK, print_json
+from sssgen.harness.backend_registry import BACKENDS, HALF, chosen, in_half
 from sssgen.harness.testing.outcome import in_ci
 from sssgen.support.diagnostics import failure
 
@@ -32,7 +33,7 @@ def add_options(parser: ArgumentParser) -> None:
     add_seed(parser, "the seed of the random inputs")
     add(
         "--backend", "-b", metavar="NAME", default="numpy",
-        help="numpy (default), gl, gl-es, webgpu, browser, hlsl, hlsl-glslang, unity, unity-urp, several, or all",
+        help=f"{', '.join(BACKENDS)}, several, or all (default: numpy)",
     )  # fmt: skip
     add("--bind", action="append", default=[], metavar="SLOT=FUNCTION", help="a function for a slot, or FILE:FUNCTION")
     add_guards(parser)
@@ -71,17 +72,15 @@ def _sampled(chosen: Any, count: int, seed: int) -> dict[str, Any]:
 
 def _backends(given: str, precision: str | None) -> list[str]:
     """The back ends that are meant; the oracle comes first."""
-    from sssgen.harness.backends import HALF, NAMES, chosen, in_half
-
-    names = list(NAMES) if given == "all" else chosen(given)
+    names = list(BACKENDS) if given == "all" else chosen(given)
     if precision is None:
         return names
     if precision == "f16":
-        return list(HALF.values()) if given == "all" else in_half(names)
+        return list(HALF) if given == "all" else in_half(names)
     wanted = {"f64": "numpy", "f32": "numpy-f32"}[precision]
     if "numpy" in names:
-        return [wanted if name == "numpy" else name for name in names if name not in ("numpy-f32", *HALF.values())]
-    if precision == "f64" or not set(HALF.values()).isdisjoint(names):
+        return [wanted if name == "numpy" else name for name in names if name not in ("numpy-f32", *HALF)]
+    if precision == "f64" or not set(HALF).isdisjoint(names):
         raise failure(f"{names[0]} computes in its own precision, not in {precision}", "--backend numpy")
     return names
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from sssgen.cli.options import add_guards, add_seed, add_workers
 from sssgen.cli.output import CHECK_FAILED, OK, print_json
+from sssgen.harness.backend_registry import DEFAULT, HALF, SINGLE, chosen, in_half
 from sssgen.harness.testing.outcome import in_ci
 from sssgen.support.diagnostics import failure
 from sssgen.support.file_writer import write_files
@@ -19,8 +20,6 @@ if TYPE_CHECKING:
     from sssgen.harness.stress.stress_run import Settings
     from sssgen.harness.stress.subject import Specimen
 
-DEFAULT = {None: "numpy-f32,gl,webgpu,browser,hlsl", "f32": "numpy-f32,gl,webgpu,browser,hlsl", "f16": "numpy,webgpu"}
-"""The back ends for each precision."""
 MOST_SAMPLES = 10**9
 
 
@@ -33,7 +32,7 @@ def add_options(parser: ArgumentParser) -> None:
     )
     add = parser.add_argument
     add("NAME", nargs="*", help="a technique, a .sss file, a material's .toml file, or an example")
-    add("--backend", "-b", metavar="NAME", help="default: numpy-f32,gl,webgpu,browser,hlsl; one, several, or all")
+    add("--backend", "-b", metavar="NAME", help=f"default: {','.join(DEFAULT)}; one, several, or all")
     add("--samples", type=int, default=10_000, metavar="N", help="the number of random inputs (default: 10000)")
     add_seed(parser, "their seed")
     add(
@@ -64,7 +63,7 @@ def run(arguments: Namespace) -> int:
     half = arguments.precision == "f16"
     rows = dangerous.chosen(arguments.row)
     settings = Settings(arguments.samples, arguments.seed, arguments.guards, half, rows)
-    names = _backends(arguments.backend or DEFAULT[arguments.precision], half)
+    names = _backends(arguments.backend or ("all" if half else ",".join(DEFAULT)), half)
     named = specimens(arguments.NAME)
     _check_rows(rows, named)
     if arguments.scheduler or arguments.processes is not None:
@@ -94,16 +93,13 @@ def _check_rows(rows: Sequence[str], named: Sequence[Specimen]) -> None:
 
 def _backends(given: str, half: bool) -> list[str]:
     """The back ends that are meant. Raises SssgenError for unknown ones, and ones of the other precision."""
-    from sssgen.harness.backends import HALF, NAMES, chosen, in_half
-
-    halves = set(HALF.values())
-    names = [name for name in NAMES if name != "numpy" and name not in halves] if given == "all" else chosen(given)
+    names = list(SINGLE) if given == "all" else chosen(given)
     if not half:
-        wrong = [name for name in names if name in halves]
+        wrong = [name for name in names if name in HALF]
         if wrong:
             raise failure(f"{wrong[0]} computes in half precision", "--precision f16 --backend numpy,webgpu")
         return names
-    return list(HALF.values()) if given == "all" else in_half(names)
+    return list(HALF) if given == "all" else in_half(names)
 
 
 def _stressed(chosen: list[Specimen], names: list[str], settings: Settings) -> Report:

@@ -36,8 +36,8 @@ class Browser(DrawingBackend):
 
     top_first = True
 
-    def __init__(self, name: str, seconds: float = SECONDS) -> None:
-        super().__init__(name, "wgsl")
+    def __init__(self, name: str, target: str, seconds: float = SECONDS) -> None:
+        super().__init__(name, target)
         self.seconds = seconds
         self.page, self.told = _open()
 

@@ -18,9 +18,9 @@ from sssgen.targets.numpy_values import grid, precision
 class Reference(Backend):
     """Runs emitted Python; `dtype` is float64, float32 or float16."""
 
-    def __init__(self, name: str, dtype: str = "float64") -> None:
+    def __init__(self, name: str, target: str, dtype: str) -> None:
         self.name, self.dtype = name, dtype
-        self.target = registry.load("numpy-f16" if dtype == "float16" else "numpy")
+        self.target = registry.load(target)
 
     def device(self) -> str:
         return f"NumPy {np.__version__}, {self.dtype}"

@@ -25,7 +25,7 @@ class WebGPU(DrawingBackend):
 
     top_first = True
 
-    def __init__(self, name: str, target: str = "wgsl") -> None:
+    def __init__(self, name: str, target: str) -> None:
         super().__init__(name, target)
         naga = compilers.get("naga")
         assert isinstance(naga, Naga)

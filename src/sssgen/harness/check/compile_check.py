@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from sssgen.harness.check.shader_files import Shader
-from sssgen.harness.compilers import LANGUAGES, CompilerMissing, Message, Source, errors, readers
+from sssgen.harness.compilers import COMPILERS, CompilerMissing, Message, Source, errors, readers
 from sssgen.harness.compilers.compiler_process import Worker
 from sssgen.material.library import TECHNIQUES
 from sssgen.support.diagnostics import SssgenError, failure
@@ -54,7 +54,11 @@ def run(shaders: Sequence[Shader], names: Sequence[str] = (), unity_includes: st
 
     programs = [(shader, source) for shader in shaders for source in shader.sources]
     languages = sorted({source.language for _, source in programs})
-    chosen = [name for name in LANGUAGES if name in (names or LANGUAGES) and LANGUAGES[name].intersection(languages)]
+    chosen = [
+        name
+        for name, record in COMPILERS.items()
+        if name in (names or COMPILERS) and record.languages.intersection(languages)
+    ]
     if not chosen:
         who = " or ".join(names) or "compiler here"
         those = sorted({name for language in languages for name in readers(language)})

@@ -8,9 +8,10 @@ for name, messages in check(Source(text, language="wgsl", stage="fragment", entr
 from __future__ import annotations
 
 from functools import cache
+from importlib import import_module
 
+from sssgen.harness.compiler_registry import COMPILERS, readers
 from sssgen.harness.compilers.compiler_interface import (
-    LANGUAGES,
     Compiler,
     CompilerMissing,
     Message,
@@ -20,7 +21,7 @@ from sssgen.harness.compilers.compiler_interface import (
 )
 
 __all__ = [
-    "LANGUAGES",
+    "COMPILERS",
     "Compiler",
     "CompilerMissing",
     "Message",
@@ -37,17 +38,12 @@ __all__ = [
 
 def available() -> list[Compiler]:
     """Every compiler that this machine has, started."""
-    return [found for found in map(_find, LANGUAGES) if isinstance(found, Compiler)]
+    return [found for found in map(_find, COMPILERS) if isinstance(found, Compiler)]
 
 
 def missing() -> list[tuple[str, str]]:
     """(name, how to get it) of every compiler that this machine lacks."""
-    return [(name, found) for name in LANGUAGES if isinstance(found := _find(name), str)]
-
-
-def readers(language: str) -> list[str]:
-    """The names of all compilers for `language`, also of those that this machine lacks."""
-    return [name for name, languages in LANGUAGES.items() if language in languages]
+    return [(name, found) for name in COMPILERS if isinstance(found := _find(name), str)]
 
 
 def get(name: str) -> Compiler:
@@ -63,16 +59,11 @@ def check(source: Source) -> dict[str, list[Message]]:
     return {c.name: c.check(source) for c in map(_find, readers(source.language)) if isinstance(c, Compiler)}
 
 
-_MODULES = {"gl": "gl_driver", "python": "python_syntax", "unity": "unity_compiler"}
-
-
 @cache
 def _find(name: str) -> Compiler | str:
     """The compiler of that name, started once a process, or how to get it."""
-    from importlib import import_module
-
     try:
-        found: Compiler = import_module(f"sssgen.harness.compilers.{_MODULES.get(name, name)}").find()
+        compiler: Compiler = import_module(f"sssgen.harness.compilers.{COMPILERS[name].module}").find()
     except CompilerMissing as reason:
         return str(reason)
-    return found
+    return compiler

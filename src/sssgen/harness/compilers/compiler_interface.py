@@ -9,17 +9,6 @@ from typing import Literal
 Stage = Literal["vertex", "fragment", "library"]
 Severity = Literal["error", "warning", "info"]
 
-LANGUAGES: dict[str, frozenset[str]] = {
-    "gl": frozenset({"glsl-330", "glsl-es-300"}),
-    "glslang": frozenset({"glsl-330", "glsl-es-300", "hlsl"}),
-    "dxc": frozenset({"hlsl"}),
-    "naga": frozenset({"wgsl"}),
-    "tint": frozenset({"wgsl"}),
-    "unity": frozenset({"unity-builtin", "unity-urp", "unity-shadergraph"}),
-    "python": frozenset({"numpy"}),
-}
-"""Every compiler, and the languages it reads, whether or not this machine has it."""
-
 
 @dataclass(frozen=True)
 class Source:
@@ -68,7 +57,6 @@ class Compiler(ABC):
     """A compiler that this project did not write, ready to check text."""
 
     name: str
-    languages: frozenset[str]
 
     @abstractmethod
     def version(self) -> str:

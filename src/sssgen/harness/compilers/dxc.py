@@ -11,7 +11,7 @@ from collections.abc import Callable
 from functools import cache
 
 from sssgen.harness.compilers.calling_entry import hlsl_entry
-from sssgen.harness.compilers.compiler_interface import LANGUAGES, Compiler, CompilerMissing, Message, Severity, Source
+from sssgen.harness.compilers.compiler_interface import Compiler, CompilerMissing, Message, Severity, Source
 from sssgen.harness.compilers.glslang import LIBRARY_ENTRY
 from sssgen.support.worker_process import LostError, Process
 
@@ -36,7 +36,6 @@ class Dxc(Compiler):
     """Asks the other process."""
 
     name = "dxc"
-    languages = LANGUAGES["dxc"]
 
     def __init__(self, process: Process) -> None:
         self._process = process

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from sssgen.harness.compilers.calling_entry import glsl_entry
-from sssgen.harness.compilers.compiler_interface import LANGUAGES, Compiler, CompilerMissing, Message, Severity, Source
+from sssgen.harness.compilers.compiler_interface import Compiler, CompilerMissing, Message, Severity, Source
 
 _HEADERS = {
     "glsl-330": "#version 330\n",
@@ -28,7 +28,6 @@ class DriverGL(Compiler):
     """Compiles and links with the system's OpenGL driver."""
 
     name = "gl"
-    languages = LANGUAGES["gl"]
 
     def __init__(self, context: Any) -> None:
         self.context = context

@@ -7,7 +7,7 @@ from pathlib import Path
 from subprocess import CompletedProcess
 
 from sssgen.harness.compilers.calling_entry import glsl_entry, hlsl_entry
-from sssgen.harness.compilers.compiler_interface import LANGUAGES, Compiler, CompilerMissing, Message, Severity, Source
+from sssgen.harness.compilers.compiler_interface import Compiler, CompilerMissing, Message, Severity, Source
 from sssgen.harness.compilers.gl_driver import with_version
 
 _STAGES = {"vertex": "vert", "fragment": "frag", "library": "frag"}
@@ -20,7 +20,6 @@ class Glslang(Compiler):
     """Runs one `glslangValidator` process a check; it reads standard input and leaves no file."""
 
     name = "glslang"
-    languages = LANGUAGES["glslang"]
 
     def __init__(self, program: str) -> None:
         self._program = program

@@ -6,14 +6,13 @@ import re
 from typing import Any
 
 from sssgen.harness.compilers.calling_entry import wgsl_entry
-from sssgen.harness.compilers.compiler_interface import LANGUAGES, Compiler, CompilerMissing, Message, Source
+from sssgen.harness.compilers.compiler_interface import Compiler, CompilerMissing, Message, Source
 
 
 class Naga(Compiler):
     """Makes shader modules on whatever adapter there is; without a GPU that is Mesa's lavapipe."""
 
     name = "naga"
-    languages = LANGUAGES["naga"]
 
     def __init__(self, device: Any, adapter: str) -> None:
         self.gpu = device

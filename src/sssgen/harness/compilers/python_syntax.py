@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from sssgen.harness.compilers.compiler_interface import LANGUAGES, Compiler, Message, Source
+from sssgen.harness.compilers.compiler_interface import Compiler, Message, Source
 
 
 class Python(Compiler):
     """Compiles and does not run."""
 
     name = "python"
-    languages = LANGUAGES["python"]
 
     def version(self) -> str:
         import platform

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from sssgen.harness.compilers.calling_entry import wgsl_entry
-from sssgen.harness.compilers.compiler_interface import LANGUAGES, Compiler, CompilerMissing, Message, Source
+from sssgen.harness.compilers.compiler_interface import Compiler, CompilerMissing, Message, Source
 
 # One process answers for all checks. Dawn prints warnings there as well, so a reply begins with "@@".
 _SERVER = """
@@ -39,7 +39,6 @@ class Tint(Compiler):
     """Talks to one node process, kept alive, in lines of JSON; a check takes about two milliseconds."""
 
     name = "tint"
-    languages = LANGUAGES["tint"]
 
     def __init__(self, node: str, modules: Path) -> None:
         import atexit

@@ -17,7 +17,7 @@ from pathlib import Path
 from sssgen.harness.compilers import dxc, glslang, shaderlab
 from sssgen.harness.compilers import surface_shader as surface
 from sssgen.harness.compilers.calling_entry import Opaque, hlsl_entry
-from sssgen.harness.compilers.compiler_interface import LANGUAGES, Compiler, CompilerMissing, Message, Source, Stage
+from sssgen.harness.compilers.compiler_interface import Compiler, CompilerMissing, Message, Source, Stage
 
 _TEXT = "sssgen-text"
 """What the text is called in `#line`. A name of the user's could hold a quote, or be a header's."""
@@ -92,7 +92,6 @@ class Unity(Compiler):
     """Preprocesses with `root`'s headers and compiles every pass, stage and end of the keyword lists."""
 
     name = "unity"
-    languages = LANGUAGES["unity"]
 
     def __init__(self, root: Path, real: bool, preprocess: Callable[[str, list[str], list[Path]], str]) -> None:
         self.root = root

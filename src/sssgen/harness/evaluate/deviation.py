@@ -59,7 +59,7 @@ class Row(NamedTuple):
     @property
     def ok(self) -> bool:
         """Whether it agrees, or is not here, or computes in half precision, which is not meant to."""
-        if self.missing or self.name in HALF.values():
+        if self.missing or self.name in HALF:
             return True
         return self.deviation is not None and self.deviation.largest <= GOAL
 
@@ -70,7 +70,7 @@ class Row(NamedTuple):
             return f"{'missing' if self.missing else 'FAILED'}: {self.error}"
         found = self.deviation
         where = f" at {found.output}[{found.lane}]: {found.got.tolist()}" if found.largest > GOAL else ""
-        where += " (half precision, which the goal is not for)" if where and self.name in HALF.values() else ""
+        where += " (half precision, which the goal is not for)" if where and self.name in HALF else ""
         excused = f", float32 blurs {found.excused} more by up to {found.furthest:.2g}" if found.excused else ""
         return f"{found.largest:8.2g}{where}{excused}  ({self.device})"
 
@@ -177,4 +177,4 @@ def _row(
     finally:
         if (close := getattr(backend, "close", None)) is not None:
             close()
-    return Row(name, backend.device(), deviation(found, oracle, blurred if name not in HALF.values() else None), "")
+    return Row(name, backend.device(), deviation(found, oracle, blurred if name not in HALF else None), "")

@@ -170,7 +170,7 @@ class Run:
         return golden.compared(picture, folder, stem(case.path), limit, "" if case.first else f".{name}")
 
     def _eval(self, case: Case) -> Outcome:
-        from sssgen.harness.backends import HALF, NAMES, CompilerMissing, get
+        from sssgen.harness.backends import SINGLE, CompilerMissing, get
         from sssgen.harness.evaluate.deviation import GOAL
         from sssgen.harness.evaluate.evaluation import fitted, run
         from sssgen.harness.evaluate.input_files import read
@@ -192,7 +192,7 @@ class Run:
         if outcome.state == "failed":
             return outcome
         told: dict[str, Outcome] = {}
-        for name in case.backends or [name for name in NAMES if name not in ("numpy", *HALF.values())]:
+        for name in case.backends or SINGLE:
             try:
                 told[name] = against_oracle(chosen, fit, self._backends().get(name), tolerance, oracle)[1]
             except CompilerMissing as reason:

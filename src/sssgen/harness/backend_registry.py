@@ -1,0 +1,113 @@
+"""The back ends that run emitted text, one record each: every list of them comes from here.
+
+Nothing is imported for it, so that help texts and reports may list what this machine lacks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from sssgen.support.diagnostics import did_you_mean, failure
+
+
+class BackendRecord(NamedTuple):
+    """One back end."""
+
+    name: str
+    description: str
+    target: str
+    """The target whose text it runs."""
+    program: str
+    """`module:class` in `sssgen.harness.backends`; the class is called with the name, the target and `options`."""
+    install: str
+    """What it needs, in Markdown."""
+    options: Mapping[str, str] = {}
+    bits: int = 32
+    """The size of its floats."""
+    half: str = ""
+    """Its counterpart in half precision."""
+    driver: bool = True
+    """Whether a driver computes, which may crash."""
+    default: bool = False
+    """Whether it runs where no back end is named: one for each compiler, and NumPy."""
+
+
+_GL = "`pip install 'sssgen[gl]'` and a driver (Debian, without a GPU: `libegl1 libgl1 libgl1-mesa-dri`)"
+_SPIRV = "spirv-val and spirv-cross (Debian: `spirv-tools spirv-cross`)"
+_DXC = f"as `gl`, `pip install 'sssgen[dxc]'`, {_SPIRV}"
+_GLSLANG = f"as `gl`, `glslangValidator` (Debian: `glslang-tools`), {_SPIRV}"
+_NUMPY = "`pip install 'sssgen[numpy]'`"
+
+_RECORDS = (
+    BackendRecord(
+        "numpy", "the oracle: NumPy in float64", "numpy", "numpy_reference:Reference", _NUMPY, {"dtype": "float64"},
+        bits=64, half="numpy-f16", driver=False,
+    ),
+    BackendRecord(
+        "numpy-f32", "the same in float32", "numpy", "numpy_reference:Reference", _NUMPY, {"dtype": "float32"},
+        driver=False, default=True,
+    ),
+    BackendRecord(
+        "numpy-f16", "the same in float16", "numpy-f16", "numpy_reference:Reference", _NUMPY, {"dtype": "float16"},
+        bits=16, driver=False,
+    ),
+    BackendRecord("gl", "GLSL 3.30 in OpenGL", "glsl-330", "opengl:OpenGL", _GL, default=True),
+    BackendRecord("gl-es", "GLSL ES 3.00 in OpenGL", "glsl-es-300", "opengl:OpenGL", _GL),
+    BackendRecord(
+        "webgpu", "WGSL through naga, in wgpu", "wgsl", "webgpu:WebGPU",
+        "`pip install 'sssgen[webgpu]'` and Vulkan or Metal (Debian, without a GPU: `mesa-vulkan-drivers libvulkan1`)",
+        half="webgpu-f16", default=True,
+    ),
+    BackendRecord(
+        "webgpu-f16", "the same in half precision", "wgsl-f16", "webgpu:WebGPU",
+        "as `webgpu`, and an adapter with the feature shader-f16, which Mesa's lavapipe has", bits=16,
+    ),
+    BackendRecord(
+        "browser", "WGSL through Tint, in a headless Chromium", "wgsl", "browser:Browser",
+        "`pip install 'sssgen[browser]'` and Chromium or Chrome (Debian: `chromium`)", default=True,
+    ),
+    BackendRecord(
+        "hlsl", "HLSL through DXC and SPIR-V, in OpenGL", "hlsl", "hlsl_spirv:HLSL", _DXC, {"compiler": "dxc"},
+        default=True,
+    ),
+    BackendRecord(
+        "hlsl-glslang", "HLSL through glslang and SPIR-V, in OpenGL", "hlsl", "hlsl_spirv:HLSL", _GLSLANG,
+        {"compiler": "glslang"},
+    ),
+    BackendRecord(
+        "unity", "Unity's built-in pipeline: preprocessed, through glslang and SPIR-V, in OpenGL", "unity-builtin",
+        "unity_backend:UnityHLSL", "as `hlsl-glslang`, and a C preprocessor (Debian: `gcc`)", {"compiler": "dx9"},
+    ),
+    BackendRecord(
+        "unity-urp", "Unity's URP: preprocessed, through DXC and SPIR-V, in OpenGL", "unity-urp",
+        "unity_backend:UnityHLSL", "as `hlsl`, and a C preprocessor (Debian: `gcc`)", {"compiler": "dxc"},
+    ),
+)  # fmt: skip
+
+BACKENDS = {record.name: record for record in _RECORDS}
+SINGLE = tuple(record.name for record in _RECORDS if record.bits == 32)
+"""Those that compute in float32."""
+HALF = tuple(record.name for record in _RECORDS if record.bits == 16)
+DRIVERS = tuple(name for name in SINGLE if BACKENDS[name].driver)
+"""Those that compute in float32 in a driver."""
+DEFAULT = tuple(record.name for record in _RECORDS if record.default)
+
+
+def chosen(text: str) -> list[str]:
+    """The back ends that `NAME,NAME` names, each once. Raises SssgenError for unknown ones."""
+    names = list(dict.fromkeys(name.strip() for name in text.split(",")))
+    for name in names:
+        if name not in BACKENDS:
+            hint = did_you_mean(name, BACKENDS) or f"choose from: {', '.join(BACKENDS)}"
+            raise failure(f"unknown back end '{name}'", hint)
+    return names
+
+
+def in_half(names: list[str]) -> list[str]:
+    """The counterparts of those back ends in half precision. Raises SssgenError for one that has none."""
+    for name in names:
+        if name not in HALF and not BACKENDS[name].half:
+            counterparts = " or ".join(record.name for record in _RECORDS if record.half)
+            raise failure(f"{name} does not compute in half precision", f"--backend {counterparts}")
+    return list(dict.fromkeys(BACKENDS[name].half or name for name in names))

@@ -1,0 +1,49 @@
+"""The compilers that check emitted text, one record each: every list of them comes from here."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class CompilerRecord(NamedTuple):
+    """One compiler, whether or not this machine has it."""
+
+    name: str
+    description: str
+    languages: frozenset[str]
+    """The targets whose text it reads."""
+    module: str
+    """In `sssgen.harness.compilers`; its `find()` starts the compiler."""
+    install: str
+    """What it needs, in Markdown."""
+
+
+_RECORDS = (
+    CompilerRecord(
+        "gl", "the OpenGL driver", frozenset({"glsl-330", "glsl-es-300"}), "gl_driver",
+        "`pip install 'sssgen[gl]'` and a driver (Debian, without a GPU: `libegl1 libgl1 libgl1-mesa-dri`)",
+    ),
+    CompilerRecord(
+        "glslang", "Khronos' reference compiler", frozenset({"glsl-330", "glsl-es-300", "hlsl"}), "glslang",
+        "`glslangValidator` (Debian: `glslang-tools`)",
+    ),
+    CompilerRecord("dxc", "Microsoft's compiler", frozenset({"hlsl"}), "dxc", "`pip install 'sssgen[dxc]'`"),
+    CompilerRecord(
+        "naga", "wgpu's compiler", frozenset({"wgsl"}), "naga",
+        "`pip install 'sssgen[webgpu]'` and Vulkan or Metal (Debian, without a GPU: `mesa-vulkan-drivers libvulkan1`)",
+    ),
+    CompilerRecord("tint", "Chrome's compiler", frozenset({"wgsl"}), "tint", "node and the npm package `webgpu`"),
+    CompilerRecord(
+        "unity", "a C preprocessor with Unity's headers, then glslang or DXC",
+        frozenset({"unity-builtin", "unity-urp", "unity-shadergraph"}), "unity_compiler",
+        "`glslang`, `dxc` and a C preprocessor (Debian: `gcc`)",
+    ),
+    CompilerRecord("python", "Python itself", frozenset({"numpy"}), "python_syntax", "nothing"),
+)  # fmt: skip
+
+COMPILERS = {record.name: record for record in _RECORDS}
+
+
+def readers(language: str) -> list[str]:
+    """The names of all compilers for `language`, also of those that this machine lacks."""
+    return [record.name for record in _RECORDS if language in record.languages]
