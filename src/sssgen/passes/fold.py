@@ -13,18 +13,15 @@ Identities are only those that hold for every float: `x * 1.0`, `x + 0.0` (but f
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import copysign
 from typing import Any
 
 from sssgen.ir.nodes import (
     Assign,
     Assume,
     Binary,
-    Block,
     Call,
     Construct,
     Declare,
-    Evaluate,
     Expr,
     For,
     Function,
@@ -36,9 +33,7 @@ from sssgen.ir.nodes import (
     Local,
     Member,
     Module,
-    Return,
     Select,
-    Span,
     Stmt,
     Swizzle,
     Unary,
@@ -46,11 +41,13 @@ from sssgen.ir.nodes import (
     While,
 )
 from sssgen.ir.rules import element_type
-from sssgen.ir.transform import rewrite
-from sssgen.ir.types import BOOL, Array, Matrix, Scalar, Struct, Type, Vector, components, kind_of, vector_of
-from sssgen.ir.walk import operands, subexpressions, with_operands
+from sssgen.ir.transform import Transformer, rewrite
+from sssgen.ir.types import BOOL, Matrix, Scalar, Struct, Vector, kind_of
+from sssgen.ir.walk import operands
 from sssgen.passes import constant_arithmetic as arithmetic
-from sssgen.passes.constant_arithmetic import Number, Numbers
+from sssgen.passes.constant_arithmetic import Numbers
+from sssgen.passes.constant_expressions import constant_numbers, literal, placed_at, same_number, uniform_value
+from sssgen.passes.constructed_parts import calls, only_argument, picked
 from sssgen.passes.scopes import separate
 
 
@@ -78,66 +75,15 @@ def fold(module: Module, fixed: Mapping[str, tuple[float, ...]] = {}) -> Module:
     return Module(module.structs, tuple(constants), uniforms, functions, variables)
 
 
-def uniform_value(type: Type, numbers: tuple[float, ...], span: Span) -> Expr:
-    """A uniform's components as an expression; a matrix's stand column after column."""
-    if components(type) != len(numbers) or not numbers:
-        raise ValueError(f"{len(numbers)} components for {components(type)}")
-    if isinstance(type, Array):
-        size = components(type.element)
-        parts = [numbers[start : start + size] for start in range(0, len(numbers), size)]
-        return Construct(type, tuple([uniform_value(type.element, part, span) for part in parts]), span)
-    kind = kind_of(type)
-    values = tuple([{"float": float, "bool": bool}.get(kind, int)(number) for number in numbers])
-    if isinstance(type, Matrix):
-        return Construct(type, tuple([Literal(Scalar(kind), value, span) for value in values]), span)
-    return _literal(type, values, span)
-
-
-def _literal(type: Type, values: Numbers, span: Span) -> Expr:
-    """Scalars or a vector as literals; `vec3(1.0)` where all are the same."""
-    if isinstance(type, Scalar):
-        return Literal(type, values[0], span)
-    one = Scalar(kind_of(type))
-    if all(_same(value, values[0]) for value in values):
-        values = values[:1]
-    return Construct(type, tuple([Literal(one, value, span) for value in values]), span)
-
-
-def _same(one: Number, other: Number) -> bool:
-    return one == other and copysign(1.0, one) == copysign(1.0, other)
-
-
-def constant_numbers(expr: Expr) -> Numbers | None:
-    """The components of a literal or of a vector of literals, floats as float32; else None."""
-    if isinstance(expr, Literal):
-        value = expr.value
-        if type(value) is float:
-            single = arithmetic.float32(value)
-            return None if single is None else (single,)
-        return (value,)
-    if isinstance(expr, Construct) and isinstance(expr.type, Vector):
-        values: Numbers = ()
-        for arg in expr.args:
-            part = constant_numbers(arg) if isinstance(arg, Literal) else None
-            if part is None:
-                return None
-            values += part
-        return values if len(values) == expr.type.size else values * expr.type.size
-    return None
-
-
-def _calls(expr: Expr) -> bool:
-    """Whether an expression calls a function, which may do more than give its value."""
-    return any(type(node) is Call for node in subexpressions(expr))
-
-
-class _Folder:
+class _Folder(Transformer):
     """Folds expressions and statements, from the leaves up."""
 
     def __init__(self) -> None:
+        super().__init__()
         self.fixed: dict[str, Expr] = {}
         self.constants: dict[str, Expr] = {}
         self.spliced = False
+        """Whether statements of an inner block have come into an outer one."""
         self.methods: dict[type, Any] = {
             Binary: self.binary,
             Unary: self.unary,
@@ -156,87 +102,52 @@ class _Folder:
     # Statements
 
     def function(self, function: Function) -> Function:
-        if function.body is None:
-            return function
         self.spliced = False
-        body = self.block(function.body)
-        if body is function.body:
-            return function
-        function = function._replace(body=body)
+        function = super().function(function)
         return separate(function) if self.spliced else function
 
-    def block(self, block: Block) -> Block:
-        new: list[Stmt] = []
-        for stmt in block:
-            self.statement(stmt, new)
-        same = len(new) == len(block) and all(one is other for one, other in zip(new, block, strict=True))
-        return block if same else tuple(new)
+    def assign(self, stmt: Assign) -> Stmt | None:
+        target, value = self.expression(stmt.target), self.expression(stmt.value)
+        if stmt.op and _is_neutral(stmt.op, value) and value.type == target.type and not calls(target):
+            return None
+        same = target is stmt.target and value is stmt.value
+        return stmt if same else Assign(target, stmt.op, value, stmt.span)
 
-    def statement(self, stmt: Stmt, out: list[Stmt]) -> None:
-        """Adds what a statement becomes to `out`."""
-        if isinstance(stmt, Declare):
-            if stmt.value is not None:
-                value = self.expression(stmt.value)
-                stmt = stmt if value is stmt.value else Declare(stmt.name, stmt.type, value, stmt.span)
-        elif isinstance(stmt, Assign):
-            target, value = self.expression(stmt.target), self.expression(stmt.value)
-            if stmt.op and _is_neutral(stmt.op, value) and value.type == target.type and not _calls(target):
-                return
-            if target is not stmt.target or value is not stmt.value:
-                stmt = Assign(target, stmt.op, value, stmt.span)
-        elif isinstance(stmt, If):
-            condition = self.condition(stmt.condition)
-            if isinstance(condition, Literal):
-                self.spliced = True
-                out.extend(self.block(stmt.then if condition.value else stmt.otherwise))
-                return
-            then, otherwise = self.block(stmt.then), self.block(stmt.otherwise)
-            if condition is not stmt.condition or then is not stmt.then or otherwise is not stmt.otherwise:
-                stmt = If(condition, then, otherwise, stmt.span)
-        elif isinstance(stmt, Return):
-            if stmt.value is not None:
-                value = self.expression(stmt.value)
-                stmt = stmt if value is stmt.value else Return(value, stmt.span)
-        elif isinstance(stmt, Evaluate):
-            call = self.expression(stmt.call)
-            stmt = stmt if call is stmt.call else Evaluate(call, stmt.span)
-        elif isinstance(stmt, Assume):
-            condition = self.expression(stmt.condition)
-            if isinstance(condition, Literal):
-                return
-            stmt = stmt if condition is stmt.condition else Assume(condition, stmt.span)
-        elif isinstance(stmt, For):
-            self.loop(stmt, out)
-            return
-        elif isinstance(stmt, While):
-            condition = self.condition(stmt.condition)
-            if isinstance(condition, Literal) and not condition.value:
-                return
-            body = self.block(stmt.body)
-            if condition is not stmt.condition or body is not stmt.body:
-                stmt = While(condition, body, stmt.span)
-        out.append(stmt)
+    def branch(self, stmt: If) -> Stmt | None:
+        condition = self.condition(stmt.condition)
+        if isinstance(condition, Literal):
+            self.spliced = True
+            self.out += self.block(stmt.then if condition.value else stmt.otherwise)
+            return None
+        then, otherwise = self.inner(stmt.then), self.inner(stmt.otherwise)
+        same = condition is stmt.condition and then is stmt.then and otherwise is stmt.otherwise
+        return stmt if same else If(condition, then, otherwise, stmt.span)
 
-    def loop(self, stmt: For, out: list[Stmt]) -> None:
-        init, step = self.header(stmt.init), self.header(stmt.step)
-        condition = self.expression(stmt.condition) if stmt.condition is not None else None
-        if condition is not None and isinstance(init, (Declare, Assign)) and self.never_runs(init, condition):
-            if isinstance(init, Assign):
-                out.append(init)
-            return
-        body = self.block(stmt.body)
-        new = For(init, condition, step, body, stmt.span)
-        out.append(stmt if all(one is other for one, other in zip(new, stmt, strict=True)) else new)
+    def assume(self, stmt: Assume) -> Stmt | None:
+        new = super().assume(stmt)
+        return None if isinstance(new, Assume) and isinstance(new.condition, Literal) else new
+
+    def while_loop(self, stmt: While) -> Stmt | None:
+        condition = self.condition(stmt.condition)
+        if isinstance(condition, Literal) and not condition.value:
+            return None
+        body = self.inner(stmt.body)
+        return stmt if condition is stmt.condition and body is stmt.body else While(condition, body, stmt.span)
+
+    def for_loop(self, stmt: For) -> Stmt | None:
+        new = super().for_loop(stmt)
+        assert isinstance(new, For)
+        init, condition = new.init, new.condition
+        if condition is None or not isinstance(init, (Declare, Assign)) or not self.never_runs(init, condition):
+            return new
+        return init if isinstance(init, Assign) else None
 
     def header(self, stmt: Stmt | None) -> Stmt | None:
-        """A loop's init or step; one that does nothing stays, as the loop would not be seen to end."""
-        out: list[Stmt] = []
-        if stmt is not None:
-            self.statement(stmt, out)
-        return out[0] if out else stmt
+        """A statement without effect stays here, as the loop would not be seen to end."""
+        return super().header(stmt) or stmt
 
     def never_runs(self, init: Declare | Assign, condition: Expr) -> bool:
-        """Whether a loop's condition is false with what `init` sets."""
+        """Whether a loop's condition is false with the value that `init` sets."""
         if init.value is None or (isinstance(init, Assign) and (init.op or not isinstance(init.target, Local))):
             return False
         start = self.known(init.value)
@@ -253,13 +164,13 @@ class _Folder:
     # Conditions
 
     def known(self, expr: Expr) -> Expr:
-        """The expression with module constants put in and folded."""
+        """The expression with the values of module constants substituted and folded."""
 
         def change(node: Expr) -> Expr:
             return self.constants.get(node.name, node) if type(node) is Global else node
 
-        put_in = rewrite(expr, change)
-        return expr if put_in is expr else self.expression(put_in)
+        substituted = rewrite(expr, change)
+        return expr if substituted is expr else self.expression(substituted)
 
     def condition(self, condition: Expr) -> Expr:
         """A condition, as a literal where the module's constants decide it."""
@@ -286,18 +197,11 @@ class _Folder:
             return expr
         if kind is Global:
             value = self.fixed.get(expr.name)  # type: ignore[union-attr]  # it is a Global
-            return expr if value is None else _at(value, expr.span)
+            return expr if value is None else placed_at(value, expr.span)
         if kind is Call:
-            return self.inside(expr)
+            return super().expression(expr)
         folded: Expr = self.methods[kind](expr)
         return folded
-
-    def inside(self, expr: Expr) -> Expr:
-        """The expression with its operands folded."""
-        old = operands(expr)
-        new = tuple([self.expression(operand) for operand in old])
-        same = all(one is other for one, other in zip(old, new, strict=True))
-        return expr if same else with_operands(expr, new)
 
     def binary(self, expr: Binary) -> Expr:
         left, right = self.expression(expr.left), self.expression(expr.right)
@@ -314,7 +218,7 @@ class _Folder:
         x, y = constant_numbers(left), constant_numbers(right)
         if x is not None and y is not None:
             values = arithmetic.binary(op, x, y, kind_of(left.type))
-            return _literal(expr.type, values, expr.span) if values is not None else expr
+            return literal(expr.type, values, expr.span) if values is not None else expr
         if op in ("&&", "||", "^^"):
             return _logic(expr, x, y)
         if left.type == expr.type and _is_neutral(op, right):
@@ -327,7 +231,7 @@ class _Folder:
         if values is not None:
             result = arithmetic.unary(expr.op, values, kind_of(expr.type))
             if result is not None:
-                return _literal(expr.type, result, expr.span)
+                return literal(expr.type, result, expr.span)
         if isinstance(operand, Unary) and operand.op == expr.op:
             return operand.operand
         return expr if operand is expr.operand else Unary(expr.type, expr.op, operand, expr.span)
@@ -344,7 +248,7 @@ class _Folder:
         return Select(expr.type, condition, yes, no, expr.span)
 
     def intrinsic(self, expr: Intrinsic) -> Expr:
-        new = self.inside(expr)
+        new = super().expression(expr)
         args: list[Numbers] = []
         for arg in operands(new):
             if type(arg) is not Literal and type(arg) is not Construct:
@@ -354,10 +258,10 @@ class _Folder:
                 return new
             args.append(values)
         result = arithmetic.builtin(expr.name, args, [arg.type for arg in expr.args], expr.type)
-        return new if result is None else _literal(expr.type, result, expr.span)
+        return new if result is None else literal(expr.type, result, expr.span)
 
     def construct(self, expr: Construct) -> Expr:
-        new = self.inside(expr)
+        new = super().expression(expr)
         assert isinstance(new, Construct)
         type_, args = new.type, new.args
         if not isinstance(type_, Scalar | Vector):
@@ -369,7 +273,7 @@ class _Folder:
             values = constant_numbers(only) if kind_of(only.type) != type_.kind else None
             converted = [arithmetic.converted(value, type_.kind) for value in values or ()]
             if converted and None not in converted:
-                return _literal(type_, tuple([value for value in converted if value is not None]), new.span)
+                return literal(type_, tuple([value for value in converted if value is not None]), new.span)
             return new
         flat: list[Expr] = []
         for arg in args:
@@ -381,8 +285,8 @@ class _Folder:
             new = Construct(type_, tuple(flat), new.span)
         parts = [constant_numbers(arg) or () for arg in flat]
         numbers = tuple([number for part in parts for number in part])
-        if () not in parts and all(_same(number, numbers[0]) for number in numbers):
-            return _literal(type_, numbers, new.span)
+        if () not in parts and all(same_number(number, numbers[0]) for number in numbers):
+            return literal(type_, numbers, new.span)
         return new
 
     def swizzle(self, expr: Swizzle) -> Expr:
@@ -393,15 +297,15 @@ class _Folder:
         if value.type == expr.type and letters == "xyzw"[: len(letters)]:
             return value
         if isinstance(value, Construct):
-            picked = _picked(value, ["xyzw".index(letter) for letter in letters], expr.type, expr.span)
-            if picked is not None:
-                return picked
+            parts = picked(value, ["xyzw".index(letter) for letter in letters], expr.type, expr.span)
+            if parts is not None:
+                return parts
         if value is expr.value and letters == expr.components:
             return expr
         return Swizzle(expr.type, value, letters, expr.span)
 
     def index(self, expr: Index) -> Expr:
-        new = self.inside(expr)
+        new = super().expression(expr)
         assert isinstance(new, Index)
         value, index = new.value, new.index
         if not isinstance(index, Literal):
@@ -414,26 +318,18 @@ class _Folder:
         if isinstance(value, Construct):
             place = int(index.value)
             if isinstance(value.type, Vector):
-                return _picked(value, [place], expr.type, expr.span) or new
+                return picked(value, [place], expr.type, expr.span) or new
             if len(value.args) == last + 1 and all(arg.type == expr.type for arg in value.args):
-                return _one_of(value, place) or new
+                return only_argument(value, place) or new
         return new
 
     def member(self, expr: Member) -> Expr:
-        new = self.inside(expr)
+        new = super().expression(expr)
         assert isinstance(new, Member)
         if isinstance(new.value, Construct) and isinstance(new.value.type, Struct):
             names = [field.name for field in new.value.type.fields]
-            return _one_of(new.value, names.index(expr.field)) or new
+            return only_argument(new.value, names.index(expr.field)) or new
         return new
-
-
-def _at(value: Expr, span: Span) -> Expr:
-    """A constant, standing at `span`."""
-    if isinstance(value, Literal):
-        return Literal(value.type, value.value, span)
-    assert isinstance(value, Construct)
-    return Construct(value.type, tuple([_at(arg, span) for arg in value.args]), span)
 
 
 _NEUTRAL = {"*": 1, "/": 1, "+": 0, "-": 0, "<<": 0, ">>": 0, "|": 0, "^": 0}
@@ -458,45 +354,4 @@ def _logic(expr: Binary, x: Numbers | None, y: Numbers | None) -> Expr:
     if known[0] == (expr.op == "&&"):
         return other
     # the right side is not evaluated where the left one decides; a left side with effects is
-    return expr if x is None and _calls(other) else Literal(BOOL, known[0], expr.span)
-
-
-def _one_of(value: Construct, index: int) -> Expr | None:
-    """One argument of a construct, if the others can be dropped."""
-    dropped = any(_calls(arg) for position, arg in enumerate(value.args) if position != index)
-    return None if dropped else value.args[index]
-
-
-def _picked(value: Construct, indices: list[int], type: Type, span: Span) -> Expr | None:
-    """Components of an assembled vector, without assembling it; None where that is not simpler."""
-    constant = constant_numbers(value)
-    if constant is not None:
-        return _literal(type, tuple([constant[index] for index in indices]), span)
-    if len(value.args) == 1 and isinstance(value.args[0].type, Scalar):
-        return value.args[0] if len(indices) == 1 else Construct(type, value.args, span)
-    if len(value.args) == 1:
-        return None
-    places = [(number, part) for number, arg in enumerate(value.args) for part in range(components(arg.type))]
-    groups: list[tuple[int, list[int]]] = []
-    for index in indices:
-        number, part = places[index]
-        if groups and groups[-1][0] == number and isinstance(value.args[number].type, Vector):
-            groups[-1][1].append(part)
-        else:
-            groups.append((number, [part]))
-    used = [number for number, _ in groups]
-    for number, arg in enumerate(value.args):
-        twice = used.count(number) > 1 and not isinstance(arg, Local | Global | Literal)
-        if twice or (number not in used and _calls(arg)):
-            return None
-    pieces = [_piece(value.args[number], parts, span) for number, parts in groups]
-    return pieces[0] if len(pieces) == 1 else Construct(type, tuple(pieces), span)
-
-
-def _piece(arg: Expr, parts: list[int], span: Span) -> Expr:
-    """Some components of a vector, or a scalar as it is."""
-    if not isinstance(arg.type, Vector) or parts == list(range(arg.type.size)):
-        return arg
-    value, letters = (arg.value, arg.components) if isinstance(arg, Swizzle) else (arg, "xyzw")
-    type_ = vector_of(kind_of(arg.type), len(parts))
-    return Swizzle(type_, value, "".join([letters[part] for part in parts]), span)
+    return expr if x is None and calls(other) else Literal(BOOL, known[0], expr.span)

@@ -29,7 +29,7 @@ from sssgen.ir.types import Scalar, Vector, kind_of
 from sssgen.ir.walk import expressions, operands, statements
 from sssgen.passes import constant_arithmetic as arithmetic
 from sssgen.passes.constant_arithmetic import Numbers
-from sssgen.passes.fold import constant_numbers
+from sssgen.passes.constant_expressions import constant_numbers
 
 
 class Undefined(NamedTuple):
