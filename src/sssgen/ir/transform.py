@@ -19,10 +19,7 @@ from sssgen.ir.nodes import (
     Expr,
     For,
     Function,
-    Global,
     If,
-    Literal,
-    Local,
     Module,
     Param,
     Return,
@@ -145,14 +142,13 @@ class Transformer:
 
     def expression(self, expr: Expr) -> Expr:
         """An expression with its operands transformed."""
-        kind = type(expr)
-        if kind is Local or kind is Literal or kind is Global:
-            return expr
         if type(expr) is Binary:
             left, right = self.expression(expr.left), self.expression(expr.right)
             same = left is expr.left and right is expr.right
             return expr if same else Binary(expr.type, expr.op, left, right, expr.span)
         old = operands(expr)
+        if not old:
+            return expr
         new = tuple([self.expression(operand) for operand in old])
         return expr if all(map(is_, old, new)) else with_operands(expr, new)
 

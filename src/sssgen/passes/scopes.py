@@ -11,27 +11,21 @@ from typing import Any
 
 from sssgen.ir.nodes import (
     Assign,
-    Assume,
     Binary,
-    Block,
     Call,
-    Construct,
     Declare,
-    Evaluate,
     Expr,
     For,
     Function,
     Global,
     If,
-    Intrinsic,
     Literal,
     Local,
-    Return,
     Stmt,
     While,
 )
-from sssgen.ir.transform import rewrite
-from sssgen.ir.walk import calls_of, expressions, inner_statements, operands, root, statements, with_operands
+from sssgen.ir.transform import Transformer
+from sssgen.ir.walk import calls_of, expressions, inner_statements, operands, root, statements
 
 _NONE: Mapping[str, str] = {}
 
@@ -106,15 +100,6 @@ def fresh(name: str, taken: Container[str]) -> str:
     return f"{base}_{number}"
 
 
-def substitute(expr: Expr, values: Mapping[str, Expr]) -> Expr:
-    """`expr` with variables replaced by expressions."""
-
-    def change(node: Expr) -> Expr:
-        return values.get(node.name, node) if type(node) is Local else node
-
-    return rewrite(expr, change)
-
-
 def separate(function: Function) -> Function:
     """The function with every variable renamed that is declared where its name is visible already."""
     return rename_locals(function, (), fresh)[0]
@@ -127,183 +112,78 @@ def rename_locals(
     globals: Mapping[str, str] = _NONE,
     calls: Mapping[str, str] = _NONE,
 ) -> tuple[Function, dict[str, str]]:
-    """Renames variables whose name is `bad`, or visible already where they are declared; says which.
+    """Renames variables whose name is `bad`, or visible already where they are declared; returns old name → new name.
 
-    `choose` gives a new name that is not among those taken. The module's declarations that the function uses
-    are renamed along: uniforms and constants by `globals`, the keys of functions by `calls`.
+    `choose` gives a new name that is not among those taken. The module's declarations that the function uses are
+    renamed with them: uniforms and constants by `globals`, the keys of functions by `calls`.
     """
     names = declared(function)
-    renamer = Renamer(globals, calls)
     if bad or len(set(names)) < len(names):
-        renamer.plan = _Planner(bad, choose, set(names)).function(function)
-    renamed = {old: new for old, new in renamer.plan if old != new}
-    if renamed or globals or calls:
-        function = renamer.function(function, bool(renamed))
-    return function, renamed
+        renamer = Renamer(globals, calls, bad, choose, set(names))
+    elif globals or calls:
+        renamer = Renamer(globals, calls)
+    else:
+        return function, {}
+    return renamer.function(function), renamer.renamed
 
 
-class _Planner:
-    """Gives every declaration of a function its name, in the order of the text."""
+class Renamer(Transformer):
+    """Rewrites a function to other names; variables only with `choose`. This runs over every node for every target."""
 
-    def __init__(self, bad: Container[str], choose: Callable[[str, Container[str]], str], taken: set[str]) -> None:
-        self.bad, self.choose, self.taken = bad, choose, taken
-        self.plan: list[tuple[str, str]] = []
-
-    def function(self, function: Function) -> list[tuple[str, str]]:
-        visible = set[str]()
-        for param in function.params:
-            self.declare(param.name, visible)
-        self.block(function.body or (), visible)
-        return self.plan
-
-    def block(self, block: Block, visible: set[str]) -> None:
-        for stmt in block:
-            if isinstance(stmt, Declare):
-                self.declare(stmt.name, visible)
-            elif isinstance(stmt, If):
-                self.block(stmt.then, set(visible))
-                self.block(stmt.otherwise, set(visible))
-            elif isinstance(stmt, While):
-                self.block(stmt.body, set(visible))
-            elif isinstance(stmt, For):
-                inner = set(visible)
-                if isinstance(stmt.init, Declare):
-                    self.declare(stmt.init.name, inner)
-                self.block(stmt.body, inner)
-
-    def declare(self, name: str, visible: set[str]) -> None:
-        new = name
-        if name in visible or name in self.bad:
-            new = self.choose(name, self.taken)
-            self.taken.add(new)
-        visible.add(new)
-        self.plan.append((name, new))
-
-
-class Renamer:
-    """Rewrites a function to other names.
-
-    The tables come first, as the lookups are all it does: it runs over every node for every target.
-    """
-
-    def __init__(self, globals: Mapping[str, str], calls: Mapping[str, str]) -> None:
+    def __init__(
+        self,
+        globals: Mapping[str, str],
+        calls: Mapping[str, str],
+        bad: Container[str] = (),
+        choose: Callable[[str, Container[str]], str] | None = None,
+        taken: Iterable[str] = (),
+    ) -> None:
+        super().__init__()
         self.globals, self.calls = globals, calls
-        self.plan: list[tuple[str, str]] = []
-        """The old and new name of each variable, in the order of the text."""
-        self.locals: dict[str, str] = {}
-        """The variables in scope that have a new name."""
-        self.position = -1
+        self.bad, self.choose, self.taken = bad, choose, set(taken)
+        self.renamed: dict[str, str] = {}
+        """The variables renamed so far: old name → new name."""
 
-    def function(self, function: Function, locals: bool) -> Function:
-        """The function with new names; `locals` says whether the plan holds any."""
+    def function(self, function: Function) -> Function:
         if function.body is None:
             return function
-        if not locals:
-            self.position, self.plan = -1, []
-        params = function.params
-        if locals:
-            params = tuple([param._replace(name=self.declare(param.name)) for param in params])
+        self.scope, params = {}, []
+        for param in function.params:
+            params.append(param._replace(name=self.new_name(param.name)))
+            self.scope[param.name] = params[-1]
         body = self.block(function.body)
-        return function if body is function.body and not locals else function._replace(params=params, body=body)
+        same = body is function.body and not self.renamed
+        return function if same else function._replace(params=tuple(params), body=body)
 
-    def declare(self, name: str) -> str:
-        if not self.plan:
+    def new_name(self, name: str) -> str:
+        """The name of a variable that is declared here."""
+        if self.choose is None or (name not in self.scope and name not in self.bad):
             return name
-        self.position += 1
-        old, new = self.plan[self.position]
-        if old != new:
-            self.locals[old] = new
-        else:
-            self.locals.pop(old, None)
+        new = self.renamed[name] = self.choose(name, self.taken)
+        self.taken.add(new)
+        return new
+
+    def declare(self, stmt: Declare) -> Stmt:
+        value = self.expression(stmt.value) if stmt.value is not None else None
+        name = self.new_name(stmt.name)
+        same = value is stmt.value and name == stmt.name
+        new = self.scope[stmt.name] = stmt if same else Declare(name, stmt.type, value, stmt.span)
         return new
 
     def expression(self, expr: Any) -> Any:
-        """The expression with new names."""
         kind = type(expr)
         if kind is Local:
-            new = self.locals.get(expr.name)
-            return expr if new is None else Local(expr.type, new, expr.span)
+            new = self.scope[expr.name].name if self.renamed else expr.name
+            return expr if new == expr.name else Local(expr.type, new, expr.span)
         if kind is Literal:
             return expr
+        if kind is Global:
+            new = self.globals.get(expr.name, expr.name)
+            return expr if new == expr.name else Global(expr.type, new, expr.span)
         if kind is Binary:
             left, right = self.expression(expr.left), self.expression(expr.right)
-            if left is expr.left and right is expr.right:
-                return expr
-            return Binary(expr.type, expr.op, left, right, expr.span)
-        if kind is Global:
-            new = self.globals.get(expr.name)
-            return expr if new is None else Global(expr.type, new, expr.span)
-        if kind is Intrinsic or kind is Construct or kind is Call:
-            args, old = tuple([self.expression(arg) for arg in expr.args]), expr.args
-            same = all(one is other for one, other in zip(args, old, strict=True))
-            if kind is Call:
-                key = self.calls.get(expr.function)
-                if key is not None or not same:
-                    return Call(expr.type, key or expr.function, args, expr.span)
-            if same:
-                return expr
-            if kind is Construct:
-                return Construct(expr.type, args, expr.span)
-            return Intrinsic(expr.type, expr.name, args, expr.span)
-        old = operands(expr)
-        parts = tuple([self.expression(part) for part in old])
-        same = all(one is other for one, other in zip(parts, old, strict=True))
-        return expr if same else with_operands(expr, parts)
-
-    def scope(self, block: Block) -> Block:
-        """A block with a scope of its own."""
-        if not self.plan:
-            return self.block(block)
-        outer = dict(self.locals)
-        new = self.block(block)
-        self.locals = outer
-        return new
-
-    def block(self, block: Block) -> Block:
-        new = [self.statement(stmt) for stmt in block]
-        return block if all(one is other for one, other in zip(new, block, strict=True)) else tuple(new)
-
-    def statement(self, stmt: Stmt) -> Stmt:
-        if isinstance(stmt, Declare):
-            value = self.expression(stmt.value) if stmt.value is not None else None
-            name = self.declare(stmt.name)
-            if value is not stmt.value or name != stmt.name:
-                return Declare(name, stmt.type, value, stmt.span)
-        elif isinstance(stmt, Assign):
-            target, value = self.expression(stmt.target), self.expression(stmt.value)
-            if target is not stmt.target or value is not stmt.value:
-                return Assign(target, stmt.op, value, stmt.span)
-        elif isinstance(stmt, If):
-            condition = self.expression(stmt.condition)
-            then, otherwise = self.scope(stmt.then), self.scope(stmt.otherwise)
-            if condition is not stmt.condition or then is not stmt.then or otherwise is not stmt.otherwise:
-                return If(condition, then, otherwise, stmt.span)
-        elif isinstance(stmt, For):
-            return self.loop(stmt)
-        elif isinstance(stmt, While):
-            condition, body = self.expression(stmt.condition), self.scope(stmt.body)
-            if condition is not stmt.condition or body is not stmt.body:
-                return While(condition, body, stmt.span)
-        elif isinstance(stmt, Return):
-            value = self.expression(stmt.value) if stmt.value is not None else None
-            if value is not stmt.value:
-                return Return(value, stmt.span)
-        elif isinstance(stmt, Evaluate):
-            call = self.expression(stmt.call)
-            if call is not stmt.call:
-                return Evaluate(call, stmt.span)
-        elif isinstance(stmt, Assume):
-            condition = self.expression(stmt.condition)
-            if condition is not stmt.condition:
-                return Assume(condition, stmt.span)
-        return stmt
-
-    def loop(self, stmt: For) -> For:
-        outer = dict(self.locals)
-        init = self.statement(stmt.init) if stmt.init is not None else None
-        condition = self.expression(stmt.condition) if stmt.condition is not None else None
-        step = self.statement(stmt.step) if stmt.step is not None else None
-        body = self.block(stmt.body)
-        self.locals = outer
-        new = For(init, condition, step, body, stmt.span)
-        return stmt if all(one is other for one, other in zip(new, stmt, strict=True)) else new
+            same = left is expr.left and right is expr.right
+            return expr if same else Binary(expr.type, expr.op, left, right, expr.span)
+        if kind is Call and expr.function in self.calls:
+            expr = Call(expr.type, self.calls[expr.function], expr.args, expr.span)
+        return super().expression(expr)
