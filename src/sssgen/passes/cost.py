@@ -1,7 +1,7 @@
 """Static cost: operations, transcendentals, texture fetches and distance evaluations of one call of an entry.
 
 The weights per builtin are the intrinsic table's. A loop counts its constant bound (or `UNKNOWN_TRIPS` where the bound
-is a uniform without a default), a branch its dearer arm, so the numbers are an upper estimate of one fragment's work.
+is a uniform without a default), a branch its more expensive arm, so the numbers are an upper estimate for one fragment.
 """
 
 from __future__ import annotations
@@ -31,7 +31,15 @@ class Cost(NamedTuple):
         return self.operations + 8 * self.transcendentals + 16 * self.fetches
 
     def plus(self, other: Cost, times: int = 1) -> Cost:
-        return Cost(*(mine + times * theirs for mine, theirs in zip(self, other, strict=True)))
+        return Cost(
+            self.operations + times * other.operations,
+            self.transcendentals + times * other.transcendentals,
+            self.fetches + times * other.fetches,
+            self.distance_evaluations + times * other.distance_evaluations,
+        )
+
+
+_NOTHING = Cost()
 
 
 def cost_of(module: ir.Module, key: str, distance_functions: Collection[str] = ()) -> Cost:
@@ -66,7 +74,8 @@ class _Counter:
         total = Cost()
         for expr in expressions(stmt):
             for part in subexpressions(expr):
-                total = total.plus(self.node(part))
+                cost = self.node(part)
+                total = total.plus(cost) if cost is not _NOTHING else total
         if isinstance(stmt, ir.Assign) and stmt.op:
             total = total.plus(Cost(components(stmt.target.type)))
         if isinstance(stmt, ir.If):
@@ -81,7 +90,7 @@ class _Counter:
         return total
 
     def trips(self, loop: ir.For) -> int:
-        """How often a loop runs, as far as its header tells."""
+        """How often a loop runs, as far as its header shows."""
         condition = loop.condition
         while isinstance(condition, ir.Binary) and condition.op == "&&":
             condition = condition.left
@@ -122,4 +131,4 @@ class _Counter:
             return Cost(max(components(left), components(right)))
         if isinstance(expr, ir.Unary | ir.Select):
             return Cost(components(expr.type))
-        return Cost()
+        return _NOTHING

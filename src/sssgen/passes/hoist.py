@@ -18,28 +18,25 @@ from typing import NamedTuple
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import (
     Assign,
-    Assume,
     Binary,
     Block,
     Call,
     Construct,
     Declare,
-    Evaluate,
     Expr,
     For,
     Function,
     Global,
-    If,
     Intrinsic,
     Literal,
     Local,
     Module,
-    Return,
     Span,
     Stmt,
     Swizzle,
     While,
 )
+from sssgen.ir.transform import Transformer
 from sssgen.ir.types import FLOAT, Sampler, Scalar, Type, components, vector_of
 from sssgen.ir.walk import (
     all_expressions,
@@ -133,7 +130,7 @@ class _Region:
             self.definitions.pop(name, None)
 
 
-class _Hoister:
+class _Hoister(Transformer):
     """Rewrites one function."""
 
     def __init__(
@@ -144,9 +141,9 @@ class _Hoister:
         known: Mapping[str, Summary],
         notes: dict[Note, None],
     ) -> None:
+        super().__init__()
         self.source, self.flow, self.known, self.notes = function, flow, known, notes
         self.taken = set(declared(function))
-        self.visible = [param.name for param in function.params]
         self.depth = 0
         """How many blocks enclose the statement at hand."""
         self.depths = {param.name: 1 for param in function.params}
@@ -155,32 +152,29 @@ class _Hoister:
         self.region = None if site.uniform else _Region((), False)
 
     def run(self) -> Function:
-        return self.source._replace(body=self.block(self.source.body or ()))
+        return self.function(self.source)
 
     # Statements
 
     def block(self, block: Block) -> Block:
-        """A block with a scope of its own."""
-        scope = len(self.visible)
         self.depth += 1
         new = self.sequence(block)
         self.depth -= 1
-        del self.visible[scope:]
         return tuple(new)
 
     def sequence(self, block: Block) -> list[Stmt]:
         out: list[Stmt] = []
         for index, stmt in enumerate(block):
             if self.region is not None:
-                out.append(self.statement(stmt))
+                out.append(self.rewritten(stmt))
                 continue
-            region = _Region(self.visible)
+            region = _Region(self.scope)
             if id(stmt) in self.flow.inside:
                 self.region = region
-                new = self.statement(stmt)
+                new = self.rewritten(stmt)
                 self.region = None
             else:
-                new = self.statement(stmt)
+                new = self.rewritten(stmt)
                 region.change(self.assigned((stmt,)))
             if id(stmt) in self.flow.after:
                 self.region = region
@@ -190,35 +184,45 @@ class _Hoister:
             out += [*region.hoisted, new]
         return out
 
-    def statement(self, stmt: Stmt) -> Stmt:
-        if isinstance(stmt, Declare):
-            value = self.expression(stmt.value) if stmt.value is not None else None
-            self.visible.append(stmt.name)
-            self.depths[stmt.name] = self.depth
-            if self.region is not None:
-                self.region.starts.pop(stmt.name, None)
-                known = self.before(value) if value is not None else None
-                self.define(stmt.name, known)
-                if known is not None:
-                    self.region.starts[stmt.name] = known
-            return Declare(stmt.name, stmt.type, value, stmt.span)
-        if isinstance(stmt, If):
-            condition = self.expression(stmt.condition)
-            return If(condition, self.block(stmt.then), self.block(stmt.otherwise), stmt.span)
-        if isinstance(stmt, For | While):
-            return self.loop(stmt)
-        if isinstance(stmt, Assign):
-            target, value = self.expression(stmt.target), self.expression(stmt.value)
-            if self.region is not None:
-                self.assign(target, stmt.op, value)
-            return Assign(target, stmt.op, value, stmt.span)
-        if isinstance(stmt, Return) and stmt.value is not None:
-            return Return(self.expression(stmt.value), stmt.span)
-        if isinstance(stmt, Evaluate):
-            return Evaluate(self.expression(stmt.call), stmt.span)
-        if isinstance(stmt, Assume):
-            return Assume(self.expression(stmt.condition), stmt.span)
-        return stmt
+    def rewritten(self, stmt: Stmt) -> Stmt:
+        new = self.statement(stmt)
+        assert new is not None
+        return new
+
+    def declare(self, stmt: Declare) -> Stmt | None:
+        new = super().declare(stmt)
+        assert isinstance(new, Declare)
+        self.depths[stmt.name] = self.depth
+        if self.region is not None:
+            self.region.starts.pop(stmt.name, None)
+            known = self.before(new.value) if new.value is not None else None
+            self.define(stmt.name, known)
+            if known is not None:
+                self.region.starts[stmt.name] = known
+        return new
+
+    def assign(self, stmt: Assign) -> Stmt | None:
+        new = super().assign(stmt)
+        if self.region is not None and isinstance(new, Assign):
+            self.note_store(new.target, new.op, new.value)
+        return new
+
+    def for_loop(self, stmt: For) -> Stmt | None:
+        if self.region is not None:
+            self.region.change(self.assigned((stmt,)))
+        return super().for_loop(stmt)
+
+    def while_loop(self, stmt: While) -> Stmt | None:
+        if self.region is not None:
+            self.region.change(self.assigned((stmt,)))
+        return super().while_loop(stmt)
+
+    def header(self, stmt: Stmt | None) -> Stmt | None:
+        new = super().header(stmt)
+        if self.region is not None and isinstance(stmt, Declare):
+            self.region.change((stmt.name,))
+            self.region.starts.pop(stmt.name, None)
+        return new
 
     def define(self, name: str, value: Expr | None) -> None:
         """Notes what a variable holds from here on, said with what there was before the region."""
@@ -228,7 +232,7 @@ class _Hoister:
         else:
             self.region.definitions.pop(name, None)
 
-    def assign(self, target: Expr, op: str, value: Expr) -> None:
+    def note_store(self, target: Expr, op: str, value: Expr) -> None:
         """Notes what an assignment changes. In the variable's own block it is as good as a declaration."""
         assert self.region is not None
         variable = written_root(target)
@@ -244,22 +248,6 @@ class _Hoister:
             self.define(variable.name, known)
         else:
             self.region.change((variable.name,))
-
-    def loop(self, stmt: For | While) -> Stmt:
-        if self.region is not None:
-            self.region.change(self.assigned((stmt,)))
-        if isinstance(stmt, While):
-            return While(self.expression(stmt.condition), self.block(stmt.body), stmt.span)
-        scope = len(self.visible)
-        init = self.statement(stmt.init) if stmt.init is not None else None
-        if self.region is not None and isinstance(stmt.init, Declare):
-            self.region.change((stmt.init.name,))
-            self.region.starts.pop(stmt.init.name, None)
-        condition = self.expression(stmt.condition) if stmt.condition is not None else None
-        body = self.block(stmt.body)
-        step = self.statement(stmt.step) if stmt.step is not None else None
-        del self.visible[scope:]
-        return For(init, condition, step, body, stmt.span)
 
     def assigned(self, block: Block) -> set[str]:
         """The variables that a block may change."""
@@ -281,11 +269,8 @@ class _Hoister:
     # Expressions
 
     def expression(self, expr: Expr) -> Expr:
-        """The expression with what is misplaced in it put right, from the inside out."""
-        old = operands(expr)
-        new = tuple([self.expression(operand) for operand in old])
-        same = all(one is other for one, other in zip(old, new, strict=True))
-        changed = expr if same else with_operands(expr, new)
+        """The expression with every misplaced operation in it moved or replaced, from the inside out."""
+        changed = super().expression(expr)
         if id(expr) in self.flow.misplaced:
             assert isinstance(changed, Call | Intrinsic)
             known = self.before(changed)

@@ -30,7 +30,6 @@ from sssgen.ir.nodes import (
     Member,
     Module,
     Param,
-    Return,
     Select,
     Span,
     Stmt,
@@ -38,6 +37,7 @@ from sssgen.ir.nodes import (
     Unary,
     While,
 )
+from sssgen.ir.transform import Transformer
 from sssgen.ir.types import BOOL, Type
 from sssgen.ir.walk import (
     callees,
@@ -154,18 +154,19 @@ def _read(expr: Expr) -> list[str]:
     return [_named(part) for part in subexpressions(expr) if isinstance(part, Local | Global)]
 
 
-class _Lifter:
+class _Lifter(Transformer):
+    """Rewrites one function: what must be computed before a statement is appended to `out` before it."""
+
     def __init__(self, function: Function, calls: Calls) -> None:
-        self.function = function
+        super().__init__()
+        self.source = function
         self.calls = calls
         self.functions, self.shared = calls.functions, calls.shared
         self.names: set[str] = set()
-        """Those of the function, once one is to be chosen."""
-        self.out: list[Stmt] = []
+        """All names of the function, once a new one is chosen."""
 
     def run(self) -> Function:
-        body = self.function.body or ()
-        return self.function._replace(body=self.block(body)) if self.writes_in(body) else self.function
+        return self.function(self.source) if self.writes_in(self.source.body or ()) else self.source
 
     def writes(self, expr: Expr | None) -> bool:
         """Whether a call inside the expression changes something beside its result."""
@@ -175,73 +176,60 @@ class _Lifter:
         return any(self.calls.change(call.function) for stmt in statements(body) for call in calls_of(stmt))
 
     def local(self, type: Type, name: str, span: Span) -> Local:
-        self.names = self.names or set(declared(self.function))
+        self.names = self.names or set(declared(self.source))
         name = fresh(name, self.names)
         self.names.add(name)
         return Local(type, name, span)
 
     # Statements
 
-    def block(self, block: Block) -> Block:
-        outer, self.out = self.out, []
-        for stmt in block:
-            self.statement(stmt)
-        made, self.out = self.out, outer
-        return tuple(made)
-
-    def statement(self, stmt: Stmt) -> None:
-        if isinstance(stmt, Declare) and isinstance(stmt.value, Call) and self.writes_itself(stmt.value):
+    def declare(self, stmt: Declare) -> Stmt | None:
+        if isinstance(stmt.value, Call) and self.writes_itself(stmt.value):
             call, after = self.call(stmt.value)
             self.out += [stmt._replace(value=call), *after]
-        elif isinstance(stmt, Declare) and stmt.value is not None:
-            self.out.append(stmt._replace(value=self.expr(stmt.value)))
-        elif isinstance(stmt, Assign):
-            self.assign(stmt)
-        elif isinstance(stmt, Evaluate):
-            if isinstance(stmt.call, Call) and self.writes_itself(stmt.call):
-                call, after = self.call(stmt.call)
-                self.out += [stmt._replace(call=call), *after]
-            else:
-                self.out.append(stmt._replace(call=with_operands(stmt.call, tuple(self.in_order(operands(stmt.call))))))
-        elif isinstance(stmt, Return) and stmt.value is not None:
-            self.out.append(stmt._replace(value=self.expr(stmt.value)))
-        elif isinstance(stmt, If):
-            condition = self.expr(stmt.condition)
-            self.out.append(If(condition, self.block(stmt.then), self.block(stmt.otherwise), stmt.span))
-        elif isinstance(stmt, For | While):
-            self.loop(stmt)
-        else:
-            self.out.append(stmt)
+            return None
+        return super().declare(stmt)
 
-    def assign(self, stmt: Assign) -> None:
+    def evaluate(self, stmt: Evaluate) -> Stmt | None:
+        if isinstance(stmt.call, Call) and self.writes_itself(stmt.call):
+            call, after = self.call(stmt.call)
+            self.out += [stmt._replace(call=call), *after]
+            return None
+        return stmt._replace(call=with_operands(stmt.call, tuple(self.in_order(operands(stmt.call)))))
+
+    def assign(self, stmt: Assign) -> Stmt | None:
         value = stmt.value
         if not self.writes(value) and not self.writes(stmt.target):
-            self.out.append(stmt)
-            return
+            return stmt
         pinned = any(map(self.written(value).__contains__, _read(stmt.target)))
-        target = self.expr(self.pinned(stmt.target) if pinned else stmt.target)
+        target = self.expression(self.pinned(stmt.target) if pinned else stmt.target)
         alone = isinstance(target, Local | Global) and not stmt.op and not self.meets(stmt)
         if alone and isinstance(value, Call) and self.writes_itself(value):
             call, after = self.call(value)
             self.out += [Assign(target, "", call, stmt.span), *after]
-            return
-        self.out.append(Assign(target, stmt.op, self.expr(value), stmt.span))
+            return None
+        return Assign(target, stmt.op, self.expression(value), stmt.span)
 
-    def loop(self, loop: For | While) -> None:
-        """A condition that writes goes into the body: `while (true) { if (!condition) break; … }`."""
-        init, step = (loop.init, loop.step) if isinstance(loop, For) else (None, None)
+    def for_loop(self, stmt: For) -> Stmt | None:
+        init = stmt.init
         if isinstance(init, Declare | Assign) and init.value is not None:
-            init = init._replace(value=self.expr(init.value))
+            init = init._replace(value=self.expression(init.value))
+        condition, body = self.loop(stmt)
+        return For(init, condition, stmt.step, body, stmt.span)
+
+    def while_loop(self, stmt: While) -> Stmt | None:
+        condition, body = self.loop(stmt)
+        assert condition is not None
+        return While(condition, body, stmt.span)
+
+    def loop(self, loop: For | While) -> tuple[Expr | None, Block]:
+        """Condition and body. A condition that writes moves into the body: `while (true) { if (!c) break; … }`."""
         body, condition = self.block(loop.body), loop.condition
         if condition is not None and self.writes(condition):
             leave = If(Unary(BOOL, "!", condition, condition.span), (Break(loop.span),), (), condition.span)
             body = (*self.block((leave,)), *body)
             condition = Literal(BOOL, True, condition.span)
-        if isinstance(loop, For):
-            self.out.append(For(init, condition, step, body, loop.span))
-        else:
-            assert condition is not None
-            self.out.append(While(condition, body, loop.span))
+        return condition, body
 
     # Expressions
 
@@ -253,7 +241,7 @@ class _Lifter:
         target = written_root(stmt.target)
         return target is not None and _named(target) in self.written(stmt.value)
 
-    def expr(self, expr: Expr) -> Expr:
+    def expression(self, expr: Expr) -> Expr:
         """The expression with what its calls write computed before it."""
         if not self.writes(expr):
             return expr
@@ -296,7 +284,7 @@ class _Lifter:
     def before(self, expr: Expr, others: tuple[Expr, ...]) -> Expr:
         """An expression's value, read before those that are evaluated later can change it."""
         later = {name for other in others if self.writes(other) for name in self.written(other)}
-        value = self.expr(expr)
+        value = self.expression(expr)
         if later and later & self.read(value):
             kept = self.local(value.type, "before", value.span)
             self.out.append(Declare(kept.name, kept.type, value, value.span))
@@ -308,7 +296,9 @@ class _Lifter:
         chosen = self.local(select.type, "chosen", select.span)
         self.out.append(Declare(chosen.name, chosen.type, None, select.span))
         yes, no = (Assign(chosen, "", arm, arm.span) for arm in (select.yes, select.no))
-        self.statement(If(select.condition, (yes,), (no,), select.span))
+        branch = self.branch(If(select.condition, (yes,), (no,), select.span))
+        assert branch is not None
+        self.out.append(branch)
         return chosen
 
     def call(self, call: Call) -> tuple[Call, list[Stmt]]:
@@ -320,7 +310,7 @@ class _Lifter:
             if param.direction == "in":
                 arg = self.before(arg, call.args[index + 1 :])
             elif not isinstance(arg, Local):
-                place = self.expr(self.pinned(arg))
+                place = self.expression(self.pinned(arg))
                 arg = self.local(arg.type, param.name, arg.span)
                 value = place if param.direction == "inout" else None
                 self.out.append(Declare(arg.name, arg.type, value, arg.span))
@@ -338,7 +328,7 @@ class _Lifter:
         if isinstance(place, Swizzle | Member):
             return place._replace(value=self.pinned(place.value))
         if isinstance(place, Index):
-            index = self.expr(place.index)
+            index = self.expression(place.index)
             if not isinstance(index, Literal):
                 kept = self.local(index.type, "place", index.span)
                 self.out.append(Declare(kept.name, kept.type, index, index.span))
