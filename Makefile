@@ -32,7 +32,7 @@ demo: setup
 	$(BIN)/sssgen check out
 
 test: setup
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
 test-long: setup
 	$(BIN)/python -m pytest -m slow

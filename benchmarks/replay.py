@@ -1,15 +1,17 @@
-"""Emits the same materials with two states of sssgen and shows every text that differs.
+"""Emits the same materials and techniques with two states of sssgen and shows every text that differs.
 
     python benchmarks/replay.py OLD [NEW]
 
-OLD and NEW are folders of the project or git commits; NEW is this folder if it is not given. Both emit the examples of
-OLD, for every target, in both forms, without a cache. Exit status: 0 the same, 1 something differs.
+OLD and NEW are folders of the project or git commits; NEW is this folder if it is not given. For every target, without
+a cache, both emit the examples of OLD in both forms, and each technique of their own library alone, with guards and
+without. Exit status: 0 the same, 1 something differs.
 """
 
 from __future__ import annotations
 
 import argparse
 import difflib
+import json
 import os
 import subprocess
 import sys
@@ -18,6 +20,8 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
+FORMS = ("shader", "functions")
+GUARDS = ("auto", "none")
 SHOWN = 40
 """How many lines of each difference are printed."""
 
@@ -34,18 +38,53 @@ def checkout(state: str, place: Path) -> Path:
 
 
 def emitted(project: Path, materials: Path, out: Path) -> dict[str, str]:
-    """The texts that a state of the project makes of the example materials in `materials`, by file name."""
-    found = [path for path in sorted(materials.glob("examples/*/*.toml")) if path.stem == path.parent.name]
-    names = [path.relative_to(materials).as_posix() for path in found]
-    environment = {**os.environ, "PYTHONPATH": str(project / "src"), "SSSGEN_CACHE": ""}
-    for form in ("shader", "functions"):
-        command = [sys.executable, "-m", "sssgen", "emit", *names, "--target", "all", "--form", form, "-o", str(out)]
-        subprocess.run(command, cwd=materials, env=environment, stdout=subprocess.DEVNULL, check=True)
-    return {path.relative_to(out).as_posix(): path.read_text("utf-8") for path in sorted(out.rglob("*.*"))}
+    """The texts that a state of the project emits for the example materials in `materials` and for its techniques."""
+    environment = {**os.environ, "PYTHONPATH": str(project / "src"), "SSSGEN_CACHE": "", "PYTHONUTF8": "1"}
+    command = [sys.executable, __file__, "--emit", str(out)]
+    subprocess.run(command, cwd=materials, env=environment, check=True)
+    texts: dict[str, str] = json.loads(out.read_text(encoding="utf-8"))
+    return texts
+
+
+def texts_of_this_state() -> dict[str, str]:
+    """The texts of the sssgen that is imported, for the examples of the current folder and for all techniques."""
+    import sssgen
+
+    try:
+        from sssgen.harness.evaluate import probes
+        from sssgen.material import library
+        from sssgen.pipeline import compiler
+    except ImportError:  # a state with its modules in fewer folders
+        from sssgen import compiler, library
+        from sssgen.harness import probes
+
+    texts: dict[str, str] = {}
+    materials = [path for path in sorted(Path().glob("examples/*/*.toml")) if path.stem == path.parent.name]
+    for path in materials:
+        for target in sssgen.all_targets():
+            for form in FORMS:
+                for file, text in sssgen.compile(path.as_posix(), target, form).files.items():
+                    texts[f"{path.stem}/{form}/{file}"] = text
+    for name in library.index():
+        subject = probes.subject(name)
+        for target in sssgen.all_targets():
+            for guards in GUARDS:
+                try:
+                    files = compiler.transpile(
+                        subject.module, target, name, guards, subject.called, chained=subject.chained
+                    ).files
+                except sssgen.SssgenError as error:
+                    files = {"error": str(error)}
+                for file, text in files.items():
+                    texts[f"{name}/guards {guards}/{target}/{file}"] = text
+    return texts
 
 
 def main() -> int:
     """Compares; returns the exit status."""
+    if sys.argv[1:2] == ["--emit"]:  # in the process of one state
+        Path(sys.argv[2]).write_text(json.dumps(texts_of_this_state()), encoding="utf-8")
+        return 0
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("OLD")
     parser.add_argument("NEW", nargs="?", default=str(ROOT))
@@ -53,13 +92,14 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         work = Path(folder)
         old, new = checkout(arguments.OLD, work / "old"), checkout(arguments.NEW, work / "new")
-        before, after = emitted(old, old, work / "before"), emitted(new, old, work / "after")
-    differing = [name for name in sorted(before.keys() | after.keys()) if before.get(name) != after.get(name)]
+        before, after = emitted(old, old, work / "before.json"), emitted(new, old, work / "after.json")
+    names = sorted(before.keys() | after.keys())
+    differing = [name for name in names if before.get(name) != after.get(name)]
     for name in differing:
-        one, other = (texts.get(name, "").splitlines() for texts in (before, after))
-        lines = list(difflib.unified_diff(one, other, f"old/{name}", f"new/{name}", lineterm="", n=1))
+        texts = [found.get(name, "").splitlines() for found in (before, after)]
+        lines = list(difflib.unified_diff(*texts, f"old/{name}", f"new/{name}", lineterm="", n=1))
         print("\n".join(lines[:SHOWN]), f"\n… {len(lines) - SHOWN} more lines\n" if len(lines) > SHOWN else "\n")
-    print(f"{len(differing)} of {len(before.keys() | after.keys())} texts differ")
+    print(f"{len(differing)} of {len(names)} texts differ")
     return 1 if differing else 0
 
 

@@ -1,13 +1,17 @@
-"""What the tests share: the real compilers, and hypothesis without clocks."""
+"""What the tests share: the real compilers, hypothesis without clocks, and the counts of random inputs."""
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import settings
 
+from amounts import COUNTED
 from skips import compiler_or_skip, or_skip
 from sssgen.harness import backends, compilers
 from sssgen.harness.backends import Backend
@@ -47,3 +51,25 @@ def pytest_report_header() -> list[str]:
     """Which Unity headers the run was against, and what is not there."""
     named = os.environ.get("SSSGEN_UNITY_INCLUDES")
     return [f"Unity headers: {f'real ones, {named}' if named else 'the stand-ins of harness/compilers/unity_standin'}"]
+
+
+# `pytest -n` runs the tests in workers; the counts of each are added up where the run is reported
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    if (output := getattr(session.config, "workeroutput", None)) is not None:
+        output["counted"] = dict(COUNTED)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: Any) -> None:
+    COUNTED.update(getattr(node, "workeroutput", {}).get("counted", {}))
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Prints how many random inputs were tried; FUZZ_COUNTS names a file for the counts."""
+    if COUNTED:
+        counts = ", ".join(f"{count} × {name}" for name, count in sorted(COUNTED.items()))
+        terminalreporter.write_line(f"fuzzed: {counts}")
+    if name := os.environ.get("FUZZ_COUNTS"):
+        Path(name).write_text(json.dumps(COUNTED), encoding="utf-8")

@@ -1,0 +1,52 @@
+"""What each construct of a material changes in every target: each file of tests/material_constructs is one construct.
+
+A file has two materials and, for every target and form, the lines that differ between their emitted texts.
+UPDATE_SNAPSHOTS=1 renews these, for review. A new construct is a new file with its sentence and its two materials.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from difflib import unified_diff
+from pathlib import Path
+
+import pytest
+
+import sssgen
+from folders import TESTS
+
+CONSTRUCTS = sorted((TESTS / "material_constructs").glob("*.txt"))
+FORMS = ("shader", "functions")
+
+
+def emitted(source: str, folder: Path, target: str, form: str) -> list[str]:
+    """The lines of all texts that a target makes of a material."""
+    path = folder / "made.toml"
+    path.write_text(f'[material]\nname = "made"\n{source}', encoding="utf-8")
+    files = sssgen.compile(str(path), target, form).files
+    return [line for file, text in files.items() if not file.endswith(".json") for line in text.splitlines()]
+
+
+def differences(before: str, after: str, folder: Path, target: str, form: str) -> str:
+    """The lines that only one of two materials has in a target."""
+    texts = [emitted(source, folder, target, form) for source in (before, after)]
+    return "\n".join(line for line in list(unified_diff(*texts, lineterm="", n=0))[2:] if line[0] in "+-")
+
+
+@pytest.mark.parametrize("path", CONSTRUCTS, ids=lambda path: path.stem)
+def test_construct(path: Path, tmp_path: Path) -> None:
+    head, *sections = re.split(r"^--- (.+)\n", path.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    rule, before, after = re.split(r"^=== (?:before|after)\n", head, flags=re.MULTILINE)
+    assert rule.strip().endswith(".")
+    found = {
+        f"{target} {form}": differences(before, after, tmp_path, target, form)
+        for target in sssgen.all_targets()
+        for form in FORMS
+    }
+    if os.environ.get("UPDATE_SNAPSHOTS"):
+        text = head.rstrip() + "\n" + "".join(f"--- {name}\n{lines}\n" for name, lines in found.items())
+        path.write_text(text, encoding="utf-8", newline="\n")
+        return
+    expected = dict(zip(sections[::2], (section.removesuffix("\n") for section in sections[1::2]), strict=True))
+    assert found == expected, "UPDATE_SNAPSHOTS=1 takes the new texts over"
