@@ -95,21 +95,21 @@ def test_without_spans_texts_are_equal() -> None:
 
 
 MALFORMED = {
-    "§": "1:1: '§' has no meaning here",
+    "§": "1:1: '§' is unexpected here",
     "what x": "1:1: a declaration is expected here, not 'what'",
     "file 0 wax": "1:8: a text is expected here, not 'wax'",
     "const@0:1:1-2 float x = 1.0": "1:6: there is no file 0",
     "const wax x = 1.0": "1:7: there is no type 'wax'",
     "const float x 1.0": "1:15: '=' is expected here, not '1.0'",
-    "const float x = 1e999": "1:17: 1e999 is no number",
-    "const uint x = -1u": "1:16: -1u is no number",
-    "const uint x = 1.5u": "1:16: 1.5u is no number",
+    "const float x = 1e999": "1:17: 1e999 is not a number",
+    "const uint x = -1u": "1:16: -1u is not a number",
+    "const uint x = 1.5u": "1:16: 1.5u is not a number",
     "const float x = y": "1:17: 'y' is not declared",
     "const float x = $y": "1:17: 'y' is not declared",
     "const float x = $f(1.0)": "1:23: 'f(float)' is not declared",
     "const float x = sin(1)": "1:22: sin is not defined for these operands",
     "const float x = (1.0 + 1)": "1:24: '+' is not defined for these operands",
-    "const float x = (1.0 $ 1)": "1:22: '$' has no meaning here",
+    "const float x = (1.0 $ 1)": "1:22: '$' is unexpected here",
     "const float x = (1.0 ? 2.0 : 3.0)": "1:30: '?' is not defined for these operands",
     "const float x = 1.0.x": "1:21: .x is not defined for these operands",
     "const float x = vec2{1.0}[1.0]": "1:27: an index is not defined for these operands",
@@ -123,7 +123,7 @@ MALFORMED = {
     "function void f() { what; }": "1:21: a statement is expected here, not 'what'",
     "function void f(in float x) { set x == 1.0; }": "1:37: an assignment is expected here, not '=='",
     "function void f(in float x) { set x = 1.0 }": "1:43: ';' is expected here, not '}'",
-    "function void $f() slot": "1:15: '$' stands only where something is used",
+    "function void $f() slot": "1:15: '$' is not part of a declared name",
     "\n\nfunction void f(\n  float x) slot": "4:9: there is no type 'x'",
 }
 

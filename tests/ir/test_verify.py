@@ -118,16 +118,16 @@ STRUCT = SAMPLE_MODULE.structs[0]
 
 WRONG: dict[str, tuple[Callable[[], ir.Module], str]] = {
     # Literals
-    "infinite": (lambda: evaluated(number(float("inf"))), "inf is no float"),
-    "nan": (lambda: evaluated(number(float("nan"))), "nan is no float"),
-    "beyond float32": (lambda: evaluated(number(3.5e38)), "3.5e+38 is no float"),
-    "int as float": (lambda: evaluated(ir.Literal(FLOAT, 1, NOWHERE)), "1 is no float"),
-    "float as int": (lambda: evaluated(ir.Literal(INT, 1.0, NOWHERE)), "1.0 is no int"),
-    "bool as int": (lambda: evaluated(ir.Literal(INT, True, NOWHERE)), "True is no int"),
-    "int as bool": (lambda: evaluated(ir.Literal(BOOL, 1, NOWHERE)), "1 is no bool"),
-    "int too large": (lambda: evaluated(whole(2**31)), "2147483648 is no int"),
-    "uint below 0": (lambda: evaluated(whole(-1, UINT)), "-1 is no uint"),
-    "vector literal": (lambda: evaluated(ir.Literal(VEC2, 1.0, NOWHERE)), "1.0 is no vec2"),
+    "infinite": (lambda: evaluated(number(float("inf"))), "inf is not a value of type float"),
+    "nan": (lambda: evaluated(number(float("nan"))), "nan is not a value of type float"),
+    "beyond float32": (lambda: evaluated(number(3.5e38)), "3.5e+38 is not a value of type float"),
+    "int as float": (lambda: evaluated(ir.Literal(FLOAT, 1, NOWHERE)), "1 is not a value of type float"),
+    "float as int": (lambda: evaluated(ir.Literal(INT, 1.0, NOWHERE)), "1.0 is not a value of type int"),
+    "bool as int": (lambda: evaluated(ir.Literal(INT, True, NOWHERE)), "True is not a value of type int"),
+    "int as bool": (lambda: evaluated(ir.Literal(BOOL, 1, NOWHERE)), "1 is not a value of type bool"),
+    "int too large": (lambda: evaluated(whole(2**31)), "2147483648 is not a value of type int"),
+    "uint below 0": (lambda: evaluated(whole(-1, UINT)), "-1 is not a value of type uint"),
+    "vector literal": (lambda: evaluated(ir.Literal(VEC2, 1.0, NOWHERE)), "1.0 is not a value of type vec2"),
     # Names
     "unknown local": (lambda: evaluated(local(FLOAT)), "'p' is not declared here"),
     "local of another type": (
@@ -177,7 +177,7 @@ WRONG: dict[str, tuple[Callable[[], ir.Module], str]] = {
     # Calls and constructors
     "unknown function": (lambda: evaluated(call_of("zork()", type_=FLOAT)), "there is no function zork()"),
     "wrong arguments": (lambda: evaluated(call_of(LEFT, ONES, type_=FLOAT)), f"{LEFT} is called with (vec2)"),
-    "wrong result": (lambda: evaluated(call_of("body_distance(vec3)", type_=VEC2)), "gives a float, not a vec2"),
+    "wrong result": (lambda: evaluated(call_of("body_distance(vec3)", type_=VEC2)), "returns a float, not a vec2"),
     "constant as out": (
         lambda: body(ir.Evaluate(call_of("step_into(vec3,vec3,bool)", RED, RED, TRUE), NOWHERE)),
         "a Global of type vec3 cannot be assigned to"),
@@ -250,7 +250,7 @@ WRONG: dict[str, tuple[Callable[[], ir.Module], str]] = {
     "returned from nothing": (lambda: body(ir.Return(number(1.0), NOWHERE)), "the return is a void, but gets a float"),
     "no return": (
         lambda: body(ir.If(TRUE, (ir.Return(number(1.0), NOWHERE),), (), NOWHERE), result=FLOAT),
-        "this can end without returning"),
+        "the end is reachable without a return"),
     # Declarations
     "function twice": (lambda: ir.Module(functions=(function(), function())), "'f()' is defined twice"),
     "two names alike": (
@@ -258,13 +258,13 @@ WRONG: dict[str, tuple[Callable[[], ir.Module], str]] = {
     "uniform twice": (lambda: ir.Module(uniforms=(UNIFORM, UNIFORM)), "'density' is declared twice"),
     "parameter twice": (lambda: body(params=(param(FLOAT), param(FLOAT))), "'p' hides a variable"),
     "parameter of nothing": (lambda: body(params=(param(VOID),)), "this cannot be Void()"),
-    "parameter's direction": (lambda: body(params=(param(FLOAT, "outin"),)), "'outin' is no direction"),
+    "parameter's direction": (lambda: body(params=(param(FLOAT, "outin"),)), "'outin' is not a direction"),
     "sampler out": (lambda: body(params=(param(MAP, "out"),)), "a sampler cannot be out"),
     "sampler returned": (lambda: body(result=MAP), "this cannot be Sampler"),
     "unknown struct": (
-        lambda: body(params=(param(Struct("Zork", (Field("x", FLOAT),))),)), "struct 'Zork' is not declared so"),
+        lambda: body(params=(param(Struct("Zork", (Field("x", FLOAT),))),)), "struct 'Zork' is not declared with these fields"),
     "struct with other fields": (
-        lambda: body(params=(param(Struct("Body", (Field("x", FLOAT),))),)), "struct 'Body' is not declared so"),
+        lambda: body(params=(param(Struct("Body", (Field("x", FLOAT),))),)), "struct 'Body' is not declared with these fields"),
     "empty struct": (
         lambda: ir.Module(structs=(ir.StructDecl(Struct("S", ()), "", NOWHERE),)), "not a struct type"),
     "field twice": (
@@ -272,7 +272,7 @@ WRONG: dict[str, tuple[Callable[[], ir.Module], str]] = {
         "not a struct type"),
     "struct later than its use": (
         lambda: ir.Module(structs=(ir.StructDecl(Struct("S", (Field("x", STRUCT.type),)), "", NOWHERE), STRUCT)),
-        "struct 'Body' is not declared so"),
+        "struct 'Body' is not declared with these fields"),
     "vector of five": (lambda: body(params=(param(Vector("float", 5)),)), "not a type: Vector"),
     "vector of doubles": (lambda: body(params=(param(Vector("double", 2)),)), "not a type: Vector"),
     "double": (lambda: body(ir.Declare("q", Scalar("double"), None, NOWHERE)), "this cannot be Scalar"),
@@ -286,9 +286,10 @@ WRONG: dict[str, tuple[Callable[[], ir.Module], str]] = {
     "default of a texture": (
         lambda: ir.Module(uniforms=(UNIFORM._replace(type=MAP),)), "'density' has 1 defaults, not 0"),
     "infinite default": (
-        lambda: ir.Module(uniforms=(UNIFORM._replace(default=(float("inf"),)),)), "a default that no float holds"),
+        lambda: ir.Module(uniforms=(UNIFORM._replace(default=(float("inf"),)),)),
+        "a default that is not a value of float"),
     "default between integers": (
-        lambda: ir.Module(uniforms=(UNIFORM._replace(type=INT),)), "a default that no int holds"),
+        lambda: ir.Module(uniforms=(UNIFORM._replace(type=INT),)), "a default that is not a value of int"),
     "constant's value": (
         lambda: ir.Module(constants=(ir.Constant("x", FLOAT, whole(1), NOWHERE),)), "'x' is a float, but gets an int"),
     "constant of a uniform": (
@@ -310,7 +311,7 @@ WRONG: dict[str, tuple[Callable[[], ir.Module], str]] = {
     "recursion": (
         lambda: ir.Module(functions=(
             function(ir.Evaluate(call_of("g()"), NOWHERE)), function(ir.Evaluate(call_of("f()"), NOWHERE), name="g"))),
-        "f() is recursive, or calls what is"),
+        "f() is recursive, or calls a recursive function"),
     "not a statement": (lambda: body(number(1.0)), "not a statement"),  # type: ignore[arg-type]
 }  # fmt: skip
 
@@ -335,7 +336,7 @@ def test_linked_modules_have_no_slots_and_an_order() -> None:
     assert verify(ir.Module(functions=(function(name="g"), caller)), linked=True) == []
     late = ir.Module(functions=(caller, function(name="g")))
     assert verify(late) == []
-    assert verify(late, linked=True) == ["f() calls g(), which stands behind it"]
+    assert verify(late, linked=True) == ["f() calls g(), which is declared after it"]
     assert any("slot body_distance(vec3) is not bound" in one for one in verify(SAMPLE_MODULE, linked=True))
     for type_ in (STRUCT.type, Array(STRUCT.type, 2)):
         module = ir.Module(structs=(STRUCT,), uniforms=(UNIFORM._replace(type=type_),))

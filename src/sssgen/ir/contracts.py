@@ -1,9 +1,9 @@
-"""What a shader's inputs may be: the assumptions of the range pass, and what `sssgen stress` feeds.
+"""Contracts: which values a shader's inputs may have. The range pass assumes them; `sssgen stress` draws from them.
 
-A parameter's range comes from its quantity or its name in the chain, a uniform's from its hints. What gives no word of
-itself is a number of ordinary size. A technique's result keeps to the range of its quantity, so that the next one may
-rely on it: where the range pass cannot prove it, the guard pass clamps it there. Of a function that is called from
-outside nobody has seen to that: its thickness may be any number.
+A parameter's range follows from its quantity or from its name in the chain, a uniform's from its hints; any other
+number has an ordinary size. A technique's result is within the range of its quantity, so that the next technique can
+rely on it; if the range pass cannot prove that, the guard pass clamps it. Arguments of functions that are called from
+outside are not clamped: a thickness may be any number.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from sssgen.ir.types import FLOAT, VEC3, VEC4, Array, Matrix, Sampler, kind_of
 from sssgen.ir.vector_ranges import LENGTH, Contract
 
 LONG = 300.0
-"""The length up to which a direction that is none may be passed in half precision. In float32 no length matters."""
+"""The greatest length of a direction from outside in half precision. In float32 no length overflows."""
 ONE = 1.0 + 2.0**-10
-"""The most that thinness and transmittance may be: 1, and what functions of few digits add to it."""
+"""The largest thinness and transmittance: 1, and the error of imprecise functions."""
 POSITION = {FLOAT32.name: 1e6, "half": 100.0}
 """The largest coordinate, length, time and number without a hint."""
 THICKNESS = {FLOAT32.name: 1e12, "half": 1e4}
-"""The longest way through matter: what is beyond is as opaque."""
+"""The longest path through matter: longer ones are as opaque."""
 MATRIX = {FLOAT32.name: 1e3, "half": 10.0}
 UV = {FLOAT32.name: 1e4, "half": 100.0}
 COLOR = {FLOAT32.name: 65504.0, "half": 1000.0}
@@ -37,7 +37,7 @@ _FRAME = {"N", "V", "L", "T", "B", "normal"}
 
 
 def of_param(param: Param, format: Format = FLOAT32, chained: bool = True) -> Contract:
-    """The contract of a technique's parameter; of a plain function's, where names mean nothing, if not `chained`."""
+    """The contract of a parameter of a technique, or, if not `chained`, of a function whose names have no meaning."""
     kind = kind_of(param.type)
     if kind != "float":
         return Contract(*INTEGERS.get(kind, (0.0, 0.0)))
@@ -61,7 +61,7 @@ def of_name(param: Param, format: Format = FLOAT32) -> Contract | None:
 
 
 def made(quantity: str, param: Param | None, format: Format = FLOAT32) -> Contract | None:
-    """What a result or an out parameter is kept to where it is made, as others rely on it; None for nothing."""
+    """The contract that a result or an out parameter is clamped to, as others rely on it, or None."""
     found = of_quantity(quantity, format)
     if found is None and param is not None:
         found = of_name(param, format)
@@ -71,7 +71,7 @@ def made(quantity: str, param: Param | None, format: Format = FLOAT32) -> Contra
 
 
 def from_outside(param: Param, format: Format = FLOAT32, chained: bool = True) -> Contract:
-    """What a caller that is not ours may pass: a quantity may be any number, as nobody has kept it in its range."""
+    """The contract of an argument from outside: a quantity may be any number, as nothing has clamped it."""
     if param.quantity == "thickness":
         return _around(format.largest)
     if param.quantity in _UNIT:
@@ -83,7 +83,7 @@ def from_outside(param: Param, format: Format = FLOAT32, chained: bool = True) -
 
 
 def of_quantity(quantity: str, format: Format = FLOAT32) -> Contract | None:
-    """The contract of a quantity, None for a plain number."""
+    """The contract of a quantity; None for a plain number."""
     if quantity.endswith("_direction"):
         return Contract(-LENGTH, LENGTH, LENGTH)
     if quantity in _UNIT:
@@ -104,7 +104,7 @@ def of_uniform(uniform: Uniform, format: Format = FLOAT32) -> Contract:
     kind = kind_of(type_)
     if "hint_range" in hints:
         low, high = [format.rounded(float(end)) if kind == "float" else float(end) for end in hints["hint_range"][:2]]
-        return Contract(low if kind == "float" else min(low, 0.0), high)  # a count that nobody has set is 0
+        return Contract(low if kind == "float" else min(low, 0.0), high)  # a count that is not set is 0
     if kind != "float":
         return Contract(*INTEGERS.get(kind, (0.0, 0.0)))
     if "source_color" in hints:

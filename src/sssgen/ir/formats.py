@@ -1,4 +1,4 @@
-"""The floating-point formats that a shader computes in, as far as value ranges and guards need to know them."""
+"""The floating-point formats of shaders, with the limits that value ranges and guards need."""
 
 from __future__ import annotations
 
@@ -7,22 +7,22 @@ from typing import NamedTuple
 
 
 class Format(NamedTuple):
-    """A binary format of IEEE 754. GPUs may flush its subnormal numbers to 0, so it has none here."""
+    """A binary format of IEEE 754 without subnormal numbers, as GPUs may flush them to 0."""
 
     name: str
     code: str
-    """Its letter for `struct`."""
+    """Its format character for `struct`."""
     largest: float
     tiny: float
-    """Near the smallest normal number: what guards keep arguments from falling below."""
+    """The lower limit of guards for positive arguments, near the smallest normal number."""
     divisor: float
-    """The smallest divisor that guards let through: small against what scenes hold, its inverse far from largest."""
+    """The smallest divisor behind a guard: small compared with values of scenes, its inverse far below `largest`."""
     square: float
-    """The smallest square of a length whose parts are not lost: normalize's divisor."""
+    """The smallest squared length that normalize divides by: the squares of the components are still normal."""
     epsilon: float
     """The distance from 1 to the next number."""
     exponent: float
-    """exp2 of this is still finite, with room for its error."""
+    """The largest argument of exp2: the result is finite, with a margin for its error."""
 
     def rounded(self, value: float) -> float:
         """The nearest number of the format; beyond the largest, infinity."""
@@ -34,7 +34,7 @@ class Format(NamedTuple):
 
 
 def _format(format: Format) -> Format:
-    """A format, with its limits as numbers of its own."""
+    """A format with its limits rounded to its own numbers."""
     return format._replace(
         tiny=format.rounded(format.tiny), divisor=format.rounded(format.divisor), square=format.rounded(format.square)
     )

@@ -1,8 +1,8 @@
-"""Intervals of numbers: what a value may be, and what arithmetic makes of it.
+"""Interval arithmetic: the possible values of numbers.
 
-A range holds every value that a float32 (or float16) computation may give: where operands are exact, sums, differences
-and products round to nearest in every language, and rounding is monotone, so that rounding the ends is enough. What
-a target may compute less exactly is widened by the error that the intrinsic table grants (`widened`).
+A range contains every value that a float32 (or float16) computation may give. In every language sums, differences and
+products round to nearest; rounding is monotone, so it suffices to round the ends. Where targets may be less exact, the
+range is widened by the error that the intrinsic table grants (`widened`).
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ INF = math.inf
 
 
 class Range:
-    """`low` to `high`, without what is nearer to 0 than `gap`."""
+    """`low` to `high`, without the numbers that are nearer to 0 than `gap`."""
 
     __slots__ = ("gap", "high", "low")
 
@@ -54,15 +54,15 @@ class Range:
         return self.gap == 0.0
 
     def within(self, other: Range) -> bool:
-        """Whether every value of this is one of the other's."""
+        """Whether the other range contains this one."""
         return self.low >= other.low and self.high <= other.high and self.gap >= other.gap
 
     def joined(self, other: Range) -> Range:
-        """The values of either."""
+        """The smallest range that contains both."""
         return Range(min(self.low, other.low), max(self.high, other.high), min(self.gap, other.gap))
 
     def met(self, other: Range) -> Range:
-        """The values of both; where there are none, one of them: such code does not run."""
+        """The intersection. If it is empty, a range of one number, as such code does not run."""
         low, high = max(self.low, other.low), min(self.high, other.high)
         if low > high:
             low = high = min(max(self.low, other.low), self.high)
@@ -84,7 +84,7 @@ class Range:
         return Range(min(ends), max(ends), self.gap * other.gap)
 
     def __truediv__(self, other: Range) -> Range:
-        """The quotient, where the divisor is not 0."""
+        """The quotient by a divisor that is not 0."""
         if other.gap == 0.0:
             return ANY
         inverse = Range(
@@ -106,12 +106,12 @@ def as_range(value: Range | float) -> Range:
 
 
 def _times(a: float, b: float) -> float:
-    """The product of two ends; 0 times what has no end is 0, since the end itself is not reached."""
+    """The product of two ends; 0 times infinity is 0, as no value is infinite."""
     return 0.0 if a == 0.0 or b == 0.0 else a * b
 
 
 def square(x: Range) -> Range:
-    """x·x of one and the same x."""
+    """x·x of the same x."""
     most = x.size * x.size
     return Range(x.gap * x.gap, most)
 
@@ -139,12 +139,12 @@ def hull(low: float, high: float) -> Range:
 
 
 def rising(function: Callable[[float], float], x: Range) -> Range:
-    """The range of a function that never falls."""
+    """The range of a monotonically increasing function."""
     return Range(_value(function, x.low), _value(function, x.high))
 
 
 def falling(function: Callable[[float], float], x: Range) -> Range:
-    """The range of a function that never rises."""
+    """The range of a monotonically decreasing function."""
     return Range(_value(function, x.high), _value(function, x.low))
 
 
@@ -158,7 +158,7 @@ def _value(function: Callable[[float], float], x: float) -> float:
 
 
 def power(x: Range, y: Range) -> Range:
-    """x to the power y, x above 0: monotone in each, so that the corners have its ends."""
+    """x to the power y for x above 0. It is monotone in each, so the extremes are at the corners."""
     ends = [_power(a, b) for a in (x.low, x.high) for b in (y.low, y.high)]
     return Range(min(ends), max(ends))
 
@@ -171,7 +171,7 @@ def _power(a: float, b: float) -> float:
 
 
 def blend(x: Range, y: Range, t: Range) -> Range:
-    """x·(1 - t) + y·t: linear in each, so that the corners have its ends."""
+    """x·(1 - t) + y·t. It is linear in each, so the extremes are at the corners."""
     ends = [
         _times(a, 1.0 - c) + _times(b, c) for a in (x.low, x.high) for b in (y.low, y.high) for c in (t.low, t.high)
     ]
@@ -179,12 +179,12 @@ def blend(x: Range, y: Range, t: Range) -> Range:
 
 
 def remainder(x: Range, y: Range) -> Range:
-    """mod: between 0 and y, y among it where rounding takes it there."""
+    """mod: between 0 and y, inclusive of y because of rounding."""
     return Range(min(y.low, 0.0), max(y.high, 0.0)) if x.size < INF else ANY
 
 
 def truncated(x: Range, y: Range) -> Range:
-    """fmod: as large as y at most, with the sign of x."""
+    """fmod: at most as large as y, with the sign of x."""
     return Range(-y.size if x.low < 0.0 else 0.0, y.size if x.high > 0.0 else 0.0)
 
 
@@ -199,9 +199,9 @@ def fraction(x: Range) -> Range:
 
 
 def rounded(x: Range, format: Format) -> Range:
-    """A range after correct rounding of its values; what is beyond the largest number is infinite.
+    """A range after rounding to nearest; numbers beyond the largest become infinite.
 
-    A compiler may leave the rounding out where a sum takes the result (contraction), so the exact ends stay in it.
+    A compiler may omit the rounding of a product in a sum (contraction), so the range contains the exact ends too.
     """
     low, high = format.rounded(x.low), format.rounded(x.high)
     gap = x.gap
@@ -216,7 +216,7 @@ def rounded(x: Range, format: Format) -> Range:
 
 
 def widened(x: Range, relative: float, absolute: float = 0.0) -> Range:
-    """A range after a computation with this error: `relative`, below 1, to what it is, and `absolute`."""
+    """A range after a computation with a `relative` error (below 1) and an `absolute` error."""
     low = x.low - _times(abs(x.low), relative) - absolute
     high = x.high + _times(abs(x.high), relative) + absolute
     gap = max(x.gap * (1.0 - relative) - absolute, 0.0)

@@ -1,9 +1,8 @@
-"""The nodes of the IR: small immutable tuples, each with the span of source it came from.
+"""The nodes of the IR: small immutable tuples, each with the span of its source.
 
-Every expression carries its type; no overload, implicit conversion or name is left to resolve. Assignments are
-statements, so expressions have no side effect but through a call's out parameters. Nodes are named tuples: they are
-cheap to make and cannot be changed. Compare nodes by identity or by their text form (`ir.text`), not with `==`, which
-for tuples looks at the fields and not at the class.
+Every expression has its type; no overload, implicit conversion or name is left to resolve. Assignments are statements,
+so an expression has no side effects except through a call's out parameters. Nodes are named tuples, which are cheap to
+create. Compare nodes by identity or by their text form (`ir.text`), not with `==`, which ignores the class of a tuple.
 """
 
 from __future__ import annotations
@@ -97,7 +96,7 @@ class Construct(NamedTuple):
 
 
 class Swizzle(NamedTuple):
-    """`value.zyx`; `components` is spelt with x, y, z, w."""
+    """`value.zyx`; `components` is spelled with x, y, z, w."""
 
     type: Type
     value: Expr
@@ -132,7 +131,7 @@ Expr: TypeAlias = (
 
 
 class Declare(NamedTuple):
-    """A local variable; without a value it is not yet defined."""
+    """A local variable; without a value it is undefined."""
 
     name: str
     type: Type
@@ -150,21 +149,21 @@ class Assign(NamedTuple):
 
 
 class Evaluate(NamedTuple):
-    """A call made for its out parameters alone."""
+    """A call whose result is not used."""
 
     call: Expr
     span: Span
 
 
 class Assume(NamedTuple):
-    """A fact that the author vouches for: the range pass believes it, and it leaves no text."""
+    """A fact that the author states: the range pass relies on it, and no text is emitted."""
 
     condition: Expr
     span: Span
 
 
 class If(NamedTuple):
-    """Two-armed choice; `otherwise` may be empty."""
+    """A branch; `otherwise` may be empty."""
 
     condition: Expr
     then: Block
@@ -183,7 +182,7 @@ class For(NamedTuple):
 
 
 class While(NamedTuple):
-    """A loop whose bound the checker has seen."""
+    """A loop that the checker found to be bounded."""
 
     condition: Expr
     body: Block
@@ -197,7 +196,7 @@ class Break(NamedTuple):
 
 
 class Continue(NamedTuple):
-    """Goes on with the innermost loop's next step."""
+    """Continues with the next iteration of the innermost loop."""
 
     span: Span
 
@@ -210,7 +209,7 @@ class Return(NamedTuple):
 
 
 class Discard(NamedTuple):
-    """Drops the fragment."""
+    """Discards the fragment."""
 
     span: Span
 
@@ -233,9 +232,9 @@ class Param(NamedTuple):
 
 
 class Function(NamedTuple):
-    """A function; `body` is None for a slot that a material has still to bind.
+    """A function; `body` is None for a slot that a material must bind.
 
-    `key` tells overloads apart: the name and the parameter types, as in `box(vec3,vec3)`.
+    `key` identifies an overload by name and parameter types, as in `box(vec3,vec3)`.
     """
 
     name: str
@@ -278,9 +277,9 @@ class Constant(NamedTuple):
 class Variable(NamedTuple):
     """A module variable: each run of a shader has its own.
 
-    `storage` is private, in (what a stage is given, which is read only) or out (what it gives). A private one may
-    have a `value`, of constants, uniforms and earlier variables. `builtin` is the `gl_` name that it stands for, or ''.
-    `interpolation` is flat, noperspective, centroid or ''; `location` is -1 where none is written.
+    `storage` is private, in (an input of the stage, read-only) or out (an output). A private one may have a `value` of
+    constants, uniforms and earlier variables. `builtin` is the `gl_` name of a variable of GLSL, or ''. `interpolation`
+    is flat, noperspective, centroid or ''; `location` is -1 if none is given.
     """
 
     name: str
@@ -303,7 +302,7 @@ class StructDecl(NamedTuple):
 
 
 class Module(NamedTuple):
-    """One program or library, in source order; a function stands after those it calls once linked."""
+    """One program or library, in source order; once linked, functions come after those that they call."""
 
     structs: tuple[StructDecl, ...] = ()
     constants: tuple[Constant, ...] = ()

@@ -1,11 +1,12 @@
-"""The names that functions had in older versions of GLSL and in extensions of it, and what they are called now.
+"""Names of functions in older versions and extensions of GLSL, and their present names.
 
     new_name("texture2D", 3)         # "texture": the third argument is the bias in both
     new_name("texture2DLodEXT", 3)   # "textureLod"
     new_name("mix", 3)               # None
 
 The arguments are the same, in the same order. The new name is that of a builtin of the intrinsic table or of one of
-`ir.out_builtins`. The shadow reads of GLSL 1.20, which gave a vec4, are functions there by their old names.
+`ir.out_builtins`. The shadow reads of GLSL 1.20, which returned a vec4, are
+functions there under their old names.
 Source: chapter 8.7 of GLSL 1.20 and of GLSL ES 1.00; GL_ARB_shader_texture_lod, GL_EXT_shader_texture_lod,
 GL_EXT_gpu_shader4, GL_EXT_shadow_samplers.
 """
@@ -42,15 +43,15 @@ _RENAMED = (
     ("shadow2DProjEXT", "textureProj", (2,)),
     ("textureSize2D textureSize3D textureSizeCube textureSize2DArray", "textureSize", (2,)),
 )
-"""Old names; the new name; with how many arguments."""
+"""Old names, the new name, the possible numbers of arguments."""
 
 OLD_NAMES: dict[str, tuple[str, tuple[int, ...]]] = {
     old: (new, counts) for names, new, counts in _RENAMED for old in names.split()
 }
-"""Old name → the new one, and with how many arguments it was called."""
+"""Old name → the new name, and the possible numbers of arguments."""
 
 
 def new_name(name: str, count: int) -> str | None:
-    """What a call of `name` with this many arguments is now; None where it is no old name, or not with so many."""
+    """The new name of an old function with this many arguments; None if there is no such old function."""
     new, counts = OLD_NAMES.get(name, ("", ()))
     return new if count in counts else None

@@ -1,13 +1,13 @@
-"""Builtins that are ordinary functions of our own language: with out parameters, projective, or of old GLSL.
+"""Builtins that are written as functions of the language: with out parameters, projective reads, or of old GLSL.
 
-A builtin of the intrinsic table gives one value and has no out parameter. These, texture reads at a coordinate that is
-divided first, and the shadow reads of old GLSL, which gave a vec4, are written out instead: the front end puts the
-function into the module where a file first calls it, and every pass and target treats it as one of the file's own.
+A builtin of the intrinsic table returns one value and has no out parameters. The front end adds one of these functions
+to the module at the file's first call, and every pass and target treats it like the file's own functions. Projective
+reads divide the coordinate first; the shadow reads of old GLSL returned a vec4.
 
     out_builtin("modf", [VEC3, VEC3])    # the text of vec3 modf(vec3 x, out vec3 whole)
 
-The texts are generic as the table's signatures are (`genF`: float, vec2, vec3, vec4 alike). What GLSL leaves open:
-`modf` and `frexp` of an infinity or NaN give anything; `frexp` takes a subnormal number for 0, as GPUs do.
+The texts are generic as the table's signatures are (`genF`: float, vec2, vec3, vec4 alike). What GLSL leaves undefined:
+the results of `modf` and `frexp` for infinity and NaN. `frexp` treats a subnormal number as 0, as GPUs do.
 Source: chapters 8.3, 8.8 and 8.9 of the GLSL 4.60 specification, and 8.7 of GLSL 1.20.
 """
 
@@ -59,7 +59,7 @@ void umulExtended(genU x, genU y, out genU msb, out genU lsb) {
     lsb = x * y;
 }
 """,
-    # the product of the same bits as uints, less 2^32 times one factor where the other is negative
+    # the product of the same bits as uints, minus 2^32 times one factor if the other is negative
     "imulExtended": """
 void imulExtended(genI x, genI y, out genI msb, out genI lsb) {
     genU a = genU(x);
@@ -91,7 +91,7 @@ vec4 textureProjGrad(sampler2D map, vec3 P, vec2 dx, vec2 dy) { return textureGr
 vec4 textureProjGrad(sampler2D map, vec4 P, vec2 dx, vec2 dy) { return textureGrad(map, P.xy / P.w, dx, dy); }
 vec4 textureProjGrad(sampler3D map, vec4 P, vec3 dx, vec3 dy) { return textureGrad(map, P.xyz / P.w, dx, dy); }
 """,
-    # the depth as a grey, as GLSL 1.20 has it
+    # the result as a grey, as in GLSL 1.20
     "shadow2D": """
 vec4 shadow2D(sampler2DShadow map, vec3 P) { return vec4(vec3(texture(map, P)), 1.0); }
 """,
@@ -109,17 +109,17 @@ _DEFINITION = re.compile(r"^\w.*?\}$", re.MULTILINE | re.DOTALL)
 
 
 def is_out_builtin(name: str) -> bool:
-    """Whether there is such a function here, for whatever types."""
+    """Whether there is such a function, for any types."""
     return name in OUT_BUILTINS
 
 
 def out_builtin(name: str, types: Sequence[Type]) -> str | None:
-    """The text of the one function `name` for arguments of exactly these types; None where there is none."""
-    return _written(name, tuple(types))
+    """The text of the function `name` for arguments of exactly these types, or None."""
+    return _definition_text(name, tuple(types))
 
 
 @functools.cache
-def _written(name: str, types: tuple[Type, ...]) -> str | None:
+def _definition_text(name: str, types: tuple[Type, ...]) -> str | None:
     size = max([components(type_) for type_ in types], default=0)
     if size > 4:
         return None
@@ -137,6 +137,6 @@ def _written(name: str, types: tuple[Type, ...]) -> str | None:
 
 
 def _parameters(definition: str) -> list[str]:
-    """The types of a definition's parameters, as they are spelt."""
+    """The types of a definition's parameters, as spelled in it."""
     listed = definition[definition.index("(") + 1 : definition.index(")")]
     return [param.split()[-2] for param in listed.split(",")]

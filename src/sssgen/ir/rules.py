@@ -1,7 +1,7 @@
-"""The typing rules of the IR: the checker applies them, the reader infers with them, the verifier asks them.
+"""The typing rules of the IR, for the checker, the reader of the text form and the verifier.
 
-They are those of GLSL ES 3.00, sections 5.4 to 5.9, after `lang` has made explicit what is implicit there:
-nothing is converted but by a constructor, and a constructor's arguments have its own kind.
+They are those of GLSL ES 3.00, sections 5.4 to 5.9, but without implicit conversions: only constructors convert, and
+the arguments of a constructor have its own kind.
 """
 
 from __future__ import annotations
@@ -30,17 +30,17 @@ from sssgen.ir.types import (
 )
 
 FLOAT_MAX = 3.4028234663852886e38
-"""The largest finite float32; what is written larger rounds to infinity or is not portable."""
+"""The largest finite float32; larger literals round to infinity or are not portable."""
 
 
 def prefix_type(op: str, operand: Type) -> Type | None:
-    """The type of `op operand`, or None where it is not defined."""
+    """The type of `op operand`, or None if it is not defined."""
     fits = {"-": is_numeric(operand), "!": operand == BOOL, "~": kind_of(operand) in ("int", "uint")}
     return operand if fits.get(op, False) else None
 
 
 def operator_type(op: str, left: Type, right: Type) -> Type | None:
-    """The type of `left op right`, or None where it is not defined (GLSL ES 3.00, sections 5.8 and 5.9)."""
+    """The type of `left op right`, or None if it is not defined (GLSL ES 3.00, sections 5.8 and 5.9)."""
     if op in ("&&", "||", "^^"):
         return BOOL if left == right == BOOL else None
     if op in ("==", "!="):
@@ -67,7 +67,7 @@ def operator_type(op: str, left: Type, right: Type) -> Type | None:
 
 
 def element_type(type: Type) -> tuple[Type, int] | None:
-    """What an index picks from a value of this type, and how many there are; None if it has no elements."""
+    """The type and number of a type's elements; None if it has none."""
     if isinstance(type, Array):
         return type.element, type.length
     if isinstance(type, Vector):
@@ -85,9 +85,9 @@ def swizzle_type(type: Type, letters: str) -> Type | None:
 
 
 def inferred(expr: Expr) -> Type | None:
-    """The type that follows from the types of the operands; None where there is none.
+    """The type that follows from the types of the operands; None if the expression is not defined for them.
 
-    For what does not carry its type elsewhere: all but literals, names, calls and constructors.
+    For all expressions but literals, names, calls and constructors, whose types are given.
     """
     if isinstance(expr, Binary):
         return operator_type(expr.op, expr.left.type, expr.right.type)
@@ -110,12 +110,11 @@ def inferred(expr: Expr) -> Type | None:
 
 
 def constructs(type: Type, args: Sequence[Type]) -> bool:
-    """Whether `type(args…)` is a constructor as the IR has them.
+    """Whether `type(args…)` is a constructor of the IR.
 
-    A struct takes its fields and an array its elements. Of the others, one argument is converted to another
-    kind in the same shape, or is a scalar that fills a vector or a matrix's diagonal, or a matrix to cut or
-    to extend; several are put together, with as many components as the result. A vector is cut by a swizzle,
-    not by this.
+    A struct takes its fields and an array its elements. For other types, a single argument is converted to another kind
+    in the same shape, or is a scalar that fills a vector or a matrix's diagonal, or a matrix that is cut or extended;
+    several arguments have together as many components as the result. Vectors are cut by swizzles only.
     """
     if isinstance(type, Struct):
         return [field.type for field in type.fields] == list(args)
@@ -143,7 +142,7 @@ def _same_shape(one: Type, other: Type) -> bool:
 
 
 def is_type(type: Type) -> bool:
-    """Whether a type is one of the IR's, all the way down."""
+    """Whether a type and everything in it is valid in the IR."""
     if isinstance(type, Scalar | Vector):
         sized = isinstance(type, Scalar) or type.size in (2, 3, 4)
         return sized and type.kind in ("float", "int", "uint", "bool")
@@ -162,7 +161,7 @@ def is_type(type: Type) -> bool:
 
 
 def returns(block: Block) -> bool:
-    """Whether every way through a block ends in a return or a discard."""
+    """Whether every path through a block ends in a return or a discard."""
     for stmt in block:
         if isinstance(stmt, Return | Discard):
             return True

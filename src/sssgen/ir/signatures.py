@@ -1,4 +1,4 @@
-"""The overloads of the builtins: reads the intrinsic table's signatures, each when its builtin is first asked for.
+"""The overloads of the builtins, from the signatures of the intrinsic table; each is read when it is first needed.
 
 There are no implicit conversions: an overload matches when every type is the same.
 """
@@ -50,7 +50,7 @@ def candidates(name: str) -> list[str]:
 
 
 def text(name: str, language: str, types: Sequence[Type]) -> str:
-    """How this overload is written in a language or dialect: an entry of `Builtin.texts`, see there.
+    """How this overload is written in a language or dialect: an entry of `Builtin.texts`.
 
     Looks for the dialect's text of the overload, the dialect's, then the same for the language before the first `-`.
     Raises KeyError where there is no such overload.
@@ -73,7 +73,7 @@ def parse(signature: str) -> list[str]:
 
 
 def instantiate(name: str, size: int) -> Type | None:
-    """The type a name of a signature stands for at one size; None where the size is not its own, as vecF at 1."""
+    """The type that a name of a signature means at one size; None if it has no such size, as vecF at 1."""
     family, kind = name[:-1], _KINDS.get(name[-1])
     if kind and family in ("gen", "vec"):
         return vector_of(kind, size) if size > 1 or family == "gen" else None

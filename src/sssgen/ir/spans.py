@@ -1,4 +1,4 @@
-"""Places in source texts. They stand apart from the nodes, as diagnostics need nothing else of the IR."""
+"""Positions in source texts. They are apart from the nodes, as diagnostics need nothing else of the IR."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 
 class Span(NamedTuple):
-    """Where a node stands in its source: 1-based lines and columns, the end exclusive."""
+    """The position of a node in its source: 1-based lines and columns, the end exclusive."""
 
     file: str
     line: int

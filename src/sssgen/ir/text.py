@@ -10,15 +10,14 @@
         return@0:6:5-20 exp((- d))@0:6:12-19;
     }
 
-Every operator and every choice has its brackets, so that there is no precedence. `$` marks what the module
-declares: `$density` is a global and `$remaining(x)` a call. A bare call is a builtin, a bare name a local,
-and braces construct: `vec3{x, y, z}`. `-1.0` is a literal and `(- 1.0)` a negation. Types stand where
-something is declared or constructed; those of all other expressions follow from the rules, so what is printed
-must be valid (`ir.verify`).
+Every operator and every choice has parentheses, so there is no precedence. `$` marks declarations of the module:
+`$density` is a global and `$remaining(x)` a call. A call without it is of a builtin, a name without it is a local, and
+braces construct: `vec3{x, y, z}`. `-1.0` is a literal and `(- 1.0)` a negation. Types are written in declarations and
+constructors; those of all other expressions follow from the rules, so the module must be valid (`ir.verify`).
 
 A span follows the first token of a statement or declaration and the last of an expression:
-`@file:line:column-`, then `column` or `line:column` of its end. No span means NOWHERE. Without spans, modules
-are equal if their texts are. `//` begins a comment, which is not read.
+`@file:line:column-`, then `column` or `line:column` of its end. No span means NOWHERE. Without spans,
+modules are equal if their texts are. `//` begins a comment, which is not read.
 """
 
 from __future__ import annotations
@@ -214,7 +213,7 @@ def _colon(quantity: str) -> str:
 
 
 def _doc(doc: str) -> str:
-    """A documentation, one quoted line under the other."""
+    """A documentation comment, one quoted line per line."""
     return "doc " + "\n    ".join(map(_quoted, doc.split("\n"))) + "\n" if doc else ""
 
 

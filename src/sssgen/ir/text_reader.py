@@ -49,7 +49,7 @@ from sssgen.ir.types import BOOL, BY_NAME, FLOAT, INT, UINT, VOID, Array, Field,
 
 
 class TextError(ValueError):
-    """A text that is no module, with the 1-based place where that shows."""
+    """A text that is not a module, with the 1-based position of the fault."""
 
     def __init__(self, message: str, line: int, column: int) -> None:
         super().__init__(f"{line}:{column}: {message}")
@@ -57,7 +57,7 @@ class TextError(ValueError):
 
 
 def read_module(text: str) -> Module:
-    """The module that a text says. Raises TextError."""
+    """The module in the text form. Raises TextError."""
     return _Reader(text).module()
 
 
@@ -71,16 +71,16 @@ _TOKEN = re.compile(
     re.VERBOSE | re.ASCII,
 )
 _MAX_NUMBER = 400
-"""The longest number, and the longest place; the largest float32 has 39 digits."""
+"""The longest number, and the longest span; the largest float32 has 39 digits."""
 
 _MAX_MESSAGE = 500
-"""The longest message: it may quote a name."""
+"""The longest message, as it may quote a name."""
 
 _ESCAPE = re.compile(r'\\(["\\]|[0-9a-f]+;)')
 
 
 class _Reader:
-    """Reads by recursive descent; functions' bodies come last, when every function's result is known."""
+    """Reads by recursive descent. Functions' bodies are read last, when the results of all functions are known."""
 
     def __init__(self, text: str) -> None:
         self.text = text
@@ -95,7 +95,7 @@ class _Reader:
         while position < len(text):
             match = _TOKEN.match(text, position)
             if match is None:
-                raise self.error(f"{text[position]!r} has no meaning here", position)
+                raise self.error(f"{text[position]!r} is unexpected here", position)
             if match.lastgroup in ("number", "span") and len(match.group()) > _MAX_NUMBER:
                 raise self.error("this number is too long", position)
             if match.lastgroup != "space":
@@ -117,7 +117,7 @@ class _Reader:
         return self.tokens[min(self.next + ahead, len(self.tokens) - 1)][1]
 
     def take(self, text: str) -> bool:
-        """Goes past the next token if it is this one."""
+        """Consumes the next token if it is this one."""
         found = self.peek() == text
         self.next += found
         return found
@@ -127,7 +127,7 @@ class _Reader:
             raise self.fail(f"'{text}' is expected here, not '{self.peek()}'")
 
     def kind(self, kind: str) -> str:
-        """Goes past the next token, which must be of this kind."""
+        """Consumes the next token, which must be of this kind."""
         found, text, _ = self.tokens[self.next]
         if found != kind:
             raise self.fail(f"a {kind} is expected here, not '{text}'")
@@ -136,7 +136,7 @@ class _Reader:
 
     def name(self) -> str:
         if self.peek().startswith("$"):
-            raise self.fail("'$' stands only where something is used")
+            raise self.fail("'$' is not part of a declared name")
         return self.kind("name")
 
     def string(self) -> str:
@@ -184,7 +184,13 @@ class _Reader:
     # Declarations
 
     def module(self) -> Module:
-        found: dict[str, list[object]] = {"struct": [], "const": [], "uniform": [], "function": [], "variable": []}
+        declarations: dict[str, list[object]] = {
+            "struct": [],
+            "const": [],
+            "uniform": [],
+            "function": [],
+            "variable": [],
+        }
         bodies: dict[int, int] = {}
         try:
             while self.take("file"):
@@ -195,21 +201,21 @@ class _Reader:
                 while self.tokens[self.next][0] == "text":
                     doc.append(self.string())
                 what = self.kind("name")
-                if what not in found:
+                if what not in declarations:
                     raise self.fail(f"a declaration is expected here, not '{what}'", 1)
                 read = getattr(self, what)
-                found[what].append(read("\n".join(doc), self.span()))
+                declarations[what].append(read("\n".join(doc), self.span()))
                 if what == "function" and not self.take("slot"):
-                    bodies[len(found[what]) - 1] = self.next
+                    bodies[len(declarations[what]) - 1] = self.next
                     self.skip_block()
-            functions: list[Function] = found["function"]  # type: ignore[assignment]  # what `function` returns
+            functions: list[Function] = declarations["function"]  # type: ignore[assignment]  # what `function` returns
             for index, start in bodies.items():
                 function, self.next = functions[index], start
                 self.locals = {param.name: param.type for param in function.params}
                 functions[index] = function._replace(body=self.block())
         except RecursionError:
             raise self.fail("nested too deeply") from None
-        return Module(*(tuple(declarations) for declarations in found.values()))  # type: ignore[arg-type]
+        return Module(*(tuple(of_one_kind) for of_one_kind in declarations.values()))  # type: ignore[arg-type]
 
     def skip_block(self) -> None:
         self.expect("{")
@@ -249,14 +255,14 @@ class _Reader:
 
     def variable(self, doc: str, span: Span) -> Variable:
         storage, type_, name = self.name(), self.type(), self.name()
-        said: dict[str, float | str] = {"builtin": "", "interpolation": "", "location": -1.0}
+        values: dict[str, float | str] = {"builtin": "", "interpolation": "", "location": -1.0}
         for hint, args in self.hints():
-            if hint not in said or len(args) != 1 or type(args[0]) is not type(said[hint]):
-                raise self.fail(f"a variable says nothing like '{hint}'", 1)
-            said[hint] = args[0]
+            if hint not in values or len(args) != 1 or type(args[0]) is not type(values[hint]):
+                raise self.fail(f"a variable has no hint '{hint}'", 1)
+            values[hint] = args[0]
         value = self.expr() if self.take("=") else None
         self.globals[name] = type_
-        builtin, interpolation, location = said.values()
+        builtin, interpolation, location = values.values()
         return Variable(name, type_, storage, value, str(builtin), str(interpolation), int(location), doc, span)
 
     def hints(self) -> tuple[tuple[str, tuple[float | str, ...]], ...]:
@@ -356,7 +362,7 @@ class _Reader:
         elif text in ("true", "false"):
             expr = Literal(BOOL, text == "true", NOWHERE)
         elif text == "(":
-            expr = self.bracketed()
+            expr = self.parenthesized()
         elif kind == "name" and text.startswith("$"):
             expr = self.of_module(text[1:])
         elif kind == "name" and (self.peek() == "{" or (self.peek() == "[" and self.peek(3) == "{")):
@@ -390,10 +396,10 @@ class _Reader:
         return Literal(FLOAT, float(text), NOWHERE) if isfinite(float(text)) else self.no_number(text)
 
     def no_number(self, text: str) -> Literal:
-        raise self.fail(f"{text} is no number", 1)
+        raise self.fail(f"{text} is not a number", 1)
 
-    def bracketed(self) -> Expr:
-        """What stands behind an opening bracket: a negation, a binary operator, or a choice."""
+    def parenthesized(self) -> Expr:
+        """The expression after an opening parenthesis: a negation, a binary operator, or a choice."""
         if self.peek() in ("-", "!", "~"):
             op = self.kind("op")
             return self.closed(Unary(VOID, op, self.expr(), NOWHERE), op)

@@ -1,7 +1,7 @@
-"""The verifier: says where a module breaks the rules that every pass and every printer takes for granted.
+"""The verifier: reports where a module breaks the rules on which every pass and every printer relies.
 
-Each rule looks at one node and the types its operands claim, so that a fault is named where it is, and once.
-It runs after every pass in tests. The checker's errors are for people, these are for us.
+Each rule looks at one node and the types of its operands, so that a fault is reported once, where it is. In tests it
+runs after every pass. Its messages are for developers of passes; the checker has those for users.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ from sssgen.ir.walk import callees, operands, subexpressions
 
 
 class InvalidIR(AssertionError):
-    """A module that breaks the rules; `problems` says how."""
+    """A module that breaks the rules listed in `problems`."""
 
     def __init__(self, problems: list[str]) -> None:
         self.problems = problems
@@ -70,24 +70,24 @@ class InvalidIR(AssertionError):
 
 
 def check_module(module: Module, linked: bool = False) -> None:
-    """Raises InvalidIR unless the module is as it must be."""
+    """Raises InvalidIR if a module breaks a rule."""
     problems = verify(module, linked)
     if problems:
         raise InvalidIR(problems)
 
 
 def verify(module: Module, linked: bool = False) -> list[str]:
-    """What is wrong with a module, each with its place. `linked`: no slots left, and callees come first."""
+    """The faults of a module, with their positions. `linked`: no slots are left, and callees come first."""
     verifier = _Verifier(module, linked)
     verifier.signatures()
-    if not verifier.problems:  # else the functions have no keys
+    if not verifier.problems:  # otherwise the functions have no keys
         verifier.module()
     return verifier.problems
 
 
 class _Verifier:
     def __init__(self, module: Module, linked: bool) -> None:
-        self.whole = module
+        self.checked = module
         self.linked = linked
         self.problems: list[str] = []
         self.structs: dict[str, Struct] = {}
@@ -106,14 +106,14 @@ class _Verifier:
     # Declarations
 
     def signatures(self) -> None:
-        """What functions take and give are types at all."""
-        for function in self.whole.functions:
+        """The types of parameters and results are types of the IR."""
+        for function in self.checked.functions:
             for type_ in (function.result, *(param.type for param in function.params)):
                 if not is_type(type_):
                     self.report(function.span, f"not a type: {type_!r} (in {function.name})")
 
     def module(self) -> None:
-        whole = self.whole
+        whole = self.checked
         self.functions = {function.key: function for function in whole.functions}
         self.unique(
             [(struct.type.name, struct.span) for struct in whole.structs if isinstance(struct.type, Struct)]
@@ -160,14 +160,14 @@ class _Verifier:
                 self.report(span, f"'{name}' {message}")
             seen.add(name)
 
-    def type(self, type_: Type, span: Span, among: tuple[type, ...] = ()) -> None:
-        """A type that is used: well made, its structs declared, and none of the kinds in `among`."""
-        if isinstance(type_, among) or not is_type(type_):
+    def type(self, type_: Type, span: Span, excluded: tuple[type, ...] = ()) -> None:
+        """A type that is used: it is valid, its structs are declared, and it is none of the `excluded` classes."""
+        if isinstance(type_, excluded) or not is_type(type_):
             self.report(span, f"this cannot be {type_!r}")
             return
         innermost = type_.element if isinstance(type_, Array) else type_
         if isinstance(innermost, Struct) and self.structs.get(innermost.name) != innermost:
-            self.report(span, f"struct '{innermost.name}' is not declared so")
+            self.report(span, f"struct '{innermost.name}' is not declared with these fields")
 
     def uniform(self, uniform: Uniform) -> None:
         type_, span, name = uniform.type, uniform.span, uniform.name
@@ -180,15 +180,15 @@ class _Verifier:
         elif len(uniform.default) != components(type_):
             self.report(span, f"'{name}' has {len(uniform.default)} defaults, not {components(type_)}")
         elif not all(_fits(value, kind_of(innermost)) for value in uniform.default):
-            self.report(span, f"'{name}' has a default that no {spell(innermost)} holds: {uniform.default}")
+            self.report(span, f"'{name}' has a default that is not a value of {spell(innermost)}: {uniform.default}")
 
     def variable(self, variable: Variable) -> None:
         name, span = variable.name, variable.span
         self.type(variable.type, span, (Sampler, type(VOID)))
         if variable.storage not in ("private", "in", "out"):
-            self.report(span, f"'{variable.storage}' is no storage")
+            self.report(span, f"'{variable.storage}' is not a storage")
         if variable.interpolation not in ("", "flat", "noperspective", "centroid"):
-            self.report(span, f"'{variable.interpolation}' is no interpolation")
+            self.report(span, f"'{variable.interpolation}' is not an interpolation")
         if variable.value is not None:
             if variable.storage != "private":
                 self.report(span, f"'{name}' is {variable.storage} and has a value")
@@ -196,27 +196,27 @@ class _Verifier:
             self.same(variable.value.type, variable.type, span, f"'{name}'")
             for part in subexpressions(variable.value):
                 if isinstance(part, Call):
-                    self.report(part.span, f"the value of '{name}' is a call's")
+                    self.report(part.span, f"the value of '{name}' contains a call")
         self.globals[name] = variable.type
         if variable.storage != "in":
             self.written.add(name)
 
     def calls(self) -> None:
-        """Every call goes to a function of the module and none comes back; linked, only to earlier ones."""
-        position = {function.key: index for index, function in enumerate(self.whole.functions)}
+        """There is no recursion; if linked, functions call only earlier ones."""
+        position = {function.key: index for index, function in enumerate(self.checked.functions)}
         pending = {key: position.keys() & callees(self.functions[key]) for key in position}
         if self.linked:
-            for function in self.whole.functions:
+            for function in self.checked.functions:
                 late = [name for name in pending[function.key] if position[name] >= position[function.key]]
                 for name in sorted(late):
-                    self.report(function.span, f"{function.key} calls {name}, which stands behind it")
+                    self.report(function.span, f"{function.key} calls {name}, which is declared after it")
         while ready := [key for key, wanted in pending.items() if not wanted]:
             for key in ready:
                 del pending[key]
             for wanted in pending.values():
                 wanted.difference_update(ready)
         for key in pending:
-            self.report(self.functions[key].span, f"{key} is recursive, or calls what is")
+            self.report(self.functions[key].span, f"{key} is recursive, or calls a recursive function")
 
     def function(self, function: Function) -> None:
         span = function.span
@@ -225,7 +225,7 @@ class _Verifier:
         for param in function.params:
             self.type(param.type, param.span, (type(VOID),))
             if param.direction not in ("in", "out", "inout"):
-                self.report(param.span, f"'{param.direction}' is no direction")
+                self.report(param.span, f"'{param.direction}' is not a direction")
             if isinstance(param.type, Sampler) and param.direction != "in":
                 self.report(param.span, f"a sampler cannot be {param.direction}")
             self.declare(param.name, param.type, param.span)
@@ -235,7 +235,7 @@ class _Verifier:
             return
         self.block(function.body, loop=False)
         if function.result != VOID and not returns(function.body):
-            self.report(span, "this can end without returning")
+            self.report(span, "the end is reachable without a return")
 
     # Statements
 
@@ -341,7 +341,7 @@ class _Verifier:
             self.report(target.span, f"{what} cannot be assigned to")
 
     def expression(self, expr: Expr, nothing: bool = False) -> None:
-        """An expression and everything in it; `nothing` says that it may be a call without a result."""
+        """An expression and its operands; with `nothing` it may be a call without a result."""
         if expr.type == VOID and not nothing:
             self.report(expr.span, "a call without a result is used as a value")
         for node in subexpressions(expr):
@@ -355,10 +355,10 @@ class _Verifier:
                     self.report(operand.span, "a sampler can only be named, and only as an argument")
 
     def node(self, node: Expr) -> Iterator[str]:
-        """What is wrong with one node, its operands taken as they are."""
+        """The faults of one node, on the assumption that its operands are valid."""
         if isinstance(node, Literal):
             if node.type not in (FLOAT, INT, UINT, BOOL) or not _is_value(node.value, kind_of(node.type)):
-                yield f"{node.value!r} is no {_name(node.type)}"
+                yield f"{node.value!r} is not a value of type {_name(node.type)}"
         elif isinstance(node, Local):
             yield from self.named(node, self.local(node.name) if self.scopes else None)
         elif isinstance(node, Global):
@@ -394,7 +394,7 @@ class _Verifier:
         if [param.type for param in function.params] != [arg.type for arg in node.args]:
             yield f"{node.function} is called with {_names(node.args)}"
         if function.result != node.type:
-            yield f"{node.function} gives {_a_type(function.result)}, not {_a_type(node.type)}"
+            yield f"{node.function} returns {_a_type(function.result)}, not {_a_type(node.type)}"
         for param, arg in zip(function.params, node.args, strict=False):
             if param.direction != "in":
                 self.writable(arg)
@@ -430,7 +430,7 @@ def _names(args: Iterable[Expr]) -> str:
 
 
 def _what(node: Expr) -> str:
-    """A node in a word or two."""
+    """A short name of a node, for messages."""
     if isinstance(node, Unary | Binary):
         return f"'{node.op}'"
     if isinstance(node, Intrinsic):

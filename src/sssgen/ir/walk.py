@@ -75,7 +75,7 @@ def with_operands(expr: Expr, new: tuple[Expr, ...]) -> Expr:
 
 
 def expressions(stmt: Stmt) -> tuple[Expr, ...]:
-    """The expressions that stand directly in a statement (not those of inner statements)."""
+    """The expressions of a statement itself (not those of inner statements)."""
     if type(stmt) is Assign:
         return (stmt.target, stmt.value)
     if isinstance(stmt, Declare | Return):
@@ -112,7 +112,7 @@ def statements(block: Block) -> Iterator[Stmt]:
 
 
 def subexpressions(expr: Expr) -> Iterator[Expr]:
-    """`expr` and everything inside it."""
+    """`expr` and all its operands, recursively."""
     stack = [expr]
     while stack:
         node = stack.pop()
@@ -145,7 +145,7 @@ def builtins_of(module: Module) -> set[str]:
 
 
 def calls_of(stmt: Stmt) -> list[Call]:
-    """The calls that stand in a statement's own expressions, in the order of the text."""
+    """The calls in a statement's own expressions, in the order of the text."""
     found: list[Call] = []
     stack = list(reversed(expressions(stmt)))
     while stack:
@@ -169,13 +169,13 @@ def callees(function: Function) -> list[str]:
 
 
 def root(target: Expr) -> Local | None:
-    """The function's own variable that an assignment to `target` changes, or None where it is none of these."""
+    """The local variable that an assignment to `target` changes; None if it is another variable."""
     found = written_root(target)
     return found if isinstance(found, Local) else None
 
 
 def written_root(target: Expr) -> Local | Global | None:
-    """The variable that an assignment to `target` changes, the function's own or the module's."""
+    """The variable that an assignment to `target` changes, local or global."""
     while isinstance(target, Swizzle | Index | Member):
         target = target.value
     return target if isinstance(target, Local | Global) else None

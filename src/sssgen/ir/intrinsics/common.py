@@ -1,4 +1,4 @@
-"""Common functions, of one component at a time: 8.3 of the specification."""
+"""Common componentwise functions: 8.3 of the specification."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Functions of the bits of integers: chapter 8.8 of GLSL 4.60, which 3.30 and ES 3.00 do not have."""
+"""Functions of the bits of integers: chapter 8.8 of GLSL 4.60; 3.30 and ES 3.00 lack them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _FIELD = "y >= 0, z >= 0, and y + z <= 32"
 
 
 def _of_both(definition: str) -> str:
-    """A polyfill for uints and for ints: in the definition FROM stands for the type, BITS for its bits as a uint."""
+    """A polyfill for uints and for ints: in the definition FROM is the type, BITS the bits of x as a uint."""
     unsigned = definition.replace("FROM", "genU").replace("BITS", "x")
     signed = definition.replace("FROM", "genI").replace("BITS", "genU(x)")
     return unsigned + signed
@@ -91,7 +91,7 @@ gen{kind} bitfieldReverse(gen{kind} x) {{
         vectors=(((1,), -2147483648), ((-1,), -1), ((0x80000000,), 1), ((0,), 0), (((6, 2),), (0x60000000, 0x40000000))),
     ),
     Builtin("bitfieldExtract", ("genI(genI, int, int)", "genU(genU, int, int)"),
-        "The z bits of x from bit y on, in the low bits; of an int, with the sign that the highest of them has.",
+        "The z bits of x from bit y on, in the low bits; of an int, with the sign of the highest of them.",
         samples=Samples(integers={1: (0, 32), 2: (0, 32)}), range=any_number,
         inside=lambda rt, x, y, z: (y >= 0) & (z >= 0) & (y <= 32) & (z <= 32) & (y + z <= 32), domain=_FIELD,
         texts={"glsl": "", "hlsl": "", "wgsl": "extractBits({0}, u32({1}), u32({2}))"},

@@ -1,4 +1,4 @@
-"""Packing of several numbers into a uint; the first component goes into the low bits."""
+"""Packing of several numbers into a uint; the first component is in the low bits."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from sssgen.ir.vector_ranges import all_within
 
 
 def _relation(name: str, op: str, fold: Callable[..., bool], below: bool, same: bool, above: bool) -> Builtin:
-    """A componentwise comparison, and what it gives for x below, the same as, and above y."""
+    """A componentwise comparison, and its results for x below, equal to, and above y."""
     kinds = "FIUB" if op in ("==", "!=") else "FIU"
     vectors = (
         (((1, 2, 3), (3, 2, 1)), (below, same, above)),

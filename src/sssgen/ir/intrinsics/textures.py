@@ -1,11 +1,11 @@
 """Reads of textures.
 
-A coordinate of a texture with layers has the layer behind it, one of a texture that compares the reference behind that.
-HLSL and WGSL want some of these as arguments of their own. So there are builtins of our own that have them so, named
-`…Layer…` and `…Compare…`, and the polyfills are written with them.
+The coordinate of a texture with layers ends with the layer, that of a comparing texture with the reference. HLSL and
+WGSL need some of these as separate arguments. Builtins of the project have them so, `…Layer…` and `…Compare…`; the
+polyfills use these.
 
-Texels of integers are fetched only, as WGSL and HLSL filter none. HLSL asks for a texture's size in a statement; its
-printer makes a function of that, `texture_size`. For how many levels there are it has no such function yet.
+Integer texels are only fetched, as WGSL and HLSL cannot filter them. HLSL queries a texture's size in a statement; its
+printer emits a function for that, `texture_size`. There is no such function yet for the number of levels.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ _EIGHT_BITS = "D3D: filter weights of 8 bits; WGSL, Vulkan, GLSL: no bound"
 
 
 def _params(signature: str) -> str:
-    """The parameters of a signature's beginning, as a key of `texts` names them: `sampler2D,vec2`."""
+    """The parameters of a signature's beginning, as spelled in a key of `texts`: `sampler2D,vec2`."""
     return signature.partition("(")[2].replace(" ", "")
 
 
 def _offsets(extra: str = "") -> tuple[str, ...]:
-    """Signatures with an offset in texels behind `extra`."""
+    """Signatures with an offset in texels after `extra`."""
     return tuple(f"{read}{extra}, ivec{size})" for read, size in zip(_FLAT, (2, 3), strict=True))
 
 
@@ -47,7 +47,7 @@ ROWS = (
             (((0.75, 0.25, 1.0, 1.0),), (0.5, -0.5, 1.0)),
         ),
     ),
-    # What there is
+    # Queries
     Builtin("textureSize",
         (
             *(f"ivec{size}({kind}sampler{dim}, int)" for kind in _KINDS for dim, size in (("2D", 2), ("3D", 3), ("Cube", 2), ("2DArray", 3))),
@@ -155,7 +155,7 @@ vec4 textureGrad(samplerCubeArray map, vec4 P, vec3 dx, vec3 dy) { return textur
 """,
         splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
     ),
-    # The same, some texels off
+    # Filtered reads with an offset in texels
     Builtin("textureOffset", (*_offsets(), *(f"{one[:-1]}, float)" for one in _offsets())),
         "As texture, with z added to the place in texels, and w to the level.",
         with_level=Level("textureLodOffset", 2), with_gradients="textureGradOffset",
@@ -264,7 +264,7 @@ vec4 textureGatherOffset(sampler2D map, vec2 P, ivec2 offset, int channel) {
 """,
         splat=(), kind="fetch", absolute=2.0**-12, clause="In GLSL without it, by reads at the texels' centres",
     ),
-    # Of our own: layers and references as arguments of their own
+    # Builtins of the project: layers and references as separate arguments
     Builtin("textureLayer", (*(f"{read})" for read in _OWN_LAYER), *(f"{read}, float)" for read in _OWN_LAYER)),
         "As texture, of layer z, with w added to the level. Of our own.",
         with_level=Level("textureLayerLod", 3), componentwise=False, range=texels, uniform_flow=True,
