@@ -262,9 +262,11 @@ WRONG: dict[str, tuple[Callable[[], ir.Module], str]] = {
     "sampler out": (lambda: body(params=(param(MAP, "out"),)), "a sampler cannot be out"),
     "sampler returned": (lambda: body(result=MAP), "this cannot be Sampler"),
     "unknown struct": (
-        lambda: body(params=(param(Struct("Zork", (Field("x", FLOAT),))),)), "struct 'Zork' is not declared with these fields"),
+        lambda: body(params=(param(Struct("Zork", (Field("x", FLOAT),))),)),
+        "struct 'Zork' is not declared with these fields"),
     "struct with other fields": (
-        lambda: body(params=(param(Struct("Body", (Field("x", FLOAT),))),)), "struct 'Body' is not declared with these fields"),
+        lambda: body(params=(param(Struct("Body", (Field("x", FLOAT),))),)),
+        "struct 'Body' is not declared with these fields"),
     "empty struct": (
         lambda: ir.Module(structs=(ir.StructDecl(Struct("S", ()), "", NOWHERE),)), "not a struct type"),
     "field twice": (
