@@ -201,6 +201,15 @@ def test_a_missing_browser() -> None:
     assert "CompilerMissing: chromium (Debian: chromium · elsewhere: Chrome; or set SSSGEN_CHROMIUM)" in done.stderr
 
 
+def test_a_missing_package() -> None:
+    script = (
+        "import sys; sys.modules['websockets'] = None; from sssgen.harness import backends; backends.get('browser')"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, encoding="utf-8")
+    assert "CompilerMissing: the Python package websockets" in done.stderr
+    assert "pip install 'sssgen[browser]' and Chromium or Chrome" in done.stderr
+
+
 def test_a_program_that_is_no_browser(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SSSGEN_CHROMIUM", sys.executable)
     with pytest.raises(CompilerMissing, match=r"ended as it started \(exit status 2\)"):

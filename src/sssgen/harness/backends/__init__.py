@@ -71,4 +71,8 @@ def _find(name: str) -> Backend | str:
         backend: Backend = start(name, record.target, **record.options)
     except CompilerMissing as reason:
         return str(reason)
+    except ModuleNotFoundError as error:
+        if (error.name or "").startswith("sssgen"):
+            raise
+        return f"the Python package {error.name}: {record.install.replace('`', '')}"
     return backend

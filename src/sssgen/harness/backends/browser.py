@@ -71,7 +71,7 @@ class Browser(DrawingBackend):
             raise gave_up(self.name, _first(answer["error"]))
         self.drew = answer["drew"]
         dtype: Any = np.float32 if drawing.floats else np.uint32
-        rows = np.frombuffer(picture, dtype).reshape(todo.height, answer["stride"] // 4)
+        rows = np.frombuffer(bytearray(picture), dtype).reshape(todo.height, answer["stride"] // 4)
         return rows[:, : todo.width * 4].reshape(todo.height, todo.width, 4)
 
 

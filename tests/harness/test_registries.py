@@ -1,0 +1,38 @@
+"""The records of back ends and compilers: what they name exists, and the documentation has the same list."""
+
+from __future__ import annotations
+
+import re
+from importlib.util import find_spec
+
+from folders import ROOT
+from sssgen.harness.backend_registry import BACKENDS, DEFAULT, DRIVERS, HALF, SINGLE
+from sssgen.harness.compiler_registry import COMPILERS
+from sssgen.targets import registry
+
+
+def test_every_record_names_a_module_and_targets() -> None:
+    for backend in BACKENDS.values():
+        assert find_spec(f"sssgen.harness.backends.{backend.program.partition(':')[0]}")
+        assert bool(registry.load(backend.target).half_of) == (backend.bits == 16)
+    for compiler in COMPILERS.values():
+        assert find_spec(f"sssgen.harness.compilers.{compiler.module}")
+        assert compiler.languages <= set(registry.names())
+
+
+def test_the_lists_of_back_ends() -> None:
+    assert {record.half for record in BACKENDS.values() if record.half} == set(HALF)
+    assert [*BACKENDS] == sorted({"numpy", *SINGLE, *HALF}, key=[*BACKENDS].index)
+    assert set(DRIVERS) < set(SINGLE)
+    assert set(DEFAULT) < set(SINGLE)
+
+
+def test_the_documentation_lists_every_back_end() -> None:
+    """The table of docs/harness.md names each back end, and every package that a record says it needs."""
+    text = (ROOT / "docs" / "harness.md").read_text(encoding="utf-8").partition("## Back ends")[2].partition("\n## ")[0]
+    rows = [line.split("|") for line in text.splitlines() if line.startswith("| `")]
+    assert {name for row in rows for name in re.findall(r"`([\w-]+)`", row[1] + row[2])} >= set(BACKENDS)
+    needs = " ".join(row[3] for row in rows)
+    for record in BACKENDS.values():
+        for package in re.findall(r"`([^`]+)`", record.install):
+            assert all(word in needs or word in BACKENDS for word in package.split()), (record.name, package)
