@@ -5,7 +5,7 @@ from __future__ import annotations
 from sssgen.ir.intervals import absolute
 from sssgen.ir.intrinsics.table import F1, Builtin
 
-_HOW = {"Fine": "for each pair of pixels by itself", "Coarse": "perhaps one for each quad of pixels"}
+_VARIANTS = {"Fine": "for each pair of pixels", "Coarse": "possibly one for each quad of pixels"}
 
 # A table: several fields to a line.
 # fmt: off
@@ -23,18 +23,18 @@ ROWS = (
         range=lambda F, x: absolute(x - x) * 2.0, uniform_flow=True, kind="derivative", cost=3,
     ),
     *(
-        Builtin(f"dFd{axis}{how}", F1, f"dFd{axis}, {said}; where a language has no such choice, as dFd{axis}.",
+        Builtin(f"dFd{axis}{variant}", F1, f"dFd{axis}, {how}; in languages without this choice, dFd{axis}.",
             range=lambda F, x: x - x, uniform_flow=True, axis=axis, kind="derivative",
-            texts={"glsl": f"dFd{axis}", "hlsl": f"dd{axis}_{how.lower()}", "hlsl-dx9": f"dd{axis}", "wgsl": f"dpd{axis}{how}"},
+            texts={"glsl": f"dFd{axis}", "hlsl": f"dd{axis}_{variant.lower()}", "hlsl-dx9": f"dd{axis}", "wgsl": f"dpd{axis}{variant}"},
         )
-        for axis in "xy" for how, said in _HOW.items()
+        for axis in "xy" for variant, how in _VARIANTS.items()
     ),
     *(
-        Builtin(f"fwidth{how}", F1, f"abs(dFdx{how}(x)) + abs(dFdy{how}(x)).",
+        Builtin(f"fwidth{variant}", F1, f"abs(dFdx{variant}(x)) + abs(dFdy{variant}(x)).",
             range=lambda F, x: absolute(x - x) * 2.0, uniform_flow=True, kind="derivative", cost=3,
             texts={"glsl": "fwidth", "hlsl": "", "hlsl-dx9": "fwidth"},
-            polyfill=f"genF fwidth{how}(genF x) {{ return abs(dFdx{how}(x)) + abs(dFdy{how}(x)); }}",
+            polyfill=f"genF fwidth{variant}(genF x) {{ return abs(dFdx{variant}(x)) + abs(dFdy{variant}(x)); }}",
         )
-        for how in _HOW
+        for variant in _VARIANTS
     ),
 )

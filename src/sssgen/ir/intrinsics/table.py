@@ -184,7 +184,7 @@ NONZERO = "max(abs(y), DIVISOR) * (2.0 * step(0.0, y) - 1.0)"
 """A divisor of the same sign (0 counts as positive) that is not 0."""
 FINITE = "mix(clamp(x, -LARGEST, LARGEST), genF(0.0), isnan(x))"
 """The largest number in place of infinity, 0 in place of NaN."""
-NOT_FINITE_BITS = Guard(None, "bits of no finite number", FINITE, "result")
+NOT_FINITE_BITS = Guard(None, "bits of a number that is not finite", FINITE, "result")
 
 F1 = ("genF(genF)",)
 F2 = ("genF(genF, genF)",)

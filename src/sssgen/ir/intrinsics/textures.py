@@ -70,7 +70,7 @@ ROWS = (
         texts={"glsl": "", "hlsl": "", "wgsl": "{type}(textureNumLevels({texture}))"}, kind="fetch",
     ),
     Builtin("textureQueryLod", ("vec2(sampler2D, vec2)", "vec2(sampler3D, vec3)"),
-        "The level that a read would take at y, and the one that derivatives give. HLSL has it alone.",
+        "The level that a read would take at y, and the one that derivatives give. Only HLSL has it.",
         componentwise=False, range=any_numbers,
         uniform_flow=True, kind="fetch", absolute=0.01, clause="D3D, GLSL: no bound",
         texts={
@@ -86,7 +86,7 @@ ROWS = (
             *(f"float({shadow.replace(',', ', ')})" for shadow in _SHADOWS),
         ),
         "Filtered texture read; the level comes from screen-space derivatives, with z added to it. Of a texture that "
-        "compares: how much of it is not below the reference.",
+        "compares: the part of the texels that are not below the reference.",
         with_level=Level("textureLod", 2), with_gradients="textureGrad", componentwise=False, range=texels,
         uniform_flow=True,
         texts={
@@ -266,7 +266,7 @@ vec4 textureGatherOffset(sampler2D map, vec2 P, ivec2 offset, int channel) {
     ),
     # Builtins of the project: layers and references as separate arguments
     Builtin("textureLayer", (*(f"{read})" for read in _OWN_LAYER), *(f"{read}, float)" for read in _OWN_LAYER)),
-        "As texture, of layer z, with w added to the level. Of our own.",
+        "As texture, of layer z, with w added to the level.",
         with_level=Level("textureLayerLod", 3), componentwise=False, range=texels, uniform_flow=True,
         texts={
             "glsl/sampler2DArray,vec2,int": "texture({texture}, vec3({1}, float({2})))",
@@ -282,7 +282,7 @@ vec4 textureGatherOffset(sampler2D map, vec2 P, ivec2 offset, int channel) {
         },
         splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
     ),
-    Builtin("textureLayerLod", tuple(f"{read}, float)" for read in _OWN_LAYER), "As textureLod at level w, of layer z. Of our own.",
+    Builtin("textureLayerLod", tuple(f"{read}, float)" for read in _OWN_LAYER), "As textureLod at level w, of layer z.",
         componentwise=False, range=texels,
         texts={
             "glsl/sampler2DArray,vec2,int,float": "textureLod({texture}, vec3({1}, float({2})), {3})",
@@ -294,7 +294,7 @@ vec4 textureGatherOffset(sampler2D map, vec2 P, ivec2 offset, int channel) {
         splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
     ),
     Builtin("textureLayerGrad", ("vec4(sampler2DArray, vec2, int, vec2, vec2)", "vec4(samplerCubeArray, vec3, int, vec3, vec3)"),
-        "As textureGrad, of layer z. Of our own.",
+        "As textureGrad, of layer z.",
         componentwise=False, range=texels,
         texts={
             "glsl/sampler2DArray,vec2,int,vec2,vec2": "textureGrad({texture}, vec3({1}, float({2})), {3}, {4})",
@@ -306,7 +306,7 @@ vec4 textureGatherOffset(sampler2D map, vec2 P, ivec2 offset, int channel) {
         splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
     ),
     Builtin("texelFetchLayer", tuple(f"{kind}vec4({kind}sampler2DArray, ivec2, int, int)" for kind in _KINDS),
-        "As texelFetch at level w, of layer z. Of our own.",
+        "As texelFetch at level w, of layer z.",
         componentwise=False, range=texels, domain="the texel, the layer and the level exist",
         texts={
             "glsl": "texelFetch({texture}, ivec3({1}, {2}), {3})", "hlsl": "{texture}.Load(int4({1}, {2}, {3}))",
@@ -316,7 +316,7 @@ vec4 textureGatherOffset(sampler2D map, vec2 P, ivec2 offset, int channel) {
     ),
     Builtin("textureCompare",
         ("float(sampler2DShadow, vec2, float)", "float(samplerCubeShadow, vec3, float)", "float(sampler2DArrayShadow, vec2, int, float)"),
-        "As texture of a texture that compares; the reference is the last argument. Of our own.",
+        "As texture of a texture that compares; the reference is the last argument.",
         with_level=Level("textureCompareLod", 3, explicit=False),
         componentwise=False, range=all_within(0.0, 1.0), uniform_flow=True,
         texts={
@@ -331,7 +331,7 @@ vec4 textureGatherOffset(sampler2D map, vec2 P, ivec2 offset, int channel) {
         splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
     ),
     Builtin("textureCompareLod", ("float(sampler2DShadow, vec2, float)",),
-        "As textureCompare, at level 0. Of our own.",
+        "As textureCompare, at level 0.",
         componentwise=False, range=all_within(0.0, 1.0),
         texts={
             "glsl": "textureLod({texture}, vec3({1}, {2}), 0.0)", "hlsl": "{texture}.SampleCmpLevelZero({sampler}, {1}, {2})",
