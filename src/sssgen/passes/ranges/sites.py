@@ -13,7 +13,7 @@ OVERFLOW = Guard(None, "a number too large for its format", "clamp(x, -LARGEST, 
 """For any sum or product; the guards of builtins are in the intrinsic table."""
 TEXEL = Guard(
     None,
-    "a texel of a float texture that is not a number",
+    "a texel of a float texture that is no number",
     "mix(clamp(x, LOW, HIGH), genF(0.0), isnan(x))",
     "result",
     scalar="isnan(x) ? 0.0 : clamp(x, LOW, HIGH)",
