@@ -1,4 +1,4 @@
-"""Where the directives of a text stand: one regular expression that knows comments, texts and lines that go on."""
+"""Finds the directives of a text: one regular expression that handles comments, strings and line continuations."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _IGNORED = re.compile(rf"{NEWLINE}|{LINE_COMMENT}|{BLOCK_COMMENT}")
 
 
 def directives(text: str) -> Iterator[re.Match[str]]:
-    """The directives: of each its `mark` (#), its `name`, which may be empty, and the `rest` of its line."""
+    """The directives, each with its `mark` (#), its `name`, which may be empty, and the `rest` of its line."""
     if "#" in text:
         for match in _DIRECTIVE.finditer(text):
             if match["mark"] is not None:
@@ -29,7 +29,7 @@ def directives(text: str) -> Iterator[re.Match[str]]:
 
 
 def plain(rest: str) -> str:
-    """What a directive says, without comments, on one line, single blanks between its words."""
+    """The arguments of a directive without comments, on one line, separated by single blanks."""
     return " ".join(_IGNORED.sub(" ", rest).split())
 
 
@@ -38,26 +38,26 @@ class Branch:
 
     def __init__(self, place: Span, outside: bool) -> None:
         self.place = place
-        self.outside = outside  # whether it is itself switched on
+        self.outside = outside  # whether the code around it is active
         self.live = False
-        self.taken = False  # whether one of its branches was
-        self.last = False  # whether this is the #else
+        self.taken = False  # whether one of its branches was active
+        self.last = False  # whether this branch is the #else
 
 
 class SourceFile:
-    """A file being read: how far, and which of its #if are open."""
+    """A file that is being read: the position, and the open #if."""
 
     def __init__(self, text: str, shown: str) -> None:
         self.text = text
         self.shown = shown
-        self.at = 0
+        self.position = 0
         self.line = 1
         self.branches: list[Branch] = []
 
     def place(self, start: int, end: int) -> Span:
-        """The span of a part that begins no earlier than what was asked for before."""
-        self.line += self.text.count("\n", self.at, start)
-        self.at = start
+        """The span of a part; parts must be requested in the order of their starts."""
+        self.line += self.text.count("\n", self.position, start)
+        self.position = start
         column = start - self.text.rfind("\n", 0, start)
         lines = self.text.count("\n", start, end)
         end_column = end - self.text.rfind("\n", start, end) if lines else column + end - start
@@ -65,5 +65,5 @@ class SourceFile:
 
     @property
     def live(self) -> bool:
-        """Whether what comes next is switched on."""
+        """Whether the code that follows is active."""
         return not self.branches or self.branches[-1].live

@@ -1,7 +1,7 @@
-"""The expressions of #if and #elif: whole numbers with C's operators (GLSL 4.60, section 3.3; C11, section 6.10.1).
+"""The expressions of #if and #elif: integers with C's operators (GLSL 4.60, section 3.3; C11, section 6.10.1).
 
-They are computed as they are read. What goes wrong is a value, too: `defined(X) && 1 / X` is no division by 0 where X
-is not defined, as the right side is then not asked for.
+They are evaluated while they are read. A Fault can be a value: `defined(X) && 1 / X` is correct where X is not defined,
+as the right side is then ignored.
 """
 
 from __future__ import annotations
@@ -13,26 +13,26 @@ from sssgen.ir.spans import Span
 from sssgen.lang.syntax.tokens import Token
 
 MAX_NESTED = 100
-"""How deeply brackets and choices may nest in one expression."""
+"""How deeply parentheses and `?:` may nest in one expression."""
 
 _BITS = 64
 
 
 class Fault(Exception):
-    """Something wrong with what a directive says: its place, the message, what to do."""
+    """An error in a directive: its place, the message, what to do."""
 
     def __init__(self, span: Span, message: str, hint: str = "") -> None:
         super().__init__(span, message, hint)
-        self.notes = (span, message, hint)
+        self.details = (span, message, hint)
 
 
 _Value = int | Fault
 
 
 def evaluate(tokens: Sequence[Token], is_defined: Callable[[str], bool], place: Span) -> int:
-    """The value of an expression whose macros are expanded, as a signed number of 64 bits; a name left in it is 0.
+    """The value of an expression after macro expansion, as a signed 64-bit integer; a remaining name is 0.
 
-    `is_defined` answers `defined X`; `place` is the directive's, for what is missing at the end. Raises Fault.
+    `is_defined` evaluates `defined X`; `place` is the directive's, for errors at the end. Raises Fault.
     """
     reader = _Reader(tokens, is_defined, place)
     value = reader.choice(0)
@@ -50,26 +50,26 @@ class _Reader:
         self.tokens = tokens
         self.is_defined = is_defined
         self.place = place
-        self.at = 0
+        self.index = 0
 
     @property
     def text(self) -> str:
-        """The word to be read next, '' at the end."""
-        return self.tokens[self.at].text if self.at < len(self.tokens) else ""
+        """The text of the next token, '' at the end."""
+        return self.tokens[self.index].text if self.index < len(self.tokens) else ""
 
     def take(self) -> Token:
         if not self.text:
             raise Fault(self.place, "the expression ends too early")
-        self.at += 1
-        return self.tokens[self.at - 1]
+        self.index += 1
+        return self.tokens[self.index - 1]
 
     def expect(self, text: str) -> None:
         if self.text != text:
             raise self.unexpected(f"; expected '{text}'") if self.text else Fault(self.place, f"a '{text}' is missing")
-        self.at += 1
+        self.index += 1
 
     def unexpected(self, wanted: str = "") -> Fault:
-        token = self.tokens[self.at]
+        token = self.tokens[self.index]
         return Fault(token.span, f"'{token.text}' is not expected here{wanted}")
 
     def choice(self, depth: int) -> _Value:
@@ -78,7 +78,7 @@ class _Reader:
         condition = self.binary(depth)
         if self.text != "?":
             return condition
-        self.at += 1
+        self.index += 1
         first = self.choice(depth + 1)
         self.expect(":")
         second = self.choice(depth + 1)
@@ -108,7 +108,7 @@ class _Reader:
     def unary(self, depth: int) -> _Value:
         signs: list[str] = []
         while self.text in ("+", "-", "!", "~", "++", "--"):
-            signs += self.take().text  # there is nothing to step here: `--1` is two signs
+            signs += self.take().text  # `--1` is two signs, as there are no variables
         value = self.primary(depth)
         for sign in reversed(signs):
             if isinstance(value, int):
@@ -129,14 +129,14 @@ class _Reader:
             raise Fault(token.span, f"'{token.text}' is not an integer", "#if compares integers only")
         if token.text.isidentifier():
             return 0
-        self.at -= 1
+        self.index -= 1
         raise self.unexpected()
 
     def name(self) -> str:
-        """What `defined` asks for: `X` or `(X)`."""
+        """The operand of `defined`: `X` or `(X)`."""
         bracketed = self.text == "("
         if bracketed:
-            self.at += 1
+            self.index += 1
         token = self.take()
         if not token.text.isidentifier():
             raise Fault(token.span, "'defined' needs the name of a macro")
@@ -157,7 +157,7 @@ def _number(token: Token) -> int:
 
 
 def _wrapped(value: int) -> int:
-    """The value in 64 bits, in two's complement."""
+    """The value wrapped to 64 bits, in two's complement."""
     half = 1 << (_BITS - 1)
     return ((value + half) & (2 * half - 1)) - half
 

@@ -1,8 +1,8 @@
 """Macros that are kept as constants: `#define HEIGHT 0.5` becomes `const auto HEIGHT = 0.5;`, and its uses stay names.
 
-The names that people gave to numbers are worth keeping in a translated shader. A macro is kept where a constant may
-stand in its place: its words are one number, or one expression in brackets or of a constructor, made of numbers and of
-other constants; it is defined between two declarations; and what uses it uses it as an operand.
+A translated shader should keep the names of its numbers. A macro is kept where a constant can replace it: its body is a
+number, or a parenthesised expression or a constructor of numbers and other constants; it is defined between two
+declarations; and every use is an operand.
 """
 
 from __future__ import annotations
@@ -18,34 +18,34 @@ _LITERALS = ("INT", "FLOAT", "BOOL")
 _OPERATORS = ("PLUSMINUS", "NOT", "OPERATOR", "QMARK", "COLON")
 _CONSTRUCTOR = re.compile(r"float|int|uint|bool|[iub]?vec[234]|mat[234](x[234])?")
 _OPERAND_ENDS = frozenset(("NAME", "TYPE", "RPAR", "RSQB", "DOT", *_LITERALS))
-"""Behind these no operand stands: `f SIZE` is a call if SIZE is `(1.0)`."""
+"""No operand follows these: `f SIZE` is a call if SIZE is `(1.0)`."""
 
 
 class KeptConstants:
-    """The constants of one run over a text: what was defined, and from where to where of the words that came out."""
+    """The constants of one run over a text, each with the range of output tokens in which it is defined."""
 
     def __init__(self, barred: frozenset[str]) -> None:
         self.barred = barred
-        self.words: dict[str, tuple[Token, tuple[Token, ...]]] = {}  # of each: its name where defined, and its value
+        self.values: dict[str, tuple[Token, tuple[Token, ...]]] = {}  # of each: its name where defined, and its value
         self.begins: dict[str, int] = {}
         self.ends: dict[str, int] = {}
         self.users: dict[str, list[str]] = {}  # of each: the constants whose values name it
 
     def add(self, macro: Macro, name: Token, kept: set[str], position: int) -> None:
-        """Keeps a macro that is defined before the word at a position, where its name and its words allow it."""
+        """Keeps a macro that is defined before the token at `position`, if its name and its body allow it."""
         if macro.params is not None or name.type != "NAME" or macro.name in self.barred or macro.name in self.ends:
             return
         if not is_constant(macro.body, kept):
             return
         kept.add(macro.name)
-        self.words[macro.name] = name, macro.body
+        self.values[macro.name] = name, macro.body
         self.begins[macro.name] = position
         for token in macro.body:
             if token.type == "NAME":
                 self.users.setdefault(token.text, []).append(macro.name)
 
     def end(self, name: str, kept: set[str], used: set[str], position: int) -> None:
-        """From a position on a name, and what is made of it, is kept no more, and never again if it was used."""
+        """Ends a constant, and those made of it, at `position`; one that was used can never be kept again."""
         ending = [name]
         while ending:
             name = ending.pop()
@@ -57,40 +57,40 @@ class KeptConstants:
             if users or name in used:
                 self.ends[name] = position
             else:
-                del self.words[name], self.begins[name]
+                del self.values[name], self.begins[name]
 
     def in_use(self, tokens: Sequence[Token]) -> list[str]:
-        """The constants that words name, and those that their values name, in the order of their definitions."""
-        found, looked_at = set[str](), list({token.text for token in tokens} & self.words.keys())
-        while looked_at:
-            name = looked_at.pop()
-            if name not in found:
-                found.add(name)
-                looked_at += [token.text for token in self.words[name][1] if token.type == "NAME"]
-        return [name for name in self.words if name in found]
+        """The constants that the tokens name, and those that their values name, in the order of their definitions."""
+        used, pending = set[str](), list({token.text for token in tokens} & self.values.keys())
+        while pending:
+            name = pending.pop()
+            if name not in used:
+                used.add(name)
+                pending += [token.text for token in self.values[name][1] if token.type == "NAME"]
+        return [name for name in self.values if name in used]
 
     def conflicts(self, names: Sequence[str], tokens: Sequence[Token]) -> set[str]:
-        """Those of the names that stand where they are no constant's, or no operand can be."""
+        """Those of the names that are used outside of the constant's range, or where no operand can be."""
         if not names:
             return set()
-        wanted, found, before = set(names), set[str](), ""
+        candidates, conflicts, before = set(names), set[str](), ""
         for position, (kind, text, _) in enumerate(tokens):
-            if text in wanted and (
+            if text in candidates and (
                 before in _OPERAND_ENDS or position < self.begins[text] or position >= self.ends.get(text, len(tokens))
             ):
-                found.add(text)
+                conflicts.add(text)
             before = kind
-        return found
+        return conflicts
 
     def declared(self, names: Sequence[str], tokens: list[Token]) -> list[Token]:
-        """The words with the declarations of constants between them."""
-        made: list[Token] = []
-        done = 0
+        """The tokens with the declarations of the constants inserted."""
+        result: list[Token] = []
+        start = 0
         for name in names:
-            made += tokens[done : self.begins[name]]
-            done = self.begins[name]
-            made += _declaration(*self.words[name])
-        return made + tokens[done:]
+            result += tokens[start : self.begins[name]]
+            start = self.begins[name]
+            result += _declaration(*self.values[name])
+        return result + tokens[start:]
 
 
 def _declaration(name: Token, value: tuple[Token, ...]) -> list[Token]:
@@ -101,7 +101,7 @@ def _declaration(name: Token, value: tuple[Token, ...]) -> list[Token]:
 
 
 def is_constant(value: Sequence[Token], constants: set[str]) -> bool:
-    """Whether words are one operand made of numbers and the given constants: `1`, `-1.0`, `(A + 1)`, `vec2(A)`."""
+    """Whether tokens are one operand made of numbers and the given constants: `1`, `-1.0`, `(A + 1)`, `vec2(A)`."""
     types = [token.type for token in value]
     if len(value) <= 2:
         literal = types[-1:] != [] and types[-1] in _LITERALS
@@ -110,19 +110,19 @@ def is_constant(value: Sequence[Token], constants: set[str]) -> bool:
     first = 1 if types[0] == "TYPE" else 0
     if types[first] != "LPAR" or types[-1] != "RPAR":
         return False
-    constructors: list[bool] = []  # of the brackets that are open: whether a constructor's
-    for at, token in enumerate(value):
+    constructors: list[bool] = []  # for each open parenthesis: whether it is a constructor's
+    for index, token in enumerate(value):
         if token.type == "LPAR":
-            constructors.append(at > 0 and types[at - 1] == "TYPE")
+            constructors.append(index > 0 and types[index - 1] == "TYPE")
         elif token.type == "RPAR":
             constructors.pop()
-            if not constructors and at + 1 < len(value):
+            if not constructors and index + 1 < len(value):
                 return False
         elif token.type == "COMMA":
             if not constructors[-1]:
                 return False
         elif token.type == "TYPE":
-            if not _CONSTRUCTOR.fullmatch(token.text) or types[at + 1] != "LPAR":
+            if not _CONSTRUCTOR.fullmatch(token.text) or types[index + 1] != "LPAR":
                 return False
         elif token.type == "NAME":
             if token.text not in constants:

@@ -1,10 +1,10 @@
-"""The preprocessor of GLSL (GLSL 4.60, section 3.3; ARB_shading_language_include): directives and macros → words.
+"""The preprocessor of GLSL (GLSL 4.60, section 3.3; ARB_shading_language_include): text → tokens.
 
-The code between directives is split into words once, and macros are expanded only where it names one. What is switched
-off is not looked at.
+The code between directives is split into tokens once, and macros are expanded only where it names one. Code in inactive
+branches is not read.
 
-The library for this would be pcpp, C's preprocessor in Python. On 85 kB of GLSL with a hundred macros it takes four
-times as long (0.5 MB/s), and a word out of a macro has the line of the use, but its position in the definition.
+The alternative would be the library pcpp, C's preprocessor in Python. On 85 kB of GLSL with a hundred macros it takes
+four times as long (0.5 MB/s), and a token from a macro has the line of its use, but the column of the definition.
 """
 
 from __future__ import annotations
@@ -26,49 +26,48 @@ MAX_INCLUDED = 50
 """How deeply files may include files."""
 
 MAX_INCLUDES = 5000
-"""How many files may be included in all, each as often as it is."""
+"""How many includes a text may have, with those of the files that it includes."""
 
 MAX_CHARACTERS = 20_000_000
-"""How long a text may be with all that it includes."""
+"""How long a text may be with all files that it includes."""
 
 MAX_CONDITIONALS = 200
 """How deeply #if may nest."""
 
 Find = Callable[[str, Span, bool], tuple[str, str]]
-"""Finds an included file: by its name, the place of the name, and whether it stands in `<>`, its name in messages and
-its text. Raises SssgenError where there is none."""
+"""Finds an included file: (its name, the place of the name, whether it is in `<>`) → its name in messages and its text.
+Raises SssgenError where there is none."""
 
 
 class Preprocessed(NamedTuple):
-    """What is left of a text, with all that it includes, for the parser."""
+    """A text and all that it includes after preprocessing, for the parser."""
 
     tokens: list[Token]
     comments: dict[str, list[Comment]]
-    """Of each file, by its name in messages, the comments that are not switched off, in their order."""
+    """For each file, by its name in messages, its comments outside of inactive branches, in order."""
     version: int
-    """What #version says, else 0."""
+    """The number of #version, or 0."""
     profile: str
-    """`core`, `compatibility` or `es`; what #version 100 means is `es`."""
+    """`core`, `compatibility` or `es` (also for #version 100), or ''."""
     texts: dict[str, str]
-    """Every file's text as it was read."""
+    """The text of every file."""
     extensions: list[str]
-    """What #extension says: `GL_OES_standard_derivatives : enable`."""
+    """The arguments of each #extension: `GL_OES_standard_derivatives : enable`."""
     macros: list[str]
     """The macros that became constants."""
     pragmas: list[str]
     expanded: frozenset[str]
-    """The macros that are text, as far as they are defined at the end."""
+    """The macros that were expanded, if they are still defined at the end."""
 
 
 def preprocess(text: str, file: str, find: Find, defines: Mapping[str, str] | None = None) -> Preprocessed:
-    """Carries out the directives of a text and of all that it includes, and expands its macros.
+    """Executes the directives of a text and of all that it includes, and expands its macros.
 
-    `defines` are macros without arguments, defined before the first line. A word keeps the place where it is written;
-    what comes out of a macro has the place of the macro's name in the code that uses it, but arguments keep their own.
-    `#line` is accepted, and changes no place: messages show the files that there are. Macros that are but names of
-    numbers become constants (kept_constants.py).
+    `defines` are macros without parameters, defined before the first line. A token has the place where it is written; a
+    token from a macro's body has the place of the macro's use. `#line` is accepted and ignored: messages show the real
+    files. Macros that are names of numbers become constants (kept_constants.py).
 
-    Raises SssgenError with every error found; what grows without end is refused (the limits here and in macros.py).
+    Raises SssgenError with every error found, also where a limit is exceeded (those here and in macros.py).
     """
     barred: frozenset[str] = frozenset()
     for keep in (True, True, False):
@@ -77,11 +76,11 @@ def preprocess(text: str, file: str, find: Find, defines: Mapping[str, str] | No
         run.finish()
         if run.constants is None:
             break
-        names = run.constants.in_use(run.tokens) if run.constants.words else []
+        names = run.constants.in_use(run.tokens) if run.constants.values else []
         conflicts = run.expander.joined | run.constants.conflicts(names, run.tokens)
         if not conflicts:
             return run.result(run.constants.declared(names, run.tokens), names)
-        barred |= conflicts  # text wherever they stand; once more, as what is made of them is text then, too
+        barred |= conflicts  # they are expanded everywhere; repeat, as macros that use them are then expanded, too
     return run.result(run.tokens, [])
 
 
@@ -112,13 +111,13 @@ class _Run:
         self.chain: list[SourceFile] = []
         self.once: set[str] = set()
         self.included = self.characters = 0
-        self.depth = self.depth_at = 0  # how many brackets are open, and how many words were counted for that
+        self.depth = self.depth_at = 0  # how many brackets are open, and in how many tokens they were counted
         self.reporters: dict[str, Reporter] = {}
         self.expander.macros |= builtin_macros(0, "")
         for name, value in defines.items():
             shown = f"the definition of {name}"
-            words = self.split(self.directive_lexer, f"{name} {value}", shown, 1, 1)
-            self.define(words, Span(shown, 1, 1, 1, 1), keep=False)
+            tokens = self.split(self.directive_lexer, f"{name} {value}", shown, 1, 1)
+            self.define(tokens, Span(shown, 1, 1, 1, 1), keep=False)
 
     # Errors
 
@@ -129,15 +128,15 @@ class _Run:
         reporter.error(span, message, hint)
 
     def check(self) -> None:
-        """Raises what was noted, in every file."""
-        found: list[Diagnostic] = []
+        """Raises the errors of every file."""
+        diagnostics: list[Diagnostic] = []
         for reporter in self.reporters.values():
-            found += sorted(reporter.diagnostics, key=lambda one: one.span[1:3])
-        if found:
-            raise SssgenError(found)
+            diagnostics += sorted(reporter.diagnostics, key=lambda diagnostic: diagnostic.span[1:3])
+        if diagnostics:
+            raise SssgenError(diagnostics)
 
     def stop(self, span: Span, message: str, hint: str = "") -> None:
-        """An error behind which there is no going on."""
+        """Reports an error after which reading cannot continue."""
         self.error(span, message, hint)
         self.check()
 
@@ -151,20 +150,20 @@ class _Run:
         self.texts[shown] = text
         self.characters += len(text)
         self.chain.append(file)
-        done = 0
+        start = 0
         for match in directives(text):
             if file.live:
-                self.code(file, done, match.start("mark"))
+                self.code(file, start, match.start("mark"))
             self.directive(file, match)
-            done = match.end()
+            start = match.end()
         if file.live:
-            self.code(file, done, len(text))
+            self.code(file, start, len(text))
         for branch in file.branches:
             self.error(branch.place, "this condition is not closed", "an #endif is missing")
         self.chain.pop()
 
     def code(self, file: SourceFile, start: int, end: int) -> None:
-        """Takes in what stands between directives."""
+        """Reads the code between directives."""
         if start == end:
             return
         line, column = file.place(start, start)[1:3]
@@ -172,7 +171,7 @@ class _Run:
         try:
             self.tokens += self.expander.expand(tokens)
         except TooMuch as fault:
-            self.stop(*fault.notes)
+            self.stop(*fault.details)
         if len(self.tokens) > MAX_TOKENS:
             self.stop(tokens[-1].span, f"more than {MAX_TOKENS} tokens, with all included files")
 
@@ -183,7 +182,7 @@ class _Run:
         return tokens
 
     def finish(self) -> None:
-        """Takes in what was held back, and raises what was noted."""
+        """Ends the token list, and raises the errors."""
         self.tokens += self.expander.rest()
         self.check()
 
@@ -199,7 +198,7 @@ class _Run:
     # Directives
 
     def directive(self, file: SourceFile, match: re.Match[str]) -> None:
-        """Carries out a directive; of those that are switched off, what opens and closes conditions."""
+        """Executes a directive; in inactive branches only those that open and close conditions."""
         name, rest = match["name"], match["rest"]
         place = file.place(match.start("mark"), match.end("name"))
         if name in ("if", "ifdef", "ifndef", "elif", "else", "endif"):
@@ -207,11 +206,11 @@ class _Run:
         elif not file.live:
             return
         elif name == "define":
-            self.define(self.words(file, rest, place), place, keep=True)
+            self.define(self.tokens_of(file, rest, place), place, keep=True)
         elif name == "undef":
-            word = self.one_name(self.words(file, rest, place), place, name)
-            if word is not None:
-                self.undefine(word.text)
+            macro = self.macro_name(self.tokens_of(file, rest, place), place, name)
+            if macro is not None:
+                self.undefine(macro.text)
         elif name == "include":
             self.include(file, rest, place, match.start("rest"))
         elif name == "error":
@@ -227,21 +226,21 @@ class _Run:
         elif name not in ("", "line") or (not name and plain(rest)):
             self.error(place, f"there is no directive '#{name}'", did_you_mean(name, _KNOWN))
 
-    def words(self, file: SourceFile, rest: str, place: Span) -> list[Token]:
+    def tokens_of(self, file: SourceFile, rest: str, place: Span) -> list[Token]:
         return self.split(self.directive_lexer, rest, file.shown, place.end_line, place.end_column)
 
-    def one_name(self, words: list[Token], place: Span, directive: str) -> Token | None:
-        """The only word of a directive, which names a macro."""
-        if words and words[0].text.isidentifier():
-            if len(words) > 1:
+    def macro_name(self, tokens: list[Token], place: Span, directive: str) -> Token | None:
+        """The macro's name that must be the only argument of a directive."""
+        if tokens and tokens[0].text.isidentifier():
+            if len(tokens) > 1:
                 hint = "to test several, write #if defined(…) && …" if directive != "undef" else ""
-                self.error(words[1].span, f"'{words[1].text}' is not expected here", hint)
-            return words[0]
-        self.error(words[0].span if words else place, f"#{directive} needs the name of a macro")
+                self.error(tokens[1].span, f"'{tokens[1].text}' is not expected here", hint)
+            return tokens[0]
+        self.error(tokens[0].span if tokens else place, f"#{directive} needs the name of a macro")
         return None
 
     def condition(self, file: SourceFile, name: str, rest: str, place: Span) -> None:
-        """#if and what belongs to it."""
+        """Executes #if, #ifdef, #ifndef, #elif, #else or #endif."""
         branches = file.branches
         if name in ("if", "ifdef", "ifndef"):
             if len(branches) >= MAX_CONDITIONALS:
@@ -265,20 +264,20 @@ class _Run:
             branch.live = branch.taken = name == "else" or self.holds(file, "if", rest, place)
 
     def holds(self, file: SourceFile, name: str, rest: str, place: Span) -> bool:
-        """Whether a condition that is asked for holds."""
-        words = self.words(file, rest, place)
+        """Whether the condition of a directive holds."""
+        tokens = self.tokens_of(file, rest, place)
         if name != "if":
-            word = self.one_name(words, place, name)
-            return word is not None and (word.text in self.expander.macros) == (name == "ifdef")
-        if not words:
+            macro = self.macro_name(tokens, place, name)
+            return macro is not None and (macro.text in self.expander.macros) == (name == "ifdef")
+        if not tokens:
             self.error(place, "a condition is missing here")
             return False
         try:
-            return evaluate(self.expander.condition(words), self.expander.macros.__contains__, place) != 0
+            return evaluate(self.expander.condition(tokens), self.expander.macros.__contains__, place) != 0
         except TooMuch as fault:
-            self.stop(*fault.notes)
+            self.stop(*fault.details)
         except Fault as fault:
-            self.error(*fault.notes)
+            self.error(*fault.details)
         return False
 
     def include(self, file: SourceFile, rest: str, place: Span, start: int) -> None:
@@ -292,13 +291,13 @@ class _Run:
         try:
             shown, text = self.find(match[group], where, angled)
         except SssgenError as error:
-            for found in error.diagnostics:
-                self.error(found.span, found.message, found.hint)
+            for diagnostic in error.diagnostics:
+                self.error(diagnostic.span, diagnostic.message, diagnostic.hint)
             return
         if shown in self.once:
             return
         self.included += 1
-        chain = [one.shown for one in self.chain]
+        chain = [including.shown for including in self.chain]
         if len(chain) > MAX_INCLUDED:
             message = f"files include files more than {MAX_INCLUDED} deep"
             if shown in chain:
@@ -309,10 +308,12 @@ class _Run:
             self.stop(where, "too much is included", "write #pragma once in a file to include it only once")
         self.read(text, shown)
 
-    def set_version(self, words: str, place: Span) -> None:
-        match = re.fullmatch(r"(\d{3})(?: (core|compatibility|es))?", words)
+    def set_version(self, arguments: str, place: Span) -> None:
+        match = re.fullmatch(r"(\d{3})(?: (core|compatibility|es))?", arguments)
         if match is None:
-            self.error(place, f"'{words}' is not a version", "write for example #version 330 core or #version 300 es")
+            self.error(
+                place, f"'{arguments}' is not a version", "write #version 330 core or #version 300 es"
+            )
             return
         if self.version not in (0, int(match[1])):
             self.error(place, f"the version is already {self.version}")
@@ -324,11 +325,11 @@ class _Run:
 
     # Macros
 
-    def define(self, words: list[Token], place: Span, keep: bool) -> None:
+    def define(self, tokens: list[Token], place: Span, keep: bool) -> None:
         try:
-            macro = definition(words, place)
+            macro = definition(tokens, place)
         except Fault as fault:
-            self.error(*fault.notes)
+            self.error(*fault.details)
             return
         macros, constants = self.expander.macros, self.constants
         if macro.name in macros and macros[macro.name].same_as(macro):
@@ -336,7 +337,7 @@ class _Run:
         self.undefine(macro.name)
         macros[macro.name] = macro
         if keep and constants is not None and self.between_declarations():
-            constants.add(macro, words[0], self.expander.kept, len(self.tokens))
+            constants.add(macro, tokens[0], self.expander.kept, len(self.tokens))
 
     def undefine(self, name: str) -> None:
         if self.constants is not None:
@@ -344,7 +345,7 @@ class _Run:
         self.expander.macros.pop(name, None)
 
     def between_declarations(self) -> bool:
-        """Whether a declaration may stand here."""
+        """Whether a declaration may be inserted here."""
         for token in self.tokens[self.depth_at :]:
             if token.type in ("LBRACE", "LPAR", "LSQB"):
                 self.depth += 1
@@ -355,10 +356,10 @@ class _Run:
         return self.depth == 0 and ends and self.expander.held is None
 
     def join(self, text: str, place: Span) -> Token:
-        """The word that `##` makes of two."""
+        """The token that `##` makes of two."""
         faults: list[str] = []
-        words, _ = self.lexer.scan(text, place.file, 1, 1, lambda span, message, hint: faults.append(message))
-        if len(words) == 1 and not faults and words[0].text == text:
-            return Token(words[0].type, text, place)
+        tokens, _ = self.lexer.scan(text, place.file, 1, 1, lambda span, message, hint: faults.append(message))
+        if len(tokens) == 1 and not faults and tokens[0].text == text:
+            return Token(tokens[0].type, text, place)
         self.error(place, f"'##' makes '{text}' here, which is not a token")
         return Token("NAME", text, place)
