@@ -311,9 +311,7 @@ class _Run:
     def set_version(self, arguments: str, place: Span) -> None:
         match = re.fullmatch(r"(\d{3})(?: (core|compatibility|es))?", arguments)
         if match is None:
-            self.error(
-                place, f"'{arguments}' is not a version", "write #version 330 core or #version 300 es"
-            )
+            self.error(place, f"'{arguments}' is not a version", "write #version 330 core or #version 300 es")
             return
         if self.version not in (0, int(match[1])):
             self.error(place, f"the version is already {self.version}")
