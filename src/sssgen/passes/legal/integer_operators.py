@@ -7,13 +7,11 @@ the low five bits count. What is plain to see (a constant, a loop's counter) is 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container
+from collections.abc import Container
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.types import BOOL, Scalar, Type, Vector, components, kind_of, vector_of
-
-Keep = Callable[[ir.Expr, str], ir.Expr]
-"""Gives what is cheap to repeat in the place of an expression: itself, or a variable of about this name."""
+from sssgen.passes.legal.part_stores import Keep
 
 
 def counts_up(loop: ir.For) -> str:

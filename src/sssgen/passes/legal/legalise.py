@@ -1,41 +1,27 @@
-"""Rewrites a module until the target can say every node; printing is then a table and a few methods.
+"""Rewrites a module until the target can express every node; printing is then a table and a few methods.
 
-Last of the passes that change meaning-bearing structure: the others see one language-neutral form. What a target can
-say is its descriptor's `[capabilities]`; which builtins it has is the intrinsic table's. Knows no target by name.
+Last of the passes that change structure: the others see one language-neutral form. What a target can express is its
+descriptor's `[capabilities]`; which builtins it has is the intrinsic table's. Knows no target by its name.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from operator import is_
 
 from sssgen.ir import nodes as ir
 from sssgen.ir import signatures
 from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.transform import rewrite
-from sssgen.ir.types import (
-    BOOL,
-    FLOAT,
-    INT,
-    UINT,
-    Array,
-    Matrix,
-    Scalar,
-    Struct,
-    Type,
-    Vector,
-    components,
-    kind_of,
-    vector_of,
-)
-from sssgen.ir.walk import operands, subexpressions, with_operands
+from sssgen.ir.transform import Transformer, rewrite
+from sssgen.ir.types import BOOL, FLOAT, UINT, Array, Matrix, Scalar, Struct, Type, Vector, components, kind_of
+from sssgen.ir.walk import subexpressions
 from sssgen.passes import uniform_blocks as blocks
 from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.legal.integer_operators import counts_up, with_result
-from sssgen.passes.legal.matrix_columns import by_whole_columns, needs_columns
+from sssgen.passes.legal.matrices import by_whole_columns, matrix_from, needs_columns
+from sssgen.passes.legal.operators import is_integer_division, legal_operator, widened
 from sssgen.passes.legal.part_stores import is_dynamic_store, is_swizzle_store, parts_of, whole_store
 from sssgen.passes.lift_calls import Calls, awkward, lift
-from sssgen.passes.scopes import assigned, declared, outs_of
+from sssgen.passes.scopes import assigned, declared, fresh, outs_of
 from sssgen.passes.substitute import inlined, is_cheap
 from sssgen.passes.unsupported import Unsupported
 from sssgen.passes.variable_effects import effects
@@ -44,21 +30,20 @@ Polyfill = Callable[[str, Sequence[Type]], ir.Module]
 """Gives the module whose last function stands in for a builtin with these argument types."""
 
 
-_EVERYWHERE = frozenset(("+", "-", "*", "<", ">", "<=", ">=", "&&", "||"))
-"""The operators that mean the same in every language, but on matrices."""
-
-
 class _OutOfOrder(Exception):
-    """Something would be computed before a call that it stands behind."""
+    """Something would be computed before a call that comes before it in the source."""
 
 
 def legalise(module: ir.Module, dialect: str, capabilities: Capabilities, polyfill: Polyfill) -> ir.Module:
-    """The module as the target can say it. Raises Unsupported."""
+    """The module as the target can express it. Raises Unsupported."""
     return _Legaliser(module, dialect, capabilities, polyfill).run()
 
 
-class _Legaliser:
+class _Legaliser(Transformer):
+    """Rewrites functions: what must be computed before a statement is appended to `out` before it."""
+
     def __init__(self, module: ir.Module, dialect: str, capabilities: Capabilities, polyfill: Polyfill) -> None:
+        super().__init__()
         self.module = module
         self.dialect = dialect
         self.language = dialect.partition("-")[0]
@@ -68,11 +53,11 @@ class _Legaliser:
         self.helpers: dict[str, ir.Function] = {}
         self.uniforms = {uniform.name for uniform in module.uniforms}
         self.counters: list[str] = []
-        """The counters of the loops around that are never negative."""
+        """The counters of the enclosing loops that are never negative; '' for a loop without one."""
         self.names: set[str] = set()
-        """Those of the function at hand, once one is to be chosen."""
-        self.at_hand: ir.Function | None = None
-        self.prelude: list[ir.Stmt] | None = None
+        """All names of the current function, once a new one is chosen."""
+        self.current: ir.Function | None = None
+        """None in the value of a constant or variable, before which nothing can be computed."""
         self.texts: dict[tuple[str, tuple[Type, ...]], str] = {}
         self.shared = effects(module)
         self.calls = Calls(self.functions, self.shared)
@@ -83,14 +68,15 @@ class _Legaliser:
         """The statements, by id, before which nothing of theirs may be computed."""
 
     def run(self) -> ir.Module:
-        functions, refused = list[ir.Function](), list[Unsupported]()
+        functions, errors = list[ir.Function](), list[Unsupported]()
         for function in self.module.functions:
             try:
                 functions.append(self.function(function))
             except Unsupported as error:
-                refused.append(error)
-        if refused:
-            raise Unsupported(refused[0].message, refused[0].span, refused[1:])
+                errors.append(error)
+        if errors:
+            raise Unsupported(errors[0].message, errors[0].span, errors[1:])
+        self.current = None
         constants = tuple(constant._replace(value=self.initial(constant.value)) for constant in self.module.constants)
         variables = tuple([self.variable(variable) for variable in self.module.variables])
         functions = [*self.helpers.values(), *functions]
@@ -113,20 +99,19 @@ class _Legaliser:
         if stmts and (not self.capabilities.operand_order or awkward(function, Calls(self.functions))):
             return self.lifted(lift(function, self.calls))
         self.ordered = {id(stmt) for stmt in stmts}
-        prelude, counters = self.prelude, list(self.counters)
+        out, counters = self.out, list(self.counters)
         try:
             return self.lifted(function)
         except _OutOfOrder:
-            self.ordered, self.prelude, self.counters = set(), prelude, counters
+            self.ordered, self.out, self.counters = set(), out, counters
             return self.lifted(lift(function, self.calls))
 
     def lifted(self, function: ir.Function) -> ir.Function:
-        """A function whose writing calls stand where they can."""
-        self.names, self.at_hand = set(), function
+        """A function whose writing calls are where the target can have them."""
+        self.names, self.current = set(), function
         if not self.capabilities.mutable_parameters:
             function = self.copy_parameters(function)
-        body = self.block(function.body or ())
-        return function if body is function.body else function._replace(body=body)
+        return super().function(function)
 
     def copy_parameters(self, function: ir.Function) -> ir.Function:
         """Gives each `in` parameter that is assigned a variable of its own name; the parameter is renamed."""
@@ -136,85 +121,63 @@ class _Legaliser:
         params, copies = [], []
         for param in function.params:
             if param.direction == "in" and param.name in written:
-                given = self.fresh(f"{param.name}_in")
-                copies.append(ir.Declare(param.name, param.type, ir.Local(param.type, given, param.span), param.span))
-                param = param._replace(name=given)
+                name = self.new_name(f"{param.name}_in")
+                copies.append(ir.Declare(param.name, param.type, ir.Local(param.type, name, param.span), param.span))
+                param = param._replace(name=name)
             params.append(param)
         return function._replace(params=tuple(params), body=(*copies, *(function.body or ())))
 
-    def fresh(self, name: str) -> str:
+    def new_name(self, name: str) -> str:
         """A name that the function does not use yet."""
-        assert self.at_hand is not None
-        self.names = self.names or set(declared(self.at_hand))
-        free, count = name, 2
-        while free in self.names:
-            free, count = f"{name}_{count}", count + 1
-        self.names.add(free)
-        return free
+        assert self.current is not None
+        self.names = self.names or set(declared(self.current))
+        name = fresh(name, self.names)
+        self.names.add(name)
+        return name
 
     # Statements
 
-    def block(self, block: ir.Block) -> ir.Block:
-        result: list[ir.Stmt] = []
-        for stmt in block:
-            result.extend(self.statement(stmt))
-        return block if len(result) == len(block) and all(map(is_, result, block)) else tuple(result)
-
-    def statement(self, stmt: ir.Stmt) -> list[ir.Stmt]:
-        """A statement, after what it needs to have computed before."""
-        outer, self.prelude = self.prelude, []
-        new: ir.Stmt | None = stmt
-        if isinstance(stmt, ir.Declare):
-            new = self.declare(stmt, stmt.value) if stmt.value is not None else stmt
-        elif isinstance(stmt, ir.Assign):
-            new = self.assign(stmt)
-        elif isinstance(stmt, ir.Return):
-            value = self.leaving(stmt.value, stmt.span) if stmt.value is not None else None
-            new = stmt if value is stmt.value else ir.Return(value, stmt.span)
-        elif isinstance(stmt, ir.Evaluate):
-            new = ir.Evaluate(self.expr(stmt.call), stmt.span)
-        elif isinstance(stmt, ir.If):
-            new = ir.If(self.expr(stmt.condition), self.inner(stmt.then), self.inner(stmt.otherwise), stmt.span)
-        elif isinstance(stmt, ir.For | ir.While):
-            new = self.loop(stmt)
-        result = self.prelude if new is None else [*self.prelude, new]
-        if len(result) > 1 and id(stmt) in self.ordered:
+    def statement(self, stmt: ir.Stmt) -> ir.Stmt | None:
+        start = len(self.out)
+        new = super().statement(stmt)
+        if id(stmt) in self.ordered and len(self.out) - start + (new is not None) > 1:
             raise _OutOfOrder
-        self.prelude = outer
-        return result
+        return new
 
-    def declare(self, declare: ir.Declare, value: ir.Expr) -> ir.Stmt | None:
-        place = ir.Local(declare.type, declare.name, declare.span)
+    def declare(self, stmt: ir.Declare) -> ir.Stmt | None:
+        value = stmt.value
+        if value is None:
+            return stmt
+        place = ir.Local(stmt.type, stmt.name, stmt.span)
         if isinstance(value, ir.Select) and not self.chooses(value):
             value = self.select(value, place)
             if value is place:
-                assert self.prelude is not None
-                self.prelude.insert(-1, declare._replace(value=None))
+                self.out.insert(-1, stmt._replace(value=None))
                 return None
-            return declare._replace(value=value)
+            return stmt._replace(value=value)
         begin = self.initial(value)
-        return declare if begin is value else ir.Declare(declare.name, declare.type, begin, declare.span)
+        return stmt if begin is value else ir.Declare(stmt.name, stmt.type, begin, stmt.span)
 
     def initial(self, value: ir.Expr) -> ir.Expr:
-        """What a variable begins with: there the parts of an array or struct can be listed in every language."""
+        """The first value of a variable: there every language can list the parts of an array or struct."""
         if type(value) is ir.Construct and isinstance(value.type, (Array, Struct)):
             return value._replace(args=tuple([self.initial(arg) for arg in value.args]))
-        return self.expr(value)
+        return self.expression(value)
 
-    def assign(self, assign: ir.Assign) -> ir.Stmt | None:
-        op, span = assign.op, assign.span
+    def assign(self, stmt: ir.Assign) -> ir.Stmt | None:
+        op, span = stmt.op, stmt.span
         if (
-            isinstance(assign.value, ir.Select)
-            and isinstance(assign.target, ir.Local)
-            and not (op or self.chooses(assign.value))
+            isinstance(stmt.value, ir.Select)
+            and isinstance(stmt.target, ir.Local)
+            and not (op or self.chooses(stmt.value))
         ):
-            value = self.select(assign.value, assign.target)
-            return None if value is assign.target else assign._replace(value=value)
-        place, value = self.place(assign.target), self.expr(assign.value)
+            value = self.select(stmt.value, stmt.target)
+            return None if value is stmt.target else stmt._replace(value=value)
+        place, value = self.place(stmt.target), self.expression(stmt.value)
         if type(place) is not ir.Local and any(map(self.refused, parts_of(place))):
             if op:
                 value = self.binary(ir.Binary(place.type, op, place, value, span))
-            place, value = whole_store(place, value, self.refused, self.keep_cheap)
+            place, value = whole_store(place, value, self.refused, self.keep_expensive)
             return ir.Assign(place, "", value, span)
         if op:
             result = self.binary(ir.Binary(place.type, op, place, value, span))
@@ -222,8 +185,8 @@ class _Legaliser:
             if linear or not (isinstance(result, ir.Binary) and result.op == op and result.left is place):
                 return ir.Assign(place, "", result, span)
             value = result.right
-        same = place is assign.target and value is assign.value
-        return assign if same else ir.Assign(place, op, value, span)
+        same = place is stmt.target and value is stmt.value
+        return stmt if same else ir.Assign(place, op, value, span)
 
     def refused(self, part: ir.Expr) -> bool:
         """Whether the target has no store into such a part."""
@@ -231,31 +194,36 @@ class _Legaliser:
             is_dynamic_store(part) and not self.capabilities.dynamic_stores
         )
 
-    def leaving(self, value: ir.Expr, span: ir.Span) -> ir.Expr:
-        """What a function returns at last; of a choice that needs an if, the first arm leaves before."""
+    def leave(self, stmt: ir.Return) -> ir.Stmt | None:
+        value = self.returned(stmt.value, stmt.span) if stmt.value is not None else None
+        return stmt if value is stmt.value else ir.Return(value, stmt.span)
+
+    def returned(self, value: ir.Expr, span: ir.Span) -> ir.Expr:
+        """What a function returns at its end; the first arm of a choice that needs an if returns before."""
         if not isinstance(value, ir.Select) or not self.branches(value):
-            return self.expr(value)
-        assert self.prelude is not None
-        condition, then = self.expr(value.condition), self.inner((ir.Return(value.yes, value.yes.span),))
-        self.prelude.append(ir.If(condition, then, (), span))
-        return self.leaving(value.no, span)
+            return self.expression(value)
+        condition, then = self.expression(value.condition), self.inner((ir.Return(value.yes, value.yes.span),))
+        self.out.append(ir.If(condition, then, (), span))
+        return self.returned(value.no, span)
 
-    def keep(self, value: ir.Expr, name: str) -> ir.Expr:
-        """Computes a value before the statement, into a local."""
-        if self.prelude is None:
-            raise Unsupported("this cannot be said in a constant or a loop's condition for this target", value.span)
-        name = self.fresh(name)
-        self.prelude.append(ir.Declare(name, value.type, value, value.span))
-        return ir.Local(value.type, name, value.span)
+    def for_loop(self, stmt: ir.For) -> ir.Stmt | None:
+        condition, body = self.loop(stmt)
+        init = self.header(stmt.init)
+        start = len(self.out)
+        step = self.header(stmt.step)
+        if len(self.out) > start:
+            raise Unsupported("this loop's step cannot be expressed for this target", stmt.span)
+        return ir.For(init, condition, step, body, stmt.span)
 
-    def keep_cheap(self, value: ir.Expr, name: str) -> ir.Expr:
-        return value if is_cheap(value) else self.keep(value, name)
+    def while_loop(self, stmt: ir.While) -> ir.Stmt | None:
+        condition, body = self.loop(stmt)
+        assert condition is not None
+        return ir.While(condition, body, stmt.span)
 
-    def loop(self, loop: ir.For | ir.While) -> ir.Stmt:
-        """A loop; where its condition needs statements, the body begins with them and leaves by itself."""
+    def loop(self, loop: ir.For | ir.While) -> tuple[ir.Expr | None, ir.Block]:
+        """Condition and body; where the condition needs statements, the body begins with them and may break then."""
         condition, before = self.apart(loop.condition) if loop.condition is not None else (None, [])
-        counter = counts_up(loop) if isinstance(loop, ir.For) else ""
-        self.counters.append(counter)
+        self.counters.append(counts_up(loop) if isinstance(loop, ir.For) else "")
         body = self.inner(loop.body)
         self.counters.pop()
         if before and id(loop) in self.ordered:
@@ -264,69 +232,64 @@ class _Legaliser:
             stop = ir.Unary(BOOL, "!", condition, condition.span)
             body = (*before, ir.If(stop, (ir.Break(loop.span),), (), loop.span), *body)
             condition = ir.Literal(BOOL, True, condition.span)
-        if isinstance(loop, ir.While):
-            assert condition is not None
-            return ir.While(condition, body, loop.span)
-        init = self.statement(loop.init) if loop.init is not None else []
-        step = self.statement(loop.step) if loop.step is not None else []
-        assert self.prelude is not None
-        self.prelude.extend(init[:-1])
-        if len(step) > 1:
-            raise Unsupported("this loop's step cannot be said for this target", loop.span)
-        return ir.For(init[-1] if init else None, condition, step[0] if step else None, body, loop.span)
+        return condition, body
 
-    def inner(self, block: ir.Block) -> ir.Block:
-        outer, self.prelude = self.prelude, []
-        result = self.block(block)
-        self.prelude = outer
-        return result
+    # What is computed before a statement
+
+    def keep(self, value: ir.Expr, name: str) -> ir.Expr:
+        """Computes a value before the statement, into a variable."""
+        if self.current is None:
+            raise Unsupported("this cannot be expressed in a constant for this target", value.span)
+        name = self.new_name(name)
+        self.out.append(ir.Declare(name, value.type, value, value.span))
+        return ir.Local(value.type, name, value.span)
+
+    def keep_expensive(self, value: ir.Expr, name: str) -> ir.Expr:
+        return value if is_cheap(value) else self.keep(value, name)
 
     def apart(self, expr: ir.Expr) -> tuple[ir.Expr, list[ir.Stmt]]:
-        """An expression, and what is to be computed before it, not yet said."""
-        outer, self.prelude = self.prelude, []
-        new = self.expr(expr)
-        before, self.prelude = self.prelude, outer
+        """An expression, and the statements to be executed before it, which are not in `out`."""
+        outer, self.out = self.out, []
+        new = self.expression(expr)
+        before, self.out = self.out, outer
         return new, before
 
     # Expressions
 
-    def expr(self, expr: ir.Expr) -> ir.Expr:
+    def expression(self, expr: ir.Expr) -> ir.Expr:
         kind = type(expr)
         if kind is ir.Local or kind is ir.Literal:
             return expr
         if isinstance(expr, ir.Binary):
-            left, right = self.expr(expr.left), self.expr(expr.right)
+            left, right = self.expression(expr.left), self.expression(expr.right)
             same = left is expr.left and right is expr.right
             return self.binary(expr if same else ir.Binary(expr.type, expr.op, left, right, expr.span))
-        if kind is ir.Select and not self.chooses(expr):  # type: ignore[arg-type]  # narrowed by its exact class
-            return self.select(expr)  # type: ignore[arg-type]  # the same
+        if isinstance(expr, ir.Select) and not self.chooses(expr):
+            return self.select(expr)
         if isinstance(expr, ir.Index) and isinstance(expr.value, ir.Global) and expr.value.name in self.uniforms:
-            return blocks.element(expr._replace(index=self.expr(expr.index)), self.capabilities)
-        old = operands(expr)
-        new = tuple([self.expr(operand) for operand in old])
-        return self.node(expr if all(map(is_, old, new)) else with_operands(expr, new))
+            return blocks.element(expr._replace(index=self.expression(expr.index)), self.capabilities)
+        new = super().expression(expr)
+        if isinstance(new, ir.Intrinsic):
+            return self.intrinsic(new)
+        return self.construct(new) if isinstance(new, ir.Construct) else self.node(new)
 
     def place(self, place: ir.Expr) -> ir.Expr:
         """What is assigned to: only its indices are expressions."""
         if isinstance(place, ir.Swizzle | ir.Member):
             return place._replace(value=self.place(place.value))
         if isinstance(place, ir.Index):
-            return place._replace(value=self.place(place.value), index=self.expr(place.index))
+            return place._replace(value=self.place(place.value), index=self.expression(place.index))
         return place
 
     def node(self, expr: ir.Expr) -> ir.Expr:
-        """One node, no operator of two, whose operands are legal already."""
-        if isinstance(expr, ir.Intrinsic):
-            return self.intrinsic(expr)
-        if isinstance(expr, ir.Construct):
-            return self.construct(expr)
+        """Another node whose operands are legal already."""
         if (
             isinstance(expr, ir.Unary)
             and expr.op == "-"
             and kind_of(expr.type) == "uint"
             and not self.capabilities.uint_minus
         ):
-            zero = _widened(ir.Literal(UINT, 0, expr.span), components(expr.type))
+            zero = widened(ir.Literal(UINT, 0, expr.span), components(expr.type))
             return ir.Binary(expr.type, "-", zero, expr.operand, expr.span)
         if (
             isinstance(expr, ir.Unary)
@@ -374,28 +337,28 @@ class _Legaliser:
         return known
 
     def call_polyfill(self, call: ir.Intrinsic, module: ir.Module) -> ir.Expr:
-        """The polyfill's expression itself where it is short and its arguments are cheap, else a call of it."""
+        """The polyfill's expression where it is short and its arguments are cheap, else a call of the polyfill."""
         function = module.functions[-1]
         placed = inlined(module, call.args, call.span)
         if placed is not None:
-            return self.expr(placed)
+            return self.expression(placed)
         for helper in module.functions:
             if helper.key not in self.helpers:
                 self.functions[helper.key] = helper
                 self.outs |= outs_of([helper])
                 self.writing = bool(self.shared or self.outs)
-                around = self.names, self.at_hand, self.prelude, self.ordered
+                outer = self.names, self.current, self.ordered
                 self.helpers[helper.key] = helper  # before its own body: it may be asked for again there
                 legal = self.function(helper)
                 del self.helpers[helper.key]
                 self.helpers[helper.key] = legal
-                self.names, self.at_hand, self.prelude, self.ordered = around
+                self.names, self.current, self.ordered = outer
         return ir.Call(call.type, function.key, call.args, call.span)
 
     def construct(self, construct: ir.Construct) -> ir.Expr:
         type_, args, span = construct.type, construct.args, construct.span
         if isinstance(type_, Matrix) and len(args) == 1 and not self.capabilities.matrix_conversions:
-            return self.matrix_from(type_, args[0], span)
+            return matrix_from(type_, args[0], self.keep_expensive, span)
         if isinstance(type_, Matrix) and needs_columns(type_, args) and not self.capabilities.mixed_columns:
             kept = [arg if is_cheap(arg) or isinstance(arg.type, Scalar) else self.keep(arg, "part") for arg in args]
             return by_whole_columns(type_, kept, span)
@@ -405,122 +368,32 @@ class _Legaliser:
             return self.keep(construct, "values")
         return construct
 
-    def matrix_from(self, type_: Matrix, value: ir.Expr, span: ir.Span) -> ir.Expr:
-        """A matrix from a scalar (its diagonal) or from another matrix, written out by columns."""
-        zero, one = ir.Literal(FLOAT, 0.0, span), ir.Literal(FLOAT, 1.0, span)
-        if isinstance(value.type, Scalar):
-            if not is_cheap(value):
-                value = self.keep(value, "diagonal")
-            cells = [value if row == column else zero for column in range(type_.size) for row in range(type_.size)]
-            return ir.Construct(type_, tuple(cells), span)
-        if not is_cheap(value):
-            value = self.keep(value, "matrix")
-        assert isinstance(value.type, Matrix)
-        old, new = value.type.size, type_.size
-        columns: list[ir.Expr] = []
-        for column in range(new):
-            index = ir.Index(Vector("float", old), value, ir.Literal(INT, column, span), span)
-            unit = tuple(one if row == column else zero for row in range(old, new))
-            if column >= old:
-                columns.append(ir.Construct(Vector("float", new), tuple([zero] * old) + unit, span))
-            elif new < old:
-                columns.append(ir.Swizzle(Vector("float", new), index, "xyzw"[:new], span))
-            else:
-                columns.append(ir.Construct(Vector("float", new), (index, *unit), span) if unit else index)
-        return ir.Construct(type_, tuple(columns), span)
-
     def binary(self, binary: ir.Binary) -> ir.Expr:
-        left, right, op, span = binary.left, binary.right, binary.op, binary.span
-        if op in _EVERYWHERE and type(left.type) is not Matrix and type(right.type) is not Matrix:
-            return binary
-        if op == "^^":
-            return ir.Binary(BOOL, "!=", left, right, span)
-        if op in ("==", "!=") and binary.type == BOOL and not isinstance(left.type, Scalar):
-            return self.equality(binary) if not self.capabilities.whole_equality else binary
-        whole = op in ("/", "%", "<<", ">>") and kind_of(left.type) != "float"
-        if whole and not self.capabilities.integer_division and self.prelude is not None:
-            return self.integer(binary)
-        if op in ("<<", ">>", "&", "|", "^") and not self.capabilities.mixed_bits:
-            size = max(components(left.type), components(right.type))
-            right = _amount(right, size) if op in ("<<", ">>") else _widened(right, size)
-            return binary._replace(left=_widened(left, size), right=right)
-        if not self.capabilities.matrix_scalar_arithmetic:
-            if isinstance(left.type, Matrix) and isinstance(right.type, Scalar) and op == "/":
-                inverse = ir.Binary(FLOAT, "/", ir.Literal(FLOAT, 1.0, span), right, span)
-                return ir.Binary(left.type, "*", left, inverse, span)
-            if isinstance(binary.type, Matrix) and op in "+-/" and (left.type != right.type or op == "/"):
-                return self.by_columns(binary)
-        return binary
-
-    def integer(self, binary: ir.Binary) -> ir.Expr:
-        """An integer division, remainder or shift; `equal` in it is to be said in the language's way."""
-        result = with_result(binary, self.keep_cheap, self.counters)
-        return rewrite(result, lambda part: self.intrinsic(part) if isinstance(part, ir.Intrinsic) else part)
-
-    def by_columns(self, binary: ir.Binary) -> ir.Expr:
-        """Componentwise matrix arithmetic, column by column."""
-        assert isinstance(binary.type, Matrix)
-        column = Vector("float", binary.type.size)
-        sides = [side if is_cheap(side) else self.keep(side, "matrix") for side in (binary.left, binary.right)]
-
-        def part(side: ir.Expr, index: int) -> ir.Expr:
-            place = ir.Literal(INT, index, side.span)
-            return ir.Index(column, side, place, side.span) if isinstance(side.type, Matrix) else side
-
-        columns = tuple(
-            ir.Binary(column, binary.op, part(sides[0], index), part(sides[1], index), binary.span)
-            for index in range(binary.type.size)
-        )
-        return ir.Construct(binary.type, columns, binary.span)
-
-    def equality(self, binary: ir.Binary) -> ir.Expr:
-        """`a == b` on vectors, matrices, arrays and structs as one bool."""
-        left, right, span = binary.left, binary.right, binary.span
-        type_ = left.type
-        if isinstance(type_, Vector):
-            parts = ir.Binary(Vector("bool", type_.size), binary.op, left, right, span)
-            return ir.Intrinsic(BOOL, "all" if binary.op == "==" else "any", (parts,), span)
-        left, right = (side if is_cheap(side) else self.keep(side, "compared") for side in (left, right))
-        pairs: list[tuple[ir.Expr, ir.Expr]]
-        if isinstance(type_, Struct):
-            pairs = [
-                (ir.Member(field.type, left, field.name, span), ir.Member(field.type, right, field.name, span))
-                for field in type_.fields
-            ]
-        elif isinstance(type_, Matrix | Array):
-            inner = Vector("float", type_.size) if isinstance(type_, Matrix) else type_.element
-            count = type_.size if isinstance(type_, Matrix) else type_.length
-            places = [ir.Literal(INT, index, span) for index in range(count)]
-            pairs = [(ir.Index(inner, left, place, span), ir.Index(inner, right, place, span)) for place in places]
-        else:
-            return binary
-        result: ir.Expr | None = None
-        for one, other in pairs:
-            equal = self.binary(ir.Binary(BOOL, binary.op, one, other, span))
-            joined = "&&" if binary.op == "==" else "||"
-            result = equal if result is None else ir.Binary(BOOL, joined, result, equal, span)
-        assert result is not None
-        return result
+        if is_integer_division(binary) and not self.capabilities.integer_division and self.current is not None:
+            result = with_result(binary, self.keep_expensive, self.counters)
+            # `equal` in it may have another form in the language
+            return rewrite(result, lambda part: self.intrinsic(part) if isinstance(part, ir.Intrinsic) else part)
+        return legal_operator(binary, self.capabilities, self.keep_expensive)
 
     def select(self, select: ir.Select, place: ir.Local | None = None) -> ir.Expr:
-        """A choice for a target whose own evaluates both arms: fine for plain values; else the arms go into an if.
+        """A choice for a target that evaluates both arms: as such for plain values; else the arms move into an if.
 
-        Then it is `place` that gets the value and is returned, or a new variable.
+        The if assigns to `place`, or to a new variable, which is returned.
         """
         span = select.span
-        condition = self.expr(select.condition)
-        if self.prelude is None:
-            return ir.Select(select.type, condition, self.expr(select.yes), self.expr(select.no), span)
+        condition = self.expression(select.condition)
+        if self.current is None:
+            return ir.Select(select.type, condition, self.expression(select.yes), self.expression(select.no), span)
         arms = (select.yes, select.no)
         if not self.branches(select):
             (yes, before_yes), (no, before_no) = self.apart(select.yes), self.apart(select.no)
             if not before_yes and not before_no:
                 return ir.Select(select.type, condition, yes, no, span)
         if place is None:
-            place = ir.Local(select.type, self.fresh("chosen"), span)
-            self.prelude.append(ir.Declare(place.name, select.type, None, span))
+            place = ir.Local(select.type, self.new_name("chosen"), span)
+            self.out.append(ir.Declare(place.name, select.type, None, span))
         then, otherwise = (self.inner((ir.Assign(place, "", arm, arm.span),)) for arm in arms)
-        self.prelude.append(ir.If(condition, then, otherwise, span))
+        self.out.append(ir.If(condition, then, otherwise, span))
         return place
 
     def chooses(self, select: ir.Select) -> bool:
@@ -529,27 +402,11 @@ class _Legaliser:
         return self.capabilities.ternary and (not whole or self.capabilities.struct_choices)
 
     def branches(self, select: ir.Select) -> bool:
-        """Whether a choice is for an if: its arms are not plain values, or one of them calls or samples."""
-        if self.chooses(select) or self.prelude is None:
+        """Whether a choice becomes an if: its arms are not plain values, or one of them calls or samples."""
+        if self.chooses(select) or self.current is None:
             return False
         plain = isinstance(select.type, Scalar | Vector)
         return not plain or any(_is_costly(part) for arm in (select.yes, select.no) for part in subexpressions(arm))
-
-
-def _amount(amount: ir.Expr, size: int) -> ir.Expr:
-    """By how much is shifted, as a uint or a vector of them."""
-    if isinstance(amount, ir.Literal):
-        amount = ir.Literal(UINT, amount.value, amount.span)
-    elif kind_of(amount.type) == "int":
-        amount = ir.Construct(vector_of("uint", components(amount.type)), (amount,), amount.span)
-    return _widened(amount, size)
-
-
-def _widened(value: ir.Expr, size: int) -> ir.Expr:
-    """A scalar as a vector of this size, if that is more than one."""
-    if components(value.type) == size:
-        return value
-    return ir.Construct(Vector(kind_of(value.type), size), (value,), value.span)
 
 
 def _is_costly(expr: ir.Expr) -> bool:

@@ -1,0 +1,86 @@
+"""Matrices column by column, for languages that construct or compute them in no other way. Used by `legalise`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from sssgen.ir import nodes as ir
+from sssgen.ir.spans import Span
+from sssgen.ir.types import FLOAT, INT, Matrix, Scalar, Vector, components, vector_of
+from sssgen.passes.legal.part_stores import Keep
+
+
+def matrix_from(type_: Matrix, value: ir.Expr, keep: Keep, span: Span) -> ir.Expr:
+    """A matrix from a scalar (its diagonal) or from another matrix, written out by columns."""
+    zero, one = ir.Literal(FLOAT, 0.0, span), ir.Literal(FLOAT, 1.0, span)
+    if isinstance(value.type, Scalar):
+        value = keep(value, "diagonal")
+        cells = [value if row == column else zero for column in range(type_.size) for row in range(type_.size)]
+        return ir.Construct(type_, tuple(cells), span)
+    value = keep(value, "matrix")
+    assert isinstance(value.type, Matrix)
+    old, new = value.type.size, type_.size
+    columns: list[ir.Expr] = []
+    for column in range(new):
+        index = ir.Index(Vector("float", old), value, ir.Literal(INT, column, span), span)
+        unit = tuple(one if row == column else zero for row in range(old, new))
+        if column >= old:
+            columns.append(ir.Construct(Vector("float", new), tuple([zero] * old) + unit, span))
+        elif new < old:
+            columns.append(ir.Swizzle(Vector("float", new), index, "xyzw"[:new], span))
+        else:
+            columns.append(ir.Construct(Vector("float", new), (index, *unit), span) if unit else index)
+    return ir.Construct(type_, tuple(columns), span)
+
+
+def by_columns(binary: ir.Binary, keep: Keep) -> ir.Expr:
+    """Componentwise matrix arithmetic, column by column."""
+    assert isinstance(binary.type, Matrix)
+    column = Vector("float", binary.type.size)
+    sides = [keep(side, "matrix") for side in (binary.left, binary.right)]
+
+    def part(side: ir.Expr, index: int) -> ir.Expr:
+        place = ir.Literal(INT, index, side.span)
+        return ir.Index(column, side, place, side.span) if isinstance(side.type, Matrix) else side
+
+    columns = tuple(
+        ir.Binary(column, binary.op, part(sides[0], index), part(sides[1], index), binary.span)
+        for index in range(binary.type.size)
+    )
+    return ir.Construct(binary.type, columns, binary.span)
+
+
+def needs_columns(type_: Matrix, args: Sequence[ir.Expr]) -> bool:
+    """Whether several arguments are neither numbers alone nor whole columns."""
+    sizes = {components(arg.type) for arg in args}
+    return len(args) > 1 and sizes not in ({1}, {type_.size})
+
+
+def by_whole_columns(type_: Matrix, args: Sequence[ir.Expr], span: Span) -> ir.Construct:
+    """The matrix from a vector for each column: `mat2(v, -v.y, v.x)` is `mat2(v, vec2(-v.y, v.x))`.
+
+    A vector in `args` that is part of two columns is read twice.
+    """
+    cells = [(arg, at) for arg in args for at in range(components(arg.type))]
+    size = type_.size
+    columns = [_column(cells[start : start + size], size, span) for start in range(0, size * size, size)]
+    return ir.Construct(type_, tuple(columns), span)
+
+
+def _column(cells: Sequence[tuple[ir.Expr, int]], size: int, span: Span) -> ir.Expr:
+    """One column from (argument, which of its components) for each of its numbers."""
+    runs: list[tuple[ir.Expr, str]] = []
+    for arg, at in cells:
+        if runs and runs[-1][0] is arg:
+            runs[-1] = arg, runs[-1][1] + "xyzw"[at]
+        else:
+            runs.append((arg, "xyzw"[at]))
+    parts = tuple([_part(arg, letters) for arg, letters in runs])
+    return parts[0] if len(parts) == 1 else ir.Construct(Vector("float", size), parts, span)
+
+
+def _part(arg: ir.Expr, letters: str) -> ir.Expr:
+    """Some components of an argument in a row."""
+    if not isinstance(arg.type, Vector) or letters == "xyzw"[: arg.type.size]:
+        return arg
+    return ir.Swizzle(vector_of("float", len(letters)), arg, letters, arg.span)
