@@ -1,0 +1,53 @@
+"""docs/architecture.md describes the house as it is: its files exist, and its layers are those of the import contracts."""
+
+import re
+import tomllib
+from collections import Counter
+from pathlib import Path
+
+from folders import ROOT
+
+TEXT = (ROOT / "docs" / "architecture.md").read_text("utf-8")
+PACKAGE = ROOT / "src" / "sssgen"
+MAX_ROOT_MODULES = 6
+
+
+def python_files() -> list[Path]:
+    return [path for path in PACKAGE.rglob("*.py") if "__pycache__" not in path.parts]
+
+
+def test_every_file_it_names_exists() -> None:
+    folders = [ROOT, PACKAGE, *(path for path in PACKAGE.rglob("*") if path.is_dir())]
+    names = set(re.findall(r"`([\w./-]+(?:\.(?:py|md|toml|lark|json|j2)|/))`", TEXT))
+    placeholders = {"technique.sss", "material.toml"}
+    missing = [name for name in names - placeholders if not any((folder / name).exists() for folder in folders)]
+    assert not [name for name in missing if "NAME" not in name and "COMMAND" not in name]
+
+
+def test_every_folder_of_the_package_is_in_its_table() -> None:
+    table = TEXT.split("## Layers")[1].split("## The pipeline")[0]
+    rows = set(re.findall(r"^\| `(\w+)/` \|", table, re.MULTILINE))
+    folders = {path.name for path in PACKAGE.iterdir() if path.is_dir() and path.name not in ("__pycache__", "_data")}
+    assert rows == folders - {"techniques"}
+
+
+def test_the_layers_are_those_of_the_contracts() -> None:
+    """Each row of the table stands above the rows that it may import."""
+    table = TEXT.split("## Layers")[1].split("## The pipeline")[0]
+    rows = re.findall(r"^\| `(\w+)/` \|", table, re.MULTILINE)
+    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["importlinter"]["contracts"]
+    layers = next(contract["layers"] for contract in contracts if contract["type"] == "layers")
+    order = [name.strip().removeprefix("sssgen.") for layer in layers for name in layer.split("|")]
+    assert rows == order
+
+
+def test_the_root_of_the_package_is_small() -> None:
+    assert len(list(PACKAGE.glob("*.py"))) <= MAX_ROOT_MODULES
+
+
+def test_no_two_modules_have_one_name() -> None:
+    """A name says which module is meant. A command may have the name of what it runs."""
+    names = Counter(
+        path.name for path in python_files() if path.name != "__init__.py" and path.parent != PACKAGE / "cli"
+    )
+    assert not [name for name, count in names.items() if count > 1]
