@@ -1,4 +1,4 @@
-"""docs/architecture.md describes the house as it is: its files exist, and its layers are those of the import contracts."""
+"""docs/architecture.md is up to date: its files exist, and its layers are those of the import contracts."""
 
 import re
 import tomllib
