@@ -109,9 +109,9 @@ def test_faulty_files_are_failures_and_the_rest_goes_on(capsys: pytest.CaptureFi
         ({"technique": "own.sss"}, "passed", "as in float64 on numpy-f32"),
         ({"technique": "own.sss:own"}, "passed", "as in float64 on numpy-f32"),
         ({"tolerance": 0.0}, "failed", "1 of 1 back ends failed"),
-        ({"tolerance": -1.0}, "failed", "-1.0 is no tolerance"),
-        ({"tolerance": "1"}, "failed", "'tolerance' is no int or float"),
-        ({"samples": 0}, "failed", "'samples' is from 1"),
+        ({"tolerance": -1.0}, "failed", "-1.0 is not a tolerance"),
+        ({"tolerance": "1"}, "failed", "'tolerance' must be int or float"),
+        ({"samples": 0}, "failed", "'samples' must be from 1"),
         ({"sample": 1}, "failed", "unknown key 'sample'"),
         ({"technique": "beer_lamber"}, "failed", "unknown technique 'beer_lamber'"),
         ({"inputs": {"x": 1.0}}, "failed", "has no input 'x'"),
@@ -129,7 +129,7 @@ def test_numbers(change: dict[str, Any], state: str, told: str) -> None:
     write_files("in", {"own.sss": own, "numbers.json": numbers, "half.eval.json": json.dumps(given)})
     with Run() as run:
         outcome = run(Case("eval", "in/half.eval.json", ("numpy-f32",))).outcome
-    assert (outcome.state, told in outcome.told) == (state, True), outcome
+    assert (outcome.state, told in outcome.message) == (state, True), outcome
 
 
 @pytest.mark.parametrize("text", ["", "{", "[]", "{}", "[" * 100000, '"a"'])
@@ -144,11 +144,11 @@ def test_a_back_end_that_dies_fails_one_case(backend: Callable[[str], Backend]) 
     write_files(".", {"lamp.toml": MATERIAL, "scene.toml": SCENE})
     case = Case("render", "scene.toml", ("gl",))
     with Run(update=True) as run:
-        assert run(case).outcome.told == "wrote golden/scene.png"
+        assert run(case).outcome.message == "wrote golden/scene.png"
         gpu = run.started.get("gl")
         assert isinstance(gpu, Isolated) and gpu.process.process is not None
         os.kill(gpu.process.process.pid, signal.SIGKILL)
-        assert "crashed (SIGKILL)" in run(case).outcome.told
+        assert "crashed (SIGKILL)" in run(case).outcome.message
         assert run(case).outcome.state == "passed"
 
 
@@ -178,7 +178,7 @@ def test_an_empty_report() -> None:
     ("options", "told"),
     [
         (["--backend", "gll"], "did you mean 'gl'"),
-        (["--flip", "2"], "no threshold for FLIP"),
+        (["--flip", "2"], "not a threshold for FLIP"),
         (["--flip", "much"], "invalid float value"),
         (["--junit", "lamp.toml/report.xml"], "cannot write"),
     ],

@@ -85,12 +85,12 @@ def test_it(sssgen_compile, monkeypatch):
         ("sssgen_compile('none.toml')", "*none.toml*"),
         ("sssgen_run('beer_lamber', d=1.0)", "*did you mean 'beer_lambert'*"),
         ("sssgen_run('beer_lambert', x=1.0)", "*has no input 'x'*"),
-        ("sssgen_run('beer_lambert', d=1.0, tolerance=-1.0)", "*-1.0 is no tolerance*"),
+        ("sssgen_run('beer_lambert', d=1.0, tolerance=-1.0)", "*-1.0 is not a tolerance*"),
         ("sssgen_render('none.toml')", "*none.toml*"),
         ("sssgen_render('scene.toml', size=(9000, 9000))", "*are too many*"),
         ("sssgen_golden('scene.toml', '../out')", "*climbs out*"),
-        ("sssgen_golden([[1.0]], 'one')", "*is no picture*"),
-        ("sssgen_golden('scene.toml', 'lamp', flip=2.0)", "*2.0 is no threshold*"),
+        ("sssgen_golden([[1.0]], 'one')", "*is not a picture*"),
+        ("sssgen_golden('scene.toml', 'lamp', flip=2.0)", "*2.0 is not a threshold*"),
     ],
 )
 def test_wrong_input_is_told_at_the_test_s_line(run: Run, call: str, told: str) -> None:
@@ -118,7 +118,7 @@ def test_wrong(sssgen_run):
 """
     done = run(test)
     done.assert_outcomes(passed=1, failed=1)
-    done.stdout.fnmatch_lines(["*gl deviates by *, more than 0*", "*and in float64*"])
+    done.stdout.fnmatch_lines(["*gl deviates by *, more than 0*", "*float64 gives*"])
 
 
 def test_golden_pictures(run: Run, pytester: pytest.Pytester) -> None:

@@ -1,4 +1,4 @@
-"""`sssgen ci`: a folder's materials, scenes and numbers, checked in one run."""
+"""`sssgen ci`: checks a folder's materials, scenes and numbers."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ def add_options(parser: ArgumentParser) -> None:
 
 
 def run(arguments: Namespace) -> int:
-    """Checks everything, one line a case; 0 where nothing failed and something passed."""
-    found = ci.cases(arguments.DIR, _backends(arguments.backend))
+    """Checks all cases and prints a line for each; returns 0 if none failed and one passed."""
+    cases = ci.cases(arguments.DIR, _backends(arguments.backend))
     flip = _limit(arguments.flip)
     if arguments.junit:
-        junit.write(arguments.junit, [])  # where it cannot be written that is said now, not after minutes
-    width = max(len(case.name) for case in found)
+        junit.write(arguments.junit, [])  # an error here is reported before the run, which takes minutes
+    width = max(len(case.name) for case in cases)
     results: list[Ran] = []
     try:
         with ci.Run(arguments.update, flip) as check:
-            for case in found:
+            for case in cases:
                 results.append(check(case))
                 if not arguments.json:
                     _print(results[-1], width)
@@ -52,8 +52,8 @@ def run(arguments: Namespace) -> int:
     if arguments.json:
         print_json({"ok": good, "cases": [_as_json(ran) for ran in results]})
     else:
-        told = [f"{count[state]} {state}" for state in ("passed", "failed", "skipped") if count[state]]
-        print(f"\n{len(results)} cases in {sum(ran.seconds for ran in results):.1f} s: {', '.join(told)}")
+        counts = [f"{count[state]} {state}" for state in ("passed", "failed", "skipped") if count[state]]
+        print(f"\n{len(results)} cases in {sum(ran.seconds for ran in results):.1f} s: {', '.join(counts)}")
         if not good and not count["failed"]:
             print("nothing was checked")
     return OK if good else CHECK_FAILED
@@ -78,7 +78,7 @@ def _limit(flip: float | None) -> float | None:
 def _print(ran: Ran, width: int) -> None:
     case, outcome = ran.case, ran.outcome
     name = f"{visible(case.name):{width}}"
-    print(f"{WORDS[outcome.state]} {case.kind:7} {name} {ran.seconds:6.2f} s  {visible(outcome.told)}", flush=True)
+    print(f"{WORDS[outcome.state]} {case.kind:7} {name} {ran.seconds:6.2f} s  {visible(outcome.message)}", flush=True)
     if outcome.state == "failed":
         for line in outcome.detail.split("\n") if outcome.detail else []:
             print(f"       {visible(line)}")
@@ -88,5 +88,5 @@ def _as_json(ran: Ran) -> dict[str, object]:
     case: Case = ran.case
     return {
         "kind": case.kind, "file": case.path, "backends": list(case.backends), "outcome": ran.outcome.state,
-        "seconds": round(ran.seconds, 3), "told": ran.outcome.told, "detail": ran.outcome.detail,
+        "seconds": round(ran.seconds, 3), "message": ran.outcome.message, "detail": ran.outcome.detail,
     }  # fmt: skip

@@ -1,4 +1,4 @@
-"""A technique on one back end against the oracle, as one check."""
+"""Compares a technique on one back end with the oracle, as one check."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from sssgen.harness.testing.outcome import Outcome
 from sssgen.support.diagnostics import failure
 
 
-def check_tolerance(given: Any) -> float:
-    """A tolerance. Raises SssgenError where it is none."""
-    good = isinstance(given, int | float) and not isinstance(given, bool) and math.isfinite(given) and given >= 0.0
+def check_tolerance(value: Any) -> float:
+    """The value as a tolerance. Raises SssgenError if it is not a finite number from 0."""
+    good = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value) and value >= 0.0
     if not good:
-        raise failure(f"{given!r} is no tolerance", f"a number from 0; {GOAL:g} is usual")
-    return float(given)
+        raise failure(f"{value!r} is not a tolerance", f"a number from 0; {GOAL:g} is usual")
+    return float(value)
 
 
 def against_oracle(
@@ -32,32 +32,32 @@ def against_oracle(
     tolerance: float = GOAL,
     oracle: Mapping[str, Array] | None = None,
 ) -> tuple[dict[str, Array], Outcome]:
-    """The back end's outputs, lanes first, and whether they are the oracle's within `tolerance`, relative above 1.
+    """The back end's outputs, lanes first, and whether they agree with the oracle within `tolerance`.
 
-    Lanes that float32 itself must blur are excused as in `sssgen.harness.deviation`. `oracle` has its outputs, where
-    they are known already. Raises SssgenError for a back end that refuses.
+    The deviation is relative above 1; ill-conditioned lanes are excluded as in `sssgen.harness.evaluate.deviation`.
+    `oracle` has the oracle's outputs if they are already computed. Raises SssgenError for a back end that refuses.
     """
-    right = evaluate.run(subject, inputs, get("numpy")) if oracle is None else oracle
-    found = evaluate.run(subject, inputs, backend)
-    apart = deviation(found, right, lambda: blur(subject, inputs, right))
-    excused = f", float32 blurs {apart.excused} more by up to {apart.furthest:.2g}" if apart.excused else ""
+    expected = evaluate.run(subject, inputs, get("numpy")) if oracle is None else oracle
+    outputs = evaluate.run(subject, inputs, backend)
+    apart = deviation(outputs, expected, lambda: blur(subject, inputs, expected))
+    excused = f", {apart.excused} ill-conditioned lanes by up to {apart.furthest:.2g}" if apart.excused else ""
     if apart.largest <= tolerance:
-        return found, Outcome("passed", f"{backend.name} deviates by {apart.largest:.2g} at most{excused}")
-    where = f"{apart.output}[{apart.lane}] is {apart.got.tolist()}, and in float64 {apart.wanted.tolist()}"
-    return found, Outcome("failed", f"{backend.name} deviates by {apart.largest:.2g}, more than {tolerance:g}", where)
+        return outputs, Outcome("passed", f"{backend.name} deviates by {apart.largest:.2g} at most{excused}")
+    where = f"{apart.output}[{apart.lane}] is {apart.got.tolist()}; float64 gives {apart.wanted.tolist()}"
+    return outputs, Outcome("failed", f"{backend.name} deviates by {apart.largest:.2g}, more than {tolerance:g}", where)
 
 
 def known(oracle: Mapping[str, Array], wanted: Mapping[str, Any], tolerance: float) -> Outcome:
-    """Whether the oracle's outputs are numbers known from elsewhere. Raises SssgenError for what cannot be compared."""
-    for name, given in wanted.items():
+    """Compares the oracle's outputs with given numbers. Raises SssgenError for an unknown output or another shape."""
+    for name, numbers in wanted.items():
         if name not in oracle:
             raise failure(f"there is no output '{name}'", f"outputs: {', '.join(oracle)}")
         got = np.atleast_1d(oracle[name])
         try:
-            right = np.broadcast_to(np.asarray(given, np.float64), got.shape)
+            right = np.broadcast_to(np.asarray(numbers, np.float64), got.shape)
         except (ValueError, TypeError):
             shape = "×".join(map(str, got.shape))
-            raise failure(f"output '{name}' cannot be compared with what is given", f"numbers, {shape}") from None
+            raise failure(f"output '{name}' cannot be compared with these numbers", f"its shape is {shape}") from None
         apart = errors(got, right)
         lane = int(np.argmax(apart))
         if not apart[lane] <= tolerance:

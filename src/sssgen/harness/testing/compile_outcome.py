@@ -1,4 +1,4 @@
-"""A material through every compiler found, as one check. It needs no NumPy."""
+"""Compiles a material with every available compiler, as one check. It needs no NumPy."""
 
 from __future__ import annotations
 
@@ -15,32 +15,32 @@ from sssgen.support.diagnostics import Diagnostic, did_you_mean, failure
 
 
 def compiled(material: str, targets: str | Iterable[str] = "all") -> Outcome:
-    """Both forms of a material (a path, or an example's name), for all targets or those named, by every compiler here.
+    """Compiles both forms of a material (a path, or an example's name) with every available compiler.
 
-    `targets` is "all", names with commas between them, or a list. With "all" it is enough that one compiler is here; a
-    target that is named needs one of its own. Raises SssgenError for a faulty material and unknown targets.
+    `targets` is "all", names with commas between them, or a list. For "all" one available compiler is enough; a target
+    that is named needs a compiler. Raises SssgenError for an invalid material and unknown targets.
     """
     names = chosen(targets)
     shaders = of_material(material, names)
     report = check.run(shaders)
-    if wrong := [found for result in report.results for found in _diagnostics(result)]:
+    if diagnostics := [diagnostic for result in report.results for diagnostic in _diagnostics(result)]:
         compilers = sorted({result.compiler for result in report.results if not result.ok})
-        shown = "\n\n".join(dict.fromkeys(found.render() for found in wrong))
-        return Outcome("failed", f"{', '.join(compilers)} refused it: {len(wrong)} errors", shown)
+        detail = "\n\n".join(dict.fromkeys(diagnostic.render() for diagnostic in diagnostics))
+        return Outcome("failed", f"{', '.join(compilers)} refused it: {len(diagnostics)} errors", detail)
     read = {result.source.language for result in report.results}
     unread = sorted({source.language for shader in shaders for source in shader.sources} - read)
     if not read or (names and unread):
         return lacking(f"a compiler for {', '.join(unread)}", _how(report, unread))
-    told = f"{len(read)} targets by {', '.join(report.versions)}: {len(report.results)} compilations"
+    message = f"{len(read)} targets by {', '.join(report.versions)}: {len(report.results)} compilations"
     if not unread:
-        return Outcome("passed", told)
-    return Outcome("passed", f"{told}; not compiled: {', '.join(unread)}", _how(report, unread))
+        return Outcome("passed", message)
+    return Outcome("passed", f"{message}; not compiled: {', '.join(unread)}", _how(report, unread))
 
 
 def chosen(targets: str | Iterable[str]) -> list[str]:
-    """The targets that are named, each once; none for "all". Raises SssgenError for unknown ones."""
-    given = targets.split(",") if isinstance(targets, str) else targets
-    names = list(dict.fromkeys(name.strip() for name in given))
+    """The named targets without duplicates; none for "all". Raises SssgenError for unknown targets."""
+    listed = targets.split(",") if isinstance(targets, str) else targets
+    names = list(dict.fromkeys(name.strip() for name in listed))
     if "all" in names:
         return []
     known = all_targets()
@@ -49,14 +49,14 @@ def chosen(targets: str | Iterable[str]) -> list[str]:
             hint = did_you_mean(name, known) or f"targets: {', '.join(known)}, or all"
             raise failure(f"unknown target '{name}'", hint)
         if not readers(name):
-            raise failure(f"no compiler here is known to read {name}", "name other targets")
+            raise failure(f"no supported compiler reads {name}", "name other targets")
     return names
 
 
 def _how(report: Report, languages: list[str]) -> str:
-    """How to get the compilers that would read these languages."""
-    wanted = dict.fromkeys(name for language in languages for name in readers(language))
-    return "; ".join(f"{name}: {report.missing[name]}" for name in wanted if name in report.missing)
+    """How to install the missing compilers of these languages."""
+    compilers = dict.fromkeys(name for language in languages for name in readers(language))
+    return "; ".join(f"{name}: {report.missing[name]}" for name in compilers if name in report.missing)
 
 
 def _diagnostics(result: Result) -> list[Diagnostic]:

@@ -1,4 +1,4 @@
-"""A run of `sssgen ci` as JUnit's XML, which Jenkins, GitLab and GitHub's readers show."""
+"""A run of `sssgen ci` as JUnit's XML, for Jenkins, GitLab and GitHub."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SUITE = "sssgen ci"
 
 
 def write(path: str, results: Sequence[Ran]) -> None:
-    """Writes the report, whole or not at all. Raises SssgenError where that cannot be done."""
+    """Writes the report atomically. Raises SssgenError where it cannot be written."""
     folder, name = os.path.split(path)
     write_files(folder, {name: document(results)})
 
@@ -33,24 +33,24 @@ def document(results: Sequence[Ran]) -> bytes:
     for ran in results:
         suite.append(_case(ran))
     ET.indent(top)
-    found: bytes = ET.tostring(top, "utf-8", xml_declaration=True)
-    return found + b"\n"
+    text: bytes = ET.tostring(top, "utf-8", xml_declaration=True)
+    return text + b"\n"
 
 
 def _case(ran: Ran) -> ET.Element:
     case, outcome = ran.case, ran.outcome
     facts = {"classname": case.kind, "name": case.name, "file": posix(case.path), "time": f"{ran.seconds:.3f}"}
     element = ET.Element("testcase", {key: _clean(value) for key, value in facts.items()})
-    told = {"message": _clean(outcome.told)}
+    message = {"message": _clean(outcome.message)}
     if outcome.state == "failed":
-        ET.SubElement(element, "failure", {**told, "type": case.kind}).text = _clean(outcome.text)
+        ET.SubElement(element, "failure", {**message, "type": case.kind}).text = _clean(outcome.text)
     elif outcome.state == "skipped":
-        ET.SubElement(element, "skipped", told)
+        ET.SubElement(element, "skipped", message)
     if outcome.state != "failed":
         ET.SubElement(element, "system-out").text = _clean(outcome.text)
     return element
 
 
 def _clean(text: str) -> str:
-    """Text without what XML cannot hold: a compiler may say anything."""
+    """Text without the characters that XML does not allow; a compiler's messages may contain them."""
     return "\n".join(visible(line) for line in text.split("\n"))

@@ -1,4 +1,4 @@
-"""What came of one check, in the words that `sssgen ci` and the pytest plug-in share."""
+"""The outcome of one check, for `sssgen ci` and the pytest plug-in."""
 
 from __future__ import annotations
 
@@ -10,30 +10,30 @@ State = Literal["passed", "failed", "skipped"]
 
 
 class Outcome(NamedTuple):
-    """A check's end: `told` is one line, `detail` is any number of them."""
+    """How a check ended: `message` is one line, `detail` any number of lines."""
 
     state: State
-    told: str
+    message: str
     detail: str = ""
 
     @property
     def text(self) -> str:
-        """All that there is to say."""
-        return "\n".join(filter(None, (self.told, self.detail)))
+        """The message and the detail."""
+        return "\n".join(filter(None, (self.message, self.detail)))
 
 
 def in_ci() -> bool:
-    """Whether the variable CI is set: what is missing is then a failure, as nobody would see that it was skipped."""
+    """Whether the variable CI is set: a missing program is then a failure, as nobody would notice a skipped check."""
     return os.environ.get("CI", "") not in ("", "0", "false")
 
 
 def lacking(what: str, how: str) -> Outcome:
-    """Something that a check needs is not here; `how` says how to get it. Skipped; with CI set, failed."""
+    """The outcome where `what` is missing; `how` tells how to install it. Skipped; with CI set, failed."""
     return Outcome("failed" if in_ci() else "skipped", f"{what} is missing: {' '.join(how.split())}")
 
 
 def beside(text: str, folders: Sequence[str]) -> str:
-    """A path, or FILE:FUNCTION, from the first of the folders that has the file; as it is where none has."""
+    """A path, or FILE:FUNCTION, in the first folder that has the file; unchanged if none has it."""
     file, colon, inner = text.rpartition(":")
     if not (colon and file.endswith((".sss", ".glsl"))):
         file, colon, inner = text, "", ""

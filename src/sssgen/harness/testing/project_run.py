@@ -1,4 +1,4 @@
-"""A folder's materials compiled, its scenes compared with their golden pictures, its numbers with the oracle.
+"""Checks a folder: compiles its materials, compares its scenes with golden pictures and its numbers with the oracle.
 
     with Run(update=False) as run:
         for case in cases("shaders", ["gl"]):
@@ -9,8 +9,8 @@ A case is a material, a scene on one back end, or a file `*.eval.json`:
     {"technique": "lobe.sss", "bind": {"body_distance": "shapes.sss:star"}, "inputs": {"N": [[0, 0, 1]], "power": 4.0},
      "tolerance": 1e-5}
 
-`inputs` are numbers by name, or the name of a file as `sssgen eval --inputs` takes it; `samples` is how many random
-ones there are for the rest, `seed` which; `outputs` are numbers that the oracle has to give.
+`inputs` are numbers by name, or the name of a file for `sssgen eval --inputs`; `samples` is the number of random values
+for the other inputs, `seed` their seed; `outputs` are numbers that the oracle must give.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from sssgen.support.text_files import read_text
 EVAL = ".eval.json"
 
 _OF_SCENES = {"geometry", "camera", "light", "background", "samples"}
-"""Keys by which a scene is known whose `material` is misspelt; a material is known by its roles."""
+"""Keys of a scene: they tell one whose `material` is misspelt. The keys of a material are its roles."""
 
 Kind = Literal["compile", "render", "eval"]
 
@@ -45,19 +45,19 @@ class Case(NamedTuple):
     kind: Kind
     path: str
     backends: tuple[str, ...] = ()
-    """Of a scene just one; of numbers any, and none means all that are here."""
+    """For a scene exactly one; for numbers any, and none means all that are available."""
     first: bool = True
-    """Whether its picture is the one to keep: several back ends have one golden picture."""
+    """Whether its picture becomes the golden one, which all back ends of the scene share."""
 
     @property
     def name(self) -> str:
-        """The file, and the back ends that are meant."""
+        """The file, and the back ends."""
         on = f" [{', '.join(self.backends)}]" if self.backends else ""
         return f"{posix(self.path)}{on}"
 
 
 class Ran(NamedTuple):
-    """A case and what came of it."""
+    """A case and its outcome."""
 
     case: Case
     outcome: Outcome
@@ -65,23 +65,23 @@ class Ran(NamedTuple):
 
 
 def cases(folder: str, backends: Sequence[str] = ()) -> list[Case]:
-    """What there is to check in a folder and below it; scenes are on `gl` where no back end is named.
+    """The cases in a folder and its sub-folders; scenes run on `gl` by default.
 
-    Hidden folders, Python's environments and `node_modules` are left out. Raises SssgenError where the folder cannot be
-    read, or has nothing to check.
+    Hidden folders, Python environments and `node_modules` are excluded. Raises SssgenError where the folder cannot be
+    read, or has no cases.
     """
-    found: list[Case] = []
+    result: list[Case] = []
     for path in _files(folder):
         if path.endswith(EVAL):
-            found.append(Case("eval", path, tuple(backends)))
+            result.append(Case("eval", path, tuple(backends)))
         elif path.endswith(".toml") and (kind := _kind(path)):
             names = backends or ("gl",)
             scenes = [Case(kind, path, (name,), name == names[0]) for name in names]
-            found += scenes if kind == "render" else [Case(kind, path)]
-    if not found:
+            result += scenes if kind == "render" else [Case(kind, path)]
+    if not result:
         hint = f"a material (.toml with [material]), a scene (.toml with `material = …`), or a file *{EVAL}"
         raise failure("there is nothing to check in the folder", hint, posix(folder))
-    return found
+    return result
 
 
 def _files(folder: str) -> Iterator[str]:
@@ -93,21 +93,21 @@ def _files(folder: str) -> Iterator[str]:
         raise failure(f"cannot read the folder: {error.strerror}", file=posix(error.filename or folder))
 
     for parent, folders, names in os.walk(folder, onerror=refuse):
-        folders[:] = sorted(name for name in folders if not _foreign(parent, name))
+        folders[:] = sorted(name for name in folders if not _is_excluded(parent, name))
         yield from (os.path.join(parent, name) for name in sorted(names) if not name.startswith("."))
 
 
-def _foreign(parent: str, name: str) -> bool:
+def _is_excluded(parent: str, name: str) -> bool:
     environment = os.path.join(parent, name, "pyvenv.cfg")
     return name.startswith(".") or name in ("node_modules", "__pycache__") or os.path.isfile(environment)
 
 
 def _kind(path: str) -> Kind | None:
-    """What a .toml file describes; None for another tool's. One that cannot be read is a case, which fails."""
+    """The kind of case of a .toml file; None for other tools' files. An unreadable file is a case that fails."""
     try:
         text = read_text(path, posix(path))
     except SssgenError:
-        return "compile"  # which says why it cannot be read
+        return "compile"  # its outcome is the error
     try:
         data: dict[str, Any] = tomllib.loads(text)
     except (ValueError, RecursionError):  # wrong syntax, or thousands of digits
@@ -121,13 +121,13 @@ def _kind(path: str) -> Kind | None:
 
 
 class Run:
-    """Checks cases. Back ends are kept until it is closed."""
+    """Checks cases. Back ends run until it is closed."""
 
     def __init__(self, update: bool = False, flip: float | None = None) -> None:
         """With `update` golden pictures are written; `flip` is the largest mean of FLIP that passes."""
         self.update = update
         self.flip = flip
-        self.started: Any = None  # NumPy is not needed for materials
+        self.started: Any = None  # imported on demand, as materials need no NumPy
 
     def __enter__(self) -> Run:
         return self
@@ -137,7 +137,7 @@ class Run:
             self.started.close()
 
     def __call__(self, case: Case) -> Ran:
-        """The case, checked. What is wrong with it is its outcome: nothing is raised."""
+        """Checks a case. Raises nothing: an error is the outcome."""
         start = perf_counter()
         try:
             outcome = {"compile": self._compile, "render": self._render, "eval": self._eval}[case.kind](case)
@@ -145,8 +145,8 @@ class Run:
             outcome = _failed(error)
         except ImportError as error:
             outcome = lacking(f"the package '{error.name}'", install_hint("render"))
-        except Exception as error:  # the others are checked all the same
-            outcome = Outcome("failed", f"a fault of sssgen; please report it: {type(error).__name__}: {error}")
+        except Exception as error:  # the other cases are checked nevertheless
+            outcome = Outcome("failed", f"internal error, a bug of sssgen: {type(error).__name__}: {error}")
         return Ran(case, outcome, perf_counter() - start)
 
     def _compile(self, case: Case) -> Outcome:
@@ -178,29 +178,29 @@ class Run:
         from sssgen.harness.evaluate.random_inputs import samples
         from sssgen.harness.testing.agreement import against_oracle, check_tolerance, known
 
-        given, folder = _read(case.path), [os.path.dirname(case.path)]
-        tolerance = check_tolerance(given.get("tolerance", GOAL))
-        bind = {slot: beside(str(function), folder) for slot, function in given.get("bind", {}).items()}
-        chosen = subject(beside(given["technique"], folder), bind)
-        inputs: Any = given.get("inputs", {})
+        content, folder = _read(case.path), [os.path.dirname(case.path)]
+        tolerance = check_tolerance(content.get("tolerance", GOAL))
+        bind = {slot: beside(str(function), folder) for slot, function in content.get("bind", {}).items()}
+        chosen = subject(beside(content["technique"], folder), bind)
+        inputs: Any = content.get("inputs", {})
         inputs = read(os.path.join(*folder, inputs), chosen) if isinstance(inputs, str) else inputs
-        if "samples" in given:
-            inputs = samples(chosen, given["samples"], given.get("seed", 0)) | inputs
+        if "samples" in content:
+            inputs = samples(chosen, content["samples"], content.get("seed", 0)) | inputs
         fit = fitted(chosen, inputs)
         oracle = run(chosen, fit, get("numpy"))
-        outcome = known(oracle, given.get("outputs", {}), tolerance)
+        outcome = known(oracle, content.get("outputs", {}), tolerance)
         if outcome.state == "failed":
             return outcome
-        told: dict[str, Outcome] = {}
+        outcomes: dict[str, Outcome] = {}
         for name in case.backends or SINGLE:
             try:
-                told[name] = against_oracle(chosen, fit, self._backends().get(name), tolerance, oracle)[1]
+                outcomes[name] = against_oracle(chosen, fit, self._backends().get(name), tolerance, oracle)[1]
             except CompilerMissing as reason:
                 if case.backends:
-                    told[name] = lacking(f"the back end {name}", str(reason))
-            except SssgenError as error:  # of one back end: the others are asked all the same
-                told[name] = Outcome("failed", f"{name} failed", str(error))
-        return _summary(told)
+                    outcomes[name] = lacking(f"the back end {name}", str(reason))
+            except SssgenError as error:  # the other back ends run nevertheless
+                outcomes[name] = Outcome("failed", f"{name} failed", str(error))
+        return _summary(outcomes)
 
     def _backends(self) -> Any:
         if self.started is None:
@@ -211,21 +211,21 @@ class Run:
 
 
 def _failed(error: SssgenError) -> Outcome:
-    shown = "\n\n".join(found.render() for found in error.diagnostics)
-    told = " ".join(error.diagnostics[0].message.split())
-    return Outcome("failed", told, "" if shown == f"error: {told}" else shown)
+    detail = "\n\n".join(diagnostic.render() for diagnostic in error.diagnostics)
+    message = " ".join(error.diagnostics[0].message.split())
+    return Outcome("failed", message, "" if detail == f"error: {message}" else detail)
 
 
-def _summary(told: dict[str, Outcome]) -> Outcome:
-    """What several back ends said, in one."""
-    bad = [one for one in told.values() if one.state == "failed"]
-    skipped = [one for one in told.values() if one.state == "skipped"]
-    detail = "\n".join(one.text for one in (bad or told.values()))
-    if bad:
-        return Outcome("failed", f"{len(bad)} of {len(told)} back ends failed", detail)
+def _summary(outcomes: dict[str, Outcome]) -> Outcome:
+    """The outcome of several back ends."""
+    failed = [outcome for outcome in outcomes.values() if outcome.state == "failed"]
+    skipped = [outcome for outcome in outcomes.values() if outcome.state == "skipped"]
+    detail = "\n".join(outcome.text for outcome in (failed or outcomes.values()))
+    if failed:
+        return Outcome("failed", f"{len(failed)} of {len(outcomes)} back ends failed", detail)
     if skipped:
-        return Outcome("skipped", skipped[0].told, detail)
-    return Outcome("passed", f"as in float64 on {', '.join(told)}", detail)
+        return Outcome("skipped", skipped[0].message, detail)
+    return Outcome("passed", f"as in float64 on {', '.join(outcomes)}", detail)
 
 
 _SHAPE: dict[str, tuple[type, ...]] = {
@@ -239,12 +239,12 @@ def _read(path: str) -> dict[str, Any]:
     shown = posix(path)
     data = json_source.parse(read_text(path, shown), shown)
     if not isinstance(data, dict) or "technique" not in data:
-        raise failure("no technique is named", '{"technique": "lobe_gdc2011", "inputs": {…}}', shown)
+        raise failure("the technique is missing", '{"technique": "lobe_gdc2011", "inputs": {…}}', shown)
     for key, value in data.items():
         if key not in _SHAPE:
             raise failure(f"unknown key '{key}'", f"keys: {', '.join(_SHAPE)}", shown)
         if not isinstance(value, _SHAPE[key]) or isinstance(value, bool):
-            raise failure(f"'{key}' is no {' or '.join(one.__name__ for one in _SHAPE[key])}", file=shown)
+            raise failure(f"'{key}' must be {' or '.join(type_.__name__ for type_ in _SHAPE[key])}", file=shown)
     if not (1 <= data.get("samples", 1) <= 1_000_000 and data.get("seed", 0) >= 0):
-        raise failure("'samples' is from 1 to 1000000, 'seed' from 0", file=shown)
+        raise failure("'samples' must be from 1 to 1000000, 'seed' at least 0", file=shown)
     return data

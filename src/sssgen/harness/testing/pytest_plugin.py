@@ -4,8 +4,8 @@
         sssgen_compile("materials/lamp.toml")
         sssgen_golden("scenes/lamp.toml", "lamp")
 
-Every test run of an environment with sssgen loads this module: it imports nothing until a fixture is used. A path is
-looked for beside the test file, then in pytest's rootdir.
+pytest imports this module in every test run of an environment with sssgen: it imports nothing until a fixture is used.
+A path is searched for next to the test file, then in pytest's rootdir.
 """
 
 from __future__ import annotations
@@ -23,45 +23,47 @@ if TYPE_CHECKING:
     from sssgen.harness.testing.outcome import Outcome
     from sssgen.harness.testing.running_backends import Started
 
-Found = TypeVar("Found")
+Result = TypeVar("Result")
 
 DEFAULT = "gl"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """The options, and the folder of golden pictures in the ini file."""
+    """Adds the options, and the ini setting for the folder of golden pictures."""
     group = parser.getgroup("sssgen", "shaders of sssgen")
     group.addoption(
         "--sssgen-backend", metavar="NAME", action="append", default=[],
         help="the back end that runs and draws; several, with commas, run each test on each (default: gl)",
     )  # fmt: skip
-    group.addoption("--sssgen-update", action="store_true", help="write golden pictures, instead of comparing")
+    group.addoption("--sssgen-update", action="store_true", help="write golden pictures instead of comparing")
     group.addoption(
         "--sssgen-flip", metavar="X", type=float, help="the largest mean of FLIP that passes (default: 0.005)"
     )
-    parser.addini("sssgen_golden", "folder of golden pictures, from the ini file's; default: golden, beside the test")
+    parser.addini(
+        "sssgen_golden", "folder of golden pictures, relative to the ini file (default: golden, next to the test)"
+    )
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Refuses options that mean nothing. Where none is given it imports nothing."""
+    """Rejects invalid options. Without options it imports nothing."""
     flip = config.getoption("sssgen_flip")
     if flip is not None and not 0.0 <= flip <= 1.0:
-        raise pytest.UsageError(f"--sssgen-flip {flip}: it is from 0, which is the same, to 1")
-    if given := config.getoption("sssgen_backend"):
+        raise pytest.UsageError(f"--sssgen-flip {flip}: it must be from 0 (identical) to 1")
+    if names := config.getoption("sssgen_backend"):
         from sssgen.support.diagnostics import SssgenError
 
         try:
             from sssgen.harness.backends import chosen
-        except ImportError:  # without NumPy: the fixtures say so
+        except ImportError:  # without NumPy: the fixtures report it
             return
         try:
-            chosen(",".join(given))
+            chosen(",".join(names))
         except SssgenError as error:
             raise pytest.UsageError(str(error)) from None
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """A test on each back end, where several are given."""
+    """Runs a test once for each back end."""
     names = _names(metafunc.config)
     if "sssgen_backend" in metafunc.fixturenames and len(names) > 1:
         metafunc.parametrize("sssgen_backend", names, indirect=True, scope="session")
@@ -69,13 +71,13 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 @pytest.fixture(scope="session")
 def sssgen_backend(request: pytest.FixtureRequest) -> str:
-    """The name of the back end that runs and draws, of `--sssgen-backend`: gl, webgpu, browser, hlsl, numpy, …"""
+    """The name of the back end from `--sssgen-backend`: gl, webgpu, browser, hlsl, numpy, …"""
     return str(getattr(request, "param", _names(request.config)[0]))
 
 
 @pytest.fixture(scope="session")
 def _sssgen_started() -> Iterator[Started]:
-    """The back ends, each in a process of its own: a driver that crashes fails one test."""
+    """The back ends, each in its own process: a driver that crashes fails one test."""
     _need("numpy")
     from sssgen.harness.testing.running_backends import Started
 
@@ -86,10 +88,10 @@ def _sssgen_started() -> Iterator[Started]:
 
 @pytest.fixture
 def sssgen_compile(request: pytest.FixtureRequest) -> Callable[..., None]:
-    """`sssgen_compile(material, targets="all")` compiles a material with every compiler found.
+    """`sssgen_compile(material, targets="all")` compiles a material with every available compiler.
 
     `material` is a .toml file or an example's name; `targets` is "all", or names as in "wgsl,unity-urp". Fails with
-    what the compilers say, at the technique's own lines. Skips where no compiler is here; with CI set it fails.
+    the compilers' messages at the technique's own lines. Skips without a compiler; with CI set it fails.
     """
 
     def compile(material: str | os.PathLike[str], targets: str | Iterable[str] = "all") -> None:
@@ -105,12 +107,12 @@ def sssgen_compile(request: pytest.FixtureRequest) -> Callable[..., None]:
 def sssgen_run(
     request: pytest.FixtureRequest, sssgen_backend: str, _sssgen_started: Started
 ) -> Callable[..., dict[str, Array]]:
-    """`sssgen_run(technique, bind=None, tolerance=1e-5, **inputs)` gives a technique's outputs as arrays, by name.
+    """`sssgen_run(technique, bind=None, tolerance=1e-5, **inputs)` returns a technique's outputs as arrays, by name.
 
     `technique` is a name of the library, a .sss file or FILE:FUNCTION; `bind` has a function for each slot; an input is
-    a number, an array with lanes first, or a texture (height, width, channels). `result` is what the technique returns,
-    (lanes,) or (lanes, 3). Fails where the back end is further than `tolerance`, relative above 1, from NumPy's
-    float64, but for lanes where float32 itself must be.
+    a number, an array with lanes first, or a texture (height, width, channels). `result` is the technique's result,
+    (lanes,) or (lanes, 3). Fails where the back end deviates from NumPy's float64 by more than `tolerance`, relative
+    above 1; lanes that are ill-conditioned in float32 are excluded.
     """
 
     def run(
@@ -123,9 +125,9 @@ def sssgen_run(
         __tracebackhide__ = True
         backend = _backend(_sssgen_started, sssgen_backend)
         slots = {slot: _place(request, function) for slot, function in (bind or {}).items()}
-        found, outcome = _guarded(lambda: _run(_place(request, technique), slots, inputs, backend, tolerance))
+        outputs, outcome = _guarded(lambda: _run(_place(request, technique), slots, inputs, backend, tolerance))
         _end(outcome)
-        return found
+        return outputs
 
     return run
 
@@ -136,9 +138,9 @@ def sssgen_render(
 ) -> Callable[..., Rendered]:
     """`sssgen_render(scene, size=None, time=None)` draws a scene's .toml file.
 
-    `size` is (width, height) in pixels, `time` is in seconds; without them the scene's own. The picture has `.linear`,
-    (height, width, 3) in linear light, `.encoded`, the same in sRGB 0..1, and `.covered`, (height, width): how much of
-    each pixel is not background. Row 0 is at the top.
+    `size` is (width, height) in pixels, `time` is in seconds; the defaults are the scene's. The picture has `.linear`,
+    (height, width, 3) in linear light, `.encoded`, the same in sRGB 0..1, and `.covered`, (height, width): the share of
+    each pixel that is not background. Row 0 is at the top.
     """
 
     def render(
@@ -153,12 +155,12 @@ def sssgen_render(
 
 @pytest.fixture
 def sssgen_golden(request: pytest.FixtureRequest, sssgen_backend: str, _sssgen_started: Started) -> Callable[..., None]:
-    """`sssgen_golden(picture, name, flip=None)` compares with the golden picture golden/NAME.png beside the test file.
+    """`sssgen_golden(picture, name, flip=None)` compares with golden/NAME.png next to the test file.
 
-    `picture` is what `sssgen_render` gave, an array (height, width, 3) of sRGB 0..1, or a scene to draw. Fails where
-    the mean of FLIP is above `flip` (`--sssgen-flip`, 0.005), and writes NAME.actual.png and NAME.difference.png into
-    sssgen-failures/ beside golden/. `--sssgen-update` writes the golden picture; the ini file's `sssgen_golden` names
-    another folder, from its own.
+    `picture` is the result of `sssgen_render`, an array (height, width, 3) of sRGB 0..1, or a scene to draw. Fails if
+    the mean of FLIP is above `flip` (default: `--sssgen-flip`, 0.005), and writes NAME.actual.png and
+    NAME.difference.png to sssgen-failures/ next to golden/. `--sssgen-update` writes the golden picture. The setting
+    `sssgen_golden` of the ini file names another folder, relative to it.
     """
 
     def golden(picture: Any, name: str, flip: float | None = None) -> None:
@@ -181,12 +183,12 @@ def _golden(request: pytest.FixtureRequest, picture: Any, name: str, flip: float
 
     encoded = picture.encoded if isinstance(picture, Rendered) else picture
     config, names = request.config, _names(request.config)
-    given = str(config.getini("sssgen_golden"))
-    folder = str(config.rootpath / given if given else request.path.parent / golden.FOLDER)
+    setting = str(config.getini("sssgen_golden"))
+    folder = str(config.rootpath / setting if setting else request.path.parent / golden.FOLDER)
     if config.getoption("sssgen_update") and backend == names[0]:
         return golden.updated(encoded, folder, name)
     limits = (flip, config.getoption("sssgen_flip"), golden.FLIP)
-    limit = next(one for one in limits if one is not None)
+    limit = next(value for value in limits if value is not None)
     label = f".{backend}" if len(names) > 1 else ""
     return golden.compared(encoded, folder, name, limit, label, update="--sssgen-update")
 
@@ -219,9 +221,9 @@ def _run(
 
 
 def _names(config: pytest.Config) -> list[str]:
-    """The back ends of the options, each once; the first one's pictures are the golden ones."""
-    given = ",".join(config.getoption("sssgen_backend") or [DEFAULT])
-    return list(dict.fromkeys(name.strip() for name in given.split(",")))
+    """The back ends of the options without duplicates; the pictures of the first are the golden ones."""
+    listed = ",".join(config.getoption("sssgen_backend") or [DEFAULT])
+    return list(dict.fromkeys(name.strip() for name in listed.split(",")))
 
 
 def _place(request: pytest.FixtureRequest, path: str | os.PathLike[str]) -> str:
@@ -231,7 +233,7 @@ def _place(request: pytest.FixtureRequest, path: str | os.PathLike[str]) -> str:
 
 
 def _backend(started: Started, name: str) -> Backend:
-    """The back end; a skip where this machine lacks it, with CI set a failure."""
+    """The back end. Skips the test without it; with CI set the test fails."""
     __tracebackhide__ = True
     from sssgen.harness.compilers import CompilerMissing
     from sssgen.harness.testing.outcome import lacking
@@ -245,7 +247,7 @@ def _backend(started: Started, name: str) -> Backend:
 
 
 def _need(module: str) -> None:
-    """A skip where a package is missing; with CI set a failure."""
+    """Skips the test where a package is missing; with CI set the test fails."""
     __tracebackhide__ = True
     from importlib import import_module
 
@@ -261,8 +263,8 @@ def _need(module: str) -> None:
     _end(outcome)
 
 
-def _guarded(call: Callable[[], Found]) -> Found:
-    """What the call gives. An error of its input is shown at the test's own line, not at ours."""
+def _guarded(call: Callable[[], Result]) -> Result:
+    """The result of the call. An error of its input is shown at the test's own line, not at ours."""
     __tracebackhide__ = True
     from sssgen.support.diagnostics import SssgenError
 
@@ -273,7 +275,7 @@ def _guarded(call: Callable[[], Found]) -> Found:
 
 
 def _end(outcome: Outcome) -> None:
-    """A failure or a skip, at the test's own line."""
+    """Fails or skips the test, at its own line."""
     __tracebackhide__ = True
     if outcome.state == "failed":
         pytest.fail(outcome.text)

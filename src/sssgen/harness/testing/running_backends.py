@@ -1,4 +1,4 @@
-"""Back ends, each in a process of its own that lasts as long as a run: a crash costs one answer, not the run."""
+"""Back ends, each in its own process for the duration of a run: after a crash the run continues."""
 
 from __future__ import annotations
 
@@ -11,31 +11,31 @@ from sssgen.support.diagnostics import SssgenError
 
 
 class Started:
-    """Back ends by name, each started when it is first asked for. `close` ends them."""
+    """Back ends by name, each started when it is first used. `close` ends them."""
 
     def __init__(self) -> None:
-        self._found: dict[str, Callable[[], Backend]] = {}
+        self._backends: dict[str, Callable[[], Backend]] = {}
 
     def get(self, name: str) -> Backend:
         """The back end. Raises CompilerMissing where this machine lacks it, SssgenError where it does not start."""
-        if name not in self._found:
-            self._found[name] = _start(name)
-        return self._found[name]()
+        if name not in self._backends:
+            self._backends[name] = _start(name)
+        return self._backends[name]()
 
     def close(self) -> None:
         """Ends the processes."""
-        for found in self._found.values():
+        for get in self._backends.values():
             try:
-                backend = found()
+                backend = get()
             except (CompilerMissing, SssgenError):
                 continue
             if isinstance(backend, Isolated):
                 backend.close()
-        self._found.clear()
+        self._backends.clear()
 
 
 def _start(name: str) -> Callable[[], Backend]:
-    """What gives the back end, or says again why there is none."""
+    """A function that returns the back end, or raises the same error at every call."""
     try:
         backend = started(name)
     except (CompilerMissing, SssgenError) as reason:
