@@ -1,1 +1,1 @@
-"""Targets: descriptors, printers, layout, reflection, and putting a shader together."""
+"""Targets: descriptors, printers, uniform layout, reflection, and the assembly of a shader from its parts."""

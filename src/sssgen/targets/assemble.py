@@ -1,7 +1,7 @@
-"""Puts a shader together: prints the legal module, hands the text to the target's templates, and maps lines to source.
+"""Assembles a shader: prints the legal module, passes the text to the target's templates, and maps lines to source.
 
-Printed lines carry an invisible mark through the template, so that each line of the finished file is known by the span
-that it came from, wherever the template put it.
+Printed lines carry an invisible mark through the template, so that the source span of each line of the finished file is
+known wherever the template placed it.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _DEFAULTS = {"default_white": "white", "default_black": "black", "default_gray":
 
 
 class About(NamedTuple):
-    """What a material says of itself; templates see it as `material`."""
+    """A material's description of itself; templates see it as `material`."""
 
     name: str
     title: str
@@ -35,23 +35,23 @@ class About(NamedTuple):
     raymarched: bool = False
     """Whether the chain makes its own geometry, so that the shell needs no mesh."""
     head: tuple[str, ...] = ()
-    """What the author says at the head of the file: a licence, say."""
+    """The author's comment at the head of the file, such as a licence."""
 
 
 class Program(NamedTuple):
-    """A legal module with what the templates need to know of it."""
+    """A legal module with the facts that templates need."""
 
     module: Module
     entries: Mapping[str, tuple[Function, tuple[str, ...]]]
-    """Entry kind → its function as it is in `module`, and the inputs it takes."""
+    """Entry kind → its function in `module`, and the inputs that it takes."""
     surface: Struct | None
     source_names: Mapping[str, str]
     """A uniform's name in `module` → its technique's own name for it."""
     about: About
     encoded: bool
-    """Whether the colour that comes out is already encoded for a display."""
+    """Whether the resulting colour is already encoded for a display."""
     parts: Mapping[str, list[list[Line]]]
-    """What is printed of the structs (`types`), constants, variables, functions and the entry. The functions in
+    """The printed text of the structs (`types`), constants, variables, functions and the entry. The functions in
     `module` have no bodies."""
     owners: Mapping[str, tuple[str, str]]
     """A uniform's source name → its technique and its name there."""
@@ -61,7 +61,7 @@ class Program(NamedTuple):
     settings: Mapping[str, list[tuple[int, str]]]
     """A uniform's source name → the material's stages that may give it a value, and its name there."""
     guards: Mapping[str, Any]
-    """How many operations with a domain are proven safe, and each that is guarded: where, what, why."""
+    """How many operations with a domain are proven safe, and each guarded one with its place, operation and reason."""
     stage: Stage | None = None
     """The interface, where the module is a whole shader."""
 
@@ -74,7 +74,7 @@ class Emitted(NamedTuple):
     members: list[Member]
     block_size: int
     bindings: list[dict[str, int | str]]
-    """Where each texture and its sampler are bound; empty where the language does not say."""
+    """Where each texture and its sampler are bound; empty where the text does not state it."""
 
 
 _PRINTERS = {
@@ -86,14 +86,14 @@ _PRINTERS = {
 
 
 def printer_for(target: Target, module: Module) -> Printer:
-    """The target's printer. Raises SssgenError where a plug-in names one that is not there."""
+    """The target's printer. Raises SssgenError where a plug-in names one that does not exist."""
     import importlib
 
     place, _, name = _PRINTERS.get(target.language, target.language).partition(":")
     try:
         printer: Printer = getattr(importlib.import_module(place), name)(target, module)
     except (ImportError, AttributeError, ValueError):
-        raise failure(f"target '{target.name}' names a printer that is not there: {target.language}") from None
+        raise failure(f"target '{target.name}' names a printer that does not exist: {target.language}") from None
     return printer
 
 
@@ -107,7 +107,7 @@ def print_parts(
     behind: Callable[[str, int], str] | None = None,
     source: Callable[[Span], str] | None = None,
 ) -> dict[str, list[list[Line]]]:
-    """Prints all of a legal module but its uniforms; of a whole shader the function `entry` that it begins with.
+    """Prints a legal module without its uniforms; `entry` is the name of a whole shader's entry function.
 
     `kept`: numbers have the digits that they were written with.
     """
@@ -158,7 +158,7 @@ def emit(target: Target, program: Program, form: str, templates: str | None = No
 
 
 def _text(parts: Sequence[Sequence[Line]], marks: list[Span]) -> str:
-    """Lines as text, the parts separated by empty lines, every line with its mark."""
+    """The lines as text with their marks; empty lines separate the parts."""
     blocks = []
     for part in parts:
         texts = []
@@ -174,7 +174,7 @@ def _text(parts: Sequence[Sequence[Line]], marks: list[Span]) -> str:
 
 
 def _context(target: Target, program: Program, printer: Printer, form: str, code: dict[str, str]) -> dict[str, Any]:
-    """What a template sees; documented in docs/templates.md."""
+    """The variables of a template; docs/templates.md documents them."""
     entries = {
         kind: _entry(target, printer, kind, function, inputs) for kind, (function, inputs) in program.entries.items()
     }
@@ -200,7 +200,7 @@ def _context(target: Target, program: Program, printer: Printer, form: str, code
 
 
 def _header(target: Target, program: Program) -> list[str]:
-    """The comment at the head of a file: what it is, and where to change it."""
+    """The comment at the head of a file: its contents, and where to change them."""
     import textwrap
 
     about = program.about
@@ -212,7 +212,7 @@ def _header(target: Target, program: Program) -> list[str]:
 
 
 def _entry(target: Target, printer: Printer, kind: str, function: Function, inputs: tuple[str, ...]) -> dict[str, Any]:
-    """An entry with the text of its call: the shell's expressions for its inputs, then the passed-on uniforms."""
+    """An entry with the text of its call: the shell's expressions for its inputs, then the uniforms."""
     given = {**target.inputs, **(target.light_inputs if kind in ("translucency", "lighting") else {})}
     leading = ["surface"] if len(function.params) > 0 and isinstance(function.params[0].type, Struct) else []
     names = [*leading, *inputs]
@@ -228,7 +228,7 @@ def _entry(target: Target, printer: Printer, kind: str, function: Function, inpu
 
 
 def _passed(printer: Printer, param: Param, uniform: str) -> str:
-    """A uniform passed on as an argument; the shell knows it by the uniform's name, whatever the parameter's is."""
+    """A uniform as an argument; the shell has it under the uniform's name, not under the parameter's."""
     return printer.argument(Local(param.type, uniform, param.span), param)
 
 
@@ -281,7 +281,7 @@ def _textures(printer: Printer, program: Program) -> list[dict[str, Any]]:
 
 
 def _finish(text: str, marks: list[Span]) -> tuple[str, dict[int, Span]]:
-    """Takes the marks out, tidies blank lines, and says where each line came from."""
+    """Removes the marks and superfluous blank lines; returns the text and the source span of each line."""
     lines: list[str] = []
     spans: dict[int, Span] = {}
     for line in text.split("\n"):
@@ -292,7 +292,7 @@ def _finish(text: str, marks: list[Span]) -> tuple[str, dict[int, Span]]:
         if lines and not lines[-1] and line.lstrip().startswith("}"):
             lines.pop()
         lines.append(line)
-        if mark is not None and int(mark[1]) < len(marks):  # a template may have written one of its own
+        if mark is not None and int(mark[1]) < len(marks):  # a template may contain the characters of a mark
             spans[len(lines)] = marks[int(mark[1])]
     while lines and not lines[-1]:
         lines.pop()

@@ -1,7 +1,7 @@
-"""The function that a stage begins with in languages where inputs and outputs are parameters and results.
+"""The entry function of a stage in languages where inputs and outputs are parameters and results.
 
-It copies what it is given to the module's variables, calls the author's main function, and gives back what that
-left in them. `wgsl_entry` and `hlsl_entry` say it in their languages; here is what they share.
+It copies its parameters to the module's variables, calls the author's main function, and returns the values of the
+output variables. `wgsl_entry` and `hlsl_entry` print it; this module has what they share.
 
 gl_FragCoord counts y from the bottom in GLSL and from the top in WebGPU and D3D, where its w is that of the clip
 space in D3D. gl_Position.z goes from -w to w in GLSL, from 0 to w in the others.
@@ -18,8 +18,8 @@ from sssgen.passes.scopes import fresh
 from sssgen.passes.stage.stage_interface import Slot, Stage
 
 
-class Given(NamedTuple):
-    """A parameter of the entry: its name, and the slot that it fills."""
+class EntryParameter(NamedTuple):
+    """A parameter of the entry: its name, and the slot whose value it is."""
 
     name: str
     slot: Slot
@@ -29,17 +29,17 @@ def names_of(module: ir.Module) -> set[str]:
     """The names that the module declares."""
     declared = (module.constants, module.uniforms, module.variables, module.functions)
     structs = {struct.type.name for struct in module.structs if isinstance(struct.type, Struct)}
-    return structs | {one.name for group in declared for one in group}
+    return structs | {declaration.name for group in declared for declaration in group}
 
 
-def parameters(stage: Stage, taken: set[str]) -> list[Given]:
+def parameters(stage: Stage, taken: set[str]) -> list[EntryParameter]:
     """A parameter for each input."""
-    found = []
+    parameters = []
     for slot in stage.inputs:
         name = fresh("_".join([slot.variable.name, "in", *map(str, slot.path)]), taken)
         taken.add(name)
-        found.append(Given(name, slot))
-    return found
+        parameters.append(EntryParameter(name, slot))
+    return parameters
 
 
 def place_text(slot: Slot) -> str:
@@ -57,13 +57,13 @@ def is_count(slot: Slot) -> bool:
     return slot.location < 0 and slot.type == INT
 
 
-def given_type(slot: Slot) -> Type:
-    """The type in which a slot is given."""
+def parameter_type(slot: Slot) -> Type:
+    """The type of a slot as a parameter or result."""
     return UINT if is_count(slot) else slot.type
 
 
 def adjusted(stage: Stage, resolution: str, clip_w: bool) -> list[str]:
-    """Statements that give gl_FragCoord the meaning that it has in GLSL."""
+    """Statements that give gl_FragCoord its meaning in GLSL."""
     lines = []
     for slot in stage.inputs:
         if slot.variable.builtin == "gl_FragCoord":
@@ -76,6 +76,6 @@ def adjusted(stage: Stage, resolution: str, clip_w: bool) -> list[str]:
 
 
 def depth_halved(slots: Iterable[Slot]) -> list[str]:
-    """Statements that bring the depth of gl_Position from [-w, w] to [0, w]."""
+    """Statements that map the depth of gl_Position from [-w, w] to [0, w]."""
     names = [slot.variable.name for slot in slots if slot.variable.builtin == "gl_Position"]
     return [f"{name}.z = ({name}.z + {name}.w) * 0.5;" for name in names]

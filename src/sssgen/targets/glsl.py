@@ -11,7 +11,7 @@ from sssgen.targets.uniform_layout import Member
 
 
 class GlslPrinter(Printer):
-    """Uniforms stand in the default block; everything else is as in the IR."""
+    """Uniforms are in the default block; everything else is as in the IR."""
 
     def __init__(self, target: Target, module: ir.Module) -> None:
         super().__init__(target, module)
@@ -21,7 +21,7 @@ class GlslPrinter(Printer):
         return self.builtins.get(value.name, value.name)
 
     def print_variable(self, variable: ir.Variable) -> list[Line]:
-        """A variable, as it was written; the language has its builtins, but for the colours of older versions."""
+        """A variable as it was written. Builtins need no declaration, except for the colours of older versions."""
         if variable.name in self.builtins:
             return []
         if variable.storage == "private":
@@ -32,35 +32,35 @@ class GlslPrinter(Printer):
         return self.with_comments(variable, [Line(f"{self.layout(variable)}{text};", variable.span)])
 
     def layout(self, variable: ir.Variable) -> str:
-        """Where a variable is bound, where the version can say so: a vertex's attributes and a fragment's colours."""
+        """The location of a variable where the version has a text for it: vertex attributes and fragment colours."""
         stage = self.stage
         if stage is None or (stage.kind, variable.storage) not in (("vertex", "in"), ("fragment", "out")):
             return ""
         slots = [slot for slot in stage.inputs + stage.outputs if slot.variable is variable]
         colors = {slot.variable.name for slot in stage.outputs if slot.location >= 0}
-        told = variable.location >= 0 or (variable.storage == "out" and len(colors) > 1)
-        return f"layout(location = {slots[0].location}) " if told and slots else ""
+        stated = variable.location >= 0 or (variable.storage == "out" and len(colors) > 1)
+        return f"layout(location = {slots[0].location}) " if stated and slots else ""
 
     def print_uniforms(self, members: list[Member]) -> list[Line]:
         """The uniform declarations, one a line."""
         return [
-            documented(f"uniform {self.variable(one.type, one.name)}{self.default(one)};", one)
-            for one in (member.uniform for member in members)
+            documented(f"uniform {self.variable(uniform.type, uniform.name)}{self.default(uniform)};", uniform)
+            for uniform in (member.uniform for member in members)
         ]
 
     def default(self, uniform: ir.Uniform) -> str:
-        """The value that an author gave a uniform, where the version has such."""
+        """The initial value of a uniform, where the version allows one."""
         plain = isinstance(uniform.type, Scalar | Vector) and uniform.type.kind != "bool"
         if not self.kept or not plain or not any(uniform.default) or not self.target.capabilities.uniform_values:
             return ""
         number = Scalar(kind_of(uniform.type))
         whole = number.kind != "float"
-        parts = [ir.Literal(number, int(one) if whole else one, uniform.span) for one in uniform.default]
+        parts = [ir.Literal(number, int(value) if whole else value, uniform.span) for value in uniform.default]
         texts = ", ".join(map(self.literal, parts))
         return f" = {texts if len(parts) == 1 else f'{self.type(uniform.type)}({texts})'}"
 
     def print_textures(self, textures: list[ir.Uniform]) -> list[Line]:
-        """The samplers, one a line; ES has no default precision for all of them."""
+        """The samplers, one a line."""
         lines = []
         for texture in textures:
             type_ = self.type(texture.type)

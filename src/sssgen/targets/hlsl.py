@@ -1,10 +1,10 @@
 """Prints HLSL: Shader Model 5 and 6, and the dialects of Unity's pipelines.
 
-Matrices. GLSL's `mat3(a, b, c)` has columns a, b, c; HLSL's `float3x3(a, b, c)` has rows a, b, c. We keep the same
-numbers in the same order: our column i is HLSL's row i, so `m[i]` and constructors mean the same. Products then
-flip their operands: `M * v` is `mul(v, M)` and `A * B` is `mul(B, A)`. A matrix in a constant buffer is declared
-`row_major`, so its rows, our columns, lie one after the other, as std140 lays out columns. What an engine hands over
-is not stored so (Unity's matrices multiply columns from the left, `mul(M, v)`), so there a matrix uniform is
+Matrices. GLSL's `mat3(a, b, c)` has columns a, b, c; HLSL's `float3x3(a, b, c)` has rows a, b, c. The printed text
+has the same numbers in the same order: column i of the IR is row i of HLSL, so `m[i]` and constructors mean the same.
+Products then swap their operands: `M * v` is `mul(v, M)` and `A * B` is `mul(B, A)`. A matrix in a constant buffer is
+declared `row_major`, so its rows, the columns of the IR, are stored one after the other, as std140 stores columns. An
+engine stores its matrices otherwise (Unity's multiply columns from the left, `mul(M, v)`), so there a matrix uniform is
 transposed where it is read.
 """
 
@@ -20,11 +20,11 @@ from sssgen.targets.printer import POSTFIX, PRIMARY, UNARY, Line, Printer, docum
 from sssgen.targets.uniform_layout import Member
 
 LONGEST_UNROLLED = 8
-"""Loops of more rounds than this stay loops."""
+"""Loops with more rounds than this are not unrolled."""
 
 
 class HlslPrinter(Printer):
-    """One printer for all dialects; the descriptor says how textures and uniforms are written."""
+    """One printer for all dialects; the descriptor has the texts of textures and uniforms."""
 
     constant = "static const"
     private = "static "
@@ -43,13 +43,13 @@ class HlslPrinter(Printer):
         if binary.op == "*" and linear and (isinstance(left, Matrix) or isinstance(right, Matrix)):
             return f"mul({self.expr(binary.right)}, {self.expr(binary.left)})", PRIMARY
         if binary.op in ("<<", ">>") and isinstance(binary.left, ir.Literal) and kind_of(left) != kind_of(right):
-            # a bare literal would take the count's type, and shift in zeros where the sign is meant
+            # a bare literal would take the count's type, and shift in zeros in place of the sign
             binary = binary._replace(left=ir.Construct(left, (binary.left,), binary.left.span))
         return super().binary(binary)
 
     def construct(self, construct: ir.Construct) -> tuple[str, int]:
         type_, args = construct.type, construct.args
-        if isinstance(type_, Array | Struct):  # only where a variable begins
+        if isinstance(type_, Array | Struct):  # only in an initialiser
             return "{ " + self.arguments(args) + " }", PRIMARY
         if len(args) == 1 and not isinstance(type_, Scalar):  # a splat or a conversion is a cast here
             text, binding = self.bound(args[0])
@@ -62,14 +62,14 @@ class HlslPrinter(Printer):
         return f"transpose({value.name})" if is_uniform else value.name
 
     def print_function(self, function: ir.Function) -> list[Line]:
-        """A function, behind those that give the sizes of the textures that it asks for."""
+        """A function, after those that return the sizes of its textures."""
         wanted = [texture for texture in hlsl_sizes.asked(function) if texture not in self.sized]
         self.sized.update(wanted)
         before = [line for texture in wanted for line in hlsl_sizes.definition(texture)]
         return [*before, *super().print_function(function)]
 
     def statement(self, stmt: ir.Stmt, indent: int) -> list[Line]:
-        """A statement; a loop with how it is to be compiled, as FXC would try to unroll a march of 64 steps."""
+        """A statement; a loop with an attribute, as FXC would try to unroll 64 steps of a ray march."""
         lines = super().statement(stmt, indent)
         if isinstance(stmt, ir.For | ir.While):
             lines.insert(0, Line(f"{'    ' * indent}{'[unroll]' if self.is_short(stmt) else '[loop]'}", stmt.span))
@@ -89,7 +89,7 @@ class HlslPrinter(Printer):
         return abs(bound.value - start.value) <= LONGEST_UNROLLED
 
     def print_uniforms(self, members: list[Member]) -> list[Line]:
-        """The constant buffer; where a shell has one of its own (Unity), its members alone."""
+        """The constant buffer; only its members where the shell declares the buffer (Unity)."""
         lines: list[Line] = []
         bindings = self.target.bindings
         pad = "    " if bindings.material_block else ""
@@ -106,7 +106,7 @@ class HlslPrinter(Printer):
         return lines
 
     def print_textures(self, textures: list[ir.Uniform]) -> list[Line]:
-        """The textures and their samplers, as the descriptor writes them."""
+        """The textures and their samplers, by the pattern of the descriptor."""
         pattern = self.target.textures.declaration
         lines: list[Line] = []
         for binding, texture in enumerate(textures):

@@ -1,7 +1,7 @@
 """The entry function of a stage in HLSL: semantics for locations and builtins, a struct for several outputs.
 
-A vertex shader's attributes are ATTR0, ATTR1, …, what goes from stage to stage TEXCOORD0, …, colours SV_Target0, …,
-each by its location.
+A vertex shader's attributes are ATTR0, ATTR1, …, the values between stages TEXCOORD0, …, colours SV_Target0, …, each
+numbered by its location.
 """
 
 from __future__ import annotations
@@ -12,37 +12,37 @@ from sssgen.passes.stage.stage_interface import Slot, Stage
 from sssgen.targets.entry_points import (
     adjusted,
     depth_halved,
-    given_type,
     is_count,
     member,
     names_of,
+    parameter_type,
     parameters,
     place_text,
 )
 from sssgen.targets.printer import Line, Printer, wrap
 
 _INTERPOLATION = {"flat": "nointerpolation ", "noperspective": "noperspective ", "centroid": "centroid "}
-_GIVEN = {"vertex": "ATTR", "fragment": "TEXCOORD"}
-_MADE = {"vertex": "TEXCOORD", "fragment": "SV_Target"}
+_INPUT_SEMANTICS = {"vertex": "ATTR", "fragment": "TEXCOORD"}
+_OUTPUT_SEMANTICS = {"vertex": "TEXCOORD", "fragment": "SV_Target"}
 
 
 def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> list[Line]:
     """The lines of the entry `name`; `resolution` is how that uniform is read."""
     taken = names_of(printer.module) | {name}
     builtins = printer.target.stage_builtins
-    given = parameters(stage, taken)
+    entry_parameters = parameters(stage, taken)
 
     def declared(slot: Slot, name: str, semantics: str) -> str:
         semantic = f"{semantics}{slot.location}" if slot.location >= 0 else builtins[slot.variable.builtin]
         word = "flat" if kind_of(slot.type) in ("int", "uint") else slot.variable.interpolation
         sampled = _INTERPOLATION[word] if semantics == "TEXCOORD" and slot.location >= 0 and word else ""
-        return f"{sampled}{printer.variable(given_type(slot), name)} : {semantic}"
+        return f"{sampled}{printer.variable(parameter_type(slot), name)} : {semantic}"
 
-    params = ", ".join([declared(one.slot, one.name, _GIVEN[stage.kind]) for one in given])
+    params = ", ".join([declared(slot, name, _INPUT_SEMANTICS[stage.kind]) for name, slot in entry_parameters])
     body = []
-    for one in given:
-        value = f"{printer.type(INT)}({one.name})" if is_count(one.slot) else one.name
-        body.append(f"{place_text(one.slot)} = {value};")
+    for parameter, slot in entry_parameters:
+        value = f"{printer.type(INT)}({parameter})" if is_count(slot) else parameter
+        body.append(f"{place_text(slot)} = {value};")
     body += [
         *adjusted(stage, resolution, True),
         f"{printer.by_key[stage.function].name}();",
@@ -51,7 +51,7 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
     lines: list[Line] = []
     if len(stage.outputs) == 1:
         (slot,) = stage.outputs
-        head, _, semantic = declared(slot, "result", _MADE[stage.kind]).partition(" result : ")
+        head, _, semantic = declared(slot, "result", _OUTPUT_SEMANTICS[stage.kind]).partition(" result : ")
         signature = f"{head} {name}({params}) : {semantic} {{"
         body.append(f"return {place_text(slot)};")
     elif stage.outputs:
@@ -61,7 +61,7 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
         while result in taken:
             result += "_"
         lines.append(Line(f"struct {struct} {{"))
-        lines += [Line(f"    {declared(slot, member(slot), _MADE[stage.kind])};") for slot in stage.outputs]
+        lines += [Line(f"    {declared(slot, member(slot), _OUTPUT_SEMANTICS[stage.kind])};") for slot in stage.outputs]
         lines += [Line("};"), Line("")]
         signature = f"{struct} {name}({params}) {{"
         body += [f"{struct} {result};"]

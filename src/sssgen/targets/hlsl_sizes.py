@@ -1,6 +1,6 @@
-"""The size of a texture in HLSL, which has it in a statement only: each kind that is asked for gets a function.
+"""The size of a texture in HLSL, where only a statement gives it: each type of texture gets a function.
 
-The intrinsic table calls that function `texture_size`; the descriptor keeps other names clear of it.
+The intrinsic table calls that function `texture_size`; the descriptor reserves the name.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from sssgen.targets.printer import Line
 
 
 def asked(function: ir.Function) -> list[str]:
-    """The types of the textures whose size a function asks for, as HLSL spells them, each once."""
+    """The types, in HLSL, of the textures whose size a function reads, without duplicates."""
     found: dict[str, None] = {}
     for expr in all_expressions(function.body or ()):
         if isinstance(expr, ir.Intrinsic) and expr.name == "textureSize" and isinstance(expr.args[0].type, Sampler):

@@ -35,13 +35,13 @@ __all__ = [
 
 @silent
 def floatBitsToInt(x: Value) -> Value:
-    """Of x rounded to float32."""
+    """The bits of x rounded to float32."""
     return x.astype(np.float32).view(np.int32)
 
 
 @silent
 def floatBitsToUint(x: Value) -> Value:
-    """Of x rounded to float32."""
+    """The bits of x rounded to float32."""
     return x.astype(np.float32).view(np.uint32)
 
 
@@ -59,12 +59,12 @@ def uintBitsToFloat(x: Value) -> Value:
 
 
 def _shifts(size: int) -> Value:
-    """Where each part of a uint begins, in parts of `size` bits."""
+    """The offsets of the parts of a uint, each of `size` bits."""
     return (size * np.arange(32 // size)).astype(np.uint32)
 
 
 def _pack(parts: Value) -> Value:
-    """A uint of the components' low bits: of 16 bits each if there are two, of 8 if there are four."""
+    """A uint of the components' low bits: 16 bits each if there are two, 8 bits if there are four."""
     size = 32 // len(parts)
     low = parts.astype(np.int64).astype(np.uint32) & np.uint32((1 << size) - 1)
     shifts = _shifts(size).reshape(-1, *(1,) * (low.ndim - 1))
@@ -152,7 +152,7 @@ def findLSB(x: Value) -> Value:
 
 @silent
 def findMSB(x: Value) -> Value:
-    """Of a negative int that of the highest 0."""
+    """For a negative int, the highest bit that is 0."""
     bits = to_uint(x ^ (x >> 31) if x.dtype.kind == "i" else x)
     for step in (1, 2, 4, 8, 16):
         bits = bits | bits >> step
@@ -169,7 +169,7 @@ def bitfieldReverse(x: Value) -> Value:
 
 @silent
 def bitfieldExtract(x: Value, offset: Value, bits: Value) -> Value:
-    """Outside of 0 to 32, anything."""
+    """Undefined outside of 0 to 32."""
     offset, bits = _places(offset, bits)
     field = x.astype(np.int64) >> offset & (1 << bits) - 1
     if x.dtype.kind == "i":
@@ -179,7 +179,7 @@ def bitfieldExtract(x: Value, offset: Value, bits: Value) -> Value:
 
 @silent
 def bitfieldInsert(x: Value, inserted: Value, offset: Value, bits: Value) -> Value:
-    """Outside of 0 to 32, anything."""
+    """Undefined outside of 0 to 32."""
     offset, bits = _places(offset, bits)
     mask = (1 << bits) - 1 << offset
     return (x.astype(np.int64) & ~mask | inserted.astype(np.int64) << offset & mask).astype(x.dtype)

@@ -18,7 +18,7 @@ _NAMES = {"not": "not_", "any_lane": "any"}
 
 
 class NumpyExpressions(Printer):
-    """Prints the expressions of one module; `numbers` knows where a literal needs its type said."""
+    """Prints the expressions of one module; `numbers` knows which literals need an explicit type."""
 
     def __init__(self, target: Target, module: ir.Module) -> None:
         super().__init__(target, module)
@@ -29,7 +29,7 @@ class NumpyExpressions(Printer):
         return repr(literal.value)
 
     def typed(self, *exprs: ir.Expr) -> list[str]:
-        """Texts of values that go somewhere together: of uints that are all plain, one says its type."""
+        """Texts of operands: of uints that are all plain numbers, one has an explicit type."""
         texts = [self.expr(expr) for expr in exprs]
         plain = [index for index, expr in enumerate(exprs) if kind_of(expr.type) == "uint" and self.numbers.plain(expr)]
         if plain and not any(kind_of(expr.type) == "uint" and not self.numbers.plain(expr) for expr in exprs):
@@ -75,7 +75,7 @@ class NumpyExpressions(Printer):
         kind, plain = kind_of(left.type), self.numbers.plain(left) and self.numbers.plain(right)
         function = self.operator_function(binary, plain)
         if function:
-            # what is shifted and the count may be of two types: neither tells the other's
+            # the value and the count may have different types: neither determines the other's
             texts = [*self.typed(left), *self.typed(right)] if op in ("<<", ">>") else self.typed(left, right)
             text = f"{function}({', '.join(texts)})"
             return (f"not_({text})" if op == "!=" else text), PRIMARY
@@ -94,12 +94,12 @@ class NumpyExpressions(Printer):
         return text, level
 
     def operand(self, expr: ir.Expr, op: str, least: int) -> str:
-        """An operand; around operators on bits, whose precedence differs from GLSL's, always in parentheses."""
+        """An operand; always in parentheses around bitwise operators, whose precedence differs from GLSL's."""
         mixed = isinstance(expr, ir.Binary) and expr.op != op and (op in _BITS or expr.op in _BITS)
         return self.expr(expr, UNARY if mixed else least)
 
     def operator_function(self, binary: ir.Binary, plain: bool) -> str:
-        """The runtime's function for an operator that Python's own does not stand for, else ''."""
+        """The runtime's function for an operator that differs from Python's own; else ''."""
         op, left, right = binary.op, binary.left, binary.right
         if op in ("==", "!="):
             return "" if isinstance(left.type, Scalar) else "equals"
@@ -154,7 +154,7 @@ class NumpyExpressions(Printer):
         return f'swizzle({part}, "{"xyzw"[:size]}")', PRIMARY
 
     def converted(self, kind: str, *args: ir.Expr) -> str:
-        """The arguments of a constructor, each as its kind."""
+        """The arguments of a constructor, each converted to its kind."""
         texts = self.typed(*args)
         foreign = [kind_of(arg.type) != kind for arg in args]
         return ", ".join(f"to_{kind}({text})" if far else text for text, far in zip(texts, foreign, strict=True))

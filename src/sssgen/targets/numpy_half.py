@@ -1,4 +1,4 @@
-"""NumPy's text with the guards of half precision, which the harness runs on float16; no target for users."""
+"""NumPy with the guards of half precision, which the harness runs on float16; not a target for users."""
 
 from __future__ import annotations
 
@@ -7,6 +7,6 @@ from sssgen.targets.registry import load
 
 
 def target() -> Target:
-    """The target `numpy`, told that its numbers are halves."""
+    """The target `numpy` in half precision."""
     double = load("numpy")
     return double._replace(name="numpy-f16", title="NumPy in half precision", half_of=double.name)

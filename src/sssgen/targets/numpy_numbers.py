@@ -1,10 +1,9 @@
 """Which values may be plain Python numbers when the code printed for NumPy runs.
 
-Plain numbers adapt to the element type of what they meet, so literals stay as short as they are. But a plain
-int does not wrap at 32 bits, a plain division by 0 raises an error, and nothing tells a plain uint from an
-int. Where only plain numbers meet, the printer therefore goes through the runtime; this says where. What
-functions are called with from outside the module is taken to be NumPy's; uniforms may be plain floats and
-ints.
+Plain numbers adapt to the element type of the arrays that they are combined with, so literals stay short. But a plain
+int does not wrap at 32 bits, a plain division by 0 raises an error, and a plain uint is not distinguishable from an
+int. Where all operands are plain numbers, the printer therefore calls the runtime; this module finds these places. The
+arguments of calls from outside the module are assumed to be arrays; uniforms may be plain floats and ints.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ from sssgen.passes.numpy.uniformity import count
 
 
 class Numbers:
-    """The plain numbers of one module; `enter` says which function is looked at."""
+    """The plain numbers of one module; `enter` selects the function."""
 
     def __init__(self, module: ir.Module) -> None:
         self.constants = {constant.name: constant.value for constant in module.constants}
@@ -25,7 +24,7 @@ class Numbers:
         self.plain_results: set[str] = set()
         self.locals: dict[str, set[str]] = {function.key: set() for function in module.functions}
         self.counters: dict[str, dict[str, int | None]] = {}
-        """For each function its loop counters and the like, and how large they may get."""
+        """For each function its loop counters and similar variables, and their largest magnitude."""
         self.ranges: dict[str, set[str]] = {function.key: set() for function in module.functions}
         """For each function the counters that run through a Python range."""
         self.key = ""
@@ -51,7 +50,7 @@ class Numbers:
                 self.ranges[self.key].add(counter.name)
 
     def look(self, function: ir.Function) -> bool:
-        """Goes once through a function; whether that found something new."""
+        """Visits a function once; returns whether that found something new."""
         self.enter(function)
         names = self.locals[self.key]
         before = len(names), len(self.plain_params), len(self.plain_results)
@@ -105,7 +104,7 @@ class Numbers:
         return isinstance(expr, ir.Member)
 
     def may_wrap(self, expr: ir.Expr) -> bool:
-        """Whether integer arithmetic on plain numbers may leave the range of an int."""
+        """Whether integer arithmetic on plain numbers may exceed the range of an int."""
         bound = self.bound(expr)
         return bound is None or bound > 0x7FFFFFFF
 
@@ -127,11 +126,11 @@ class Numbers:
 
 
 _STEPPED = 1 << 30
-"""What a variable that is only ever stepped by a little stays below: it would take millions of steps."""
+"""The bound of a variable that only changes by small steps: to exceed it takes millions of steps."""
 
 
 def _steppers(function: ir.Function) -> set[str]:
-    """The int variables that start from small literals and are only stepped by small ones."""
+    """The int variables that start from small literals and only change by small ones."""
     found = {stmt.name for stmt in statements(function.body or ()) if isinstance(stmt, ir.Declare) and stmt.type == INT}
 
     def small(expr: ir.Expr, name: str, largest: int) -> bool:

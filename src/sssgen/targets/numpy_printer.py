@@ -1,10 +1,10 @@
 """Prints Python on NumPy arrays: the oracle that the other targets are compared with.
 
-It prints modules that `passes.predicate` has been through: a function takes arrays with the lanes on the last
-axis (see `numpy_values`) and returns its result, then its out and inout parameters. Values are never changed
-in place, so that variables may share them: `v.x = 1.0` is `v = store_swizzle(v, "x", 1.0)`. Uniforms that are
-no parameters are read as the module's globals; constants that are no plain numbers are made in each function
-that uses them, as their element type is that of `with precision(…)` around the call.
+It prints modules that the pass `predicate` returned: a function takes arrays with the lanes on the last axis (see
+`numpy_values`) and returns its result, then its out and inout parameters. Values are never changed in place, so that
+variables may share them: `v.x = 1.0` is `v = store_swizzle(v, "x", 1.0)`. Uniforms that are not parameters are globals
+of the module; constants that are not plain numbers are computed in each function that uses them, as their element type
+is that of `with precision(…)` around the call.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from sssgen.targets.uniform_layout import Member
 
 
 def print_functions(module: ir.Module) -> str:
-    """A whole Python module with the functions of a module that is predicated and has legal names."""
+    """A whole Python module with the functions of a predicated module with legal names."""
     printer = NumpyPrinter(load("numpy"), module)
     parts = [[line for constant in module.constants for line in printer.print_constant(constant)]]
     parts += [printer.print_function(function) for function in module.functions]
@@ -80,7 +80,7 @@ class NumpyPrinter(NumpyExpressions):
 
     def loop_header(self, loop: ir.For) -> str:
         counter = count(loop)
-        assert counter is not None  # other loops have become while
+        assert counter is not None  # all other loops are while loops by now
         start, stop = self.expr(counter.start), self.expr(counter.stop, PYTHON_PRECEDENCE["+"])
         beyond = {"<=": 1, ">=": -1}.get(counter.op, 0)
         if beyond and isinstance(counter.stop, ir.Literal):
@@ -107,7 +107,7 @@ class NumpyPrinter(NumpyExpressions):
         return super().simple(stmt)
 
     def assignment(self, names: list[str], value: ir.Expr) -> str:
-        """`name = value`, or `name, out = call` where the call gives more than its result."""
+        """`name = value`, or `name, out = call` where the call returns more than its result."""
         if isinstance(value, ir.Call):
             params = self.by_key[value.function].params
             outs = [arg for arg, param in zip(value.args, params, strict=True) if param.direction != "in"]
@@ -116,7 +116,7 @@ class NumpyPrinter(NumpyExpressions):
         return f"{', '.join(names)} = {given}" if names else given
 
     def store(self, target: ir.Expr, value: str) -> str:
-        """The assignment that puts a new value into a variable or a part of one."""
+        """The assignment of a new value to a variable or a part of one."""
         if isinstance(target, ir.Swizzle):
             return self.store(target.value, f'store_swizzle({self.expr(target.value)}, "{target.components}", {value})')
         if isinstance(target, ir.Index):
@@ -155,7 +155,7 @@ class NumpyPrinter(NumpyExpressions):
         return lines if len(lines) > 2 else [*lines, Line("    pass")]
 
     def local_constants(self, function: ir.Function) -> list[str]:
-        """The constants that a function has to make, each after those it needs."""
+        """The constants that a function has to compute, each after those that it depends on."""
         found: dict[str, None] = {}
 
         def need(name: str) -> None:
@@ -171,7 +171,7 @@ class NumpyPrinter(NumpyExpressions):
         return list(found)
 
     def shared(self, constant: ir.Constant) -> bool:
-        """Whether a constant is the same in every precision, so that the module can hold it."""
+        """Whether a constant is the same in every precision, so that it can be a global of the module."""
         return isinstance(constant.type, Scalar) and (
             constant.type.kind != "float" or self.numbers.plain(constant.value)
         )
@@ -187,7 +187,7 @@ class NumpyPrinter(NumpyExpressions):
         return [Line(f"# {struct.type.name}: Record({fields})", struct.span)]
 
     def print_uniforms(self, members: list[Member]) -> list[Line]:
-        """Each uniform with its default, for the caller to set another."""
+        """Each uniform with its default, which the caller may replace."""
         lines = []
         for uniform in (member.uniform for member in members):
             words = summary(uniform.doc)
@@ -196,5 +196,5 @@ class NumpyPrinter(NumpyExpressions):
         return lines
 
     def print_textures(self, textures: list[ir.Uniform]) -> list[Line]:
-        """Each texture as one texel of its default, for the caller to set another."""
+        """Each texture as one texel of its default, which the caller may replace."""
         return [Line(f"{texture.name} = {texture_text(texture)}", texture.span) for texture in textures]

@@ -1,4 +1,4 @@
-"""The builtins that look at textures or neighbours, for Python printed from a shader."""
+"""The builtins that read textures or neighbouring lanes, for Python printed from a shader."""
 
 from __future__ import annotations
 
@@ -38,16 +38,16 @@ __all__ = [
     "textureSize",
 ]
 
-# Texture reads; see `Texture` for what they do
+# Texture reads; see `Texture`
 
 
 def _level(level: Value) -> int:
-    """The level of all lanes: that of the first."""
+    """The level of all lanes, taken from the first."""
     return int(np.ravel(level)[0])
 
 
 def textureSize(texture: Texture, level: Value) -> Value:
-    """Of one level for all lanes."""
+    """The level is the same in all lanes."""
     count = (len(texture.levels[0]),) if texture.layers else ()
     return np.array((*texture.size(_level(level)), *count), np.int32)[:, None]
 
@@ -57,13 +57,13 @@ def textureQueryLevels(texture: Texture) -> Value:
 
 
 def textureQueryLod(texture: Texture, coord: Value) -> Value:
-    """The level that is read, and the one that derivatives give; it needs a `grid`."""
+    """The level that is read, and the one that follows from the derivatives; needs a `grid`."""
     level = texture.level(coord, dFdx(coord), dFdy(coord))
     return np.stack([np.clip(level, 0.0, len(texture.levels) - 1), level])
 
 
 def _by_derivatives(texture: Texture, coord: Value, bias: Value) -> Value:
-    """The level that a read takes by itself. With mipmaps it needs a `grid`, whose derivatives tell it."""
+    """The implicit level of a read. With mipmaps it needs a `grid`, for the derivatives."""
     if len(texture.levels) == 1:
         return 0.0
     place = coord[: texture.axes]
@@ -71,8 +71,8 @@ def _by_derivatives(texture: Texture, coord: Value, bias: Value) -> Value:
 
 
 def texture(texture: Texture, coord: Value, bias: Value = 0.0) -> Value:
-    """With mipmaps it needs a `grid`, from whose derivatives the level comes. A texture that compares has the reference
-    as the last component."""
+    """With mipmaps it needs a `grid`, for the derivatives. For a texture that compares, the last component is the
+    reference."""
     if texture.compare:
         return textureCompare(texture, coord[:-1], coord[-1])
     return texture.sample(coord, _by_derivatives(texture, coord, bias))
@@ -104,7 +104,7 @@ def textureGradOffset(texture: Texture, coord: Value, dx: Value, dy: Value, offs
 
 
 def texelFetch(texture: Texture, place: Value, level: Value) -> Value:
-    """Of one level for all lanes; 0 outside of it. In the working precision."""
+    """The level is the same in all lanes; 0 outside of it. In the working precision."""
     texels = texture.fetch(place, _level(level))
     return texels if texels.dtype.kind in "iu" else texels.astype(working())
 
@@ -114,7 +114,7 @@ def texelFetchOffset(texture: Texture, place: Value, level: Value, offset: Value
 
 
 def textureGather(texture: Texture, coord: Value, channel: Value = 0) -> Value:
-    """Of one channel for all lanes, at level 0."""
+    """The channel is the same in all lanes; at level 0."""
     return texture.gather(coord, _level(channel))
 
 
@@ -124,7 +124,7 @@ def textureGatherOffset(texture: Texture, coord: Value, offset: Value, channel: 
 
 
 def _first(offset: Value) -> Value:
-    """The offset of all lanes, (2, 1) or (3, 1): that of the first."""
+    """The offset of all lanes, (2, 1) or (3, 1), taken from the first."""
     return np.asarray(offset).reshape(len(offset), -1)[:, :1]
 
 
@@ -149,7 +149,7 @@ def texelFetchLayer(texture: Texture, place: Value, layer: Value, level: Value) 
 
 
 def textureCompare(texture: Texture, coord: Value, *rest: Value) -> Value:
-    """At level 0, as depth textures have no other here. `rest`: a layer where there are layers, the reference."""
+    """At level 0, the only one of depth textures here. `rest`: a layer where there are layers, then the reference."""
     *layer, reference = rest
     whole = _with(coord, *layer)
     return texture.sample(whole, 0.0, reference=np.asarray(reference, whole.dtype))[0]
@@ -159,7 +159,7 @@ textureCompareLod = textureCompare
 
 
 def _with(coord: Value, *more: Value) -> Value:
-    """A coordinate with further components."""
+    """A coordinate with more components."""
     lanes = np.broadcast_shapes(coord.shape[-1:], *(np.shape(one)[-1:] for one in more))
     parts = [np.broadcast_to(np.asarray(one).astype(coord.dtype), lanes) for one in (*coord, *more)]
     return np.stack(parts)

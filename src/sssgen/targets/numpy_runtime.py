@@ -1,8 +1,8 @@
-"""What Python printed from a shader calls: the builtins here, and from `numpy_values` the constructors and operators.
+"""The functions that Python printed from a shader calls: builtins here, constructors and operators in `numpy_values`.
 
 Each function of the intrinsic table has the builtin's own name (`not_` for `not`), and so hides Python's here; those of
-bits stand in `numpy_bits`, texture reads and derivatives in `numpy_reads`. The semantics are those of GLSL; where it
-leaves a result open, the function says what it gives.
+bits are in `numpy_bits`, texture reads and derivatives in `numpy_reads`. The semantics are those of GLSL; where it
+leaves a result undefined, the docstring states it.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from sssgen.targets.numpy_textures import Texture as Texture
 from sssgen.targets.numpy_values import *
 from sssgen.targets.numpy_values import Value, silent
 
-# 8.1 and 8.2 Trigonometry and exponentials: NumPy's own functions, outside their domain NaN or infinite
+# 8.1 and 8.2 Trigonometry and exponentials: NumPy's own functions, NaN or infinity outside of their domain
 
 sin, cos, tan = silent(np.sin), silent(np.cos), silent(np.tan)
 asin, acos = silent(np.arcsin), silent(np.arccos)
@@ -119,7 +119,7 @@ def step(edge: Value, x: Value) -> Value:
 
 @silent
 def smoothstep(x: Value, y: Value, z: Value) -> Value:
-    """By the formula also for x >= y, where GLSL leaves it open; NaN where z = x = y."""
+    """By the formula also for x >= y, where GLSL leaves the result undefined; NaN where z = x = y."""
     t = clamp((z - x) / (y - x), 0.0, 1.0)
     return t * t * (3.0 - 2.0 * t)
 
@@ -197,7 +197,7 @@ def determinant(x: Value) -> Value:
 
 @silent
 def inverse(x: Value) -> Value:
-    """Infinite or NaN where the determinant is 0."""
+    """Infinity or NaN where the determinant is 0."""
     cofactors = _cofactors(x)
     return transpose(cofactors) * (1.0 / _dot(x[0], cofactors[0]))
 

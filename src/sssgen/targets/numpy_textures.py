@@ -25,7 +25,7 @@ _FACES = np.array(
 
 
 class _Read(NamedTuple):
-    """What a filtered read has beside its coordinate and level."""
+    """The options of a filtered read."""
 
     layer: Array | None
     offset: Array | None
@@ -36,11 +36,11 @@ class Texture:
     """An image to sample.
 
     `data` is (height, width, channels), (depth, height, width, channels), or for `dim="Cube"` (6, size, size,
-    channels) with the faces +x, -x, +y, -y, +z, -z; row 0 is at v = 0. With `layers`, an axis for them stands in front.
+    channels) with the faces +x, -x, +y, -y, +z, -z; row 0 is at v = 0. With `layers`, the first axis is for them.
     Missing channels read as 0, alpha as 1.
     Texel i of N has its centre at (i + 0.5)/N. `filter` is linear or nearest; `wrap` is repeat, clamp or mirror (a cube
     wraps over its edges; at a corner one of the three faces gives the missing texel). With `mipmaps`, each level is
-    the box-filtered one before it, and reads blend the two nearest levels; without, there is level 0 alone.
+    box-filtered from the previous one, and reads blend the two nearest levels; without, there is only level 0.
     Samples have the floating-point type of the coordinate. `kind` is that of the texels: float, or int or uint, which
     are only fetched. With `compare`, a read compares: 1 where the reference is at most the texel's first channel, else
     0, and filters that.
@@ -88,7 +88,7 @@ class Texture:
         return shape[::-1]
 
     def _outer(self) -> int:
-        """How many axes there are before those of the texels' places: for layers, for a cube's faces."""
+        """How many axes precede those of the texels' places: for layers, for a cube's faces."""
         return self.layers + (self.dim == "Cube")
 
     def level(self, coord: Array, dx: Array, dy: Array) -> Array:
@@ -125,7 +125,7 @@ class Texture:
             return result
 
     def gather(self, coord: Array, channel: int, offset: Array | None = None) -> Array:
-        """One channel of the four texels, (4, n), that a linear filter takes at level 0: from the lower left one on,
+        """One channel of the four texels, (4, n), that a linear filter reads at level 0, in this order:
         (0, 1), (1, 1), (1, 0), (0, 0)."""
         with np.errstate(all="ignore"):
             low = [np.floor(c * n - 0.5) for c, n in zip(coord, self.size(), strict=True)]
@@ -215,7 +215,7 @@ def _whole(number: Array) -> Array:
 
 
 def _project(direction: Array) -> tuple[Array, Array]:
-    """The face that a direction meets, (n,), and the coordinates there in [0, 1], (2, n)."""
+    """The face that a direction hits, (n,), and the coordinates there in [0, 1], (2, n)."""
     along = np.einsum("fac,c...->fa...", _FACES.astype(direction.dtype), direction)
     face = np.argmax(np.nan_to_num(along[:, 2]), axis=0)
     s, t, m = np.take_along_axis(along, face[None, None], axis=0)[0]
@@ -223,9 +223,9 @@ def _project(direction: Array) -> tuple[Array, Array]:
 
 
 def _over_edges(places: list[Array], size: int, face: Array) -> list[Array]:
-    """Texels that may lie one beyond an edge of their face, as x, y and face of the ones there.
+    """Texels that may be one beyond an edge of their face, as x, y and face of the neighbouring texels.
 
-    The direction of the centre of a texel beyond the edge meets the neighbouring face within the texel wanted.
+    The direction of the centre of a texel beyond the edge hits the neighbouring face within the texel that is meant.
     """
     s, t = ((2.0 * p + 1.0) / size - 1.0 for p in places)
     axes = np.moveaxis(_FACES[face], 0, -1)

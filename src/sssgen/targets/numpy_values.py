@@ -1,16 +1,16 @@
 """Values for Python printed from a shader: their layout, constructors, parts and operators, on NumPy arrays.
 
-Values stand component first, with the lanes of the batch (one per pixel or point) on the last axis, so that scalars
+The components are on the first axes and the lanes of the batch (one per pixel or point) on the last, so that scalars
 broadcast against vectors and `m[i]` is a column:
 
 - a scalar has the shape () or (n,), a vector of K components (K, n), a K×K matrix (K, K, n) with axis 0 the column and
-  axis 1 the row; n may be 1 for what is the same in all lanes. An array has its length as an axis before these.
+  axis 1 the row; n may be 1 for a value that is the same in all lanes. An array has its length as an axis before these.
 - a struct is a `Record`.
 
 The element type follows the inputs: float64 for the oracle, float32 or float16 to see the rounding of a target. Plain
-Python numbers adapt to what they meet. Where nothing else says (a conversion from int, a vector of literals), it is the
-one of `with precision(numpy.float32):`, float64 by default, which also silences NumPy's warnings about overflow, NaN
-and division by 0; the functions of the runtime are silent everywhere. int is int32, uint is uint32, and both wrap.
+Python numbers adapt to the other operands. Where no operand determines it (a conversion from int, a vector of literals)
+it is that of `with precision(numpy.float32):`, float64 by default, which also silences NumPy's warnings about overflow,
+NaN and division by 0; the functions of the runtime are silent everywhere. int is int32, uint is uint32, and both wrap.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ image_shape: ContextVar[tuple[int, int] | None] = ContextVar("grid", default=Non
 
 @contextmanager
 def precision(dtype: npt.DTypeLike) -> Iterator[None]:
-    """Computes in this floating-point type where the inputs do not say, and without NumPy's warnings."""
+    """Computes in this floating-point type where the inputs do not determine one, and without NumPy's warnings."""
     token = _precision.set(np.dtype(dtype).name)
     try:
         with np.errstate(all="ignore"):
@@ -73,13 +73,13 @@ def precision(dtype: npt.DTypeLike) -> Iterator[None]:
 
 
 def working() -> np.dtype[Any]:
-    """The floating-point type where the inputs do not say."""
+    """The floating-point type where the inputs do not determine one."""
     return np.dtype(_precision.get())
 
 
 @contextmanager
 def grid(height: int, width: int) -> Iterator[None]:
-    """Says that the lanes are the pixels of an image, row by row from the bottom: derivatives need neighbours."""
+    """Declares the lanes to be the pixels of an image, row by row from the bottom: derivatives need neighbours."""
     token = image_shape.set((height, width))
     try:
         yield
@@ -88,7 +88,7 @@ def grid(height: int, width: int) -> Iterator[None]:
 
 
 class Record:
-    """A struct: its fields are attributes. A value: `replace` gives a changed copy."""
+    """A struct: its fields are attributes. It is immutable: `replace` returns a changed copy."""
 
     def __init__(self, **fields: Value) -> None:
         self.__dict__.update(fields)
@@ -119,7 +119,7 @@ def arrays(values: tuple[Value, ...]) -> list[Value]:
 
 
 def silent(function: Callable[..., Value]) -> Callable[..., Value]:
-    """Gives a function arrays for its arguments, and calls it without NumPy's warnings."""
+    """A function that gets arrays for its arguments and runs without NumPy's warnings."""
 
     @wraps(function)
     def call(*values: Value) -> Value:
@@ -177,19 +177,19 @@ def array(*elements: Value) -> Value:
 
 
 def to_float(value: Value) -> Value:
-    """`float(x)` and `vec3(ivec3)`: in the working precision; a Python number stays one."""
+    """`float(x)` and `vec3(ivec3)`: in the working precision; a Python number is kept as one."""
     if isinstance(value, int | float):
         return float(value)
     return value if value.dtype.kind == "f" else value.astype(working())
 
 
 def to_int(value: Value) -> Value:
-    """`int(x)`: cut off towards 0, and to the range of int; NaN gives 0. From uint: the same bits."""
+    """`int(x)`: truncated, and clamped to the range of int; NaN gives 0. From uint: the same bits."""
     return _to_integer(value, np.dtype(np.int32))
 
 
 def to_uint(value: Value) -> Value:
-    """`uint(x)`: cut off towards 0, and to the range of uint; NaN gives 0. From int: the same bits."""
+    """`uint(x)`: truncated, and clamped to the range of uint; NaN gives 0. From int: the same bits."""
     return _to_integer(value, np.dtype(np.uint32))
 
 
@@ -216,7 +216,7 @@ def swizzle(vector: Value, components: str) -> Value:
 
 
 def store_swizzle(vector: Value, components: str, value: Value) -> Value:
-    """The vector that `v.xy = value` leaves behind."""
+    """The vector after `v.xy = value`."""
     vector, value = arrays((vector, value))
     result = np.broadcast_to(vector, (len(vector), *np.broadcast_shapes(vector.shape[-1:], value.shape[-1:]))).copy()
     result[["xyzw".index(component) for component in components]] = value
@@ -224,7 +224,7 @@ def store_swizzle(vector: Value, components: str, value: Value) -> Value:
 
 
 def index(value: Value, place: Value) -> Value:
-    """`value[place]`, where each lane may have a place of its own; beyond the ends the nearest element."""
+    """`value[place]`, where each lane may have its own place; the nearest element where the place is out of range."""
     if isinstance(value, Record):
         return Record(**{name: index(part, place) for name, part in vars(value).items()})
     place = np.clip(place, 0, len(value) - 1)
@@ -235,7 +235,7 @@ def index(value: Value, place: Value) -> Value:
 
 
 def store_index(value: Value, place: Value, element: Value) -> Value:
-    """What `value[place] = element` leaves behind; beyond the ends nothing is stored."""
+    """The value after `value[place] = element`; nothing is stored where the place is out of range."""
     if isinstance(value, Record):
         return Record(**{name: store_index(part, place, getattr(element, name)) for name, part in vars(value).items()})
     element, value = np.asarray(element, value.dtype), np.asarray(value)
@@ -243,7 +243,7 @@ def store_index(value: Value, place: Value, element: Value) -> Value:
     return np.where(places == place, element, value)
 
 
-# Operators that Python's do not stand for
+# Operators that differ from Python's
 
 
 def select(mask: Value, yes: Value, no: Value) -> Value:
@@ -265,13 +265,13 @@ def equals(x: Value, y: Value) -> Value:
 
 @silent
 def divide(x: Value, y: Value) -> Value:
-    """`x / y` of floats; by 0 it gives an infinity or NaN, also for Python numbers."""
+    """`x / y` of floats; a division by 0 gives infinity or NaN, also for Python numbers."""
     return x / y
 
 
 @silent
 def int_divide(x: Value, y: Value) -> Value:
-    """`x / y` of integers, cut off towards 0; x / 0 is x, and -2147483648 / -1 is -2147483648, as in WGSL."""
+    """`x / y` of integers, truncated; x / 0 is x, and -2147483648 / -1 is -2147483648, as in WGSL."""
     divisor = np.where(y == 0, y.dtype.type(1), y)
     return (x - np.fmod(x, divisor)) // divisor
 
@@ -283,19 +283,19 @@ def int_remainder(x: Value, y: Value) -> Value:
 
 
 def _shifted(x: Value, count: Value) -> tuple[Value, Value]:
-    """What is shifted as an array, and the count's low five bits as one of the same type."""
+    """The shifted value as an array, and the low five bits of the count as an array of the same type."""
     (shifted,), (bits,) = arrays((x,)), arrays((count,))
     return shifted, (bits & 31).astype(shifted.dtype)
 
 
 def shift_left(x: Value, count: Value) -> Value:
-    """`x << count`; of the count the low five bits are taken, as in WGSL and HLSL."""
+    """`x << count`; only the low five bits of the count matter, as in WGSL and HLSL."""
     x, count = _shifted(x, count)
     return x << count
 
 
 def shift_right(x: Value, count: Value) -> Value:
-    """`x >> count`; fills with the sign for int. Of the count the low five bits are taken."""
+    """`x >> count`; fills with the sign for int. Only the low five bits of the count matter."""
     x, count = _shifted(x, count)
     return x >> count
 

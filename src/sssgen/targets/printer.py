@@ -1,7 +1,7 @@
-"""The precedence-aware printer that GLSL, HLSL and WGSL share. It prints legalised IR: there is nothing left to decide.
+"""The precedence-aware printer that GLSL, HLSL and WGSL share. It prints legalised IR and decides nothing.
 
-A language's printer overrides what differs: types, declarations, parameters, calls. Every line it gives carries the
-span of source that it came from.
+A language's printer overrides what differs: types, declarations, parameters, calls. Every printed line has the span of
+source that it came from.
 """
 
 from __future__ import annotations
@@ -29,17 +29,17 @@ UNARY, POSTFIX, PRIMARY, TERNARY = 13, 14, 15, -1
 _SUM, _RELATIONAL, _EQUALITY = PRECEDENCE["+"], PRECEDENCE["<"], PRECEDENCE["=="]
 _ALONE = frozenset(("<<", ">>", "&", "|", "^", "&&", "||"))
 _SMALLEST = 2.0**-126
-"""The smallest float32 that is no subnormal number."""
+"""The smallest normal float32."""
 WIDTH = 110
 """Lines longer than this are broken at a call's arguments."""
 
 
 Comments = Callable[[str, int], list[str]]
-"""Gives the author's comments before a line of a source file."""
+"""Returns the author's comments before a line of a source file."""
 
 
 def no_comments(file: str, line: int) -> list[str]:
-    """For modules that have no source at hand."""
+    """For modules without a source."""
     return []
 
 
@@ -54,9 +54,9 @@ class Printer:
     """Prints one module for one target."""
 
     constant = "const"
-    """What a module constant's declaration begins with."""
+    """The keyword of a module constant's declaration."""
     private = ""
-    """What a module variable's declaration begins with."""
+    """The keyword of a module variable's declaration."""
 
     def __init__(self, target: Target, module: ir.Module) -> None:
         self.target = target
@@ -65,13 +65,13 @@ class Printer:
         self.function: ir.Function | None = None
         self.comments: Comments = no_comments
         self.behind: Callable[[str, int], str] = lambda file, line: ""
-        """Gives the author's comment behind the code of a line."""
+        """Returns the author's comment behind the code of a line."""
         self.source: Callable[[ir.Span], str] = lambda span: ""
-        """Gives the line that a span begins on."""
+        """Returns the line of source that a span begins on."""
         self.told: set[tuple[str, int]] = set()
-        """The lines of the source whose comments stand in the function at hand."""
+        """The lines of the source whose comments are printed in the current function."""
         self.kept = False
-        """Whether the text is the author's: numbers have their digits, and every comment stays."""
+        """Whether the author's text is kept: numbers have their digits, and every comment stays."""
         self.texts: dict[tuple[str, tuple[Type, ...]], str] = {}
         self.stage: Stage | None = None
         """The interface of a whole shader."""
@@ -79,7 +79,7 @@ class Printer:
     # Types and literals
 
     def type(self, type_: Type) -> str:
-        """The type as the target writes it."""
+        """The type in the target's language."""
         if isinstance(type_, Struct):
             return type_.name
         if isinstance(type_, Array):
@@ -89,12 +89,12 @@ class Printer:
         return self.target.types[spell(type_)]
 
     def sampler_type(self, type_: Type) -> str:
-        """The type of a texture's sampler, where that is a thing of its own: one that compares has another."""
+        """The type of a texture's separate sampler; one that compares has another type."""
         compares = isinstance(type_, Sampler) and type_.shadow
         return self.target.types.get("samplerShadow" if compares else "sampler", "")
 
     def variable(self, type_: Type, name: str) -> str:
-        """A declaration of a variable: C puts an array's length behind the name."""
+        """A variable's declaration; in C the length of an array follows the name."""
         if isinstance(type_, Array):
             return f"{self.type(type_.element)} {name}[{type_.length}]"
         return f"{self.type(type_)} {name}"
@@ -105,19 +105,19 @@ class Printer:
         if literal.type == INT:
             return str(literal.value) if literal.value != -2147483648 else "(-2147483647 - 1)"
         if literal.type == UINT:
-            # large ones are bits, not counts
+            # large numbers are bit patterns
             return f"{literal.value:#x}u" if literal.value >= 1 << 16 else f"{literal.value}u"
         return "true" if literal.value else "false"
 
     # Expressions
 
     def expr(self, expr: ir.Expr, least: int = TERNARY) -> str:
-        """The expression's text, in parentheses where it binds less tightly than `least`."""
+        """The expression's text, in parentheses if its precedence is below `least`."""
         text, binding = self.bound(expr)
         return text if binding >= least else f"({text})"
 
     def bound(self, expr: ir.Expr) -> tuple[str, int]:
-        """The expression's text and how tightly it binds."""
+        """The expression's text and its precedence."""
         kind = type(expr)
         if kind is ir.Local:
             return self.local(expr), PRIMARY  # type: ignore[arg-type]  # narrowed by its exact class
@@ -134,8 +134,8 @@ class Printer:
                 if written == letters.translate(_COLOR_LETTERS):
                     return f"{self.expr(expr.value, POSTFIX)}.{written}", POSTFIX
             texel = isinstance(expr.value, ir.Intrinsic) and BUILTINS[expr.value.name].kind == "fetch"
-            if texel and components(expr.value.type) == 4:  # a size is none
-                letters = letters.translate(_COLOR_LETTERS)  # a texel's channels are colours to a reader
+            if texel and components(expr.value.type) == 4:
+                letters = letters.translate(_COLOR_LETTERS)  # readers expect colour channels of a texel
             return f"{self.expr(expr.value, POSTFIX)}.{letters}", POSTFIX
         if isinstance(expr, ir.Global):
             return self.global_value(expr), PRIMARY
@@ -163,9 +163,9 @@ class Printer:
         return value.name
 
     def binary(self, binary: ir.Binary) -> tuple[str, int]:
-        """In parentheses go what binds too loosely, and what few know the precedence of: bits, shifts, && beside ||.
+        """Parentheses are around operands of lower precedence, and around bitwise operators, shifts, and && next to ||.
 
-        WGSL, which mixes none of these without them, and compilers' warnings ask for the same.
+        WGSL demands the latter, compilers warn without them, and few readers know these precedences.
         """
         op, level = binary.op, PRECEDENCE[binary.op]
         least, least_right = level, level + 1
@@ -188,7 +188,7 @@ class Printer:
         return self.listed([self.expr(arg) for arg in args])
 
     def listed(self, texts: list[str]) -> str:
-        """Arguments one after the other."""
+        """The arguments, separated by commas."""
         return ", ".join(texts)
 
     def construct(self, construct: ir.Construct) -> tuple[str, int]:
@@ -200,13 +200,13 @@ class Printer:
         return f"{function.name}({self.listed(args)})"
 
     def argument(self, arg: ir.Expr, param: ir.Param) -> str:
-        """What is passed for a parameter of one of the module's own functions."""
+        """The argument for a parameter of one of the module's own functions."""
         if isinstance(arg.type, Sampler) and isinstance(arg, ir.Global | ir.Local):
             return self.target.textures.argument.format(name=arg.name, sampler=self.sampler(arg.name))
         return self.expr(arg)
 
     def intrinsic(self, call: ir.Intrinsic) -> tuple[str, int]:
-        """A builtin, as the intrinsic table says for this language."""
+        """A builtin, by the intrinsic table's text for this language."""
         text = self.builtin_text(call.name, tuple([arg.type for arg in call.args]))
         if "{" not in text:
             return f"{text}({self.arguments(call.args)})", PRIMARY
@@ -226,14 +226,14 @@ class Printer:
         return text.format(*args, type=self.type(call.type), **named), PRIMARY
 
     def builtin_text(self, name: str, types: tuple[Type, ...]) -> str:
-        """How the language writes a builtin of these types."""
+        """The language's text for a builtin of these types."""
         known = self.texts.get((name, types))
         if known is None:
             known = self.texts[name, types] = signatures.text(name, self.target.dialect, types)
         return known
 
     def sampler(self, texture: str) -> str:
-        """The name of a texture's sampler, where they are two things."""
+        """The name of a texture's separate sampler."""
         return self.target.textures.sampler.format(name=texture)
 
     # Statements
@@ -345,7 +345,7 @@ class Printer:
         return lines
 
     def doc_of(self, function: ir.Function) -> list[str]:
-        """What is said of a function before it: its author's words, or the first sentence."""
+        """The comment before a function: its author's, or the first sentence of its documentation."""
         if not self.kept:
             return summary(function.doc)
         lines = [comment_text(line.rstrip()) for line in function.doc.strip("\n").split("\n")]
@@ -357,7 +357,7 @@ class Printer:
         return [Line(f"struct {struct.type.name} {{", struct.span), *fields, Line("};")]
 
     def print_uniforms(self, members: list[Member]) -> list[Line]:
-        """The declarations of the uniforms that are no textures."""
+        """The declarations of the uniforms without textures."""
         raise NotImplementedError
 
     def print_textures(self, textures: list[ir.Uniform]) -> list[Line]:
@@ -365,7 +365,7 @@ class Printer:
         raise NotImplementedError
 
     def binding(self, index: int) -> dict[str, int | str]:
-        """Where the texture at `index` is bound, where the language has a place for it."""
+        """The bindings of the texture at `index`; empty where the text states none."""
         return {}
 
     def print_constant(self, constant: ir.Constant) -> list[Line]:
@@ -373,23 +373,23 @@ class Printer:
         return wrap(f"{self.constant} {declared} = {self.expr(constant.value)};", constant.span)
 
     def print_variable(self, variable: ir.Variable) -> list[Line]:
-        """A module variable; what it is bound to is the entry's."""
+        """A module variable."""
         value = f" = {self.expr(variable.value)}" if variable.value is not None else ""
         text = f"{self.private}{self.variable(variable.type, variable.name)}{value};"
         return self.with_comments(variable, wrap(text, variable.span))
 
     def with_comments(self, variable: ir.Variable, lines: list[Line]) -> list[Line]:
-        """A declaration under the author's comments on it."""
+        """A declaration after its author's comments."""
         told = [Line(f"// {comment_text(text)}") for text in self.comments(variable.span.file, variable.span.line)]
         return [*told, *lines]
 
     def print_entry(self, name: str) -> list[Line]:
-        """The function that the stage begins with, where that is not the author's own."""
+        """The entry function of the stage, where that is not the author's own."""
         return []
 
 
 def _channel(arg: ir.Expr) -> str:
-    """The colour that a literal int numbers; Red for anything else."""
+    """The name of the channel with this literal index; Red for any other expression."""
     number = int(arg.value) if isinstance(arg, ir.Literal) and arg.type == INT else 0
     return ("Red", "Green", "Blue", "Alpha")[number] if 0 <= number < 4 else "Red"
 
@@ -405,7 +405,7 @@ def float_text(value: float, kept: bool = False) -> str:
     """The shortest decimal that reads back to the same float32, always with a point; `kept`: to the same float64."""
     if kept and _SMALLEST <= abs(value) < FLOAT_MAX:
         return _with_point(repr(value))
-    if abs(value) > FLOAT_MAX:  # the largest float: any shorter decimal is beyond it, which WGSL refuses
+    if abs(value) > FLOAT_MAX:  # a shorter decimal would exceed the largest float, which WGSL refuses
         value = math.copysign(FLOAT_MAX, value)
     if abs(value) == FLOAT_MAX:
         return "-3.4028234e38" if value < 0.0 else "3.4028234e38"
@@ -436,7 +436,7 @@ def _with_point(text: str) -> str:
 
 
 def comment_text(text: str) -> str:
-    """Text that is safe in a line comment: a backslash at its end would draw the next line in."""
+    """Text that is safe in a line comment: a backslash at its end would continue the comment."""
     return text.rstrip("\\ ")
 
 
@@ -447,7 +447,7 @@ def summary(doc: str) -> list[str]:
 
 
 def wrap(text: str, span: ir.Span) -> list[Line]:
-    """Breaks a long line at the outermost commas and operators; what follows is indented once more."""
+    """Breaks a long line at the outermost commas and operators; the rest is indented once more."""
     if len(text) <= WIDTH:
         return [Line(text, span)]
     indent = len(text) - len(text.lstrip())
@@ -465,7 +465,7 @@ _BREAKS = (" + ", " - ", " * ", " ? ", " : ", " && ", " || ")
 
 
 def _break_place(text: str) -> int:
-    """Where to break a line: late in it, but first of all as little inside parentheses as can be; 0 for nowhere."""
+    """Where to break a line: inside as few parentheses as possible, then as late as possible; 0 for nowhere."""
     best, best_score, depth = 0, -1000.0, 0
     start = len(text) - len(text.lstrip()) + 8
     for index, char in enumerate(text[:WIDTH]):

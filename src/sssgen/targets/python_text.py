@@ -19,7 +19,7 @@ _BREAK = re.compile(r"[(\[]|[)\]]|(?<=,) | (?=[-+*/&|<>]+ )")
 
 
 def wrap(text: str, span: Span) -> list[Line]:
-    """Breaks a long line inside its outermost parentheses that help, after a comma or before an operator."""
+    """Breaks a long line inside the outermost parentheses that make it fit, after a comma or before an operator."""
     indent = " " * (len(text) - len(text.lstrip()) + 4)
     lines: list[Line] = []
     open_ = 0
@@ -39,7 +39,7 @@ def wrap(text: str, span: Span) -> list[Line]:
 
 
 def value_text(type_: Type, numbers: tuple[float, ...]) -> str:
-    """A value of the runtime from its components."""
+    """The text of a runtime value with these components."""
     if isinstance(type_, Array):
         size = components(type_.element)
         parts = [value_text(type_.element, numbers[at : at + size]) for at in range(0, len(numbers), size)]
@@ -57,7 +57,7 @@ def value_text(type_: Type, numbers: tuple[float, ...]) -> str:
 
 
 def texture_text(texture: Uniform) -> str:
-    """A texture of one texel of the default that its hints name."""
+    """The text of a texture with one texel: the default that its hints name."""
     assert isinstance(texture.type, Sampler)
     hints = {name for name, _ in texture.hints}
     texel = next((text for hint, text in _TEXELS.items() if hint in hints), _TEXELS["default_white"])

@@ -1,4 +1,4 @@
-"""The reflection JSON beside every shader: what the shader needs, where each line came from, and what it costs."""
+"""The reflection JSON of every shader: what the shader needs, the source of each line, and its static cost."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from sssgen.targets.descriptor import Target
 from sssgen.targets.texture_import import import_settings
 
 VERSION = 1
-"""The format's version; it grows when a reader of an older file would be wrong."""
+"""The format's version; it is increased when a reader of older files would misread newer ones."""
 
 
 def reflect(
@@ -82,7 +82,7 @@ def reflect(
 
 
 def _stage(program: Program) -> dict[str, Any]:
-    """What goes into a whole shader and comes out, beside its uniforms."""
+    """The inputs and outputs of a whole shader; its uniforms are listed apart."""
     if program.stage is None:
         return {}
     both = {"stage_inputs": program.stage.inputs, "stage_outputs": program.stage.outputs}
@@ -134,7 +134,7 @@ def _described(uniform: Uniform) -> dict[str, Any]:
 
 
 def _import(uniform: Uniform) -> dict[str, Any]:
-    """How an engine is to import what it binds to a texture."""
+    """The import settings of the image for a texture."""
     assert isinstance(uniform.type, Sampler)
     held = _has(uniform, "repeat_disable")
     wrap, mipmaps = "clamp" if held else "repeat", not held and uniform.type.dim != "3D"

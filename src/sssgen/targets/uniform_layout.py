@@ -1,7 +1,7 @@
-"""Where uniforms lie in a uniform block.
+"""The layout of a uniform block.
 
 std140 (OpenGL 4.6, section 7.6.2.2) is the rule that every API can be made to follow: WGSL's own alignment gives the
-same offsets for these types, and HLSL's packing does once explicit padding stands where it packs tighter.
+same offsets for these types, and HLSL's packing does with explicit padding where it packs tighter.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from sssgen.ir.types import Array, Matrix, Sampler, Type, components
 
 
 class Member(NamedTuple):
-    """A uniform in its block: byte offset and size, and the 4-byte words of padding HLSL needs before it."""
+    """A uniform in its block: byte offset and size, and how many 4-byte words of padding HLSL needs before it."""
 
     uniform: Uniform
     offset: int
@@ -49,7 +49,7 @@ def _alignment(type_: Type) -> int:
 
 
 def _size(type_: Type) -> int:
-    """The bytes that hold values."""
+    """How many bytes hold values."""
     if isinstance(type_, Matrix):
         return 16 * (type_.size - 1) + 4 * type_.size
     if isinstance(type_, Array):
@@ -63,7 +63,7 @@ def _std140_size(type_: Type, size: int) -> int:
 
 
 def _hlsl_offset(end: int, type_: Type, size: int) -> int:
-    """HLSL packs into 16-byte rows: a value may not straddle one; matrices and arrays start one."""
+    """HLSL packs into 16-byte rows: a value does not cross a row's end; matrices and arrays start a row."""
     if isinstance(type_, Matrix | Array):
         return _align(end, 16)
     return _align(end, 16) if end % 16 + size > 16 else end

@@ -1,6 +1,6 @@
-"""Prints WGSL, inside what naga and Tint both accept.
+"""Prints the subset of WGSL that naga and Tint both accept.
 
-Out parameters are pointers; what is never written after its declaration is a `let`; uniforms live in one struct.
+Out parameters are pointers; a variable that is assigned only once is a `let`; uniforms are in one struct.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ _TYPED = (ir.Local, ir.Global, ir.Call, ir.Construct)
 
 
 class WgslPrinter(Printer):
-    """Declarations and parameters are WGSL's own; expressions differ in conversions and selects."""
+    """Overrides declarations and parameters; expressions differ in conversions and selects."""
 
     def __init__(self, target: Target, module: ir.Module) -> None:
         super().__init__(target, module)
         self.uniforms = frozenset(uniform.name for uniform in module.uniforms)
         self.outs = outs_of(module.functions)
         self.assigned: set[str] = set()
-        """What the function at hand writes after its declaration."""
+        """The variables that the current function assigns to after their declaration."""
         self.pointers: set[str] = set()
-        """The parameters of the function at hand that are pointers."""
+        """The parameters of the current function that are pointers."""
 
     def type(self, type_: Type) -> str:
         if isinstance(type_, Array):
@@ -53,7 +53,7 @@ class WgslPrinter(Printer):
         return f"material.{value.name}" if in_block else value.name
 
     def intrinsic(self, call: ir.Intrinsic) -> tuple[str, int]:
-        """A builtin; naga cannot compute these two where all arguments are bare numbers, unless one has a type."""
+        """A builtin; naga evaluates these two with only literals as arguments if one has an explicit type."""
         text, binding = super().intrinsic(call)
         if call.name in ("mix", "smoothstep") and not any(isinstance(part, _TYPED) for part in subexpressions(call)):
             first = self.expr(call.args[0])
@@ -64,7 +64,7 @@ class WgslPrinter(Printer):
         return f"select({self.arguments((select.no, select.yes, select.condition))})", PRIMARY
 
     def listed(self, texts: list[str]) -> str:
-        """Arguments; `(x < y)` goes into parentheses, as `x < y, z > t` would be read as a template x<y, z>."""
+        """The arguments; `(x < y)` is in parentheses, as `x < y, z > t` would be read as a template x<y, z>."""
         return ", ".join([*(f"({text})" if _has_open_less(text) else text for text in texts[:-1]), *texts[-1:]])
 
     def argument(self, arg: ir.Expr, param: ir.Param) -> str:
@@ -83,7 +83,7 @@ class WgslPrinter(Printer):
         return f"{word} {declare.name} = {self.typed(declare.value, declare.type)}"
 
     def typed(self, value: ir.Expr, type_: Type) -> str:
-        """An initialiser: a bare literal would be abstract, which `i32` and `f32` default to anyway."""
+        """An initialiser. An untyped literal is abstract, for which `i32` and `f32` are the defaults anyway."""
         return self.expr(value)
 
     def param(self, param: ir.Param) -> str:
@@ -115,7 +115,7 @@ class WgslPrinter(Printer):
         return print_entry(self, self.stage, name, f"material.{self.stage.resolution}")
 
     def print_uniforms(self, members: list[Member]) -> list[Line]:
-        """The uniform struct; WGSL's own alignment rules give std140's offsets."""
+        """The uniform struct; WGSL's own alignment gives the offsets of std140."""
         if not members:
             return []
         lines = [Line("struct Material {")]
@@ -129,12 +129,12 @@ class WgslPrinter(Printer):
         """Each texture and its sampler, at the bindings after the uniform struct's."""
         lines = []
         for index, texture in enumerate(textures):
-            at = self.binding(index)
+            binding = self.binding(index)
             for half, name, type_ in (
                 ("texture", texture.name, self.type(texture.type)),
                 ("sampler", self.sampler(texture.name), self.sampler_type(texture.type)),
             ):
-                place = f"@group({at['group']}) @binding({at[half]})"
+                place = f"@group({binding['group']}) @binding({binding[half]})"
                 lines.append(Line(f"{place} var {name}: {type_};", texture.span))
         return lines
 
@@ -143,7 +143,7 @@ class WgslPrinter(Printer):
 
 
 def _has_open_less(text: str) -> bool:
-    """Whether a `<` stands in no parentheses."""
+    """Whether a `<` is outside of parentheses."""
     if " < " not in text:
         return False
     depth = 0

@@ -8,10 +8,10 @@ from sssgen.passes.stage.stage_interface import Slot, Stage
 from sssgen.targets.entry_points import (
     adjusted,
     depth_halved,
-    given_type,
     is_count,
     member,
     names_of,
+    parameter_type,
     parameters,
     place_text,
 )
@@ -24,20 +24,20 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
     """The lines of the entry `name`; `resolution` is how that uniform is read."""
     taken = names_of(printer.module) | {name}
     builtins = printer.target.stage_builtins
-    given = parameters(stage, taken)
+    entry_parameters = parameters(stage, taken)
 
     def declared(slot: Slot, name: str, varying: bool) -> str:
         if slot.location < 0:
-            return f"@builtin({builtins[slot.variable.builtin]}) {printer.variable(given_type(slot), name)}"
+            return f"@builtin({builtins[slot.variable.builtin]}) {printer.variable(parameter_type(slot), name)}"
         word = "flat" if kind_of(slot.type) in ("int", "uint") else slot.variable.interpolation
         sampled = f" @interpolate({_INTERPOLATION[word]})" if varying and word else ""
         return f"@location({slot.location}){sampled} {printer.variable(slot.type, name)}"
 
-    params = ", ".join([declared(one.slot, one.name, stage.kind == "fragment") for one in given])
+    params = ", ".join([declared(slot, name, stage.kind == "fragment") for name, slot in entry_parameters])
     body = []
-    for one in given:
-        value = f"{printer.type(INT)}({one.name})" if is_count(one.slot) else one.name
-        body.append(f"{place_text(one.slot)} = {value};")
+    for parameter, slot in entry_parameters:
+        value = f"{printer.type(INT)}({parameter})" if is_count(slot) else parameter
+        body.append(f"{place_text(slot)} = {value};")
     body += [
         *adjusted(stage, resolution, False),
         f"{printer.by_key[stage.function].name}();",

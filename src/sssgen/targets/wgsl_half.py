@@ -1,6 +1,6 @@
-"""WGSL with an f16 for every float: no target for users; the harness runs it to see techniques in half precision.
+"""WGSL with an f16 for every float: not a target for users; the harness runs it to test half precision.
 
-What WGSL has for float32 alone (texture reads, derivatives, the bits of numbers) is computed in it, and rounded.
+Builtins that WGSL has for float32 alone (texture reads, derivatives, bits of numbers) are computed in it and rounded.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from sssgen.targets.wgsl import WgslPrinter
 
 
 def target() -> Target:
-    """The target `wgsl` in half precision. It has the functions form alone: uniform blocks hold float32."""
+    """The target `wgsl` in half precision. It has only the functions form: uniform blocks hold float32."""
     single = load("wgsl")
     sizes = (2, 3, 4)
     halves = {f"vec{size}": f"vec{size}h" for size in sizes} | {f"mat{size}": f"mat{size}x{size}h" for size in sizes}
@@ -36,7 +36,7 @@ def target() -> Target:
 
 
 class WgslHalfPrinter(WgslPrinter):
-    """Literals are halves, and what there is in float32 alone is converted around the call."""
+    """Literals are halves, and calls of builtins that exist in float32 alone convert their arguments and result."""
 
     def __init__(self, target: Target, module: ir.Module) -> None:
         super().__init__(target, module)
@@ -58,7 +58,7 @@ class WgslHalfPrinter(WgslPrinter):
         return (f"{self.type(call.type)}({text})", PRIMARY) if kind_of(call.type) == "float" else (text, binding)
 
     def widened(self, arg: ir.Expr) -> ir.Expr:
-        """An argument in float32, as a name to the printer of float32, which prints names as they are."""
+        """An argument in float32, as a variable with the argument's text for a name, which is printed unchanged."""
         if isinstance(arg.type, Sampler):
             return arg
         text = self.expr(arg)
@@ -76,5 +76,5 @@ def in_single(name: str) -> bool:
 
 
 def half_text(value: float) -> str:
-    """A finite half as WGSL writes it, in the shortest decimal that reads back to it."""
+    """A finite half in WGSL: the shortest decimal that reads back to it."""
     return f"{shortest(value, FLOAT16) if value else math.copysign(0.0, value)}h"
