@@ -1,6 +1,7 @@
-"""The types of the intrinsic table: a row, and its parts."""
+"""The types of the intrinsic table: a row, and its parts.
 
-from __future__ import annotations
+Annotations are not postponed here: NamedTuple compiles each postponed one, which takes 0.5 ms of every cold emit.
+"""
 
 import re
 from collections.abc import Callable, Mapping
