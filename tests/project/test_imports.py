@@ -62,7 +62,6 @@ LAZY_IMPORTS = {
     "sssgen.harness.compilers.python_syntax": MOVE,
     "sssgen.harness.compilers.tint": MOVE,
     "sssgen.harness.compilers.unity_compiler": MOVE,
-    "sssgen.harness.stress.rows_field": MOVE,
     "sssgen.ir.nodes": MOVE,
     "sssgen.lab.chart.drawing.page": MOVE,
     "sssgen.lab.jobs.result_store": MOVE,
