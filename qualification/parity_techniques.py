@@ -14,7 +14,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from sssgen.harness.backends import DRIVERS, Array, Backend, get
-from sssgen.harness.evaluate.deviation import GOAL, Deviation, blur, deviation
+from sssgen.harness.evaluate.deviation import GOAL, Deviation, deviation, rounding_deviation
 from sssgen.harness.evaluate.evaluation import Inputs, fitted, run
 from sssgen.harness.evaluate.probes import Subject, subject
 from sssgen.harness.evaluate.random_inputs import samples
@@ -26,7 +26,7 @@ BOUND_LANES = 2_000
 """For a technique with other functions in its slots, where the technique itself has had its `LANES`."""
 
 SHARE = 0.005
-"""The share of lanes that may be excused for any technique: a few lie just where a decision turns."""
+"""The share of lanes that may be excluded for any technique: a few lie exactly where a decision changes."""
 
 
 class Case(NamedTuple):
@@ -66,7 +66,7 @@ def limits(technique: str, backend: str) -> Limits:
 def measure(case: Case, backend: Backend, lanes: int = LANES, seed: int = SEED) -> Deviation:
     """How far a back end is from the oracle. Raises SssgenError where the driver refuses."""
     prepared = _prepared(case, lanes, seed)
-    return deviation(run(prepared.subject, prepared.inputs, backend), prepared.oracle, prepared.blurred)
+    return deviation(run(prepared.subject, prepared.inputs, backend), prepared.oracle, prepared.rounding)
 
 
 def excess(case: Case, backend: str, found: Deviation, lanes: int) -> str:
@@ -77,25 +77,27 @@ def excess(case: Case, backend: str, found: Deviation, lanes: int) -> str:
         where = f"{found.output}[{found.lane}] is {found.got.tolist()}, not {found.wanted.tolist()}"
         return f"{title} on {backend}: {found.largest:.2g} where at most {limit.largest:g} is right: {where}"
     share = limit.bound_share if case.bind else limit.share
-    if found.excused > share * lanes + 3:  # few lanes have their luck
-        return f"{title} on {backend}: {found.excused} of {lanes} lanes are blurred, of which {share:.1%} may be"
+    if found.excluded > share * lanes + 3:  # a few lanes vary at random
+        return (
+            f"{title} on {backend}: {found.excluded} of {lanes} lanes are ill-conditioned, of which {share:.1%} may be"
+        )
     return ""
 
 
 class _Prepared:
-    """What the back ends share; the blur is measured once, where one of them asks."""
+    """What the back ends share; the rounding deviation is measured once, when it is needed."""
 
     def __init__(self, case: Case, lanes: int, seed: int) -> None:
         self.subject: Subject = subject(case.technique, dict(case.bind))
         self.inputs: Inputs = fitted(self.subject, samples(self.subject, lanes, seed))
         self.oracle: Mapping[str, Array] = run(self.subject, self.inputs, get("numpy"))
-        self._blur: Any = None
+        self._rounding: Any = None
 
-    def blurred(self) -> Mapping[str, Array]:
-        if self._blur is None:
-            self._blur = blur(self.subject, self.inputs, self.oracle)
-        found: Mapping[str, Array] = self._blur
-        return found
+    def rounding(self) -> Mapping[str, Array]:
+        if self._rounding is None:
+            self._rounding = rounding_deviation(self.subject, self.inputs, self.oracle)
+        measured: Mapping[str, Array] = self._rounding
+        return measured
 
 
 @lru_cache(4)

@@ -37,7 +37,7 @@ def rows(present: list[Backend]) -> dict[str, Row]:
             if wrong := excess(case, backend.name, one, lanes):
                 print(wrong)
             row.largest[backend.name] = max(row.largest[backend.name], one.largest)
-            row = row._replace(share=max(row.share, one.excused / lanes), furthest=max(row.furthest, one.furthest))
+            row = row._replace(share=max(row.share, one.excluded / lanes), furthest=max(row.furthest, one.furthest))
         found[case.technique] = row
     return found
 
@@ -52,11 +52,11 @@ def page(present: list[Backend], found: dict[str, Row]) -> str:
         "the library that fits one of its slots. The oracle is what the `numpy` target emits, in float64.",
         "A deviation is |got − wanted| over the larger of |wanted| and 1, both over a value's components. The goal is "
         f"{_number(GOAL)}; what is beyond it is in bold.",
-        "*Blurred* lanes are beyond the goal where float32 itself is: where a technique decides, or subtracts nearly "
-        "equal numbers. They are counted apart: the largest share of the lanes, and their largest deviation. A lane is "
-        f"blurred while its deviation is at most {MARGIN:g} times what rounding does without any back end: the larger "
-        "of how far the oracle's result moves when each input moves by one unit in the last place, and how far the "
-        f"same formulas in NumPy's float32 are off there ({DRAWS} draws of the moves).",
+        "*Excluded* lanes are beyond the goal because the formula is ill-conditioned there in float32: it makes a "
+        "decision, or subtracts nearly equal numbers. The table has the largest share of such lanes and their largest "
+        f"deviation. A lane is excluded while its deviation is at most {MARGIN:g} times what rounding causes without "
+        "any back end: the larger of how far the oracle's result moves when each input moves by one unit in the last "
+        f"place, and how far the same formulas in NumPy's float32 deviate there ({DRAWS} draws of the moves).",
     ]
     lines = [
         "# The techniques on every back end",
@@ -64,13 +64,13 @@ def page(present: list[Backend], found: dict[str, Row]) -> str:
         *(line for text in texts for line in [*wrap(text, 120, break_on_hyphens=False), ""]),
         *(f"- {backend.name}: {backend.device()}" for backend in present),
         "",
-        f"| Technique | {' | '.join(BACKENDS)} | Blurred | Up to | Why beyond the goal |",
+        f"| Technique | {' | '.join(BACKENDS)} | Excluded | Up to | Why beyond the goal |",
         f"|---|{'---|' * len(BACKENDS)}---|---|---|",
     ]
     for name, row in sorted(found.items()):
         cells = [_number(row.largest[backend]) for backend in BACKENDS]
-        blurred = [f"{100.0 * row.share:.2g} %" if row.share else "", _plain(row.furthest) if row.share else ""]
-        lines.append(f"| {' | '.join([name, *cells, *blurred, _reasons(name, row)])} |")
+        excluded = [f"{100.0 * row.share:.2g} %" if row.share else "", _plain(row.furthest) if row.share else ""]
+        lines.append(f"| {' | '.join([name, *cells, *excluded, _reasons(name, row)])} |")
     return "\n".join(lines) + "\n"
 
 

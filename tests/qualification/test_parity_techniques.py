@@ -15,7 +15,7 @@ from qualification.parity_techniques import BACKENDS, BOUND_LANES, LANES, cases,
 from sssgen.cli import main as cli
 from sssgen.harness import backends
 from sssgen.harness.backends import Backend
-from sssgen.harness.evaluate.deviation import GOAL, MARGIN, blur, compared, deviation
+from sssgen.harness.evaluate.deviation import GOAL, MARGIN, compared, deviation, rounding_deviation
 from sssgen.harness.evaluate.evaluation import fitted, run
 from sssgen.harness.evaluate.probes import subject
 from sssgen.harness.evaluate.random_inputs import samples
@@ -58,7 +58,7 @@ def test_the_page_lists_every_technique() -> None:
         assert declared.deviation in text, "run python -m qualification.pages.parity_techniques"
 
 
-# The blur
+# The rounding deviation
 
 CELLS = """
 /**
@@ -72,7 +72,7 @@ float cells(float x)
 """
 
 
-def test_a_lane_at_a_step_is_excused_and_a_wrong_one_is_not(tmp_path: Path) -> None:
+def test_a_lane_at_a_step_is_excluded_and_a_wrong_one_is_not(tmp_path: Path) -> None:
     """At n / 1000 float32 may round into the cell beside; 0.4 cells further on it may not."""
     (tmp_path / "cells.sss").write_text(CELLS, encoding="utf-8")
     chosen = subject(f"{tmp_path / 'cells.sss'}:cells")
@@ -80,23 +80,26 @@ def test_a_lane_at_a_step_is_excused_and_a_wrong_one_is_not(tmp_path: Path) -> N
     inputs = fitted(chosen, {"x": x})
     oracle, (row,) = compared(chosen, inputs, ["numpy-f32"])
     assert row.deviation is not None and row.ok
-    assert 100 < row.deviation.excused < 1000, "float32 puts many of the steps elsewhere"
+    assert 100 < row.deviation.excluded < 1000, "float32 puts many of the steps elsewhere"
     assert 1.0 / 999.0 <= row.deviation.furthest <= 1.0
-    assert f"blurs {row.deviation.excused} more" in row.told and row.as_json()["excused"] == row.deviation.excused
+    assert (
+        f"{row.deviation.excluded} ill-conditioned lanes excluded" in row.text
+        and row.as_json()["excluded"] == row.deviation.excluded
+    )
 
-    found = blur(chosen, inputs, oracle)
+    found = rounding_deviation(chosen, inputs, oracle)
     assert found["result"][:999].max() > GOAL and found["result"][999:].max() < GOAL / MARGIN
     off = {"result": oracle["result"] + 1.0}
     wrong = deviation(off, oracle, lambda: found)
     assert wrong.largest > GOAL and wrong.lane >= 999
-    assert deviation(off, oracle).excused == 0
+    assert deviation(off, oracle).excluded == 0
 
 
-def test_nan_is_not_excused() -> None:
+def test_nan_is_not_excluded() -> None:
     right = {"result": np.ones(4)}
     got = {"result": np.array([1.0, np.nan, 1.0, 1.0])}
     worst = deviation(got, right, lambda: {"result": np.full(4, 0.1)})
-    assert worst.largest == np.inf and worst.lane == 1 and worst.excused == 0
+    assert worst.largest == np.inf and worst.lane == 1 and worst.excluded == 0
 
 
 # The inputs
@@ -164,10 +167,10 @@ def test_eval_compares_on_samples(capsys: pytest.CaptureFixture[str]) -> None:
     asked = ["eval", "voronoi_thickness", "--samples", "3000", "--seed", "5", "--backend", "numpy,numpy-f32"]
     assert cli.main(asked) == 0
     told = capsys.readouterr().out
-    assert "3000 lanes" in told and "float32 blurs" in told and "result:" not in told
+    assert "3000 lanes" in told and "ill-conditioned lanes excluded" in told and "result:" not in told
     assert cli.main([*asked, "--json"]) == 0
     data = json.loads(capsys.readouterr().out)
-    assert data["lanes"] == 3000 and data["outputs"] == {} and data["backends"][1]["excused"] > 0
+    assert data["lanes"] == 3000 and data["outputs"] == {} and data["backends"][1]["excluded"] > 0
 
 
 def test_eval_puts_given_inputs_before_samples(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -117,7 +117,7 @@ def _several(subject: Any, fit: Any, names: list[str], as_json: bool, listed: bo
     width = max(len(row.name) for row in rows)
     print(f"\n{'':{width}}  largest deviation (goal: {GOAL:g})")
     for row in rows:
-        print(f"{row.name:{width}}  {row.told}")
+        print(f"{row.name:{width}}  {row.text}")
     return OK if good else CHECK_FAILED
 
 

@@ -1,4 +1,4 @@
-"""What may go wrong in a program: each operation with a domain, what is known of it, and an input that shows it.
+"""The operations of a program that have a domain: whether each is safe, and an input that shows where it is not.
 
 for finding in lint("lobe_gdc2011"):
     print(finding.render())
@@ -40,13 +40,13 @@ class Finding(NamedTuple):
     example: str = ""
     """The command that shows it."""
     guarded: bool = True
-    """Whether what is emitted has a guard there."""
+    """Whether the emitted text has a guard there."""
     searched: bool = True
-    """Whether an input was looked for."""
+    """Whether an input was searched for."""
 
     @property
     def message(self) -> str:
-        """What may happen."""
+        """The message of the diagnostic."""
         if self.verdict == PROVEN:
             return f"{self.site.what}: proven safe"
         unseen = "not proven, and no input found that does it" if self.searched else "not proven"
@@ -58,7 +58,7 @@ class Finding(NamedTuple):
         return "note" if self.verdict == PROVEN or self.guarded else "warning"
 
     def diagnostic(self, hint: str = "") -> Diagnostic:
-        """As other messages: what, and its place."""
+        """The finding as a diagnostic, with its place."""
         span = self.site.node.span
         return Diagnostic(self.severity, self.message, span, hint, source_line(span))
 
@@ -74,7 +74,7 @@ class Finding(NamedTuple):
         return "\n".join(lines)
 
     def told(self, text: str) -> str:
-        """A text with the operands' names in their letters' places, or, where they are no names, behind it."""
+        """A text with the operands' names in place of their letters, or after the text where an operand is no name."""
         if self.site.guard.replaces == "result":
             return text
         written = {}

@@ -1,4 +1,4 @@
-"""What a baked texture says of itself in the JSON beside it: its quantity, and the parameters it goes with."""
+"""The JSON file next to a baked texture: its quantity, and the parameters that belong to it."""
 
 from __future__ import annotations
 
@@ -14,41 +14,41 @@ from sssgen.support.file_memo import note
 from sssgen.support.paths import posix
 
 FORMAT = 1
-"""Of the JSON; it grows when a reader of an older file would be wrong."""
+"""The version of the JSON format."""
 MAX_BYTES = 2**20
 LARGEST = 1e30
-"""Beyond any number of a bake."""
+"""Larger than any number of a bake."""
 UNITS = "materials count in metres: scale the mesh, so that it is a few units large"
-"""What to do where a baked length is out of a parameter's range."""
+"""The remedy where a baked length is out of a parameter's range."""
 
 
 class Baked(NamedTuple):
-    """The JSON beside a baked texture."""
+    """The content of the JSON file next to a baked texture."""
 
     kind: str
     """distance, thickness, transmittance, depth, cells, normal or packed"""
     holds: str
     """The quantity of its numbers, as a material's types have it; "" where it is none"""
     parameters: Mapping[str, Any]
-    """What techniques need with it, by their names: TOML values, in the body's own space"""
+    """The parameters of techniques that it needs, by name: TOML values, in the body's object space"""
     settings: Mapping[str, Any]
     """How an engine imports it; see `targets.texture_import`"""
     facts: Mapping[str, Any]
-    """All that the file says"""
+    """The whole content of the file"""
 
 
 def sidecar(path: str) -> str:
-    """The JSON's path beside a texture's."""
+    """The path of a texture's JSON file."""
     return f"{path}.json"
 
 
 def read(path: str) -> Baked | None:
-    """What the JSON beside a texture says; None where there is none. Raises SssgenError for a faulty one."""
+    """The content of a texture's JSON file; None where there is none. Raises SssgenError for a faulty one."""
     file = sidecar(path)
     note(file)
     if not os.path.isfile(file):
         return None
-    from sssgen.support import json_source  # most materials have nothing baked, and starting without json is quicker
+    from sssgen.support import json_source  # most materials have nothing baked: without json the start is faster
 
     shown = posix(file)
     try:
@@ -92,7 +92,7 @@ def check(made: Baked, uniform: Uniform, name: str) -> None:
 
 
 def _readers(quantity: str) -> str:
-    """Which techniques take a texture of a quantity."""
+    """A hint with the techniques that take a texture of a quantity."""
     if not quantity:
         return "sssgen bake thickness makes a map of a quantity"
     known = [library.load(name) for name in library.index()]

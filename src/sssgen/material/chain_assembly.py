@@ -46,7 +46,7 @@ INPUTS: dict[str, Type] = {
     "P_object": VEC3, "N_object": VEC3, "V_object": VEC3, "L_object": VEC3,
     "time": FLOAT, "light_color": VEC3, "ray_origin": VEC3, "ray_direction": VEC3,
 }  # fmt: skip
-"""What a shell can supply."""
+"""The inputs that a shell can supply."""
 
 PER_LIGHT = frozenset({"L", "L_object", "light_color"})
 
@@ -61,7 +61,7 @@ DEFAULTS: dict[str, tuple[Type, tuple[float, ...]]] = {
     "translucency": (VEC3, (0.0, 0.0, 0.0)),
     "color": (VEC3, (0.0, 0.0, 0.0)),
 }
-"""The surface's values and what they are where no technique writes them."""
+"""The values of the surface, with their defaults where no technique writes them."""
 
 SURFACE_FIELDS = ("albedo", "alpha", "normal", "metallic", "roughness", "occlusion", "emission")
 
@@ -72,8 +72,8 @@ TAKEN = frozenset(
     {"Surface", "surface", "light", *INPUTS}
     | {f"evaluate_{kind}" for kind in ("surface", "translucency", "lighting", "color", "output")}
 )
-"""What the assembled functions, their inputs and their surface are called: no uniform is called so. What else a shell
-declares, its descriptor reserves."""
+"""The names of the assembled functions, their inputs and their surface, which no uniform may have. The other names
+that a shell declares are reserved by its descriptor."""
 
 
 class ChainStage(NamedTuple):
@@ -167,7 +167,7 @@ def _written(stage: ChainStage) -> set[str]:
 
 
 def _result_name(stage: ChainStage) -> str:
-    """The value that a stage's return becomes."""
+    """The name of the value that a stage's result becomes."""
     from sssgen.ir.types import VOID
 
     if stage.function.result == VOID:
@@ -195,7 +195,7 @@ class _Value(NamedTuple):
 
 
 class _Body:
-    """One entry function while it is put together."""
+    """One entry function during its assembly."""
 
     def __init__(self, name: str, surface: _Body | None = None, lit: bool = False) -> None:
         self.name = name
@@ -241,7 +241,7 @@ class _Body:
                     self.values[param.name] = _Value(param.type, True)
 
     def argument(self, param: Param, stage: ChainStage, target: list[Stmt], waits: bool) -> Expr:
-        """What is passed for a parameter."""
+        """The argument for a parameter."""
         name = _value_name(param)
         if param.direction == "out":
             if name not in self.values:
@@ -271,7 +271,7 @@ class _Body:
         raise LinkError(_missing(name, param, stage), span)
 
     def hands_over(self, name: str) -> bool:
-        """Whether the lights get this value from the surface: it was made or changed there."""
+        """Whether the lights read this value from the surface, where it was computed or changed."""
         made = name in self.values and name not in ("N", *PER_LIGHT)
         return made and (name not in self.inputs or name in self.changed())
 
@@ -306,7 +306,7 @@ class _Body:
             target.append(Declare(name, VEC3, value, span))
 
     def take_over(self, name: str) -> None:
-        """Begins with a value of the surface's, to which more may be added."""
+        """Starts with a value of the surface, to which more can be added."""
         assert self.surface is not None
         self.span = span = self.surface.span
         self.crossing[name] = None
@@ -360,7 +360,7 @@ class _Body:
 
 
 def _given(last: Stmt, name: str) -> Expr | None:
-    """What a statement gives the variable `name`, if that is all it does."""
+    """The value that a statement assigns to the variable `name`, if it does nothing else."""
     if isinstance(last, Declare) and last.name == name:
         return last.value
     if isinstance(last, Assign) and last.op == "" and isinstance(last.target, Local) and last.target.name == name:

@@ -73,7 +73,7 @@ def index() -> dict[str, str]:
 
 
 def folder_of(path: str) -> str:
-    """The name of the folder that a technique lies in: its role, if it has not said another."""
+    """The name of a technique's folder: its role, unless it declares another."""
     return os.path.basename(os.path.dirname(path))
 
 

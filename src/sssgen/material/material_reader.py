@@ -22,7 +22,7 @@ _CHOICES = {
 
 
 class _Shared(NamedTuple):
-    """What a stage said of a parameter that several stages share."""
+    """What a stage states about a parameter that several stages share."""
 
     value: object
     technique: str
@@ -40,16 +40,16 @@ def read_material(text: str, path: str, shown: str) -> Material:
 
 
 class _Reader:
-    """Reads one document; every error goes to the document, and reading goes on."""
+    """Reads one document; it collects errors in the document and continues."""
 
     def __init__(self, document: Document, path: str) -> None:
         self.document = document
         self.path = path
         self.foreign: list[Diagnostic] = []
-        """What is wrong with the technique files that the material names."""
+        """The errors of the technique files that the material names."""
         self.shared: dict[Span, _Shared] = {}
         self.complete = True
-        """Whether every stage has a technique, so that the chain can be judged."""
+        """Whether every stage has a technique, so that the chain can be checked."""
 
     def material(self) -> Material:
         data, error, place = self.document.data, self.document.error, self.document.place
@@ -113,7 +113,7 @@ class _Reader:
         return name, texts["title"], texts["doc"], chosen["shading"], chosen["alpha_mode"]
 
     def text(self, raw: object, key: str) -> str:
-        """A text of the head; only `doc` may have several lines."""
+        """A text of the [material] section; only `doc` may have several lines."""
         span = self.document.place("material", key).value
         if not isinstance(raw, str):
             self.document.error(span, f"'{key}' takes a text", f'write {key} = "…"')
@@ -266,7 +266,7 @@ class _Reader:
         return stage
 
     def baked(self, stage: Stage, uniforms: list[Uniform], path: tuple[str | int, ...], table: dict[str, Any]) -> Stage:
-        """The stage with the parameters that come with its baked textures, where it does not give them itself."""
+        """The stage with the parameters of its baked textures, where it does not set them itself."""
         for uniform in uniforms:
             if uniform.name not in stage.textures:
                 continue
@@ -295,7 +295,7 @@ class _Reader:
         return stage
 
     def share(self, stage: Stage, uniform: Uniform, path: tuple[str | int, ...], value: object) -> None:
-        """Checks that all stages say the same of a parameter that they share.
+        """Checks that all stages agree about a parameter that they share.
 
         Those of included files and of bound functions are shared.
         """
@@ -308,7 +308,7 @@ class _Reader:
     # Slots
 
     def bind(self, technique: Technique, path: tuple[str | int, ...], stage: dict[str, Any]) -> dict[str, Binding]:
-        """What the slots of a technique, and those of what is bound to them, are bound to."""
+        """The bindings of a technique's slots, and of the slots of the functions bound to them."""
         error, place = self.document.error, self.document.place
         table = stage.get("bind", {})
         if not isinstance(table, dict):
@@ -331,10 +331,10 @@ class _Reader:
         for name in table.keys() - known.keys():
             hint = did_you_mean(name, known) or (f"slots: {', '.join(known)}" if known else "it has no slots")
             error(place(*path, "bind", name).key, f"'{technique.name}' has no slot '{name}'", hint)
-            unbound = [slot for slot in unbound if f"'{slot.name}'" not in hint]  # it was misspelt
+            unbound = [slot for slot in unbound if f"'{slot.name}'" not in hint]  # it was misspelled
         for slot in unbound:
             if slot.name in stage:
-                continue  # it was taken for a parameter, and reported so
+                continue  # it was read as a parameter, and reported as one
             fitting = slots.candidates(slot)
             hint = f'write bind = {{ {slot.name} = "{fitting[0] if fitting else "FILE:FUNCTION"}" }}; '
             hint += (
@@ -372,7 +372,7 @@ def _names(uniform: Uniform) -> list[str]:
 
 
 def _of_roles(allowed: tuple[str, ...]) -> list[str]:
-    """The library's techniques of some roles, told from their folders."""
+    """The library's techniques of some roles, by their folders."""
     return [name for name, path in library.index().items() if library.folder_of(path) in allowed]
 
 
@@ -389,7 +389,7 @@ def _section_hint(key: str, sections: tuple[str, ...]) -> str:
 
 
 def _cycle(bindings: dict[str, Binding]) -> list[str]:
-    """A slot whose function comes to call the slot again, if there is one."""
+    """A slot whose function calls the slot again, directly or through others, if there is one."""
     calls = {
         name: [slot.name for slot in slots.needs(binding.module, binding.function)[1]]
         for name, binding in bindings.items()

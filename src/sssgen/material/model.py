@@ -1,4 +1,4 @@
-"""Materials: what they are, and how they are loaded. One is a chain of techniques, described in TOML."""
+"""The data of a material: a chain of techniques, described in TOML."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ if TYPE_CHECKING:
 
 
 class Binding(NamedTuple):
-    """What a slot is bound to: a function and the module it lives in."""
+    """The function that a slot is bound to, and its module."""
 
     module: Module
     function: Function
 
 
 class Stage(NamedTuple):
-    """One technique of the chain, with what the material says of it."""
+    """One technique of the chain, with its settings in the material."""
 
     technique: Technique
     values: dict[str, tuple[float, ...]]
     """Uniform (the technique's own name for it) → its default in this material."""
     fixed: frozenset[str]
-    """The uniforms that are folded into the text."""
+    """The uniforms that become constants in the emitted text."""
     textures: dict[str, str]
     """Texture uniform → picture file, relative to the material, that it suggests for renders and previews."""
     bindings: dict[str, Binding]
@@ -52,7 +52,7 @@ class Material(NamedTuple):
 
     @property
     def path(self) -> Path:
-        """The path of its file, with all that a Path can do."""
+        """The path of its file, as a Path."""
         from pathlib import Path
 
         return Path(self.file)
@@ -62,12 +62,12 @@ SHADINGS = ("lit", "unlit")
 ALPHA_MODES = ("opaque", "mask", "blend")
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
-# Windows keeps these for devices, whatever follows the dot: no file can be called so.
+# Windows reserves these names for devices, with any suffix: no file can have them.
 _DEVICES = {"con", "prn", "aux", "nul", *(f"{port}{n}" for port in ("com", "lpt") for n in range(1, 10))}
 
 
 def wrong_name(name: str) -> tuple[str, str] | None:
-    """What is wrong with a material's name, and what to do; None where nothing is."""
+    """The error of a material's name and its remedy; None for a valid name."""
     if not _NAME.fullmatch(name):
         near = re.sub(r"\W+", "_", name, flags=re.ASCII).strip("_").lower()
         offer = f": '{near}'" if _NAME.fullmatch(near) else ""

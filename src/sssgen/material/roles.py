@@ -1,4 +1,4 @@
-"""The roles of a chain: what the techniques of each give and may read, and whether a chain holds together.
+"""The roles of a chain: what techniques of each role return and may read, and the check of a whole chain.
 
 A parameter is matched to a value of the chain by its name, a scalar quantity by what it measures.
 """
@@ -34,7 +34,7 @@ Report = Callable[[Span, str, str], None]
 
 
 class Link(NamedTuple):
-    """A stage as far as the chain is concerned."""
+    """A stage, for the check of the chain."""
 
     technique: Technique
     span: Span
@@ -51,7 +51,7 @@ def allowed_roles(section: str) -> tuple[str, ...]:
 
 
 def check_chain(links: Sequence[Link], shading: str, report: Report) -> None:
-    """Reports each parameter that nothing supplies, and each technique that does not keep to its role."""
+    """Reports each parameter that no stage supplies, and each technique whose result does not fit its role."""
     values = {name: _Value(type_, VALUE_QUANTITIES.get(name, "")) for name, type_ in INPUTS.items()}
     values |= {name: _Value(type_, VALUE_QUANTITIES.get(name, "")) for name, (type_, _) in DEFAULTS.items()}
     given: dict[str, str] = {}
@@ -91,7 +91,7 @@ def check_chain(links: Sequence[Link], shading: str, report: Report) -> None:
 
 
 def wrong_result(technique: Technique) -> str:
-    """What is wrong with a technique's result for its role, or ''."""
+    """The error of a technique's result for its role, or ''."""
     function, role = technique.function, technique.role
     wanted: dict[str, tuple[tuple[Type, ...], str]] = {
         "geometry": ((BOOL, VOID), "bool or void"),

@@ -16,7 +16,7 @@ _HEX = re.compile(r"#(?:[0-9a-fA-F]{3}|[0-9a-fA-F]{6}|[0-9a-fA-F]{8})")
 
 
 class WrongValue(Exception):
-    """A value that does not fit; `index` is that of the element at fault in a list, else None."""
+    """A value that does not fit; `index` is that of the faulty element in a list, else None."""
 
     def __init__(self, message: str, hint: str = "", index: int | None = None) -> None:
         super().__init__(message)
@@ -54,7 +54,7 @@ def read_texture(uniform: Uniform, raw: object) -> str:
 
 
 def wanted(uniform: Uniform) -> str:
-    """What a uniform takes, in words: `3 numbers, as in [0.5, 0.5, 0.5]`."""
+    """The values that a uniform takes, for messages: `3 numbers, as in [0.5, 0.5, 0.5]`."""
     type_, kind = uniform.type, _kind(uniform.type)
     if isinstance(type_, Sampler):
         return 'the name of a picture file, as in "map.png"'
@@ -82,7 +82,7 @@ def wanted(uniform: Uniform) -> str:
 
 
 def is_colour(uniform: Uniform) -> bool:
-    """Whether the uniform says that it is a colour."""
+    """Whether the uniform is declared as a colour."""
     return components(uniform.type) in (3, 4) and any(name == "source_color" for name, _ in uniform.hints)
 
 
@@ -162,7 +162,7 @@ def _flatten(raw: list[Any]) -> list[Any]:
 
 
 def _word(raw: object) -> str:
-    """What a TOML value is, in words."""
+    """The kind of a TOML value, for messages."""
     if isinstance(raw, bool):
         return "true" if raw else "false"
     if isinstance(raw, int | float):

@@ -1,10 +1,10 @@
-"""How far a back end is from the oracle, and how far from it float32 itself must be.
+"""How far a back end deviates from the oracle, and how far float32 itself must deviate.
 
-Where a technique decides (a ray that just hits, the edge of a cell) or subtracts nearly equal numbers, two right
-machines with float32 differ by more than rounding. The *blur* of a lane measures that without a look at any of them:
-how far the oracle's own result moves when its inputs move by one unit in the last place, and how far the same formulas
-in NumPy's float32 are off there. A lane beyond the goal is *excused* while its deviation is at most `MARGIN` times its
-blur. The excused are counted, and told.
+Where a technique decides (a ray that just hits, the edge of a cell) or subtracts nearly equal numbers, two correct
+float32 machines differ by more than rounding: such lanes are ill-conditioned. The *rounding deviation* of a lane
+measures this without any back end: how far the oracle's result moves when its inputs move by one unit in the last
+place, and how far the same formulas in NumPy's float32 deviate there. A lane beyond the goal is *excluded* while its
+deviation is at most `MARGIN` times its rounding deviation. Reports give the number of excluded lanes.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ GOAL = 1e-5
 
 
 MARGIN = 4.0
-"""What another order of rounding may add to the blur, which only a few draws have measured."""
+"""How much larger the rounding deviation may be than measured, since it is measured with few draws."""
 DRAWS = 8
-"""How often the blur moves the inputs, each time up or down at random."""
+"""How often the inputs are moved, each time up or down at random."""
 
 
 class Deviation(NamedTuple):
-    """The largest of all outputs and of all lanes that are not excused, and where it is."""
+    """The largest deviation of all outputs, over all lanes that are not excluded, and its place."""
 
     largest: float
     """|got - wanted| over the larger of |wanted| and 1, both over a value's components; infinite where one is NaN and
@@ -41,14 +41,14 @@ class Deviation(NamedTuple):
     lane: int
     got: Array
     wanted: Array
-    excused: int
-    """Lanes beyond the goal, no further than the blur explains."""
+    excluded: int
+    """The number of lanes beyond the goal that rounding explains."""
     furthest: float
-    """The largest deviation of the excused; 0 where there are none."""
+    """The largest deviation of the excluded lanes; 0 where there are none."""
 
 
 class Row(NamedTuple):
-    """What came of one back end."""
+    """The result of one back end."""
 
     name: str
     device: str
@@ -58,72 +58,78 @@ class Row(NamedTuple):
 
     @property
     def ok(self) -> bool:
-        """Whether it agrees, or is not here, or computes in half precision, which is not meant to."""
+        """Whether it agrees, or is missing, or computes in half precision, to which the goal does not apply."""
         if self.missing or self.name in HALF:
             return True
         return self.deviation is not None and self.deviation.largest <= GOAL
 
     @property
-    def told(self) -> str:
-        """The row for a person."""
+    def text(self) -> str:
+        """The row as text."""
         if self.deviation is None:
             return f"{'missing' if self.missing else 'FAILED'}: {self.error}"
-        found = self.deviation
-        where = f" at {found.output}[{found.lane}]: {found.got.tolist()}" if found.largest > GOAL else ""
-        where += " (half precision, which the goal is not for)" if where and self.name in HALF else ""
-        excused = f", float32 blurs {found.excused} more by up to {found.furthest:.2g}" if found.excused else ""
-        return f"{found.largest:8.2g}{where}{excused}  ({self.device})"
+        worst = self.deviation
+        where = f" at {worst.output}[{worst.lane}]: {worst.got.tolist()}" if worst.largest > GOAL else ""
+        where += " (half precision, to which the goal does not apply)" if where and self.name in HALF else ""
+        excluded = f", {worst.excluded} ill-conditioned lanes excluded, up to {worst.furthest:.2g}"
+        return f"{worst.largest:8.2g}{where}{excluded if worst.excluded else ''}  ({self.device})"
 
     def as_json(self) -> dict[str, Any]:
-        """The row for programs."""
+        """The row as JSON."""
         if self.deviation is None:
             return {"name": self.name, "missing": self.missing, "error": self.error}
-        found = self.deviation
-        largest = found.largest if np.isfinite(found.largest) else None
+        worst = self.deviation
+        largest = worst.largest if np.isfinite(worst.largest) else None
         return {
             "name": self.name, "device": self.device, "ok": self.ok, "deviation": largest,
-            "output": found.output, "lane": found.lane, "excused": found.excused,
+            "output": worst.output, "lane": worst.lane, "excluded": worst.excluded,
         }  # fmt: skip
 
 
 def deviation(
-    got: Mapping[str, Array], wanted: Mapping[str, Array], blurred: Callable[[], Mapping[str, Array]] | None = None
+    got: Mapping[str, Array], wanted: Mapping[str, Array], rounding: Callable[[], Mapping[str, Array]] | None = None
 ) -> Deviation:
     """The largest deviation of outputs, lanes first, from the oracle's.
 
-    `blurred` gives the blur of each output; it is asked where a lane is beyond the goal. Without it none is excused.
+    `rounding` returns the rounding deviation of each output; it is called only where a lane is beyond the goal. Without
+    it no lane is excluded.
     """
     each = {name: _apart(got[name], right) for name, right in wanted.items()}
-    excused = {name: np.zeros(len(found), np.bool_) for name, found in each.items()}
-    if blurred is not None and any((found > GOAL).any() for found in each.values()):
-        limit = blurred()
-        excused = {name: (found > GOAL) & (found <= MARGIN * limit[name]) for name, found in each.items()}
+    excluded = {name: np.zeros(len(lanes), np.bool_) for name, lanes in each.items()}
+    if rounding is not None and any((lanes > GOAL).any() for lanes in each.values()):
+        limits = rounding()
+        excluded = {name: (lanes > GOAL) & (lanes <= MARGIN * limits[name]) for name, lanes in each.items()}
     worst = Deviation(-1.0, "", 0, np.zeros(()), np.zeros(()), 0, 0.0)
     for name, right in wanted.items():
-        left = np.where(excused[name], 0.0, each[name])
+        left = np.where(excluded[name], 0.0, each[name])
         lane = int(np.argmax(left))
         if left[lane] > worst.largest:
-            found = np.atleast_1d(got[name])[lane], np.atleast_1d(right)[lane]
             worst = worst._replace(
-                largest=float(left[lane]), output=name, lane=lane, got=np.asarray(found[0]), wanted=np.asarray(found[1])
+                largest=float(left[lane]),
+                output=name,
+                lane=lane,
+                got=np.asarray(np.atleast_1d(got[name])[lane]),
+                wanted=np.asarray(np.atleast_1d(right)[lane]),
             )
-    count = int(np.any([*excused.values()], axis=0).sum())
-    furthest = max((float(each[name][lanes].max()) for name, lanes in excused.items() if lanes.any()), default=0.0)
-    return worst._replace(excused=count, furthest=furthest)
+    count = int(np.any([*excluded.values()], axis=0).sum())
+    furthest = max((float(each[name][lanes].max()) for name, lanes in excluded.items() if lanes.any()), default=0.0)
+    return worst._replace(excluded=count, furthest=furthest)
 
 
-def blur(subject: Subject, inputs: Inputs, oracle: Mapping[str, Array], guards: str = "auto") -> dict[str, Array]:
-    """How far rounding alone takes each lane of each output from the oracle, (lanes,), measured as `errors` does."""
+def rounding_deviation(
+    subject: Subject, inputs: Inputs, oracle: Mapping[str, Array], guards: str = "auto"
+) -> dict[str, Array]:
+    """The rounding deviation of each output from the oracle, (lanes,), relative as that of `errors`."""
     rounded, exact = get("numpy-f32"), get("numpy")
-    found = {name: _apart(value, oracle[name]) for name, value in run(subject, inputs, rounded, guards).items()}
+    largest = {name: _apart(value, oracle[name]) for name, value in run(subject, inputs, rounded, guards).items()}
     rng = np.random.default_rng(0)
     for _ in range(DRAWS):
         near = inputs._replace(values={name: _moved(value, rng) for name, value in inputs.values.items()})
         right, got = run(subject, near, exact, guards), run(subject, near, rounded, guards)
         for name, value in right.items():
             apart = np.maximum(_apart(value, oracle[name]), _apart(got[name], value))
-            found[name] = np.maximum(found[name], apart)
-    return found
+            largest[name] = np.maximum(largest[name], apart)
+    return largest
 
 
 def _apart(got: Array, wanted: Array) -> Array:
@@ -147,8 +153,8 @@ def errors(got: Array, wanted: Array) -> Array:
         apart = np.where((a == b) | (np.isnan(a) & np.isnan(b)), 0.0, np.abs(a - b))
     apart = np.where(np.isnan(apart), np.inf, apart).max(axis=1)
     size = np.where(np.isfinite(b), np.abs(b), 0.0).max(axis=1)
-    found: Array = apart / np.maximum(size, 1.0)
-    return found
+    relative: Array = apart / np.maximum(size, 1.0)
+    return relative
 
 
 def compared(
@@ -156,12 +162,12 @@ def compared(
 ) -> tuple[dict[str, Array], list[Row]]:
     """The oracle's outputs, and each back end's deviation. Each back end runs in a process of its own."""
     oracle = run(subject, inputs, get("numpy"), guards)
-    blurred = cache(lambda: blur(subject, inputs, oracle, guards))
-    return oracle, [_row(subject, inputs, oracle, blurred, name, guards) for name in names]
+    rounding = cache(lambda: rounding_deviation(subject, inputs, oracle, guards))
+    return oracle, [_row(subject, inputs, oracle, rounding, name, guards) for name in names]
 
 
 def _row(
-    subject: Subject, inputs: Inputs, oracle: Mapping[str, Array], blurred: Callable[[], Mapping[str, Array]],
+    subject: Subject, inputs: Inputs, oracle: Mapping[str, Array], rounding: Callable[[], Mapping[str, Array]],
     name: str, guards: str,
 ) -> Row:  # fmt: skip
     try:
@@ -171,10 +177,10 @@ def _row(
     except SssgenError as error:
         return Row(name, "", None, error.diagnostics[0].message)
     try:
-        found = run(subject, inputs, backend, guards)
+        outputs = run(subject, inputs, backend, guards)
     except SssgenError as error:
         return Row(name, backend.device(), None, str(error))
     finally:
         if (close := getattr(backend, "close", None)) is not None:
             close()
-    return Row(name, backend.device(), deviation(found, oracle, blurred if name not in HALF else None), "")
+    return Row(name, backend.device(), deviation(outputs, oracle, rounding if name not in HALF else None), "")

@@ -81,7 +81,7 @@ _texts: dict[tuple[object, ...], tuple[Subject, Text, dict[str, str]]] = {}
 def _emitted(
     subject: Subject, target: str, guards: str, at: Callable[[Site], str] | None
 ) -> tuple[Text, dict[str, str]]:
-    """The functions form of a subject for a target, and what was renamed in it."""
+    """The functions form of a subject for a target, and its renamed functions."""
     key = (id(subject.module), target, guards, at)
     kept = _texts.get(key)
     if kept is None or kept[0].module is not subject.module:

@@ -1,4 +1,4 @@
-"""Functions of one result each, made of a technique, for back ends that take arrays and give arrays.
+"""Functions of one result each, generated from a technique, for back ends that map arrays to arrays.
 
 A technique may return a value, write `out` and `inout` parameters, or all of that. A probe calls it and returns one of
 these. Uniforms become parameters, as in the functions form of every target.
@@ -24,21 +24,21 @@ from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import stem
 
 RESULT = "result"
-"""What a technique's return value is called among its outputs."""
+"""The name of a technique's return value among its outputs."""
 
 
 class Probe(NamedTuple):
-    """A function that gives one output of a technique."""
+    """A function that returns one output of a technique."""
 
     output: str
     function: str
     params: tuple[Param, ...]
-    """The technique's own, and behind them the uniforms that it reads."""
+    """The technique's own parameters, followed by the uniforms that it reads."""
     result: Type
 
 
 class Subject(NamedTuple):
-    """What is evaluated: a module of probes."""
+    """The subject of an evaluation: a module of probes."""
 
     name: str
     module: Module
@@ -131,7 +131,7 @@ def _bound(
 
 
 def probes_of(function: Function) -> list[tuple[str, Function]]:
-    """(output, function): one for each thing that a technique gives."""
+    """(output, function), one for each output of a technique."""
     span = function.span
     outs = [param for param in function.params if param.direction != "in"]
     shown: list[Param | None] = [None, *outs] if function.result != VOID else [*outs]

@@ -23,7 +23,7 @@ from sssgen.support.paths import stem
 from sssgen.targets.numpy_textures import Texture
 
 ENDS = 0.04
-"""The share of numbers that stand exactly at an end of their range."""
+"""The share of numbers that are exactly an end of their range."""
 ALIGNED = 0.2
 """The share of directions that lie nearly along one line."""
 AIMED = 0.9
@@ -35,7 +35,7 @@ RANGES = {
     "uv_position": (-1.0, 2.0), "world_position": (-2.0, 2.0), "object_position": (-1.0, 1.0), "thickness": (0.0, 2.0),
     "thinness": (0.0, 1.0), "transmittance": (0.0, 1.0), "time": (0.0, 60.0), "light_color": (0.0, 4.0),
 }  # fmt: skip
-"""Of parameters, by quantity or name: a scene of a few units, a texture that repeats, a minute. All others: 0 to 1."""
+"""The ranges of parameters, by quantity or name; all others have 0 to 1."""
 
 
 def samples(subject: Subject, count: int, seed: int = 0) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Plain inputs for a technique, of which a row of the dangerous table changes what it is about."""
+"""Plain inputs for a technique; a row of the table of dangerous inputs changes those that it tests."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def directions(specimen: Specimen) -> list[str]:
 
 
 def scalars(specimen: Specimen, format: Format = FLOAT32) -> dict[str, list[float]]:
-    """Of each plain number that is an input: the ends of its range, 0 and 1, and next to nothing, if they are in it."""
+    """For each scalar input: the ends of its range, and 0, 1 and nearly 0, if these are in the range."""
     least = 1e-3 if format is FLOAT16 else 1e-30
     found = {}
     for name, param in specimen.subject.params.items():
@@ -101,7 +101,7 @@ def calls(specimen: Specimen, *names: str) -> bool:
 
 
 def samplers(specimen: Specimen, data: bool = False) -> list[str]:
-    """The textures; with `data` those that hold a quantity or distances only."""
+    """The textures; with `data` only those that hold a quantity or distances."""
     found = []
     for name, uniform in specimen.subject.uniforms.items():
         if isinstance(uniform.type, Sampler) and (not data or uniform.quantity or "distance" in name):

@@ -24,7 +24,7 @@ _AXES = np.array([[0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -
 
 
 def trials(specimen: Specimen, seed: int, format: Format = FLOAT32) -> Iterator[Trial]:
-    """Boundary values in the contract, and then beyond it, which is told but does not count."""
+    """Boundary values in the contract, and then beyond it: faults there are reported but do not count."""
     rng = np.random.default_rng([seed, 1])
     for name, beyond in ((BOUNDARY, False), (BEYOND, True)):
         each = {one: values(specimen, one, beyond, format) for one in specimen.subject.params}

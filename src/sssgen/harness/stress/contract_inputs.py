@@ -1,4 +1,4 @@
-"""Random inputs over the whole contract, in float32, fast: most of ordinary size, many at and near what is special.
+"""Random inputs over the whole contract, in float32, fast: most of ordinary size, many at and near special values.
 
 In contrast to `samples`, which draws what scenes hold, nothing is left out that `ir.contracts` allows.
 """
@@ -22,7 +22,7 @@ from sssgen.targets.numpy_textures import Texture
 TINY = 1e-45
 """The smallest number drawn: float32's smallest subnormal."""
 ORDINARY = 2.0
-"""Of a wide range, half of the numbers are no larger."""
+"""In a wide range half of the numbers are at most this large."""
 TEXELS = 16
 
 
@@ -54,7 +54,7 @@ def contract(specimen: Specimen, name: str, format: Format = FLOAT32) -> Contrac
 
 
 def outside(specimen: Specimen, name: str, format: Format = FLOAT32) -> Contract:
-    """What a caller may pass that does not keep quantities in their ranges."""
+    """The range of an input where the caller does not keep quantities in their ranges."""
     if name in specimen.subject.uniforms:
         return contract(specimen, name, format)
     return contracts.from_outside(specimen.subject.params[name], format, specimen.subject.chained)

@@ -1,4 +1,4 @@
-"""The table of dangerous inputs, as data: what each row is about, what it asks, and the inputs that it makes."""
+"""The table of dangerous inputs, as data: what each row tests, what it requires, and its inputs."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ class DangerousRow(NamedTuple):
     inputs: str
     requires: str
     trials: Makes | None
-    """None where the row is not about a technique."""
+    """None where the row does not test a technique."""
     elsewhere: str = ""
-    """What holds it then."""
+    """What tests it then."""
     alike: bool = True
-    """Whether the back ends must agree; not where drivers may make levels and blend infinities as they like."""
+    """Whether the back ends must agree; not where drivers may compute levels and blend infinities freely."""
 
 
 ROWS = (
@@ -83,11 +83,11 @@ ROWS = (
         surface.bad_frames,
     ),
     DangerousRow(
-        "seams", "a seam in the texture coordinates, a leap of derivatives", "finite", surface.seams, alike=False,
+        "seams", "a seam in the texture coordinates, a jump of derivatives", "finite", surface.seams, alike=False,
     ),
     DangerousRow("lipschitz", "a field that is no distance", "each tap clamped", field.not_lipschitz),
     DangerousRow(
-        "medial-axis", "across the medial axis", "no jump; a leap of the slope is said aloud", field.medial_axis,
+        "medial-axis", "across the medial axis", "no jump; a change of the slope is documented", field.medial_axis,
     ),
     DangerousRow("hit-offset", "a hit a little inside", "at least 0, as on the surface", field.hit_offset),
     DangerousRow("grazing-march", "a march from the surface itself, grazing", "no jump", field.grazing_march),
@@ -146,6 +146,6 @@ def _in_half(trial: Trial, half: Format) -> Trial:
 
 
 def _beyond(specimen: Specimen, name: str, value: Array) -> bool:
-    """Whether a row means what no format's contract allows."""
+    """Whether a row has values that no format's contract allows."""
     ends = outside(specimen, name, FLOAT32)
     return bool((value < np.float32(ends.low)).any() or (value > np.float32(ends.high)).any())

@@ -42,9 +42,9 @@ class Witness(NamedTuple):
     command: str
     """The `sssgen eval` line that computes it without guards."""
     specimen: Specimen
-    """With the functions that the trial bound to its slots."""
+    """The technique with the functions that the trial bound to its slots."""
     more: Inputs
-    """Some of those that the trial had."""
+    """Some of the inputs of the trial."""
 
 
 def sites(specimen: Specimen) -> list[Site]:
@@ -82,7 +82,7 @@ def _fails(specimen: Specimen, change: Callable[[Site], str], output: str, input
 
 @cache
 def only(what: str, place: str, change: str) -> Callable[[Site], str]:
-    """What becomes of guards: `change` of the one named, `keep` of all others."""
+    """The guard modes: `change` for the one named, `keep` for all others."""
     return lambda site: change if (site.what, site.place) == (what, place) else "keep"
 
 
@@ -96,7 +96,7 @@ def _trials(specimen: Specimen, seed: int) -> Iterator[Trial]:
 
 
 def _broken(specimen: Specimen, inputs: Inputs, change: Callable[[Site], str]) -> dict[str, Array]:
-    """Lanes of each output that are no number with the change, and are one with every guard."""
+    """Lanes of each output that are NaN or infinite with the change, and finite with every guard."""
     numpy = get("numpy-f32")
     with np.errstate(all="ignore"):
         changed = evaluated(specimen.subject, inputs, numpy, "auto", change)

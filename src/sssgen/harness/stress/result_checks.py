@@ -1,4 +1,4 @@
-"""What is wrong with results: tests of bits, of ranges, of energy, of steps, and against what is known."""
+"""The faults of results: tests of bits, ranges, energy, steps, and known values."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from sssgen.harness.stress.trial import Trial
 from sssgen.ir.contracts import of_param
 
 KINDS = ("non-finite", "out of range", "energy", "jump", "wrong value", "disagreement")
-"""What may be wrong, the worst first."""
+"""The kinds of faults, the worst first."""
 
 ULPS = 4.0
 """How far beyond the end of a range rounding may bring a result, in units of the last place."""
@@ -50,7 +50,7 @@ def non_finite(value: Array) -> Array:
 
 
 def judged(trial: Trial, outputs: Mapping[str, Array], oracle: Mapping[str, Array] | None = None) -> list[Found]:
-    """What is wrong with a back end's outputs, lanes first; only faults that there are."""
+    """The faults of a back end's outputs, lanes first."""
     found = []
     for name, value in outputs.items():
         if value.dtype.kind != "f":
@@ -107,7 +107,7 @@ def _jumps(trial: Trial, output: str, value: Array, oracle: Mapping[str, Array] 
         return _none(value)
     step = steps(value)
     own = steps(oracle[output]) if oracle is not None else np.zeros_like(step)
-    padded = np.pad(own, 2)  # float32 may decide a step or two sooner or later
+    padded = np.pad(own, 2)  # in float32 a decision may change a step or two earlier or later
     own = np.max([padded[shift : shift + len(own)] for shift in range(5)], axis=0)
     return np.concatenate([step > np.maximum(JUMP, 2.0 * own), [False]])
 

@@ -27,12 +27,12 @@ def _bound(specimen: Specimen, shape: str) -> Specimen | None:
 
 
 def _measures(specimen: Specimen) -> bool:
-    """Whether thickness or thinness comes out of a field."""
+    """Whether the technique computes thickness or thinness from a distance field."""
     return bool(specimen.slots) and specimen.quantity("result") in ("thickness", "thinness")
 
 
 def not_lipschitz(specimen: Specimen) -> Iterator[Trial]:
-    """A field that is no distance: random texels, a hundred times too steep."""
+    """A field that is not a distance: random texels, a hundred times too steep."""
     if not _measures(specimen) or (steep := _bound(specimen, "texture")) is None:
         return
     rng = np.random.default_rng(17)
@@ -46,7 +46,7 @@ def not_lipschitz(specimen: Specimen) -> Iterator[Trial]:
 
 
 def medial_axis(specimen: Specimen) -> Iterator[Trial]:
-    """Over the face of a box, across its diagonals: no jump. Where the slope has one, the technique says so."""
+    """Over the face of a box, across its diagonals: no jump. A jump of the slope is documented by the technique."""
     if _measures(specimen) and (boxed := _bound(specimen, "box")):
         along = np.linspace(-0.45, 0.45, 2001)
         at = np.stack([along, np.full_like(along, 0.2), np.full_like(along, 0.5)])
@@ -54,7 +54,7 @@ def medial_axis(specimen: Specimen) -> Iterator[Trial]:
 
 
 def hit_offset(specimen: Specimen) -> Iterator[Trial]:
-    """A hit that lies a little inside, or outside: about what the surface itself reads."""
+    """A hit that lies a little inside, or outside: about the result of the surface itself."""
     if _measures(specimen) and (boxed := _bound(specimen, "box")):
         off = np.linspace(-2e-3, 2e-3, 1001)
         at = np.stack([np.full_like(off, 0.1), np.full_like(off, 0.2), 0.5 + off])

@@ -52,7 +52,7 @@ def zero_vectors(specimen: Specimen) -> Iterator[Trial]:
 
 
 def lamp_at_surface(specimen: Specimen) -> Iterator[Trial]:
-    """No direction to the light, and all the light that a format holds."""
+    """No direction to the light, and the brightest light that a format holds."""
     if {"L", "L_object"} & specimen.subject.params.keys():
         nearby = [(0, 0, 0), (0, 0, 1e-30), (1e-4, 0, 0), (0, 0, 1), (0, 0, -1)]
         choices: dict[str, list[Any]] = {
@@ -65,7 +65,7 @@ def lamp_at_surface(specimen: Specimen) -> Iterator[Trial]:
 
 
 def long_vectors(specimen: Specimen) -> Iterator[Trial]:
-    """Directions whose squares no half holds."""
+    """Directions whose squares overflow in half precision."""
     lengths = [np.multiply(axis, size) for axis in AXES for size in (256.0, 1000.0, 1e4)]
     if names := [name for name in directions(specimen) if name in ("L", "L_object")]:
         yield Trial("", specimen, mixed(specimen, dict.fromkeys(names, lengths), 512), ranged=False)
@@ -83,11 +83,11 @@ def wrong_quantities(specimen: Specimen) -> Iterator[Trial]:
         choices |= {name: [*values, *(outside(specimen, name)[:2])] for name in names}
         inputs = mixed(specimen, choices, 512)
         yield Trial("", specimen, inputs, ranged=False)
-        yield Trial("", specimen, inputs, counts=False)  # what comes out is in its range where what went in was
+        yield Trial("", specimen, inputs, counts=False)  # outputs are in their ranges only where inputs are
 
 
 def thick_matter(specimen: Specimen) -> Iterator[Trial]:
-    """Matter without end, and attenuation distances of 0: nothing is 1 exactly, and any matter is opaque."""
+    """Infinite matter, and attenuation distances of 0: no matter transmits exactly 1, and any matter is opaque."""
     thickness = _thickness(specimen)
     distance = "attenuation_distance" in specimen.subject.params
     if not thickness or not (distance or "sigma_t" in specimen.subject.params):
@@ -109,7 +109,7 @@ def thick_matter(specimen: Specimen) -> Iterator[Trial]:
 
 
 def black_attenuation(specimen: Specimen) -> Iterator[Trial]:
-    """A colour without one of its components lets all light through where there is no matter."""
+    """A colour with a component of 0 transmits all light where there is no matter."""
     thickness = _thickness(specimen)
     if thickness and "attenuation_color" in specimen.subject.params:
         choices: dict[str, list[Any]] = {
@@ -122,14 +122,14 @@ def black_attenuation(specimen: Specimen) -> Iterator[Trial]:
 
 
 def _thickness(specimen: Specimen) -> str:
-    """The thickness that comes in, where light goes out."""
+    """The name of the thickness input, where the result is light or transmittance."""
     params = specimen.subject.params.items()
     lets_through = specimen.role == "translucency" or specimen.quantity("result") == "transmittance"
     return next((name for name, param in params if param.quantity == "thickness" and lets_through), "")
 
 
 def _full(specimen: Specimen) -> dict[str, list[float]]:
-    """All of the light goes in."""
+    """The inputs with which all light enters."""
     return {name: [1.0] for name in ("weight", "transmission_factor") if name in specimen.subject.params}
 
 

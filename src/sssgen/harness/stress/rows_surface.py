@@ -47,7 +47,7 @@ def _longest(specimen: Specimen) -> float:
 
 
 def grazing(specimen: Specimen) -> Iterator[Trial]:
-    """The eye goes down to the surface where nothing refracts: the slide has an end, and is none at 90 degrees."""
+    """The view goes to grazing, without refraction: the slide is bounded, and 0 at 90 degrees."""
     still = {"ior": 1.0, "outside_ior": 1.0, "eta": 1.0}
     if _parallax(specimen) and _free(specimen, still):
         swept = _swept(specimen, -90.0, 90.0, still)
@@ -58,7 +58,7 @@ def grazing(specimen: Specimen) -> Iterator[Trial]:
 
 
 def past_the_critical_angle(specimen: Specimen) -> Iterator[Trial]:
-    """Into a thinner body: a smooth fade to the base texture coordinates, where no ray goes in any more."""
+    """Into a thinner body: a smooth fade to the base texture coordinates, where no ray enters."""
     thinner = {"ior": 1.0, "outside_ior": 1.5, "eta": 1.5}
     refracts = {"ior", "eta"} & specimen.subject.params.keys()
     if _parallax(specimen) and refracts and _free(specimen, thinner):
@@ -68,7 +68,7 @@ def past_the_critical_angle(specimen: Specimen) -> Iterator[Trial]:
 
 
 def from_behind(specimen: Specimen) -> Iterator[Trial]:
-    """The eye goes round to the back."""
+    """The view goes round to the back."""
     if {"V", "N"} <= specimen.subject.params.keys():
         sine, cosine = angles(0.0, 180.0)
         view = np.stack([sine, 0.0 * sine, cosine])
@@ -94,7 +94,7 @@ def bad_frames(specimen: Specimen) -> Iterator[Trial]:
 
 
 def seams(specimen: Specimen) -> Iterator[Trial]:
-    """Texture coordinates that leap from each pixel to the next, and a texture with levels."""
+    """Texture coordinates that jump from pixel to pixel, and a texture with mip levels."""
     if "uv" not in specimen.subject.params or not (names := samplers(specimen)):
         return
     lanes = 1024
@@ -110,19 +110,19 @@ def seams(specimen: Specimen) -> Iterator[Trial]:
 
 
 def _swept_texels(specimen: Specimen, lanes: int) -> dict[str, Any]:
-    """Places all over a texture, whatever the technique looks it up with."""
+    """Positions all over a texture, for every kind of coordinate."""
     rng = np.random.default_rng(11)
     flat, solid = rng.random((2, lanes)), rng.uniform(-1.0, 1.0, (3, lanes))
     return {"uv": flat, "P": solid, "p": solid, "P_object": solid}
 
 
 def bad_texels(specimen: Specimen) -> Iterator[Trial]:
-    """Texels below 0, above 1, and no numbers, in textures that hold data: each reads as in its range."""
+    """Texels below 0, above 1, and NaN, in textures that hold data: reads must give values in the range."""
     yield from _with_texels(specimen, (0xC000, 0x8001, 0x4000, 0x7BFF, 0xFBFF, *_NANS[:1]))
 
 
 def fast_math(specimen: Specimen) -> Iterator[Trial]:
-    """Every kind of NaN and infinity in such textures, which a compiler may take for impossible."""
+    """Every kind of NaN and infinity in such textures, which a compiler may assume to be impossible."""
     yield from _with_texels(specimen, _NANS)
 
 
@@ -145,7 +145,7 @@ def _dim(specimen: Specimen, name: str) -> str:
 
 
 def eight_bits(specimen: Specimen) -> Iterator[Trial]:
-    """A map in 8 bits is off by half a step of it at most, against the same one in 16 bits."""
+    """A map in 8 bits deviates by at most half a step from the same map in 16 bits."""
     names = samplers(specimen, data=True)
     if not names or specimen.role not in ("thickness", "distance") or specimen.slots:
         return

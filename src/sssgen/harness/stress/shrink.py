@@ -71,13 +71,13 @@ def _one_texel(texture: Texture, value: float) -> Texture:
 
 
 def _simpler(specimen: Specimen, at: Inputs, name: str, fails: Fails) -> Inputs:
-    """With one input as simple as it can be while the others stay."""
+    """The inputs with one of them as simple as possible; the others stay."""
     value = at.values[name]
     if name in specimen.settings:
         return at
     candidates = list(_candidates(specimen, name, value))
     candidates = candidates[: _index(candidates, value)]
-    if _allowed(specimen, name, value):  # what is in the contract stays there
+    if _allowed(specimen, name, value):  # a value in the contract stays in it
         candidates = [one for one in candidates if _allowed(specimen, name, one)]
     if not candidates:
         return at
@@ -88,7 +88,7 @@ def _simpler(specimen: Specimen, at: Inputs, name: str, fails: Fails) -> Inputs:
 
 
 def _index(candidates: list[Array], value: Array) -> int:
-    """Where the value itself stands among the candidates; all of them are simpler where it is not there."""
+    """The index of the value among the candidates; their number where it is not among them."""
     same = (i for i, one in enumerate(candidates) if np.array_equal(one, value))
     return next(same, len(candidates))
 

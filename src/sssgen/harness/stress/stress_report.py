@@ -1,4 +1,4 @@
-"""What a stress run has found, for people, as Markdown and as JSON."""
+"""The results of a stress run, as text, as Markdown and as JSON."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ class Report(NamedTuple):
 
     settings: Settings
     devices: Mapping[str, str]
-    """Back end → what computed."""
+    """Back end → its device."""
     missing: Mapping[str, str]
     """Back end → how to get it."""
     rows: Sequence[Row]
 
     @property
     def ok(self) -> bool:
-        """Whether nothing that counts is wrong, and some back end was there."""
+        """Whether there are no faults that count, and at least one back end ran."""
         return bool(self.devices) and bool(self.rows) and all(row.ok for row in self.rows)
 
 
 def as_json(report: Report) -> dict[str, Any]:
-    """The report for programs."""
+    """The report as JSON."""
     settings = report.settings
     return {
         "ok": report.ok,
@@ -135,7 +135,7 @@ def _remark(row: Row) -> list[str]:
 
 
 def faults(row: Row, beyond: bool = False) -> Iterator[str]:
-    """What is wrong with one technique: that which counts, and, if asked for, that which does not.
+    """The faults of one technique: those that count, and on request those that do not.
 
     What several back ends have in common is told once, with the numbers and the line of the first of them.
     """
@@ -158,7 +158,7 @@ def faults(row: Row, beyond: bool = False) -> Iterator[str]:
 
 
 def total(report: Report) -> str:
-    """How much was done, and what came of it."""
+    """The totals of the run."""
     columns = [column for row in report.rows for column in row.columns]
     seconds = sum(column.seconds for column in columns)
     count = sum(column.evaluations for column in columns)

@@ -1,4 +1,4 @@
-"""Runs the trials of techniques on back ends, and gathers what is wrong."""
+"""Runs the trials of techniques on back ends, and collects their faults."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from sssgen.harness.backends import Array, Backend, CompilerMissing, get
 from sssgen.harness.backends.isolated import started
-from sssgen.harness.evaluate.deviation import GOAL, MARGIN, blur, errors
+from sssgen.harness.evaluate.deviation import GOAL, MARGIN, errors, rounding_deviation
 from sssgen.harness.evaluate.evaluation import Inputs
 from sssgen.harness.evaluate.evaluation import run as evaluated
 from sssgen.harness.stress import boundaries, energy, jumps
@@ -30,13 +30,13 @@ from sssgen.support.diagnostics import SssgenError
 CHUNK = 1 << 16
 """Lanes at a time: more is slower, since they leave the cache."""
 COMPARED = 1000
-"""Random lanes that are held against the oracle."""
+"""Random lanes that are compared with the oracle."""
 SHOWN = 3
 """Faults of one technique on one back end that are reduced to their simplest input."""
 
 
 class Settings(NamedTuple):
-    """What is asked for."""
+    """The options of a run."""
 
     samples: int
     seed: int = 0
@@ -49,7 +49,7 @@ class Settings(NamedTuple):
 
     @property
     def format(self) -> Format:
-        """The numbers that are computed with."""
+        """The number format of the computation."""
         return FLOAT16 if self.half else FLOAT32
 
 
@@ -60,19 +60,19 @@ class Fault(NamedTuple):
     kind: str
     output: str
     counts: bool
-    """Whether it is a failure; else the inputs were beyond the contract."""
+    """Whether it is a failure; otherwise the inputs were beyond the contract."""
     lanes: int
     of: int
-    """Lanes that failed, and that were tried."""
+    """The number of lanes that failed, and of those tried."""
     inputs: Inputs
     """The first that failed."""
     got: Array
     command: str = ""
-    """The line that shows the simplest input found; '' where it was not looked for."""
+    """The command that shows the simplest input found; '' where none was searched."""
 
 
 class Column(NamedTuple):
-    """What came of one technique on one back end."""
+    """The results of one technique on one back end."""
 
     backend: str
     evaluations: int
@@ -83,16 +83,16 @@ class Column(NamedTuple):
     deviation: float
     """The largest difference to the oracle that rounding does not explain."""
     error: str = ""
-    """Why there is nothing more: the driver refused, crashed or hung."""
+    """Why the results are incomplete: the driver refused, crashed or hung."""
 
     @property
     def ok(self) -> bool:
-        """Whether nothing that counts is wrong."""
+        """Whether there are no faults that count."""
         return not self.error and not any(fault.counts for fault in self.faults)
 
 
 class Row(NamedTuple):
-    """What came of one technique."""
+    """The results of one technique."""
 
     specimen: Specimen
     columns: tuple[Column, ...]
@@ -101,12 +101,12 @@ class Row(NamedTuple):
 
     @property
     def ok(self) -> bool:
-        """Whether nothing that counts is wrong on any back end."""
+        """Whether there are no faults that count on any back end."""
         return all(column.ok for column in self.columns)
 
 
 class Machines:
-    """Back ends, each in a process of its own but NumPy; a context that ends them."""
+    """The back ends, each but NumPy in its own process; a context manager that ends them."""
 
     def __init__(self, names: Sequence[str]) -> None:
         self.here: dict[str, Backend] = {}
@@ -129,11 +129,11 @@ class Machines:
 
 
 Told = Callable[[str, int], None]
-"""Hears of progress: what is done now, and how many evaluations are done of it."""
+"""Receives the progress: the current task, and how much of it is done."""
 
 
 def stress(specimen: Specimen, machines: Machines, settings: Settings, told: Told = lambda *_: None) -> Row:
-    """Everything, for one technique on all back ends."""
+    """All trials of one technique on all back ends."""
     gathered = [_Gathered(name, backend, specimen, settings) for name, backend in machines.here.items()]
     for trial in _trials(specimen, settings):
         told(trial.name, 0)
@@ -183,7 +183,7 @@ def exact(specimen: Specimen, settings: Settings) -> Callable[[Inputs], dict[str
 
 
 class _Reference:
-    """The oracle's outputs for a trial, and how far rounding alone takes them: made when they are asked for."""
+    """The oracle's outputs for a trial and their rounding deviation, computed when they are needed."""
 
     def __init__(self, trial: Trial, settings: Settings) -> None:
         self.trial, self.settings = trial, settings
@@ -194,14 +194,14 @@ class _Reference:
         return exact(self.trial.specimen, self.settings)(self.trial.inputs)
 
     @cached_property
-    def blur(self) -> dict[str, Array]:
-        """See `deviation.blur`."""
+    def rounding(self) -> dict[str, Array]:
+        """See `deviation.rounding_deviation`."""
         with np.errstate(over="ignore"):  # beyond the largest number there is no next one
-            return blur(self.trial.specimen.subject, self.trial.inputs, self.outputs)
+            return rounding_deviation(self.trial.specimen.subject, self.trial.inputs, self.outputs)
 
 
 class _Gathered:
-    """What one back end has shown of one technique."""
+    """The results of one technique on one back end, while it runs."""
 
     def __init__(self, name: str, backend: Backend, specimen: Specimen, settings: Settings) -> None:
         self.name, self.backend, self.specimen, self.settings = name, backend, specimen, settings
@@ -255,7 +255,7 @@ class _Gathered:
         )
 
     def compare(self, trial: Trial, outputs: Mapping[str, Array], reference: _Reference) -> Iterator[Found]:
-        """Where finite outputs are further from the oracle's than rounding takes them."""
+        """Where finite outputs deviate from the oracle's by more than rounding explains."""
         for name, wanted in reference.outputs.items():
             got = outputs[name]
             if got.dtype.kind != "f" or not got.ndim:
@@ -264,7 +264,7 @@ class _Gathered:
             apart[~np.isfinite(apart)] = 0.0  # that is a fault of its own
             bad = apart > GOAL
             if bad.any():
-                bad &= apart > MARGIN * reference.blur[name]
+                bad &= apart > MARGIN * reference.rounding[name]
                 self.deviation = max(self.deviation, float(apart[bad].max(initial=0.0)))
                 if bad.any():
                     yield Found("disagreement", name, bad)
@@ -289,7 +289,7 @@ class _Gathered:
             )
 
     def column(self) -> Column:
-        """All of it, with the simplest inputs of the worst."""
+        """The results, with the simplest inputs of the worst faults."""
         order = sorted(self.faults, key=lambda key: (not key[3], KINDS.index(key[1])))
         found = [self.told(key, number < SHOWN) for number, key in enumerate(order)]
         return Column(
@@ -297,7 +297,7 @@ class _Gathered:
         )  # fmt: skip
 
     def told(self, key: tuple[str, str, str, bool], shrink: bool) -> Fault:
-        """A fault with the line that shows it."""
+        """A fault with the command that shows it."""
         fault, trial = self.faults[key], self.trials.get(key)
         if trial is not None:
             fault = fault._replace(of=self.lanes[trial.name, trial.counts])

@@ -1,4 +1,4 @@
-"""What is stressed: a technique of the library or of a file, or one stage of a material with its bindings."""
+"""The subject of a stress run: a technique of the library or a file, or one stage of a material with its bindings."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 
 
 class Specimen(NamedTuple):
-    """A subject, and what is known of it."""
+    """A subject, and the facts about its technique."""
 
     title: str
     """As reports call it: `beer_lambert`, or `ice: beer_lambert`."""
@@ -30,7 +30,7 @@ class Specimen(NamedTuple):
     bind: Mapping[str, str] = {}
     """Slot → function, as `--bind` takes them."""
     settings: Mapping[str, tuple[float, ...]] = {}
-    """The uniforms that are no inputs: a material fixes them."""
+    """The uniforms that are not inputs, since a material fixes them."""
 
     @property
     def slots(self) -> tuple[str, ...]:
@@ -45,7 +45,7 @@ class Specimen(NamedTuple):
         return self._replace(subject=subject(self.technique, bind), bind=bind)
 
     def output(self, name: str) -> Param:
-        """An output as a parameter: what it is called, and what it measures."""
+        """An output as a parameter, with its name and its quantity."""
         probe = next(probe for probe in self.subject.probes if probe.output == name)
         called = probe.function.removesuffix(f"_shows_{name}")
         function = next(one for one in self.subject.module.functions if one.name == called)
@@ -53,7 +53,7 @@ class Specimen(NamedTuple):
         return written or Param(RESULT, function.result, "out", function.quantity, function.span)
 
     def quantity(self, output: str) -> str:
-        """What an output measures, '' where that is not declared or there is no such output."""
+        """The quantity of an output; '' where it has none or does not exist."""
         known = any(probe.output == output for probe in self.subject.probes)
         return self.output(output).quantity if known else ""
 
@@ -77,7 +77,7 @@ def specimens(names: Sequence[str]) -> list[Specimen]:
 
 
 def named(name: str) -> list[Specimen]:
-    """What one name means. Raises SssgenError."""
+    """The specimens that one name stands for. Raises SssgenError."""
     if name.endswith(".toml") or name in examples():
         return stages(load_material(name))
     if name not in library.index() and not name.rpartition(":")[0] and not name.endswith((".sss", ".glsl")):

@@ -1,4 +1,4 @@
-"""One set of inputs for one technique, and what is asked of its results."""
+"""One set of inputs for one technique, and the requirements on its results."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from sssgen.ir.formats import FLOAT32
 
 RANDOM, BOUNDARY, BEYOND = "random", "boundary values", "beyond the contract"
 ENERGY, STEPS = "thickness grows", "small steps"
-"""The trials that are no rows of the table of dangerous inputs."""
+"""The trials that do not come from the table of dangerous inputs."""
 
 
 class Trial(NamedTuple):

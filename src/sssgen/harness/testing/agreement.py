@@ -10,7 +10,7 @@ import numpy as np
 
 from sssgen.harness.backends import Array, Backend, get
 from sssgen.harness.evaluate import evaluation as evaluate
-from sssgen.harness.evaluate.deviation import GOAL, blur, deviation, errors
+from sssgen.harness.evaluate.deviation import GOAL, deviation, errors, rounding_deviation
 from sssgen.harness.evaluate.evaluation import Inputs
 from sssgen.harness.evaluate.probes import Subject
 from sssgen.harness.testing.outcome import Outcome
@@ -39,10 +39,10 @@ def against_oracle(
     """
     expected = evaluate.run(subject, inputs, get("numpy")) if oracle is None else oracle
     outputs = evaluate.run(subject, inputs, backend)
-    apart = deviation(outputs, expected, lambda: blur(subject, inputs, expected))
-    excused = f", {apart.excused} ill-conditioned lanes by up to {apart.furthest:.2g}" if apart.excused else ""
+    apart = deviation(outputs, expected, lambda: rounding_deviation(subject, inputs, expected))
+    excluded = f", {apart.excluded} ill-conditioned lanes by up to {apart.furthest:.2g}" if apart.excluded else ""
     if apart.largest <= tolerance:
-        return outputs, Outcome("passed", f"{backend.name} deviates by {apart.largest:.2g} at most{excused}")
+        return outputs, Outcome("passed", f"{backend.name} deviates by {apart.largest:.2g} at most{excluded}")
     where = f"{apart.output}[{apart.lane}] is {apart.got.tolist()}; float64 gives {apart.wanted.tolist()}"
     return outputs, Outcome("failed", f"{backend.name} deviates by {apart.largest:.2g}, more than {tolerance:g}", where)
 
