@@ -6,115 +6,21 @@ import json
 import os
 import subprocess
 import sys
-import types
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import pytest
 
+from command_line import GLSL, WAX, FakeCompiler, Run, folder_content
 from snapshot import check_snapshot
-from sssgen.cli import listing, show, transpile
 from sssgen.cli import main as cli
-from sssgen.ir.nodes import Module, Span
+from sssgen.cli import show
+from sssgen.ir.nodes import Span
 from sssgen.material.material_loading import load_material
-from sssgen.material.model import Material
-from sssgen.pipeline import emitted_cache
 from sssgen.support import file_writer as output
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.support.file_writer import write_files
-
-WAX = """\
-[material]
-name = "wax"
-[thickness]
-technique = "transmittance_map"
-[translucency]
-technique = "lobe_normalized"
-"""
-GLSL = "float twice(float x)\n{\n    return 2.0 * x;\n}\n"
-
-
-class Compiled(NamedTuple):
-    files: dict[str, str]
-    warnings: list[Diagnostic]
-
-    @property
-    def reflection(self) -> dict[str, object]:
-        return {}
-
-
-class Target(NamedTuple):
-    title: str
-
-
-class FakeCompiler(types.ModuleType):
-    """A compiler that writes down what it was asked, so that these tests are about the command line alone."""
-
-    def __init__(self) -> None:
-        super().__init__("sssgen.pipeline.compiler")
-        self.asked: list[tuple[str, str, str, Path | None]] = []
-        self.text = "text 1"
-        self.name = "{}.{}.txt"
-        self.failing: dict[str, Exception] = {}
-        self.warnings: list[Diagnostic] = []
-
-    def all_targets(self) -> dict[str, Target]:
-        return {"glsl-330": Target("GLSL 3.30"), "wgsl": Target("WGSL")}
-
-    def compile(self, material: Material, target: str, form: str, templates: Path | None, guards: str) -> Compiled:
-        self.asked.append((material.name, target, form, templates))
-        if target in self.failing:
-            raise self.failing[target]
-        name = self.name.format(material.name, target)
-        files = {name: f"{self.text}\n", f"{material.name}.{target}.reflection.json": "{}\n"}
-        return Compiled(files, self.warnings)
-
-    def transpile(self, module: Module, target: str, name: str, guards: str, **kept: object) -> Compiled:
-        text = f"// {name}: {', '.join(function.name for function in module.functions)}\n"
-        return Compiled({f"{name}.{target}.txt": text, f"{name}.{target}.reflection.json": "{}\n"}, [])
-
-
-@pytest.fixture
-def compiler(monkeypatch: pytest.MonkeyPatch) -> FakeCompiler:
-    fake = FakeCompiler()
-    monkeypatch.setitem(sys.modules, "sssgen.pipeline.compiler", fake)
-    monkeypatch.setattr(listing, "all_targets", fake.all_targets)
-    monkeypatch.setattr(transpile, "transpile", fake.transpile)
-    monkeypatch.setattr(emitted_cache, "load", lambda *_: None)
-    monkeypatch.setattr(emitted_cache, "store", lambda *_: None)
-    return fake
-
-
-@pytest.fixture(autouse=True)
-def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.delenv("SSSGEN_DEBUG", raising=False)
-    Path("wax.toml").write_text(WAX, encoding="utf-8")
-    return tmp_path
-
-
-class Ran(NamedTuple):
-    status: int
-    out: str
-    err: str
-
-
-Run = Callable[..., Ran]
-
-
-@pytest.fixture
-def run(capsys: pytest.CaptureFixture[str]) -> Run:
-    def call(*arguments: str) -> Ran:
-        status = cli.main(arguments)
-        return Ran(status, *capsys.readouterr())
-
-    return call
-
-
-def folder_content(path: str = "out") -> dict[str, str]:
-    return {one.name: one.read_text(encoding="utf-8") for one in sorted(Path(path).iterdir())}
-
 
 # The frame
 
@@ -446,112 +352,3 @@ def test_folders_that_cannot_be_written(run: Run, compiler: FakeCompiler, monkey
         patched.setattr(os, "makedirs", refuse)
         texts.append(run("emit", "wax.toml", "-t", "wgsl", "-o", "locked").err)
     check_snapshot("cli/folders_that_cannot_be_written.txt", "\n".join(texts))
-
-
-# transpile
-
-
-def test_transpile(run: Run, compiler: FakeCompiler) -> None:
-    Path("2 twice.glsl").write_text(GLSL, encoding="utf-8")
-    assert run("transpile", "2 twice.glsl", "-t", "wgsl") == (0, "// file_2_twice: twice\n", "")
-    assert run("transpile", "2 twice.glsl", "-t", "wgsl", "-o", "to/twice.wgsl") == (0, "", "")
-    assert folder_content("to") == {
-        "twice.wgsl": "// file_2_twice: twice\n",
-        "twice.wgsl.reflection.json": "{}\n",
-    }
-    said = json.loads(run("transpile", "2 twice.glsl", "-t", "wgsl", "--json").out)
-    assert said["texts"]["file_2_twice.wgsl.txt"] == "// file_2_twice: twice\n"
-
-
-BAD_GLSL = {
-    "recursion": "float f(float x);\nfloat g(float x) { return f(x); }\nfloat f(float x) { return g(x); }\n",
-    "reserved_names": "float gl_half(float x) { return x; }\nfloat f(float gl_x) { return gl_x; }\n",
-    "not_translated": "double f(double x) { return x; }\nuniform image2D picture;\n",
-    "misspelt_names": "float f(vec2 uv) {\n    float x = distanse(uv, uv);\n    return length(uvv);\n}\n",
-    "several_syntax_errors": "float f( { return 1.0; }\nfloat g() { return 2.0 }\n",
-    "nesting_10000_deep": "float f() {\n    return " + "(" * 10_000 + "1.0" + ")" * 10_000 + ";\n}\n",
-    "no_conversion": "int f() {\n    return 1.0;\n}\n",
-    "in_a_macro": "#define HALF(x) (0.5 * undefined_name * (x))\nfloat f(float y) {\n    return 1.0 + HALF(y);\n}\n",
-    "missing_include": '#include "nothing.sss"\nfloat f() { return 1.0; }\n',
-}
-
-
-@pytest.mark.parametrize("case", BAD_GLSL)
-def test_errors_in_the_language(case: str, run: Run, compiler: FakeCompiler) -> None:
-    Path("bad.glsl").write_text(BAD_GLSL[case], encoding="utf-8")
-    ran = run("transpile", "bad.glsl", "-t", "wgsl")
-    assert (ran.status, ran.out) == (2, "")
-    check_snapshot(f"cli/language/{case}.txt", ran.err)
-
-
-def test_a_file_that_is_no_text(run: Run, compiler: FakeCompiler) -> None:
-    Path("bad.glsl").write_bytes(b"float f()\n\xff\xfe")
-    Path("zero.glsl").write_bytes(b"float f()\n\x00")
-    texts = [run("transpile", name, "-t", "wgsl").err for name in ("bad.glsl", "zero.glsl")]
-    check_snapshot("cli/language/no_text.txt", "\n".join(texts))
-
-
-# With the real compiler
-
-
-def test_the_starter_emits_for_every_target(run: Run) -> None:
-    from sssgen.pipeline.compiler import all_targets
-
-    assert run("new", "wood").status == 0
-    ran = run("emit", "wood.toml", "--target", "all", "-o", "out", "--json")
-    said = json.loads(ran.out)
-    assert (ran.status, said["diagnostics"]) == (0, [])
-    assert {row["target"] for row in said["files"]} == set(all_targets())
-    names = set(folder_content())
-    assert {f"wood.{target}.reflection.json" for target in all_targets()} <= names
-
-
-def test_transpile_for_every_target(run: Run) -> None:
-    from sssgen.pipeline.compiler import all_targets
-
-    Path("twice.glsl").write_text(GLSL, encoding="utf-8")
-    for target in all_targets():
-        ran = run("transpile", "twice.glsl", "-t", target)
-        assert (ran.status, ran.err) == (0, "")
-        assert "twice" in ran.out
-
-
-def test_what_was_included_is_not_overwritten(run: Run) -> None:
-    Path("lib.glsl").write_text("float twice(float x) { return x + x; }\n", encoding="utf-8")
-    Path("own.glsl").write_text('#include "lib.glsl"\nfloat f(float x) { return twice(x); }\n', encoding="utf-8")
-    ran = run("transpile", "own.glsl", "-t", "glsl-330", "-o", "lib.glsl")
-    assert (ran.status, ran.out) == (2, "")
-    assert "the output is what was read" in ran.err
-    assert Path("lib.glsl").read_text(encoding="utf-8").startswith("float twice")
-
-
-def test_prune_keeps_what_is_reached(run: Run) -> None:
-    text = "uniform float far;\nconst float A = 1.0;\nstruct S { float x; };\nfloat g;\nfloat f() { return 1.0; }\n"
-    Path("lib.glsl").write_text(text, encoding="utf-8")
-    Path("own.glsl").write_text('#include "lib.glsl"\nfloat h(float x) { return x; }\n', encoding="utf-8")
-    out = run("transpile", "own.glsl", "-t", "glsl-330", "--prune").out
-    assert "float h(float x)" in out
-    assert not any(word in out for word in ("far", "const", "struct", "float g", "float f("))
-
-
-def test_renamed_is_what_the_language_reserves(run: Run) -> None:
-    Path("own.glsl").write_text("float half4(float half) { return half; }\n", encoding="utf-8")
-    assert "renamed: half4 → half4_ (hlsl reserves it)" in run("transpile", "own.glsl", "-t", "unity-urp").err
-    assert "float half4_(float half_)" in run("transpile", "own.glsl", "-t", "unity-urp").out
-    assert run("transpile", "own.glsl", "-t", "glsl-330").out.count("half4_") == 0
-
-
-def test_a_technique_has_the_name_that_its_text_has(run: Run) -> None:
-    text = "// Half of it.\nfloat half(float x) { return x * 0.5; }\nfloat g(float x) { return half(x); }\n"
-    Path("own.glsl").write_text(text, encoding="utf-8")
-    ran = run("transpile", "own.glsl", "--as", "technique", "--function", "half", "-o", ".")
-    assert (ran.status, ran.out) == (0, "wrote half_.sss\n")
-    written = Path("half_.sss").read_text(encoding="utf-8")
-    assert " * Half of it.\n" in written
-    assert written.endswith("float half_(float x) {\n    return x * 0.5;\n}\n")
-
-
-def test_what_a_void_return_does_is_done_once(run: Run) -> None:
-    text = "void add(int k);\nvoid add(int k) {}\nvoid f(inout int k) { return add(k++); }\n"
-    Path("own.glsl").write_text(text, encoding="utf-8")
-    assert run("transpile", "own.glsl", "-t", "glsl-330").out.count("k++") == 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
@@ -10,6 +11,7 @@ import numpy.typing as npt
 import pytest
 
 from folders import MESHES
+from sssgen.cli.main import main
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Faces: TypeAlias = npt.NDArray[np.int64]
@@ -159,3 +161,13 @@ def passed(triangles: Array, origins: Array, ways: Array, at_once: int = 2**22) 
             met.append((u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (t > 0.0))
         lengths.append(t)
     return np.concatenate(lengths), np.concatenate(met)
+
+
+def bake(*arguments: str) -> None:
+    """Runs `sssgen bake`, which must succeed."""
+    assert main(["bake", *arguments]) == 0
+
+
+def facts(path: str) -> Any:
+    """The JSON beside a baked file."""
+    return json.loads(Path(path + ".json").read_text(encoding="utf-8"))

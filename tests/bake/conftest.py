@@ -1,0 +1,17 @@
+"""The folder that the tests of `sssgen bake` run in."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import bake_meshes as meshes
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty folder, but for a box."""
+    monkeypatch.chdir(tmp_path)
+    meshes.write(Path("box.obj"), meshes.box((1.0, 0.6, 0.4)))
+    return tmp_path

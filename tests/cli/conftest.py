@@ -1,0 +1,41 @@
+"""What the tests of the command line share."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from command_line import WAX, FakeCompiler, Ran, Run
+from sssgen.cli import listing, transpile
+from sssgen.cli import main as cli
+from sssgen.pipeline import emitted_cache
+
+
+@pytest.fixture
+def compiler(monkeypatch: pytest.MonkeyPatch) -> FakeCompiler:
+    fake = FakeCompiler()
+    monkeypatch.setitem(sys.modules, "sssgen.pipeline.compiler", fake)
+    monkeypatch.setattr(listing, "all_targets", fake.all_targets)
+    monkeypatch.setattr(transpile, "transpile", fake.transpile)
+    monkeypatch.setattr(emitted_cache, "load", lambda *_: None)
+    monkeypatch.setattr(emitted_cache, "store", lambda *_: None)
+    return fake
+
+
+@pytest.fixture(autouse=True)
+def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("SSSGEN_DEBUG", raising=False)
+    Path("wax.toml").write_text(WAX, encoding="utf-8")
+    return tmp_path
+
+
+@pytest.fixture
+def run(capsys: pytest.CaptureFixture[str]) -> Run:
+    def call(*arguments: str) -> Ran:
+        status = cli.main(arguments)
+        return Ran(status, *capsys.readouterr())
+
+    return call

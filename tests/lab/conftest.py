@@ -1,0 +1,35 @@
+"""What the tests of measuring share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import pytest
+
+from measured_views import SIZE, made_up, small
+from sssgen.lab.measure import (
+    scene_references as references,
+)
+from sssgen.lab.measure.measurement import View
+from sssgen.lab.scene import measured_scene
+from sssgen.support import cache
+
+
+@pytest.fixture(scope="module")
+def no_cache() -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cache, "_folder", None)
+        patch.setenv("SSSGEN_CACHE", "")
+        yield
+    cache._folder = None
+
+
+@pytest.fixture(scope="module")
+def cube() -> View:
+    return made_up(small("cube"))
+
+
+@pytest.fixture(scope="module")
+def training() -> tuple[View, ...]:
+    return tuple(made_up(replace(one, size=SIZE), one.name) for one in references.training(measured_scene.load("cube")))

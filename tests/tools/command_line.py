@@ -1,0 +1,77 @@
+"""A compiler that records its calls, so that tests of the command line do not depend on the compiler."""
+
+from __future__ import annotations
+
+import types
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+from sssgen.ir.nodes import Module
+from sssgen.material.model import Material
+from sssgen.support.diagnostics import Diagnostic
+
+WAX = """\
+[material]
+name = "wax"
+[thickness]
+technique = "transmittance_map"
+[translucency]
+technique = "lobe_normalized"
+"""
+GLSL = "float twice(float x)\n{\n    return 2.0 * x;\n}\n"
+
+
+class Compiled(NamedTuple):
+    files: dict[str, str]
+    warnings: list[Diagnostic]
+
+    @property
+    def reflection(self) -> dict[str, object]:
+        return {}
+
+
+class Target(NamedTuple):
+    title: str
+
+
+class FakeCompiler(types.ModuleType):
+    """A compiler that writes down what it was asked, so that these tests are about the command line alone."""
+
+    def __init__(self) -> None:
+        super().__init__("sssgen.pipeline.compiler")
+        self.asked: list[tuple[str, str, str, Path | None]] = []
+        self.text = "text 1"
+        self.name = "{}.{}.txt"
+        self.failing: dict[str, Exception] = {}
+        self.warnings: list[Diagnostic] = []
+
+    def all_targets(self) -> dict[str, Target]:
+        return {"glsl-330": Target("GLSL 3.30"), "wgsl": Target("WGSL")}
+
+    def compile(
+        self, material: Material, target: str, form: str, templates: Path | None, guards: str, trace: object = None
+    ) -> Compiled:
+        self.asked.append((material.name, target, form, templates))
+        if target in self.failing:
+            raise self.failing[target]
+        name = self.name.format(material.name, target)
+        files = {name: f"{self.text}\n", f"{material.name}.{target}.reflection.json": "{}\n"}
+        return Compiled(files, self.warnings)
+
+    def transpile(self, module: Module, target: str, name: str, guards: str, **kept: object) -> Compiled:
+        text = f"// {name}: {', '.join(function.name for function in module.functions)}\n"
+        return Compiled({f"{name}.{target}.txt": text, f"{name}.{target}.reflection.json": "{}\n"}, [])
+
+
+class Ran(NamedTuple):
+    status: int
+    out: str
+    err: str
+
+
+Run = Callable[..., Ran]
+
+
+def folder_content(path: str = "out") -> dict[str, str]:
+    return {one.name: one.read_text(encoding="utf-8") for one in sorted(Path(path).iterdir())}

@@ -1,0 +1,52 @@
+"""Small views of the measured scenes, with light that is made up, and chains of techniques to measure in them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from sssgen.lab.measure import (
+    measurement as measure,
+)
+from sssgen.lab.measure.candidates import Candidate
+from sssgen.lab.measure.measured_chain import Chain
+from sssgen.lab.measure.measurement import View
+from sssgen.lab.measure.problem import Seen
+from sssgen.lab.reference.inside_lengths import thickness
+from sssgen.lab.scene import measured_scene
+from sssgen.lab.scene.measured_scene import MeasuredScene
+from sssgen.lab.scene.scene_body import body
+from sssgen.lab.scene.view_points import points
+
+SIZE = (12, 12)
+
+
+def small(name: str) -> MeasuredScene:
+    return replace(measured_scene.load(name), size=SIZE)
+
+
+def made_up(one: MeasuredScene, name: str = "own") -> View:
+    """A view with a made-up reference: light that falls off with the thickness, more from the front, and noise."""
+    at = points(one)
+    seen: list[Seen] = []
+    for light in one.lights:
+        assert light.direction is not None
+        towards = np.tile(light.direction, (at.count, 1))
+        length = thickness(one.geometry, np.ascontiguousarray(at.inputs["P"].T), towards)
+        front = np.maximum(at.inputs["N"].T @ light.direction, 0.0)
+        colors = np.array([0.9, 0.5, 0.3])[:, None]
+        mean = colors * (0.4 * np.exp(-length / colors) + 0.5 * front)
+        seen.append((mean, np.full_like(mean, 1e-3)))
+    return View(name, one, tuple(seen), "made up")
+
+
+def candidate(*chain: str, role: str = "material", settings: tuple[tuple[str, int], ...] = ()) -> Candidate:
+    return Candidate(role, chain[-1], " → ".join(chain), settings, chain)
+
+
+def chain(one: Candidate, view: View, folder: Path) -> Chain:
+    found = measure.chain_of(one, body(view.scene.geometry), str(folder))
+    assert found is not None
+    return found
