@@ -207,7 +207,7 @@ def test_wrong_arguments(capsys: pytest.CaptureFixture[str], idle: None, argumen
 
 
 LIGHTS = {
-    "{": "this is no JSON",
+    "{": "this is not JSON",
     "": "",
     "[1, 2, 3]": "a direction or a position",
     "{}": "a direction or a position",

@@ -187,7 +187,7 @@ def test_wrong_inputs(
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("{", "this is no JSON"),
+        ("{", "this is not JSON"),
         ("[1, 2]", "the inputs are no object"),
         ("[" * 100_000, "nested too deeply"),
         ('{"V": [0, 0, 1],\n "N": [0, 0, 1,]}', ":2:"),

@@ -16,7 +16,7 @@ from sssgen.cli.main import main
 from sssgen.harness import backends
 from sssgen.harness.backends import Backend
 from sssgen.harness.pictures import images
-from sssgen.harness.render import pixel_mesh as dice
+from sssgen.harness.render import pixel_mesh
 from sssgen.harness.render.scene_render import render
 from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Ball
@@ -151,7 +151,7 @@ def test_dice_put_a_vertex_into_each_pixels_centre() -> None:
     camera, size, ball = Camera((0.3, 0.4, 3.0)), (40, 30), Ball(radius=1.0, rotation=(10.0, 20.0, 30.0), scale=0.8)
     origin, directions = camera.rays(*size)
     hits = ball.hits(origin, directions)
-    vertices = dice.vertices(hits, origin, directions, ball.to_world(), size)
+    vertices = pixel_mesh.vertices(hits, origin, directions, ball.to_world(), size)
     matrix = camera.view_projection(size[0] / size[1]) @ ball.to_world()
     clip = np.c_[vertices[:, :3], np.ones(len(vertices))] @ matrix.astype(np.float32).T
     x, y = ((clip[:, axis] / clip[:, 3] + 1.0) * size[axis] / 2.0 for axis in (0, 1))
@@ -160,7 +160,7 @@ def test_dice_put_a_vertex_into_each_pixels_centre() -> None:
     normal = vertices[:, 3:6][hits.hit] @ np.linalg.inv(ball.to_world())[:3, :3]
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     np.testing.assert_allclose(normal, hits.normal[hits.hit], atol=1e-6)
-    assert len(dice.triangles(size)) == 2 * 39 * 29 and dice.triangles(size).max() == 40 * 30 - 1
+    assert len(pixel_mesh.triangles(size)) == 2 * 39 * 29 and pixel_mesh.triangles(size).max() == 40 * 30 - 1
 
 
 # The command

@@ -1,1 +1,1 @@
-"""What every other package uses: errors with places, files, caches, and input formats with places."""
+"""Used by every other package: errors with source positions, files, caches, TOML and JSON with positions."""

@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 from sssgen.ir.spans import NOWHERE, Span
 
 MAX_ERRORS = 100
-"""How many errors of one file are collected; nobody reads more."""
+"""The largest number of errors collected for one file."""
 
 MAX_MESSAGE = 500
-"""How long a message may be: a name in it may be a megabyte."""
+"""The largest length of a message: a name in it may be a megabyte long."""
 
 
 class Diagnostic(NamedTuple):
@@ -58,7 +58,7 @@ class Diagnostic(NamedTuple):
 
 
 def visible(text: str) -> str:
-    """Text that does nothing to a terminal: what is not printable becomes one visible character."""
+    """Text that is safe for a terminal: each character that is not printable becomes a visible one."""
     if text.isprintable():
         return text
     return "".join([char if char.isprintable() else _picture(char) for char in text])
@@ -80,7 +80,7 @@ def _window(line: str, span: Span, width: int = 120) -> tuple[str, int, int]:
 
 
 class SssgenError(Exception):
-    """Everything that was wrong with an input. `diagnostics` is never empty."""
+    """All errors of an input. `diagnostics` is never empty."""
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
         self.diagnostics = list(diagnostics)
@@ -102,14 +102,14 @@ class Reporter:
         self.file = file
         self.texts = texts or {}
         self.macros: Collection[str] = ()
-        """The macros whose uses stand in the text: what is wrong there may stand in their definitions."""
+        """The macros that the text uses: an error at such a use may be in the macro's definition."""
         self.lines = text.split("\n")  # as the parser counts them: other line ends are white space to it
         self.diagnostics: list[Diagnostic] = []
         self.warnings: list[Diagnostic] = []
         self.seen: set[tuple[Span, str]] = set()
 
     def error(self, span: Span, message: str, hint: str = "") -> None:
-        """Notes an error; the same message at the same place is noted once. Raises when there are too many."""
+        """Records an error; the same message at the same place is recorded once. Raises after too many."""
         message, hint = _cut(message), _cut(hint)
         if self.macros and (written := self.line(span)[span.column - 1 : span.end_column - 1]) in self.macros:
             message = f"{message}, in what the macro {written} stands for"
@@ -124,7 +124,7 @@ class Reporter:
             self.check()
 
     def warn(self, span: Span, message: str, hint: str = "") -> None:
-        """Notes what does not stop anything."""
+        """Records a warning."""
         self.warnings.append(Diagnostic("warning", _cut(message), span, _cut(hint), self.line(span)))
 
     def line(self, span: Span) -> str:
@@ -134,7 +134,7 @@ class Reporter:
         return lines[span.line - 1].rstrip("\r") if 0 < span.line <= len(lines) else ""
 
     def check(self) -> None:
-        """Raises what has been collected, in source order, if there is any."""
+        """Raises the collected errors in source order, if there are any."""
         if self.diagnostics:
             raise SssgenError(sorted(self.diagnostics, key=lambda found: found.span[1:3]))
 

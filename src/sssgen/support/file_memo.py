@@ -1,7 +1,7 @@
-"""Remembers results together with the files that they were made from: a result is made again once one has changed.
+"""Caches results in memory with the files that they depend on: a result is recomputed once one of them has changed.
 
-A program that stays up (an editor, a watcher, a test run) so sees its materials and techniques as they are on disk, and
-what has not changed costs a few calls of `stat`.
+A long-running program (an editor, a watcher, a test run) thus always sees the materials and techniques on disk; an
+unchanged one costs a few calls of `stat`.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from typing import NamedTuple, TypeVar
 
 _T = TypeVar("_T")
 
-KEPT = 1024
-"""How many results one memory holds before it is emptied."""
+MAX_RESULTS = 1024
+"""The number of results in one memory before it is emptied."""
 
 
 class Kept(NamedTuple):
-    """A result, the files read while it was made, and the state they were in."""
+    """A result, the files that it depends on, and their state."""
 
     files: tuple[str, ...]
     state: list[tuple[int, int]]
@@ -28,7 +28,7 @@ _watching: list[set[str]] = []
 
 
 def note(path: str | os.PathLike[str]) -> None:
-    """Says that a file is being read for whatever is being made just now."""
+    """Records that the results which are being computed depend on a file."""
     if _watching:
         full = os.path.abspath(path)
         for files in _watching:
@@ -36,7 +36,7 @@ def note(path: str | os.PathLike[str]) -> None:
 
 
 def watched(make: Callable[[], _T]) -> tuple[_T, list[str]]:
-    """What `make` gives, and the files that it read or looked for."""
+    """The result of `make`, and the files that it read or searched for."""
     files: set[str] = set()
     _watching.append(files)
     try:
@@ -46,28 +46,28 @@ def watched(make: Callable[[], _T]) -> tuple[_T, list[str]]:
 
 
 def remembered(memory: dict[str, Kept], key: str, make: Callable[[], _T]) -> _T:
-    """What `make` gives, or what it gave before for this key, if no file that it read has changed since."""
+    """The result of `make`, or the earlier one for this key if none of its files has changed."""
     kept = memory.get(key)
     if kept is not None and _state(kept.files) == kept.state:
         for path in kept.files:
             note(path)
-        return kept.value  # type: ignore[return-value]  # a memory holds what its own `make` gave
+        return kept.value  # type: ignore[return-value]  # a memory has results of one type
     value, files = watched(make)
     names = tuple(files)
-    if len(memory) >= KEPT:
+    if len(memory) >= MAX_RESULTS:
         memory.clear()
     memory[key] = Kept(names, _state(names), value)
     return value
 
 
 def _state(files: tuple[str, ...]) -> list[tuple[int, int]]:
-    """Each file's time and size; (0, -1) for one that is gone."""
-    found = []
+    """Each file's time and size; (0, -1) for a missing one."""
+    state = []
     for path in files:
         try:
             status = os.stat(path)
         except OSError:
-            found.append((0, -1))
+            state.append((0, -1))
         else:
-            found.append((status.st_mtime_ns, status.st_size))
-    return found
+            state.append((status.st_mtime_ns, status.st_size))
+    return state

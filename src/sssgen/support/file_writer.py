@@ -1,4 +1,4 @@
-"""Writing emitted files: inside their folder only, and each whole or not at all."""
+"""Writes files atomically, inside their folder only."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from sssgen.support.paths import posix
 
 
 class Written(NamedTuple):
-    """One file of an emit; `changed` is false where it already held the same text and was left as it was."""
+    """A file; `changed` is false where it already had the same content and was not written."""
 
     path: str
     changed: bool
 
 
 def check_names(names: Iterable[str]) -> None:
-    """Raises SssgenError for every name that leaves its folder, or that some system cannot have."""
+    """Raises SssgenError with every name that leaves its folder, or that is invalid on some system."""
     wrong = [
         Diagnostic(
             "error",
@@ -41,7 +41,7 @@ _UNFIT = re.compile(r'[\x00-\x1f<>:"|?*\\]')
 
 
 def _fault(name: str) -> str:
-    """What is wrong with an output's name, or ''."""
+    """Why an output's name is invalid, or ''."""
     if not name.strip():
         return "the name is empty"
     if name.startswith(("/", "\\")) or _DRIVE.match(name):
@@ -56,11 +56,11 @@ def _fault(name: str) -> str:
 
 
 def write_files(folder: str | os.PathLike[str], files: Mapping[str, str | bytes]) -> list[Written]:
-    """Writes texts (UTF-8, as they are) and bytes into a folder, making it if need be; names may have sub-folders.
+    """Writes texts (as UTF-8) and bytes to a folder, which is created if missing; names may have sub-folders.
 
-    All of them stand in temporary files before the first old file is replaced, each in one step:
-    whatever interrupts, every file is either the old or the new one, whole. A link is replaced, not
-    followed. Raises SssgenError where a name climbs out of the folder, is a device's, or the system refuses.
+    All are written to temporary files before the first old file is replaced, each in one step: after an interruption
+    every file is complete, the old or the new one. A link is replaced, not followed. Raises SssgenError where a name
+    leaves the folder or is a device, or the system refuses.
     """
     folder = os.fspath(folder)
     check_names(files)
@@ -99,7 +99,7 @@ def write_files(folder: str | os.PathLike[str], files: Mapping[str, str | bytes]
 
 
 def _is_special(path: str) -> bool:
-    """Whether a device, a pipe or a socket has the name: a file in its place would be a loss."""
+    """Whether the path is a device, a pipe or a socket, which must not be replaced by a file."""
     return not os.path.islink(path) and os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path)
 
 
@@ -113,7 +113,7 @@ def _replace(temporary: str, path: str) -> None:
 
 
 def _holds(path: str, data: bytes) -> bool:
-    """Whether the file already holds this, so that no editor need import it again."""
+    """Whether the file already has this content: engines import a file again when it is written."""
     try:
         if os.stat(path).st_size != len(data) or not os.path.isfile(path):
             return False
@@ -124,7 +124,7 @@ def _holds(path: str, data: bytes) -> bool:
 
 
 def _check_links(folder: str, names: Iterable[str]) -> None:
-    """Raises SssgenError where a sub-folder is a link to somewhere outside."""
+    """Raises SssgenError where a sub-folder is a link that leaves the folder."""
     top = os.path.realpath(folder)
     for parent in sorted({os.path.dirname(name) for name in names} - {""}):
         path = os.path.join(folder, parent)

@@ -1,5 +1,5 @@
-"""Python's collector of cycles, paused: trees of tuples have none, and looking for them makes a pass over all there is
-again and again, so that a text of ten times the length would take some 18 times as long (`bench_transpile --speed`).
+"""Pauses Python's cycle collector: trees of tuples have no cycles, and its repeated passes over all objects would make
+a text of ten times the length take some 18 times as long (`bench_transpile --speed`).
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def paused() -> Iterator[None]:
-    """No collection inside, unless there was none before either."""
+    """No cycle collection inside the block."""
     if not gc.isenabled():
         yield
         return

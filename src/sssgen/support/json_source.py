@@ -1,4 +1,4 @@
-"""JSON that people write, with the place of what is wrong in it."""
+"""JSON that people write; errors have their position."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def parse(text: str, file: str) -> Any:
     except json.JSONDecodeError as error:
         span = Span(file, error.lineno, error.colno, error.lineno, error.colno + 1)
         line = text.split("\n")[error.lineno - 1]
-        raise SssgenError([Diagnostic("error", f"this is no JSON: {error.msg}", span, "", line)]) from None
+        raise SssgenError([Diagnostic("error", f"this is not JSON: {error.msg}", span, "", line)]) from None
     except RecursionError:
         raise failure("the lists are nested too deeply", file=file) from None
     except ValueError:  # Python refuses to convert thousands of digits

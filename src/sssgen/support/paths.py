@@ -1,7 +1,7 @@
 """The folders that come with the project: `templates`, `targets`, `examples`.
 
-In a checkout they stand at its top; a wheel carries them inside the package. The emit path has paths as texts, as
-importing `pathlib` takes a tenth of a cold emit.
+In a checkout they are at its top; a wheel has them inside the package. The emit path uses `os.path`, as importing
+`pathlib` takes a tenth of a cold emit.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ PACKAGE = os.path.dirname(os.path.dirname(__file__))
 
 def place(name: str) -> str:
     """The path of the folder called `name`, wherever this installation has it."""
-    carried = os.path.join(PACKAGE, "_data", name)
-    return carried if os.path.isdir(carried) else os.path.join(os.path.dirname(os.path.dirname(PACKAGE)), name)
+    packaged = os.path.join(PACKAGE, "_data", name)
+    return packaged if os.path.isdir(packaged) else os.path.join(os.path.dirname(os.path.dirname(PACKAGE)), name)
 
 
 def folder(name: str) -> Path:
@@ -30,7 +30,7 @@ def folder(name: str) -> Path:
 
 
 def posix(path: str | os.PathLike[str]) -> str:
-    """A path as messages show it: with `/`, and without the parts that say nothing."""
+    """A path as messages show it: with `/`, without empty parts and `.`."""
     text = os.fspath(path).replace(os.sep, "/")
     parts = [part for part in text.split("/") if part not in ("", ".")]
     return "/" * text.startswith("/") + "/".join(parts) or "."

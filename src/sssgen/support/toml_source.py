@@ -1,6 +1,6 @@
-"""TOML with places: tomllib's values, and where in the text each key and each value stands.
+"""TOML with positions: tomllib's values, and the place of each key and value in the text.
 
-tomllib reads the values and finds wrong syntax; a small scanner over the same text finds the places.
+tomllib reads the values and reports syntax errors; a small scanner over the same text finds the places.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ Path = tuple[str | int, ...]
 
 
 class Place(NamedTuple):
-    """Where a key and its value stand. A section's value is its header; an array's element is its own key."""
+    """The place of a key and its value. A section's value is its header; an array's element is its own key."""
 
     key: Span
     value: Span
@@ -52,7 +52,7 @@ class Document:
         return self._places.get(path, Place(start, start))
 
     def error(self, span: Span, message: str, hint: str = "") -> None:
-        """Notes an error. Raises SssgenError when there are too many to be read."""
+        """Records an error. Raises SssgenError after too many."""
         self.reporter.error(span, message, hint)
 
 
@@ -83,10 +83,10 @@ def _parse(text: str, file: str) -> tuple[dict[str, Any], dict[Path, Place]]:
             break
         except ValueError as error:
             before, line = line, _report(str(error), remaining, reporter)
-        if line <= before:  # the text's end was reached: nothing more is to be found
+        if line <= before:  # the end of the text
             break
         lines = remaining.split("\n")
-        # what stands below a faulty header is not part of the section above
+        # lines below a faulty header do not belong to the section above
         lines[line - 1] = f'["line {line}"]' if lines[line - 1].lstrip().startswith("[") else ""
         remaining = "\n".join(lines)
     reporter.check()
@@ -95,7 +95,7 @@ def _parse(text: str, file: str) -> tuple[dict[str, Any], dict[Path, Place]]:
 
 _POSITION = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)$")
 
-# What tomllib says → (what we say, what to do).
+# tomllib's message → (our message, hint).
 _SEVERAL = "a role with several stages has [[double brackets]], once for each"
 _WORDING = (
     ("Cannot overwrite", "this key is given twice", ""),
@@ -115,20 +115,22 @@ _WORDING = (
 
 
 def _report(message: str, text: str, reporter: Reporter) -> int:
-    """Notes one of tomllib's errors; returns its line, or 0 for one at the end of the text."""
-    found = _POSITION.search(message)
-    what = message[: found.start()] if found else message
-    ours, hint = next((row[1:] for row in _WORDING if what.startswith(row[0])), (what[:1].lower() + what[1:], ""))
+    """Records one of tomllib's errors; returns its line, or 0 for the end of the text."""
+    match = _POSITION.search(message)
+    original = message[: match.start()] if match else message
+    ours, hint = next(
+        (row[1:] for row in _WORDING if original.startswith(row[0])), (original[:1].lower() + original[1:], "")
+    )
     lines = text.split("\n")
-    if found and found[1]:
-        line, column = int(found[1]), int(found[2])
+    if match and match[1]:
+        line, column = int(match[1]), int(match[2])
         content = lines[line - 1].strip()
         if ours.endswith("given twice"):  # tomllib stops behind it
             column = lines[line - 1].find(content) + 1
         end = column + max(1, len(content)) if ours.endswith("given twice") else column + 1
         reporter.error(Span(reporter.file, line, column, line, end), ours, hint)
         return line
-    # the end of the text: the place that helps is the last line with something on it
+    # the end of the text: report the last line that is not blank
     last = max((number for number, content in enumerate(lines, 1) if content.strip()), default=1)
     column = len(lines[last - 1].rstrip()) + 1
     reporter.error(Span(reporter.file, last, column, last, column + 1), ours, hint)
@@ -220,8 +222,8 @@ class _Scanner:
             self.counts[path] = self.counts.get(path, 0) + 1
             self.places.setdefault(path, Place(span, span))
         path = self.into(path)
-        whole = self.place_of(first.start, self.tokens[self.at - 1].end)
-        self.places[path] = Place(span, whole)
+        header = self.place_of(first.start, self.tokens[self.at - 1].end)
+        self.places[path] = Place(span, header)
         return path
 
     def into(self, path: Path) -> Path:
@@ -268,7 +270,7 @@ class _Scanner:
         return self.place_of(first.start, self.tokens[self.at - 1].end)
 
     def closes(self, bracket: str) -> bool:
-        """Goes over newlines and commas; whether the bracket was there."""
+        """Skips newlines and commas; whether the bracket follows, which is skipped, too."""
         while self.tokens[self.at].kind == "newline" or self.tokens[self.at].text == ",":
             self.at += 1
         if self.tokens[self.at].text == bracket:

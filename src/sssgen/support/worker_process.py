@@ -1,11 +1,11 @@
-"""Another Python process that answers questions, so that a driver that crashes or hangs there costs only its answer.
+"""A Python process that answers questions: a driver that crashes or hangs there loses one answer only.
 
     process = Process("sssgen.harness.compilers.compiler_process", "tint", seconds=60.0)
     version = process.start()
     messages = process.ask(source)
 
 The module named has a function `serve(name)` that returns the first answer and a function from questions to answers.
-Both are pickled over the process's standard input and output; what drivers print goes nowhere.
+Both are pickled over the process's standard input and output; the output of drivers is discarded.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from typing import IO, Any
 
 
 class LostError(Exception):
-    """The process is gone; the text says how: `crashed (SIGSEGV)`, `did not answer within 60 seconds`."""
+    """The process has ended; the text says how: `crashed (SIGSEGV)`, `did not answer within 60 seconds`."""
 
 
 class Process:
-    """Starts when it is first asked, and again after it was lost. What is raised there is raised here."""
+    """Starts at the first question, and again after it was lost. Exceptions of the process are raised here."""
 
     def __init__(
         self, module: str, name: str, environment: Mapping[str, str] | None = None, seconds: float = 60.0
@@ -39,29 +39,29 @@ class Process:
         self.process: subprocess.Popen[bytes] | None = None
 
     def start(self) -> Any:
-        """Starts the process anew; its first answer. Raises LostError, and what `serve` raises."""
+        """Restarts the process and returns its first answer. Raises LostError, and the exceptions of `serve`."""
         self.close()
         self.process = subprocess.Popen(
             self.command,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path)), **self.environment},
-            start_new_session=True,  # so that all of it can be ended at once; and Ctrl-C is this process's matter
+            start_new_session=True,  # ended with its children, and not interrupted by Ctrl-C
         )
         atexit.register(self.close)
         return self._answer()
 
     def ask(self, question: Any) -> Any:
-        """The answer to a question. Raises LostError, and what the other side raises."""
+        """The answer to a question. Raises LostError, and the exceptions of the process."""
         if self.process is None:
             self.start()
         assert self.process is not None and self.process.stdin is not None
-        with contextlib.suppress(OSError):  # it has died: the answer says so
+        with contextlib.suppress(OSError):  # it has ended, which the answer reports
             _send(self.process.stdin, question)
         return self._answer()
 
     def close(self) -> None:
-        """Ends the process, and what it started."""
+        """Ends the process and its children."""
         process, self.process = self.process, None
         if process is None:
             return
@@ -89,10 +89,10 @@ class Process:
         except (EOFError, pickle.UnpicklingError, OSError):
             status = process.wait()
             self.close()
-            told = (
+            ending = (
                 f"did not finish within {self.seconds:g} seconds" if late.is_set() else f"crashed ({_ending(status)})"
             )
-            raise LostError(told) from None
+            raise LostError(ending) from None
         finally:
             timer.cancel()
         if not good:
@@ -137,10 +137,10 @@ def _main(module: str, name: str) -> None:
         except EOFError:
             return
         try:
-            found = True, answer(question)
+            result = True, answer(question)
         except Exception as error:
-            found = False, error
-        _send(answers, found)
+            result = False, error
+        _send(answers, result)
 
 
 if __name__ == "__main__":

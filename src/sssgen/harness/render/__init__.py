@@ -1,1 +1,1 @@
-"""Whole emitted shaders drawn: what a shell gives them, on each back end."""
+"""Draws whole emitted shaders: the values that a shell sets, on each back end."""

@@ -1,10 +1,10 @@
-"""Renders a scene on a back end: the emitted shader, drawn, and made into a picture.
+"""Renders a scene on a back end: draws the emitted shader and makes a picture.
 
-    done = render(scene_loading.load("lantern.toml"), backends.get("gl"))
-    images.write_png("lantern.png", done.encoded)
+    picture = render(scene_loading.load("lantern.toml"), backends.get("gl"))
+    images.write_png("lantern.png", picture.encoded)
 
-On every back end the same points are shaded with the same shader (see `dice`), n × n samples a pixel, and averaged in
-linear light.
+Every back end shades the same points with the same shader (see `pixel_mesh`), n × n samples per pixel, which are
+averaged in linear light.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 
 from sssgen.harness.backends import Array, Backend
 from sssgen.harness.pictures.images import decode_srgb, encode_srgb
-from sssgen.harness.render import pixel_mesh as dice
+from sssgen.harness.render import pixel_mesh
 from sssgen.harness.render.scene_values import shell_of
 from sssgen.harness.render.shade import shade
 from sssgen.harness.render.shell_values import Shell
@@ -29,16 +29,16 @@ from sssgen.pipeline.compiler import Compiled, compile
 from sssgen.support.diagnostics import failure
 
 LARGEST = 8192
-"""Samples along a side of what is drawn: the largest picture that every driver takes."""
+"""The largest number of samples along a side: the largest picture that every driver supports."""
 
 
 class Rendered(NamedTuple):
     """A picture, row 0 at the top."""
 
     linear: Array
-    """(height, width, 3): linear light, exposed, over the background; not cut."""
+    """(height, width, 3): linear light, exposed, over the background; not clamped."""
     covered: Array
-    """(height, width): how much of each pixel is not background, 0 to 1."""
+    """(height, width): the share of each pixel that is not background, 0 to 1."""
 
     @property
     def encoded(self) -> Array:
@@ -49,9 +49,10 @@ class Rendered(NamedTuple):
 def render(
     scene: Scene, backend: Backend, size: tuple[int, int] | None = None, time: float | None = None, guards: str = "auto"
 ) -> Rendered:
-    """The picture of a scene. `size` and `time` go before the scene's own; `guards` as in `compile`.
+    """The picture of a scene. `size` and `time` override the scene's; `guards` as in `compile`.
 
-    Raises SssgenError for a scene that does not fit its material, a picture too large, and a back end that refuses.
+    Raises SssgenError for a scene that does not fit its material, a picture that is too large, and a back end that
+    refuses.
     """
     if not scene.material:
         raise failure("the scene names no material", 'add: material = "…"', scene.document.reporter.file)
@@ -60,10 +61,10 @@ def render(
     compiled = compile(material, backend.target.name, guards=guards)
     reflection = compiled.reflection
     width, height = (side * scene.samples for side in scene.size)
-    if max(width, height) + 2 * dice.BORDER > LARGEST or width * height > MAX_COUNT:
+    if max(width, height) + 2 * pixel_mesh.BORDER > LARGEST or width * height > MAX_COUNT:
         raise failure(
             f"{scene.size[0]} × {scene.size[1]} pixels of {scene.samples} × {scene.samples} samples are too many",
-            f"at most {LARGEST - 2 * dice.BORDER} samples on a side, and {MAX_COUNT / 1e6:.0f} million in all",
+            f"at most {LARGEST - 2 * pixel_mesh.BORDER} samples on a side, and {MAX_COUNT / 1e6:.0f} million in all",
         )
     raymarched = reflection["raymarched"] or any(_reads_rays(entry) for entry in reflection["entries"].values())
     if not raymarched and scene.geometry is None:
@@ -80,7 +81,7 @@ def render(
 
 
 def with_samples(scene: Scene, samples: int) -> Scene:
-    """The scene with n × n samples a pixel."""
+    """The scene with n × n samples per pixel."""
     return dataclasses.replace(scene, samples=samples)
 
 
@@ -91,31 +92,31 @@ def _reads_rays(entry: Mapping[str, Any]) -> bool:
 def _surface(
     scene: Scene, compiled: Compiled, shell: Shell, backend: Backend, size: tuple[int, int]
 ) -> tuple[Array, Array]:
-    """The samples of a surface, and which of them met it."""
+    """The samples of a surface, and which of them hit it."""
     assert scene.geometry is not None
-    (width, height), edge = size, dice.BORDER
-    whole = width + 2 * edge, height + 2 * edge
-    half_angle = math.tan(math.radians(0.5 * scene.camera.field_of_view)) * whole[1] / height
+    (width, height), edge = size, pixel_mesh.BORDER
+    padded = width + 2 * edge, height + 2 * edge
+    half_angle = math.tan(math.radians(0.5 * scene.camera.field_of_view)) * padded[1] / height
     wider = dataclasses.replace(scene.camera, field_of_view=2.0 * math.degrees(math.atan(half_angle)))
-    origin, directions = wider.rays(*whole)
+    origin, directions = wider.rays(*padded)
     hits = scene.geometry.hits(origin, directions)
-    points = dice.vertices(hits, origin, directions, shell.model, whole)
+    points = pixel_mesh.vertices(hits, origin, directions, shell.model, padded)
     far = float(np.linalg.norm(points[:, :3] @ shell.model[:3, :3].T + shell.model[:3, 3] - origin, axis=1).max())
     deep = dataclasses.replace(scene, camera=dataclasses.replace(wider, near=1e-3 * far, far=2.0 * far))
-    shell = dataclasses.replace(shell, view_projection=_matrix(deep, backend, whole[0] / whole[1]))
+    shell = dataclasses.replace(shell, view_projection=_matrix(deep, backend, padded[0] / padded[1]))
     inner = slice(edge, edge + height), slice(edge, edge + width)
-    picture = shade(backend, compiled, shell, whole, points)
-    return picture[inner], hits.hit.reshape(whole[1], whole[0])[inner]
+    picture = shade(backend, compiled, shell, padded, points)
+    return picture[inner], hits.hit.reshape(padded[1], padded[0])[inner]
 
 
 def _matrix(scene: Scene, backend: Backend, aspect: float) -> Array:
-    """World to clip space in the language's own depth range."""
+    """World to clip space in the target's depth range."""
     low = (backend.target.conventions.clip_z or (-1.0,))[0]
     return scene.camera.view_projection(aspect, zero_to_one=low == 0.0)
 
 
 def _developed(scene: Scene, reflection: Mapping[str, Any], samples: Array, hit: Array) -> Rendered:
-    """Samples over the background, averaged to pixels, and turned so that row 0 is at the top."""
+    """Composites samples over the background, averages them to pixels, and flips rows so that row 0 is at the top."""
     height, width = hit.shape
     color, alpha = samples[..., :3].astype(np.float64), samples[..., 3].astype(np.float64)
     if reflection["color"] == "encoded":
@@ -123,7 +124,8 @@ def _developed(scene: Scene, reflection: Mapping[str, Any], samples: Array, hit:
     if not (np.isfinite(color) | ~hit[..., None]).all():
         bad = int((~np.isfinite(color) & hit[..., None]).any(axis=-1).sum())
         raise failure(
-            f"{bad} of {hit.size} samples are NaN or infinite", "a guard is missing: find it with sssgen eval"
+            f"{bad} of {hit.size} samples are NaN or infinite",
+            "a guard is missing: find the operation with sssgen eval",
         )
     solid = {"opaque": np.ones_like(alpha), "mask": (alpha > 0.0).astype(float), "blend": np.clip(alpha, 0.0, 1.0)}
     cover = np.where(hit, solid[reflection["alpha_mode"]], 0.0)
@@ -136,5 +138,5 @@ def _developed(scene: Scene, reflection: Mapping[str, Any], samples: Array, hit:
 
 def _averaged(samples: Array, n: int) -> Array:
     height, width, channels = samples.shape
-    found: Array = samples.reshape(height // n, n, width // n, n, channels).mean(axis=(1, 3))
-    return found
+    pixels: Array = samples.reshape(height // n, n, width // n, n, channels).mean(axis=(1, 3))
+    return pixels

@@ -1,4 +1,4 @@
-"""What a scene gives to a material: parameters and textures, its own and those that were baked, and its lights."""
+"""The inputs of a material from a scene: lights, parameters and textures, those of baked files included."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from sssgen.targets.numpy_textures import Texture
 
 
 def shell_of(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> Shell:
-    """What the scene gives to the shell. Raises SssgenError at the scene's own lines."""
+    """The shell's values for a scene. Raises SssgenError at the scene's own lines."""
     positions = [
         [*light.position, 1.0] if light.position else [*(light.direction or ()), 0.0] for light in scene.lights
     ]
@@ -46,7 +46,7 @@ def shell_of(scene: Scene, material: Material, reflection: Mapping[str, Any]) ->
 
 
 def _parameters(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> dict[str, tuple[float, ...]]:
-    """The scene's values for the material's uniforms, checked as the material's own are."""
+    """The scene's values for the material's uniforms, with the same checks as in a material."""
     known = {uniform["source_name"]: uniform for uniform in reflection["uniforms"]}
     document, found = scene.document, _of_baked(scene, material, reflection)
     for name, raw in scene.parameters.items():
@@ -87,7 +87,7 @@ def _of_baked(scene: Scene, material: Material, reflection: Mapping[str, Any]) -
                     found[entry["source_name"]] = read_value(_uniform(material, entry), raw)
                 except WrongValue as wrong:
                     hint = "; ".join(filter(None, (wrong.hint, baked.UNITS)))
-                    raise failure(f"what is baked does not fit: {wrong.message}", hint, posix(file)) from None
+                    raise failure(f"the baked parameters do not fit: {wrong.message}", hint, posix(file)) from None
     return found
 
 

@@ -24,7 +24,7 @@ _DTYPES: dict[str, Any] = {"float": np.float64, "int": np.int32, "uint": np.uint
 
 
 def shade(compiled: Compiled, shell: Shell, size: tuple[int, int], points: Array | None, dtype: str) -> Array:
-    """The picture, (height, width, 4), row 0 at the bottom. `points` are the vertices of `dice`; None: the screen."""
+    """The picture, (height, width, 4), row 0 at the bottom. `points` are `pixel_mesh.vertices`, or None: the screen."""
     names = _namespace(compiled, shell, dtype)
     width, height = size
     rows = max(2, BAND // width // 2 * 2)

@@ -1,6 +1,6 @@
-"""What our shells ask of a program (docs/templates.md), as every language wants it: uniforms by name, or blocks.
+"""The values that our shells need (docs/templates.md), in the form of each language: uniforms by name, or blocks.
 
-An emitted shader is drawn as it is. What differs between materials is read from the reflection.
+An emitted shader is drawn unchanged; the reflection describes what differs between materials.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from sssgen.pipeline.compiler import Compiled
 from sssgen.targets.numpy_textures import Texture
 
 LIGHTS = 4
-"""How many lights a plain shell has."""
+"""The number of lights of a shell."""
 
 _CAMERA, _LIGHTS, _OBJECT = Place(0, 0), Place(0, 1), Place(2, 0)
 _MATERIAL_GROUP = 1
@@ -26,7 +26,7 @@ _MATERIAL_GROUP = 1
 
 @dataclass(frozen=True)
 class Shell:
-    """The values that a shell is given for one picture; matrices multiply column vectors."""
+    """The values of a shell for one picture; matrices multiply column vectors."""
 
     view_projection: Array
     camera_position: tuple[float, float, float]
@@ -38,18 +38,18 @@ class Shell:
     light_colors: Array = field(default_factory=lambda: np.zeros((0, 3)))
     model: Array = field(default_factory=lambda: np.eye(4))
     parameters: Mapping[str, Sequence[float]] = field(default_factory=dict)
-    """The material's uniforms by the name in the reflection's `source_name`; those left out have their defaults."""
+    """The material's uniforms by the name in the reflection's `source_name`; the others have their defaults."""
     textures: Mapping[str, Texture] = field(default_factory=dict)
-    """Likewise; those left out are one texel of their default."""
+    """Likewise; a missing texture is one texel of its default."""
 
 
 def inverse(matrix: Array) -> Array:
-    """The inverse; of a singular matrix 0, which is what a program that sets no inverse leaves there."""
+    """The inverse; 0 for a singular matrix, the value of a uniform that is not set."""
     try:
-        found: Array = np.linalg.inv(matrix)
+        result: Array = np.linalg.inv(matrix)
     except np.linalg.LinAlgError:
-        found = np.zeros_like(matrix)
-    return found
+        result = np.zeros_like(matrix)
+    return result
 
 
 def drawing(
@@ -71,12 +71,12 @@ def drawing(
 
 def _stages(compiled: Compiled, reflection: Mapping[str, Any]) -> tuple[Stage, Stage]:
     """The vertex and the fragment stage."""
-    found: dict[str, Stage] = {}
+    stages: dict[str, Stage] = {}
     for file in reflection["files"]:
         text = emitted(compiled, reflection, file["name"])
         for stage, entry in file["stages"].items():
-            found[stage] = Stage(text, entry or "main")
-    return found["vertex"], found["fragment"]
+            stages[stage] = Stage(text, entry or "main")
+    return stages["vertex"], stages["fragment"]
 
 
 def textures(reflection: Mapping[str, Any], shell: Shell) -> dict[str, Bound]:

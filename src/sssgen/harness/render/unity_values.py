@@ -1,8 +1,8 @@
-"""What Unity's engine gives an emitted shader (see `shell` for the other languages): passes, keywords, variables.
+"""The passes, keywords and variables that Unity sets for an emitted shader (`shell_values` has the other languages).
 
-A forward renderer without shadows, fog, probes and lightmaps. The first light from afar is the main light. In URP the
+A forward renderer without shadows, fog, probes and lightmaps. The first directional light is the main light. In URP the
 others are additional lights of the same pass; in the built-in pipeline each is a ForwardAdd pass, whose picture is
-added. An unlit shader has the main light at most. Ambient light is the same from all sides, and nothing is mirrored.
+added. An unlit shader has only the main light. Ambient light is uniform, and there are no reflections.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 
 from sssgen.harness.backends import Array, Bound, Drawing, Place, emitted
 from sssgen.harness.backends.unity_backend import UnityHLSL
-from sssgen.harness.render import pixel_mesh as dice
+from sssgen.harness.render import pixel_mesh
 from sssgen.harness.render.shell_values import Shell, inverse, textures
 from sssgen.ir.types import BY_NAME, Matrix, Vector
 from sssgen.pipeline.compiler import Compiled
@@ -26,19 +26,19 @@ _ADD = {0.0: ("UNITY_PASS_FORWARDADD=1", "DIRECTIONAL=1"), 1.0: ("UNITY_PASS_FOR
 _FALLOFF = 8192
 """Texels of the table of a point light's falloff."""
 _NEAREST = 0.01
-"""The shortest reach of a light, as of the falloff in our other shells."""
+"""The shortest reach of a light, equal to that of the falloff in our other shells."""
 _LARGEST = 6e4
-"""What a texel of float16 can hold."""
+"""Below the largest float16."""
 _MOST_LIGHTS = 8
-"""Additional lights of an object, in URP."""
+"""The limit of additional lights of an object in URP."""
 
 
 def shade(compiled: Compiled, shell: Shell, backend: UnityHLSL, size: tuple[int, int], points: Array | None) -> Array:
-    """The picture, (height, width, 4), row 0 at the bottom. `points` are the vertices of `dice`; None: the screen."""
+    """The picture, (height, width, 4), row 0 at the bottom. `points` are `pixel_mesh.vertices`, or None: the screen."""
     if points is None:
         points, triangles = _screen(shell), np.array([[0, 1, 2]], np.uint32)
     else:
-        triangles = dice.triangles(size)
+        triangles = pixel_mesh.triangles(size)
     pictures = [
         backend.whole.draw(drawing._replace(vertices=points, triangles=triangles))
         for drawing in _passes(compiled, shell, backend, size, points)
@@ -48,7 +48,7 @@ def shade(compiled: Compiled, shell: Shell, backend: UnityHLSL, size: tuple[int,
 
 
 def _screen(shell: Shell) -> Array:
-    """One triangle over the whole picture, in object space, as `dice` has its vertices."""
+    """One triangle over the whole picture, in object space, as `pixel_mesh` has its vertices."""
     corners = np.array([[-1.0, -1.0], [3.0, -1.0], [-1.0, 3.0]])
     clip = np.concatenate([corners, np.full((3, 1), 0.5), np.ones((3, 1))], axis=1)
     placed = clip @ inverse(shell.view_projection @ shell.model).T
@@ -62,7 +62,7 @@ def _screen(shell: Shell) -> Array:
 def _passes(
     compiled: Compiled, shell: Shell, backend: UnityHLSL, size: tuple[int, int], points: Array
 ) -> list[Drawing]:
-    """The draws whose pictures add up."""
+    """The draws, whose pictures are added."""
     reflection = compiled.reflection
     (name,) = (file["name"] for file in reflection["files"])
     shader, own = emitted(compiled, reflection, name), textures(reflection, shell)
@@ -110,14 +110,14 @@ def _engine(shell: Shell, size: tuple[int, int]) -> dict[str, Array]:
 
 
 def _properties(reflection: Mapping[str, Any], shell: Shell) -> dict[str, Array]:
-    """The material's: of each the vectors, which are an array's elements or a matrix's columns."""
-    found = {}
+    """The material's properties, each as vectors: an array's elements or a matrix's columns."""
+    properties = {}
     for uniform in reflection["uniforms"]:
         type_ = BY_NAME[uniform["type"].partition("[")[0]]
         size = type_.size if isinstance(type_, Matrix | Vector) else 1
         given = shell.parameters.get(uniform["source_name"], uniform["default"])
-        found[uniform["name"]] = np.asarray(given).reshape(-1, size)
-    return found
+        properties[uniform["name"]] = np.asarray(given).reshape(-1, size)
+    return properties
 
 
 def _builtin_light(position: Array, color: Array, reach: float = 1.0) -> dict[str, Array]:
@@ -133,19 +133,19 @@ def _builtin_light(position: Array, color: Array, reach: float = 1.0) -> dict[st
 
 
 def _reach(shell: Shell, position: Array, points: Array) -> float:
-    """The largest distance of a point from a light, which all may stand in."""
+    """The largest distance of a point from a light, at least `_NEAREST`."""
     placed = points[:, :3] @ shell.model[:3, :3].T + shell.model[:3, 3]
     return max(1.01 * float(np.linalg.norm(placed - position[:3], axis=1).max()), _NEAREST)
 
 
 def _falloff() -> Texture:
-    """1/x over x = (distance / reach)²: light falls off as in our other shells. The engine has a table of its own."""
+    """1/x over x = (distance / reach)², the falloff of our other shells instead of the engine's own table."""
     x = (np.arange(_FALLOFF) + 0.5) / _FALLOFF
     return Texture(np.repeat(np.minimum(1.0 / x, _LARGEST)[None, :, None], 4, axis=2), wrap="clamp")
 
 
 def _urp_lights(main: tuple[Array, Array], others: list[tuple[Array, Array]]) -> dict[str, Array]:
-    """The main light, and the additional ones, which have no end (the engine fades them out at their range)."""
+    """The main light and the additional lights, without the engine's fade-out at their range."""
     shown = others[:_MOST_LIGHTS]
     count = float(len(shown))
     return {
