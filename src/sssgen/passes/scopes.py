@@ -9,21 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Container, Iterable, Mapping
 from typing import Any
 
-from sssgen.ir.nodes import (
-    Assign,
-    Binary,
-    Call,
-    Declare,
-    Expr,
-    For,
-    Function,
-    Global,
-    If,
-    Literal,
-    Local,
-    Stmt,
-    While,
-)
+from sssgen.ir.nodes import Assign, Binary, Call, Declare, Expr, For, Function, Global, If, Literal, Local, Stmt, While
 from sssgen.ir.transform import Transformer
 from sssgen.ir.walk import calls_of, expressions, inner_statements, operands, root, statements
 

@@ -18,16 +18,10 @@ from sssgen.passes.legal.legalise import legalise
 from sssgen.passes.link import link
 from sssgen.passes.names import rename
 from sssgen.passes.numpy.predicate import predicate
-from sssgen.passes.prune import only, prune, used
+from sssgen.passes.prune import prune
+from sssgen.passes.reachable import only, used
 from sssgen.passes.stage.initial_values import set_at_start
-from sssgen.passes.stage.stage_interface import (
-    ENTRY,
-    colors_in_use,
-    entry_of,
-    interface,
-    remarks,
-    turned_derivatives,
-)
+from sssgen.passes.stage.stage_interface import ENTRY, colors_in_use, entry_of, interface, remarks, turned_derivatives
 from sssgen.passes.stage.uniform_structs import uniform_structs
 from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
 from sssgen.passes.stage.vertex_reads import with_levels

@@ -38,7 +38,7 @@ from sssgen.ir.types import Sampler
 from sssgen.ir.walk import all_expressions
 from sssgen.lang import shadertoy
 from sssgen.lang.plain_glsl import load_glsl_text
-from sssgen.passes.prune import only
+from sssgen.passes.reachable import only
 from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
 from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
 from sssgen.pipeline.compiler import transpile

@@ -47,10 +47,13 @@ from sssgen.ir.nodes import (
     While,
 )
 from sssgen.ir.types import BOOL, VOID, Type
-from sssgen.ir.walk import all_expressions, expressions, root, statements
+from sssgen.ir.walk import root, statements
 from sssgen.passes.lift_calls import DISCARDED, Functions, lift_calls, out_arguments
-from sssgen.passes.numpy.masks import Mask, negated, renumber, settle, tidy, zero
+from sssgen.passes.numpy.masks import Mask, negated, zero
+from sssgen.passes.numpy.settle import settle
+from sssgen.passes.numpy.tidy import renumber, tidy
 from sssgen.passes.numpy.uniformity import Uniformity
+from sssgen.passes.numpy.variable_uses import may_change, written_outside
 from sssgen.passes.scopes import declared, fresh, separate
 
 
@@ -273,7 +276,7 @@ class _Converter:
         """Whether a variable can serve as the mask of an if: nothing in there changes it."""
         if any(_jumps_inside(arm) for arm in (stmt.then, stmt.otherwise)):
             return False
-        return name not in _written(stmt, self.functions)
+        return name not in written_outside(stmt, self.functions)
 
     def base(self, stmt: If) -> int:
         """The depth of the outermost frame to which something belongs that the if changes.
@@ -281,7 +284,7 @@ class _Converter:
         Its mask need tell apart only the lanes of that frame, so it need not repeat the masks further out.
         """
         depths = [self.depth]
-        depths += [self.depths[name] for name in _written(stmt, self.functions) if name in self.depths]
+        depths += [self.depths[name] for name in written_outside(stmt, self.functions) if name in self.depths]
         for inner in statements((stmt,)):
             if isinstance(inner, Return):
                 depths.append(0)
@@ -327,7 +330,7 @@ class _Converter:
         init, step = (loop.init, loop.step) if isinstance(loop, For) else (None, None)
         if isinstance(init, Declare):
             # lanes that are done with the loop need no counter any more, but those do that go on with the next round
-            steps = "continue" in jumps and _writes(loop.body, init.name)
+            steps = "continue" in jumps and may_change(loop.body, init.name)
             self.depths[init.name] = self.depth + (0 if steps else 1)
             if masked:
                 self.out.append(init)
@@ -469,33 +472,9 @@ def _any_lane(mask: str, span: Span) -> Expr:
     return Intrinsic(BOOL, "any_lane", (Local(BOOL, mask, span),), span)
 
 
-def _written(stmt: Stmt, functions: Functions) -> set[str]:
-    """The variables that a statement changes but does not itself declare."""
-    written, own = set(), set()
-    for inner in statements((stmt,)):
-        if isinstance(inner, Declare):
-            own.add(inner.name)
-        elif isinstance(inner, Assign):
-            target = root(inner.target)
-            assert target is not None
-            written.add(target.name)
-        for expr in expressions(inner):
-            written.update(out_arguments(expr, functions))
-    return written - own
-
-
 def _jumps_inside(block: Block) -> bool:
     """Whether there is a jump in a statement of the block, beside the block's own."""
     jumps = (Break, Continue, Return, Discard)
     return any(
         isinstance(inner, jumps) for stmt in block if not isinstance(stmt, jumps) for inner in statements((stmt,))
     )
-
-
-def _writes(block: Block, name: str) -> bool:
-    """Whether a block may change a variable: it assigns to it, or hands it to a function."""
-    for stmt in statements(block):
-        if isinstance(stmt, Assign) and (place := root(stmt.target)) is not None and place.name == name:
-            return True
-    calls = (expr for expr in all_expressions(block) if isinstance(expr, Call))
-    return any((place := root(arg)) is not None and place.name == name for call in calls for arg in call.args)

@@ -1,0 +1,367 @@
+"""Finds and removes the statements of a function that have no effect. Used by `prune`.
+
+A statement is kept if it has an effect (it returns, discards, leaves a kept loop, or writes an out
+parameter or a module variable), if it writes a variable that a kept statement mentions, or if it contains a
+kept statement. Loops end (the checker makes sure), so an unkept loop has no effect.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+from sssgen.ir.nodes import (
+    Assign,
+    Assume,
+    Binary,
+    Block,
+    Call,
+    Construct,
+    Declare,
+    Discard,
+    Evaluate,
+    Expr,
+    For,
+    Function,
+    Global,
+    If,
+    Intrinsic,
+    Literal,
+    Local,
+    Member,
+    Module,
+    Param,
+    Return,
+    Select,
+    Stmt,
+    Swizzle,
+    Unary,
+    While,
+)
+from sssgen.ir.types import Array, Struct, Type
+from sssgen.ir.walk import root, subexpressions
+
+
+class Needs(NamedTuple):
+    """What a function mentions of its module."""
+
+    calls: dict[str, None]
+    globals: set[str]
+    types: set[Type]
+
+
+class Cleaned(NamedTuple):
+    function: Function
+    needs: Needs
+    acts: bool
+
+
+class Unit:
+    """A statement, with what decides whether it is kept."""
+
+    __slots__ = ("jumps", "kept", "needs", "otherwise", "parent", "stmt", "then", "variables")
+
+    def __init__(self, stmt: Stmt, parent: Unit | None) -> None:
+        self.stmt = stmt
+        self.parent = parent
+        self.kept = False
+        self.variables: list[int] = []
+        """The variables that the statement itself reads or writes."""
+        self.needs: list[Call | Global | Construct | Declare] = []
+        self.then: Sequence[Unit] = ()
+        """The units of an if's first arm or a loop's body."""
+        self.otherwise: Sequence[Unit] = ()
+        """The units of an if's second arm or a for's init and step."""
+        self.jumps: list[Unit] | None = None
+        """The breaks and continues of a loop."""
+
+
+class Cleaner:
+    """Cleans the functions of a module, each when it is first asked for."""
+
+    def __init__(self, module: Module) -> None:
+        self.functions = {function.key: function for function in module.functions}
+        self.done: dict[str, Cleaned] = {}
+        self.outs: dict[str, tuple[int, ...]] = {
+            key: tuple([index for index, param in enumerate(function.params) if param.direction != "in"])
+            for key, function in self.functions.items()
+        }
+
+    def cleaned(self, key: str) -> Cleaned:
+        found = self.done.get(key)
+        if found is None:
+            function = self.functions[key]
+            self.done[key] = Cleaned(function, Needs({}, set(), set()), True)
+            found = self.done[key] = FunctionCleaner(self, function).run()
+        return found
+
+    def reads(self, key: str) -> set[str]:
+        """The uniforms, textures and constants that a function reads, itself or through what it calls."""
+        if key not in self.functions:
+            return set()
+        needs = self.cleaned(key).needs
+        return needs.globals.union(*(self.reads(callee) for callee in needs.calls))
+
+    def acts(self, key: str) -> bool:
+        """Whether a call may drop the fragment or write a module variable; so may what is not known."""
+        return key not in self.functions or self.cleaned(key).acts
+
+
+class FunctionCleaner:
+    """Finds and drops what has no effect in one function.
+
+    Variables are numbered by declaration, as sibling blocks may use one name for several. In the IR no
+    visible variable is hidden, so a name stands for its latest declaration.
+    """
+
+    def __init__(self, cleaner: Cleaner, function: Function) -> None:
+        self.cleaner = cleaner
+        self.function = function
+        self.numbers: dict[str, int] = {}
+        self.stores: list[list[Unit]] = []
+        self.live: list[bool] = []
+        self.jumps: list[Unit] | None = None
+        self.essential: list[Unit] = []
+        self.assumptions: list[Unit] = []
+        self.units: list[Unit] = []
+        self.acts = function.body is None
+
+    def run(self) -> Cleaned:
+        function = self.function
+        for param in function.params:
+            self.number(param.name, param.direction != "in")
+        units, _ = self.block(function.body or (), None)
+        self.keep(self.essential)
+        if self.assumptions:
+            self.keep_assumptions()
+        needs = Needs({}, set(), set())
+        _note_types(needs, function.result, function.params)
+        body = self.rebuild(units, function.body or (), needs)
+        if function.body is not None and body is not function.body:
+            function = function._replace(body=body)
+        return Cleaned(function, needs, self.acts)
+
+    def keep_assumptions(self) -> None:
+        """Keeps those that speak of what is there anyway: they keep nothing alive."""
+        kept = [need for unit in self.units if unit.kept for need in unit.needs]
+        read = {need.name for need in kept if isinstance(need, Global)}
+        read.update(*(self.cleaner.reads(need.function) for need in kept if isinstance(need, Call)))
+        for unit in self.assumptions:
+            known = all(need.name in read for need in unit.needs if isinstance(need, Global))
+            live = all(self.live[number] for number in unit.variables)
+            unit.kept = known and live and (unit.parent is None or unit.parent.kept)
+
+    def number(self, name: str, live: bool = False) -> int:
+        self.numbers[name] = len(self.stores)
+        self.stores.append([])
+        self.live.append(live)
+        return len(self.stores) - 1
+
+    # Finding what each statement reads and writes
+
+    def block(self, block: Block, parent: Unit | None) -> tuple[list[Unit], bool]:
+        """The units of a block, up to where it is left for good; and whether it is."""
+        units = []
+        for stmt in block:
+            unit = Unit(stmt, parent)
+            units.append(unit)
+            self.units.append(unit)
+            if self.statement(stmt, unit):
+                return units, True
+        return units, False
+
+    def statement(self, stmt: Stmt, unit: Unit) -> bool:
+        """Fills a statement's unit; whether nothing after the statement is reached."""
+        if isinstance(stmt, Declare):
+            if stmt.value is not None:
+                self.expression(stmt.value, unit)
+            number = self.number(stmt.name)
+            unit.variables.append(number)
+            unit.needs.append(stmt)
+            self.stores[number].append(unit)
+        elif isinstance(stmt, Assign):
+            self.expression(stmt.target, unit)
+            self.expression(stmt.value, unit)
+            self.store(stmt.target, unit)
+        elif isinstance(stmt, If):
+            self.expression(stmt.condition, unit)
+            unit.then, then_ends = self.block(stmt.then, unit)
+            unit.otherwise, otherwise_ends = self.block(stmt.otherwise, unit)
+            return then_ends and otherwise_ends
+        elif isinstance(stmt, For):
+            unit.otherwise = header = []
+            for part in (stmt.init, stmt.step):
+                if part is not None:
+                    header.append(Unit(part, unit))
+                    self.statement(part, header[-1])
+            if stmt.condition is not None:
+                self.expression(stmt.condition, unit)
+            self.loop(stmt.body, unit)
+        elif isinstance(stmt, While):
+            self.expression(stmt.condition, unit)
+            self.loop(stmt.body, unit)
+        elif isinstance(stmt, Return):
+            if stmt.value is not None:
+                self.expression(stmt.value, unit)
+            self.essential.append(unit)
+            return True
+        elif isinstance(stmt, Evaluate):
+            self.expression(stmt.call, unit)
+        elif isinstance(stmt, Assume):
+            self.expression(stmt.condition, unit)
+            self.assumptions.append(unit)
+        elif isinstance(stmt, Discard):
+            # a target may still want a return after it, so what follows stays
+            self.acts = True
+            self.essential.append(unit)
+        elif self.jumps is not None:
+            self.jumps.append(unit)
+            return True
+        return False
+
+    def loop(self, body: Block, unit: Unit) -> None:
+        outer = self.jumps
+        self.jumps = unit.jumps = []
+        unit.then, _ = self.block(body, unit)
+        self.jumps = outer
+
+    def expression(self, expr: Expr, unit: Unit) -> None:
+        """Notes what an expression reads, and what its calls write."""
+        variables, numbers = unit.variables, self.numbers
+        stack: list[Any] = [expr]
+        while stack:
+            node = stack.pop()
+            kind = type(node)
+            if kind is Local:
+                number = numbers.get(node.name)
+                if number is not None:
+                    variables.append(number)
+            elif kind is Binary:
+                stack += (node.left, node.right)
+            elif kind is Literal:
+                pass
+            elif kind is Intrinsic:
+                stack += node.args
+            elif kind is Global:
+                unit.needs.append(node)
+            elif kind is Swizzle or kind is Member:
+                stack.append(node.value)
+            elif kind is Call or kind is Construct:
+                stack += node.args
+                unit.needs.append(node)
+                if kind is Call:
+                    self.call(node, unit)
+            elif kind is Unary:
+                stack.append(node.operand)
+            elif kind is Select:
+                stack += (node.condition, node.yes, node.no)
+            else:
+                stack += (node.value, node.index)
+
+    def call(self, call: Call, unit: Unit) -> None:
+        for index in self.cleaner.outs.get(call.function, ()):
+            self.store(call.args[index], unit)
+        if self.cleaner.acts(call.function):
+            self.acts = True
+            self.essential.append(unit)
+
+    def store(self, target: Expr, unit: Unit) -> None:
+        """Notes that a statement writes a variable; what is no variable of the function is an effect."""
+        variable = root(target)
+        number = self.numbers.get(variable.name) if variable is not None else None
+        self.acts = self.acts or variable is None
+        if number is None or self.live[number]:
+            self.essential.append(unit)
+        else:
+            self.stores[number].append(unit)
+
+    # Keeping what matters
+
+    def keep(self, pending: list[Unit]) -> None:
+        """Keeps these units and all they need."""
+        live, stores = self.live, self.stores
+        while pending:
+            unit = pending.pop()
+            if unit.kept:
+                continue
+            unit.kept = True
+            if unit.parent is not None:
+                pending.append(unit.parent)
+            for number in unit.variables:
+                if not live[number]:
+                    live[number] = True
+                    pending += stores[number]
+            if unit.jumps is not None:
+                pending += unit.jumps
+
+    def rebuild(self, units: Sequence[Unit], block: Block, needs: Needs) -> Block:
+        """The block that the kept units make."""
+        result = []
+        changed = len(units) != len(block)
+        for unit in units:
+            if not unit.kept:
+                changed = True
+                continue
+            for node in unit.needs:
+                _note(needs, node)
+            stmt = unit.stmt
+            new: Stmt = stmt
+            if isinstance(stmt, If):
+                then = self.rebuild(unit.then, stmt.then, needs)
+                otherwise = self.rebuild(unit.otherwise, stmt.otherwise, needs)
+                if otherwise and not then:
+                    new = If(_negated(stmt.condition), otherwise, (), stmt.span)
+                elif then is not stmt.then or otherwise is not stmt.otherwise:
+                    new = If(stmt.condition, then, otherwise, stmt.span)
+            elif isinstance(stmt, For):
+                body = self.rebuild(unit.then, stmt.body, needs)
+                header = self.rebuild(unit.otherwise, (), needs)
+                init, step = (part if any(part is kept for kept in header) else None for part in (stmt.init, stmt.step))
+                if body is not stmt.body or init is not stmt.init or step is not stmt.step:
+                    new = For(init, stmt.condition, step, body, stmt.span)
+            elif isinstance(stmt, While):
+                body = self.rebuild(unit.then, stmt.body, needs)
+                if body is not stmt.body:
+                    new = While(stmt.condition, body, stmt.span)
+            changed = changed or new is not stmt
+            result.append(new)
+        return tuple(result) if changed else block
+
+
+_OPPOSITE = {"==": "!=", "!=": "=="}
+
+
+def _negated(condition: Expr) -> Expr:
+    """The opposite of a condition. `<` has none among the operators, because of NaN."""
+    if isinstance(condition, Unary) and condition.op == "!":
+        return condition.operand
+    if isinstance(condition, Binary) and condition.op in _OPPOSITE:
+        return condition._replace(op=_OPPOSITE[condition.op])
+    return Unary(condition.type, "!", condition, condition.span)
+
+
+def _note(needs: Needs, node: Expr | Declare) -> None:
+    """Adds what a node mentions."""
+    if isinstance(node, Call):
+        needs.calls[node.function] = None
+    elif isinstance(node, Global):
+        needs.globals.add(node.name)
+    elif isinstance(node.type, (Struct, Array)):
+        needs.types.add(node.type)
+
+
+def _note_types(needs: Needs, result: Type, params: tuple[Param, ...]) -> None:
+    for type_ in (result, *[param.type for param in params]):
+        if isinstance(type_, (Struct, Array)):
+            needs.types.add(type_)
+
+
+def needs_of(value: Expr | None, type_: Type) -> Needs:
+    """What a constant or a variable mentions."""
+    needs = Needs({}, set(), {type_})
+    if value is None:
+        return needs
+    for part in subexpressions(value):
+        if isinstance(part, Call | Global | Construct):
+            _note(needs, part)
+    return needs

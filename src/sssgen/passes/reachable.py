@@ -1,0 +1,61 @@
+"""The part of a module that some functions use, with every statement as it is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from sssgen.ir.nodes import Declare, Global, Module
+from sssgen.ir.types import Array, Struct, Type
+from sssgen.ir.walk import all_expressions, callees, statements, subexpressions
+
+
+def only(module: Module, roots: Iterable[str]) -> Module:
+    """The module with the functions alone that `roots` call, themselves or through others; all else as it was.
+
+    Raises KeyError for a root that the module does not have.
+    """
+    functions = {function.key: function for function in module.functions}
+    reached: set[str] = set()
+    pending = list(roots)
+    while pending:
+        key = pending.pop()
+        if key not in reached:
+            reached.add(key)
+            pending += callees(functions[key])
+    return module._replace(functions=tuple([one for key, one in functions.items() if key in reached]))
+
+
+def used(module: Module) -> Module:
+    """The module with the declarations alone that its functions mention, themselves or through others."""
+    names: set[str] = set()
+    pending = [expr for function in module.functions for expr in all_expressions(function.body or ())]
+    values = {constant.name: constant.value for constant in module.constants}
+    values |= {one.name: one.value for one in module.variables if one.value is not None}
+    types: set[Type] = set()
+    for function in module.functions:
+        types |= {function.result, *(param.type for param in function.params)}
+        types |= {stmt.type for stmt in statements(function.body or ()) if isinstance(stmt, Declare)}
+    while pending:
+        expr = pending.pop()
+        types.add(expr.type)
+        if isinstance(expr, Global) and expr.name not in names:
+            names.add(expr.name)
+            if expr.name in values:
+                pending += subexpressions(values[expr.name])
+    structs = set(structs_in(types))
+    return module._replace(
+        structs=tuple([one for one in module.structs if one.type in structs]),
+        constants=tuple([one for one in module.constants if one.name in names]),
+        uniforms=tuple([one for one in module.uniforms if one.name in names]),
+        variables=tuple([one for one in module.variables if one.name in names]),
+    )
+
+
+def structs_in(types: Iterable[Type]) -> Iterator[Type]:
+    """The structs that these types are or hold."""
+    for type_ in types:
+        if isinstance(type_, Array):
+            yield from structs_in((type_.element,))
+        elif isinstance(type_, Struct):
+            yield type_
+            yield from structs_in(field.type for field in type_.fields)
