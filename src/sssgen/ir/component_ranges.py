@@ -57,8 +57,8 @@ def linear_blend(F: Format, x: Range, y: Range, z: Range) -> Range:
 
 def positive_power(F: Format, x: Range, y: Range) -> Range:
     """pow, whose base is at least the smallest normal number, or 0, whose powers are 0."""
-    found = power(maximum(x, F.tiny), y)
-    return found if x.low > 0.0 else Range(0.0, found.high)
+    result = power(maximum(x, F.tiny), y)
+    return result if x.low > 0.0 else Range(0.0, result.high)
 
 
 def floored_remainder(F: Format, x: Range, y: Range) -> Range:
@@ -69,7 +69,7 @@ def truncated_remainder(F: Format, x: Range, y: Range) -> Range:
     return _with_wrapped(truncated(x, y), F, x, y)
 
 
-def _with_wrapped(found: Range, F: Format, x: Range, y: Range) -> Range:
+def _with_wrapped(exact_range: Range, F: Format, x: Range, y: Range) -> Range:
     """The range of a remainder whose x/y may round to the next integer (not if y is a power of two), or overflow."""
     if x.size > 1e30 * y.gap:
         return ANY
@@ -77,14 +77,14 @@ def _with_wrapped(found: Range, F: Format, x: Range, y: Range) -> Range:
     opposite = max(x.high, y.high) > 0.0 > min(x.low, y.low)
     # a quotient below 0 that is flushed to 0 leaves x as it is
     flushed = F.tiny * y.size if opposite and not (exact and y.size <= 1.0) else 0.0
-    return widened(found, 0.0, (0.0 if exact else 4.0 * F.epsilon * x.size) + flushed)
+    return widened(exact_range, 0.0, (0.0 if exact else 4.0 * F.epsilon * x.size) + flushed)
 
 
 def inverse_hyperbolic_tangent(F: Format, x: Range) -> Range:
     bound = 1.0 - 0.5 * F.epsilon
-    found = rising(math.atanh, clip(x, -bound, bound))
+    result = rising(math.atanh, clip(x, -bound, bound))
     # there is a number between 1 - epsilon and 1
-    return widened(found, 0.0, 0.35) if x.size > 1.0 - F.epsilon else found
+    return widened(result, 0.0, 0.35) if x.size > 1.0 - F.epsilon else result
 
 
 def fused_product_sum(F: Format, x: Range, y: Range, z: Range) -> Range:

@@ -41,11 +41,11 @@ def of_param(param: Param, format: Format = FLOAT32, chained: bool = True) -> Co
     kind = kind_of(param.type)
     if kind != "float":
         return Contract(*INTEGERS.get(kind, (0.0, 0.0)))
-    found = of_quantity(param.quantity, format)
-    if found is None and chained:
-        found = of_name(param, format)
-    if found is not None:
-        return found
+    contract = of_quantity(param.quantity, format)
+    if contract is None and chained:
+        contract = of_name(param, format)
+    if contract is not None:
+        return contract
     return _around((MATRIX if isinstance(param.type, Matrix) else POSITION)[format.name])
 
 
@@ -62,12 +62,12 @@ def of_name(param: Param, format: Format = FLOAT32) -> Contract | None:
 
 def made(quantity: str, param: Param | None, format: Format = FLOAT32) -> Contract | None:
     """The contract that a result or an out parameter is clamped to, as others rely on it, or None."""
-    found = of_quantity(quantity, format)
-    if found is None and param is not None:
-        found = of_name(param, format)
-    if found is None or found.length < float("inf") or quantity.endswith("_position"):
+    contract = of_quantity(quantity, format)
+    if contract is None and param is not None:
+        contract = of_name(param, format)
+    if contract is None or contract.length < float("inf") or quantity.endswith("_position"):
         return None
-    return found
+    return contract
 
 
 def from_outside(param: Param, format: Format = FLOAT32, chained: bool = True) -> Contract:
@@ -76,10 +76,10 @@ def from_outside(param: Param, format: Format = FLOAT32, chained: bool = True) -
         return _around(format.largest)
     if param.quantity in _UNIT:
         return _around(POSITION[format.name])
-    found = of_param(param, format, chained)
-    if found.length < float("inf") and format.largest < LONG**4:
+    contract = of_param(param, format, chained)
+    if contract.length < float("inf") and format.largest < LONG**4:
         return Contract(-LONG, LONG, LONG)  # its square would overflow
-    return found
+    return contract
 
 
 def of_quantity(quantity: str, format: Format = FLOAT32) -> Contract | None:
@@ -109,8 +109,8 @@ def of_uniform(uniform: Uniform, format: Format = FLOAT32) -> Contract:
         return Contract(*INTEGERS.get(kind, (0.0, 0.0)))
     if "source_color" in hints:
         return Contract(0.0, COLOR[format.name])  # it may be brighter than white
-    found = _around((MATRIX if isinstance(type_, Matrix) else POSITION)[format.name])
-    return Contract(min([found.low, *uniform.default]), max([found.high, *uniform.default]))
+    contract = _around((MATRIX if isinstance(type_, Matrix) else POSITION)[format.name])
+    return Contract(min([contract.low, *uniform.default]), max([contract.high, *uniform.default]))
 
 
 def alpha_at(uniform: Uniform) -> int | None:

@@ -27,10 +27,10 @@ class Format(NamedTuple):
     def rounded(self, value: float) -> float:
         """The nearest number of the format; beyond the largest, infinity."""
         try:
-            found: float = struct.unpack(self.code, struct.pack(self.code, value))[0]
+            nearest: float = struct.unpack(self.code, struct.pack(self.code, value))[0]
         except OverflowError:
             return float("inf") if value > 0.0 else float("-inf")
-        return found
+        return nearest
 
 
 def _format(format: Format) -> Format:

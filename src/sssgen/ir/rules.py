@@ -101,8 +101,8 @@ def inferred(expr: Expr) -> Type | None:
         same = expr.yes.type == expr.no.type and expr.condition.type == BOOL
         return expr.yes.type if same and not isinstance(expr.yes.type, Sampler | Void) else None
     if isinstance(expr, Index):
-        found = element_type(expr.value.type)
-        return found[0] if found is not None and expr.index.type in (INT, UINT) else None
+        element = element_type(expr.value.type)
+        return element[0] if element is not None and expr.index.type in (INT, UINT) else None
     if isinstance(expr, Member):
         fields = expr.value.type.fields if isinstance(expr.value.type, Struct) else ()
         return next((field.type for field in fields if field.name == expr.field), None)

@@ -26,10 +26,10 @@ _overloads: dict[str, dict[tuple[Type, ...], Overload]] = {}
 
 def overloads(name: str) -> Mapping[tuple[Type, ...], Overload]:
     """All overloads of the builtin `name` by their parameters; none if there is no such builtin."""
-    known = _overloads.get(name)
-    if known is None:
-        known = _overloads[name] = _expand(name)
-    return known
+    expanded = _overloads.get(name)
+    if expanded is None:
+        expanded = _overloads[name] = _expand(name)
+    return expanded
 
 
 def overload(name: str, types: Sequence[Type]) -> Overload | None:
@@ -39,8 +39,8 @@ def overload(name: str, types: Sequence[Type]) -> Overload | None:
 
 def resolve(name: str, types: Sequence[Type]) -> Type | None:
     """The result type of the builtin `name` for exactly these types; None if it has no such overload."""
-    found = overload(name, types)
-    return found.result if found else None
+    match = overload(name, types)
+    return match.result if match else None
 
 
 def candidates(name: str) -> list[str]:
@@ -55,12 +55,12 @@ def text(name: str, language: str, types: Sequence[Type]) -> str:
     Looks for the dialect's text of the overload, the dialect's, then the same for the language before the first `-`.
     Raises KeyError where there is no such overload.
     """
-    found = overload(name, types)
-    if found is None:
+    match = overload(name, types)
+    if match is None:
         raise KeyError(name, *types)
     texts = BUILTINS[name].texts
     base = language.partition("-")[0]
-    for key in (f"{language}/{found.params}", language, f"{base}/{found.params}", base):
+    for key in (f"{language}/{match.params}", language, f"{base}/{match.params}", base):
         if key in texts:
             return texts[key]
     return name
@@ -83,7 +83,7 @@ def instantiate(name: str, size: int) -> Type | None:
 
 
 def _expand(name: str) -> dict[tuple[Type, ...], Overload]:
-    found: dict[tuple[Type, ...], Overload] = {}
+    overloads: dict[tuple[Type, ...], Overload] = {}
     row = BUILTINS.get(name)
     for signature in row.signatures if row else ():
         names = parse(signature)
@@ -91,5 +91,5 @@ def _expand(name: str) -> dict[tuple[Type, ...], Overload]:
             result, *params = (instantiate(type_name, size) for type_name in names)
             if result is not None and None not in params:
                 key = tuple(param for param in params if param is not None)
-                found.setdefault(key, Overload(result, ",".join(names[1:])))
-    return found
+                overloads.setdefault(key, Overload(result, ",".join(names[1:])))
+    return overloads

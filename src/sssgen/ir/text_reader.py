@@ -118,9 +118,9 @@ class _Reader:
 
     def take(self, text: str) -> bool:
         """Consumes the next token if it is this one."""
-        found = self.peek() == text
-        self.next += found
-        return found
+        matches = self.peek() == text
+        self.next += matches
+        return matches
 
     def expect(self, text: str) -> None:
         if not self.take(text):
@@ -128,8 +128,8 @@ class _Reader:
 
     def kind(self, kind: str) -> str:
         """Consumes the next token, which must be of this kind."""
-        found, text, _ = self.tokens[self.next]
-        if found != kind:
+        actual, text, _ = self.tokens[self.next]
+        if actual != kind:
             raise self.fail(f"a {kind} is expected here, not '{text}'")
         self.next += 1
         return text
@@ -266,13 +266,13 @@ class _Reader:
         return Variable(name, type_, storage, value, str(builtin), str(interpolation), int(location), doc, span)
 
     def hints(self) -> tuple[tuple[str, tuple[float | str, ...]], ...]:
-        found = []
+        hints = []
         if self.take("["):
-            found.append(self.hint())
+            hints.append(self.hint())
             while self.take(","):
-                found.append(self.hint())
+                hints.append(self.hint())
             self.expect("]")
-        return tuple(found)
+        return tuple(hints)
 
     def hint(self) -> tuple[str, tuple[float | str, ...]]:
         name, args = self.name(), []

@@ -104,8 +104,8 @@ def distance(format: Format, x: Value, y: Value) -> Result:
     # each component of the difference rounds
     error = _slack(format) * (x.length.high + y.length.high)
     exact = length_of(difference).met(total_length(x.length, y.length))
-    found = widened(exact, 0.0, error if error < INF else 0.0)
-    return _rounded_length(format, Range(max(found.low, 0.0), found.high))
+    result = widened(exact, 0.0, error if error < INF else 0.0)
+    return _rounded_length(format, Range(max(result.low, 0.0), result.high))
 
 
 def _rounded_length(format: Format, length: Range) -> Result:

@@ -316,16 +316,16 @@ class _Verifier:
         wanted = self.function_at_hand.result if self.function_at_hand is not None else VOID
         if stmt.value is not None:
             self.expression(stmt.value)
-        found = stmt.value.type if stmt.value is not None else VOID
-        self.same(found, wanted, stmt.span, "the return")
+        returned = stmt.value.type if stmt.value is not None else VOID
+        self.same(returned, wanted, stmt.span, "the return")
 
     def condition(self, expr: Expr) -> None:
         self.expression(expr)
         self.same(expr.type, BOOL, expr.span, "a condition")
 
-    def same(self, found: Type, wanted: Type, span: Span, what: str) -> None:
-        if found != wanted:
-            self.report(span, f"{what} is {_a_type(wanted)}, but gets {_a_type(found)}")
+    def same(self, actual: Type, wanted: Type, span: Span, what: str) -> None:
+        if actual != wanted:
+            self.report(span, f"{what} is {_a_type(wanted)}, but gets {_a_type(actual)}")
 
     # Expressions
 
@@ -373,11 +373,11 @@ class _Verifier:
             if wanted is None:
                 yield f"{_what(node)} is not defined for {_names(operands(node))}"
             elif wanted != node.type:
-                given = _names(operands(node))
-                yield f"{_what(node)} of {given} is {_a_type(wanted)}, not {_a_type(node.type)}"
+                types = _names(operands(node))
+                yield f"{_what(node)} of {types} is {_a_type(wanted)}, not {_a_type(node.type)}"
             elif isinstance(node, Index) and isinstance(node.index, Literal):
-                found = element_type(node.value.type)
-                if found is not None and not 0 <= node.index.value < found[1]:
+                elements = element_type(node.value.type)
+                if elements is not None and not 0 <= node.index.value < elements[1]:
                     yield f"index {node.index.value} is outside {_name(node.value.type)}"
 
     def named(self, node: Local | Global, declared: Type | None) -> Iterator[str]:

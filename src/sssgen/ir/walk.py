@@ -129,7 +129,7 @@ def all_expressions(block: Block) -> Iterator[Expr]:
 
 def builtins_of(module: Module) -> set[str]:
     """The names of the builtins that the functions of a module call."""
-    found: set[str] = set()
+    names: set[str] = set()
     for function in module.functions:
         for stmt in statements(function.body or ()):
             stack = list(expressions(stmt))
@@ -139,14 +139,14 @@ def builtins_of(module: Module) -> set[str]:
                 if kind is Local or kind is Literal or kind is Global:
                     continue
                 if isinstance(node, Intrinsic):
-                    found.add(node.name)
+                    names.add(node.name)
                 stack += operands(node)
-    return found
+    return names
 
 
 def calls_of(stmt: Stmt) -> list[Call]:
     """The calls in a statement's own expressions, in the order of the text."""
-    found: list[Call] = []
+    calls: list[Call] = []
     stack = list(reversed(expressions(stmt)))
     while stack:
         node = stack.pop()
@@ -154,24 +154,24 @@ def calls_of(stmt: Stmt) -> list[Call]:
         if kind is Local or kind is Literal or kind is Global:
             continue
         if isinstance(node, Call):
-            found.append(node)
+            calls.append(node)
         stack += operands(node)[::-1]
-    return found
+    return calls
 
 
 def callees(function: Function) -> list[str]:
     """The keys of the functions that `function` calls, each once, in the order of first call."""
-    found: dict[str, None] = {}
+    keys: dict[str, None] = {}
     for stmt in statements(function.body or ()):
         for call in calls_of(stmt):
-            found[call.function] = None
-    return list(found)
+            keys[call.function] = None
+    return list(keys)
 
 
 def root(target: Expr) -> Local | None:
     """The local variable that an assignment to `target` changes; None if it is another variable."""
-    found = written_root(target)
-    return found if isinstance(found, Local) else None
+    variable = written_root(target)
+    return variable if isinstance(variable, Local) else None
 
 
 def written_root(target: Expr) -> Local | Global | None:

@@ -125,12 +125,12 @@ class ExpressionRanges(CallRanges):
         fused = self.format.epsilon * (a.size + b.size) if products else 0.0
         if m == n:
             return Range(-fused, fused)
-        found = a - b
+        difference = a - b
         facts = self.state.facts
         if facts.upper:
             high, low = facts.bound(self.numbers, m, n) + fused, -facts.bound(self.numbers, n, m) - fused
-            found = found.met(Range(low, high)) if low <= high else found
-        return found
+            difference = difference.met(Range(low, high)) if low <= high else difference
+        return difference
 
     def slack(self, a: Range, b: Range, sum: Range, kind: str) -> float:
         """How far a sum of a and b may be from the exact one."""
@@ -247,13 +247,13 @@ class ExpressionRanges(CallRanges):
         args = [self.expr(arg) for arg in node.args]
         type_ = node.type
         if isinstance(type_, Array):
-            found = args[0]
+            elements = args[0]
             for arg in args[1:]:
-                found = Value(
-                    tuple([a.joined(b) for a, b in zip(found.parts, arg.parts, strict=True)]),
-                    tuple([self.numbers.fresh() for _ in found.parts]),
+                elements = Value(
+                    tuple([a.joined(b) for a, b in zip(elements.parts, arg.parts, strict=True)]),
+                    tuple([self.numbers.fresh() for _ in elements.parts]),
                 )
-            return found
+            return elements
         parts = [part for arg in args for part in arg.parts]
         numbers = [number for arg in args for number in arg.numbers]
         if isinstance(type_, Struct):
@@ -329,9 +329,9 @@ class ExpressionRanges(CallRanges):
 
     def index(self, node: ir.Index) -> Value:
         value, index = self.expr(node.value), self.expr(node.index).parts[0]
-        found = element_type(node.value.type)
-        assert found is not None
-        count = found[1]
+        elements = element_type(node.value.type)
+        assert elements is not None
+        count = elements[1]
         if not isinstance(node.index, ir.Literal):
             self.note(
                 node, "index", index.low >= 0.0 and index.high <= count - 1.0, ELEMENT, (index,), (0.0, count - 1.0)

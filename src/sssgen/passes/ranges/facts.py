@@ -37,11 +37,11 @@ class Numbers:
         self.sums: dict[int, Sum] = {}
 
     def of(self, *key: object) -> int:
-        found = self.existing.get(key)
-        if found is None:
-            found = self.existing[key] = len(self.definitions)
+        number = self.existing.get(key)
+        if number is None:
+            number = self.existing[key] = len(self.definitions)
             self.definitions.append(key)
-        return found
+        return number
 
     def fresh(self) -> int:
         """The number of a value about which nothing is known: an input, or a join at the end of branches."""
@@ -50,15 +50,15 @@ class Numbers:
 
     def sum(self, op: str, left: int, right: int, kind: str, slack: float) -> int:
         """The number of a sum or difference, which rounds by `slack` at most (infinite where an integer may wrap)."""
-        found = self.of(op, *(sorted((left, right)) if op == "+" else (left, right)), kind)
+        number = self.of(op, *(sorted((left, right)) if op == "+" else (left, right)), kind)
         one, two = self.sum_of(left), self.sum_of(right)
         sign = 1.0 if op == "+" else -1.0
         terms = _added(one.terms, two.terms, sign)
         if len(terms) <= _TERMS:
-            known = self.sums.get(found)
-            most = max(one.slack + two.slack + slack, known.slack if known else 0.0)
-            self.sums[found] = Sum(terms, one.constant + sign * two.constant, most)
-        return found
+            earlier = self.sums.get(number)
+            most = max(one.slack + two.slack + slack, earlier.slack if earlier else 0.0)
+            self.sums[number] = Sum(terms, one.constant + sign * two.constant, most)
+        return number
 
     def sum_of(self, number: int) -> Sum:
         """A value as a sum; a value that is no sum is its only term."""
@@ -74,10 +74,10 @@ class Numbers:
 
 
 def _added(one: Terms, two: Terms, sign: float) -> Terms:
-    found = dict(one)
+    factors = dict(one)
     for number, factor in two:
-        found[number] = found.get(number, 0.0) + sign * factor
-    return tuple(sorted((number, factor) for number, factor in found.items() if factor))
+        factors[number] = factors.get(number, 0.0) + sign * factor
+    return tuple(sorted((number, factor) for number, factor in factors.items() if factor))
 
 
 class Facts(NamedTuple):
@@ -141,9 +141,9 @@ class Facts(NamedTuple):
 
     def bound(self, numbers: Numbers, left: int, right: int) -> float:
         """The upper bound of `left - right`."""
-        known = self.upper.get(_pair(left, right))
-        if known is not None:
-            return known
+        direct = self.upper.get(_pair(left, right))
+        if direct is not None:
+            return direct
         terms, constant, slack = numbers.difference(left, right)
         return (self.upper.get(terms, INF) if terms else 0.0) + constant + slack
 

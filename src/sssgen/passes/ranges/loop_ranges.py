@@ -49,12 +49,12 @@ class LoopRanges(ExpressionRanges):
         inside: State | None = state
         if stmt.condition is not None:
             condition = self.expr(stmt.condition)
-            state, known = self.state, condition.parts[0]
-            if known.low < 1.0:
+            state, truth_range = self.state, condition.parts[0]
+            if truth_range.low < 1.0:
                 self.state = state.copy()
                 self.learn(condition.numbers[0], False)
                 left = self.state
-            inside = state.copy() if known.high > 0.0 else None
+            inside = state.copy() if truth_range.high > 0.0 else None
             if inside is not None:
                 self.state = inside
                 self.learn(condition.numbers[0], True)
@@ -82,17 +82,17 @@ class LoopRanges(ExpressionRanges):
             loop, after, left = self.iteration(stmt, head, trips + 1.0)
             if after is None:
                 return [left, *loop.broken]
-            found = {
+            new_ranges = {
                 name: self.grown(entry.env[name].parts, loop.added.get(name, {}), trips, sums[name])
                 if sums[name]
                 else self.at_end(after, name, ranges[name])
                 for name in ranges
             }
-            if all(a.within(b) for name in ranges for a, b in zip(found[name], ranges[name], strict=True)):
+            if all(a.within(b) for name in ranges for a, b in zip(new_ranges[name], ranges[name], strict=True)):
                 return [left, *loop.broken]
             ranges = {
                 name: tuple([
-                    self.wider(old, new, attempt) for old, new in zip(ranges[name], found[name], strict=True)
+                    self.wider(old, new, attempt) for old, new in zip(ranges[name], new_ranges[name], strict=True)
                 ])
                 for name in ranges
             }  # fmt: skip
@@ -118,25 +118,25 @@ class LoopRanges(ExpressionRanges):
         self, start: tuple[Range, ...], added: dict[int, tuple[list[Range], float]], trips: float, kind: str
     ) -> tuple[Range, ...]:
         """The ranges of a sum after any number of iterations."""
-        found = list(start)
-        grows = [(False, False)] * len(found)
+        sums = list(start)
+        grows = [(False, False)] * len(sums)
         total = 0.0
         for parts, times in added.values():
             for index, part in enumerate(parts):
                 low, high = min(part.low, 0.0), max(part.high, 0.0)
                 count = trips * times
-                found[index] += Range(low * count if low else 0.0, high * count if high else 0.0)
+                sums[index] += Range(low * count if low else 0.0, high * count if high else 0.0)
                 grows[index] = grows[index][0] or low < 0.0, grows[index][1] or high > 0.0
             total += trips * times
         if kind != "float":
             limits = self.limits(kind)  # beyond these it wraps
-            return tuple([part if part.low >= limits.low and part.high <= limits.high else limits for part in found])
+            return tuple([part if part.low >= limits.low and part.high <= limits.high else limits for part in sums])
         # each sum rounds; a sum that grows in one direction keeps its other end
         error = min(self.format.epsilon * total, 1.0)
-        for index, (part, (falls, rises)) in enumerate(zip(found, grows, strict=True)):
+        for index, (part, (falls, rises)) in enumerate(zip(sums, grows, strict=True)):
             off = error * min(part.size, self.format.largest)
-            found[index] = self.finite(Range(part.low - off * falls, part.high + off * rises))
-        return tuple(found)
+            sums[index] = self.finite(Range(part.low - off * falls, part.high + off * rises))
+        return tuple(sums)
 
     def finite(self, part: Range) -> Range:
         return clip(part, -self.format.largest, self.format.largest)
@@ -160,18 +160,18 @@ class LoopRanges(ExpressionRanges):
         parts = parts * (scalars(stmt.target.type) // len(parts))
         times = 1.0
         for loop in reversed(self.loops):
-            known = loop.added.setdefault(name, {}).get(id(stmt))
-            joined = parts if known is None else [a.joined(b) for a, b in zip(known[0], parts, strict=True)]
-            loop.added[name][id(stmt)] = joined, max(times, known[1] if known else 0.0)
+            earlier = loop.added.setdefault(name, {}).get(id(stmt))
+            joined = parts if earlier is None else [a.joined(b) for a, b in zip(earlier[0], parts, strict=True)]
+            loop.added[name][id(stmt)] = joined, max(times, earlier[1] if earlier else 0.0)
             times *= loop.trips
 
     def written(self, block: ir.Block) -> set[str]:
-        found: set[str] = set()
+        names: set[str] = set()
         for stmt in statements(block):
             if isinstance(stmt, ir.Assign) and (variable := root(stmt.target)) is not None:
-                found.add(variable.name)
-            found |= self.written_by_calls(stmt)
-        return found
+                names.add(variable.name)
+            names |= self.written_by_calls(stmt)
+        return names
 
     def written_by_calls(self, stmt: ir.Stmt) -> set[str]:
         """The variables that a statement's calls write through out parameters."""

@@ -84,15 +84,15 @@ class RangeAnalysis(LoopRanges):
         if not frame.returned:  # every path ends in a discard
             self.state = outer
             return (None if function.result == VOID else self.unknown(function.result)), list(args)
-        state, found = frame.returned[0]
+        state, result = frame.returned[0]
         for other, value in frame.returned[1:]:
-            if found is not None and value is not None:
-                found = self.joined(found, value, state.facts, other.facts)
+            if result is not None and value is not None:
+                result = self.joined(result, value, state.facts, other.facts)
             state = self.join(state, other)
         self.state = State(outer.env, state.facts)
-        if found is None and function.result != VOID:
-            found = self.unknown(function.result)
-        return found, [state.env.get(param.name, arg) for param, arg in zip(function.params, args, strict=True)]
+        if result is None and function.result != VOID:
+            result = self.unknown(function.result)
+        return result, [state.env.get(param.name, arg) for param, arg in zip(function.params, args, strict=True)]
 
     def call(self, node: ir.Call) -> Value:
         function = self.functions[node.function]
@@ -133,8 +133,8 @@ class RangeAnalysis(LoopRanges):
         elif isinstance(stmt, ir.Assume):
             self.learn(self.expr(stmt.condition).numbers[0], True)
         elif isinstance(stmt, ir.Return):
-            found = self.returned(stmt.value) if stmt.value is not None else None
-            self.frames[-1].returned.append((self.state, found))
+            result = self.returned(stmt.value) if stmt.value is not None else None
+            self.frames[-1].returned.append((self.state, result))
             return None
         elif isinstance(stmt, ir.If):
             return self.branch(stmt)
@@ -203,11 +203,11 @@ class RangeAnalysis(LoopRanges):
 
     def branch(self, stmt: ir.If) -> State | None:
         condition = self.expr(stmt.condition)
-        known = condition.parts[0]
+        truth_range = condition.parts[0]
         start = self.state
         ways: list[State | None] = []
         for truth, block in ((True, stmt.then), (False, stmt.otherwise)):
-            if (known.high == 0.0 and truth) or (known.low == 1.0 and not truth):
+            if (truth_range.high == 0.0 and truth) or (truth_range.low == 1.0 and not truth):
                 continue
             self.state = start.copy()
             self.learn(condition.numbers[0], truth)

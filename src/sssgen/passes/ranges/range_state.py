@@ -167,11 +167,11 @@ class AnalysisState:
         return State(env, one.facts.joined(two.facts))
 
     def join_all(self, states: Iterable[State | None]) -> State | None:
-        found: State | None = None
+        joined: State | None = None
         for state in states:
             if state is not None:
-                found = state if found is None else self.join(found, state)
-        return found
+                joined = state if joined is None else self.join(joined, state)
+        return joined
 
     # Conditions
 
