@@ -36,7 +36,7 @@ class NumpyPrinter(NumpyExpressions):
     def __init__(self, target: Target, module: ir.Module) -> None:
         super().__init__(target, module)
         self.constants = {constant.name: constant for constant in module.constants}
-        self.told: set[tuple[str, int]] = set()
+        self.commented: set[tuple[str, int]] = set()
 
     # Statements
 
@@ -45,8 +45,8 @@ class NumpyPrinter(NumpyExpressions):
         pad = "    " * indent
         for stmt in block:
             place = (stmt.span.file, stmt.span.line)
-            if place not in self.told:
-                self.told.add(place)
+            if place not in self.commented:
+                self.commented.add(place)
                 lines += [Line(f"{pad}# {text}", stmt.span) for text in self.comments(*place)]
             lines.extend(self.statement(stmt, indent))
         return lines or [Line(f"{pad}pass")]
@@ -112,8 +112,8 @@ class NumpyPrinter(NumpyExpressions):
             params = self.by_key[value.function].params
             outs = [arg for arg, param in zip(value.args, params, strict=True) if param.direction != "in"]
             names = names + [arg.name for arg in outs if isinstance(arg, ir.Local)]
-        given = self.typed(value)[0]
-        return f"{', '.join(names)} = {given}" if names else given
+        text = self.typed(value)[0]
+        return f"{', '.join(names)} = {text}" if names else text
 
     def store(self, target: ir.Expr, value: str) -> str:
         """The assignment of a new value to a variable or a part of one."""

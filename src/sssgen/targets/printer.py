@@ -68,7 +68,7 @@ class Printer:
         """Returns the author's comment behind the code of a line."""
         self.source: Callable[[ir.Span], str] = lambda span: ""
         """Returns the line of source that a span begins on."""
-        self.told: set[tuple[str, int]] = set()
+        self.commented: set[tuple[str, int]] = set()
         """The lines of the source whose comments are printed in the current function."""
         self.kept = False
         """Whether the author's text is kept: numbers have their digits, and every comment stays."""
@@ -227,10 +227,10 @@ class Printer:
 
     def builtin_text(self, name: str, types: tuple[Type, ...]) -> str:
         """The language's text for a builtin of these types."""
-        known = self.texts.get((name, types))
-        if known is None:
-            known = self.texts[name, types] = signatures.text(name, self.target.dialect, types)
-        return known
+        text = self.texts.get((name, types))
+        if text is None:
+            text = self.texts[name, types] = signatures.text(name, self.target.dialect, types)
+        return text
 
     def sampler(self, texture: str) -> str:
         """The name of a texture's separate sampler."""
@@ -243,8 +243,8 @@ class Printer:
         for stmt in block:
             place = (stmt.span.file, stmt.span.line)
             behind = ""
-            if place not in self.told:
-                self.told.add(place)
+            if place not in self.commented:
+                self.commented.add(place)
                 lines += [
                     Line(f"{'    ' * indent}// {comment_text(text)}", stmt.span) for text in self.comments(*place)
                 ]
@@ -337,7 +337,7 @@ class Printer:
         """A function with the first line of its documentation."""
         body = function.body or ()
         self.function = function
-        self.told = {(function.span.file, function.span.line)}
+        self.commented = {(function.span.file, function.span.line)}
         lines = [Line(f"// {text}", function.span) for text in self.doc_of(function)]
         lines += wrap(f"{self.signature(function)} {{", function.span)
         lines += self.block(body, 1)
@@ -380,8 +380,8 @@ class Printer:
 
     def with_comments(self, variable: ir.Variable, lines: list[Line]) -> list[Line]:
         """A declaration after its author's comments."""
-        told = [Line(f"// {comment_text(text)}") for text in self.comments(variable.span.file, variable.span.line)]
-        return [*told, *lines]
+        comments = [Line(f"// {comment_text(text)}") for text in self.comments(variable.span.file, variable.span.line)]
+        return [*comments, *lines]
 
     def print_entry(self, name: str) -> list[Line]:
         """The entry function of the stage, where that is not the author's own."""

@@ -1,4 +1,4 @@
-"""The machines that run emitted shaders, behind one interface: compile, run, arrays back.
+"""The back ends that run emitted shaders, behind one interface: text and arrays in, arrays out.
 
     gpu = backends.get("gl")
     sums, = gpu.run(Text(text), [Call("add", (FLOAT, VEC3), VEC3, (x, y))])

@@ -1,4 +1,4 @@
-"""The words shared by all back ends: what is run, what is drawn, and how a back end says that it could not."""
+"""The interface of all back ends: calls, drawings, and the errors of drivers."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Array: TypeAlias = npt.NDArray[Any]
 
 
 class Text(NamedTuple):
-    """Emitted text, and where its lines came from: line → `file:line:column`, as the reflection's source map has it."""
+    """Emitted text, and the sources of its lines: line → `file:line:column`, as the reflection's source map has it."""
 
     text: str
     origin: Mapping[int, str] = {}
@@ -36,8 +36,8 @@ def emitted(compiled: Compiled, reflection: Mapping[str, Any], name: str) -> Tex
 class Call(NamedTuple):
     """One function applied to arrays of lanes; an argument for a texture is the texture's name.
 
-    Values stand component first and lane last, as in `sssgen.targets.numpy_values`: a float is (lanes,), a vec3
-    (3, lanes), a mat3 (3, 3, lanes) column by column.
+    Values have components on the first axes and lanes on the last, as in `sssgen.targets.numpy_values`: a float is
+    (lanes,), a vec3 (3, lanes), a mat3 (3, 3, lanes) column by column.
     """
 
     function: str
@@ -47,16 +47,16 @@ class Call(NamedTuple):
 
 
 class Backend(ABC):
-    """A machine that runs what one target emits."""
+    """Runs the text of one target."""
 
     name: str
     target: Target
     unmade: frozenset[str] = frozenset()
-    """Sampler types that the target has, and of which this cannot make textures."""
+    """Sampler types of the target for which this back end cannot create textures."""
 
     @abstractmethod
     def device(self) -> str:
-        """What computes, for reports: the driver's own words."""
+        """The driver's description of the device, for reports."""
 
     @abstractmethod
     def run(self, text: Text, calls: Sequence[Call], textures: Mapping[str, Texture] | None = None) -> list[Array]:
@@ -97,7 +97,7 @@ class Bound(NamedTuple):
 
 
 class Drawing(NamedTuple):
-    """One draw: a program, what it reads, and the picture that it fills, four words a pixel."""
+    """One draw: a program, its resources, and the picture that it fills, four 32-bit components a pixel."""
 
     size: tuple[int, int]
     """Width and height."""
@@ -121,10 +121,10 @@ ATTRIBUTES = {"position": (0, 3), "normal": (3, 3), "tangent": (6, 4), "uv": (10
 
 
 def refused(backend: str, text: Text, messages: Sequence[Message]) -> SssgenError:
-    """What a driver says of emitted text, at the technique's own lines."""
-    told = [message for message in messages if message.severity == "error"] or list(messages)
+    """The driver's messages about emitted text, at the technique's own lines."""
+    shown = [message for message in messages if message.severity == "error"] or list(messages)
     lines = text.text.splitlines()
-    return SssgenError([_diagnostic(backend, text, lines, message) for message in told[:8]])
+    return SssgenError([_diagnostic(backend, text, lines, message) for message in shown[:8]])
 
 
 def _diagnostic(backend: str, text: Text, lines: list[str], message: Message) -> Diagnostic:
@@ -136,5 +136,5 @@ def _diagnostic(backend: str, text: Text, lines: list[str], message: Message) ->
 
 
 def gave_up(backend: str, what: str, hint: str = "") -> SssgenError:
-    """A back end that failed for a reason that is not in the text: a lost device, too little memory."""
+    """The error of a back end that failed for a reason outside of the text: a lost device, too little memory."""
     return SssgenError([Diagnostic("error", f"{backend}: {what}", hint=hint)])

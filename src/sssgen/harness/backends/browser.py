@@ -1,7 +1,7 @@
 """WebGPU in a headless Chromium or Chrome, whose compiler is Tint: on SwiftShader, or on the machine's GPU.
 
-$SSSGEN_CHROMIUM names the browser's program; else an installed one is found. $SSSGEN_BROWSER_ADAPTER names the adapter:
-`swiftshader`, which every browser has and which computes on the CPU, or `default` for the machine's own.
+$SSSGEN_CHROMIUM names the browser's program; else an installed one is used. $SSSGEN_BROWSER_ADAPTER names the adapter:
+`swiftshader`, which every browser has and which computes on the CPU, or `default` for the machine's GPU.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ SECONDS = 60.0
 
 
 _WHOLE_QUADS = "diagnostic(off, derivative_uniformity);"
-"""For the program around functions, whose branches are taken by whole quads, which Tint cannot know."""
+"""For the program around functions: whole quads take its branches, which Tint cannot know."""
 
 
 class Browser(DrawingBackend):
-    """Has a page carry out plans; a browser that is lost is started again for the next draw.
+    """A page carries out the plans; a browser that is lost is started again for the next draw.
 
     `seconds`: how long a small draw may take.
     """
@@ -39,22 +39,22 @@ class Browser(DrawingBackend):
     def __init__(self, name: str, target: str, seconds: float = SECONDS) -> None:
         super().__init__(name, target)
         self.seconds = seconds
-        self.page, self.told = _open()
+        self.page, self.facts = _open()
 
     def device(self) -> str:
-        return f"Tint in Chromium {self.told['version']} on {self.told['adapter']}"
+        return f"Tint in Chromium {self.facts['version']} on {self.facts['adapter']}"
 
     def draw(self, drawing: Drawing) -> Array:
         self.check(drawing)
         todo = plan(drawing)
         if drawing.fragment.entry == FRAGMENT:
-            todo = todo._replace(code=_WHOLE_QUADS + todo.code)  # on the first line: the others keep their numbers
+            todo = todo._replace(code=_WHOLE_QUADS + todo.code)  # on the first line: line numbers stay the same
         head, data = _packed(todo)
         seconds = self.seconds + _extra(todo, len(data))
         try:
             if not self.page.alive():
                 self.page.close()
-                self.page, self.told = _open()
+                self.page, self.facts = _open()
             self.page.send(head, data, seconds)
             answer, picture = self.page.receive(seconds)
         except LostError as reason:
@@ -62,8 +62,8 @@ class Browser(DrawingBackend):
         except CompilerMissing as reason:
             raise gave_up(self.name, f"the browser is gone, and does not start again: {reason}") from None
         if "messages" in answer:
-            told = [Message("error", line, column, _first(text)) for line, column, text in answer["messages"]]
-            raise refused(self.name, drawing.fragment.text, told)
+            messages = [Message("error", line, column, _first(text)) for line, column, text in answer["messages"]]
+            raise refused(self.name, drawing.fragment.text, messages)
         if "lost" in answer:
             self.page.close()
             raise gave_up(self.name, f"the browser lost its device: {answer['lost']}")
@@ -76,24 +76,24 @@ class Browser(DrawingBackend):
 
 
 def _open() -> tuple[Page, dict[str, Any]]:
-    """A page with a device, and what it says of itself. Raises CompilerMissing where there is none."""
+    """A page with a device, and its version and adapter. Raises CompilerMissing where there is none."""
     program = find()
     if not program:
         raise CompilerMissing("chromium (Debian: chromium · elsewhere: Chrome; or set SSSGEN_CHROMIUM)")
     adapter = os.environ.get("SSSGEN_BROWSER_ADAPTER", "swiftshader")
     try:
         page = Page(program, adapter, Path(__file__).with_name("browser.js").read_text(encoding="utf-8"))
-        told, _ = page.receive(START)
+        facts, _ = page.receive(START)
     except LostError as reason:
         raise CompilerMissing(f"chromium that starts: {program} {reason}") from None
-    if "error" in told:
+    if "error" in facts:
         page.close()
-        raise CompilerMissing(f"chromium with WebGPU: {program}: {told['error']} (SSSGEN_BROWSER_ADAPTER={adapter})")
-    return page, told
+        raise CompilerMissing(f"chromium with WebGPU: {program}: {facts['error']} (SSSGEN_BROWSER_ADAPTER={adapter})")
+    return page, facts
 
 
 def _packed(todo: Plan) -> tuple[str, bytes]:
-    """The plan as JSON, in which `{at, size}` stands for each piece of the bytes."""
+    """The plan as JSON, with `{at, size}` in place of each piece of the bytes, and the bytes."""
     pieces: list[bytes] = []
     end = 0
 
@@ -120,10 +120,10 @@ def _groups(todo: Plan) -> list[list[dict[str, Any]]]:
 
 
 def _first(text: str) -> str:
-    """The first line: after it come candidates, and where in the browser it was found."""
+    """The first line; candidates and the place in the browser's code follow it."""
     return text.split("\n")[0]
 
 
 def _extra(todo: Plan, size: int) -> float:
-    """Seconds that a draw may take for its size: 30 a million pixels, and .1 a million bytes."""
+    """Additional seconds for large draws: 30 for each million pixels, 0.1 for each million bytes."""
     return 30e-6 * todo.width * todo.height + 0.1e-6 * size

@@ -1,6 +1,6 @@
 """The program around emitted functions: it reads arguments from a texture, calls, and writes results as pixels.
 
-Arguments are data, so no compiler computes with them beforehand. Each pixel is one lane of one call. The lanes stand in
+Arguments are data, so no compiler can evaluate a call. Each pixel is one lane of one call. The lanes are in
 an even number of rows, so that there are whole quads of 2×2 pixels, which derivatives need.
 """
 
@@ -18,22 +18,22 @@ from sssgen.targets.numpy_textures import Texture
 from sssgen.targets.registry import load
 
 WIDTH = 4096
-"""The most lanes to a row; every driver takes pictures twice as wide."""
+"""The most lanes in a row; every driver takes pictures twice as wide."""
 
 FRAGMENT, CORNER = "sssgen_main", "sssgen_corner"
-"""The entry points that we add, where a language lets us name them."""
+"""The names of the added entry points, in languages where these are free."""
 
 DTYPES = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.uint32}
 
 
 class Language(NamedTuple):
-    """How the program around the functions is written."""
+    """The texts of the program around the functions."""
 
     declare: str
     bits: Mapping[str, str]
-    """Kind → how its bits become it; `{0}` has the components, `{type}` is the type."""
+    """Kind → the conversion from its bits; `{0}` is their text, `{type}` the type."""
     words: Mapping[str, str]
-    """Kind → how it becomes its bits."""
+    """Kind → the conversion to its bits."""
     fetch: str
     main: str
 
@@ -104,7 +104,7 @@ _HALF = {
     "bits": {"float": "{type}(bitcast<{single}>({0}))"},
     "words": {"float": "bitcast<{unsigned}>({single}({0}))"},
 }
-"""WGSL in half precision: both ends are float32, which holds every half, infinity and NaN; `{single}` is that type."""
+"""WGSL in half precision: arguments and results are float32, which holds every half; `{single}` is that type."""
 
 _TEXTURES = {
     "glsl": "uniform highp {type} {name};",
@@ -116,7 +116,7 @@ _TEXTURES = {
 
 
 class Grid(NamedTuple):
-    """How lanes stand in the picture: row by row."""
+    """The size of the grid of lanes in the picture, row by row."""
 
     width: int
     rows: int
@@ -129,7 +129,7 @@ def grid(lanes: int) -> Grid:
 
 
 class Layout(NamedTuple):
-    """Where results lie in the picture."""
+    """The places of the results in the picture."""
 
     lanes: int
     grid: Grid
@@ -140,7 +140,7 @@ class Layout(NamedTuple):
 def drawing(
     target: Target, text: Text, calls: Sequence[Call], textures: Mapping[str, Texture]
 ) -> tuple[Drawing, Layout]:
-    """The draw that runs the calls. Its program has `text` in front, so that line numbers stay true."""
+    """The draw that runs the calls. Its program starts with `text`, so that line numbers stay the same."""
     lanes = max(np.shape(arg)[-1] for call in calls for arg in call.args if not isinstance(arg, str))
     used = {arg for call in calls for arg in call.args if isinstance(arg, str)}
     bound = {name: Bound(texture, Place(0, 2 * i + 1, 2 * i + 2)) for i, (name, texture) in enumerate(
@@ -170,7 +170,7 @@ def results(calls: Sequence[Call], layout: Layout, picture: Array) -> list[Array
 
 
 class _Writer:
-    """Writes one branch a call: whole quads take it, so derivatives and implicit levels are defined in it."""
+    """Writes one branch for each call: whole quads take it, so derivatives and implicit levels are defined in it."""
 
     def __init__(self, target: Target, grid: Grid) -> None:
         self.target, self.grid = target, grid
@@ -207,7 +207,7 @@ class _Writer:
         self.slots += columns
 
     def _rounded(self, arg: Array) -> Array:
-        """An argument in the numbers that the target computes in."""
+        """An argument, rounded to the target's floating-point format."""
         if not self.half or arg.dtype.kind != "f":
             return arg
         with np.errstate(over="ignore"):
@@ -231,7 +231,7 @@ class _Writer:
         return pattern.format(fetched, **types, zero=zero)
 
     def _words(self, type_: Type, value: str) -> str:
-        """Four words, the value's in front."""
+        """Four 32-bit components that start with those of the value."""
         size = type_.size if isinstance(type_, Matrix | Vector) else 1
         unsigned = self.target.types["uint" if size == 1 else f"uvec{size}"]
         single = self.single[spell(vector_of(kind_of(type_), size))]
@@ -240,7 +240,7 @@ class _Writer:
 
 
 def _family(target: Target) -> str:
-    """The language that the target's dialect is one of: glsl, hlsl, wgsl."""
+    """The language of the target's dialect: glsl, hlsl, wgsl."""
     return target.dialect.partition("-")[0]
 
 
@@ -255,7 +255,7 @@ def _declared(target: Target, name: str, bound: Bound) -> str:
 
 
 def _rows(type_: Type, value: Array, grid: Grid) -> list[Array]:
-    """An argument as rows of four words a lane."""
+    """An argument as rows of four 32-bit components for each lane."""
     if isinstance(type_, Matrix):
         return [row for column in value for row in _rows(Vector("float", type_.size), column, grid)]
     words = np.zeros((grid.rows * grid.width, 4), np.uint32)

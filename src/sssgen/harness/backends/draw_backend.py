@@ -12,21 +12,21 @@ from sssgen.targets.numpy_textures import Texture
 
 
 class DrawingBackend(Backend):
-    """Draws programs. `top_first` says where the first row of a picture is: at the top, or at the bottom."""
+    """Draws programs. `top_first`: whether the first row of a picture is at the top."""
 
     top_first = False
     drew = 0.0
-    """Seconds between the driver's being told to draw and its end, of the last draw; in WebGPU with the reading."""
+    """The duration of the last draw in seconds; in WebGPU with the read of the picture."""
 
     largest: Mapping[str, int] = {}
-    """The most texels along a side of a 2D, 3D or Cube texture; a kind that is not here has no limit."""
+    """The most texels along a side of a 2D, 3D or Cube texture; other kinds have no limit."""
 
     def __init__(self, name: str, target: str) -> None:
         self.name = name
         self.target = registry.load(target)
 
     def check(self, drawing: Drawing) -> None:
-        """Raises SssgenError for a texture or a picture that the driver does not take: not all drivers say so."""
+        """Raises SssgenError for a texture or a picture that is too large for the driver: not all drivers report it."""
         for name, bound in drawing.textures.items():
             if isinstance(bound.data, Texture):
                 side, most = max(bound.data.size()), self.largest.get(bound.data.dim, 1 << 30)

@@ -1,4 +1,4 @@
-"""HLSL, run in OpenGL: a compiler makes SPIR-V of it, spirv-val looks at that, and spirv-cross makes GLSL."""
+"""HLSL, run in OpenGL: a compiler makes SPIR-V, spirv-val checks it, and spirv-cross translates it to GLSL."""
 
 from __future__ import annotations
 
@@ -28,18 +28,18 @@ class HLSL(OpenGL):
     def __init__(self, name: str, target: str, compiler: str) -> None:
         super().__init__(name, target)
         self.compiler = compiler
-        _tools()  # where they are missing this back end is
-        self.found = dxc.find() if compiler == "dxc" else glslang.find()
+        _tools()  # raises CompilerMissing
+        self.shader_compiler = dxc.find() if compiler == "dxc" else glslang.find()
 
     def device(self) -> str:
-        return f"{self.found.version()}, spirv-cross, {super().device()}"
+        return f"{self.shader_compiler.version()}, spirv-cross, {super().device()}"
 
     def stages(self, drawing: Drawing) -> tuple[str, str]:
         fragment = self.glsl(drawing.fragment, "fragment")
         return self.glsl(drawing.vertex, "vertex") if drawing.vertex else _HEADS["glsl-330"] + _SCREEN, fragment
 
     def glsl(self, stage: Stage, kind: str) -> str:
-        """The GLSL that comes of a stage."""
+        """A stage as GLSL."""
         text = self.prepared(stage.text)
         module, log = compiled(text.text, stage.entry, kind, self.compiler)
         if not module:
@@ -63,15 +63,15 @@ class HLSL(OpenGL):
         return ""
 
     def prepared(self, text: Text) -> Text:
-        """What the compiler is given: Unity's text is preprocessed first."""
+        """The compiler's input: Unity's text is preprocessed."""
         return text
 
     def messages(self, log: str) -> list[Message]:
-        """What the compiler said."""
+        """The messages in the compiler's log."""
         return dxc.messages(log) if self.compiler == "dxc" else glslang.messages(log)
 
     def attribute(self, program: Any, name: str) -> str:
-        """Vertex inputs are called after their semantics by DXC, after their structure's members by glslang."""
+        """DXC names vertex inputs after their semantics, glslang after the members of their struct."""
         members = (member for member in program if member.endswith(_ENDINGS[name]) and not member.startswith("gl_"))
         return next((member for member in members if type(program[member]).__name__ == "Attribute"), "")
 
@@ -109,13 +109,13 @@ def _process(command: list[str], data: bytes) -> subprocess.CompletedProcess[byt
 
 @cache
 def _tools() -> dict[str, str]:
-    """Where the two programs are. Raises CompilerMissing."""
+    """The paths of the two programs. Raises CompilerMissing."""
     import shutil
 
-    found = {name: shutil.which(name) for name in ("spirv-val", "spirv-cross")}
-    if lacking := [name for name, path in found.items() if path is None]:
+    programs = {name: shutil.which(name) for name in ("spirv-val", "spirv-cross")}
+    if lacking := [name for name, path in programs.items() if path is None]:
         raise CompilerMissing(f"{' and '.join(lacking)} (Debian: spirv-tools spirv-cross · elsewhere: the Vulkan SDK)")
-    return {name: str(path) for name, path in found.items()}
+    return {name: str(path) for name, path in programs.items()}
 
 
 assert set(_ENDINGS) == set(ATTRIBUTES)

@@ -1,4 +1,4 @@
-"""A back end in a process of its own: a driver that crashes or hangs there does not take this process down.
+"""A back end in its own process: a driver that crashes or hangs there does not affect this process.
 
 gpu = isolated("gl")
 gpu.run(text, calls)          # as any back end; SssgenError where the process died or took too long
@@ -22,7 +22,7 @@ SECONDS = 300.0
 
 
 class _Facts(NamedTuple):
-    """What a back end says of itself."""
+    """The attributes of the back end in the other process."""
 
     device: str
     target: str
@@ -30,7 +30,7 @@ class _Facts(NamedTuple):
 
 
 class Isolated(DrawingBackend):
-    """Stands for a back end in another process, which is started anew after it was lost."""
+    """The proxy of a back end in another process, which is restarted after it was lost."""
 
     def __init__(self, name: str, seconds: float = SECONDS) -> None:
         self.name = name
@@ -46,12 +46,12 @@ class Isolated(DrawingBackend):
         return self.facts.device
 
     def run(self, text: Text, calls: Sequence[Call], textures: Mapping[str, Texture] | None = None) -> list[Array]:
-        found: list[Array] = self._ask("run", text, calls, textures)
-        return found
+        results: list[Array] = self._ask("run", text, calls, textures)
+        return results
 
     def draw(self, drawing: Drawing) -> Array:
-        found: Array = self._ask("draw", drawing)
-        return found
+        picture: Array = self._ask("draw", drawing)
+        return picture
 
     def apply(self, function: Callable[..., Any], *arguments: Any) -> Any:
         """The result of `function(back end, *arguments)`, computed in the other process."""
@@ -61,34 +61,34 @@ class Isolated(DrawingBackend):
         """Ends the process."""
         self.process.close()
 
-    def _ask(self, what: str, *given: Any) -> Any:
+    def _ask(self, method: str, *arguments: Any) -> Any:
         try:
-            return self.process.ask((what, given))
+            return self.process.ask((method, arguments))
         except LostError as reason:
-            raise gave_up(self.name, f"the back end {reason}", "the rest goes on without it") from None
+            raise gave_up(self.name, f"the back end {reason}", "the others continue without it") from None
 
 
 def isolated(name: str, seconds: float = SECONDS) -> Isolated:
-    """The back end of that name in a process of its own. Raises CompilerMissing where this machine lacks it."""
+    """The back end of that name in its own process. Raises CompilerMissing where this machine lacks it."""
     return Isolated(name, seconds)
 
 
 def started(name: str) -> Backend:
-    """A back end whose driver cannot harm this process; NumPy has none. Raises as `isolated` does."""
+    """The back end of that name, in its own process if a driver computes. Raises as `isolated` does."""
     return isolated(name) if backends.BACKENDS[name].driver else backends.get(name)
 
 
 def serve(name: str) -> tuple[_Facts, Callable[[tuple[str, tuple[Any, ...]]], Any]]:
-    """What the other process says first, and what answers. Raises CompilerMissing."""
+    """The first answer of the other process, and its function for questions. Raises CompilerMissing."""
     backend = backends.get(name)
 
     def answer(question: tuple[str, tuple[Any, ...]]) -> Any:
-        what, given = question
+        method, arguments = question
         try:
-            if what == "apply":
-                function, arguments = given
-                return function(backend, *arguments)
-            return getattr(backend, what)(*given)
+            if method == "apply":
+                function, rest = arguments
+                return function(backend, *rest)
+            return getattr(backend, method)(*arguments)
         except (SssgenError, CompilerMissing):
             raise
         except Exception as error:

@@ -30,7 +30,7 @@ class Reference(Backend):
         return [self.call(functions, call, textures or {}) for call in calls]
 
     def call(self, functions: Mapping[str, Any], call: Call, textures: Mapping[str, Texture]) -> Array:
-        """One call, on the grid of pixels that the other back ends have, so that derivatives have their neighbours."""
+        """One call, on the same grid of pixels as in the other back ends, so that derivatives have neighbours."""
         lanes = max((np.shape(arg)[-1] for arg in call.args if not isinstance(arg, str)), default=1)
         shape = programs.grid(lanes)
         filled = shape.width * shape.rows
@@ -47,7 +47,7 @@ class Reference(Backend):
         return np.broadcast_to(value, (*inner, filled))[..., :lanes]
 
     def _lanes(self, value: Array, lanes: int) -> Array:
-        """An argument in the working precision; the grid's last lanes are as empty as in a picture: zeros."""
+        """An argument in the working precision; unused lanes at the end of the grid are 0, as in a picture."""
         with np.errstate(over="ignore"):
             value = value.astype(self.dtype) if value.dtype.kind == "f" else value
         if value.shape[-1] == 1:
@@ -57,7 +57,7 @@ class Reference(Backend):
 
 @lru_cache(64)
 def namespace(text: str) -> Mapping[str, Any]:
-    """What emitted Python defines."""
+    """The names that emitted Python defines."""
     names: dict[str, Any] = {}
     exec(compile(text, "<emitted>", "exec"), names)
     return names

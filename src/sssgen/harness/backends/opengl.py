@@ -23,13 +23,13 @@ _HEADS = {
 }
 _SCREEN = "void main() { gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0); }"
 _KEPT = 64
-"""Compiled programs of a process; the oldest goes first."""
+"""The most compiled programs of a process; the oldest is released first."""
 
 
 class OpenGL(DrawingBackend):
     """Compiles GLSL in the driver and draws with it."""
 
-    unmade = frozenset(("samplerCubeArray", "samplerCubeShadow", "sampler2DArrayShadow"))  # moderngl binds none
+    unmade = frozenset(("samplerCubeArray", "samplerCubeShadow", "sampler2DArrayShadow"))  # moderngl cannot bind them
 
     def __init__(self, name: str, target: str) -> None:
         super().__init__(name, target)
@@ -47,7 +47,7 @@ class OpenGL(DrawingBackend):
     def draw(self, drawing: Drawing) -> Array:
         self.check(drawing)
         vertex, fragment = self.stages(drawing)
-        with self.context:  # other libraries make contexts of their own current
+        with self.context:  # other libraries may have made their context current
             program = self.program(vertex, fragment, drawing.fragment.text)
             try:
                 return self.fill(program, drawing)
@@ -65,7 +65,7 @@ class OpenGL(DrawingBackend):
         return vertex, fragment
 
     def program(self, vertex: str, fragment: str, origin: Text) -> Any:
-        """The linked program, from this process's own if it is known. `origin` says where a complaint belongs."""
+        """The linked program, cached. `origin` has the places for messages."""
         key = (vertex, fragment)
         if key in self.programs:
             self.programs.move_to_end(key)
@@ -80,7 +80,7 @@ class OpenGL(DrawingBackend):
         return made
 
     def fill(self, program: Any, drawing: Drawing) -> Array:
-        """Binds by name and draws; nothing stays but the program."""
+        """Binds by name and draws; only the program is kept."""
         context, (width, height) = self.context, drawing.size
         made: list[Any] = []
 
@@ -128,11 +128,11 @@ class OpenGL(DrawingBackend):
                 buffer.bind_to_uniform_block(number)
 
     def owner(self, member: str, names: Collection[str]) -> str:
-        """Which of our textures or blocks a member of the program is; '' where it is none."""
+        """The name of the drawing's texture or block for a member of the program; '' where it is none."""
         return member if member in names else ""
 
     def vertex_array(self, program: Any, drawing: Drawing, keep: Any) -> Any:
-        """The vertices, of which the program takes the attributes that it has."""
+        """The vertices, with the attributes that the program has."""
         if drawing.vertices is None or drawing.triangles is None:
             return self.context.vertex_array(program, [])
         buffer = keep(self.context.buffer(np.ascontiguousarray(drawing.vertices, np.float32)))
@@ -143,11 +143,11 @@ class OpenGL(DrawingBackend):
         return self.context.vertex_array(program, [(buffer, layout, *names)], index)
 
     def attribute(self, program: Any, name: str) -> str:
-        """What the program calls an attribute; '' where it has none."""
+        """The program's name for an attribute; '' where it has none."""
         return name if name in program else ""
 
     def upload(self, data: Texture | Array) -> Any:
-        """A texture with the same filter and wrapping; further levels are the driver's."""
+        """A texture with the same filter and wrapping; the driver computes further levels."""
         context = self.context
         if isinstance(data, np.ndarray):
             made = context.texture((data.shape[1], data.shape[0]), 4, np.ascontiguousarray(data), dtype="u4")
@@ -168,7 +168,7 @@ class OpenGL(DrawingBackend):
         return made
 
     def texels(self, data: Texture) -> Any:
-        """The first level of a texture, not yet filtered. Raises SssgenError for a kind that moderngl does not make."""
+        """The first level of a texture, not yet filtered. Raises SssgenError for a kind that moderngl cannot create."""
         if data.layers and data.dim != "2D":
             raise gave_up(self.name, "cube maps in layers cannot be made in OpenGL here", "WebGPU has them")
         name = {"2D": "texture", "3D": "texture3d", "Cube": "texture_cube"}[data.dim]
@@ -179,7 +179,7 @@ class OpenGL(DrawingBackend):
         return getattr(self.context, name)(size, 4, level.tobytes(), dtype=dtype)
 
     def depths(self, data: Texture) -> Any:
-        """A depth texture that compares. Raises SssgenError for a kind that moderngl does not make, or bind."""
+        """A depth texture that compares. Raises SssgenError for a kind that moderngl cannot create or bind."""
         if data.layers or data.dim != "2D":
             raise gave_up(self.name, "only flat depth textures can be made in OpenGL here", "WebGPU has the others")
         depths = np.ascontiguousarray(data.levels[0][..., 0], np.float32)
@@ -197,5 +197,5 @@ def is_loose(member: Any) -> bool:
 
 def _write(member: Any, numbers: Array) -> None:
     kind = {"f": np.float32, "I": np.uint32}.get(member.fmt[-1], np.int32)
-    kept = 4 * member.dimension * member.array_length  # of an array the driver may drop what is not read
-    member.write(np.ascontiguousarray(numbers, kind).tobytes()[:kept])
+    size = 4 * member.dimension * member.array_length  # the driver may drop unread elements of an array
+    member.write(np.ascontiguousarray(numbers, kind).tobytes()[:size])

@@ -1,6 +1,6 @@
 """Unity's HLSL, run in OpenGL: preprocessed with Unity's headers (or the stand-ins), then as other HLSL.
 
-Functions are run here; `whole` draws a whole shader (see `sssgen.harness.unity_shell`).
+`whole` draws a whole shader; see `unity_program`.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from sssgen.harness.compilers import unity_compiler as unity
 
 
 class UnityHLSL(HLSL):
-    """The functions of a Unity target, inside what the engine includes around them."""
+    """The functions of a Unity target, with the engine's headers."""
 
     def __init__(self, name: str, target: str, compiler: str) -> None:
         super().__init__(name, target, compiler)
-        found = compilers.get("unity")
-        assert isinstance(found, unity.Unity)
-        self.unity = found
+        unity_compiler = compilers.get("unity")
+        assert isinstance(unity_compiler, unity.Unity)
+        self.unity = unity_compiler
         self.whole = UnityProgram(name, target, compiler)
 
     def device(self) -> str:

@@ -1,7 +1,7 @@
 """A whole Unity program, already preprocessed, drawn in OpenGL.
 
-The engine sets its variables by name, into whatever constant buffer a header has put them. So does this: a drawing's
-`values` go to the offsets that spirv-cross reports of the compiled stages.
+The engine sets its variables by name, in any constant buffer. So does this: a drawing's `values` are written to the
+offsets that spirv-cross reports for the compiled stages.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from sssgen.harness.compilers import unity_compiler as unity
 from sssgen.targets.numpy_textures import Texture
 
 _BINDING = re.compile(r"layout\(binding = \d+(?:, )?")
-"""Each stage is numbered for itself, and a block of both must not differ: moderngl numbers them anew."""
+"""Each stage has its own numbers, and a block of both must not differ: moderngl assigns new ones."""
 _SAMPLER = re.compile(r"^(?:layout\([^)]*\) )?uniform sampler(2D|3D|Cube) (\w+);", re.MULTILINE)
 _KINDS: dict[str, Any] = {"i": np.int32, "u": np.uint32, "b": np.uint32}
 """By a type's first letter; else float."""
@@ -49,21 +49,21 @@ class UnityProgram(HLSL):
         return [unity.located(message, "forward pass") for message in super().messages(log)]
 
     def spirv_cross(self, stage: Stage, kind: str, *options: str) -> str:
-        """What spirv-cross makes of a stage."""
-        told = stage.text._replace(text="")  # the lines that are told are the .shader's
+        """The output of spirv-cross for a stage."""
+        shown = stage.text._replace(text="")  # messages have lines of the .shader file
         module, log = compiled(_aligned(stage.text.text), stage.entry, kind, self.compiler)
         if not module:
-            raise refused(self.name, told, self.messages(log))
-        made, log = crossed(module, *options)
-        if not made:
-            raise refused(self.name, told, [Message("error", 0, 0, log)])
-        return made
+            raise refused(self.name, shown, self.messages(log))
+        text, log = crossed(module, *options)
+        if not text:
+            raise refused(self.name, shown, [Message("error", 0, 0, log)])
+        return text
 
 
 def _aligned(text: str) -> str:
     """The program with the material's members in the order of their sizes, the largest first.
 
-    As emitted they follow HLSL's packing, where a float3 may stand behind a float. GLSL has no such layout, so
+    As emitted they follow HLSL's packing, where a float3 may follow a float. GLSL has no such layout, so
     spirv-cross refuses it. Members are set by name, so their order is free here.
     """
 
@@ -75,7 +75,7 @@ def _aligned(text: str) -> str:
 
 
 def _size(member: str) -> int:
-    """What orders a member: matrices and arrays, then vectors, then scalars."""
+    """The sort key of a member: matrices and arrays, then vectors, then scalars."""
     kind = re.search(r"\b(?:float|half|int|uint|bool)(\d?)(x\d)?\b", member)
     return 5 if "[" in member or (kind and kind[2]) else int(kind[1] or 1) if kind else 1
 
@@ -88,14 +88,14 @@ def black(dim: str) -> Texture:
 
 def _blocks(reflected: Mapping[str, Any], values: Mapping[str, Array]) -> dict[str, Block]:
     """The bytes of a stage's uniform blocks, by the names that they have in GLSL."""
-    found = {}
+    blocks = {}
     for block in reflected.get("ubos", []):
         data = np.zeros(-(-block["block_size"] // 16) * 4, np.uint32)
         for member in reflected["types"][block["type"]]["members"]:
             if member["name"] in values:
                 _place(data, member, np.atleast_2d(values[member["name"]]))
-        found[re.sub(r"[^A-Za-z0-9]+", "_", block["name"])] = Block(data.tobytes(), Place(0, 0))
-    return found
+        blocks[re.sub(r"[^A-Za-z0-9]+", "_", block["name"])] = Block(data.tobytes(), Place(0, 0))
+    return blocks
 
 
 def _place(data: Array, member: Mapping[str, Any], vectors: Array) -> None:

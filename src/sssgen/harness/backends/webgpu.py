@@ -21,7 +21,7 @@ _INDEX, _VERTEX, _UNIFORM = 0x10, 0x20, 0x40
 
 
 class WebGPU(DrawingBackend):
-    """Compiles WGSL and draws with it. In half precision it runs functions alone; there are no whole shaders in it."""
+    """Compiles WGSL and draws with it. In half precision it runs functions only."""
 
     top_first = True
 
@@ -34,7 +34,7 @@ class WebGPU(DrawingBackend):
             raise CompilerMissing(f"a WebGPU adapter with the feature shader-f16, which {self.device()} has not")
 
     def start(self, naga: Naga) -> None:
-        """Takes naga's device; nothing is compiled for it yet."""
+        """Uses naga's device, with an empty cache."""
         self.naga = naga
         self.gpu: Any = naga.gpu
         flat = int(self.gpu.limits["max-texture-dimension-2d"])
@@ -56,13 +56,13 @@ class WebGPU(DrawingBackend):
                 self.naga.gpu = find().gpu  # the compiler's device is the same
                 self.start(self.naga)
                 raise gave_up(self.name, "the device was lost", "a new one is there for the next run") from None
-            told = self.naga.complaints(todo.code)
-            if told:
-                raise refused(self.name, drawing.fragment.text, told) from None
+            messages = self.naga.complaints(todo.code)
+            if messages:
+                raise refused(self.name, drawing.fragment.text, messages) from None
             raise gave_up(self.name, f"{type(error).__name__}: {error}") from error
 
     def lost(self) -> bool:
-        """Whether the device does nothing any more."""
+        """Whether the device is lost."""
         import wgpu
 
         try:
@@ -100,13 +100,13 @@ class WebGPU(DrawingBackend):
         return np.frombuffer(read, dtype).reshape(todo.height, todo.width, 4)
 
     def pipeline(self, todo: Plan) -> tuple[Any, list[Any]]:
-        """The pipeline and the layouts of its groups, from this process's own if they are known."""
+        """The pipeline and the layouts of its groups, cached."""
         groups = layout_entries(todo)
         key = (todo.code, todo.vertex, todo.fragment, todo.format, bool(todo.triangles), repr(groups))
         if key in self.pipelines:
             self.pipelines.move_to_end(key)
-            found: tuple[Any, list[Any]] = self.pipelines[key]
-            return found
+            cached: tuple[Any, list[Any]] = self.pipelines[key]
+            return cached
         gpu = self.gpu
         module = gpu.create_shader_module(code=todo.code)
         layouts = [gpu.create_bind_group_layout(entries=groups.get(i, [])) for i in range(max(groups, default=-1) + 1)]
@@ -123,7 +123,7 @@ class WebGPU(DrawingBackend):
         return made, layouts
 
     def resources(self, todo: Plan) -> dict[int, list[dict[str, Any]]]:
-        """Group → what is bound in it."""
+        """Group → the entries of its bind group."""
         groups: dict[int, list[dict[str, Any]]] = {}
         for block in todo.blocks:
             buffer = self.gpu.create_buffer_with_data(data=block.data, usage=_UNIFORM)
@@ -131,13 +131,13 @@ class WebGPU(DrawingBackend):
             groups.setdefault(block.group, []).append({"binding": block.binding, "resource": resource})
         for texture in todo.textures:
             view = self.upload(texture).create_view(dimension=texture.view)
-            found = groups.setdefault(texture.group, [])
-            found.append({"binding": texture.binding, "resource": view})
+            entries = groups.setdefault(texture.group, [])
+            entries.append({"binding": texture.binding, "resource": view})
             if texture.sampler >= 0:
                 wraps = {f"address_mode_{axis}": texture.wrap for axis in "uvw"}
                 filters = dict.fromkeys(("mag_filter", "min_filter"), texture.filter) | {"mipmap_filter": "linear"}
                 made = self.gpu.create_sampler(**filters, **wraps, compare=texture.compare or None)
-                found.append({"binding": texture.sampler, "resource": made})
+                entries.append({"binding": texture.sampler, "resource": made})
         return groups
 
     def upload(self, texture: TexturePlan) -> Any:

@@ -1,4 +1,4 @@
-"""A drawing as WebGPU wants it: plain data, which `wgpu` in this process and a page in a browser carry out alike."""
+"""A drawing in terms of WebGPU: plain data, which both `wgpu` and a page in a browser carry out."""
 
 from __future__ import annotations
 
@@ -69,11 +69,11 @@ ATTRIBUTE_PLAN = [
     {"format": f"float32x{size}", "offset": 4 * first, "shaderLocation": location}
     for location, (first, size) in enumerate(ATTRIBUTES.values())
 ]
-"""All four attributes; a program that reads fewer does not mind."""
+"""All four attributes; a program may read fewer."""
 
 
 def plan(drawing: Drawing) -> Plan:
-    """What to do for a drawing."""
+    """The plan of a drawing."""
     assert drawing.vertex is not None
     triangles = drawing.triangles
     return Plan(
@@ -112,7 +112,7 @@ def _texture(bound: Bound) -> TexturePlan:
 _FORMATS = {
     "float": ("rgba16float", 8), "int": ("rgba32sint", 16), "uint": ("rgba32uint", 16), "depth": ("depth16unorm", 2),
 }  # fmt: skip
-"""What texels are → the format, and its bytes a texel. Of the depths, this one can be written."""
+"""Kind of texels → the format, and its bytes per texel. Other depth formats cannot be written."""
 _SAMPLED = {"rgba16float": "float", "rgba32sint": "sint", "rgba32uint": "uint", "depth16unorm": "depth"}
 
 
@@ -123,7 +123,7 @@ def _bytes(texels: Array, format: str) -> bytes:
 
 
 def layout_entries(plan: Plan) -> dict[int, list[dict[str, Any]]]:
-    """Group → the entries of its bind group layout. A group is explicit: `auto` drops what a program does not read."""
+    """Group → the entries of its bind group layout. They are explicit, as `auto` drops unread resources."""
     groups: dict[int, list[dict[str, Any]]] = {}
     both, fragment = 3, 2
     for block in plan.blocks:

@@ -1,4 +1,4 @@
-"""Shader texts through every compiler for their language; what these say, with the technique's own line."""
+"""Compiles shader texts with every compiler for their language; messages have the technique's own line."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from sssgen.support.text_files import read_text
 
 @dataclass(frozen=True)
 class Result:
-    """What one compiler says of one source."""
+    """The messages of one compiler about one source."""
 
     shader: Shader
     source: Source
@@ -45,7 +45,7 @@ class Report:
 
 
 def run(shaders: Sequence[Shader], names: Sequence[str] = (), unity_includes: str | None = None) -> Report:
-    """Every shader through every compiler for its language, or those in `names` only; each in a process of its own.
+    """Compiles every shader with every compiler for its language, or only those in `names`, each in its own process.
 
     Raises SssgenError where one in `names` is missing, or where none of them reads any of the shaders.
     """
@@ -85,25 +85,25 @@ def run(shaders: Sequence[Shader], names: Sequence[str] = (), unity_includes: st
 
     with ThreadPoolExecutor(len(chosen)) as pool:
         try:
-            told = dict(zip(chosen, pool.map(work, chosen), strict=True))
+            outcomes = dict(zip(chosen, pool.map(work, chosen), strict=True))
         finally:
             stop.set()
-    missing = {name: text for name, (text, there, _) in told.items() if not there}
+    missing = {name: text for name, (text, there, _) in outcomes.items() if not there}
     if lacking := [name for name in names if name in missing]:
         raise SssgenError(
-            [found for name in lacking for found in failure(f"{name} is not here", missing[name]).diagnostics]
+            [diagnostic for name in lacking for diagnostic in failure(f"{name} is not here", missing[name]).diagnostics]
         )
     order = {id(shader): number for number, shader in enumerate(shaders)}
-    results = [result for _, _, own in told.values() for result in own]
+    results = [result for _, _, own in outcomes.values() for result in own]
     return Report(
-        {name: text for name, (text, there, _) in told.items() if there},
+        {name: text for name, (text, there, _) in outcomes.items() if there},
         missing,
         sorted(results, key=lambda result: order[id(result.shader)]),
     )
 
 
 def _within(shader: Shader, messages: list[Message]) -> list[Message]:
-    """Messages with places that are in the file: behind its end stand the calls that make a program of a library."""
+    """Messages with places in the file only: the check appends calls that make a program of a library."""
     count = shader.text.count("\n") + 1
     return [
         replace(m, line=0, column=0, text=f"in the calls of every function that the check adds: {m.text}")
@@ -158,12 +158,12 @@ def as_json(report: Report) -> dict[str, Any]:
 
 
 def _message_as_json(result: Result, message: Message) -> dict[str, Any]:
-    told: dict[str, Any] = {
+    entry: dict[str, Any] = {
         "severity": message.severity,
         "line": message.line,
         "column": message.column,
         "text": message.text,
     }
     if origin := result.origin(message):
-        told["source"] = origin
-    return told
+        entry["source"] = origin
+    return entry

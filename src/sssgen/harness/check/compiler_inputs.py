@@ -1,4 +1,4 @@
-"""From emitted files to what a compiler is given: language, stages and entry points of a file name."""
+"""The sources in emitted files: language, stages and entry points by the file name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a compiler is given of a file that no target of ours is known to have written: told by its ending and text."""
+"""The sources in a file that no target wrote: its language and stages follow from its extension and text."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LANGUAGES_OF: dict[str, tuple[str, ...]] = {
     ".shader": ("unity-builtin", "unity-urp"),
     ".py": ("numpy",),
 }
-"""What a file's ending says of its language; where that is not one, the first is what it is for want of better."""
+"""Extension → possible languages; the first is the default where the text does not decide."""
 
 _SIGNS = {
     "glsl-es-300": r"^\s*#\s*version\s+\d+\s+es\b",

@@ -1,4 +1,4 @@
-"""What `sssgen check` is given, as shaders: files, folders of them, materials, examples."""
+"""The arguments of `sssgen check` as shaders: files, folders of them, materials, examples."""
 
 from __future__ import annotations
 

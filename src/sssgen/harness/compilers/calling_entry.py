@@ -1,6 +1,6 @@
 """An entry point for text that has none, which calls every function once.
 
-Compilers treat a function that nobody calls lightly: GL drivers drop it, DXC makes no code for it, and
+Compilers check unused functions less: GL drivers drop them, DXC makes no code for them, and
 WGSL's uniformity analysis reports only what an entry point reaches. So a library is checked through
 calls, with arguments that are not uniform. The entry is appended: the library's own line numbers stay
 true.
@@ -34,8 +34,8 @@ def functions(text: str, wgsl: bool = False) -> list[Function]:
     """The functions that `text` defines at its top level; in WGSL without the entry points."""
     top = _top_level(text)
     if wgsl:
-        found = [m for m in _WGSL_FUNCTION.finditer(top) if "@" not in m[1]]
-        return [Function(m[2], tuple(_wgsl_parameter(p) for p in _split(m[3])), m[4] or "void") for m in found]
+        matches = [m for m in _WGSL_FUNCTION.finditer(top) if "@" not in m[1]]
+        return [Function(m[2], tuple(_wgsl_parameter(p) for p in _split(m[3])), m[4] or "void") for m in matches]
     return [Function(m[2], tuple(_c_parameter(p) for p in _split(m[3])), m[1]) for m in _C_FUNCTION.finditer(top)]
 
 
@@ -81,11 +81,11 @@ def _append(text: str, lines: list[str]) -> str:
     return text.rstrip("\n") + "\n\n" + "\n".join(lines) + "\n"
 
 
-def _c_calls(found: list[Function], declare: str, opaque: dict[str, Opaque]) -> tuple[list[str], list[str]]:
+def _c_calls(library: list[Function], declare: str, opaque: dict[str, Opaque]) -> tuple[list[str], list[str]]:
     """(statements that call every function, global declarations for what cannot be local)."""
     body: list[str] = []
     globals_: list[str] = []
-    for i, function in enumerate(found):
+    for i, function in enumerate(library):
         arguments = []
         for j, (kind, _, array) in enumerate(function.parameters):
             name = f"sssgen_check_{i}_{j}"

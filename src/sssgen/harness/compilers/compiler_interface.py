@@ -1,4 +1,4 @@
-"""The words shared by all compilers: what is checked, what comes back, how a missing compiler says so."""
+"""The interface of all compilers: sources, messages, and the error for a missing compiler."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Source:
 
 @dataclass(frozen=True)
 class Message:
-    """One thing a compiler said. Line and column count from 1; 0 where the compiler does not tell.
+    """One message of a compiler. Line and column count from 1; 0 where the compiler does not state them.
 
     `file` is the name that the compiler gives to what the place is in; '' where it is in the text itself.
     """
@@ -50,7 +50,7 @@ class Message:
 
 
 class CompilerMissing(Exception):
-    """Raised by a family's `find()` where the compiler cannot be had; the text says how to get it."""
+    """Raised by a family's `find()` where the compiler is missing; the text says how to get it."""
 
 
 class Compiler(ABC):

@@ -1,4 +1,4 @@
-"""A compiler in a process of its own, so that a text on which it crashes or hangs costs nothing but its own answer."""
+"""A compiler in its own process, so that a crash or hang on one text affects no other."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ class Worker:
             raise CompilerMissing(f"{self.name} {reason} as it started") from None
 
     def check(self, source: Source) -> list[Message]:
-        """What the compiler says of `source`; that it crashed or did not finish is an error of the text."""
+        """The compiler's messages about `source`; a crash or a timeout is an error of the text."""
         try:
             found: list[Message] = self.process.ask(source)
         except LostError as reason:
             return [Message("error", 0, 0, f"{self.name} {reason} on this text")]
-        except Exception as error:  # somebody else's code: anything may go wrong in it
+        except Exception as error:  # the compiler's package may fail in any way
             return [Message("error", 0, 0, f"{self.name} failed: {type(error).__name__}: {error}")]
         return found
 

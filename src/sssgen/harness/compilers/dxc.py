@@ -1,7 +1,7 @@
 """Microsoft's DirectX shader compiler, shader model 6, which the PyPI package compushady carries.
 
-It runs in a process of its own: where its library and OpenGL's or Vulkan's drivers are in one process, that process
-now and then waits for ever as it ends (in the library's llvm_shutdown).
+It runs in its own process: a process with both its library and drivers of OpenGL or Vulkan sometimes hangs when it ends
+(in the library's llvm_shutdown).
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from sssgen.harness.compilers.glslang import LIBRARY_ENTRY
 from sssgen.support.worker_process import LostError, Process
 
 _PROFILES = {"vertex": "vs_6_0", "fragment": "ps_6_0", "library": "ps_6_0"}
-_OWN = ("", "hlsl.hlsl")  # what the text is called where no #line names it
+_OWN = ("", "hlsl.hlsl")  # the name of the text without a #line that names it
 _SEVERITY: dict[str, Severity] = {
     "error": "error",
     "fatal error": "error",
@@ -75,7 +75,7 @@ def find() -> Dxc:
 
 
 def serve(_: str) -> tuple[str, Callable[[Question], bytes]]:
-    """What the other process says first, and what answers. Raises CompilerMissing."""
+    """The first answer of the other process, and its function for questions. Raises CompilerMissing."""
     try:
         from importlib.metadata import version
 
@@ -92,7 +92,7 @@ def serve(_: str) -> tuple[str, Callable[[Question], bytes]]:
 
 
 def messages(log: str) -> list[Message]:
-    """What DXC's log says."""
+    """The messages in DXC's log."""
     pattern = r"^(?:((?:[A-Za-z]:)?[^:\n]*):(\d+):(\d+): )?(fatal error|error|warning|note): (.*)"
     found = [
         Message(_SEVERITY[kind], int(line or 0), int(column or 0), text, "" if file in _OWN else file)

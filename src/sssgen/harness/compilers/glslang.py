@@ -11,7 +11,7 @@ from sssgen.harness.compilers.compiler_interface import Compiler, CompilerMissin
 from sssgen.harness.compilers.gl_driver import with_version
 
 _STAGES = {"vertex": "vert", "fragment": "frag", "library": "frag"}
-_OWN = (None, "0", "stdin")  # what the text is called where no #line names it
+_OWN = (None, "0", "stdin")  # the name of the text without a #line that names it
 _SEVERITY: dict[str, Severity] = {"ERROR": "error", "WARNING": "warning"}
 LIBRARY_ENTRY = "sssgen_check_main"
 
@@ -39,11 +39,11 @@ class Glslang(Compiler):
             return self.check_hlsl(text, source.stage, source.entry)
         text = with_version(text, source.language)
         text = glsl_entry(text) if source.stage == "library" else text
-        return _told(self._run(text, ["-S", _STAGES[source.stage]]))
+        return _messages_of(self._run(text, ["-S", _STAGES[source.stage]]))
 
     def check_hlsl(self, text: str, stage: str, entry: str, dx9_samplers: bool = False) -> list[Message]:
         """HLSL to SPIR-V. `dx9_samplers` allows `sampler2D` and `tex2D`, as in Unity's built-in pipeline."""
-        return _told(self._hlsl(text, stage, entry, dx9_samplers)[0])
+        return _messages_of(self._hlsl(text, stage, entry, dx9_samplers)[0])
 
     def spirv(self, text: str, stage: str, entry: str, dx9_samplers: bool = False) -> bytes:
         """The SPIR-V of HLSL. Raises ValueError with the compiler's log."""
@@ -70,8 +70,8 @@ class Glslang(Compiler):
         return subprocess.run(command, input=text, capture_output=True, encoding="utf-8", check=False)
 
 
-def _told(done: CompletedProcess[str]) -> list[Message]:
-    """What a run said; that it failed without a word is an error, too."""
+def _messages_of(done: CompletedProcess[str]) -> list[Message]:
+    """The messages of a run; a failure without a message is an error, too."""
     found = messages(done.stdout + done.stderr)
     if done.returncode and not any(m.severity == "error" for m in found):
         found.append(Message("error", 0, 0, done.stdout.strip() or f"exit status {done.returncode}"))
@@ -90,7 +90,7 @@ def find() -> Glslang:
 
 
 def messages(log: str) -> list[Message]:
-    """What glslang's log says."""
+    """The messages in glslang's log."""
     found = []
     for line in log.splitlines():
         match = re.match(r"(ERROR|WARNING): (?:((?:[A-Za-z]:)?[^:]*):(\d+): )?(.*)", line)

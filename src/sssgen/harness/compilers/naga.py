@@ -27,7 +27,7 @@ class Naga(Compiler):
         return self.complaints(wgsl_entry(source.text) if source.stage == "library" else source.text)
 
     def complaints(self, text: str) -> list[Message]:
-        """What naga says of a whole module."""
+        """The messages of naga about a whole module."""
         import wgpu
 
         try:

@@ -1,4 +1,4 @@
-"""The text of the numpy target, compiled by Python itself; running it is the tests' matter."""
+"""The text of the numpy target, compiled by Python itself and not run."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Reads Unity's ShaderLab as far as a check needs it: the properties, the passes, and the HLSL inside them.
 
-Unity's own ShaderLab parser cannot be had apart from the editor, so what this one refuses is what the
-manual rules out (docs.unity3d.com, "ShaderLab: defining material properties"): an unbalanced brace, a
+Unity's own ShaderLab parser is not available outside of the editor, so this one refuses what the manual
+rules out (docs.unity3d.com, "ShaderLab: defining material properties"): an unbalanced brace, a
 block that does not end, a property of an unknown type, or one whose default does not fit its type.
 """
 
@@ -32,7 +32,7 @@ _TEXTURES = frozenset({"2d", "3d", "cube", "2darray", "cubearray"})
 
 @dataclass(frozen=True)
 class Program:
-    """One CGPROGRAM or HLSLPROGRAM: its HLSL behind the shared INCLUDE blocks, and what `#pragma` says.
+    """One CGPROGRAM or HLSLPROGRAM: its HLSL after the shared INCLUDE blocks, and its pragmas.
 
     `code` carries `#line` directives, so that compilers report the lines of the .shader file.
     """
@@ -43,11 +43,11 @@ class Program:
     pragmas: tuple[tuple[str, str], ...]
 
     def pragma(self, key: str) -> str | None:
-        """What stands behind the first `#pragma KEY`."""
+        """The text after the first `#pragma KEY`."""
         return next((value for k, value in self.pragmas if k == key), None)
 
     def keyword_sets(self, stage: str) -> list[list[str]]:
-        """Variants in which every two choices of two `multi_compile` or `shader_feature` lines meet.
+        """Variants that contain every pair of choices of two `multi_compile` or `shader_feature` lines.
 
         The full product has thousands; most mistakes need two keywords at most.
         """
@@ -64,12 +64,12 @@ class Shader:
     messages: list[Message] = field(default_factory=list)
 
     def scalar_properties(self) -> list[str]:
-        """The properties that live in a constant buffer: all but textures."""
+        """The properties in a constant buffer: all but textures."""
         return [name for name, kind in self.properties.items() if kind not in _TEXTURES]
 
 
 def parse(text: str, name: str) -> Shader:
-    """The shader in `text`; what is wrong with its ShaderLab stands in `messages`."""
+    """The shader in `text`; errors of its ShaderLab are in `messages`."""
     shader = Shader()
     text = text.replace("\r\n", "\n")
     shell = _BLOCK.sub(lambda m: re.sub(r"[^\n]", " ", m[0]), text)
@@ -126,7 +126,7 @@ def _agrees(row: list[str], settled: set[int], k: int, choice: str, pair: tuple[
 
 
 def _keywords(pragma: str, value: str, stage: str) -> list[str]:
-    """The variants of one pragma line for a stage; Unity's shorthands stand for their usual keywords."""
+    """The variants of one pragma line for a stage; Unity's shorthands are replaced by their usual keywords."""
     words = ["" if set(word) == {"_"} else word for word in value.split()]
     if pragma.endswith({"vertex": "_fragment", "fragment": "_vertex"}[stage]):
         return []

@@ -1,8 +1,8 @@
-"""What Unity makes around a surface shader, as far as a compile check and a picture lit forward need it.
+"""The entry points that Unity generates for a surface shader, as far as a check and forward rendering need them.
 
 The editor turns `#pragma surface` into vertex and fragment entries (docs.unity3d.com, "Writing Surface
 Shaders": the fields of `Input`, the order surface function → GI function → lighting function). That
-generator cannot be had apart from the editor, so this module writes entries of its own that make the same
+generator is not available outside of the editor, so this module writes entries of its own that make the same
 calls with the same types. Like the editor's, they declare `NAME_ST` for each `uvNAME` input: a shader
 that declares it too does not compile.
 """
@@ -120,7 +120,7 @@ class _Pragma:
 
 
 def entries(code: str, pragma: str) -> str:
-    """`sssgen_vertex` and `sssgen_fragment`, to stand behind `code`, whose `#pragma surface` says `pragma`.
+    """`sssgen_vertex` and `sssgen_fragment`, to be appended to `code` with this `#pragma surface`.
 
     Raises SurfaceError where the pragma names a function that `code` lacks.
     """
@@ -139,7 +139,7 @@ def entries(code: str, pragma: str) -> str:
     for texture in textures:
         if re.search(rf"\b{texture}_ST\s*;", code):
             raise SurfaceError(f"declares {texture}_ST, which Unity declares for the input uv{texture}")
-    # As the editor, which gives worldNormal only where no frame is asked for.
+    # As in the editor, which supplies worldNormal only where no tangent frame is needed.
     given = [name for name in names if not (name == "worldNormal" and "internalSurfaceTtoW0" in names)]
     inputs = [f"    surfIN.{name} = {value};" for name in given if (value := _input(name))]
     inputs += [f"    surfIN.{name} = i.custom_{name};" for _, name in own]
@@ -194,7 +194,7 @@ def _input_fields(code: str) -> list[tuple[str, str]]:
 
 
 def _input(name: str) -> str:
-    """What the editor gives for a field; "" for one that is the vertex function's."""
+    """The editor's expression for a field; "" for one that the vertex function sets."""
     if match := _TEXTURE_INPUT.fullmatch(name):
         return f"i.uv.{'zw' if match[1] == '2' else 'xy'} * {match[2]}_ST.xy + {match[2]}_ST.zw"
     return _INPUTS.get(name, "")

@@ -55,7 +55,7 @@ class Tint(Compiler):
 
     def check(self, source: Source) -> list[Message]:
         text = wgsl_entry(source.text) if source.stage == "library" else source.text
-        if self._process.poll() is not None:  # a shader that crashed it was reported then
+        if self._process.poll() is not None:  # the shader that crashed it was reported at that time
             self._start()
         try:
             self._process.stdin.write(json.dumps(text) + "\n")

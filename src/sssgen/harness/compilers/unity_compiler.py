@@ -20,7 +20,7 @@ from sssgen.harness.compilers.calling_entry import Opaque, hlsl_entry
 from sssgen.harness.compilers.compiler_interface import Compiler, CompilerMissing, Message, Source, Stage
 
 _TEXT = "sssgen-text"
-"""What the text is called in `#line`. A name of the user's could hold a quote, or be a header's."""
+"""The name of the text in `#line`. A user's name could contain a quote, or be that of a header."""
 
 STANDIN = Path(__file__).with_name("unity_standin")
 """The project's own headers, which stand in for Unity's."""
@@ -31,7 +31,7 @@ _URP = "Packages/com.unity.render-pipelines.universal/ShaderLibrary/"
 _CORE = "Packages/com.unity.render-pipelines.core/ShaderLibrary/"
 _GRAPH = "Packages/com.unity.shadergraph/ShaderGraphLibrary/"
 
-# What the editor includes by itself: in CGPROGRAM, and around a surface function.
+# The headers that the editor includes by itself: in CGPROGRAM, and around a surface function.
 _CG_HEADERS = ("HLSLSupport.cginc", "UnityShaderVariables.cginc", "UnityShaderUtilities.cginc")
 _SURFACE_HEADERS = ("UnityCG.cginc", "Lighting.cginc", "UnityPBSLighting.cginc", "AutoLight.cginc")
 _LIBRARY_HEADERS = {
@@ -47,14 +47,14 @@ _LIBRARY_HEADERS = {
         *(f"{_GRAPH}{name}.hlsl" for name in ("ShaderVariables", "ShaderVariablesFunctions", "Functions")),
     ),
 }  # fmt: skip
-# glslang takes the float1 of Unity's fog coordinate for a float, whose .x it will not assign to.
+# glslang reads the float1 of Unity's fog coordinate as a float, and refuses to assign to its .x.
 _BUILTIN_MACROS = (
     "SHADER_API_D3D11=1", "SHADER_TARGET=30", "UNITY_VERSION=201940", "UNITY_PBS_USE_BRDF1=1", "float1=float2",
 )  # fmt: skip
 _URP_MACROS = ("SHADER_API_D3D11=1", "SHADER_TARGET=45", "UNITY_VERSION=202120", "UNITY_COMPILER_DXC=1")
 # Unity's preprocessor expands a macro's arguments before it joins them with ##; C's does not, so that the
-# instanced matrices come out under this name. The built-in pipeline's headers cannot be helped like that:
-# its shaders are compiled without instancing.
+# instanced matrices get this name. The same is impossible for the built-in pipeline's headers: its shaders
+# are compiled without instancing.
 _INSTANCED = "UNITY_BUILTINS_WITH_WORLDTOOBJECTARRAYArray=unity_Builtins0Array"
 # The passes of a surface shader that is lit forward, without and with shadows.
 _SURFACE_PASSES = (
@@ -108,9 +108,9 @@ class Unity(Compiler):
         return f"Unity's own headers in {self.root}" if self.real else "the project's stand-in headers"
 
     def preprocessed(self, text: str, language: str) -> str:
-        """Functions of `language` behind the engine's headers, with line numbers of their own.
+        """Functions of `language` after the engine's headers, with their own line numbers.
 
-        Raises ValueError with the preprocessor's words.
+        Raises ValueError with the preprocessor's log.
         """
         builtin = language == "unity-builtin"
         macros = (*_BUILTIN_MACROS, *_SURFACE_PASSES[0], "SHADER_STAGE_FRAGMENT=1") if builtin else _URP_MACROS
@@ -170,7 +170,7 @@ class Unity(Compiler):
         return list(found.values())
 
     def _text(self, job: _Job) -> str:
-        """Raises ValueError with the preprocessor's words."""
+        """Raises ValueError with the preprocessor's log."""
         head = "".join(f'#include "{header}"\n' for header in job.headers)
         prelude = surface.PRELUDE if job.entry.startswith("sssgen_") and job.builtin else ""
         return self._preprocess(head + prelude + job.code, list(job.macros), self._roots(job.builtin))
@@ -180,7 +180,7 @@ class Unity(Compiler):
 
 
 def located(message: Message, what: str) -> Message:
-    """A message with the job it is of; its place only where that is in the text, else in words."""
+    """A message with the name of its job; a place outside of the text becomes part of the message."""
     if message.file in ("", _TEXT):
         return replace(message, text=f"{what}: {message.text}", file="")
     place = f"{message.file}:{message.line}"
@@ -255,7 +255,7 @@ def _check_batcher(shader: shaderlab.Shader) -> list[Message]:
 
 
 def find() -> Unity:
-    """The headers, a C preprocessor, glslang and DXC. Raises CompilerMissing where one of them is lacking."""
+    """The headers, a C preprocessor, glslang and DXC. Raises CompilerMissing where one of them is missing."""
     import os
 
     named = os.environ.get("SSSGEN_UNITY_INCLUDES")
