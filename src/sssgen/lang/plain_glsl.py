@@ -1,4 +1,4 @@
-"""Loads plain GLSL, as people have it (1.00 ES to 4.60): preprocessor, parser, checker, and nothing of techniques."""
+"""Loads plain GLSL (1.00 ES to 4.60): preprocessor, parser, checker, without the extensions for techniques."""
 
 from __future__ import annotations
 
@@ -21,30 +21,29 @@ from sssgen.support.gc_pause import paused
 from sssgen.support.text_files import read_text
 
 ENTRIES = ("shadertoy",)
-"""The conventions by which a file may be entered, beside `main()`."""
+"""The conventions for a file's entry point other than `main()`."""
 
-
-_OURS = re.compile("Made by sssgen for |Paste it below the #version")
-"""The lines of our own head, between which that of the author stands in what was translated before."""
+_GENERATED = re.compile("Made by sssgen for |Paste it below the #version")
+"""The lines of a generated file comment. In a text that was translated before, the author's comment is between them."""
 
 
 class Loaded(NamedTuple):
-    """A file of plain GLSL and what it was made from."""
+    """A loaded file of plain GLSL."""
 
     module: Module
     version: int
-    """What `#version` says, else 0."""
+    """The number of `#version`, or 0."""
     texts: dict[str, str]
-    """Every file that was read, as it is written."""
+    """The text of every file that was read."""
     constants: list[str]
     """The macros that became constants."""
     ignored: list[str]
-    """The extensions and pragmas, which change nothing here."""
+    """The extensions and pragmas, which have no effect."""
     warnings: list[Diagnostic]
     paths: list[str]
-    """Where these files lie, but for the first."""
+    """The paths of the included files."""
     head: list[str]
-    """The lines of the comment that the file begins with, where it documents nothing: a licence, say."""
+    """The lines of the comment at the top of the file that documents no declaration, such as a licence."""
 
 
 def load_glsl(
@@ -80,51 +79,51 @@ def load_glsl_text(
     return loaded._replace(paths=finder.paths)
 
 
-def _loaded(text: str, shown: str, found: Preprocessed, entry: str) -> Loaded:
-    """What the rest of the front end makes of a text whose directives are carried out."""
-    tokens = found.tokens
-    texts = dict(found.texts)
+def _loaded(text: str, shown: str, source: Preprocessed, entry: str) -> Loaded:
+    """Parses and checks a preprocessed text."""
+    tokens = source.tokens
+    texts = dict(source.texts)
     texts.setdefault(shown, text)
     if entry == "shadertoy":
         tokens, added = shadertoy.with_entry(tokens, shown)
         texts[shadertoy.FILE] = added
     keep_lines(texts)
     reporter = Reporter(shown, text, texts)
-    reporter.macros = found.expanded
-    head, rest, ours = _head(found, shown)
-    comments = found.comments | {shown: rest} if ours else found.comments
+    reporter.macros = source.expanded
+    head, rest, is_generated = _head(source, shown)
+    comments = source.comments | {shown: rest} if is_generated else source.comments
     file = parse_tokens(tokens, comments, reporter, plain=True)
-    if not ours and any("\n".join(head) in external.doc for external in file.externals):
-        head = []  # it documents something, and stands there
+    if not is_generated and any("\n".join(head) in external.doc for external in file.externals):
+        head = []  # it documents a declaration
     module = check_plain(file, reporter, _is_vertex(tokens, shown))
-    ignored = [f"#extension {one}" for one in found.extensions] + [f"#pragma {one}" for one in found.pragmas]
-    return Loaded(module, found.version, texts, found.macros, ignored, reporter.warnings, [], head)
+    ignored = [f"#extension {name}" for name in source.extensions] + [f"#pragma {name}" for name in source.pragmas]
+    return Loaded(module, source.version, texts, source.macros, ignored, reporter.warnings, [], head)
 
 
-def _head(found: Preprocessed, shown: str) -> tuple[list[str], list[Comment], bool]:
-    """The words of the comments on a file's first lines, the comments behind them, and whether we wrote those first."""
-    comments = found.comments.get(shown, [])
-    above = found.texts[shown].split("\n")[: comments[0].first - 1] if comments else []
+def _head(source: Preprocessed, shown: str) -> tuple[list[str], list[Comment], bool]:
+    """The text of the comments at the top of a file, the other comments, and whether the first are generated."""
+    comments = source.comments.get(shown, [])
+    above = source.texts[shown].split("\n")[: comments[0].first - 1] if comments else []
     count = 0
     while count < len(comments) and not any(line.strip() for line in above):
         if count and comments[count].first > comments[count - 1].last + 1:
             break
         count += 1
     lines = [line for comment in comments[:count] for line in words_of(comment.text).split("\n")]
-    ours = [index for index, line in enumerate(lines) if _OURS.match(line)]
-    if ours:
-        lines = lines[ours[0] + 1 : ours[1] if len(ours) > 1 else None]
-    said = "\n".join(lines).strip("\n")
-    return (said.split("\n") if said else []), comments[count:], bool(ours)
+    generated = [index for index, line in enumerate(lines) if _GENERATED.match(line)]
+    if generated:
+        lines = lines[generated[0] + 1 : generated[1] if len(generated) > 1 else None]
+    text = "\n".join(lines).strip("\n")
+    return (text.split("\n") if text else []), comments[count:], bool(generated)
 
 
 def preprocessed(text: str, shown: str, roots: Sequence[str | os.PathLike[str]] = ()) -> Preprocessed:
-    """A text and what it includes as words; see `load_glsl`."""
+    """The tokens of a text and of what it includes; see `load_glsl`."""
     return preprocess(text, shown, _Finder(roots).find)
 
 
 def _is_vertex(tokens: Sequence[Token], shown: str) -> bool:
-    """Whether a file is a vertex shader: by its name, else by what only such a one has."""
+    """Whether a file is a vertex shader: by its name, else by variables that only vertex shaders have."""
     suffix = os.path.splitext(shown)[1]
     if suffix in (".vert", ".vs", ".frag", ".fs"):
         return suffix in (".vert", ".vs")
@@ -132,7 +131,7 @@ def _is_vertex(tokens: Sequence[Token], shown: str) -> bool:
 
 
 class _Finder:
-    """Finds included files: beside the file that includes them, then in the folders given."""
+    """Finds included files: next to the including file, then in the given folders."""
 
     def __init__(self, roots: Sequence[str | os.PathLike[str]]) -> None:
         self.roots = [os.fspath(root) for root in roots]

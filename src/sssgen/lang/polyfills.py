@@ -1,4 +1,4 @@
-"""Instantiates what the intrinsic table has in our own language, polyfills and guards, with the same front end."""
+"""Compiles the polyfills and guards of the builtin table, which are written in the language of techniques."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from sssgen.ir.intrinsics import BUILTINS, Guard, with_constants
 from sssgen.ir.nodes import Module
 from sssgen.ir.signatures import instantiate, overload
 from sssgen.ir.types import Matrix, Scalar, Type, components, spell
+from sssgen.lang.loader import load_text
 
 _GENERIC = re.compile(r"\b(?:(?:gen|vec)[FIUB]|mat)\b")
 
@@ -25,10 +26,7 @@ def polyfill(name: str, types: Sequence[Type]) -> Module:
 
 @functools.cache
 def _polyfill(name: str, types: tuple[Type, ...]) -> Module:
-    from sssgen.lang.loader import load_text
-
-    found = overload(name, types)
-    if found is None:
+    if overload(name, types) is None:
         raise KeyError(name)
     size = max(type_.size if isinstance(type_, Matrix) else components(type_) for type_ in types)
     for source in _definitions(BUILTINS[name].polyfill):
@@ -36,8 +34,8 @@ def _polyfill(name: str, types: tuple[Type, ...]) -> Module:
         params = re.search(rf"\b{name}\(([^)]*)\)", text)
         if params is None:
             continue
-        wanted = [param.split()[0] for param in params.group(1).split(",")]
-        if wanted == [spell(type_) for type_ in types]:
+        param_types = [param.split()[0] for param in params.group(1).split(",")]
+        if param_types == [spell(type_) for type_ in types]:
             return load_text(text, f"intrinsics/{name}")
     raise KeyError(name, *types)
 
@@ -64,19 +62,17 @@ def guard(
 
 @functools.cache
 def _guard(text: str, name: str) -> Module:
-    from sssgen.lang.loader import load_text
-
     return load_text(text, f"guards/{name}")
 
 
 def _spelled(generic: str, size: int) -> str:
-    """A generic type's name at one size; '' where it has no such size, which then matches nothing."""
+    """A generic type's name at one size; '' where there is no such type."""
     type_ = instantiate(generic, size)
     return spell(type_) if type_ is not None else ""
 
 
 def _definitions(source: str) -> list[str]:
-    """The functions of a polyfill text, one by one: each ends with a brace in the first column or on its line."""
+    """The function definitions in a polyfill's text."""
     parts, depth, start = [], 0, 0
     for index, char in enumerate(source):
         depth += (char == "{") - (char == "}")

@@ -1,4 +1,4 @@
-"""Shadertoy's convention (its page "How To"): `mainImage(out vec4, in vec2)` and the uniforms that its pages give."""
+"""Shadertoy's convention (its page "How To"): `mainImage(out vec4, in vec2)` and its uniforms."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from sssgen.lang.syntax.tokens import Token
 from sssgen.support.diagnostics import failure
 
 FILE = "shadertoy"
-"""What the lines that stand around a file's own are called in messages."""
+"""The name in messages for the lines that are added around a file's own."""
 
 UNIFORMS = {
     "iResolution": "uniform vec3 iResolution;  // of the picture, in pixels; z is the pixels' aspect",
@@ -25,7 +25,7 @@ UNIFORMS = {
     "iSampleRate": "uniform float iSampleRate;  // of sound",
     **{f"iChannel{n}": f"uniform sampler2D iChannel{n};" for n in range(4)},
 }
-"""Each is declared where a file names it and does not declare it itself."""
+"""Each is declared if a file uses it and does not declare it."""
 
 _ENTRY = """out vec4 shadertoy_color;
 
@@ -36,7 +36,7 @@ void main() {
 
 
 def with_entry(tokens: Sequence[Token], shown: str) -> tuple[list[Token], str]:
-    """A file's words with its uniforms before and its `main()` behind them, and the text of what was added.
+    """A file's tokens between its uniforms and its `main()`, and the text that was added.
 
     Raises SssgenError for a file without a mainImage.
     """

@@ -1,4 +1,4 @@
-"""What statements change, and whether an expression would see it: the order of evaluation is kept by these."""
+"""The effects of statements, and whether an expression depends on them: for keeping the order of evaluation."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ def root_name(target: ir.Expr) -> str:
     return target.name if isinstance(target, ir.Local | ir.Global) else "value"
 
 
-def writes_of(added: Iterable[ir.Stmt]) -> tuple[set[str], bool]:
+def writes_of(stmts: Iterable[ir.Stmt]) -> tuple[set[str], bool]:
     """The variables that statements write, and whether they call functions, which may write more."""
-    block = tuple(added)
+    block = tuple(stmts)
     written = {root_name(stmt.target) for stmt in statements(block) if isinstance(stmt, ir.Assign)}
     calls = False
     for expr in all_expressions(block):
@@ -33,5 +33,5 @@ def depends(expr: ir.Expr, written: set[str], calls: bool) -> bool:
         if isinstance(part, ir.Call):
             return True
         if isinstance(part, ir.Local | ir.Global) and (part.name in written or (calls and isinstance(part, ir.Global))):
-            return not hasattr(part.type, "dim")  # a sampler is the same throughout
+            return not hasattr(part.type, "dim")  # samplers never change
     return False

@@ -1,4 +1,4 @@
-"""The conversions that GLSL makes by itself (GLSL 4.60, section 4.1.10), which are constructors in the IR."""
+"""GLSL's implicit conversions (GLSL 4.60, section 4.1.10), which are constructors in the IR."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.types import FLOAT, Matrix, Scalar, Type, Vector, components, kind_of, vector_of
 
 _ORDER = {"int": 0, "uint": 1, "float": 2}
-"""Each kind becomes a later one."""
+"""Each kind converts to the later ones."""
 
 
-def converts(given: Type, wanted: Type, whole: bool = True) -> bool:
-    """Whether a value of one type becomes another by itself. Without `whole`, only its kind must fit."""
-    one, other = _ORDER.get(kind_of(given)), _ORDER.get(kind_of(wanted))
-    if one is None or other is None or one > other or isinstance(given, Matrix):
+def converts(source: Type, target: Type, whole: bool = True) -> bool:
+    """Whether `source` converts implicitly to `target`. Without `whole`, only the scalar kind must convert."""
+    source_rank, target_rank = _ORDER.get(kind_of(source)), _ORDER.get(kind_of(target))
+    if source_rank is None or target_rank is None or source_rank > target_rank or isinstance(source, Matrix):
         return False
-    return not whole or (not isinstance(wanted, Matrix) and components(given) == components(wanted))
+    return not whole or (not isinstance(target, Matrix) and components(source) == components(target))
 
 
 def as_kind(value: ir.Expr, kind: str) -> ir.Expr:
@@ -27,7 +27,7 @@ def as_kind(value: ir.Expr, kind: str) -> ir.Expr:
 
 
 def literal_as(literal: ir.Literal, type_: Scalar) -> ir.Literal:
-    """A literal converted: an int and a uint keep their bits, a float is cut towards zero (it must fit)."""
+    """A literal converted: an int and a uint keep their bits, a float is truncated (it must fit)."""
     value = literal.value
     if type_ == FLOAT:
         return ir.Literal(type_, float(value), literal.span)
@@ -37,16 +37,16 @@ def literal_as(literal: ir.Literal, type_: Scalar) -> ir.Literal:
     return ir.Literal(type_, whole & 0xFFFFFFFF if type_.kind == "uint" else wrapped(whole), literal.span)
 
 
-def common_kind(one: ir.Expr, other: ir.Expr) -> tuple[ir.Expr, ir.Expr]:
-    """Two operands, the one of the lesser kind brought to the other's; as they are where nothing is converted."""
-    left, right = _ORDER.get(kind_of(one.type)), _ORDER.get(kind_of(other.type))
-    if left is None or right is None or left == right:
-        return one, other
-    if left < right:
-        return as_kind(one, kind_of(other.type)), other
-    return one, as_kind(other, kind_of(one.type))
+def common_kind(left: ir.Expr, right: ir.Expr) -> tuple[ir.Expr, ir.Expr]:
+    """Two operands, the one with the lower kind converted to the other's; unchanged if there is no conversion."""
+    left_rank, right_rank = _ORDER.get(kind_of(left.type)), _ORDER.get(kind_of(right.type))
+    if left_rank is None or right_rank is None or left_rank == right_rank:
+        return left, right
+    if left_rank < right_rank:
+        return as_kind(left, kind_of(right.type)), right
+    return left, as_kind(right, kind_of(left.type))
 
 
 def wrapped(value: int) -> int:
-    """An integer brought into the range of an int, as its 32 bits read."""
+    """An integer wrapped to the range of an int."""
     return (value + 2**31) % 2**32 - 2**31

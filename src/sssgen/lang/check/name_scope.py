@@ -1,4 +1,4 @@
-"""Names and what they stand for while a function is checked."""
+"""The declarations that names refer to, and the scopes of a function."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from sssgen.ir.types import Type
 
 
 class Variable(NamedTuple):
-    """A parameter or local variable. `ir_name` differs from the written name where an outer one is hidden."""
+    """A parameter or local variable. `ir_name` differs from the written name where that hides an outer variable."""
 
     ir_name: str
     type: Type
     quantity: str
     writable: bool
     faulty: bool = False
-    """Its declaration has an error, so that nothing more is said about its use."""
+    """Its declaration has an error. Its uses are not reported."""
     value: int | None = None
-    """A constant's integer value, where it has one."""
+    """The value of a constant integer."""
 
 
 class GlobalValue(NamedTuple):
-    """A uniform, texture, constant or module variable; `value` is a constant's integer value where it has one."""
+    """A uniform, texture, constant or module variable; `value` is the value of a constant integer."""
 
     type: Type
     quantity: str
@@ -32,7 +32,7 @@ class GlobalValue(NamedTuple):
 
 
 class Signature(NamedTuple):
-    """What a call needs to know of a function."""
+    """The signature of a function, for its calls."""
 
     key: str
     names: tuple[str, ...]
@@ -52,9 +52,9 @@ class Scopes:
         self.visible: dict[str, Variable] = {}
         """The variables of all scopes by their names in the IR."""
         self.taken: list[list[str]] = [[]]
-        """The names in the IR of each scope's variables."""
+        """For each scope, the IR names of its variables."""
         self.counters: list[dict[str, Type]] = [{}]
-        """Of each scope, the variables of the loops in it: HLSL has those in the scope around the loop."""
+        """For each scope, the variables of the loops in it: HLSL declares those in the scope around the loop."""
 
     def push(self) -> None:
         self.stack.append({})
@@ -62,15 +62,15 @@ class Scopes:
         self.counters.append({})
 
     def pop(self, dissolve: bool = False, loop: bool = False) -> None:
-        """Leaves a scope. `dissolve`: it is none in the IR, so that its names stay taken in the one around it.
+        """Leaves a scope. `dissolve`: it is not a scope in the IR, so its names stay taken in the enclosing scope.
 
-        `loop`: it was that of a loop's head.
+        `loop`: it is the scope of a loop's head.
         """
-        left = self.stack.pop()
+        scope = self.stack.pop()
         names = self.taken.pop()
         self.counters.pop()
         if loop:
-            self.counters[-1] |= {one.ir_name: one.type for one in left.values()}
+            self.counters[-1] |= {variable.ir_name: variable.type for variable in scope.values()}
         if dissolve:
             self.taken[-1] += names
         else:

@@ -1,4 +1,4 @@
-"""Quantity types: what a number or vector measures, so that thickness, thinness and transmittance never mix unasked.
+"""Quantity types: what a number or vector measures, so that thickness, thinness and transmittance are not mixed by mistake.
 
 A quantity is a name over a plain type. A quantity value may be used as its plain type anywhere; a plain value
 becomes a quantity only through the constructor of that name; one quantity never becomes another but by a
@@ -27,7 +27,7 @@ _FRAMES = {("world", "tangent"), ("tangent", "world"), ("world", "object"), ("ob
 
 
 class Mixup(Exception):
-    """Two quantities that do not belong together; carries the message and the remedy."""
+    """Two quantities that cannot be combined; has the message and a hint."""
 
     def __init__(self, message: str, hint: str = "") -> None:
         super().__init__(message)
@@ -35,7 +35,7 @@ class Mixup(Exception):
 
 
 def words(quantity: str) -> str:
-    """A quantity as a person would say it: `a world direction`."""
+    """A quantity with its article, for messages: `a world direction`."""
     if not quantity:
         return "a plain value"
     return with_article(quantity.replace("_", " "))
@@ -47,7 +47,7 @@ def space(quantity: str) -> str:
 
 
 def texel_of(quantity: str) -> str:
-    """What a texture read of a map that holds `quantity` gives, before one channel is taken."""
+    """The quantity of a texel of a texture that holds `quantity`."""
     return _TEXEL + quantity if quantity else ""
 
 
@@ -57,7 +57,7 @@ def channel_of(quantity: str) -> str:
 
 
 def conversion(source: str, target: str) -> str:
-    """What to do to get `target` from `source`: the named conversion, in words."""
+    """How to convert `source` to `target`: the text of a hint."""
     if name := suggested_conversions().get((source, target)):
         return f"convert it with {name}(…)"
     if space(source) and space(target):
@@ -107,7 +107,7 @@ def of_operator(op: str, left: str, right: str, scaling: bool = False) -> str:
 
 
 def of_intrinsic(name: str, args: list[str]) -> str:
-    """The quantity of a builtin's result, from those of its arguments. Raises Mixup where they do not go together."""
+    """The quantity of a builtin's result, from those of its arguments. Raises Mixup where they cannot be combined."""
     given = [quantity for quantity in args if quantity]
     if not given:
         return ""

@@ -9,19 +9,19 @@ from sssgen.ir.types import INT, UINT
 from sssgen.ir.walk import all_expressions, root, statements, subexpressions
 
 OutArgs = Callable[[ir.Call], Iterable[ir.Expr]]
-"""The arguments of a call that it writes to."""
+"""Gives the arguments that a call writes to."""
 
 
 def ends(condition: ir.Expr, steps: ir.Block, body: ir.Block, out_args: OutArgs) -> bool:
-    """Whether the condition fails at last: an integer counter is stepped, once and always, towards a bound that stays.
+    """Whether the condition must become false: every iteration steps an integer counter once, towards a constant bound.
 
-    `steps` are the statements that run in every round, `body` those that may run besides.
+    `steps` are the statements that run in every iteration, `body` the others.
     """
     return _fails(condition, steps, writes((*steps, *body, ir.Return(condition, condition.span)), out_args))
 
 
 def endless(function: ir.Function) -> bool:
-    """Whether a function has a loop that is not seen to end; any argument of a call counts as written."""
+    """Whether a function has a loop that is not proven to end; every argument of a call counts as written."""
     for stmt in statements(function.body or ()):
         if isinstance(stmt, ir.For):
             steps = (stmt.step,) if stmt.step is not None else ()
@@ -35,7 +35,7 @@ def endless(function: ir.Function) -> bool:
 
 
 def _fails(condition: ir.Expr, steps: ir.Block, written: list[str]) -> bool:
-    """Whether a condition fails at last, where the loop writes `written`."""
+    """Whether a condition must become false in a loop that writes `written`."""
     if not isinstance(condition, ir.Binary):
         return False
     if condition.op == "&&":
@@ -50,7 +50,7 @@ def _fails(condition: ir.Expr, steps: ir.Block, written: list[str]) -> bool:
 
 
 def skips(block: ir.Block) -> bool:
-    """Whether a block may go on with the next round of the loop that it is in."""
+    """Whether a block may `continue` the loop that it is in."""
     return any(
         isinstance(stmt, ir.Continue) or (isinstance(stmt, ir.If) and (skips(stmt.then) or skips(stmt.otherwise)))
         for stmt in block
@@ -58,7 +58,7 @@ def skips(block: ir.Block) -> bool:
 
 
 def writes(block: ir.Block, out_args: OutArgs) -> list[str]:
-    """The variables that a block writes, one entry for each place that does."""
+    """The variables that a block writes, with an entry for each write."""
     targets = [stmt.target for stmt in statements(block) if isinstance(stmt, ir.Assign)]
     for expr in all_expressions(block):
         if type(expr) is ir.Call:
@@ -67,7 +67,7 @@ def writes(block: ir.Block, out_args: OutArgs) -> list[str]:
 
 
 def _approaches(counter: ir.Expr, op: str, bound: ir.Expr, steps: ir.Block, written: list[str]) -> bool:
-    """Whether `counter op bound` fails at last."""
+    """Whether `counter op bound` must become false."""
     if not isinstance(counter, ir.Local) or counter.type not in (INT, UINT) or written.count(counter.name) != 1:
         return False
     if any(isinstance(part, ir.Call) or _is_written(part, written) for part in subexpressions(bound)):
@@ -76,7 +76,7 @@ def _approaches(counter: ir.Expr, op: str, bound: ir.Expr, steps: ir.Block, writ
     limit = bound.value if isinstance(bound, ir.Literal) else None
     if step > 0:
         return op == "<" or (op == "<=" and limit not in (2**31 - 1, 2**32 - 1)) or (op == "!=" and step == 1)
-    if counter.type == UINT:  # below 0 it would go on at the top
+    if counter.type == UINT:  # below 0 it wraps around
         return step == -1 and (op in (">", "!=") or (op == ">=" and limit is not None and limit > 0))
     return step < 0 and (op == ">" or (op == ">=" and limit != -(2**31)) or (op == "!=" and step == -1))
 
@@ -86,7 +86,7 @@ def _is_written(part: ir.Expr, written: list[str]) -> bool:
 
 
 def _step(stmt: ir.Stmt, counter: str) -> int | None:
-    """By how much a statement steps the counter (`i++`, `i -= 2`, `i = i + 1`), or None if it is no such step."""
+    """The amount by which a statement steps the counter (`i++`, `i -= 2`, `i = i + 1`), or None."""
     if not isinstance(stmt, ir.Assign) or not _is_written(stmt.target, [counter]):
         return None
     op, value = stmt.op, stmt.value

@@ -1,4 +1,4 @@
-"""How the checker's messages say things: a type with its article, a declaration, and what to do about a mismatch."""
+"""Parts of the checker's messages: types with articles, declarations, hints for mismatches."""
 
 from __future__ import annotations
 
@@ -32,49 +32,52 @@ def declared(name: str, signature: Signature) -> str:
     return f"{name}({', '.join(map(spell, signature.types))})"
 
 
-def type_hint(value: ir.Expr, wanted: Type) -> str:
-    """What to do where `value` has not the type that is wanted."""
-    if wanted == FLOAT and value.type == INT:
+def type_hint(value: ir.Expr, target: Type) -> str:
+    """How to convert `value` to the type `target`; '' if there is no simple way."""
+    if target == FLOAT and value.type == INT:
         return f"write {value.value}.0" if isinstance(value, ir.Literal) else "write float(…)"
-    if isinstance(wanted, Vector) and value.type == Scalar(wanted.kind):
-        return f"write {spell(wanted)}(…)"
-    if isinstance(wanted, Vector) and isinstance(value.type, Vector) and value.type.size > wanted.size:
-        return f"write .{'xyzw'[: wanted.size]}"
+    if isinstance(target, Vector) and value.type == Scalar(target.kind):
+        return f"write {spell(target)}(…)"
+    if isinstance(target, Vector) and isinstance(value.type, Vector) and value.type.size > target.size:
+        return f"write .{'xyzw'[: target.size]}"
     return ""
 
 
 def mixed_hint(left: ir.Expr, right: ir.Expr, op: str = "") -> str:
-    """What to do where two operands do not go together."""
-    for one, other in ((left, right), (right, left)):
-        kinds = kind_of(one.type), kind_of(other.type)
+    """How to make two operands match; '' if there is no simple way."""
+    for value, other in ((left, right), (right, left)):
+        kinds = kind_of(value.type), kind_of(other.type)
         if kinds == ("int", "float"):
-            return type_hint(one, FLOAT) or "there is no implicit conversion: write float(…)"
-        if kinds == ("int", "uint") and isinstance(one.type, Scalar):
-            return f"write {one.value}u" if isinstance(one, ir.Literal) else "write uint(…)"
+            return type_hint(value, FLOAT) or "there is no implicit conversion: write float(…)"
+        if kinds == ("int", "uint") and isinstance(value.type, Scalar):
+            return f"write {value.value}u" if isinstance(value, ir.Literal) else "write uint(…)"
     if isinstance(left.type, Vector) and isinstance(right.type, Vector) and op in ("<", ">", "<=", ">="):
         return "for a componentwise comparison, use lessThan(…), equal(…), …"
     return "for the remainder of floats, use mod(…)" if op == "%" and kind_of(left.type) == "float" else ""
 
 
 def constructor_hint(type_: Type) -> str:
-    """What a constructor takes."""
+    """The members of a struct, for a call of its constructor."""
     if isinstance(type_, Struct):
         return "its members are: " + ", ".join(f"{spell(f.type)} {f.name}" for f in type_.fields)
     return ""
 
 
 def overload_hint(name: str, args: list[ir.Expr]) -> str:
-    """Which overloads a builtin has, or that it is floats that it wants."""
+    """The overloads of a builtin, or the advice to write floats."""
     as_floats = [vector_of("float", components(arg.type)) if kind_of(arg.type) == "int" else arg.type for arg in args]
     if resolve(name, as_floats) is not None:
         return "there is no implicit conversion: write 1.0 for 1"
     listed = ", ".join(candidates(name))
-    known = {"gen": "float, vec2, vec3 or vec4, the same throughout", "vec": "vec2, vec3 or vec4, the same throughout"}
-    families = [f"{family}F is {words}" for family, words in known.items() if f"{family}F" in listed]
+    type_lists = {
+        "gen": "float, vec2, vec3 or vec4, the same throughout",
+        "vec": "vec2, vec3 or vec4, the same throughout",
+    }
+    families = [f"{family}F is {words}" for family, words in type_lists.items() if f"{family}F" in listed]
     return "; ".join([f"its overloads are: {listed}", *families])
 
 
-_NOT_HERE = (
+_UNSUPPORTED = (
     (r"double|d(vec|mat)[234](x[234])?", "WGSL has no floats of 64 bits"),
     (r"[iu]?image\w+", "images belong to compute shaders"),
     (r"[iu]?sampler(1D|2DRect|Buffer|2DMS)\w*", "WebGPU has no such textures"),
@@ -84,5 +87,5 @@ _NOT_HERE = (
 
 
 def why_not(name: str) -> str:
-    """Why a type of GLSL is not among ours; '' for what is no type of GLSL."""
-    return next((why for pattern, why in _NOT_HERE if re.fullmatch(pattern, name)), "")
+    """Why a type of GLSL is not supported; '' for other names."""
+    return next((why for pattern, why in _UNSUPPORTED if re.fullmatch(pattern, name)), "")

@@ -1,4 +1,4 @@
-"""Doc comments: which declaration each belongs to, and its words without its marks."""
+"""Doc comments: the declaration that each belongs to, and its text without comment marks."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ def attach_docs(
 ) -> tuple[s.External, ...]:
     """Gives each declaration the doc comment that ends on the line before it: a `/** */` block, or `///` lines.
 
-    In `plain` GLSL any comment counts that stands alone, and between it and the declaration there may be empty lines
-    and directives, as in files that guard against being included twice.
+    In `plain` GLSL every comment on lines of its own counts, and empty lines and directives may follow it, as in files
+    with include guards.
     """
-    ends = {file: _by_end(found, lines[file], plain) for file, found in comments.items()}
+    ends = {file: _by_end(in_file, lines[file], plain) for file, in_file in comments.items()}
     documented: list[s.External] = []
     for external in externals:
         if isinstance(external, s.GlobalSyntax) and external.declaration.type.name == "auto":
-            documented.append(external)  # it was a macro
+            documented.append(external)  # a macro
             continue
         place = _first_place(external)
         by_end = ends.get(place.file, {})
         line = place.line
         if by_end and plain and not isinstance(external, s.GlobalSyntax):
-            line = _behind_comment(lines[place.file], line, by_end)
+            line = _line_after_comment(lines[place.file], line, by_end)
         parts: list[str] = []
         while line - 1 in by_end:
             line, text = by_end[line - 1]
@@ -52,16 +52,16 @@ def attach_docs(
 
 
 def _by_end(comments: Sequence[Comment], lines: Sequence[str], plain: bool) -> dict[int, tuple[int, str]]:
-    """The comments that can document something: the line each begins on and its text, by the line it ends on."""
-    found = {}
+    """The comments that can document a declaration: last line → (first line, text)."""
+    by_end = {}
     for first, last, text in comments:
         if (plain or _DOC.match(text)) and lines[first - 1].lstrip().startswith(text[:2]):
-            found[last] = first, text
-    return found
+            by_end[last] = first, text
+    return by_end
 
 
-def _behind_comment(lines: Sequence[str], line: int, by_end: Mapping[int, object]) -> int:
-    """The line behind the comment that stands before a declaration with nothing but directives between them."""
+def _line_after_comment(lines: Sequence[str], line: int, by_end: Mapping[int, object]) -> int:
+    """The line after the comment before a declaration, if only directives and empty lines are between them."""
     above = line
     while above > 1 and above - 1 not in by_end and _EMPTY.match(lines[above - 2]):
         above -= 1
@@ -69,7 +69,7 @@ def _behind_comment(lines: Sequence[str], line: int, by_end: Mapping[int, object
 
 
 def _first_place(external: s.External) -> Span:
-    """Where a declaration begins."""
+    """The place where a declaration begins."""
     if isinstance(external, s.FunctionSyntax):
         return external.result.span
     if isinstance(external, s.GlobalSyntax):
@@ -79,7 +79,7 @@ def _first_place(external: s.External) -> Span:
 
 
 def words_of(text: str) -> str:
-    """The words of one comment: what stands behind the marks, its own indentation kept."""
+    """The text of one comment without its marks, with its own indentation."""
     if text.startswith("//"):
         return text[3 if text.startswith("///") else 2 :].removeprefix(" ").rstrip()
     first, *rest = [line.rstrip() for line in text[2:-2].removeprefix("*").split("\n")]

@@ -1,7 +1,7 @@
-"""GLSL text → words with their places: one regular expression splits the text, one table says what each word is.
+"""GLSL text → tokens with their places: one regular expression splits the text, one table classifies the tokens.
 
-Speed comes from the table: a word is classified when it is first seen, together with the blanks behind it, so that the
-loop over a text's words does little but count columns.
+The table is for speed: a token is classified once, together with the blanks after it, so that the loop over the tokens
+only counts columns.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from sssgen.lang.syntax.tokens import Comment, Token
 from sssgen.support.diagnostics import Reporter
 
 MAX_TOKENS = 2_000_000
-"""How many words, comments and lines one text may have. The longest shaders that people wrote stay below 100,000."""
+"""How many tokens, comments and line ends one text may have. The longest hand-written shaders stay below 100,000."""
 
 Report = Callable[[Span, str, str], None]
-"""Notes an error: its place, the message, what to do."""
+"""Reports an error: its place, the message, what to do."""
 
 _DIMENSIONS = "1D 2D 3D Cube 2DRect 1DArray 2DArray CubeArray Buffer 2DMS 2DMSArray"
 _SHADOWED = "1D 2D Cube 2DRect 1DArray 2DArray CubeArray"
@@ -53,7 +53,7 @@ KEYWORDS: Mapping[str, str] = {
     **{word: word.upper() for word in _RESERVED.split()},
     "precision": "DEFAULT_PRECISION",
 }
-"""GLSL's keywords and the terminals of grammar.lark that they are; every other word is a NAME."""
+"""GLSL's keywords and their terminals in grammar.lark; every other identifier is a NAME."""
 
 _OPERATORS = "* / % << >> <= >= < > == != && || ^^ & | ^"
 _ASSIGNMENTS = "= += -= *= /= %= &= |= ^= <<= >>="
@@ -69,8 +69,8 @@ _SIGNS = {
 
 _BLANKS = " \t\n\r\f\v"
 
-NEWLINE = r"\\\r?\n"  # a line that goes on in the next
-LINE_COMMENT = r"//[^\n\\]*+(?>(?:\\(?:\r?\n)?[^\n\\]*+)*)"  # no (…)*+: Python 3.11.2 does not match that right
+NEWLINE = r"\\\r?\n"  # a line continuation
+LINE_COMMENT = r"//[^\n\\]*+(?>(?:\\(?:\r?\n)?[^\n\\]*+)*)"  # no (…)*+: Python 3.11.2 matches it wrongly
 BLOCK_COMMENT = r"/\*[\s\S]*?\*/"
 OPEN_COMMENT = r"/\*[\s\S]*+"
 TEXT = r'"[^"\n]*+"?'
@@ -78,7 +78,7 @@ TEXT = r'"[^"\n]*+"?'
 _PIECE = re.compile(
     rf"""
     (?: [A-Za-z_]\w*+                                             # a name
-      | 0[xX]\w*+ | (?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d++)?\w*+  # a number, with all that sticks to it
+      | 0[xX]\w*+ | (?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d++)?\w*+  # a number, with all letters and digits after it
       | [{{}}()\[\],;:?~.]
       | <<=? | >>=? | && | \|\| | \^\^ | \+\+ | -- | [-+*%&|^<>=!]=? | /(?![/*])=? | \#\#
     )[ \t]*+
@@ -95,9 +95,9 @@ _FLOAT = re.compile(r"(?:(?:\d+\.\d*|\.\d+)(?:[eE][+-]?\d+)?|\d+[eE][+-]?\d+)(?:
 def scan(
     text: str, file: str, line: int = 1, column: int = 1, keywords: Mapping[str, str] = KEYWORDS
 ) -> tuple[list[Token], list[Comment]]:
-    """The words and the comments of a text that begins at a line and column of a file.
+    """The tokens and the comments of a text that begins at a line and column of a file.
 
-    Raises SssgenError with every character that begins no word, every malformed number, and what is not closed.
+    Raises SssgenError with every unknown character, malformed number, and unclosed comment or string.
     """
     reporter: Reporter | None = None
 
@@ -107,62 +107,62 @@ def scan(
             reporter = Reporter(file, "\n" * (line - 1) + " " * (column - 1) + text)
         reporter.error(span, message, hint)
 
-    found = Lexer(keywords).scan(text, file, line, column, report)
+    result = Lexer(keywords).scan(text, file, line, column, report)
     if reporter is not None:
         reporter.check()
-    return found
+    return result
 
 
 class Lexer(dict[str, tuple[str, str, int, int]]):
-    """The table of words: from a word and the blanks behind it to its type, itself, its width, and that of both.
+    """The table of tokens: a token with the blanks after it → its type, its text, its width, the width of both.
 
-    It may serve many texts with the same keywords, and is the faster the more it has seen.
+    One table may serve many texts with the same keywords; it is faster the more tokens it has seen.
     """
 
     def __init__(self, keywords: Mapping[str, str] = KEYWORDS) -> None:
         self.keywords = {**_SIGNS, **keywords}
 
     def __missing__(self, piece: str) -> tuple[str, str, int, int]:
-        word = piece.rstrip(" \t")
-        entry = (self.type_of(word), word, len(word), len(piece))
-        if not piece.startswith(("//", "/*")):  # no comment is met twice
+        token = piece.rstrip(" \t")
+        entry = (self.type_of(token), token, len(token), len(piece))
+        if not piece.startswith(("//", "/*")):  # comments rarely repeat
             self[piece] = entry
         return entry
 
-    def type_of(self, word: str) -> str:
-        """The terminal that a word is; '' for blanks, comments, and what is no word."""
-        if word in self.keywords:
-            return self.keywords[word]
-        if _INT.fullmatch(word):
+    def type_of(self, text: str) -> str:
+        """The terminal of a token; '' for blanks, comments, and text that is not a token."""
+        if text in self.keywords:
+            return self.keywords[text]
+        if _INT.fullmatch(text):
             return "INT"
-        if _FLOAT.fullmatch(word):
+        if _FLOAT.fullmatch(text):
             return "FLOAT"
-        if word.isidentifier() and word.isascii():
+        if text.isidentifier() and text.isascii():
             return "NAME"
-        return "STRING" if len(word) > 1 and word[0] == word[-1] == '"' else ""
+        return "STRING" if len(text) > 1 and text[0] == text[-1] == '"' else ""
 
     def scan(self, text: str, file: str, line: int, column: int, report: Report) -> tuple[list[Token], list[Comment]]:
-        """As `scan`, but errors are handed to `report`, which may raise; without, what is faulty is left out."""
+        """As `scan`, but errors go to `report`, which may raise; if it does not, faulty text is left out."""
         pieces = _PIECE.findall(text)
         tokens: list[Token] = []
         comments: list[Comment] = []
         if len(pieces) > MAX_TOKENS:
             report(Span(file, line, column, line, column + 1), f"more than {MAX_TOKENS} tokens", "split the file")
             return tokens, comments
-        append, make, token_type, span_type = tokens.append, tuple.__new__, Token, Span  # local names are the fastest
+        append, make, token_type, span_type = tokens.append, tuple.__new__, Token, Span  # local names are fastest
         for piece in pieces:
-            kind, word, width, step = self[piece]
+            kind, token, width, step = self[piece]
             if kind:
                 span = make(span_type, (file, line, column, line, column + width))
-                append(make(token_type, (kind, word, span)))
+                append(make(token_type, (kind, token, span)))
                 column += step
                 continue
             lines = piece.count("\n")
             if piece.startswith(("//", "/*")) and _closed(piece):
                 comments.append(Comment(line, line + lines, piece))
             elif piece[0] not in _BLANKS and not (piece[0] == "\\" and lines):
-                end = column + (2 if word.startswith("/*") else width)
-                report(Span(file, line, column, line, end), *_fault(word))
+                end = column + (2 if token.startswith("/*") else width)
+                report(Span(file, line, column, line, end), *_fault(token))
             line += lines
             column = len(piece) - piece.rfind("\n") if lines else column + step
         return tokens, comments
@@ -172,15 +172,15 @@ def _closed(comment: str) -> bool:
     return comment.startswith("//") or (len(comment) > 3 and comment.endswith("*/"))
 
 
-def _fault(word: str) -> tuple[str, str]:
-    """What is wrong with what is no word, and what to do."""
-    first = word[0]
+def _fault(text: str) -> tuple[str, str]:
+    """The message about text that is not a token, and what to do."""
+    first = text[0]
     if first == "/":
         return "this comment is not closed", "add */ at its end"
     if first == '"':
         return "this string is not closed on its line", ""
     if first.isdecimal():
-        return f"'{word}' is not a number", f"write {word[:-1]}.0" if re.fullmatch(r"\d+[fF]", word) else ""
+        return f"'{text}' is not a number", f"write {text[:-1]}.0" if re.fullmatch(r"\d+[fF]", text) else ""
     if first == "#":
-        return f"'{word}' is not expected here", "a directive must be first on its line"
-    return f"unknown character{'s' * (len(word) > 1)} {word!r}", ""
+        return f"'{text}' is not expected here", "a directive must be first on its line"
+    return f"unknown character{'s' * (len(text) > 1)} {text!r}", ""

@@ -1,4 +1,4 @@
-"""What the lexer gives and the parser takes: words with their place in the file that they were written in."""
+"""Tokens and comments: the lexer's output, with their places in the source file."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from sssgen.ir.spans import Span
 
 
 class Token(NamedTuple):
-    """One word of a source text."""
+    """One token of a source text."""
 
     type: str
-    """The terminal of grammar.lark that it is."""
+    """Its terminal in grammar.lark."""
     text: str
     span: Span
-    """Where it is written: for what a macro gave, the macro's name at the place that uses it."""
+    """Where it is written; for a token from a macro's body, the place of the macro's use."""
 
 
 class Comment(NamedTuple):
-    """A comment: its lines, and its text with its marks."""
+    """A comment: its first and last line, and its text with the comment marks."""
 
     first: int
     last: int

@@ -1,6 +1,6 @@
-"""The syntax tree: what was written, before names and types are resolved. Nothing changes a node once it is made.
+"""The syntax tree: the source before names and types are resolved. Nodes are never changed.
 
-`depth` on what nests counts the levels below, so that the checker can refuse what would exhaust its stack.
+`depth` counts the levels below a node, so that the parser can refuse trees that would exhaust the checker's stack.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class Conditional:
 
 @dataclass(slots=True)
 class TypeName:
-    """A type as written; `lengths` are an array's (an Unsized for `[]`), `struct` is one declared on the spot."""
+    """A type as written; `lengths` are an array's (an Unsized for `[]`), `struct` is a struct declared in place."""
 
     name: str
     lengths: tuple[Expression, ...]
@@ -70,7 +70,7 @@ class TypeName:
 
 @dataclass(slots=True)
 class Unsized:
-    """The length of `float[]`, which the value tells."""
+    """The length of `float[]`, which its value determines."""
 
     span: Span
 
@@ -105,7 +105,7 @@ class MemberOf:
 class Assignment:
     """`target op= value`; `++` and `--` are `+= 1` and `-= 1` with a value of None.
 
-    As an expression it has the target's value: of `x++` and `x--` (`after`) that from before.
+    As an expression its value is the target's: the new one, but for `x++` and `x--` (`after`) the old one.
     """
 
     target: Expression
@@ -118,7 +118,7 @@ class Assignment:
 
 @dataclass(slots=True)
 class Comma:
-    """Expressions one after the other; the last one is the value."""
+    """Expressions that are evaluated in order; the value is that of the last."""
 
     parts: tuple[Expression, ...]
     span: Span
@@ -154,7 +154,7 @@ Expression: TypeAlias = (
 
 @dataclass(slots=True)
 class Qualifiers:
-    """What stands before a type: its words, and the items of `layout(…)`."""
+    """The qualifiers before a type: keywords, and the items of `layout(…)`."""
 
     words: tuple[str, ...] = ()
     layout: tuple[tuple[str, Expression | None], ...] = ()
@@ -182,7 +182,7 @@ class Declarator:
 
 @dataclass(slots=True)
 class Declaration:
-    """Variables, members or constants of one type; without declarators it declares the type's struct alone."""
+    """Variables, members or constants of one type; without declarators it declares only the type's struct."""
 
     qualifiers: Qualifiers
     type: TypeName
@@ -304,7 +304,7 @@ class FunctionSyntax:
 
 @dataclass(slots=True)
 class GlobalSyntax:
-    """Constants, uniforms, inputs, outputs and variables of the module, as their qualifiers say."""
+    """Constants, uniforms, inputs, outputs or private variables, according to the qualifiers."""
 
     declaration: Declaration
     doc: str
@@ -312,7 +312,7 @@ class GlobalSyntax:
 
 @dataclass(slots=True)
 class BlockSyntax:
-    """`uniform Camera { mat4 view; } camera;`; `instance` is None where its members are named alone."""
+    """`uniform Camera { mat4 view; } camera;`; `instance` is None where members are named without it."""
 
     qualifiers: Qualifiers
     name: Name

@@ -1,4 +1,4 @@
-"""Builds the syntax tree: one method a rule of grammar.lark, given the rule's children."""
+"""Builds the syntax tree: one method for each rule of grammar.lark, which gets the rule's children."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from sssgen.lang.syntax.tokens import Token
 
 
 class Builder:
-    """Builds one file's tree. `too_deep` is the first place that is nested more than `limit` levels deep."""
+    """Builds one file's tree. `too_deep` is the first place that nests more than `limit` levels deep."""
 
     def __init__(self, limit: int) -> None:
         self.limit = limit
         self.too_deep: Span | None = None
         self.wrong: list[tuple[Span, str]] = []
-        """What the grammar lets pass, with its message."""
+        """Errors that the grammar accepts: place and message."""
         self.unnamed_structs = 0
         self.methods: dict[str, Callable[[list[Any]], Any]] = {
             name: getattr(self, name) for name in vars(Builder) if not name.startswith("__")
@@ -103,11 +103,11 @@ class Builder:
 
     def layout_item(self, children: list[Any]) -> tuple[str, s.Expression | None]:
         name, sign, value = children
-        self.plainly(sign)
+        self.require_equals(sign)
         return name.text, value
 
-    def plainly(self, sign: Token | None) -> None:
-        """A value is given with '=' alone."""
+    def require_equals(self, sign: Token | None) -> None:
+        """Reports an assignment operator other than '='."""
         if sign is not None and sign.text != "=":
             self.wrong.append((sign.span, f"'{sign.text}' is not expected here; expected '='"))
 
@@ -121,7 +121,7 @@ class Builder:
         return s.TypeName(label.text, (), label.span, s.StructSyntax(label, tuple(members), ""))
 
     def unnamed(self) -> str:
-        """A name for a struct that has none: every other language wants one."""
+        """A name for a struct without one: the other languages need a name."""
         self.unnamed_structs += 1
         return "Unnamed" if self.unnamed_structs == 1 else f"Unnamed_{self.unnamed_structs}"
 
@@ -141,14 +141,14 @@ class Builder:
 
     def declarator(self, children: list[Any]) -> s.Declarator:
         name, lengths, hints, sign, value = children
-        self.plainly(sign)
+        self.require_equals(sign)
         return s.Declarator(s.Name(name.text, name.span), lengths, value, hints or ())
 
     def listed(self, children: list[Any]) -> s.Listed:
         start, *items, end = children
-        given = tuple([item for item in items if item is not None])
+        values = tuple([item for item in items if item is not None])
         span = _join(start.span, end.span)
-        return s.Listed(given, span, self.deeper(span, *given))
+        return s.Listed(values, span, self.deeper(span, *values))
 
     def hints(self, children: list[Any]) -> tuple[s.Hint, ...]:
         return tuple(children)
@@ -229,8 +229,8 @@ class Builder:
 
     def jump(self, children: list[Any]) -> s.Jump:
         token, value = children if len(children) > 1 else (children[0], None)
-        whole = _join(token.span, value.span) if value is not None else token.span
-        return s.Jump(token.text, value, whole, self.deeper(token.span, value))
+        span = _join(token.span, value.span) if value is not None else token.span
+        return s.Jump(token.text, value, span, self.deeper(token.span, value))
 
     return_ = break_ = continue_ = discard_ = jump
 
@@ -326,7 +326,7 @@ class Builder:
 
 
 def as_type(expression: Any) -> Any:
-    """An expression such as `Light` or `float[3]` read as a type; itself where it is none."""
+    """An expression such as `Light` or `float[3]` as a type; any other expression unchanged."""
     lengths: list[s.Expression] = []
     inner = expression
     while isinstance(inner, s.IndexOf):
@@ -341,5 +341,5 @@ def as_type(expression: Any) -> Any:
 
 def _join(first: Span, last: Span) -> Span:
     if first[0] != last[0]:
-        return first  # one of them is in an included file
+        return first  # they are in different files
     return Span(first[0], first[1], first[2], last[3], last[4])
