@@ -1,4 +1,4 @@
-"""Quantity types: what a number or vector measures, so that thickness, thinness and transmittance are not mixed by mistake.
+"""Quantity types: what a number or vector measures, so that thickness and transmittance are not mixed by mistake.
 
 A quantity is a name over a plain type. A quantity value may be used as its plain type anywhere; a plain value
 becomes a quantity only through the constructor of that name; one quantity never becomes another but by a
