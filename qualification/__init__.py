@@ -1,1 +1,1 @@
-"""What proves the project: measurements and demonstrations that only its tests and its documents need."""
+"""Measurements that prove the project; only its tests and documents need them."""

@@ -1,4 +1,4 @@
-"""Light transport with a known answer: what the Monte Carlo reference is held against.
+"""Light transport in closed form, which the Monte Carlo reference is compared with.
 
 Every function gives the reading of `transport`: π L / E, the outgoing radiance L over the irradiance E of a beam on a
 plane that faces it, times π, so that a white Lambert surface which faces the light reads 1. Boundaries are matched:
@@ -31,7 +31,7 @@ def h_function(albedo: float, cosine: npt.ArrayLike) -> Array:
     escape = np.sqrt(1.0 - albedo)
     h = np.ones_like(nodes)
     for _ in range(10_000):
-        # the mean of two iterates: at albedo 1 the plain iteration swings about its limit
+        # the mean of two iterates: at albedo 1 the plain iteration oscillates about its limit
         after = 0.5 * (h + 1.0 / (escape + kernel @ h))
         done = np.abs(after - h).max() < 1e-14
         h = after
@@ -44,7 +44,7 @@ def h_function(albedo: float, cosine: npt.ArrayLike) -> Array:
 
 
 def half_space(albedo: float, cosine_in: float, cosine_out: npt.ArrayLike) -> Array:
-    """What a half-space that scatters isotropically sends back.
+    """The light that a half-space with isotropic scattering reflects.
 
     Chandrasekhar's law of diffuse reflection, L = a / 4π · μ₀ / (μ + μ₀) · H(μ) H(μ₀) · E (Radiative Transfer, §34;
     there the beam carries π F, here E). The azimuth does not matter.
@@ -73,7 +73,7 @@ def henyey_greenstein(anisotropy: float, cosine: npt.ArrayLike) -> Array:
 
 
 def slab_once(depth: float, albedo: float, phase: float, cosine_in: float, cosine_out: float, back: bool) -> float:
-    """What a slab of optical depth `depth` sends back (`back`), or through, after just one scattering.
+    """The light that a slab of optical depth `depth` reflects (`back`) or transmits after one scattering.
 
     `phase` is the phase function's value per steradian for the two directions. From the integral along the ray:
     back  a p μ₀ / (μ + μ₀) · (1 − exp(−τ (1/μ + 1/μ₀))),  through  a p μ₀ / (μ₀ − μ) · (exp(−τ/μ₀) − exp(−τ/μ)),
@@ -98,7 +98,7 @@ def ball_once(
     origin: npt.ArrayLike,
     directions: npt.ArrayLike,
 ) -> Array:
-    """What rays from `origin` (3,) along unit `directions` (n, 3) see of a ball about 0 after one scattering, (n,).
+    """The radiance after one scattering in a ball about 0, along rays from `origin` (3,) and unit `directions` (n, 3): (n,).
 
     `light` is the unit direction towards the light. The integral  σs p ∫ exp(−σt (s + c(s))) ds  along the chord,
     where c is the way from the point to the ball's surface towards the light, on Gauss points. Rays that miss read 0.

@@ -1,4 +1,4 @@
-"""Takes guards out one by one: what then goes wrong, and on which back ends it is seen.
+"""Removes guards one by one: which fault follows, and on which back ends it shows.
 
 A guard is needed where an input within the contract leaves the operation's domain and changes the result (`witness`).
 Whether that shows depends on the driver: what a language leaves undefined may come out right by chance.
@@ -22,31 +22,31 @@ from sssgen.passes.ranges.sites import Site
 from sssgen.support.diagnostics import SssgenError
 
 CHANGED = 1e-3
-"""A result that differs by more than this, relative to the larger of its size and 1, is another one."""
+"""A result that differs by more than this, relative to the larger of its size and 1, counts as another value."""
 
 
 class Mutant(NamedTuple):
-    """A technique without one of its guards."""
+    """A technique with one of its guards removed."""
 
     specimen: Specimen
     site: Site
     witness: Witness | None
     """None: no input was found that needs the guard."""
     seen: dict[str, str]
-    """Back end → what came of it: `non-finite`, `another value`, or '' where nothing shows."""
+    """Back end → the fault: `non-finite`, `another value`, or '' where none shows."""
 
 
 def mutants(specimen: Specimen, machines: Machines) -> Iterable[Mutant]:
-    """Each guard of a technique, taken out."""
+    """Each guard of a technique, removed."""
     for site in sites(specimen):
         if not site.proven:
-            found = witness(specimen, site)
-            seen = {name: _seen(found, site, backend) for name, backend in machines.here.items()} if found else {}
-            yield Mutant(specimen, site, found, seen)
+            shown = witness(specimen, site)
+            seen = {name: _seen(shown, site, backend) for name, backend in machines.here.items()} if shown else {}
+            yield Mutant(specimen, site, shown, seen)
 
 
 def _seen(found: Witness, site: Site, backend: Backend) -> str:
-    """What the witness's inputs give without the guard, beside what they give with it."""
+    """The fault of the witness's inputs without the guard, compared with the result with it."""
     subject, change = found.specimen.subject, only(site.what, site.place, "drop")
     try:
         right = evaluated(subject, found.more, backend, "auto")

@@ -45,7 +45,7 @@ FULL = 4000
 """Lanes to an overload in a full measurement."""
 
 TINY = 2.0**-120
-"""What lies below it is a denormal, or so small that intermediate results may be."""
+"""Smaller numbers are denormals, or their intermediate results may be."""
 
 BATCH = 100
 """Overloads to a program: more of them make drivers slow."""
@@ -55,11 +55,11 @@ TEXTURES = 12
 
 
 class Figure(NamedTuple):
-    """What was measured of one builtin on one back end, all overloads together."""
+    """The measurement of one builtin on one back end, over all overloads."""
 
     lanes: int
     ulp: float
-    """The largest error; of what is compared exactly, 0 or infinity."""
+    """The largest error; 0 or infinity where results are compared exactly."""
     most: float
     """99.9 of 100 lanes are within this many ulp."""
     absolute: float
@@ -69,7 +69,7 @@ class Figure(NamedTuple):
     flushed: int
     """Lanes with denormals, which are not in the figures above, that have no right result."""
     at: str
-    """The overload and the arguments of the largest error, what came and what was expected."""
+    """The overload and the arguments of the largest error, the result and the expected one."""
 
     @property
     def right(self) -> bool:
@@ -89,15 +89,15 @@ class _Lanes(NamedTuple):
 
 def measure(backend: Backend, chosen: Sequence[Case]) -> dict[str, Figure]:
     """A figure for each builtin that the back end's target has."""
-    known = [case for case in chosen if supported(case, backend)]
-    found: dict[str, list[tuple[Case, Array]]] = {}
-    for case, got in zip(known, run(backend, known), strict=True):
-        found.setdefault(case.name, []).append((case, got))
-    return {name: _figure(results) for name, results in found.items()}
+    supported_cases = [case for case in chosen if supported(case, backend)]
+    results_by_name: dict[str, list[tuple[Case, Array]]] = {}
+    for case, got in zip(supported_cases, run(backend, supported_cases), strict=True):
+        results_by_name.setdefault(case.name, []).append((case, got))
+    return {name: _figure(results) for name, results in results_by_name.items()}
 
 
 def supported(case: Case, backend: Backend) -> bool:
-    """Whether a back end's target has the overload, and it the textures for that."""
+    """Whether a back end's target has the overload, and the back end its textures."""
     types = [spell(type_) for type_ in case.params]
     made = all(name in backend.target.types and name not in backend.unmade for name in types)
     return made and _written(case.name, case.params, backend.target.dialect)
@@ -122,13 +122,13 @@ def _written(name: str, params: tuple[Type, ...], dialect: str) -> bool:
 
 def run(backend: Backend, chosen: Sequence[Case]) -> list[Array]:
     """The results of the cases, by programs of functions `case_N`."""
-    found: list[Array | None] = [None] * len(chosen)
+    results: list[Array | None] = [None] * len(chosen)
     for few in (True, False):
         numbers = [number for number, case in enumerate(chosen) if (case.lanes == FEW) == few]
         for batch in _batches(numbers, chosen):
             for number, got in zip(batch, _program(backend, [chosen[number] for number in batch]), strict=True):
-                found[number] = got
-    return [got for got in found if got is not None]
+                results[number] = got
+    return [got for got in results if got is not None]
 
 
 def _batches(numbers: Sequence[int], chosen: Sequence[Case]) -> Iterator[list[int]]:
@@ -149,15 +149,21 @@ def _batches(numbers: Sequence[int], chosen: Sequence[Case]) -> Iterator[list[in
 def _program(backend: Backend, chosen: Sequence[Case]) -> list[Array]:
     lines, calls = [], []
     for number, case in enumerate(chosen):
-        given = [index for index in range(len(case.params)) if index not in case.constant]
-        params = ", ".join(f"{spell(case.params[index])} p{index}" for index in given)
-        args = [f"p{at}" if at in given else _literal(case.params[at], case.args[at]) for at in range(len(case.params))]
+        passed_in = [index for index in range(len(case.params)) if index not in case.constant]
+        params = ", ".join(f"{spell(case.params[index])} p{index}" for index in passed_in)
+        args = [
+            f"p{at}" if at in passed_in else _literal(case.params[at], case.args[at]) for at in range(len(case.params))
+        ]
         lines.append(f"{spell(case.result)} case_{number}({params}) {{ return {case.name}({', '.join(args)}); }}")
-        passed = tuple(case.params[index] for index in given), case.result, tuple(case.args[index] for index in given)
+        passed = (
+            tuple(case.params[index] for index in passed_in),
+            case.result,
+            tuple(case.args[index] for index in passed_in),
+        )
         calls.append(Call(f"case_{number}", *passed))
-    made = transpile(load_text("\n".join(lines), "cases"), backend.target.name, "cases")
-    text = next(text for name, text in made.files.items() if not name.endswith(".json"))
-    renames = made.reflection["renames"]
+    compiled = transpile(load_text("\n".join(lines), "cases"), backend.target.name, "cases")
+    text = next(text for name, text in compiled.files.items() if not name.endswith(".json"))
+    renames = compiled.reflection["renames"]
     calls = [call._replace(function=renames.get(call.function, call.function)) for call in calls]
     return backend.run(Text(text), calls, textures())
 
@@ -169,7 +175,7 @@ def _literal(type_: Type, value: Array) -> str:
 
 
 def oracle(case: Case, flush: bool = False) -> Array:
-    """What NumPy gives in float64; with `flush` for arguments whose denormals are zero."""
+    """NumPy's result in float64; with `flush` for arguments whose denormals are replaced by zero."""
     args: list[Any] = [textures()[arg] if isinstance(arg, str) else arg for arg in widened(case.args)]
     if flush:
         args = list(_flushed(tuple(args)))
@@ -189,16 +195,16 @@ def _floats(arg: object) -> bool:
 
 def _figure(results: Sequence[tuple[Case, Array]]) -> Figure:
     row = results[0][0].row
-    told = [_lanes(case, got) for case, got in results]
-    ulp = np.concatenate([lanes.ulp[lanes.measured] for lanes in told])
-    absolute = np.concatenate([lanes.absolute[lanes.measured] for lanes in told])
+    lanes_of_cases = [_lanes(case, got) for case, got in results]
+    ulp = np.concatenate([lanes.ulp[lanes.measured] for lanes in lanes_of_cases])
+    absolute = np.concatenate([lanes.absolute[lanes.measured] for lanes in lanes_of_cases])
     beyond = ulp > row.ulp
-    flushed = sum(int(lanes.flushed.sum()) for lanes in told)
+    flushed = sum(int(lanes.flushed.sum()) for lanes in lanes_of_cases)
     at = ""
-    worst = [float(np.max(_badness(row, lanes), initial=0.0)) for lanes in told]
+    worst = [float(np.max(_badness(row, lanes), initial=0.0)) for lanes in lanes_of_cases]
     if max(worst) > 0.0:
         which = int(np.argmax(worst))
-        at = _told(*results[which], int(np.argmax(_badness(row, told[which]))))
+        at = _told(*results[which], int(np.argmax(_badness(row, lanes_of_cases[which]))))
     return Figure(
         lanes=len(ulp),
         ulp=float(ulp.max(initial=0.0)),
@@ -211,7 +217,7 @@ def _figure(results: Sequence[tuple[Case, Array]]) -> Figure:
 
 
 def _badness(row: Builtin, lanes: _Lanes) -> Array:
-    """What orders lanes: first those out of all limits, then by their error."""
+    """The sort key of lanes: first those beyond all limits, then by error."""
     wrong = (lanes.ulp > row.ulp) & ~(lanes.absolute <= row.absolute)
     size = np.minimum(np.nan_to_num(lanes.ulp, nan=np.inf, posinf=1e30), 1e30)
     return np.where(lanes.measured, size + 1e30 * wrong, 1e29 * lanes.flushed)

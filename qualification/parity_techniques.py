@@ -37,7 +37,7 @@ class Case(NamedTuple):
 
 
 class Limits(NamedTuple):
-    """What the results of a technique may deviate on a back end."""
+    """How far the results of a technique may deviate on a back end."""
 
     largest: float = GOAL
     """The largest deviation of lanes that are not excluded."""
@@ -49,12 +49,12 @@ class Limits(NamedTuple):
 
 def cases() -> list[Case]:
     """Every technique, and again with each other function of the library that fits one of its slots (no baseline)."""
-    found = []
+    cases_of_all = []
     for technique in library.load_all():
-        found.append(Case(technique.name))
+        cases_of_all.append(Case(technique.name))
         for slot in technique.slots if not technique.baseline else ():
-            found += [Case(technique.name, ((slot.name, function),)) for function in slots.candidates(slot)[1:]]
-    return found
+            cases_of_all += [Case(technique.name, ((slot.name, function),)) for function in slots.candidates(slot)[1:]]
+    return cases_of_all
 
 
 def limits(technique: str, backend: str) -> Limits:
@@ -69,18 +69,17 @@ def measure(case: Case, backend: Backend, lanes: int = LANES, seed: int = SEED) 
     return deviation(run(prepared.subject, prepared.inputs, backend), prepared.oracle, prepared.rounding)
 
 
-def excess(case: Case, backend: str, found: Deviation, lanes: int) -> str:
-    """What of a deviation is neither within the goal nor known, in words; nothing where all is well."""
+def excess(case: Case, backend: str, measured: Deviation, lanes: int) -> str:
+    """The part of a deviation that the limits do not allow, as a message; '' where there is none."""
     limit = limits(case.technique, backend)
     title = " ".join([case.technique, *("=".join(pair) for pair in case.bind)])
-    if not found.largest <= limit.largest:
-        where = f"{found.output}[{found.lane}] is {found.got.tolist()}, not {found.wanted.tolist()}"
-        return f"{title} on {backend}: {found.largest:.2g} where at most {limit.largest:g} is right: {where}"
+    if not measured.largest <= limit.largest:
+        where = f"{measured.output}[{measured.lane}] is {measured.got.tolist()}, not {measured.wanted.tolist()}"
+        return f"{title} on {backend}: {measured.largest:.2g} where at most {limit.largest:g} is right: {where}"
     share = limit.bound_share if case.bind else limit.share
-    if found.excluded > share * lanes + 3:  # a few lanes vary at random
-        return (
-            f"{title} on {backend}: {found.excluded} of {lanes} lanes are ill-conditioned, of which {share:.1%} may be"
-        )
+    if measured.excluded > share * lanes + 3:  # a few lanes vary at random
+        count = f"{measured.excluded} of {lanes} lanes are ill-conditioned"
+        return f"{title} on {backend}: {count}, of which {share:.1%} may be"
     return ""
 
 

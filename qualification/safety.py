@@ -30,15 +30,15 @@ class Safety(NamedTuple):
 def safety(subject: Subject) -> Safety:
     """The counts and the static costs of a technique's functions, one call of each."""
     module, _, _ = plain_module(subject.module)
-    made = {
+    compiled = {
         mode: guard(module, subject.called, mode, guard_source, polyfill, chained=subject.chained) for mode in GUARDS
     }
     costs = {}
-    for mode, one in made.items():
+    for mode, one in compiled.items():
         total = Cost()
         for key in subject.called:
             total = total.plus(cost_of(one.module, key))
         costs[mode] = total
-    sites = made["auto"].sites
+    sites = compiled["auto"].sites
     proven = sum(site.proven for site in sites)
     return Safety(subject.name, proven, len(sites) - proven, costs)

@@ -1,7 +1,7 @@
-"""What is wrong in the published sources, shown by numbers: the baseline as published, and the technique in its place.
+"""The errata of the published sources in numbers: the baseline as published, and the technique that replaces it.
 
     for erratum in ERRATA:
-        as_published(erratum, backends.get("gl"))       # off, in the way that theory says
+        as_published(erratum, backends.get("gl"))       # wrong, as theory predicts
         as_mended(erratum, backends.get("gl"))          # within the bounds of `erratum.right`
 
 docs/errata.md says it in words, docs/stability.md shows it; `UNSHOWN` has what no number can show,

@@ -1,4 +1,4 @@
-"""One erratum: a technique as published and the one in its place, on the same inputs, and what theory says of both."""
+"""One erratum: a technique as published and its replacement, on the same inputs, with the theory of both."""
 
 from __future__ import annotations
 
@@ -53,17 +53,17 @@ class Erratum(NamedTuple):
 
     name: str
     source: str
-    """Whose it is, in few words."""
+    """The short name of the source."""
     shown: str
-    """What goes in, and what the figures are."""
+    """The inputs, and the meaning of the figures."""
     published: Measure
     theory: Figures
-    """What the formula as published gives; NaN and infinity are figures as well, () where nothing says what."""
+    """The result of the formula as published, which may be NaN or infinite; () where it is undefined."""
     mended: Measure
     right: tuple[Right, ...]
-    """What is so, with the bounds that ours keeps."""
+    """The correct result, as the bounds that ours keeps."""
     everywhere: bool = True
-    """Whether each back end gives what theory says; else they differ, and at least one is wrong."""
+    """Whether every back end agrees with theory; otherwise they differ, and at least one is wrong."""
     tolerance: float = 1e-4
     """How far the published figures may be from theory, relative to those above 1."""
 
@@ -84,20 +84,20 @@ def _figures(measure: Measure, backend: Backend, guards: str) -> Figures:
     return tuple(figure + 0.0 for outputs in every for figure in measure.made(outputs))  # + 0: no -0
 
 
-def shows(erratum: Erratum, found: Figures) -> bool:
-    """Whether figures of the published technique are those that theory says."""
-    return len(found) == len(erratum.theory) and all(
+def shows(erratum: Erratum, figures: Figures) -> bool:
+    """Whether figures of the published technique agree with theory."""
+    return len(figures) == len(erratum.theory) and all(
         math.isclose(got, wanted, rel_tol=erratum.tolerance, abs_tol=erratum.tolerance)
         or (math.isnan(got) and math.isnan(wanted))
         or (math.isinf(wanted) and not math.isfinite(got))
-        for got, wanted in zip(found, erratum.theory, strict=True)
+        for got, wanted in zip(figures, erratum.theory, strict=True)
     )
 
 
-def holds(erratum: Erratum, found: Figures) -> bool:
-    """Whether all figures lie where they must; NaN never does."""
-    return len(found) == len(erratum.right) and all(
-        right.low <= figure <= right.high for figure, right in zip(found, erratum.right, strict=True)
+def holds(erratum: Erratum, figures: Figures) -> bool:
+    """Whether all figures are within their bounds; NaN never is."""
+    return len(figures) == len(erratum.right) and all(
+        right.low <= figure <= right.high for figure, right in zip(figures, erratum.right, strict=True)
     )
 
 

@@ -28,21 +28,23 @@ class Row(NamedTuple):
 
 def rows(present: list[Backend]) -> dict[str, Row]:
     """What was measured, by technique."""
-    found: dict[str, Row] = {}
+    rows_by_name: dict[str, Row] = {}
     for case in cases():
         lanes = BOUND_LANES if case.bind else LANES
-        row = found.setdefault(case.technique, Row(dict.fromkeys(BACKENDS, -1.0), 0.0, 0.0))
+        row = rows_by_name.setdefault(case.technique, Row(dict.fromkeys(BACKENDS, -1.0), 0.0, 0.0))
         for backend in present:
-            one: Deviation = measure(case, backend, lanes)
-            if wrong := excess(case, backend.name, one, lanes):
+            measured: Deviation = measure(case, backend, lanes)
+            if wrong := excess(case, backend.name, measured, lanes):
                 print(wrong)
-            row.largest[backend.name] = max(row.largest[backend.name], one.largest)
-            row = row._replace(share=max(row.share, one.excluded / lanes), furthest=max(row.furthest, one.furthest))
-        found[case.technique] = row
-    return found
+            row.largest[backend.name] = max(row.largest[backend.name], measured.largest)
+            row = row._replace(
+                share=max(row.share, measured.excluded / lanes), furthest=max(row.furthest, measured.furthest)
+            )
+        rows_by_name[case.technique] = row
+    return rows_by_name
 
 
-def page(present: list[Backend], found: dict[str, Row]) -> str:
+def page(present: list[Backend], rows_by_name: dict[str, Row]) -> str:
     """The page's text."""
     texts = [
         "Measured by `python -m qualification.pages.parity_techniques`; "
@@ -67,7 +69,7 @@ def page(present: list[Backend], found: dict[str, Row]) -> str:
         f"| Technique | {' | '.join(BACKENDS)} | Excluded | Up to | Why beyond the goal |",
         f"|---|{'---|' * len(BACKENDS)}---|---|---|",
     ]
-    for name, row in sorted(found.items()):
+    for name, row in sorted(rows_by_name.items()):
         cells = [_number(row.largest[backend]) for backend in BACKENDS]
         excluded = [f"{100.0 * row.share:.2g} %" if row.share else "", _plain(row.furthest) if row.share else ""]
         lines.append(f"| {' | '.join([name, *cells, *excluded, _reasons(name, row)])} |")

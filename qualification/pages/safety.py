@@ -73,27 +73,30 @@ def counts(rows: list[Safety]) -> list[str]:
     return [*lines, ""]
 
 
-def guards(found: list[Mutant]) -> list[str]:
-    """Each guard, what needs it, and what comes of taking it out."""
-    seen = sum(any(one.seen.values()) for one in found)
-    letter = [one for one in found if one.witness and not any(one.seen.values())]
+def guards(removed: list[Mutant]) -> list[str]:
+    """Each guard, the input that needs it, and the fault when it is removed."""
+    seen = sum(any(mutant.seen.values()) for mutant in removed)
+    needed = sum(mutant.witness is not None for mutant in removed)
+    letter = [mutant for mutant in removed if mutant.witness and not any(mutant.seen.values())]
     lines = [
-        "## Every guard, taken out",
+        "## Every guard, removed",
         "",
         *_paragraph(
-            f"Of {len(found)} guards {sum(one.witness is not None for one in found)} have an input that needs them: "
+            f"Of {len(removed)} guards {needed} have an input that needs them: "
             "with NaN for what the language leaves undefined there, the result is NaN. Without the guard the drivers "
             f"here show it for {seen}" + (f"; for {len(letter)} it is the language's letter alone." if letter else ".")
         ),
         f"| Operation | In | Because | Input | {' | '.join(BACKENDS)} |",
         "|---" * (4 + len(BACKENDS)) + "|",
     ]
-    for one in found:
-        cells = [one.seen.get(name, "").replace("another value", "other") or "–" for name in BACKENDS]
-        trial = one.witness.trial if one.witness else "none found"
-        place = f"{one.site.place.rsplit(':', 1)[0]}"
-        says = one.site.guard.problem
-        lines.append(f"| {one.site.what} | {one.specimen.title} ({place}) | {says} | {trial} | {' | '.join(cells)} |")
+    for mutant in removed:
+        cells = [mutant.seen.get(name, "").replace("another value", "other") or "–" for name in BACKENDS]
+        trial = mutant.witness.trial if mutant.witness else "none found"
+        place = f"{mutant.site.place.rsplit(':', 1)[0]}"
+        says = mutant.site.guard.problem
+        lines.append(
+            f"| {mutant.site.what} | {mutant.specimen.title} ({place}) | {says} | {trial} | {' | '.join(cells)} |"
+        )
     return [*lines, ""]
 
 

@@ -221,8 +221,8 @@ def errata() -> list[str]:
     for name, chapter in CHAPTER_TEXTS.items():
         lines += [f"## {chapter.title}", "", *_paragraph(chapter.text)]
         for picture in chapter.pictures:
-            made = PICTURES[picture]
-            lines += [f"![{made.shown}](stability/{picture}.png)", "", *_paragraph(made.caption)]
+            picture_row = PICTURES[picture]
+            lines += [f"![{picture_row.shown}](stability/{picture}.png)", "", *_paragraph(picture_row.caption)]
         lines += table(CHAPTERS[name])
     return lines
 
@@ -271,10 +271,11 @@ def row(erratum: Erratum) -> str:
     return f"| {' | '.join(cells)} |"
 
 
-def told(found: tuple[float, ...]) -> str:
+def told(figures: tuple[float, ...]) -> str:
     """Figures, to five digits."""
     return " · ".join(
-        "NaN" if np.isnan(one) else "∞" if np.isinf(one) else _number(0.0 if abs(one) < 1e-6 else one) for one in found
+        "NaN" if np.isnan(figure) else "∞" if np.isinf(figure) else _number(0.0 if abs(figure) < 1e-6 else figure)
+        for figure in figures
     )
 
 

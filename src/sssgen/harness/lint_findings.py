@@ -66,34 +66,38 @@ class Finding(NamedTuple):
         """For a terminal: the place, the ranges found, an example, the remedy."""
         lines = [self.diagnostic().render()]
         if self.site.found:
-            lines.append(f"  found: {self.told(self.site.found)}")
+            lines.append(f"  found: {self.with_operands(self.site.found)}")
         if self.example:
             lines.append(f"  example: {self.example}")
         if self.verdict != PROVEN:
-            lines.append(f"  {'emitted' if self.guarded else 'write'}: {self.told(remedy(self.site, FLOAT32))}")
+            lines.append(
+                f"  {'emitted' if self.guarded else 'write'}: {self.with_operands(remedy(self.site, FLOAT32))}"
+            )
         return "\n".join(lines)
 
-    def told(self, text: str) -> str:
+    def with_operands(self, text: str) -> str:
         """A text with the operands' names in place of their letters, or after the text where an operand is no name."""
         if self.site.guard.replaces == "result":
             return text
-        written = {}
+        operand_texts = {}
         for letter, arg in zip("xyz", operands(self.site.node), strict=False):
             span, line = arg.span, source_line(arg.span)
-            one = line[span.column - 1 : span.end_column - 1].strip()
-            if span.line == span.end_line and 0 < len(one) <= LONGEST and re.search(rf"\b{letter}\b", text):
-                written[letter] = one
-        if all(re.fullmatch(r"[\w.]+", one) for one in written.values()):
-            return re.sub(r"\b[xyz]\b", lambda found: written.get(found[0], found[0]), text)
-        return f"{text}; {', '.join(f'{letter} is {one}' for letter, one in written.items())}"
+            operand_text = line[span.column - 1 : span.end_column - 1].strip()
+            if span.line == span.end_line and 0 < len(operand_text) <= LONGEST and re.search(rf"\b{letter}\b", text):
+                operand_texts[letter] = operand_text
+        if all(re.fullmatch(r"[\w.]+", operand_text) for operand_text in operand_texts.values()):
+            return re.sub(r"\b[xyz]\b", lambda found: operand_texts.get(found[0], found[0]), text)
+        return f"{text}; {', '.join(f'{letter} is {operand_text}' for letter, operand_text in operand_texts.items())}"
 
     def as_json(self) -> dict[str, Any]:
         """For editors."""
         site = self.site
-        return self.diagnostic(self.told(remedy(self.site, FLOAT32)) if self.verdict != PROVEN else "").as_json() | {
+        return self.diagnostic(
+            self.with_operands(remedy(self.site, FLOAT32)) if self.verdict != PROVEN else ""
+        ).as_json() | {
             "verdict": self.verdict,
             "operation": site.what,
-            "found": self.told(site.found),
+            "found": self.with_operands(site.found),
             "example": self.example or None,
             "guarded": self.guarded and self.verdict != PROVEN,
         }
@@ -113,10 +117,10 @@ def lint(name: str, with_examples: bool = True) -> list[Finding]:
         return _found(sites, [made] if with_examples else [])
     if name.endswith((".glsl", ".frag", ".vert", ".inc")) or os.path.isfile(name):
         return _plain(name, with_examples)
-    known = [*library.index(), *examples()]
+    names = [*library.index(), *examples()]
     raise failure(
         f"'{name}' is neither a technique nor a material nor a file",
-        did_you_mean(name, known) or "see: sssgen list techniques, sssgen list materials",
+        did_you_mean(name, names) or "see: sssgen list techniques, sssgen list materials",
     )
 
 
@@ -149,14 +153,14 @@ def _stages(name: str) -> list[Any]:
 
 
 def _found(sites: list[Site], specimens: list[Any], guarded: bool = True) -> list[Finding]:
-    found = []
+    findings = []
     for site in sorted(sites, key=lambda site: (site.node.span, site.what)):
         if site.proven:
-            found.append(Finding(site, PROVEN))
+            findings.append(Finding(site, PROVEN))
             continue
         example = _example(site, specimens)
-        found.append(Finding(site, MAY_FAIL if example else UNKNOWN, example, guarded, bool(specimens)))
-    return found
+        findings.append(Finding(site, MAY_FAIL if example else UNKNOWN, example, guarded, bool(specimens)))
+    return findings
 
 
 def _example(site: Site, specimens: list[Any]) -> str:

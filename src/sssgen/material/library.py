@@ -63,13 +63,13 @@ class Technique(NamedTuple):
 @functools.cache
 def index() -> dict[str, str]:
     """Every technique of the library by name."""
-    found = {}
+    paths = {}
     for folder in sorted(os.listdir(TECHNIQUES)):
         if folder != "common":
             for name in sorted(os.listdir(os.path.join(TECHNIQUES, folder))):
                 if name.endswith(".sss"):
-                    found[name.removesuffix(".sss")] = os.path.join(TECHNIQUES, folder, name)
-    return found
+                    paths[name.removesuffix(".sss")] = os.path.join(TECHNIQUES, folder, name)
+    return paths
 
 
 def folder_of(path: str) -> str:
@@ -134,11 +134,11 @@ def _check_attributes(declared: Attributes, function: Function, shown: str) -> N
 
 def load_all() -> Iterator[Technique]:
     """Every technique of the library. Raises SssgenError with the errors of all faulty ones."""
-    wrong = []
+    errors = []
     for path in index().values():
         try:
             yield load_path(path)
         except SssgenError as error:
-            wrong += error.diagnostics
-    if wrong:
-        raise SssgenError(wrong)
+            errors += error.diagnostics
+    if errors:
+        raise SssgenError(errors)

@@ -33,10 +33,10 @@ def load_material(path_or_name: str | os.PathLike[str]) -> Material:
         note(text)
         path = os.path.join(place("examples"), text, f"{text}.toml")
         if not os.path.isfile(path):
-            known = examples()
+            names = examples()
             beside = f"did you mean '{text}.toml'?" if os.path.isfile(f"{text}.toml") else ""
-            others = f"give a path that ends in .toml, or one of: {', '.join(known)}"
-            raise failure(f"unknown material '{text}'", beside or did_you_mean(text, known) or others)
+            hint = f"give a path that ends in .toml, or one of: {', '.join(names)}"
+            raise failure(f"unknown material '{text}'", beside or did_you_mean(text, names) or hint)
         return _remembered(path, f"examples/{text}/{text}.toml")
     return _remembered(text, posix(text))
 

@@ -22,12 +22,12 @@ _KEPT = 4096
 
 def needs(module: Module, function: Function) -> Needs:
     """The names of the globals that a function reads and the slots it calls, itself or through others."""
-    kept = _known.get(id(function))
-    if kept is None or kept[0] is not module or kept[1] is not function:
+    cached = _known.get(id(function))
+    if cached is None or cached[0] is not module or cached[1] is not function:
         if len(_known) >= _KEPT:
             _known.clear()
-        kept = _known[id(function)] = (module, function, _needs(module, function))
-    return kept[2]
+        cached = _known[id(function)] = (module, function, _needs(module, function))
+    return cached[2]
 
 
 def _needs(module: Module, function: Function) -> Needs:
@@ -108,16 +108,16 @@ def find(text: str, slot: Function, folder: str) -> tuple[Module, Function]:
         name = name or source
     named = [function for function in module.functions if function.name == name and function.body is not None]
     if not named:
-        known = [function.name for function in module.functions if function.body is not None]
+        names = [function.name for function in module.functions if function.body is not None]
         raise failure(
-            f"'{source}' has no function '{name}'", did_you_mean(name, known) or f"it has: {', '.join(known)}"
+            f"'{source}' has no function '{name}'", did_you_mean(name, names) or f"it has: {', '.join(names)}"
         )
     for function in named:
         if fits(slot, function):
             return module, function
-    others = [function.name for function in module.functions if fits(slot, function)]
-    if others:
-        hint = f'write "{source}:{others[0]}"'
+    fitting_names = [function.name for function in module.functions if fits(slot, function)]
+    if fitting_names:
+        hint = f'write "{source}:{fitting_names[0]}"'
     else:
         fitting = candidates(slot)
         hint = f"functions that fit: {', '.join(fitting)}" if fitting else "write a function of that signature"
@@ -126,7 +126,7 @@ def find(text: str, slot: Function, folder: str) -> tuple[Module, Function]:
 
 def candidates(slot: Function) -> list[str]:
     """The library's functions that fit a slot, as a material writes them."""
-    found: list[str] = []
+    names: list[str] = []
     for name, path in library.index().items():
         if library.folder_of(path) != "distance":
             continue
@@ -134,8 +134,8 @@ def candidates(slot: Function) -> list[str]:
             module = library.load_path(path).module
             own = [one for one in module.functions if one.span.file == library.shown_name(path) and fits(slot, one)]
             offered = [one.name for one in own if one.name == name or any(param.quantity for param in one.params)]
-            found += [name if one == name else f"{name}:{one}" for one in offered]
-    return found
+            names += [name if one == name else f"{name}:{one}" for one in offered]
+    return names
 
 
 def body(shape: str, place: str) -> str:

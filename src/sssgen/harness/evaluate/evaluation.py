@@ -122,8 +122,8 @@ def fitted(subject: Subject, given: Mapping[str, Any]) -> Inputs:
             raise failure(f"{subject.name} needs more inputs: {', '.join(missing or [name])}")
     counts = {name: value.shape[-1] for name, value in values.items() if value.shape[-1] != 1}
     if len(set(counts.values())) > 1:
-        told = ", ".join(f"{name} has {count}" for name, count in counts.items())
-        raise failure(f"the inputs have different numbers of values: {told}", "one value stands for all")
+        lengths = ", ".join(f"{name} has {count}" for name, count in counts.items())
+        raise failure(f"the inputs have different numbers of values: {lengths}", "one value stands for all")
     return Inputs(values, textures, next(iter(counts.values()), 1))
 
 

@@ -19,15 +19,15 @@ from sssgen.targets.numpy_textures import Texture
 
 def bindings(given: Sequence[str]) -> dict[str, str]:
     """`SLOT=FUNCTION` texts as slot → function. Raises SssgenError."""
-    found: dict[str, str] = {}
+    functions: dict[str, str] = {}
     for text in given:
         slot, equals, function = text.partition("=")
         if not (equals and slot and function):
             raise failure(f"'{text}' binds nothing", "--bind SLOT=FUNCTION or SLOT=FILE:FUNCTION")
-        if slot in found:
+        if slot in functions:
             raise failure(f"'{slot}' is bound twice")
-        found[slot] = function
-    return found
+        functions[slot] = function
+    return functions
 
 
 def read(path: str, subject: Subject) -> dict[str, Any]:

@@ -67,8 +67,8 @@ def subject(name: str, bind: Mapping[str, str] | None = None) -> Subject:
     """
     module, function, role = _technique(name)
     bound = _bound(name, module, function, bind or {})
-    made = of_stages(name, [LinkStage(function.name, role, module, function, bound, {}, frozenset())])
-    return made._replace(chained=not _is_function(name))
+    probes = of_stages(name, [LinkStage(function.name, role, module, function, bound, {}, frozenset())])
+    return probes._replace(chained=not _is_function(name))
 
 
 def of_stages(name: str, stages: Sequence[LinkStage]) -> Subject:
@@ -77,13 +77,14 @@ def of_stages(name: str, stages: Sequence[LinkStage]) -> Subject:
         linked = link(list(stages))
     except LinkError as error:
         raise failure(error.message) from None
-    made = [(output, probe) for function in linked.functions for output, probe in probes_of(function)]
-    module = linked.module._replace(functions=(*linked.module.functions, *(probe for _, probe in made)))
-    roots = [probe.key for _, probe in made]
+    named_probes = [(output, probe) for function in linked.functions for output, probe in probes_of(function)]
+    module = linked.module._replace(functions=(*linked.module.functions, *(probe for _, probe in named_probes)))
+    roots = [probe.key for _, probe in named_probes]
     module, _ = hoist(prune(fold(module), roots), roots)
     closed = {function.name: function for function in uniforms_to_parameters(module).functions}
     probes = tuple(
-        Probe(output, probe.name, closed[probe.name].params, closed[probe.name].result) for output, probe in made
+        Probe(output, probe.name, closed[probe.name].params, closed[probe.name].result)
+        for output, probe in named_probes
     )
     return Subject(name, module, probes, {uniform.name: uniform for uniform in module.uniforms})
 
@@ -135,7 +136,7 @@ def probes_of(function: Function) -> list[tuple[str, Function]]:
     span = function.span
     outs = [param for param in function.params if param.direction != "in"]
     shown: list[Param | None] = [None, *outs] if function.result != VOID else [*outs]
-    made = []
+    probes = []
     for output in shown:
         start: list[Stmt] = []
         args = []
@@ -146,13 +147,15 @@ def probes_of(function: Function) -> list[tuple[str, Function]]:
                 start.append(Declare(name, param.type, value, span))
             args.append(Local(param.type, name, span))
         call = Call(function.result, function.key, tuple(args), span)
-        kept = f"{function.name}_value"
-        start.append(Evaluate(call, span) if function.result == VOID else Declare(kept, function.result, call, span))
-        given = f"{output.name}_given" if output else kept
+        value_name = f"{function.name}_value"
+        start.append(
+            Evaluate(call, span) if function.result == VOID else Declare(value_name, function.result, call, span)
+        )
+        given = f"{output.name}_given" if output else value_name
         type_ = output.type if output else function.result
         body = (*start, Return(Local(type_, given, span), span))
         params = tuple(param._replace(direction="in") for param in function.params if param.direction != "out")
         title = output.name if output else RESULT
         probe = function._replace(name=f"{function.name}_shows_{title}", params=params, result=type_, body=body)
-        made.append((title, probe))
-    return made
+        probes.append((title, probe))
+    return probes

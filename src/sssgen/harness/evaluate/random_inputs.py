@@ -40,14 +40,14 @@ RANGES = {
 
 def samples(subject: Subject, count: int, seed: int = 0) -> dict[str, Any]:
     """`count` inputs, lanes first, as `evaluate.fitted` takes them; what it does not take (arrays) is left out."""
-    found: dict[str, Any] = {}
+    inputs: dict[str, Any] = {}
     for name, param in subject.params.items():
         if isinstance(param.type, Sampler):
-            found[name] = texture(param.type.dim, _rng(name, seed))
+            inputs[name] = texture(param.type.dim, _rng(name, seed))
         elif isinstance(param.type, Scalar | Vector | Matrix):
             uniform = subject.uniforms.get(name)
-            found[name] = _uniform(subject, uniform, count, seed) if uniform else _parameter(param, count, seed)
-    return found
+            inputs[name] = _uniform(subject, uniform, count, seed) if uniform else _parameter(param, count, seed)
+    return inputs
 
 
 def texture(dim: str, rng: np.random.Generator) -> Texture:
@@ -91,10 +91,10 @@ def _direction(name: str, quantity: str, size: tuple[int, ...], seed: int) -> Ar
         return _unit(np.where(aimed, rng.uniform(-0.25, 0.25, size) - origin, anywhere))
     line = _unit(_rng("line", seed).normal(size=size)) * rng.choice([-1.0, 1.0], each)
     aligned = _rng("aligned", seed).random(each) < ALIGNED
-    found = _unit(np.where(aligned, line + 10.0 ** rng.uniform(-4.0, -0.5, each) * anywhere, anywhere))
+    directions = _unit(np.where(aligned, line + 10.0 ** rng.uniform(-4.0, -0.5, each) * anywhere, anywhere))
     if quantity == "tangent_direction":
-        found[:, -1] = np.abs(found[:, -1])
-    return found
+        directions[:, -1] = np.abs(directions[:, -1])
+    return directions
 
 
 def _uniform(subject: Subject, uniform: Uniform, count: int, seed: int) -> Array:
@@ -136,14 +136,14 @@ def _within(rng: np.random.Generator, size: tuple[int, ...], low: float, high: f
     else:
         drawn = rng.uniform(low, high, size)
     chance = rng.random(size)
-    found: Array = np.where(chance < 0.5 * ENDS, low, np.where(chance > 1.0 - 0.5 * ENDS, high, drawn))
-    return found
+    numbers: Array = np.where(chance < 0.5 * ENDS, low, np.where(chance > 1.0 - 0.5 * ENDS, high, drawn))
+    return numbers
 
 
 def _unit(vectors: Array) -> Array:
     lengths: Array = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    found: Array = vectors / lengths
-    return found
+    unit: Array = vectors / lengths
+    return unit
 
 
 def _rng(name: str, seed: int) -> np.random.Generator:

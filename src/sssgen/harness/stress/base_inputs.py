@@ -85,13 +85,13 @@ def directions(specimen: Specimen) -> list[str]:
 def scalars(specimen: Specimen, format: Format = FLOAT32) -> dict[str, list[float]]:
     """For each scalar input: the ends of its range, and 0, 1 and nearly 0, if these are in the range."""
     least = 1e-3 if format is FLOAT16 else 1e-30
-    found = {}
+    choices = {}
     for name, param in specimen.subject.params.items():
         if kind_of(param.type) == "float" and not isinstance(param.type, Matrix) and name not in directions(specimen):
             ends = contract(specimen, name, format)
             inner = [value for value in (0.0, least, 1.0) if ends.low <= value <= ends.high]
-            found[name] = [ends.low, ends.high, *inner]
-    return found
+            choices[name] = [ends.low, ends.high, *inner]
+    return choices
 
 
 def calls(specimen: Specimen, *names: str) -> bool:
@@ -102,11 +102,11 @@ def calls(specimen: Specimen, *names: str) -> bool:
 
 def samplers(specimen: Specimen, data: bool = False) -> list[str]:
     """The textures; with `data` only those that hold a quantity or distances."""
-    found = []
+    names = []
     for name, uniform in specimen.subject.uniforms.items():
         if isinstance(uniform.type, Sampler) and (not data or uniform.quantity or "distance" in name):
-            found.append(name)
-    return found
+            names.append(name)
+    return names
 
 
 def angles(start: float, end: float, count: int = 2001) -> tuple[Array, Array]:

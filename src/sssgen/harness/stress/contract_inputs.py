@@ -111,16 +111,16 @@ def numbers(size: tuple[int, ...], found: Contract, rng: np.random.Generator) ->
     share = (bits >> np.uint32(8)).astype(np.float32) * np.float32(2.0**-24)
     kind = bits & np.uint32(7)
     first, last = (max(low, -ORDINARY), min(high, ORDINARY)) if high - low > 1e3 else (low, high)
-    made: Array = np.float32(first) + share * np.float32(last - first)
+    drawn: Array = np.float32(first) + share * np.float32(last - first)
     small = kind >= 5
     negative = low < 0.0 and (high <= 0.0 or (bits[small] & np.uint32(8)) != 0)
     smallest, largest = np.log2(max(low, TINY)), np.log2(max(abs(low), abs(high), TINY))
     size_of = np.exp2(smallest + share[small].astype(np.float64) * (largest - smallest))
-    made[small] = np.where(negative, -size_of, size_of)
+    drawn[small] = np.where(negative, -size_of, size_of)
     special = kind == 7
     values = _special(low, high)
-    made[special] = values[(bits[special] >> np.uint32(8)) % np.uint32(len(values))]
-    return np.clip(made, np.float32(low), np.float32(high), out=made)
+    drawn[special] = values[(bits[special] >> np.uint32(8)) % np.uint32(len(values))]
+    return np.clip(drawn, np.float32(low), np.float32(high), out=drawn)
 
 
 def _special(low: float, high: float) -> Array:

@@ -110,10 +110,10 @@ ROWS = (
 
 def chosen(names: Sequence[str]) -> tuple[str, ...]:
     """The names, if there are such rows. Raises SssgenError."""
-    known = [row.name for row in ROWS]
+    row_names = [row.name for row in ROWS]
     for name in names:
-        if name not in known:
-            raise failure(f"unknown row '{name}'", did_you_mean(name, known) or f"rows: {', '.join(known)}")
+        if name not in row_names:
+            raise failure(f"unknown row '{name}'", did_you_mean(name, row_names) or f"rows: {', '.join(row_names)}")
     return tuple(names)
 
 

@@ -49,8 +49,8 @@ class Witness(NamedTuple):
 
 def sites(specimen: Specimen) -> list[Site]:
     """The operations with a domain of a technique, in the order of the source."""
-    found = library_sites(specimen.subject.module, specimen.subject.called, specimen.subject.chained)
-    return sorted(found, key=lambda site: site.node.span)
+    all_sites = library_sites(specimen.subject.module, specimen.subject.called, specimen.subject.chained)
+    return sorted(all_sites, key=lambda site: site.node.span)
 
 
 def witness(specimen: Specimen, site: Site, seed: int = 0) -> Witness | None:

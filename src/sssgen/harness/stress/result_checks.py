@@ -51,16 +51,16 @@ def non_finite(value: Array) -> Array:
 
 def judged(trial: Trial, outputs: Mapping[str, Array], oracle: Mapping[str, Array] | None = None) -> list[Found]:
     """The faults of a back end's outputs, lanes first."""
-    found = []
+    faults = []
     for name, value in outputs.items():
         if value.dtype.kind != "f":
             continue
         lanes = np.broadcast_to(value, (trial.inputs.lanes, *value.shape[1:]) if value.ndim else (trial.inputs.lanes,))
         broken = _any(non_finite(lanes))
-        found.append(Found("non-finite", name, broken))
+        faults.append(Found("non-finite", name, broken))
         for kind, test in _TESTS.items():
-            found.append(Found(kind, name, test(trial, name, lanes, oracle) & ~broken))
-    return [one for one in found if one.bad.any()]
+            faults.append(Found(kind, name, test(trial, name, lanes, oracle) & ~broken))
+    return [one for one in faults if one.bad.any()]
 
 
 def _out_of_range(trial: Trial, output: str, value: Array, _: Mapping[str, Array] | None) -> Array:
@@ -138,12 +138,12 @@ def growing_input(specimen: Specimen) -> str:
 
 def not_longer(trial: Trial) -> Array:
     """The lanes of which no direction is longer than 1, (lanes,): longer ones may darken a light below 0."""
-    found: Array = np.ones(trial.inputs.lanes, np.bool_)
+    short: Array = np.ones(trial.inputs.lanes, np.bool_)
     for name, value in trial.inputs.values.items():
         if value.dtype.kind == "f" and is_direction(name, contract(trial.specimen, name)):
             lengths: Array = np.linalg.norm(value.astype(np.float64), axis=0)
-            found &= np.asarray(lengths <= 1.0 + 1e-6)
-    return found
+            short &= np.asarray(lengths <= 1.0 + 1e-6)
+    return short
 
 
 def _any(bad: Array) -> Array:

@@ -128,10 +128,10 @@ def _cell(column: Column) -> str:
 
 
 def _remark(row: Row) -> list[str]:
-    told = ["published baseline"] if row.specimen.baseline else []
+    remarks = ["published baseline"] if row.specimen.baseline else []
     if row.model_jumps:
-        told.append(f"the formula jumps along {', '.join(dict.fromkeys(jump.input for jump in row.model_jumps))}")
-    return [f" {'; '.join(told)}"] if told else []
+        remarks.append(f"the formula jumps along {', '.join(dict.fromkeys(jump.input for jump in row.model_jumps))}")
+    return [f" {'; '.join(remarks)}"] if remarks else []
 
 
 def faults(row: Row, beyond: bool = False) -> Iterator[str]:

@@ -65,15 +65,15 @@ def specimens(names: Sequence[str]) -> list[Specimen]:
     """
     if not names:
         return [technique(one.name) for one in library.load_all() if not one.attributes.superseded_by]
-    wrong, found = [], []
+    wrong, chosen = [], []
     for name in dict.fromkeys(names):
         try:
-            found += named(name)
+            chosen += named(name)
         except SssgenError as error:
             wrong += error.diagnostics
     if wrong:
         raise SssgenError(wrong)
-    return found
+    return chosen
 
 
 def named(name: str) -> list[Specimen]:
@@ -89,29 +89,33 @@ def named(name: str) -> list[Specimen]:
 
 def technique(name: str, bind: Mapping[str, str] | None = None) -> Specimen:
     """A technique by its name or its file, or FILE:FUNCTION. Raises SssgenError."""
-    made = subject(name, bind)
+    probes = subject(name, bind)
     if name.rpartition(":")[0].endswith((".sss", ".glsl")):
-        return Specimen(name, name, made, "distance", {}, bind=bind or {})
-    found = library.load(name)
-    return Specimen(name, name, made, found.role, found.doc, bool(found.attributes.superseded_by), bind or {})
+        return Specimen(name, name, probes, "distance", {}, bind=bind or {})
+    loaded = library.load(name)
+    return Specimen(name, name, probes, loaded.role, loaded.doc, bool(loaded.attributes.superseded_by), bind or {})
 
 
 def stages(material: Material) -> list[Specimen]:
     """A material's stages, each with its bindings; what the material fixes stays at its value."""
-    found = []
+    specimens = []
     for stage in material.stages:
         chosen = stage.technique
         bound = {slot: (binding.module, binding.function) for slot, binding in stage.bindings.items()}
         link = LinkStage(chosen.name, chosen.role, chosen.module, chosen.function, bound, stage.values, frozenset())
-        made = of_stages(chosen.name, [link])
+        probes = of_stages(chosen.name, [link])
         bind = {slot: _shown(one.function.span.file, one.function.name) for slot, one in stage.bindings.items()}
-        settings = {name: stage.values[name] for name in stage.fixed if name in made.uniforms and name in stage.values}
+        settings = {
+            name: stage.values[name] for name in stage.fixed if name in probes.uniforms and name in stage.values
+        }
         name = chosen.name if chosen.name in library.index() else chosen.path
         title = f"{material.name}: {chosen.name}"
-        found.append(
-            Specimen(title, name, made, chosen.role, chosen.doc, bool(chosen.attributes.superseded_by), bind, settings)
+        specimens.append(
+            Specimen(
+                title, name, probes, chosen.role, chosen.doc, bool(chosen.attributes.superseded_by), bind, settings
+            )
         )
-    return found
+    return specimens
 
 
 def _shown(file: str, function: str) -> str:
