@@ -98,7 +98,7 @@ def ball_once(
     origin: npt.ArrayLike,
     directions: npt.ArrayLike,
 ) -> Array:
-    """The radiance after one scattering in a ball about 0, along rays from `origin` (3,) and unit `directions` (n, 3): (n,).
+    """The radiance of a ball at 0 after one scattering, (n,), along rays from `origin` (3,) with `directions` (n, 3).
 
     `light` is the unit direction towards the light. The integral  σs p ∫ exp(−σt (s + c(s))) ds  along the chord,
     where c is the way from the point to the ball's surface towards the light, on Gauss points. Rays that miss read 0.
