@@ -39,17 +39,12 @@ NOWHERE = ir.NOWHERE
 
 
 @settings(max_examples=60)
-@given(modules())
-def test_verifier_accepts_what_is_well_typed(module: ir.Module) -> None:
+@given(modules(), st.data())
+def test_verifier_accepts_well_typed_modules_and_sees_a_wrong_type(module: ir.Module, data: st.DataObject) -> None:
+    """No expression can claim another type unnoticed (a constructor can, where what is around it takes either)."""
     assert verify(module) == []
     bound = all(function.body is not None for function in module.functions)
     assert (verify(module, linked=True) == []) == bound
-
-
-@settings(max_examples=60)
-@given(modules(), st.data())
-def test_verifier_sees_every_wrong_type(module: ir.Module, data: st.DataObject) -> None:
-    """No expression can claim another type unnoticed (a constructor can, where what is around it takes either)."""
     nodes = [
         node
         for function in module.functions
