@@ -1,4 +1,4 @@
-"""`sssgen chart`: error against cost, of every technique and baseline, on scenes of which it is known what is right."""
+"""`sssgen chart`: error against cost of every technique and baseline, on scenes with a reference solution."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def add_reference_options(parser: ArgumentParser) -> None:
 
 
 def run(arguments: Namespace) -> int:
-    """Measures, draws, and says what stands on the fronts."""
+    """Measures, draws, and prints the Pareto fronts."""
     settings = settings_of(arguments)
     from sssgen.lab.chart import charting as chart
     from sssgen.lab.chart import drawing
@@ -70,7 +70,7 @@ def run(arguments: Namespace) -> int:
 
 
 def settings_of(arguments: Namespace) -> Settings:
-    """How to measure, from a command's options. Raises SssgenError."""
+    """The settings of the measurement, from the options. Raises SssgenError."""
     from sssgen.lab.chart.charting import Settings
     from sssgen.lab.measure import candidates
 

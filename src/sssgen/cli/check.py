@@ -1,4 +1,4 @@
-"""`sssgen check`: shaders → what the compilers of this machine say of them."""
+"""`sssgen check`: compiles shaders with the compilers of this machine."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from sssgen.ir.spans import Span
 from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean, failure, visible
 
 SHOWN = 8
-"""How many messages of one compiler on one file are shown; the first ones make the others."""
+"""The number of messages shown per compiler and file; later ones mostly follow from the first."""
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -60,7 +60,7 @@ def _compilers(names: list[str], wrong: list[Diagnostic]) -> list[str]:
 
 
 def _passed(report: Report, shaders: list[Shader]) -> bool:
-    """No error, and something was compiled; in CI, by every compiler that there is."""
+    """Whether something was compiled without errors; in CI, no compiler may be missing."""
     in_ci = os.environ.get("CI", "") not in ("", "0", "false")
     return all(result.ok for result in report.results) and bool(report.results) and not (in_ci and report.missing)
 
@@ -96,7 +96,7 @@ def _why_not(language: str, report: Report) -> str:
 
 
 def _print_messages(results: list[Result]) -> None:
-    """What one compiler says of one file, each message once: with its line, and the technique's line behind that."""
+    """One compiler's messages for one file, without duplicates: each with its line, and the technique's line."""
     result = results[0]
     lines = result.shader.text.split("\n")
     messages = list(dict.fromkeys(message for one in results for message in one.messages))

@@ -41,7 +41,7 @@ def add_options(parser: ArgumentParser) -> None:
 
 
 def run(arguments: Namespace) -> int:
-    """Compiles everything, then writes everything: where one text fails, none is written."""
+    """Compiles everything, then writes everything: if one text fails, none is written."""
     traces: list[Trace] = []
     try:
         made = _cached_or_compiled(arguments, traces)
@@ -153,7 +153,7 @@ def _collect(
     sources: dict[str, tuple[str, str]],
     wrong: list[Diagnostic],
 ) -> None:
-    """Adds the files of one text; two sources of one file are an error."""
+    """Adds the files of one compilation; two sources of one file are an error."""
     for name, text in compiled.files.items():
         if name in files:
             message = f"'{name}' comes from {' for '.join(sources[name])} and from {' for '.join(source)}"

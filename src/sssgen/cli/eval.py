@@ -1,4 +1,4 @@
-"""`sssgen eval`: a technique on arrays of inputs, on one back end or on all of them against the oracle."""
+"""`sssgen eval`: evaluates a technique on arrays of inputs, on one back end, or on all compared with the oracle."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from sssgen.harness.testing.outcome import in_ci
 from sssgen.support.diagnostics import failure
 
 SHOWN = 12
-"""How many lanes a person is shown."""
+"""The number of lanes that are printed."""
 MOST_SAMPLES = 1_000_000
 
 
@@ -41,7 +41,7 @@ def add_options(parser: ArgumentParser) -> None:
 
 
 def run(arguments: Namespace) -> int:
-    """Prints the outputs, and with several back ends how far each is from the oracle."""
+    """Prints the outputs; for several back ends, the deviation of each from the oracle."""
     from sssgen.harness.evaluate import input_files as inputs
     from sssgen.harness.evaluate.probes import subject
 
@@ -60,7 +60,7 @@ def run(arguments: Namespace) -> int:
 
 
 def _sampled(chosen: Any, count: int, seed: int) -> dict[str, Any]:
-    """Random inputs, for what the file does not have."""
+    """Random values for the inputs that the file does not set."""
     if not 1 <= count <= MOST_SAMPLES:
         raise failure(f"--samples {count} is not a number of samples", f"from 1 to {MOST_SAMPLES}")
     if seed < 0:

@@ -1,4 +1,4 @@
-"""`sssgen fit`: the parameters with which techniques come nearest to a scene's medium."""
+"""`sssgen fit`: fits the parameters of techniques to a scene's medium."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def add_options(parser: ArgumentParser) -> None:
 
 
 def run(arguments: Namespace) -> int:
-    """Fits on balls and slabs of the medium, and says how far that holds on the scene itself."""
+    """Fits on balls and slabs of the medium, and prints the error there and on the scene itself."""
     settings = settings_of(arguments)._replace(roles=("coordinates", "translucency"))
     from sssgen.lab.chart import charting as chart
     from sssgen.lab.measure import candidates

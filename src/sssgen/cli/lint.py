@@ -1,4 +1,4 @@
-"""`sssgen lint`: what may go wrong in techniques, materials and plain GLSL, and what is proven not to."""
+"""`sssgen lint`: reports operations that may fail in techniques, materials and plain GLSL."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def add_options(parser: ArgumentParser) -> None:
 
 
 def run(arguments: Namespace) -> int:
-    """Prints what is not proven; 1 where a plain function has no guard against it."""
+    """Prints the operations that are not proven safe; returns 1 where one of them has no guard."""
     from sssgen.harness.lint_findings import MAY_FAIL, PROVEN, UNKNOWN, Finding, lint
 
     wrong: list[Diagnostic] = []
@@ -32,11 +32,11 @@ def run(arguments: Namespace) -> int:
             wrong += error.diagnostics
     if wrong:
         raise SssgenError(wrong)
-    bare = any(not one.guarded and one.verdict != PROVEN for _, found in rows for one in found)
+    unguarded = any(not one.guarded and one.verdict != PROVEN for _, found in rows for one in found)
     if arguments.json:
         listed = [{"name": name, "findings": [one.as_json() for one in found]} for name, found in rows]
-        print_json({"ok": not bare, "results": listed})
-        return CHECK_FAILED if bare else OK
+        print_json({"ok": not unguarded, "results": listed})
+        return CHECK_FAILED if unguarded else OK
     for name, found in rows:
         for one in found:
             if one.verdict != PROVEN or arguments.all:
@@ -47,4 +47,4 @@ def run(arguments: Namespace) -> int:
             f"{name}: {len(found)} operation{'s' * (len(found) != 1)} with a domain: {counts[PROVEN]} proven safe, "
             f"{counts[MAY_FAIL]} may fail, {counts[UNKNOWN]} {unseen}"
         )
-    return CHECK_FAILED if bare else OK
+    return CHECK_FAILED if unguarded else OK

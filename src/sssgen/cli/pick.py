@@ -1,4 +1,4 @@
-"""`sssgen pick`: the cheapest chain of techniques that a scene can do with, and what more or less would cost."""
+"""`sssgen pick`: the cheapest chain of techniques that is good enough for a scene, and its neighbours in cost."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def add_options(parser: ArgumentParser) -> None:
 
 
 def run(arguments: Namespace) -> int:
-    """Measures if need be, picks, and says why."""
+    """Measures if necessary, picks, and prints the reasons."""
     for name in ("max_error", "max_cost"):
         value = getattr(arguments, name)
         if value is not None and not 0.0 < value < float("inf"):

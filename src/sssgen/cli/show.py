@@ -1,4 +1,4 @@
-"""`sssgen show`: one technique, as much as a person needs to use it."""
+"""`sssgen show`: the documentation of one technique."""
 
 from __future__ import annotations
 

@@ -49,7 +49,7 @@ def add_options(parser: ArgumentParser) -> None:
 
 
 def run(arguments: Namespace) -> int:
-    """Stresses what is named, and prints what is wrong; 1 where something that counts is."""
+    """Runs the named techniques and prints their faults; returns 1 for a fault that counts."""
     from sssgen.harness.stress import dangerous_inputs as dangerous
     from sssgen.harness.stress import stress_report as report
     from sssgen.harness.stress.stress_run import Settings
@@ -82,7 +82,7 @@ def run(arguments: Namespace) -> int:
 
 
 def _check_rows(rows: Sequence[str], named: Sequence[Specimen]) -> None:
-    """Raises SssgenError for a row that concerns none of what is named: it would pass unseen."""
+    """Raises SssgenError for a row without a trial for any of the subjects: it would silently pass."""
     from sssgen.harness.stress import dangerous_inputs as dangerous
 
     told = {row.name: row.elsewhere for row in dangerous.ROWS}
@@ -121,7 +121,7 @@ def _stressed(chosen: list[Specimen], names: list[str], settings: Settings) -> R
 
 
 def _suffix(path: str, known: tuple[str, ...]) -> str:
-    """The report's kind. What cannot be written is said now, not after minutes. Raises SssgenError."""
+    """The report's suffix. Raises SssgenError now if the report cannot be written, not after the run."""
     suffix = os.path.splitext(path)[1].lower()
     if suffix not in known:
         raise failure(f"a report is no '{suffix}' file", f"it is one of {', '.join(known)}", path)
@@ -133,7 +133,7 @@ def _suffix(path: str, known: tuple[str, ...]) -> str:
 
 
 def _write(path: str, suffix: str, made: Report) -> None:
-    """The report's file, whole or not at all."""
+    """Writes the report atomically."""
     from sssgen.harness.stress import stress_report as report
 
     text = report.as_markdown(made)

@@ -1,4 +1,4 @@
-"""`sssgen transpile`: plain GLSL → a target's language, and what became of its names."""
+"""`sssgen transpile`: translates plain GLSL to a target's language, and reports renamed identifiers."""
 
 from __future__ import annotations
 
@@ -164,13 +164,13 @@ def _translate(arguments: Namespace, module: Module, loaded: Loaded | None, targ
 
 
 def _title(path: Path) -> str:
-    """A file's name as the name of what is made of it."""
+    """The name of the translation: the file's name as an identifier."""
     name = re.sub(r"\W", "_", path.stem, flags=re.ASCII)
     return name if name[:1].isalpha() else f"file_{name}"
 
 
 def _concerns(old: str, new: str, loaded: Loaded | None, files: dict[str, str]) -> bool:
-    """Whether a name is one of the author's, and stands changed in the output."""
+    """Whether a name is the author's, and is renamed in the output."""
     bare = _bare(old)
     if bare in ("main", "mainImage") or bare.startswith("gl_"):
         return False

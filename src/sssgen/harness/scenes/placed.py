@@ -1,4 +1,4 @@
-"""What every geometry has: its place in the world, and what a ray finds on it."""
+"""The base of every geometry: its transform, and the intersections of rays."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Vector: TypeAlias = tuple[float, float, float]
 
 
 class Hits(NamedTuple):
-    """What n rays found: the nearest point in front of the origin. Where `hit` is false the rest is 0."""
+    """The intersections of n rays: the nearest point in front of the origin. Where `hit` is false the rest is 0."""
 
     hit: Bools
     """(n,)"""
@@ -31,7 +31,7 @@ class Hits(NamedTuple):
 
 @dataclass(frozen=True)
 class Geometry(ABC):
-    """A shape in object space, and where it stands: scaled, then turned about x, y and z, then moved."""
+    """A shape in object space and its transform: scaled, then rotated about x, y and z, then translated."""
 
     position: Vector = field(default=(0.0, 0.0, 0.0), kw_only=True)
     rotation: Vector = field(default=(0.0, 0.0, 0.0), kw_only=True)
@@ -40,7 +40,7 @@ class Geometry(ABC):
     """World units in one unit of object space; above 0."""
 
     def __getstate__(self) -> dict[str, Any]:
-        """What a shape is, without what has been made of it: a mesh's tree and a function's code stay behind."""
+        """The fields only, without cached values: a mesh's tree and a function's code are not pickled."""
         return {one.name: getattr(self, one.name) for one in fields(self)}
 
     def to_world(self) -> Array:
@@ -58,7 +58,7 @@ class Geometry(ABC):
         return matrix
 
     def hits(self, origin: npt.ArrayLike, directions: npt.ArrayLike) -> Hits:
-        """What rays in world space find: from one origin (3,), along unit directions (n, 3)."""
+        """The intersections of rays in world space: from one origin (3,), along unit directions (n, 3)."""
         turn = self._turn()
         start = turn.T @ (np.asarray(origin, np.float64) - self.position) / self.scale
         along = np.asarray(directions, np.float64) @ turn
@@ -70,7 +70,7 @@ class Geometry(ABC):
 
     @abstractmethod
     def cast(self, origin: Array, directions: Array) -> Hits:
-        """What rays in object space find."""
+        """The intersections of rays in object space."""
 
     @abstractmethod
     def distance(self, points: Array) -> Array:

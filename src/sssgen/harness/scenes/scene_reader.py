@@ -1,4 +1,4 @@
-"""From a scene's TOML to the scene, with every error at its place."""
+"""Reads a scene from its TOML document; every error has its position."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from sssgen.support.paths import posix
 from sssgen.support.toml_source import Document, Path
 
 MEASURED = ("title", "medium", "inlay")
-"""What says of a scene what is physically there: for measuring materials, not for drawing one."""
+"""Keys that describe the physical scene: for measuring materials, not for drawing."""
 
 _KEYS = (
     "material", "size", "samples", "time", "background", "ambient", "exposure",
@@ -40,13 +40,13 @@ MAX_LIGHTS = 4
 MAX_PARTS = 64
 MAX_SIDE = 8192
 MAX_COUNT = 2**24
-"""Samples of a picture: what is known of each takes a few hundred bytes."""
+"""The largest number of samples of a picture: each takes a few hundred bytes."""
 MAX_SAMPLES = 8
 MAX_TEXELS = 256
 
 
 def read_scene(document: Document, folder: str) -> Scene:
-    """The scene of a document; files are relative to `folder`. Raises SssgenError with all that is wrong."""
+    """The scene of a document; files are relative to `folder`. Raises SssgenError with all errors."""
     reader = _Reader(document, folder)
     scene = reader.scene()
     document.reporter.check()
@@ -239,7 +239,7 @@ class _Reader:
             self.pass_on(wrong, (*table.path, "parameters", named) if named else (*table.path, "technique"))
         return shape
 
-    # What the material takes
+    # Parameters and textures of the material
 
     def parameters(self, content: Any) -> dict[str, object]:
         if not isinstance(content, dict):
@@ -307,7 +307,7 @@ class _Reader:
         found = os.path.join(self.folder, name)
         if "\0" in found or not os.path.isfile(found):
             span = self.document.place(*path).value
-            hint = f"it is looked for beside the scene, in {posix(self.folder or '.')}"
+            hint = f"it is searched for next to the scene, in {posix(self.folder or '.')}"
             self.document.error(span, f"cannot find the file '{name}'", hint)
         return found
 
