@@ -41,9 +41,9 @@ class Transformer:
 
     def __init__(self) -> None:
         self.out: list[Stmt] = []
-        """The new statements of the block at hand."""
+        """The new statements of the current block."""
         self.scope: dict[str, Declare | Param] = {}
-        """The variables that are visible at the statement at hand, with their new declarations."""
+        """The variables that are visible at the current statement, with their new declarations."""
 
     def function(self, function: Function) -> Function:
         if function.body is None:
@@ -55,7 +55,7 @@ class Transformer:
     # Statements
 
     def block(self, block: Block) -> Block:
-        """The statements of a block, in the scope at hand."""
+        """The statements of a block, in the current scope."""
         outer, self.out = self.out, []
         for stmt in block:
             new = self.statement(stmt)

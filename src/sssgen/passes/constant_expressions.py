@@ -11,7 +11,7 @@ from sssgen.passes.constant_arithmetic import Number, Numbers
 
 
 def uniform_value(type: Type, numbers: tuple[float, ...], span: Span) -> Expr:
-    """A uniform's components as an expression; a matrix's stand column after column."""
+    """A uniform's components as an expression; a matrix column after column."""
     if components(type) != len(numbers) or not numbers:
         raise ValueError(f"{len(numbers)} components for {components(type)}")
     if isinstance(type, Array):

@@ -57,7 +57,7 @@ class Cleaned(NamedTuple):
 
 
 class Unit:
-    """A statement, with what decides whether it is kept."""
+    """A statement, with the data that decide whether it is kept."""
 
     __slots__ = ("jumps", "kept", "needs", "otherwise", "parent", "stmt", "then", "variables")
 
@@ -77,7 +77,7 @@ class Unit:
 
 
 class Cleaner:
-    """Cleans the functions of a module, each when it is first asked for."""
+    """Cleans the functions of a module, each at its first use."""
 
     def __init__(self, module: Module) -> None:
         self.functions = {function.key: function for function in module.functions}
@@ -142,7 +142,7 @@ class FunctionCleaner:
         return Cleaned(function, needs, self.acts)
 
     def keep_assumptions(self) -> None:
-        """Keeps those that speak of what is there anyway: they keep nothing alive."""
+        """Keeps the assumptions about values that are live without them."""
         kept = [need for unit in self.units if unit.kept for need in unit.needs]
         read = {need.name for need in kept if isinstance(need, Global)}
         read.update(*(self.cleaner.reads(need.function) for need in kept if isinstance(need, Call)))

@@ -1,7 +1,7 @@
-"""Finds where the pixels of a quad may go different ways, and what must not stand there. Used by `hoist`.
+"""Finds where the pixels of a quad may go different ways, and what is not allowed there. Used by `hoist`.
 
-A texture read that chooses its own level, or a derivative, compares a pixel with its neighbours, so they must
-all get there: control flow must be *uniform*. The analysis is that of WGSL, section 15.2, made simpler on the
+A texture read that chooses its own level, or a derivative, compares a pixel with its neighbours, so all must
+reach it: control flow must be *uniform*. The analysis is that of WGSL, section 15.2, made simpler on the
 safe side. What depends on an entry's parameters, a module variable or a texture varies; uniforms and constants
 do not. After a branch that some pixels leave for good (by return, break, continue or discard), flow stays
 non-uniform to the end of the function or loop.
@@ -43,7 +43,7 @@ from sssgen.passes.variable_effects import NONE, Effects, effects
 
 @cache
 def implicit() -> frozenset[str]:
-    """The builtins that want uniform control flow, as the intrinsic table says."""
+    """The builtins that need uniform control flow, by the intrinsic table."""
     from sssgen.ir.intrinsics import BUILTINS
 
     return frozenset(name for name, row in BUILTINS.items() if row.uniform_flow)
@@ -51,7 +51,7 @@ def implicit() -> frozenset[str]:
 
 @cache
 def varying_builtins() -> frozenset[str]:
-    """The builtins whose results differ from pixel to pixel whatever they are given."""
+    """The builtins whose results differ from pixel to pixel for all arguments."""
     from sssgen.ir.intrinsics import BUILTINS
 
     rows = BUILTINS.items()
@@ -62,7 +62,7 @@ class Summary(NamedTuple):
     """What a call of a function may do."""
 
     compares: bool
-    """It has a builtin that wants uniform flow, itself or in what it calls."""
+    """It, or a function that it calls, has a builtin that needs uniform flow."""
     varies: bool
     """Its result may vary even where its arguments do not."""
     discards: bool
@@ -148,7 +148,7 @@ def joined(one: Site | None, other: Site) -> Site:
 
 
 class Divergence:
-    """Where flow is not uniform in one function, called as `site` says."""
+    """Where flow is not uniform in one function, called as `site` describes."""
 
     def __init__(
         self,
@@ -159,24 +159,24 @@ class Divergence:
     ) -> None:
         self.summaries, self.functions = summaries, functions
         self.misplaced: set[int] = set()
-        """The expressions, by id, that want uniform flow and may not have it."""
+        """The expressions, by id, that need uniform flow and may not have it."""
         self.inside: set[int] = set()
         """The statements, by id, that are reached uniformly and in which flow diverges."""
         self.after: set[int] = set()
-        """The statements, by id, that are reached uniformly and left otherwise."""
+        """The statements, by id, that are reached uniformly and not left so."""
         self.sites: dict[str, Site] = {}
-        """How the functions are called that want uniform flow."""
+        """How the functions are called that need uniform flow."""
         self.shared = summaries.get(function.key, _UNKNOWN).reads
         self.flow = site.uniform
         self.varying = set(site.varying)
         self.hits = 0
-        """How often something misplaced was met."""
+        """How often a misplaced operation was found."""
         self.escapes = 0
-        """Returns and discards met so far in non-uniform flow."""
+        """Returns and discards found so far in non-uniform flow."""
         self.jumps = 0
-        """Breaks and continues met so far in non-uniform flow, of the loop at hand."""
+        """Breaks and continues found so far in non-uniform flow, of the current loop."""
         self.left: set[str] = set()
-        """What varied at some break or continue of the loop at hand."""
+        """What varied at some break or continue of the current loop."""
         self.block(function.body or ())
 
     # Statements
@@ -275,7 +275,7 @@ class Divergence:
     # Expressions
 
     def varies(self, expr: Expr) -> bool:
-        """Whether a value may differ from pixel to pixel. Notes what is misplaced on the way."""
+        """Whether a value may differ from pixel to pixel. Records every misplaced operation."""
         if isinstance(expr, Local):
             return expr.name in self.varying
         if isinstance(expr, Global):
@@ -296,7 +296,7 @@ class Divergence:
         return any(parts)
 
     def compare(self, expr: Intrinsic | Call) -> None:
-        """Notes something that wants uniform flow."""
+        """Records an operation that needs uniform flow."""
         if not self.flow:
             self.misplaced.add(id(expr))
             self.hits += 1

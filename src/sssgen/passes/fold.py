@@ -4,7 +4,7 @@ is known.
 Why: a fixed parameter costs nothing at run time and leaves no uniform; every target gets the same numbers;
 and WGSL computes constants itself, but refuses a module in which one is inf or NaN: such an expression is
 left as it is written.
-Place: first after `link`, as dead branches and unused uniforms are then `prune`'s to find.
+Place: first after `link`, so that `prune` finds dead branches and unused uniforms.
 
 Identities are only those that hold for every float: `x * 1.0`, `x + 0.0` (but for the sign of a zero), never
 `x * 0.0`. Module constants keep their names, for the reader, unless knowing them decides a condition.
@@ -83,7 +83,7 @@ class _Folder(Transformer):
         self.fixed: dict[str, Expr] = {}
         self.constants: dict[str, Expr] = {}
         self.spliced = False
-        """Whether statements of an inner block have come into an outer one."""
+        """Whether statements of an inner block have moved into an outer one."""
         self.methods: dict[type, Any] = {
             Binary: self.binary,
             Unary: self.unary,
@@ -312,7 +312,7 @@ class _Folder(Transformer):
             return new
         last = (element_type(value.type) or (expr.type, 1))[1] - 1
         if not 0 <= index.value <= last:
-            # nothing says what is there; targets refuse it if they see it
+            # the value is undefined; targets refuse such an index
             index = index._replace(value=0 if index.value < 0 else last)
             new = Index(expr.type, value, index, expr.span)
         if isinstance(value, Construct):

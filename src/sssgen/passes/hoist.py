@@ -1,13 +1,13 @@
-"""Moves derivatives, and texture reads that choose their own level, to where all pixels of a quad get to.
+"""Moves derivatives, and texture reads that choose their own level, to where all pixels of a quad pass.
 
-Why: both compare a pixel with its neighbours. Where these went another way, GLSL and HLSL give just anything,
-and WGSL refuses the module; so one rule holds for every target. In this order, the remedies are
+Why: both compare a pixel with its neighbours. Where these took another branch, the result is undefined in GLSL and
+HLSL, and WGSL refuses the module; so one rule holds for every target. In this order, the remedies are
 1. the operation, or the whole call that has it, is computed before the branch, where its operands are the
    same there;
 2. a texture read gets its level from derivatives taken before the branch, of the coordinates as they were
    there;
-3. a texture read gets level 0, and a derivative is taken as 0. Of 2 and 3 a note tells the user.
-Place: after `prune`, so that nothing is moved that goes away; before what is done for one target alone.
+3. a texture read gets level 0, and a derivative is taken as 0. A note reports 2 and 3 to the user.
+Place: after `prune`, so that nothing is moved that is removed later; before what is done for one target alone.
 """
 
 from __future__ import annotations
@@ -51,11 +51,11 @@ from sssgen.passes.divergence import Divergence, Site, Summary, implicit, joined
 from sssgen.passes.scopes import declared, fresh
 
 _LARGEST = 64
-"""How many nodes an expression may have that is put in a variable's place."""
+"""How many nodes an expression may have that replaces a variable."""
 
 
 class Note(NamedTuple):
-    """Something that the user should know of, though the shader works."""
+    """Something that the user should know although the shader works."""
 
     message: str
     span: Span
@@ -107,7 +107,7 @@ def _callers_first(entries: Iterable[str], known: Mapping[str, Summary]) -> list
 
 
 class _Region:
-    """Statements that not all pixels get to, and what is known before them."""
+    """Statements that not all pixels reach, and what is known before them."""
 
     def __init__(self, visible: Iterable[str], reachable: bool = True) -> None:
         self.available = set(visible)
@@ -145,7 +145,7 @@ class _Hoister(Transformer):
         self.source, self.flow, self.known, self.notes = function, flow, known, notes
         self.taken = set(declared(function))
         self.depth = 0
-        """How many blocks enclose the statement at hand."""
+        """How many blocks enclose the current statement."""
         self.depths = {param.name: 1 for param in function.params}
         """How many enclose each variable's declaration."""
         self.shared = known[function.key].reads
@@ -225,7 +225,7 @@ class _Hoister(Transformer):
         return new
 
     def define(self, name: str, value: Expr | None) -> None:
-        """Notes what a variable holds from here on, said with what there was before the region."""
+        """Notes what a variable holds from here on, expressed by what existed before the region."""
         assert self.region is not None
         if value is not None and sum(1 for _ in subexpressions(value)) <= _LARGEST:
             self.region.definitions[name] = value
@@ -378,12 +378,12 @@ class _Hoister(Transformer):
         return self.over(expr, parts)
 
     def note(self, message: str, span: Span) -> None:
-        why = "neighbouring pixels may go another way"
+        why = "neighbouring pixels may take another branch"
         self.notes[Note(f"{message}: {why}, so their difference is not known", span)] = None
 
 
 def named(variable: Local | Global) -> str:
-    """A variable's name, told apart from the module's as in the IR's text form."""
+    """A variable's name, with `$` for one of the module, as in the IR's text form."""
     return variable.name if isinstance(variable, Local) else f"${variable.name}"
 
 
@@ -409,6 +409,6 @@ def _zero(type: Type, span: Span) -> Expr:
 
 
 def _key(expr: Expr) -> object:
-    """What an expression says, wherever it stands."""
+    """A key that is equal for expressions that differ in their spans alone."""
     fields = [part for part in expr[:-1] if isinstance(part, (str, int, float))]
     return (type(expr), expr.type, *fields, *[_key(operand) for operand in operands(expr)])

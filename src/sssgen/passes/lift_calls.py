@@ -1,8 +1,8 @@
-"""Gives each call that writes something a statement of its own, and makes discarding a thing that calls say.
+"""Gives each call that writes something a statement of its own, and makes calls report whether they discard.
 
-Why: in Python a function returns what it writes, as in `d, normal = trace(p)`, so such a call cannot stand
-inside an expression. A function that may discard gets a last parameter `out bool discarded`; behind its call
-stands `if (discarded) discard;`. Place: before if-conversion, to which only these few forms of a call are
+Why: in Python a function returns what it writes, as in `d, normal = trace(p)`, so such a call cannot be
+inside an expression. A function that may discard gets a last parameter `out bool discarded`; after its call
+comes `if (discarded) discard;`. Place: before if-conversion, to which only these few forms of a call are
 left: `x = f(…)`, `T x = f(…)` and `f(…)` alone, with variables for all out and inout arguments.
 """
 
@@ -60,7 +60,7 @@ _NOTHING: Mapping[str, Effects] = {}
 
 
 def lift_calls(module: Module) -> Module:
-    """The module with its writing calls as statements. Functions stand after those that they call."""
+    """The module with its writing calls as statements. Functions come after those that they call."""
     lifted: dict[str, Function] = {}
     old: dict[str, Function] = {}
     for function in module.functions:
@@ -71,7 +71,7 @@ def lift_calls(module: Module) -> Module:
 
 
 class Calls:
-    """What the calls of a module's functions write; `shared` says which of them read and write module variables."""
+    """What the calls of a module's functions write; `shared` has their effects on module variables."""
 
     def __init__(self, functions: Functions, shared: Mapping[str, Effects] = _NOTHING) -> None:
         self.functions, self.shared = functions, shared
@@ -105,7 +105,7 @@ def lift(function: Function, calls: Calls) -> Function:
 
 
 def awkward(function: Function, calls: Calls) -> list[Stmt]:
-    """The statements in which a writing call stands inside a larger expression.
+    """The statements in which a writing call is inside a larger expression.
 
     There languages differ in the order of evaluation, and in whether the right side of `&&` and both arms of a choice
     are always evaluated; and what other passes compute before the statement would be computed too early.
@@ -130,7 +130,7 @@ def out_arguments(call: Expr, functions: Functions) -> list[str]:
 
 
 def discards(function: Function) -> bool:
-    """Whether the function says through its last parameter which lanes are discarded."""
+    """Whether the last parameter of the function reports which lanes are discarded."""
     return bool(function.params) and function.params[-1].name == DISCARDED and function.params[-1].direction == "out"
 
 
@@ -163,7 +163,7 @@ class _Lifter(Transformer):
         self.calls = calls
         self.functions, self.shared = calls.functions, calls.shared
         self.names: set[str] = set()
-        """All names of the function, once a new one is chosen."""
+        """All names of the function, once a new name is chosen."""
 
     def run(self) -> Function:
         return self.function(self.source) if self.writes_in(self.source.body or ()) else self.source

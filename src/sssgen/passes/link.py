@@ -1,4 +1,4 @@
-"""Links the techniques of a material into one module: slots are bound, uniforms get one name each, nothing is double.
+"""Links the techniques of a material into one module: slots are bound, uniforms get one name each, without duplicates.
 
 First of all passes: everything after it sees one closed module without slots. A function that two stages use alike
 appears once; one that they use differently (another distance function behind its slot, say) appears once for each.
@@ -25,7 +25,7 @@ class LinkStage(NamedTuple):
     module: Module
     function: Function
     bindings: Mapping[str, Bound]
-    """Slot name → the function put in its place, with its module."""
+    """Slot name → the function that is bound to it, with its module."""
     values: Mapping[str, tuple[float, ...]]
     """Uniform → the default that the material gives it."""
     fixed: frozenset[str]

@@ -1,12 +1,12 @@
-"""Makes names legal for a target, and keeps the author's wherever it can.
+"""Makes names legal for a target, and keeps those of the author where possible.
 
-Why: every target reserves other words, and some have no overloads; a shader's author should still find their
+Why: every target reserves different words, and some have no overloads; a shader's author should recognise their
 names.
 Place: last, just before printing, as every pass before it may bring new names and new overloads.
 
 A name is changed if the target reserves it, if no shading language allows it (`__` inside, `gl_` in front),
 if it is taken, or if it hides something that its function uses. A changed name gets `_` at its end, or a
-number if that is taken too. A name that merely ends in digits is as good as any other.
+number if that is taken too. A name that ends in digits is not special.
 """
 
 from __future__ import annotations
@@ -46,11 +46,11 @@ def rename(
 ) -> tuple[Module, dict[str, str]]:
     """The module with legal names, and what was renamed, as old → new.
 
-    `reserved` holds the target's words, `reserved_folded` those it reserves in any case, in lower case.
+    `reserved` holds the target's reserved names, `reserved_folded` those reserved in any case, in lower case.
     `uniform_name` gives a uniform's name in the target's style. With `mangle_overloads` each function of an
     overloaded name gets its parameters' types into its name; without `matrix_overloads` those of a name whose overloads
-    differ in a vec4 and a mat2 alone. In the result, overloads that were told apart stand under their key (as in
-    `box(vec3)`), local names under `function.name`, members under `struct.name`.
+    differ in a vec4 and a mat2 alone. In the result, overloads that got different names are listed under their key (as
+    in `box(vec3)`), local names under `function.name`, members under `struct.name`.
     """
     return _Namer(module, reserved, uniform_name, mangle_overloads, reserved_folded, matrix_overloads).run()
 
@@ -170,7 +170,7 @@ class _Namer:
                 self.keys[key] = function_key(new, types)
 
     def mangled(self) -> dict[str, str]:
-        """Names for overloads: as many parameters' types as it takes to tell them apart."""
+        """Names for overloads: the fewest parameter types that distinguish them."""
         overloads: dict[str, list[tuple[str, Function]]] = {}
         for key, function in self.keyed:
             overloads.setdefault(function.name, []).append((key, function))
@@ -186,7 +186,7 @@ class _Namer:
         return result
 
     def confused(self, overloads: list[Function]) -> bool:
-        """Whether the target cannot tell these apart: a vec4 from a mat2, to HLSL."""
+        """Whether the target cannot distinguish these: HLSL a vec4 from a mat2."""
         if self.matrix_overloads:
             return False
         shapes = [[VEC4 if param.type == Matrix(2) else param.type for param in one.params] for one in overloads]

@@ -21,9 +21,9 @@ _T = TypeVar("_T")
 def prune(module: Module, roots: Iterable[str]) -> Module:
     """The part of a module that the functions with the keys `roots` use, without dead statements.
 
-    What a stage is given and gives (in and out variables) stays: other stages count on it.
+    The inputs and outputs of a stage (in and out variables) stay: other stages depend on them.
 
-    Functions come out with callees before callers, otherwise in the order they had. Raises KeyError for a
+    The functions are ordered, callees before callers, otherwise in the order they had. Raises KeyError for a
     root that the module does not have.
     """
     cleaner = Cleaner(module)

@@ -1,7 +1,7 @@
 """The names in a function: finding, replacing and renaming them. Used by the passes that move or name code.
 
 In the IR no visible variable is hidden by another; sibling blocks may use one name each. A pass that moves
-statements to another block puts this right again with `separate`.
+statements to another block restores this with `separate`.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def outs_of(functions: Iterable[Function]) -> dict[str, tuple[int, ...]]:
 def assigned(function: Function, outs: Mapping[str, tuple[int, ...]]) -> set[str]:
     """The parameters and variables of a function that its statements write; not where they are declared.
 
-    `outs` is what `outs_of` says of the module's functions.
+    `outs` is the result of `outs_of` for the module's functions.
     """
     targets: list[Expr] = []
     for stmt in statements(function.body or ()):

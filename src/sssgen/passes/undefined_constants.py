@@ -1,7 +1,7 @@
-"""Finds constants that are no number: 1.0 / 0.0, sqrt(-1.0), normalize(vec3(0.0)), 3e38 * 10.0, 1 << 32.
+"""Finds constants without a finite value: 1.0 / 0.0, sqrt(-1.0), normalize(vec3(0.0)), 3e38 * 10.0, 1 << 32.
 
-Why: WGSL refuses a module that holds one, also where it comes about through module constants, and every other target
-quietly gives inf, NaN or just anything; so they are an error here, with the place in the source. Place: after `fold`,
+Why: WGSL refuses a module that holds one, also where it results from module constants, and every other target silently
+gives inf, NaN or an undefined value; so they are an error here, with the place in the source. Place: after `fold`,
 which leaves exactly these constant expressions as they are written.
 """
 
@@ -58,7 +58,7 @@ def undefined_constants(module: Module) -> list[Undefined]:
 
 
 class _Checker:
-    """Computes what is constant in expressions, and notes what cannot be."""
+    """Computes the constant parts of expressions, and records those without a value."""
 
     def __init__(self) -> None:
         self.constants: dict[str, Numbers | None] = {}

@@ -1,9 +1,9 @@
-"""How uniforms stand in a uniform block, and how they are read from there.
+"""How uniforms are stored in a uniform block, and how they are read from there.
 
-Why: no two APIs fill a bool alike. An array's elements take 16 bytes each, which WGSL demands and HLSL does without
-saying so. WGSL packs a mat2 tighter than std140 does; and behind HLSL's smaller matrices D3D puts the next value into
-the last row, where SPIR-V does not allow it. So in a block an int stands for a bool, a vec4 for each smaller element,
-and a vec4 for each column of such a matrix. Used by `legalise`, and by the printers for the declarations.
+Why: every API stores a bool in another way. An array's elements take 16 bytes each, which WGSL demands and HLSL does
+silently. WGSL packs a mat2 tighter than std140 does; and behind HLSL's smaller matrices D3D puts the next value into
+the last row, where SPIR-V does not allow it. So a block holds an int instead of a bool, a vec4 for each smaller
+element, and a vec4 for each column of such a matrix. Used by `legalise`, and by the printers for the declarations.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from sssgen.passes.capabilities import Capabilities
 
 
 def block_type(type_: Type, capabilities: Capabilities) -> Type:
-    """The type that stands for `type_` in a uniform block."""
+    """The type that stores `type_` in a uniform block."""
     if isinstance(type_, Scalar | Vector) and type_.kind == "bool" and not capabilities.bool_uniforms:
         return vector_of("int", components(type_))
     if _by_columns(type_, capabilities):
@@ -53,7 +53,7 @@ def read(value: ir.Global, capabilities: Capabilities) -> ir.Expr:
 
 
 def element(index: ir.Index, capabilities: Capabilities) -> ir.Expr:
-    """A uniform's element or column, read from its block; the same where it stands there as it is."""
+    """A uniform's element or column, read from its block; the same where it is stored unchanged."""
     value = index.value
     assert isinstance(value, ir.Global)
     stored = block_type(value.type, capabilities)
@@ -72,7 +72,7 @@ def _element(value: ir.Global, type_: Array, place: ir.Expr, capabilities: Capab
 
 
 def _restored(type_: Type, stored: ir.Global, place: ir.Expr | None, span: ir.Span) -> ir.Expr:
-    """A value of `type_` from what stands for it."""
+    """A value of `type_` from its stored form."""
     if isinstance(type_, Matrix):
         size = type_.size
         columns = [_row(stored, _column(place, column, size, span), size, span) for column in range(size)]
@@ -93,7 +93,7 @@ def _row(stored: ir.Global, place: ir.Expr, size: int, span: ir.Span) -> ir.Expr
 
 
 def _column(place: ir.Expr | None, column: int, size: int, span: ir.Span) -> ir.Expr:
-    """The row at which a column stands, of the matrix at `place` in an array or of the only one."""
+    """The row in which a column is stored, of the matrix at `place` in an array or of the only one."""
     if place is None or isinstance(place, ir.Literal):
         first = size * int(place.value) if isinstance(place, ir.Literal) else 0
         return ir.Literal(INT, first + column, span)

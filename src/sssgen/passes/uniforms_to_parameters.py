@@ -1,4 +1,4 @@
-"""Hands uniforms and textures to functions as parameters, for targets whose text has no place to declare
+"""Passes uniforms and textures to functions as parameters, for targets whose text cannot declare
 them.
 
 Why: a function library to paste, or an engine's custom-function node, gets its parameters from its caller.
@@ -52,7 +52,7 @@ class Closer:
         already."""
         self.keys: dict[str, str] = {}
         taken = set[str]()
-        # functions that stay as they are come first, so that others make way for them
+        # functions that stay as they are come first, so that the others avoid their names
         for key, function in sorted(self.functions.items(), key=lambda item: bool(self.read(item[0]))):
             types = [param.type for param in function.params]
             types += [handed[name].type for name in self.read(key)]

@@ -1,4 +1,4 @@
-"""The error of a pass that meets what the target cannot express."""
+"""The error of a pass for code that the target cannot express."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Which module variables a function reads and writes, itself or through what it calls.
 
-Asked by the passes that move, drop or repeat expressions: what reads a variable must not get behind a call that
-writes it, nor before.
+Used by the passes that move, drop or repeat expressions: an expression that reads a variable must not move past a call
+that writes it.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ NONE = Effects()
 
 
 def effects(module: Module) -> dict[str, Effects]:
-    """The effects of each function that has any, by its key; callees may stand behind their callers."""
+    """The effects of each function that has any, by its key; callees may come after their callers."""
     if not module.variables:
         return {}
     finder = _Finder(module)

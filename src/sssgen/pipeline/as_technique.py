@@ -1,4 +1,4 @@
-"""A function of plain GLSL as a technique's file: its text in the language of techniques, its doc to be filled in."""
+"""A function of plain GLSL as the file of a technique, with a doc comment to edit."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _LANGUAGE = "glsl-es-300"
 """The target whose text is the language of techniques, but for uniforms."""
 
 _ROLES: dict[Type, str] = {VEC2: "coordinates", FLOAT: "thickness", VEC3: "translucency"}
-"""What a function is likely to be for, by what it gives."""
+"""The likely role of a function, by its result type."""
 
 
 def technique_file(module: Module, shown: str, wanted: str = "") -> tuple[str, str]:
@@ -31,16 +31,16 @@ def technique_file(module: Module, shown: str, wanted: str = "") -> tuple[str, s
     program = make_library(module, registry.load(_LANGUAGE)._replace(parameters=()), "none", [function.key], keep=True)
     if program.module.variables:
         name = program.module.variables[0].name
-        hint = "hand it to the function as a parameter"
-        raise failure(f"'{name}' is a variable outside of the function, which a technique has not", hint, shown)
-    name = program.module.functions[-1].name  # it stands behind what it calls; GLSL may reserve what it was called
+        hint = "pass it to the function as a parameter"
+        raise failure(f"'{name}' is a module variable, which a technique cannot have", hint, shown)
+    name = program.module.functions[-1].name  # its callees come first; GLSL may reserve its original name
     parts = {kind: [[line.text for line in block] for block in blocks] for kind, blocks in program.parts.items()}
     own = "\n".join(dropwhile(lambda line: line.startswith("//"), parts["functions"].pop()))
     blocks = ["\n".join(block) for kind in ("types", "constants") for block in parts[kind]]
     blocks += map(_uniform, program.module.uniforms)
     blocks += ["\n".join(block) for block in parts["functions"]]
     made = "\n\n".join([*filter(None, blocks), _doc(function) + own]) + "\n"
-    load_text(made, f"{name}.sss")  # what a technique cannot do is said now
+    load_text(made, f"{name}.sss")  # raises SssgenError for what a technique cannot do
     return name, made
 
 
@@ -58,7 +58,7 @@ def _chosen(module: Module, shown: str, wanted: str) -> Function:
 def _uniform(uniform: Uniform) -> str:
     """A uniform's declaration with the hints that its type allows."""
     type_ = uniform.type
-    doc = f"/// {uniform.doc.splitlines()[0]}" if uniform.doc else "/// What it is."
+    doc = f"/// {uniform.doc.splitlines()[0]}" if uniform.doc else "/// Its meaning."
     if isinstance(type_, Sampler):
         return f"{doc}\nuniform {spell(type_)} {uniform.name} : default_white;"
     if isinstance(type_, Array | Struct):
@@ -76,7 +76,7 @@ def _doc(function: Function) -> str:
     """The doc comment to fill in, with what each parameter could be."""
     said = function.doc.strip().splitlines()
     role = _ROLES.get(function.result, "surface")
-    lines = [said[0] if said else "What it gives, in one sentence.", f"role: {role}"]
+    lines = [said[0] if said else "The result, in one sentence.", f"role: {role}"]
     lines += ["formula: ", "source: ", "units: ", "limits: "]
     text = "/**\n" + "".join(f" * {line}".rstrip() + "\n" for line in lines) + " */\n"
     notes = [f"// role: one of {', '.join(ROLES)}"]

@@ -33,7 +33,7 @@ class Pass(NamedTuple):
     name: str
     step: Callable[[State], Module]
     reason: str
-    """What it does, and why it stands here, in one line."""
+    """What it does, and why at this position, in one line."""
     when: Condition | None = None
     """None: always."""
 
@@ -74,7 +74,7 @@ _GUARDS = Pass(
 )
 
 MATERIAL: tuple[Pass, ...] = (
-    Pass("link", steps.link_stages, "bind slots and put the techniques into one module, which all others need"),
+    Pass("link", steps.link_stages, "bind slots and merge the techniques into one module, which all others need"),
     Pass("chain", steps.assemble_chain, "assemble the functions that the shell calls, from the linked functions"),
     _FOLD,
     _UNDEFINED,
@@ -85,7 +85,7 @@ MATERIAL: tuple[Pass, ...] = (
     Pass("cost", steps.count_cost, "count the operations of the program that all targets get"),
 )
 """A material. Of the target they depend on its lighting, on whether the engine encodes colours, and on its precision:
-their result is kept for all targets that agree in these."""
+their result is cached for all targets that agree in these."""
 
 _SHADER_INPUT: tuple[Pass, ...] = (
     Pass("uniform_structs", steps.split_uniform_structs, "split uniforms of structs; no other pass knows these"),

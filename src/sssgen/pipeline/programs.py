@@ -24,7 +24,7 @@ from sssgen.targets.descriptor import Target
 _material_programs: dict[tuple[str, str, bool, str, str, str], State] = {}
 """The states after the passes of a material, which are the same for all targets of one kind."""
 _CACHED = 8
-"""Materials come one after another, each for all targets."""
+"""Few, as materials are compiled one after another, each for all targets."""
 
 
 def make(

@@ -1,4 +1,4 @@
-"""What the passes of the pipeline hand on: the module, the settings of the command, and what each pass found out."""
+"""What the passes share: the module, the settings of the command, and the results of the passes."""
 
 from __future__ import annotations
 

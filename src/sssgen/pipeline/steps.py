@@ -1,4 +1,4 @@
-"""The passes as steps of the pipeline: each calls its pass with what the state holds, and stores what it found out."""
+"""The passes as steps of the pipeline: each calls its pass with parts of the state, and stores its results there."""
 
 from __future__ import annotations
 

@@ -1,8 +1,9 @@
-"""Gives integer operators the same result in every language: that of WGSL, which leaves none open.
+"""Gives integer operators the same result in every language: that of WGSL, which defines it for all operands.
 
-Why: in GLSL and HLSL a division by 0 gives anything, so does a remainder of a negative number (glslang makes a floored
+Why: in GLSL and HLSL a division by 0 is undefined, so is a remainder of a negative number (glslang makes a floored
 one of it) and a shift by 32 bits or more. Here x / 0 is x, x % 0 is 0, `%` has the sign of x, and of a shift's amount
-the low five bits count. What is plain to see (a constant, a loop's counter) is left as it is. Used by `legalise`.
+the low five bits count. Operands that are evidently safe (constants, counters of loops) stay unchanged. Used by
+`legalise`.
 """
 
 from __future__ import annotations

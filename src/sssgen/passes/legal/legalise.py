@@ -27,7 +27,7 @@ from sssgen.passes.unsupported import Unsupported
 from sssgen.passes.variable_effects import effects
 
 Polyfill = Callable[[str, Sequence[Type]], ir.Module]
-"""Gives the module whose last function stands in for a builtin with these argument types."""
+"""Gives the module whose last function implements a builtin for these argument types."""
 
 
 class _OutOfOrder(Exception):

@@ -1,4 +1,4 @@
-"""Says a store into a part of a vector or matrix as a store of the whole.
+"""Rewrites a store into a part of a vector or matrix as a store of the whole.
 
 Why: naga refuses `v.xz = a`, and FXC an index that is not constant on the left, as in `m[i] = a`. Both become a
 construction of the whole from its old parts and the new ones. Used by `legalise`.
@@ -12,7 +12,7 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.types import BOOL, Matrix, Scalar, Vector, components, kind_of, vector_of
 
 Keep = Callable[[ir.Expr, str], ir.Expr]
-"""Gives what is cheap to repeat in the place of an expression: itself, or a variable of about this name."""
+"""Gives an expression that is cheap to repeat: the argument itself, or a variable with about this name."""
 
 
 def whole_store(

@@ -58,7 +58,7 @@ from sssgen.passes.scopes import declared, fresh, separate
 
 
 def predicate(module: Module) -> Module:
-    """The module without control flow per lane. Its functions stand after those they call."""
+    """The module without control flow per lane. Its functions come after those they call."""
     module = lift_calls(module)
     functions = {function.key: function for function in module.functions}
     constants = frozenset(constant.name for constant in module.constants)
@@ -75,7 +75,7 @@ class _Frame:
         self.running, self.active = running, active
         """A loop's masks, '' if it has none."""
         self.more = False
-        """Whether statements of this frame are still to come."""
+        """Whether statements of this frame follow."""
         self.branches = 0
         """How many uniform ifs and loops of this frame we are in."""
 

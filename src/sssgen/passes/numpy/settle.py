@@ -13,7 +13,7 @@ from sssgen.passes.numpy.variable_uses import is_local, mentions, reads_of, writ
 def settle(body: Block, function: Function, functions: Functions) -> Block:
     """Gives a start to variables, out parameters too, that may be read before they are set in all lanes.
 
-    What is declared a second time, as two arms may that now stand in one block, is assigned instead.
+    A second declaration, of two arms that are now in one block, becomes an assignment.
     """
     unset = [param for param in function.params if param.direction == "out"]
     starts = tuple(

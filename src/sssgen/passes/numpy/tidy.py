@@ -117,7 +117,7 @@ def _join_arms(block: Block, functions: Functions) -> Block:
 
 
 def _other_arm(done: list[Stmt], name: str, mask: str, functions: Functions) -> int | None:
-    """Where `name = select(mask, …, name)` stands, if it could as well be done at the end."""
+    """The position of `name = select(mask, …, name)`, if it can as well be at the end."""
     changed: set[str] = set()
     for place in range(len(done) - 1, -1, -1):
         stmt = done[place]

@@ -1,4 +1,4 @@
-"""Finds the control flow that is the same in all lanes, where Python's own `if` and loops serve.
+"""Finds the control flow that is the same in all lanes, where Python's own `if` and loops can be used.
 
 A condition is uniform when it is made of literals, module constants and variables that hold nothing else.
 What comes from outside (parameters, uniforms, textures) may differ from lane to lane. Used by `predicate`.
@@ -144,7 +144,7 @@ class Uniformity:
         self.block(loop.body, inner)
 
     def facts(self, loop: For | While, inside: bool) -> LoopFacts:
-        """How to run a loop; `inside` says that it stands where only some lanes are."""
+        """How to run a loop; `inside`: it is where only some lanes are active."""
         body = loop.body
         counter = count(loop) if isinstance(loop, For) else None
         counted = counter is not None and self.fixed(counter, body)

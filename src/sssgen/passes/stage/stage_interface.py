@@ -3,7 +3,7 @@
 A module with a function `void main()` is one: a vertex shader where gl_Position is written, else a fragment shader.
 A location that the author wrote is kept; the other variables get the lowest free ones in the order of their
 declaration, so that a vertex shader's outputs meet a fragment shader's inputs where both are declared alike.
-Place: what goes by the framebuffer before `hoist`, the interface last, as the names are final there.
+Place: what depends on the framebuffer before `hoist`, the interface last, as the names are final there.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ ENTRY = "main()"
 """The key of the function that a stage begins with."""
 
 RESOLUTION = "iResolution"
-"""The uniform that says how large the framebuffer is, in pixels."""
+"""The uniform that holds the size of the framebuffer in pixels."""
 
 COLORS = ("gl_FragColor", "gl_FragData")
 """Builtins that are colours of the framebuffer at the locations from 0 on."""
 
 
 class Slot(NamedTuple):
-    """One value that goes in or comes out: a variable, or an element or column of one."""
+    """One input or output: a variable, or an element or column of one."""
 
     variable: Variable
     path: tuple[int, ...]
@@ -72,10 +72,10 @@ def stage_kind(module: Module) -> str:
 
 
 def interface(module: Module, kind: str, function: str, builtins: Collection[str], turned: bool) -> Stage:
-    """The interface of a module with its final names. Raises Unsupported for what no stage of the target is given.
+    """The interface of a module with its final names. Raises Unsupported for an input that the target lacks.
 
-    `function` is the key of its main function, `builtins` are those that the target has a value for; of an output
-    that it has not nothing comes out. `turned`: the framebuffer's y counts from the top.
+    `function` is the key of its main function, `builtins` are those that the target has; any other
+    output is dropped. `turned`: the framebuffer's y counts from the top.
     """
     given = [variable for variable in module.variables if variable.storage == "in"]
     made = [variable for variable in module.variables if variable.storage == "out"]
@@ -88,7 +88,7 @@ def interface(module: Module, kind: str, function: str, builtins: Collection[str
 
 
 def resolution_of(module: Module) -> str:
-    """The name of the uniform that says how large the framebuffer is; '' where there is none."""
+    """The name of the uniform that holds the size of the framebuffer; '' where there is none."""
     for uniform in module.uniforms:
         if uniform.name == RESOLUTION and isinstance(uniform.type, Vector) and uniform.type.kind == "float":
             return uniform.name
@@ -96,7 +96,7 @@ def resolution_of(module: Module) -> str:
 
 
 def turned_derivatives(module: Module) -> Module:
-    """The module for a framebuffer whose y counts from the top: dFdy keeps its meaning, and is negated."""
+    """The module for a framebuffer whose y counts from the top: dFdy is negated, which keeps its meaning."""
 
     def change(expr: Expr) -> Expr:
         if isinstance(expr, Intrinsic) and BUILTINS[expr.name].axis == "y":
@@ -108,7 +108,7 @@ def turned_derivatives(module: Module) -> Module:
 
 
 def colors_in_use(module: Module) -> Module:
-    """The module with gl_FragData no longer than what it uses of it, where its indices say so."""
+    """The module with gl_FragData as long as its highest index requires, where all indices are constant."""
     data = {one.name: one.type for one in module.variables if one.builtin == "gl_FragData"}
     if not data:
         return module
@@ -140,15 +140,15 @@ def remarks(
         if variable.interpolation == "noperspective" and not capabilities.noperspective:
             found.append(
                 (
-                    f"'{variable.name}' is interpolated with perspective here: this target has no other way",
+                    f"'{variable.name}' is interpolated with perspective here: this target has no other interpolation",
                     variable.span,
                 )
             )
         if variable.builtin == "gl_FragCoord" and turned and not resolution_of(module):
-            hint = f"with a uniform vec2 {RESOLUTION} it would be turned"
+            hint = f"declare a uniform vec2 {RESOLUTION}, and it is flipped"
             found.append((f"gl_FragCoord.y counts from the top of the framebuffer here; {hint}", variable.span))
         elif variable.storage == "out" and variable.builtin and variable.builtin not in (*builtins, *COLORS):
-            found.append((f"{variable.builtin} has no effect here: this target has nothing like it", variable.span))
+            found.append((f"{variable.builtin} has no effect here: this target has no such output", variable.span))
     return found
 
 
@@ -179,7 +179,7 @@ def _parts(variable: Variable, type_: Type, path: tuple[int, ...] = ()) -> list[
     """The scalars and vectors of a variable, with the indices that lead to each."""
     inner = type_.element if isinstance(type_, Array) else type_
     if isinstance(inner, Struct):
-        raise Unsupported(f"'{variable.name}' is made of structs, which go from stage to stage nowhere", variable.span)
+        raise Unsupported(f"'{variable.name}' contains structs, which cannot be passed between stages", variable.span)
     if not isinstance(type_, Array | Matrix):
         return [(path, type_)]
     found = element_type(type_)

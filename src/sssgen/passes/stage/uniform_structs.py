@@ -1,9 +1,9 @@
-"""Takes uniforms apart that are structs, or arrays of them: each member becomes a uniform of its own.
+"""Splits uniforms that are structs, or arrays of them: each member becomes a uniform of its own.
 
 Why: uniform blocks lay structs out otherwise in each language, and an engine's material has no such parameters. Of
-`uniform Light lights[4]` comes `uniform vec3 lights_color[4]`, a struct of arrays; a nested member's name goes on the
+`uniform Light lights[4]` comes `uniform vec3 lights_color[4]`, a struct of arrays; a nested member's name is formed the
 same way, and arrays in an array become one, element after element. A struct that is read whole is constructed.
-Place: first of all, so that no other pass meets one.
+Place: first of all, as no other pass handles these.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ Path = tuple[str, ...]
 
 
 class _Leaf(NamedTuple):
-    """A member that holds no struct: the uniform that stands for it."""
+    """A member that holds no struct: the uniform that replaces it."""
 
     name: str
     lengths: tuple[int, ...]
@@ -85,7 +85,7 @@ class _Splitter:
         return rewrite_module(self.module._replace(uniforms=uniforms, variables=variables), self.change, self.restate)
 
     def parts(self, uniform: Uniform) -> Iterator[Uniform]:
-        """The uniforms that stand for one."""
+        """The uniforms that replace one."""
         if uniform.name not in self.split:
             yield uniform
             return
@@ -96,7 +96,7 @@ class _Splitter:
             leaf = self.leaves[path] = _Leaf(name, lengths, element)
             yield uniform._replace(name=name, type=leaf.type, default=default)
 
-    # Rewriting, from the leaves up: a chain of members and indices waits until it has come to a number
+    # Rewriting, from the leaves up: a chain of members and indices waits until it ends in a scalar, vector or matrix
 
     def change(self, node: Expr) -> Expr:
         """A node whose operands are done."""
@@ -133,7 +133,7 @@ class _Splitter:
             return self.element(leaf, indices, node.span)
         for index in indices:
             if any(isinstance(part, Call) for part in subexpressions(index)):
-                raise Unsupported("this index is needed more than once: keep it in a variable", index.span)
+                raise Unsupported("this index is used more than once: store it in a variable first", index.span)
         if isinstance(node.type, Struct):
             values = [self.read(Member(field.type, node, field.name, node.span)) for field in node.type.fields]
             return Construct(node.type, tuple(values), node.span)

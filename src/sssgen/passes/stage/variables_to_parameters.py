@@ -1,12 +1,12 @@
-"""Hands module variables to functions as parameters, for targets that have none.
+"""Passes module variables to functions as parameters, for targets that have none.
 
-Why: a NumPy function has no variables but its own, and what it is given must be seen to be given.
-Place: after `hoist` and `guards`, before `uniforms_to_parameters`, whose parameters stand behind these, and `legalise`.
+Why: a NumPy function has no variables but its own, and its inputs must be visible.
+Place: after `hoist` and `guards`, before `uniforms_to_parameters`, whose parameters follow these, and `legalise`.
 
 A function gets a parameter for each variable that it uses, itself or through what it calls: behind its own, in the
 order in which the variables are declared, with their names; `inout` where the variable may be written, else `in`. A
-variable of the function's own that is called so is renamed. Who calls such a function from outside gives the values
-that the variables begin with; nothing sets them.
+variable of the function's own that is called so is renamed. The caller of such a function from outside passes the
+initial values of the variables; nothing else sets them.
 
 The entry of a stage takes only what the stage is given (its `in` variables), and gives its `out` variables through
 `out` parameters; the private ones are variables of its own, which begin with their values.
@@ -32,14 +32,14 @@ class Handed(NamedTuple):
 
 
 def variables_to_parameters(module: Module, entry: str = "") -> Handed:
-    """The module with its variables handed on; `entry` is the key of a stage's main function, if there is one."""
+    """The module with its variables as parameters; `entry` is the key of a stage's main function, if there is one."""
     if not module.variables:
         return Handed(module, {})
     if entry:
         module = set_at_start(module, entry, all_of_them=True)
     shared = effects(module)
     calls = Calls({function.key: function for function in module.functions}, shared)
-    # a call that writes stands alone from here on, so that an argument that is a variable is not passed twice
+    # from here on a call that writes is a statement of its own, so that no variable is passed twice
     module = module._replace(functions=tuple([lift(one, calls) for one in module.functions]))
     handed = {one.name: Param(one.name, one.type, "in", "", one.span) for one in module.variables}
     closer = Closer(module, handed, {key: effect.writes for key, effect in shared.items()})
@@ -55,7 +55,7 @@ def variables_to_parameters(module: Module, entry: str = "") -> Handed:
 
 
 def _entered(function: Function, own: int, module: Module) -> Function:
-    """The entry, with parameters for what goes in and out of its stage, and variables of its own for the rest."""
+    """The entry, with parameters for the inputs and outputs of its stage, and variables of its own for the rest."""
     storage = {variable.name: variable.storage for variable in module.variables}
     params: list[Param] = list(function.params[:own])
     begins: list[Stmt] = []

@@ -1,6 +1,6 @@
 """Gives texture reads of a vertex shader the level that they have in GLSL: the lowest.
 
-Why: a vertex has no neighbours to compare with. GLSL reads level 0 there; HLSL and WGSL want it said.
+Why: a vertex has no neighbours to compare with. GLSL reads level 0 there; HLSL and WGSL need it written out.
 Place: before `hoist`, which then finds nothing to move.
 """
 
