@@ -1,4 +1,4 @@
-"""Files that are nearly right, to everything that reads files: they are taken, or refused with a place, in time."""
+"""Damaged files for every reader: each is accepted, or refused with a place, within a bound of processor time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What stands where a file should: pipes, devices, folders, loops of links; files that include files without end."""
+"""Pipes, devices, folders and loops of links in place of files; files that include files without end."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What random programs have found, each as the function that shows it; files are in hostile.py and the other tests."""
+"""The faults that random programs have found, each as the function that showed it; files are in hostile.py."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pictures, arrays and meshes that are not what they say, or would fill the memory: refused by name."""
+"""Pictures, arrays and meshes with wrong headers, or that would fill the memory: refused by name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Plain GLSL that upsets a reader: cut anywhere, nested deeply, macros without end. An error with its place, soon."""
+"""Plain GLSL that is cut, nested deeply, or has endless macros: an error with its place, after bounded work."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Random programs of the whole language: every compiler takes them, and every machine computes what NumPy does."""
+"""Random programs of the whole language: every compiler accepts them, and every back end computes what NumPy does."""
 
 from __future__ import annotations
 

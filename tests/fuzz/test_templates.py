@@ -1,4 +1,4 @@
-"""A user's templates that would leave the sandbox, and faulty ones: refused, with file and line."""
+"""User templates that leave the sandbox, or never end: refused with file and line, after bounded work."""
 
 from __future__ import annotations
 

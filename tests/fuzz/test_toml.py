@@ -1,4 +1,4 @@
-"""TOML whose values are not what they should be, at every place of the examples; and what TOML itself allows."""
+"""TOML with wrong values at every place of the examples, and the unusual forms that TOML allows."""
 
 from __future__ import annotations
 

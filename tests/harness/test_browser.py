@@ -1,4 +1,4 @@
-"""The back end `browser`: real draws in Chromium, and what is said where one cannot be made."""
+"""The back end `browser`: draws in Chromium, and its messages where none can be made."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`sssgen check`: what it takes, what it says of what is wrong, and where that stands in the technique."""
+"""`sssgen check`: what it accepts, its messages, and the places in the technique that they name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`sssgen ci`: what it finds in a folder, what it says of faulty files, and its report."""
+"""`sssgen ci`: the files that it finds in a folder, its messages for faulty ones, and its report."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Compilers take what is right and refuse what is wrong, at its line; how files become sources."""
+"""Compilers accept correct files and refuse wrong ones, at the right line; how files become sources."""
 
 from __future__ import annotations
 

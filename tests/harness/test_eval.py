@@ -1,4 +1,4 @@
-"""`sssgen eval`: a technique on arrays of inputs, on every back end, and what it says of inputs that do not fit."""
+"""`sssgen eval`: a technique on arrays of inputs, on every back end, and its messages for inputs that do not fit."""
 
 from __future__ import annotations
 

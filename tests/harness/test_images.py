@@ -1,4 +1,4 @@
-"""Picture files: what is written is read again, and what is no picture is said to be none. And the camera."""
+"""Picture files: each format reads back as written, and files that are no pictures are refused. And the camera."""
 
 from __future__ import annotations
 

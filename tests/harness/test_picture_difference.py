@@ -1,4 +1,4 @@
-"""Comparing pictures: known differences come out as known numbers."""
+"""Comparing pictures: known differences give known numbers."""
 
 from __future__ import annotations
 

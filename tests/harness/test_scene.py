@@ -1,4 +1,4 @@
-"""Scenes: what a file says arrives; all that is wrong with it is said, with its place."""
+"""Scenes: the contents of a file, and every error in it, with its place."""
 
 from __future__ import annotations
 

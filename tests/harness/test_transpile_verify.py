@@ -1,4 +1,4 @@
-"""`sssgen transpile --verify`: functions as they are written against what is made of them, and what it is told."""
+"""`sssgen transpile --verify`: functions as they are written compared with their transpiled texts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The media: their file, their units, and what is said of wrong ones."""
+"""The media: their file, their units, and the messages for wrong ones."""
 
 from __future__ import annotations
 

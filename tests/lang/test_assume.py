@@ -1,4 +1,4 @@
-"""`assume`: how it is read, what the passes do with it, and that the library's own ones hold."""
+"""`assume`: its syntax, its use in the passes, and that the assumptions of the library hold."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The errors of plain GLSL and of its preprocessor: what each says, and where."""
+"""The errors of plain GLSL and of its preprocessor: their messages and places."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The errors of the language: what each says, that several come in one run, and that nothing brings it down."""
+"""The errors of the language: their messages, several in one run, and that no input crashes the front end."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The lexer: what a word is, where it stands, and what is no word."""
+"""The lexer: tokens, their places, and what is not a token."""
 
 from __future__ import annotations
 

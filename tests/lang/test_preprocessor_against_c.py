@@ -1,4 +1,4 @@
-"""The preprocessor against C's own: random macros, conditions and uses give the words that `cpp` gives."""
+"""The preprocessor compared with `cpp`: random macros, conditions and uses give the same tokens."""
 
 from __future__ import annotations
 

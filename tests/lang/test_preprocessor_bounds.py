@@ -1,4 +1,4 @@
-"""The preprocessor's limits: what grows without end, or is hostile, is an error soon."""
+"""The limits of the preprocessor: endless and hostile texts are errors after a bounded amount of work."""
 
 from __future__ import annotations
 

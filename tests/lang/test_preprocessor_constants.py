@@ -1,4 +1,4 @@
-"""Macros that are kept as constants, and those that are not."""
+"""Which macros become constants."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Materials: what a file says arrives in the stages; all that is wrong with it is said, with its place."""
+"""Materials: the contents of a file reach the stages; every error in it is reported, with its place."""
 
 from __future__ import annotations
 

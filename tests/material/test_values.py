@@ -1,4 +1,4 @@
-"""Values of parameters: what fits a uniform becomes its components, and what does not is refused."""
+"""Values of parameters: those that fit a uniform become its components; others are refused."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Constants are computed as float32, exactly where the rules say so and nowhere else."""
+"""Constants are computed as float32, exactly where the rules allow it."""
 
 from __future__ import annotations
 

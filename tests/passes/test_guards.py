@@ -1,4 +1,4 @@
-"""The guard pass: what it writes, where, and what it leaves alone."""
+"""The guard pass: the guards that it adds, and the operations that need none."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Implicit derivatives stand in uniform control flow, and what cannot be moved there is said."""
+"""Implicit derivatives move to uniform control flow; those that cannot are reported."""
 
 from __future__ import annotations
 

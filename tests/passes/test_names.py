@@ -1,4 +1,4 @@
-"""Names are legal for a target, and as near to the author's as they can be."""
+"""Names are legal for a target, and as close as possible to those of the author."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Functions that read uniforms get them as parameters."""
+"""Functions that read uniforms receive them as parameters."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Random programs say the same after a pass as before it."""
+"""Random programs compute the same before and after a pass."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a material does not use is gone; what has an effect stays."""
+"""Unused code of a material is removed; code with an effect is not."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What makes emitting fast, told by what is loaded, made and kept rather than by clocks."""
+"""What makes emitting fast, as the modules that are loaded and the results that are cached; no clocks."""
 
 from __future__ import annotations
 

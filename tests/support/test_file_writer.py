@@ -1,4 +1,4 @@
-"""Writing emitted files: inside their folder only, whatever links and names say."""
+"""Writing emitted files: only inside of their folder, whatever links and names are in it."""
 
 from __future__ import annotations
 

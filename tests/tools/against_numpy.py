@@ -1,4 +1,4 @@
-"""Runs functions on a back end and in NumPy on the same random arguments, and says where the two differ."""
+"""Runs functions on a back end and in NumPy on the same random arguments, and reports where the two differ."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Functions that the tests of the executor have run as work items. Each writes a file for every time that it runs."""
+"""Functions that the tests of the executor run as work items. Each writes a file for every time that it runs."""
 
 from __future__ import annotations
 

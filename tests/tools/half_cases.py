@@ -1,4 +1,4 @@
-"""What the builtins are measured on in half precision, halves with which nothing overflows, and within what limits."""
+"""The cases and limits of builtins in half precision, with arguments for which nothing overflows."""
 
 from __future__ import annotations
 

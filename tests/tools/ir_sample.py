@@ -1,4 +1,4 @@
-"""A source file with a little of everything, and its module."""
+"""A source file with every construct of the language, and its module."""
 
 from __future__ import annotations
 

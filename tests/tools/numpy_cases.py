@@ -1,4 +1,4 @@
-"""What the tests of the NumPy target share: source to Python, and running both it and the interpreter."""
+"""For tests of the NumPy target: source to Python, and a run of both the Python and the interpreter."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the tests of the passes share: modules from source, and comparing them with the source they should be."""
+"""For tests of passes: modules from source, and comparing them with the source of the expected result."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the tests of the preprocessor share: texts with included files, and what comes of them."""
+"""For tests of the preprocessor: texts with included files, and their tokens."""
 
 from __future__ import annotations
 

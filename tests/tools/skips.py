@@ -1,4 +1,4 @@
-"""What is skipped where a compiler or a back end is missing."""
+"""Skips tests whose compiler or back end is missing."""
 
 from __future__ import annotations
 

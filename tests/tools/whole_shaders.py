@@ -1,4 +1,4 @@
-"""Whole shaders in the IR's text form, and what becomes of them; shared by tests."""
+"""Whole shaders in the IR's text form, and what the targets make of them."""
 
 from __future__ import annotations
 
