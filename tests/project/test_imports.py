@@ -53,12 +53,6 @@ LAZY_IMPORTS = {
     "sssgen.targets.registry": EMIT,
     "sssgen.targets.templates": EMIT,
     # Not yet cleared
-    "sssgen.harness.backends.hlsl_spirv": MOVE,
-    "sssgen.harness.check.compile_check": MOVE,
-    "sssgen.harness.compilers.glslang": MOVE,
-    "sssgen.harness.compilers.python_syntax": MOVE,
-    "sssgen.harness.compilers.tint": MOVE,
-    "sssgen.harness.compilers.unity_compiler": MOVE,
     "sssgen.ir.nodes": MOVE,
     "sssgen.lab.chart.drawing.page": MOVE,
     "sssgen.lab.jobs.result_store": MOVE,

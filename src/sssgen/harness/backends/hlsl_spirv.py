@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import tempfile
 from collections.abc import Collection
@@ -110,8 +111,6 @@ def _process(command: list[str], data: bytes) -> subprocess.CompletedProcess[byt
 @cache
 def _tools() -> dict[str, str]:
     """The paths of the two programs. Raises CompilerMissing."""
-    import shutil
-
     programs = {name: shutil.which(name) for name in ("spirv-val", "spirv-cross")}
     if lacking := [name for name, path in programs.items() if path is None]:
         raise CompilerMissing(f"{' and '.join(lacking)} (Debian: spirv-tools spirv-cross · elsewhere: the Vulkan SDK)")

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from pathlib import Path
+from threading import Event
 from typing import Any
 
 from sssgen.harness.check.shader_files import Shader
 from sssgen.harness.compilers import COMPILERS, CompilerMissing, Message, Source, errors, readers
+from sssgen.harness.compilers import unity_compiler as unity
 from sssgen.harness.compilers.compiler_process import Worker
 from sssgen.material.library import TECHNIQUES
 from sssgen.support.diagnostics import SssgenError, failure
@@ -49,9 +53,6 @@ def run(shaders: Sequence[Shader], names: Sequence[str] = (), unity_includes: st
 
     Raises SssgenError where one in `names` is missing, or where none of them reads any of the shaders.
     """
-    from concurrent.futures import ThreadPoolExecutor
-    from threading import Event
-
     programs = [(shader, source) for shader in shaders for source in shader.sources]
     languages = sorted({source.language for _, source in programs})
     chosen = [
@@ -114,10 +115,6 @@ def _within(shader: Shader, messages: list[Message]) -> list[Message]:
 
 
 def _headers(folder: str) -> str:
-    from pathlib import Path
-
-    from sssgen.harness.compilers import unity_compiler as unity
-
     path = Path(folder).expanduser()
     if not path.is_dir():
         raise failure("no such folder of Unity's headers", f"it holds {unity.HEADERS}", posix(folder))

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import re
+import shutil
+import subprocess
+import tempfile
 from pathlib import Path
 from subprocess import CompletedProcess
 
@@ -25,8 +29,6 @@ class Glslang(Compiler):
         self._program = program
 
     def version(self) -> str:
-        import subprocess
-
         text = subprocess.run([self._program, "--version"], capture_output=True, text=True, check=False).stdout
         match = re.search(r"Glslang Version: \S*?(\d+(?:\.\d+)+)", text)
         return f"glslang {match[1]}" if match else text.splitlines()[0]
@@ -53,8 +55,6 @@ class Glslang(Compiler):
         return module
 
     def _hlsl(self, text: str, stage: str, entry: str, dx9_samplers: bool) -> tuple[CompletedProcess[str], bytes]:
-        import tempfile
-
         with tempfile.TemporaryDirectory() as folder:
             options = ["-D", "-V", "-S", _STAGES[stage], "-e", entry]
             options += ["--auto-map-bindings", "--auto-map-locations"]
@@ -64,8 +64,6 @@ class Glslang(Compiler):
             return done, path.read_bytes() if path.is_file() else b""
 
     def _run(self, text: str, options: list[str]) -> CompletedProcess[str]:
-        import subprocess
-
         command = [self._program, "--stdin", *options]
         return subprocess.run(command, input=text, capture_output=True, encoding="utf-8", check=False)
 
@@ -80,9 +78,6 @@ def _messages_of(done: CompletedProcess[str]) -> list[Message]:
 
 def find() -> Glslang:
     """The program on the path; SSSGEN_GLSLANG names another. Raises CompilerMissing where there is none."""
-    import os
-    import shutil
-
     program = shutil.which(os.environ.get("SSSGEN_GLSLANG", "glslangValidator")) or shutil.which("glslang")
     if program is None:
         raise CompilerMissing("Debian: glslang-tools · elsewhere: the Vulkan SDK")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import platform
+
 from sssgen.harness.compilers.compiler_interface import Compiler, Message, Source
 
 
@@ -11,8 +13,6 @@ class Python(Compiler):
     name = "python"
 
     def version(self) -> str:
-        import platform
-
         return f"Python {platform.python_version()}"
 
     def check(self, source: Source) -> list[Message]:

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import atexit
+import contextlib
 import json
+import os
+import shutil
+import subprocess
 from pathlib import Path
 from typing import Any
 
 from sssgen.harness.compilers.calling_entry import wgsl_entry
 from sssgen.harness.compilers.compiler_interface import Compiler, CompilerMissing, Message, Source
+from sssgen.support.paths import folder
 
 # One process answers for all checks. Dawn prints warnings there as well, so a reply begins with "@@".
 _SERVER = """
@@ -41,8 +47,6 @@ class Tint(Compiler):
     name = "tint"
 
     def __init__(self, node: str, modules: Path) -> None:
-        import atexit
-
         self._command = [node, "--input-type=module", "-e", _SERVER, str(modules.parent)]
         self._modules = modules
         self._process: Any = None
@@ -67,8 +71,6 @@ class Tint(Compiler):
 
     def close(self) -> None:
         """End the process."""
-        import contextlib
-
         with contextlib.suppress(OSError):
             self._process.stdin.close()
         self._process.wait(timeout=10)
@@ -76,8 +78,6 @@ class Tint(Compiler):
         self._process.stderr.close()
 
     def _start(self) -> None:
-        import subprocess
-
         self._process = subprocess.Popen(
             self._command,
             stdin=subprocess.PIPE,
@@ -103,11 +103,6 @@ def find() -> Tint:
 
     Raises CompilerMissing where node or the package is lacking.
     """
-    import os
-    import shutil
-
-    from sssgen.support.paths import folder
-
     node = shutil.which("node") or shutil.which("nodejs")
     if node is None:
         raise CompilerMissing("node (Debian: nodejs npm)")

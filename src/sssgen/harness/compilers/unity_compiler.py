@@ -9,7 +9,10 @@ Built-in pipeline: HLSL with DX9 samplers, so glslang reads it. URP and Shader G
 
 from __future__ import annotations
 
+import os
 import re
+import shutil
+import subprocess
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -256,8 +259,6 @@ def _check_batcher(shader: shaderlab.Shader) -> list[Message]:
 
 def find() -> Unity:
     """The headers, a C preprocessor, glslang and DXC. Raises CompilerMissing where one of them is missing."""
-    import os
-
     named = os.environ.get("SSSGEN_UNITY_INCLUDES")
     root = Path(named).expanduser() if named else STANDIN
     if not holds_headers(root):
@@ -272,16 +273,12 @@ def holds_headers(root: Path) -> bool:
 
 def _preprocessor() -> Callable[[str, list[str], list[Path]], str]:
     """A C preprocessor: gcc's or clang's."""
-    import shutil
-
     program = next(filter(None, map(shutil.which, ("gcc", "clang", "cc"))), None)
     if program is None:
         raise CompilerMissing("a C preprocessor (Debian: gcc · elsewhere: clang)")
     command = [program, "-E", "-x", "c", "-undef", "-nostdinc", "-w"]
 
     def preprocess(text: str, macros: list[str], folders: list[Path]) -> str:
-        import subprocess
-
         options = [f"-D{macro}" for macro in macros]
         for folder in folders:
             options += ["-I", str(folder)]
