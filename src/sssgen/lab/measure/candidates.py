@@ -1,7 +1,7 @@
-"""What is charted: every technique of the library at several settings, and every source as published.
+"""The candidates of a chart: every technique of the library at several settings, and the published baselines.
 
 The settings are the technique's counts (steps, taps, rays), which trade speed for accuracy, over their `hint_range`;
-its other parameters are fitted. A new technique is charted as soon as its file is there.
+its other parameters are fitted. A new technique is charted as soon as its file exists.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ from sssgen.material import library, slots
 from sssgen.material.library import Technique
 
 ROLES = ("coordinates", "thickness", "translucency", "material")
-"""The roles that have a reference. A surface's look (masks, waves, colours) is the artist's own: nothing is wrong."""
+"""The roles that have a reference. A surface's look (masks, waves, colours) is the artist's choice: it has no error."""
 
 COUNTS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32)
-"""What a technique's counts are set to, up to its default and one more."""
+"""The values of a technique's counts: those up to its default, and the next larger one."""
 
 PROBES = os.path.join(os.path.dirname(__file__), "probes")
 
 PUBLISHED = os.path.join(os.path.dirname(__file__), "published.toml")
-"""The published baselines as whole chains."""
+"""The file of the published baselines, which are whole chains."""
 
 
 class Candidate(NamedTuple):
@@ -38,15 +38,15 @@ class Candidate(NamedTuple):
     role: str
     """coordinates, thickness, translucency or material"""
     name: str
-    """The technique, or of a material its chain or its source"""
+    """The technique; for a material its chain, or the baseline's name"""
     label: str
     settings: tuple[tuple[str, int], ...]
     techniques: tuple[str, ...]
-    """The chain's techniques, in order; empty: the role is left out"""
+    """The chain's techniques, in order; empty for a chart's point without the role"""
     baseline: bool = False
 
     def stages(self, body: Body) -> tuple[Stage, ...]:
-        """The chain's stages for a scene's body."""
+        """The chain's stages, bound to a scene's body."""
         return tuple(self._stage(name, body) for name in self.techniques)
 
     def _stage(self, name: str, body: Body) -> Stage:
@@ -54,89 +54,93 @@ class Candidate(NamedTuple):
         section = "thickness" if technique.role == "conversion" else technique.role
         uniforms = {uniform.name for uniform in technique.uniforms}
         fixed = tuple((key, value) for key, value in self.settings if key in uniforms)
-        bind, values = [], []
+        bind: list[tuple[str, str]] = []
+        body_values: list[tuple[str, object]] = []
         for slot in technique.slots:
             in_world = slot.params[0].quantity == "world_position"
             bind.append((slot.name, body.function if in_world else slots.body("texture", slot.params[0].quantity)))
-            values += list(body.parameters.items()) if in_world else []
-        own = {key for key, _ in fixed}
-        given = (*fixed, *((key, value) for key, value in values if key not in own))
-        return Stage(section, path_of(name), given, tuple(key for key, _ in given), tuple(bind))
+            body_values += body.parameters.items() if in_world else ()
+        values: dict[str, object] = dict(fixed)
+        for key, value in body_values:
+            values.setdefault(key, value)
+        return Stage(section, path_of(name), tuple(values.items()), tuple(values), tuple(bind))
 
 
 def load(name: str) -> Technique:
-    """A technique of the library, or a probe of the lab's. Raises SssgenError."""
+    """A technique of the library, or a probe of the lab. Raises SssgenError."""
     return library.load(path_of(name))
 
 
 def path_of(name: str) -> str:
-    """What a material calls a technique: its name, or a probe's file."""
+    """The reference to a technique in a material: the technique's name, or the path of a probe's file."""
     probe = os.path.join(PROBES, f"{name}.sss")
     return probe if os.path.isfile(probe) else name
 
 
 def coordinates() -> list[Candidate]:
-    """The techniques that move texture coordinates, and none."""
-    found = [Candidate("coordinates", "none", "none", (), ("shown_uv",))]
+    """The techniques that move texture coordinates, and the candidate without one."""
+    result = [Candidate("coordinates", "none", "none", (), ("shown_uv",))]
     for technique in of_role("coordinates"):
-        found += [
-            Candidate("coordinates", technique.name, label(technique.name, given), given, (technique.name, "shown_uv"),
-                      technique.baseline)
-            for given in settings(technique)
+        result += [
+            Candidate(
+                "coordinates", technique.name, label(technique.name, counts), counts,
+                (technique.name, "shown_uv"), technique.baseline,
+            )
+            for counts in settings(technique)
         ]  # fmt: skip
-    return found
+    return result
 
 
 def thickness() -> list[Candidate]:
-    """The techniques that say how much matter there is, brought to a length."""
-    found = []
+    """The techniques of a thickness, each converted to a length."""
+    result = []
     for technique in of_role("thickness"):
         for to_length in routes(technique.function.quantity, "thickness"):
-            for given in settings(technique):
+            for counts in settings(technique):
                 chain = (technique.name, *to_length, "shown_thickness")
                 legends = [load(name).attributes.legend for name in to_length]
-                shown = ", ".join([label(technique.name, given), *filter(None, legends)])
-                found.append(Candidate("thickness", technique.name, shown, given, chain, technique.baseline))
-    return found
+                text = ", ".join([label(technique.name, counts), *filter(None, legends)])
+                result.append(Candidate("thickness", technique.name, text, counts, chain, technique.baseline))
+    return result
 
 
 def translucency() -> list[Candidate]:
-    """The techniques that say how much light comes through, after the exact thickness; and none."""
-    found = [Candidate("translucency", "none", "none", (), ())]
+    """The techniques of translucency, after the exact thickness, and the candidate without one."""
+    result = [Candidate("translucency", "none", "none", (), ())]
     for technique in of_role("translucency"):
         wanted = quantity_taken(technique)
         for route in routes("thickness", wanted) if wanted else [()]:
             before = ("exact_thickness", *route) if wanted else ()
             chain, baseline = (*before, technique.name), technique.baseline
-            found.append(Candidate("translucency", technique.name, technique.name, (), chain, baseline))
-    return found
+            result.append(Candidate("translucency", technique.name, technique.name, (), chain, baseline))
+    return result
 
 
 def materials(lengths: Sequence[Candidate]) -> list[Candidate]:
-    """Whole chains: each thickness candidate given, with each translucency technique; the published ones; and none."""
-    found = [Candidate("material", "none", "no translucency", (), ())]
+    """Whole chains: every thickness in `lengths` with every translucency, the published chains, and the empty chain."""
+    result = [Candidate("material", "none", "no translucency", (), ())]
     for name, chain in published().items():
-        found.append(Candidate("material", name, name, (), chain, True))
+        result.append(Candidate("material", name, name, (), chain, True))
     for light in of_role("translucency"):
         if is_published(light):
             continue
         wanted = quantity_taken(light)
         if not wanted:
-            found.append(Candidate("material", light.name, light.name, (), (light.name,)))
+            result.append(Candidate("material", light.name, light.name, (), (light.name,)))
             continue
         for length in lengths:
             first = load(length.techniques[0])
             if is_published(first):
                 continue
             to_length = length.techniques[1:-1]
-            for route in _onwards(first.function.quantity, to_length, wanted):
+            for route in _conversions(first.function.quantity, to_length, wanted):
                 chain = (first.name, *route, light.name)
-                shown = " → ".join((label(first.name, length.settings), *route, light.name))
-                found.append(Candidate("material", " → ".join(chain), shown, length.settings, chain))
-    kept: dict[tuple[tuple[str, ...], Any], Candidate] = {}
-    for one in found:  # a published chain that is also one of ours stays the published one
-        kept.setdefault((one.techniques, one.settings), one)
-    return list(kept.values())
+                text = " → ".join((label(first.name, length.settings), *route, light.name))
+                result.append(Candidate("material", " → ".join(chain), text, length.settings, chain))
+    unique: dict[tuple[tuple[str, ...], Any], Candidate] = {}
+    for candidate in result:  # published chains come first and win
+        unique.setdefault((candidate.techniques, candidate.settings), candidate)
+    return list(unique.values())
 
 
 @cache
@@ -146,8 +150,8 @@ def published() -> dict[str, tuple[str, ...]]:
         return {one["name"]: tuple(one["techniques"]) for one in tomllib.load(file)["chain"]}
 
 
-def _onwards(quantity: str, to_length: tuple[str, ...], wanted: str) -> Iterator[tuple[str, ...]]:
-    """The ways from a technique's quantity to the one wanted: by its length, or straight."""
+def _conversions(quantity: str, to_length: tuple[str, ...], wanted: str) -> Iterator[tuple[str, ...]]:
+    """The conversions of a technique's quantity to the wanted one: through a length, or directly."""
     if wanted == quantity:
         yield ()
         return
@@ -157,34 +161,33 @@ def _onwards(quantity: str, to_length: tuple[str, ...], wanted: str) -> Iterator
 
 
 def routes(quantity: str, wanted: str) -> list[tuple[str, ...]]:
-    """The conversions from one quantity to another: each way that the library has."""
+    """The library's conversions from one quantity to another."""
     if quantity == wanted:
         return [()]
-    found: list[tuple[str, ...]] = []
-    for technique in of_role("conversion"):
-        takes = quantity_taken(technique)
-        if takes == quantity and technique.function.quantity == wanted:
-            found.append((technique.name,))
-    return found
+    return [
+        (technique.name,)
+        for technique in of_role("conversion")
+        if quantity_taken(technique) == quantity and technique.function.quantity == wanted
+    ]
 
 
 def needs(technique: Technique) -> str:
-    """What whoever uses a technique must have beside its parameters, in words; '' where that is nothing."""
-    found = []
+    """The data that a technique needs besides its parameters, as a text; may be ''."""
+    parts = []
     for slot in technique.slots:
         texture = slot.params[0].quantity != "world_position"
-        found.append(
+        parts.append(
             "the body as a distance texture (sssgen bake sdf)" if texture else "the body as a distance function"
         )
     for uniform in technique.uniforms:
         if isinstance(uniform.type, Sampler) and not technique.slots:
             holds = dict(uniform.hints).get("holds")
-            found.append(f"a baked {holds[0]} map" if holds else f"the {uniform.name.replace('_', ' ')}")
-    return " and ".join(found)
+            parts.append(f"a baked {holds[0]} map" if holds else f"the {uniform.name.replace('_', ' ')}")
+    return " and ".join(parts)
 
 
 def is_constant(technique: Technique) -> bool:
-    """Whether a thickness technique knows nothing of the place: it gives the same everywhere."""
+    """Whether a thickness technique has the same value at every point."""
     return technique.role == "thickness" and not technique.function.params and not needs(technique)
 
 
@@ -194,24 +197,24 @@ def quantity_taken(technique: Technique) -> str:
 
 
 def of_role(role: str) -> list[Technique]:
-    """The library's techniques of a role that are charted, the published ones last."""
+    """The charted techniques of a role, the published ones last."""
     loaded = [library.load(name) for name in library.index()]
-    of_it = [technique for technique in loaded if technique.role == role and not technique.attributes.uncharted]
-    return sorted(of_it, key=lambda technique: is_published(technique))
+    charted = [technique for technique in loaded if technique.role == role and not technique.attributes.uncharted]
+    return sorted(charted, key=lambda technique: is_published(technique))
 
 
 def is_published(technique: Technique) -> bool:
-    """Whether a technique is a source's own form, kept only for comparison."""
+    """Whether a technique is the form of a publication, kept only for comparison."""
     return bool(technique.attributes.superseded_by)
 
 
 def settings(technique: Technique) -> list[tuple[tuple[str, int], ...]]:
-    """The values of a technique's counts to chart; two counts go together."""
+    """The values of a technique's counts to chart; several counts have the same value."""
     counts = [uniform for uniform in technique.uniforms if kind_of(uniform.type) == "int"]
     if not counts:
         return [()]
-    usual = int(counts[0].default[0])
-    most = next((count for count in COUNTS if count > usual), COUNTS[-1])
+    default = int(counts[0].default[0])
+    most = next((count for count in COUNTS if count > default), COUNTS[-1])
     values = [count for count in COUNTS if count <= most and all(_within(uniform, count) for uniform in counts)]
     return [tuple((uniform.name, count) for uniform in counts) for count in values]
 
@@ -222,18 +225,17 @@ def _within(uniform: Uniform, count: int) -> bool:
 
 
 def most_counts(candidate: Candidate) -> tuple[tuple[str, int], ...]:
-    """The candidate's counts so large that its setting may be taken as converged: 64, and of two counts 20 each."""
+    """Counts at which the candidate may be taken as converged: 64, or 20 each where there are two."""
     uniforms = {one.name: one for name in candidate.techniques for one in load(name).uniforms}
     limits = {name: dict(uniforms[name].hints).get("hint_range", (1, 64)) for name, _ in candidate.settings}
     many = 64 if len(limits) == 1 else 20
     return tuple((name, min(many, int(float(limits[name][1])))) for name, _ in candidate.settings)
 
 
-def label(name: str, given: Sequence[tuple[str, int]]) -> str:
-    """What a chart calls a technique at a setting: `march_light, 8 steps`."""
-    if not given:
+def label(name: str, counts: Sequence[tuple[str, int]]) -> str:
+    """The label of a technique at a setting: `march_light, 8 steps`."""
+    if not counts:
         return name
-    counts = {count for _, count in given}
-    if len(given) > 1 and len(counts) == 1:
-        return f"{name}, {given[0][1]} × {given[1][1]} steps"
-    return f"{name}, " + ", ".join(f"{count} {key.replace('_', ' ')}" for key, count in given)
+    if len(counts) > 1 and len({count for _, count in counts}) == 1:
+        return f"{name}, {counts[0][1]} × {counts[1][1]} steps"
+    return f"{name}, " + ", ".join(f"{count} {key.replace('_', ' ')}" for key, count in counts)

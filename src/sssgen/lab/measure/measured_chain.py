@@ -1,6 +1,6 @@
-"""Chains that are measured: stages as a material's text, and the emitted NumPy functions run on a scene's points.
+"""Measured chains: a material's text from stages, and its emitted NumPy functions, run on a scene's points.
 
-A point of a chart is a material like any other: what is measured is what is emitted.
+A point of a chart is an ordinary material, so the measured code is the emitted code.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ NAME = "measured"
 
 
 class Stage(NamedTuple):
-    """One stage of a chain, as a material file has it."""
+    """One stage of a chain, as in a material file."""
 
     section: str
     technique: str
     values: tuple[tuple[str, object], ...] = ()
-    """The parameters that it gives"""
+    """Its parameters"""
     fixed: tuple[str, ...] = ()
-    """Those of them that are folded into the text"""
+    """The parameters that are constants in the emitted text"""
     bind: tuple[tuple[str, str], ...] = ()
     """Slot → function"""
 
@@ -66,10 +66,10 @@ def _value(value: Any) -> str:
 
 
 class Chain:
-    """A material whose emitted functions are run on points."""
+    """A material whose emitted NumPy functions run on points."""
 
     def __init__(self, material: Material, dtype: Any = np.float64) -> None:
-        """In float64 it is the oracle; in float32 what a GPU computes."""
+        """float64 gives reference values, float32 the precision of a GPU."""
         self.material, self.dtype = material, dtype
         self.compiled: Compiled = compile(material, "numpy")
         self.reflection = self.compiled.reflection
@@ -80,49 +80,50 @@ class Chain:
         self.uniforms = self.reflection["uniforms"]
 
     def set(self, values: Mapping[str, Any], textures: Mapping[str, Texture]) -> None:
-        """Gives parameters and textures by the names that techniques have for them; others keep their values.
+        """Sets parameters and textures, by their names in techniques; others keep their values.
 
-        `depth 1` is a depth whose unit is "1", that is in texture coordinates; `depth` is every other. A parameter is a
-        number, its components, or these with lanes last; a matrix goes column by column.
+        The name may include the unit: `depth 1` is a depth in texture coordinates, and `depth` is any other. A value is a
+        number, its components, or its components with lanes last; a matrix is in column order.
         """
         for uniform in self.uniforms:
-            own = uniform["technique_name"]
-            given = values.get(f"{own} {uniform['unit']}", values.get(own))
-            if given is not None:
-                self.names[uniform["name"]] = _shaped(uniform["type"], given, self.dtype)
+            name = uniform["technique_name"]
+            value = values.get(f"{name} {uniform['unit']}", values.get(name))
+            if value is not None:
+                self.names[uniform["name"]] = _shaped(uniform["type"], value, self.dtype)
         for texture in self.reflection["textures"]:
-            given = textures.get(texture["technique_name"])
-            if given is not None:
-                self.names[texture["name"]] = given
+            if (data := textures.get(texture["technique_name"])) is not None:
+                self.names[texture["name"]] = data
 
     def reads(self, texture: str) -> bool:
-        """Whether the chain reads a texture, by its technique's name for it."""
-        return any(one["technique_name"] == texture for one in self.reflection["textures"])
+        """Whether the chain reads a texture, by its name in the technique."""
+        return any(declared["technique_name"] == texture for declared in self.reflection["textures"])
 
     def run(self, inputs: Mapping[str, Array], lights: Iterable[Mapping[str, Array]]) -> list[Array]:
-        """For each light what comes through, as a factor on its colour: (3, n) in linear light.
+        """The transmitted light of each light, as a factor of its colour: (3, n) in linear light.
 
-        What the surface gives off by itself is in the first.
+        The first one includes the surface's emission.
         """
         entries = self.reflection["entries"]
         count = inputs["P"].shape[-1]
         inputs = self._cast(inputs)
-        found = []
+        results = []
         with precision(self.dtype), grid(1, count), np.errstate(all="ignore"):
 
-            def call(kind: str, given: Mapping[str, Array], *first: Any) -> Any:
-                return self.names[entries[kind]["function"]](*first, *(given[name] for name in entries[kind]["inputs"]))
+            def call(kind: str, values: Mapping[str, Array], *first: Any) -> Any:
+                return self.names[entries[kind]["function"]](
+                    *first, *(values[name] for name in entries[kind]["inputs"])
+                )
 
             surface = call("surface", inputs) if "surface" in entries else None
-            given_off = vars(surface).get("emission", 0.0) if surface is not None else 0.0
-            for number, light in enumerate(lights):
+            emission = vars(surface).get("emission", 0.0) if surface is not None else 0.0
+            for index, light in enumerate(lights):
                 first = [surface] if surface is not None else []
                 through = (
                     call("translucency", {**inputs, **self._cast(light)}, *first) if "translucency" in entries else 0.0
                 )
-                value = through + given_off if number == 0 else through
-                found.append(np.array(np.broadcast_to(value, (3, count)), np.float64))
-        return found
+                value = through + emission if index == 0 else through
+                results.append(np.array(np.broadcast_to(value, (3, count)), np.float64))
+        return results
 
     def _cast(self, values: Mapping[str, Array]) -> dict[str, Array]:
         return {name: np.asarray(value, self.dtype) for name, value in values.items()}
@@ -133,13 +134,13 @@ class Chain:
         count = inputs["P"].shape[-1]
         inputs = self._cast(inputs)
         with precision(self.dtype), grid(1, count), np.errstate(all="ignore"):
-            made = self.names[entry["function"]](*(inputs[name] for name in entry["inputs"]))
-            value = np.asarray(getattr(made, field), np.float64)
+            surface = self.names[entry["function"]](*(inputs[name] for name in entry["inputs"]))
+            value = np.asarray(getattr(surface, field), np.float64)
         return np.array(np.broadcast_to(value, (len(np.atleast_2d(value)), count)))
 
 
 def _shaped(type_name: str, given: Any, dtype: Any) -> Any:
-    """A value as the emitted module wants it: components first, lanes last."""
+    """A value in the emitted module's layout: components first, lanes last."""
     type_ = BY_NAME[type_name.partition("[")[0]]
     kind = dtype if kind_of(type_) == "float" else np.int32
     value = np.asarray(given, kind)
@@ -151,5 +152,5 @@ def _shaped(type_name: str, given: Any, dtype: Any) -> Any:
 
 
 def material_of(stages: Sequence[Stage], folder: str, name: str = NAME) -> Material:
-    """The material of a chain; files that it names lie in `folder`. Raises SssgenError."""
+    """The material of a chain; paths in it are relative to `folder`. Raises SssgenError."""
     return parse_material(material_text(name, stages), os.path.join(folder, f"{name}.toml"))

@@ -1,4 +1,4 @@
-"""One point of a chart: a candidate's parameters fitted, its error on a scene's views, and its static cost."""
+"""One point of a chart: a candidate with fitted parameters, its error on a scene's views, and its static cost."""
 
 from __future__ import annotations
 
@@ -26,32 +26,31 @@ from sssgen.pipeline.compiler import compile
 from sssgen.support.diagnostics import failure
 
 COST_TARGET = "glsl-330"
-"""The target whose text static cost is counted on."""
-
+"""The target whose emitted text the static cost is counted on."""
 
 Parameters = Mapping[str, tuple[float, ...]]
 """By the techniques' own names"""
 
 
 class View(NamedTuple):
-    """A scene with its references, and what the chart calls it."""
+    """A scene with its references, and the view's name in the chart."""
 
     name: str
     scene: MeasuredScene
     seen: tuple[Seen, ...] = ()
     reference: str = ""
-    """What the references were made with: samples and seed"""
+    """Samples and seed of the references"""
 
 
 _problems: dict[tuple[str, str, str, bool], Problem | None] = {}
-_KEPT = 48
+_MOST_PROBLEMS = 48
 
 
 def problem_of(role: str, view: View, summed: bool = True) -> Problem | None:
-    """What a role is asked for on a view; None where the view does not ask. Kept for the next candidate."""
+    """The problem of a role on a view, cached for the next candidate; None where the role does not apply."""
     key = (role, view.scene.key, view.reference, summed)
     if key not in _problems:
-        if len(_problems) >= _KEPT:
+        if len(_problems) >= _MOST_PROBLEMS:
             _problems.clear()
         _problems[key] = _problem_of(role, view, summed)
     return _problems[key]
@@ -68,116 +67,119 @@ def _problem_of(role: str, view: View, summed: bool) -> Problem | None:
 
 
 def fitted(candidate: Candidate, training: Sequence[View], before: Parameters | None = None) -> Fitted:
-    """The candidate's parameters over the training views, light by light. Raises SssgenError.
+    """Fits the candidate's parameters to the training views, light by light. Raises SssgenError.
 
-    `before` are those of its first technique, where that is fitted already: then it is measured once, and the rest is
-    fitted to what it gives.
+    `before` has the parameters of its first technique, if these are known: then that technique is evaluated only once,
+    and the rest of the chain is fitted to its output.
     """
-    asked = [(view, one) for view in training if (one := problem_of(candidate.role, view, summed=False)) is not None]
-    if not asked:
-        raise failure("no light comes through what is fitted to", "the medium scatters nothing, or absorbs all")
-    problems = [one.thinned(fit.LANES) for _, one in asked]
-    bodies = [body(view.scene.geometry) for view, _ in asked]
+    solvable = [(view, one) for view in training if (one := problem_of(candidate.role, view, summed=False)) is not None]
+    if not solvable:
+        raise failure(
+            "no light passes through the bodies for fitting", "the medium does not scatter, or absorbs all light"
+        )
+    problems = [problem_.thinned(fit.LANES) for _, problem_ in solvable]
+    bodies = [body(view.scene.geometry) for view, _ in solvable]
     rest = candidate
     with tempfile.TemporaryDirectory() as folder:
         if before is not None:
             rest, first = split(candidate)
             name = f"measured_{load(candidate.techniques[0]).function.quantity}"
-            for at, (of, one) in enumerate(zip(bodies, problems, strict=True)):
-                chain = chain_of(first, of, folder)
+            for index, (shape, unsolved) in enumerate(zip(bodies, problems, strict=True)):
+                chain = chain_of(first, shape, folder)
                 assert chain is not None
-                problems[at] = one.given(name, chain, fit.exact(before))
-        found = fit.fit([chain_of(rest, of, folder) for of in bodies], problems)
-    return found._replace(parameters={**(before or {}), **found.parameters})
+                problems[index] = unsolved.with_output_of(chain, name, fit.exact(before))
+        result = fit.fit([chain_of(rest, shape, folder) for shape in bodies], problems)
+    return result._replace(parameters={**(before or {}), **result.parameters})
 
 
 def split(candidate: Candidate) -> tuple[Candidate, Candidate]:
-    """A chain without its first technique, which is given, and that technique alone, which is shown."""
+    """The chain with its first technique replaced by a parameter, and a chain that shows that technique's output."""
     quantity = load(candidate.techniques[0]).function.quantity
     rest = candidate._replace(techniques=(f"given_{quantity}", *candidate.techniques[1:]))
     return rest, candidate._replace(techniques=(candidate.techniques[0], f"shown_{quantity}"))
 
 
-def chain_of(candidate: Candidate, of: Body, folder: str, dtype: Any = np.float64) -> Chain | None:
-    """The candidate's chain for a body, compiled; None where nothing is left of it. Raises SssgenError."""
+def chain_of(candidate: Candidate, shape: Body, folder: str, dtype: Any = np.float64) -> Chain | None:
+    """The candidate's compiled chain for a body; None if the candidate has no techniques. Raises SssgenError."""
     if not candidate.techniques:
         return None
-    for name, text in of.files.items():
+    for name, text in shape.files.items():
         with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
             file.write(text)
-    return Chain(material_of(candidate.stages(of), folder), dtype)
+    return Chain(material_of(candidate.stages(shape), folder), dtype)
 
 
-def measured(candidate: Candidate, found: Fitted, views: Sequence[View]) -> dict[str, Any]:
-    """The candidate's error over views of one scene, with the parameters fitted, as a point of a chart's record.
+def measured(candidate: Candidate, fit_result: Fitted, views: Sequence[View]) -> dict[str, Any]:
+    """The candidate's error over the views of one scene, with fitted parameters, as a point of a chart's record.
 
-    A chain that gives NaN or infinity anywhere has `failed`, and no error. Raises SssgenError.
+    `failed` of the point is not empty where the chain's output has NaN or infinity. Raises SssgenError.
     """
-    asked = [(view, one) for view in views if (one := problem_of(candidate.role, view)) is not None]
-    if not asked:
-        raise failure(f"no light comes through the body of '{views[0].scene.name}'", "light it from behind, too")
+    solvable = [(view, one) for view in views if (one := problem_of(candidate.role, view)) is not None]
+    if not solvable:
+        raise failure(f"no light passes through the body of '{views[0].scene.name}'", "light it from behind, too")
+    problems = [one for _, one in solvable]
+    shape = body(views[0].scene.geometry)
     with tempfile.TemporaryDirectory() as folder:
-        chain = chain_of(candidate, body(views[0].scene.geometry), folder)
-        given = [_values(chain, found, one) for _, one in asked]
+        chain = chain_of(candidate, shape, folder)
+        outputs = [_values(chain, fit_result, one) for one in problems]
         cost = static_cost(chain)
-        own = asked[0][1]
         implementation = {
-            kind: apart(_values(other, found, own), given[0])
-            for kind, other in _others(candidate, body(views[0].scene.geometry), folder)
+            kind: difference(_values(variant, fit_result, problems[0]), outputs[0])
+            for kind, variant in _variants(candidate, shape, folder)
         }
-    bad = sum(int((~np.isfinite(values)).any(axis=0).sum()) for values in given)
-    lanes = sum(values.shape[1] for values in given)
-    pictures = [found.apply(np.nan_to_num(values), one) for values, (_, one) in zip(given, asked, strict=True)]
+    not_finite = sum(int((~np.isfinite(values)).any(axis=0).sum()) for values in outputs)
+    lanes = sum(values.shape[1] for values in outputs)
+    pictures = [fit_result.apply(np.nan_to_num(values), one) for values, one in zip(outputs, problems, strict=True)]
     error = metrics.compare(
         np.concatenate(pictures, axis=1),
-        np.concatenate([one.target for _, one in asked], axis=1),
-        np.concatenate([one.noise for _, one in asked], axis=1),
+        np.concatenate([one.target for one in problems], axis=1),
+        np.concatenate([one.noise for one in problems], axis=1),
     )
-    each = {}
-    for picture, (view, one) in zip(pictures, asked, strict=True):
-        of_view = metrics.compare(picture, one.target, one.noise)
-        each[view.name] = {key: of_view[key] for key in ("value", "low", "high")}
+    view_errors = {}
+    for picture, (view, one) in zip(pictures, solvable, strict=True):
+        view_error = metrics.compare(picture, one.target, one.noise)
+        view_errors[view.name] = {key: view_error[key] for key in ("value", "low", "high")}
     if candidate.role == "material":
         flips = [
             metrics.flip(points(view.scene).picture(picture), points(view.scene).picture(one.target))
-            for picture, (view, one) in zip(pictures, asked, strict=True)
+            for picture, (view, one) in zip(pictures, solvable, strict=True)
         ]
         error["flip"] = float(np.mean(flips))
     return {
         "role": candidate.role, "name": candidate.name, "label": candidate.label, "baseline": candidate.baseline,
         "settings": dict(candidate.settings), "chain": list(candidate.techniques),
-        "parameters": {name: list(value) for name, value in found.parameters.items()},
-        "scale": list(found.scale), "matte": list(found.matte), "factor": found.factor,
-        "training_error": found.error,
+        "parameters": {name: list(value) for name, value in fit_result.parameters.items()},
+        "scale": list(fit_result.scale), "matte": list(fit_result.matte), "factor": fit_result.factor,
+        "training_error": fit_result.error,
         "cost": {"value": float(max(cost.weight, 1)), **cost._asdict(), "gpu_ms": None},
-        "error": error, "views": each, "implementation": implementation,
-        "failed": f"{bad} of {lanes} points are not finite" if bad else "",
+        "error": error, "views": view_errors, "implementation": implementation,
+        "failed": f"{not_finite} of {lanes} points are not finite" if not_finite else "",
     }  # fmt: skip
 
 
-def _others(candidate: Candidate, of: Body, folder: str) -> Iterator[tuple[str, Chain | None]]:
-    """The chain as rounding and its counts leave it: in float32, and with as many steps as it may have."""
+def _variants(candidate: Candidate, shape: Body, folder: str) -> Iterator[tuple[str, Chain | None]]:
+    """The chain in float32, and with its counts at their maxima: errors of the implementation, not of the model."""
     if candidate.techniques:
-        yield "float32", chain_of(candidate, of, folder, np.float32)
+        yield "float32", chain_of(candidate, shape, folder, np.float32)
     if candidate.settings and candidate.role == "thickness":
-        yield "counts", chain_of(candidate._replace(settings=most_counts(candidate)), of, folder)
+        yield "counts", chain_of(candidate._replace(settings=most_counts(candidate)), shape, folder)
 
 
-def apart(values: Array, others: Array) -> float:
-    """How far values are from others of the same chain: the root mean square of the difference, over that of both."""
-    both = np.isfinite(values) & np.isfinite(others)
-    level = float(np.sqrt((others[both] ** 2).mean())) if both.any() else 0.0
-    return float(np.sqrt(((values - others)[both] ** 2).mean())) / level if level > 0.0 else 0.0
+def difference(values: Array, reference: Array) -> float:
+    """The root mean square of the difference, relative to that of the reference, where both are finite."""
+    finite = np.isfinite(values) & np.isfinite(reference)
+    level = float(np.sqrt((reference[finite] ** 2).mean())) if finite.any() else 0.0
+    return float(np.sqrt(((values - reference)[finite] ** 2).mean())) / level if level > 0.0 else 0.0
 
 
-def _values(chain: Chain | None, found: Fitted, asked: Problem) -> Array:
+def _values(chain: Chain | None, fit_result: Fitted, unsolved: Problem) -> Array:
     if chain is None:
-        return np.zeros_like(asked.target)
-    return asked.values(chain, fit.exact(found.parameters))
+        return np.zeros_like(unsolved.target)
+    return unsolved.values(chain, fit.exact(fit_result.parameters))
 
 
 def static_cost(chain: Chain | None) -> Cost:
-    """What one evaluation of a chain does for one light; a probe is none of the chain's work."""
+    """The cost of one evaluation of a chain for one light, without its probes."""
     if chain is None:
         return Cost()
     entries = compile(chain.material, COST_TARGET, "functions").reflection["entries"]
@@ -188,11 +190,11 @@ def static_cost(chain: Chain | None) -> Cost:
     probes = [
         stage.technique.name for stage in chain.material.stages if os.path.dirname(stage.technique.path) == PROBES
     ]
-    return total.plus(_of_probe(probes[-1]), -1) if probes else total
+    return total.plus(_probe_cost(probes[-1]), -1) if probes else total
 
 
 @cache
-def _of_probe(name: str) -> Cost:
-    """What a probe alone costs."""
+def _probe_cost(name: str) -> Cost:
+    """The cost of a probe alone."""
     module, function = load(name).module, load(name).function
     return cost_of(module, function.key)

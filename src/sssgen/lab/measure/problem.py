@@ -1,4 +1,4 @@
-"""What is asked of a chain on a scene: its inputs light by light, and the reference to hold its values against."""
+"""The problem that a chain solves on a scene: its inputs for each light, and the reference that it is compared with."""
 
 from __future__ import annotations
 
@@ -20,91 +20,90 @@ from sssgen.support.diagnostics import failure
 from sssgen.targets.numpy_textures import Texture
 
 UV_RANGE = 32.0
-"""What the probe shown_uv divides texture coordinates by, which are lengths in depths here."""
-
-
+"""The probe shown_uv divides texture coordinates by this. Here they are lengths in depths of the inlay."""
 DEPTH_MAP = "light_depth_map"
-"""The texture that each light has its own of."""
+"""The texture that differs between lights."""
 WHITE = 0.8
-"""Where exposure puts a reference's brightest parts."""
+"""The value to which exposure scales a reference's brightest parts."""
 
 Seen = tuple[Array, Array]
-"""A light's reference: the mean and its standard error, (3, n) each, π L / E of a white light."""
+"""A light's reference, π L / E of a white light: the mean and its standard error, (3, n) each."""
 
 
 class Part(NamedTuple):
-    """One light on one view."""
+    """One light in one view."""
 
     inputs: dict[str, Array]
-    """The chain's inputs, n lanes last"""
+    """The chain's inputs, with n lanes in the last axis"""
     light: dict[str, Array]
     values: dict[str, Any]
     textures: dict[str, Texture]
     color: Array
-    """(3, 1): what the light's factor is multiplied by"""
+    """(3, 1): the factor of the light's contribution"""
 
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """What a chain's values should be."""
+    """The inputs and the target values of a chain."""
 
     role: str
     parts: tuple[Part, ...]
-    """Their values stand one after the other, or where `summed` they are added"""
+    """One per light"""
     summed: bool
+    """Whether the values of the parts are added; otherwise they are concatenated"""
     target: Array
     """(channels, lanes)"""
     noise: Array
-    """The target's standard error, likewise"""
+    """The target's standard error, (channels, lanes)"""
     lambert: Array
-    """(channels, lanes): what a white matte surface would reflect; 0 where that is not asked for"""
+    """(channels, lanes): the light that a white matte surface reflects; 0 where the role does not include it"""
     keep: Array
-    """The lanes that count, of all of the parts' lanes"""
+    """Indices of the compared lanes among those of all parts"""
     gain: float = 1.0
-    """What values are multiplied by, as target and noise are already: it brings them to about 1"""
+    """A factor that normalises values to about 1; target, noise and lambert include it already"""
 
     def values(self, chain: Chain, parameters: Mapping[str, Any]) -> Array:
-        """What the chain gives: (channels, lanes)."""
-        together = not chain.reads(DEPTH_MAP)
-        found = []
-        for part in [self._together] if together else self.parts:
+        """The chain's output: (channels, lanes)."""
+        outputs = []
+        for part in self.parts if chain.reads(DEPTH_MAP) else [self._merged]:
             chain.set({**part.values, **parameters}, part.textures)
             if self.role == "coordinates":
-                found.append(UV_RANGE * (chain.surface(part.inputs, "albedo")[:2] - 0.5))
+                outputs.append(UV_RANGE * (chain.surface(part.inputs, "albedo")[:2] - 0.5))
             else:
-                found.append(chain.run(part.inputs, [part.light])[0] * part.color)
-        whole = np.concatenate(found, axis=1)
+                outputs.append(chain.run(part.inputs, [part.light])[0] * part.color)
+        values = np.concatenate(outputs, axis=1)
         if self.summed:
-            whole = whole.reshape(len(whole), len(self.parts), -1).sum(axis=1)
-        read = whole[:1] if self.role == "thickness" else whole
-        return read[:, self.keep] * self.gain
+            values = values.reshape(len(values), len(self.parts), -1).sum(axis=1)
+        if self.role == "thickness":
+            values = values[:1]
+        return values[:, self.keep] * self.gain
 
-    def given(self, name: str, chain: Chain, parameters: Mapping[str, Any]) -> Problem:
-        """The same, with what a chain shows in its first channel as the parameter `name` of each part."""
+    def with_output_of(self, chain: Chain, name: str, parameters: Mapping[str, Any]) -> Problem:
+        """The same problem, in which the first channel of another chain's output is the parameter `name`."""
         parts = []
         for part in self.parts:
             chain.set({**part.values, **parameters}, part.textures)
-            shown = chain.run(part.inputs, [part.light])[0][0]
-            # what follows may have parameters of the same name: they mean the same
-            parts.append(part._replace(values={**part.values, **parameters, name: shown}))
+            output = chain.run(part.inputs, [part.light])[0][0]
+            # later techniques may have parameters of the same names: these have the same meaning
+            parts.append(part._replace(values={**part.values, **parameters, name: output}))
         return replace(self, parts=tuple(parts))
 
     @cached_property
-    def _together(self) -> Part:
-        """All parts as one, side by side: one run of a chain costs as much as its lanes, and as much again."""
+    def _merged(self) -> Part:
+        """All parts as one, with their lanes concatenated: each run of a chain has a large constant cost."""
         if len(self.parts) == 1:
             return self.parts[0]
         counts = [part.inputs["P"].shape[1] for part in self.parts]
 
-        def beside(each: Sequence[Mapping[str, Any]], names: Collection[str]) -> dict[str, Any]:
-            return {name: _beside([one[name] for one in each], counts) for name in names}
+        def merged(each: Sequence[Mapping[str, Any]], names: Collection[str]) -> dict[str, Any]:
+            return {name: _concatenated([values[name] for values in each], counts) for name in names}
 
         first = self.parts[0]
-        shared = {name for name in first.values if all(one.values[name] is first.values[name] for one in self.parts)}
-        values = beside([part.values for part in self.parts], first.values.keys() - shared)
+        shared = {name for name in first.values if all(part.values[name] is first.values[name] for part in self.parts)}
+        values = merged([part.values for part in self.parts], first.values.keys() - shared)
         return Part(
-            beside([part.inputs for part in self.parts], first.inputs.keys()),
-            beside([part.light for part in self.parts], first.light.keys()),
+            merged([part.inputs for part in self.parts], first.inputs.keys()),
+            merged([part.light for part in self.parts], first.light.keys()),
             {**{name: first.values[name] for name in shared}, **values},
             first.textures,
             np.concatenate(
@@ -112,37 +111,40 @@ class Problem:
             ),
         )
 
-    def thinned(self, most: int) -> Problem:
-        """The same on at most so many of its lanes, spread evenly: to fit with."""
-        if self.summed or len(self.keep) <= most:
+    def thinned(self, count: int) -> Problem:
+        """The same problem on at most `count` of its lanes, evenly spaced, for fitting."""
+        if self.summed or len(self.keep) <= count:
             return self
-        chosen = np.unique(np.linspace(0, len(self.keep) - 1, most).astype(int))
-        return _selected(self, chosen)
+        return _selected(self, np.unique(np.linspace(0, len(self.keep) - 1, count).astype(int)))
 
 
 def _selected(problem: Problem, chosen: Array) -> Problem:
-    """A problem with only some of its lanes, and parts with no others."""
+    """The problem with only some of its compared lanes; its parts have no other lanes."""
     lanes = problem.keep[chosen]
-    parts, at = [], 0
+    parts, start = [], 0
     for part in problem.parts:
         count = part.inputs["P"].shape[1]
-        own = lanes[(lanes >= at) & (lanes < at + count)] - at
-        at += count
+        own = lanes[(lanes >= start) & (lanes < start + count)] - start
+        start += count
         if len(own):
-            parts.append(_lanes(part, own, count))
+            parts.append(_lanes_of(part, own, count))
     return Problem(
         problem.role, tuple(parts), False, problem.target[:, chosen], problem.noise[:, chosen],
         problem.lambert[:, chosen], np.arange(len(chosen)), problem.gain,
     )  # fmt: skip
 
 
-def _beside(values: Sequence[Any], counts: Sequence[int]) -> Any:
-    """Values of several parts with their lanes one after the other."""
-    wide = [np.broadcast_to(value, (*np.shape(value)[:-1], count)) for value, count in zip(values, counts, strict=True)]
-    return np.concatenate(wide, axis=-1)
+def _concatenated(values: Sequence[Any], counts: Sequence[int]) -> Any:
+    """The values of several parts, broadcast to their lanes and concatenated."""
+    broadcast = [
+        np.broadcast_to(value, (*np.shape(value)[:-1], count)) for value, count in zip(values, counts, strict=True)
+    ]
+    return np.concatenate(broadcast, axis=-1)
 
 
-def _lanes(part: Part, own: Array, count: int) -> Part:
+def _lanes_of(part: Part, own: Array, count: int) -> Part:
+    """Some of a part's `count` lanes."""
+
     def cut(values: Mapping[str, Any]) -> dict[str, Any]:
         return {
             name: value[..., own] if np.ndim(value) and np.shape(value)[-1] == count else value
@@ -153,7 +155,7 @@ def _lanes(part: Part, own: Array, count: int) -> Part:
 
 
 def of_thickness(scene: MeasuredScene) -> Problem:
-    """Thickness towards each light, in parts of its mean, where light has matter to pass."""
+    """Thickness towards each light, relative to its mean, where the light passes through the body."""
     at = points(scene)
     parts = tuple(_part(scene, at, direction, np.ones((3, 1))) for direction in _directions(scene))
     exact = np.concatenate([np.asarray(part.values["exact_length"]) for part in parts])[None]
@@ -162,17 +164,17 @@ def of_thickness(scene: MeasuredScene) -> Problem:
         raise failure(f"no light passes through the body of '{scene.name}'", "light it from behind, too")
     gain = 1.0 / float(exact[:, keep].mean())
     target = gain * exact[:, keep]
-    nothing = np.zeros_like(target)
-    return Problem("thickness", parts, False, target, nothing, nothing, keep, gain)
+    zeros = np.zeros_like(target)
+    return Problem("thickness", parts, False, target, zeros, zeros, keep, gain)
 
 
 def of_light(scene: MeasuredScene, seen: Sequence[Seen]) -> Problem | None:
-    """The light that comes through where a light is behind; None where none is."""
+    """The transmitted light at points that face away from a light; None without such points."""
     at = points(scene)
     parts = [_part(scene, at, direction, np.ones((3, 1))) for direction in _directions(scene)]
     facing = np.concatenate([np.einsum("cn,cn->n", at.inputs["N"], part.light["L"]) for part in parts])
     keep = np.flatnonzero(facing <= 0.0)
-    target, noise = (np.concatenate([one[k] for one in seen], axis=1)[:, keep] for k in (0, 1))
+    target, noise = (np.concatenate(arrays, axis=1)[:, keep] for arrays in zip(*seen, strict=True))
     if not len(keep) or not target.any():
         return None
     gain = exposure(target)
@@ -181,52 +183,52 @@ def of_light(scene: MeasuredScene, seen: Sequence[Seen]) -> Problem | None:
 
 
 def of_material(scene: MeasuredScene, seen: Sequence[Seen], summed: bool) -> Problem:
-    """All light that leaves the surface; the lights' together where `summed`, else one by one."""
+    """All light that leaves the surface; the sum over the lights if `summed`, otherwise light by light."""
     at = points(scene)
-    parts, front, colored = [], [], []
+    parts, lit, references = [], [], []
     for light, direction, (mean, error) in zip(scene.lights, _directions(scene), seen, strict=True):
         color = np.array(light.color)[:, None] if summed else np.ones((3, 1))
         part = _part(scene, at, direction, color)
         facing = np.maximum(np.einsum("cn,cn->n", at.inputs["N"], part.light["L"]), 0.0)
         parts.append(part)
-        front.append(color * facing * _visible(scene, at, direction))
-        colored.append((color * mean, color * error))
+        lit.append(color * facing * _visible(scene, at, direction))
+        references.append((color * mean, color * error))
     if summed:
-        target = np.sum([mean for mean, _ in colored], axis=0)
-        noise = np.sqrt(np.sum([error**2 for _, error in colored], axis=0))
-        lambert = np.sum(front, axis=0)
+        target = np.sum([mean for mean, _ in references], axis=0)
+        noise = np.sqrt(np.sum([error**2 for _, error in references], axis=0))
+        lambert = np.sum(lit, axis=0)
     else:
-        target, noise = (np.concatenate([one[k] for one in colored], axis=1) for k in (0, 1))
-        lambert = np.concatenate(front, axis=1)
+        target, noise = (np.concatenate(arrays, axis=1) for arrays in zip(*references, strict=True))
+        lambert = np.concatenate(lit, axis=1)
     gain = exposure(target)
     keep = np.arange(target.shape[1])
     return Problem("material", tuple(parts), summed, gain * target, gain * noise, gain * lambert, keep, gain)
 
 
 def exposure(target: Array) -> float:
-    """What brings all but the brightest hundredth of a reference below WHITE: the same for whatever is compared."""
+    """The factor that scales the 99th percentile of a reference to WHITE; the same for everything compared with it."""
     bright = float(np.percentile(target.max(axis=0), 99.0))
     return WHITE / bright if bright > 0.0 else 1.0
 
 
 def of_coordinates(scene: MeasuredScene) -> Problem:
-    """Where refraction says that the inlay is seen, in depths along T and B from the point itself."""
+    """The offset along T and B at which refraction shows the inlay, in depths of the inlay."""
     at = points(scene)
-    found = refraction.seen(scene, at)
-    keep = np.flatnonzero(found.hit)
+    view = refraction.seen(scene, at)
+    keep = np.flatnonzero(view.hit)
     if not len(keep):
         raise failure(f"no ray meets the inlay of '{scene.name}'", "it lies deeper than the body is thick")
     inputs = {**at.inputs, "uv": np.zeros_like(at.inputs["uv"])}
     assert scene.inlay is not None
-    # with uv 0 at each point and one uv a depth, what comes out is the way in depths
+    # uv is 0 at each point and its unit is one depth, so the output is the offset in depths
     values = {
-        **scene.inlay.parameters, "uv_per_unit": np.full((2, 1), 1.0 / found.depth),
+        **scene.inlay.parameters, "uv_per_unit": np.full((2, 1), 1.0 / view.depth),
         "depth 1": 1.0, "eta": scene.inlay.outside_ior / scene.inlay.ior,
     }  # fmt: skip
     part = Part(inputs, {}, values, {}, np.ones((3, 1)))
-    target = found.offset[:, keep] / found.depth
-    nothing = np.zeros_like(target)
-    return Problem("coordinates", (part,), False, target, nothing, nothing, keep)
+    target = view.offset[:, keep] / view.depth
+    zeros = np.zeros_like(target)
+    return Problem("coordinates", (part,), False, target, zeros, zeros, keep)
 
 
 def _part(scene: MeasuredScene, at: Points, direction: tuple[float, float, float], color: Array) -> Part:
@@ -238,10 +240,10 @@ def _part(scene: MeasuredScene, at: Points, direction: tuple[float, float, float
 
 
 def _visible(scene: MeasuredScene, at: Points, direction: tuple[float, float, float]) -> Array:
-    """Whether nothing stands between a point that faces the light and the light: the engine's shadow, (n,)."""
-    place = np.ascontiguousarray((at.inputs["P"] + 1e-4 * at.inputs["N"]).T)
-    way = np.broadcast_to(np.array(direction), place.shape).copy()
-    return (thickness(scene.geometry, place, way) < 1e-3).astype(float)
+    """1 where the body does not shadow the point from the light, otherwise 0: (n,)."""
+    origins = np.ascontiguousarray((at.inputs["P"] + 1e-4 * at.inputs["N"]).T)
+    directions = np.broadcast_to(np.array(direction), origins.shape).copy()
+    return (thickness(scene.geometry, origins, directions) < 1e-3).astype(float)
 
 
 def _directions(scene: MeasuredScene) -> list[tuple[float, float, float]]:
