@@ -121,7 +121,7 @@ def by_technique(size: tuple[int, int], rounds: int, evaluations: int) -> tuple[
 def by_example(size: tuple[int, int], rounds: int) -> tuple[Table, Measured, dict[str, Any]]:
     """The examples' materials in their scenes."""
     scenes = {name: scene_loading.load(name) for name in examples()}
-    chosen = [gpu_programs.Point(name, one.material, one) for name, one in scenes.items()]
+    chosen = [gpu_programs.TimedMaterial(name, one.material, one) for name, one in scenes.items()]
     found = gpu_programs.costs(chosen, size, rounds)
     rows = [
         [one.name, frame(found.net(one.name), found.device.software), times(found.ratio(one.name, chosen[0].name))]

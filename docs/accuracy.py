@@ -97,10 +97,10 @@ def timed() -> int:
     wanted = [scene["name"] for scene in record["scenes"] if scene["name"] in TIMED]
     some = {**record, "points": [point for point in points if point["scene"] in wanted]}
 
-    def told(done: int, of: int, name: str) -> None:
+    def progress(done: int, of: int, name: str) -> None:
         print(f"{done} of {of}: {name}", file=sys.stderr, flush=True)
 
-    found = chart_gpu.with_gpu_cost(some, [measured_scene.load(name) for name in wanted], told=told)
+    found = chart_gpu.with_gpu_cost(some, [measured_scene.load(name) for name in wanted], progress=progress)
     write_files(str(FOLDER), {GPU_CHART: drawing.record.to_json(found)})
     print(found["record"]["device"], found["record"]["rank_correlation"])
     return 0

@@ -204,18 +204,18 @@ def test_dearer_settings_go_on_only_where_they_pay(monkeypatch: pytest.MonkeyPat
         {"label": label, "chain": chains[label], "training_error": error, "cost": {"value": cost}}
         for cost, (label, error) in enumerate(errors.items())
     ]
-    labels = [one.label for one in chart.paying(points)]
+    labels = [one.label for one in chart.worthwhile(points)]
     assert labels == ["march_light, 1 steps", "march_light, 4 steps", "march_light, 16 steps", "constant_thickness"]
 
 
 def test_what_fails_is_named() -> None:
     with pytest.raises(SssgenError) as caught:
-        chart._all([executor.Item("executor_items:fail", ("said",), "fit this")], settings())
+        chart._results([executor.Item("executor_items:fail", ("said",), "fit this")], settings())
     assert "fit this: the scene has no light" in str(caught.value)
     names = ("one", "two", "two", "three")
     again = [executor.Item("executor_items:fail", ("said",), name) for name in names]
     with pytest.raises(SssgenError) as caught:
-        chart._all([*again, executor.Item("executor_items:fail", ("x",), "that")], settings())
+        chart._results([*again, executor.Item("executor_items:fail", ("x",), "that")], settings())
     told = [one.message for one in caught.value.diagnostics]
     assert len(told) == 2 and told[0].startswith("one and 2 more: the scene has no light")
     assert told[1].startswith("that: ValueError: no such thing")

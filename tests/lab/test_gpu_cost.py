@@ -116,8 +116,8 @@ def test_without_opengl(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_technique_is_computed() -> None:
     points = gpu_programs.ball_points(SIZE)
     shown = gpu_cost.picture(gpu_programs.of_technique("lobe_normalized", points), SIZE)[..., 0].ravel()
-    place, normal = points.place[..., :3].reshape(-1, 3), points.normal[..., :3].reshape(-1, 3)
-    uv = np.stack([points.place[..., 3], points.normal[..., 3]], axis=-1).reshape(-1, 2)
+    place, normal = points.position[..., :3].reshape(-1, 3), points.normal[..., :3].reshape(-1, 3)
+    uv = np.stack([points.position[..., 3], points.normal[..., 3]], axis=-1).reshape(-1, 2)
     view, light = (np.array(at) - place for at in (gpu_programs.EYE, gpu_programs.LIGHT))
     given = {"V": view, "L": light, "N": normal}
     given = {name: value / np.linalg.norm(value, axis=1, keepdims=True) for name, value in given.items()}
@@ -167,7 +167,7 @@ def test_a_material_with_its_own_camera_draws_its_picture(opengl: Backend) -> No
 def test_costs_of_materials() -> None:
     names = ("resin_inlay", "wax_mouse")
     scenes = [scene_loading.load(name) for name in names]
-    points = [gpu_programs.Point(scene.material, scene.material, scene) for scene in scenes]
+    points = [gpu_programs.TimedMaterial(scene.material, scene.material, scene) for scene in scenes]
     found = gpu_programs.costs(points, size=SIZE, rounds=3)
     assert all(found.raw(name).low > 0.0 for name in names)
 

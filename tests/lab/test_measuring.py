@@ -325,9 +325,9 @@ def test_a_camera_that_looks_away_an_inlay_too_deep_and_light_that_never_comes_t
     cube = small("cube")
     dark = View("own", cube, tuple((np.zeros((3, points(cube).count)),) * 2 for _ in cube.lights), "dark")
     through = candidate("wrap_lighting", role="translucency")
-    with pytest.raises(SssgenError, match="no light comes through what is fitted to"):
+    with pytest.raises(SssgenError, match="no light passes through the bodies for fitting"):
         measure.fitted(through, [dark])
-    with pytest.raises(SssgenError, match="no light comes through the body of 'cube'"):
+    with pytest.raises(SssgenError, match="no light passes through the body of 'cube'"):
         measure.measured(through, Fitted({}, (1.0,) * 3, (0.0,) * 3, 0.0), [dark])
 
 

@@ -1,4 +1,4 @@
-"""What was picked, as a material: the chain with the parameters that were fitted to the scene's medium."""
+"""A picked chain as a material, with the parameters that were fitted to the scene's medium."""
 
 from __future__ import annotations
 
@@ -18,69 +18,69 @@ from sssgen.lab.scene.scene_body import Body, body
 from sssgen.material.slots import needs
 
 
-def material_files(one: MeasuredScene, picked: Pick, name: str) -> dict[str, str]:
-    """The material's file, and those that it names, to lie beside it: name → text."""
-    of = body(one.geometry)
+def material_files(scene: MeasuredScene, picked: Pick, name: str) -> dict[str, str]:
+    """The material's file and the files that it refers to, for the same folder: name → text."""
+    shape = body(scene.geometry)
     stages: list[Stage] = []
     if picked.coordinates is not None and picked.coordinates["name"] != "none":
-        stages += _slide(one, picked.coordinates, of)
+        stages += _slide(scene, picked.coordinates, shape)
     if picked.chain is not None:
-        stages += stages_of(picked.chain, of)
+        stages += stages_of(picked.chain, shape)
     matte = picked.chain["matte"] if picked.chain is not None else [1.0, 1.0, 1.0]
     stages += [
         Stage("surface", "base_color", (("tint", [*matte, 1.0]),)),
         Stage("surface", "pbr_constants", (("surface_roughness", 1.0),)),
     ]
-    doc = f"Picked for the scene {one.name}: {one.title}."
+    doc = f"Picked for the scene {scene.name}: {scene.title}."
     used = {bound for stage in stages for _, bound in stage.bind}
-    files = {file: text for file, text in of.files.items() if any(bound.startswith(file) for bound in used)}
-    return {f"{name}.toml": material_text(name, stages, one.title, doc), **files}
+    files = {file: text for file, text in shape.files.items() if any(bound.startswith(file) for bound in used)}
+    return {f"{name}.toml": material_text(name, stages, scene.title, doc), **files}
 
 
-def stages_of(point: Mapping[str, Any], of: Body) -> list[Stage]:
-    """The stages of a point, with what was fitted; its counts are fixed, the rest is the artist's to change."""
+def stages_of(point: Mapping[str, Any], shape: Body) -> list[Stage]:
+    """The stages of a point with its fitted parameters; counts are constants, an artist can change the rest."""
     candidate = candidate_of(point)
-    stages = zip(candidate.techniques, candidate.stages(of), strict=True)
-    return [_with(stage, _given(load(name), point)) for name, stage in stages]
+    stages = zip(candidate.techniques, candidate.stages(shape), strict=True)
+    return [_with(stage, _fitted(load(name), point)) for name, stage in stages]
 
 
-def _slide(one: MeasuredScene, point: Mapping[str, Any], of: Body) -> list[Stage]:
-    assert one.inlay is not None
+def _slide(scene: MeasuredScene, point: Mapping[str, Any], shape: Body) -> list[Stage]:
+    assert scene.inlay is not None
     stages = []
-    for stage in stages_of(point, of)[:1]:
+    for stage in stages_of(point, shape)[:1]:
         known = {uniform.name for uniform in load(point["chain"][0]).uniforms}
-        scene = {key: value for key, value in one.inlay.parameters.items() if key in known}
-        stages.append(_with(stage, scene))
+        values = {key: value for key, value in scene.inlay.parameters.items() if key in known}
+        stages.append(_with(stage, values))
     return stages
 
 
 def _with(stage: Stage, values: Mapping[str, object]) -> Stage:
-    """The stage with more parameters; those that it has stay."""
+    """The stage with more parameters; it keeps those that it has."""
     own = dict(stage.values)
     return stage._replace(values=(*stage.values, *((key, value) for key, value in values.items() if key not in own)))
 
 
-def _given(technique: Any, point: Mapping[str, Any]) -> dict[str, object]:
-    """What was fitted of a technique's parameters, and the scale in the one that can take it."""
-    found: dict[str, object] = {}
+def _fitted(technique: Any, point: Mapping[str, Any]) -> dict[str, object]:
+    """A technique's fitted parameters; the factor includes the scale."""
+    values: dict[str, object] = {}
     names, _ = needs(technique.module, technique.function)
     for uniform in technique.uniforms:
         if uniform.name not in names or kind_of(uniform.type) != "float":
             continue
         if uniform.name in point["parameters"]:
             value = point["parameters"][uniform.name]
-            found[uniform.name] = _cut(uniform, value[0] if components(uniform.type) == 1 else list(value))
+            values[uniform.name] = _clamped(uniform, value[0] if components(uniform.type) == 1 else list(value))
         elif uniform.name == point["factor"]:
             default = np.array(uniform.default)
             scale = np.array(point["scale"])[: len(default)]
-            found[uniform.name] = _cut(
+            values[uniform.name] = _clamped(
                 uniform, [*(default * scale)] if len(default) > 1 else float((default * scale)[0])
             )
-    return found
+    return values
 
 
-def _cut(uniform: Uniform, value: Any) -> Any:
-    """A value within the parameter's range: rounding may have left it by a little."""
+def _clamped(uniform: Uniform, value: Any) -> Any:
+    """A value clamped to the parameter's range, which rounding may have exceeded."""
     limits = dict(uniform.hints).get("hint_range")
     if limits is None:
         return value

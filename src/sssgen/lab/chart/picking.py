@@ -1,7 +1,7 @@
-"""Picking no more than a scene needs: the cheapest chain within an error, or the most accurate within a cost.
+"""Picks the cheapest chain within an error, or the most accurate chain within a cost.
 
-A chain's error on a scene is the worst of its views, at the upper end of its bar: two standard errors above what was
-measured, so that the true error is below it.
+A chain's error on a scene is the largest of its views, at the upper end of the error bar: two standard errors above the
+measured value.
 """
 
 from __future__ import annotations
@@ -17,43 +17,43 @@ Point = Mapping[str, Any]
 
 
 class Role(NamedTuple):
-    """What became of one role."""
+    """The choice for one role."""
 
     role: str
     technique: str
-    """'' where the role is left out"""
+    """'' if the chain omits the role"""
     why: str
 
 
 class Pick(NamedTuple):
-    """What was picked for a scene."""
+    """The choice for a scene."""
 
     scene: str
     chain: Point | None
-    """The point of the material; None where the scene has no medium"""
+    """The point of the material; None for a scene without a medium"""
     coordinates: Point | None
     roles: tuple[Role, ...]
     cheaper: Point | None
-    """The most accurate of what is cheaper"""
+    """The most accurate of the cheaper points"""
     better: Point | None
-    """The cheapest of what is more accurate"""
+    """The cheapest of the more accurate points"""
     met: bool
-    """Whether the limit is kept; else the nearest to it was picked"""
+    """Whether the choice is within the limit; otherwise it is the nearest to it"""
 
 
 def limit_of(point: Point) -> float:
-    """What a point's error stays within: see the module."""
+    """The upper bound of a point's error, see the module."""
     views = point["views"].values()
     return max((float(view["high"]) for view in views), default=float(point["error"]["high"]))
 
 
 def cost_of(point: Point) -> float:
-    """What a chart shows as the point's cost."""
+    """The point's cost in the chart."""
     return float(point["cost"]["value"])
 
 
 def pick(record: Mapping[str, Any], scene: str, max_error: float | None, max_cost: float | None) -> Pick:
-    """The choice for a scene of a chart's record, by just one of the limits. Raises SssgenError without points."""
+    """The choice for a scene of a chart's record; one of the limits is None. Raises SssgenError without points."""
     points = [point for point in record["points"] if point["scene"] == scene and allowed(point)]
     materials = [point for point in points if point["role"] == "material"]
     slides = [point for point in points if point["role"] == "coordinates"]
@@ -64,21 +64,21 @@ def pick(record: Mapping[str, Any], scene: str, max_error: float | None, max_cos
     main = chain or slide
     assert main is not None
     line = front(materials or slides)
-    cheaper = max((one for one in line if cost_of(one) < cost_of(main)), key=cost_of, default=None)
-    better = min((one for one in line if limit_of(one) < limit_of(main)), key=cost_of, default=None)
+    cheaper = max((point for point in line if cost_of(point) < cost_of(main)), key=cost_of, default=None)
+    better = min((point for point in line if limit_of(point) < limit_of(main)), key=cost_of, default=None)
     roles = (_coordinates(slide, slides), *_light(chain, materials))
     return Pick(scene, chain, slide, roles, cheaper, better, chain_met and slide_met)
 
 
 def allowed(point: Point) -> bool:
-    """Whether a point may be picked: it has not failed, and holds no source's own form, whose errata it would keep."""
+    """Whether a point may be picked: it has not failed, and contains no baseline, which has its source's errata."""
     return not point["failed"] and not any(is_published(load(name)) for name in point["chain"])
 
 
 def chosen(points: Sequence[Point], max_error: float | None, max_cost: float | None) -> tuple[Point | None, bool]:
-    """The cheapest point within the error, or the most accurate within the cost; and whether there is one.
+    """The cheapest point within the error, or the most accurate within the cost, and True.
 
-    Else the most accurate, or the cheapest, is chosen.
+    If there is none: the most accurate, or the cheapest, and False. None without points.
     """
     if not points:
         return None, True
@@ -121,12 +121,12 @@ def _light(chain: Point | None, materials: Sequence[Point]) -> list[Role]:
         ]
     names = chain["chain"]
     light = names[-1]
-    told = [Role("translucency", light, f"without light that comes through the error is {without:.3g}")]
+    roles = [Role("translucency", light, f"without light that comes through the error is {without:.3g}")]
     first = next((name for name in names if load(name).role == "thickness"), "")
     if not first:
         best = min(materials, key=limit_of)
         why = f"left out: {light} reads none; the best chain that has one errs by {limit_of(best):.3g}"
-        return [Role("thickness", "", why), *told]
+        return [Role("thickness", "", why), *roles]
     plain = [point for point in materials if any(is_constant(load(name)) for name in point["chain"])]
     why = needs(load(first))
     if is_constant(load(first)):
@@ -136,4 +136,4 @@ def _light(chain: Point | None, materials: Sequence[Point]) -> list[Role]:
     elif plain:
         least = min(limit_of(point) for point in plain)
         why = f"with the same thickness everywhere the error is {least:.3g}" + (f"; it needs {why}" if why else "")
-    return [Role("thickness", first, why), *told]
+    return [Role("thickness", first, why), *roles]

@@ -1,7 +1,6 @@
-"""A chart's second cost: milliseconds on the GPU that is here, of each chain's emitted shader on its scene's points.
+"""A chart's second cost: milliseconds on this machine's GPU, of each chain's emitted shader at its scene's points.
 
-The whole emitted shader is timed, for the scene's lights, in turns with the others; what the same shader takes without
-the chain is taken off.
+The whole emitted shader is timed with the scene's lights; the time of the same shader without the chain is subtracted.
 """
 
 from __future__ import annotations
@@ -27,14 +26,14 @@ from sssgen.material.model import Material
 from sssgen.pipeline.compiler import compile
 
 AT_ONCE = 40
-"""Programs that take turns: many take too long for a clock to stay the same."""
+"""Programs that alternate; with more of them, a round is so long that clocks change in it."""
 EVALUATIONS = 8
-"""Of a chain at each pixel: a single one hides behind the reading of the points."""
+"""Evaluations of a chain per pixel: a single one hides behind the reads of the points."""
 LEAST = 1e-4
-"""Milliseconds below which a chain costs nothing that a timer can tell."""
+"""The least cost in milliseconds: smaller times are not measurable."""
 EMPTY = "without"
 
-Told = Callable[[int, int, str], None]
+Progress = Callable[[int, int, str], None]
 
 
 def with_gpu_cost(
@@ -42,43 +41,43 @@ def with_gpu_cost(
     scenes: Sequence[MeasuredScene],
     size: tuple[int, int] = gpu_cost.SIZE,
     rounds: int = gpu_cost.ROUNDS,
-    told: Told = lambda *_: None,
+    progress: Progress = lambda *_: None,
 ) -> dict[str, Any]:
     """The record with each point's time as its cost, the static cost's rank correlation with it, and the device.
 
-    Points that have failed are not timed. Raises SssgenError where there is no OpenGL.
+    Failed points are not timed. Raises SssgenError without OpenGL.
     """
     points = [dict(point) for point in record["points"]]
     about = dict(record["record"])
     done = 0
-    for one in scenes:
-        own = [point for point in points if point["scene"] == one.name and not point["failed"]]
+    for measured in scenes:
+        own = [point for point in points if point["scene"] == measured.name and not point["failed"]]
         for start in range(0, len(own), AT_ONCE):
             some = own[start : start + AT_ONCE]
-            found = _timed(one, some, size, rounds)
+            times = _timed(measured, some, size, rounds)
             for number, point in enumerate(some):
-                taken = found.net_times[str(number)] - found.net_times[EMPTY]
-                low, median, high = (float(value) for value in np.percentile(taken, [10.0, 50.0, 90.0]))
-                point["cost"] = {**point["cost"], **_cost(low, median, high, found)}
+                net = times.net_times[str(number)] - times.net_times[EMPTY]
+                low, median, high = (float(value) for value in np.percentile(net, [10.0, 50.0, 90.0]))
+                point["cost"] = {**point["cost"], **_cost(low, median, high, times)}
             done += len(some)
-            told(done, len(points), one.name)
-            about |= {"device": found.device.renderer, "driver": found.device.version}
-            about |= {"software": found.device.software, "size": list(size), "rounds": rounds}
+            progress(done, len(points), measured.name)
+            about |= {"device": times.device.renderer, "driver": times.device.version}
+            about |= {"software": times.device.software, "size": list(size), "rounds": rounds}
     about["rank_correlation"] = correlations(points)
     return {**record, "record": about, "points": points}
 
 
-def _cost(low: float, median: float, high: float, found: Measured) -> dict[str, Any]:
-    """Times as a cost; on a software rasteriser only as ratios to the shader without the chain."""
-    without = max(float(np.median(found.net_times[EMPTY])), LEAST)
+def _cost(low: float, median: float, high: float, times: Measured) -> dict[str, Any]:
+    """Times as a cost; on a software rasteriser only the ratio to the shader without the chain."""
+    without = max(float(np.median(times.net_times[EMPTY])), LEAST)
     ratio = {"gpu_ratio": max(median, LEAST) / without}
-    if found.device.software:
+    if times.device.software:
         return ratio
     return {**ratio, "gpu_ms": max(median, LEAST), "gpu_ms_low": low, "gpu_ms_high": high}
 
 
 def by_gpu(record: Mapping[str, Any]) -> dict[str, Any]:
-    """The record with its GPU times as the costs that are drawn and picked by; points without one are left out."""
+    """The record with GPU times as the cost for drawing and picking; it omits points without a time."""
     software = bool(record["record"].get("software"))
     kind = "gpu_ratio" if software else "gpu_ms"
     points = [
@@ -90,60 +89,65 @@ def by_gpu(record: Mapping[str, Any]) -> dict[str, Any]:
     return {**record, "points": points, "cost": "gpu", "cost_unit": unit}
 
 
-def _timed(one: MeasuredScene, points: Sequence[Mapping[str, Any]], size: tuple[int, int], rounds: int) -> Measured:
-    scene = _scene(one)
-    at = gpu_programs.surface_points(scene, size)
-    of = body.body(one.geometry)
+def _timed(
+    measured: MeasuredScene, points: Sequence[Mapping[str, Any]], size: tuple[int, int], rounds: int
+) -> Measured:
+    scene = _drawable(measured)
+    surface_points = gpu_programs.surface_points(scene, size)
+    shape = body.body(measured.geometry)
     programs = []
     with tempfile.TemporaryDirectory() as folder:
-        for name, text in of.files.items():
+        for name, text in shape.files.items():
             with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
                 file.write(text)
         chains: list[tuple[str, Sequence[Stage]]] = [(EMPTY, ())]
-        chains += [(str(number), stages_of(point, of)) for number, point in enumerate(points)]
+        chains += [(str(number), stages_of(point, shape)) for number, point in enumerate(points)]
         for name, stages in chains:
             surface = [] if any(stage.section == "surface" for stage in stages) else [Stage("surface", "base_color")]
             material = material_of([*stages, *surface], folder)
-            fitting = _fitting(scene, one, material)
-            programs.append(gpu_programs.of_material(name, material, fitting, at, EVALUATIONS))
+            fitting = _with_parameters(scene, measured, material)
+            programs.append(gpu_programs.of_material(name, material, fitting, surface_points, EVALUATIONS))
     return gpu_cost.measure(programs, size, rounds)
 
 
-def _scene(one: MeasuredScene) -> Scene:
-    """The scene as a scene to draw."""
-    scene = parse_scene("[medium]", f"{one.name}.toml")  # all else is as a scene has it that does not say
-    return dataclasses.replace(scene, geometry=one.geometry, camera=one.camera, lights=one.lights)
+def _drawable(measured: MeasuredScene) -> Scene:
+    """The scene as a Scene for drawing."""
+    scene = parse_scene("[medium]", f"{measured.name}.toml")  # everything else has its default
+    return dataclasses.replace(scene, geometry=measured.geometry, camera=measured.camera, lights=measured.lights)
 
 
-def _fitting(scene: Scene, one: MeasuredScene, material: Material) -> Scene:
-    """The scene with those parameters and textures of the body that the material's shader reads."""
+def _with_parameters(scene: Scene, measured: MeasuredScene, material: Material) -> Scene:
+    """The scene with the parameters and textures of the body that the material's shader reads."""
     reflection = compile(material, gpu_programs.TARGET).reflection
-    texture = body.distance_texture(one.geometry)
-    given = {**body.given(one.geometry, texture), **(one.inlay.parameters if one.inlay is not None else {})}
+    texture = body.distance_texture(measured.geometry)
+    values = {
+        **body.given(measured.geometry, texture),
+        **(measured.inlay.parameters if measured.inlay is not None else {}),
+    }
     read = {uniform["source_name"] for uniform in reflection["uniforms"]}
     textures = {each["source_name"] for each in reflection["textures"]}
     return dataclasses.replace(
         scene,
-        parameters={name: value for name, value in given.items() if name in read},
+        parameters={name: value for name, value in values.items() if name in read},
         textures={"distance_map": texture} if "distance_map" in textures else {},
     )
 
 
 def correlations(points: Sequence[Mapping[str, Any]]) -> dict[str, float]:
     """Spearman's rank correlation of static and measured cost, over all scenes, by role."""
-    found = {}
+    result = {}
     for role in dict.fromkeys(point["role"] for point in points):
         timed = [point["cost"] for point in points if point["role"] == role and "gpu_ratio" in point["cost"]]
         if len(timed) > 1:
             static = ranks([float(cost.get("static", cost["value"])) for cost in timed])
             measured = ranks([float(cost["gpu_ratio"]) for cost in timed])
             if np.ptp(static) > 0.0 and np.ptp(measured) > 0.0:
-                found[role] = float(np.corrcoef(static, measured)[0, 1])
-    return found
+                result[role] = float(np.corrcoef(static, measured)[0, 1])
+    return result
 
 
 def ranks(values: Sequence[float]) -> np.ndarray:
-    """The values' ranks; equal ones share the mean of theirs."""
+    """The values' ranks; equal values have the mean of their ranks."""
     _, inverse, counts = np.unique(np.array(values), return_inverse=True, return_counts=True)
     last = np.cumsum(counts)
     return (last - 0.5 * (counts - 1))[inverse]

@@ -1,14 +1,14 @@
-"""What shaders cost on a GPU, in milliseconds a frame.
+"""Times of shaders on a GPU, in milliseconds per frame.
 
-    found = measure([Program("mine", text, {"power": 4.0}), Program("theirs", other)], size=(1920, 1080))
-    found.net("mine").median                                    # ms of one evaluation at every pixel
-    found.ratio("mine", "theirs")                               # how many times as long, with its spread
+    result = measure([Program("mine", text, {"power": 4.0}), Program("theirs", other)], size=(1920, 1080))
+    result.net("mine").median                                   # ms of one evaluation at every pixel
+    result.ratio("mine", "theirs")                              # the quotient of the times, with its spread
 
-Programs are full-screen fragment shaders, drawn by OpenGL into 32-bit floats. Each is drawn many times for one timer
-query; all of them take turns, in an order that changes from round to round, so that a clock that drifts favours none.
-A program may have a floor: a shader that reads what it reads and computes nothing, whose time is taken off.
+Programs are full-screen fragment shaders, drawn by OpenGL into 32-bit floats. One timer query spans many draws of a
+program. The programs alternate in a random order in every round, so that a drifting clock does not favour one.
+A program may have a floor: a shader with the same reads but no computation, whose time is subtracted.
 
-On a software rasteriser (llvmpipe, SwiftShader) the times are the CPU's: compare them, but do not quote them.
+On a software rasteriser (llvmpipe, SwiftShader) the times are those of the CPU: only their ratios are meaningful.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ from sssgen.targets.numpy_textures import Texture
 SIZE = (1920, 1080)
 ROUNDS = 31
 SAMPLE = 2.0
-"""Milliseconds of drawing behind one number: well above any timer's resolution."""
+"""Milliseconds of drawing in one timer query: well above the timer's resolution."""
 WARM_UP = 300.0
-"""Milliseconds of drawing before the first number, in which a GPU raises its clocks."""
+"""Milliseconds of drawing before the first query, in which a GPU raises its clocks."""
 MOST_DRAWS = 1000
 
 _SOFTWARE = re.compile("llvmpipe|softpipe|swiftshader|software", re.IGNORECASE)
@@ -49,32 +49,32 @@ void main() {
 
 
 class Program(NamedTuple):
-    """A full-screen fragment shader, and what it reads."""
+    """A full-screen fragment shader with its uniforms and textures."""
 
     name: str
     fragment: str
     """GLSL 3.30 with its `#version`; it may read `in vec2 v_uv`, 0..1, and writes one vec4."""
     uniforms: Mapping[str, Any] = {}
-    """Numbers by name; a matrix column by column. Names that the driver has dropped are passed over."""
+    """Numbers by name; a matrix column by column. Uniforms that the driver has removed are ignored."""
     textures: Mapping[str, Texture | backends.Array] = {}
-    """By name. An array (height, width, 4) is kept in float32, and meant for texelFetch."""
+    """By name. An array (height, width, 4) is uploaded as float32, for texelFetch."""
     floor: str = ""
-    """The text of the floor, which has the same uniforms and textures; '' for none."""
+    """The floor's text, which has the same uniforms and textures; '' for none."""
     evaluations: int = 1
-    """How often each pixel computes what is to be timed."""
+    """Evaluations per pixel."""
 
 
 class Device(NamedTuple):
-    """What has drawn."""
+    """The device of the draws."""
 
     renderer: str
     version: str
     software: bool
-    """A rasteriser on the CPU: only ratios of its times mean anything."""
+    """A rasteriser on the CPU."""
 
 
 class Spread(NamedTuple):
-    """The middle of what the rounds found, and between what eight of ten lie."""
+    """The median of the rounds, and the range of the middle 80 percent."""
 
     median: float
     low: float
@@ -85,7 +85,7 @@ class Spread(NamedTuple):
 
 @dataclass(frozen=True)
 class Measured:
-    """The times of programs that took turns."""
+    """The times of several programs."""
 
     device: Device
     size: tuple[int, int]
@@ -94,26 +94,26 @@ class Measured:
     raw_times: Mapping[str, npt.NDArray[np.float64]]
     """Program → (rounds,): ms of a draw."""
     net_times: Mapping[str, npt.NDArray[np.float64]]
-    """Program → (rounds,): ms of one evaluation at every pixel, the floor taken off."""
+    """Program → (rounds,): ms of one evaluation at every pixel, without the floor."""
 
     def raw(self, name: str) -> Spread:
         """The time of a whole draw, in ms."""
         return _spread(self.raw_times[name])
 
     def net(self, name: str) -> Spread:
-        """The time of one evaluation at every pixel, in ms: less the floor's, by the number of evaluations.
+        """The time of one evaluation at every pixel, in ms: (draw − floor) / evaluations.
 
-        What a GPU computes while it waits for memory costs nothing in a single evaluation; many show the arithmetic.
+        In a single evaluation, arithmetic hides behind memory reads; several evaluations show its cost.
         """
         return _spread(self.net_times[name])
 
     def ratio(self, name: str, other: str) -> Spread:
-        """How many times the net time of `other` that of `name` is, each round by itself."""
-        # a floor's noise may exceed a cheap program's time: no ratio is of less than nothing
+        """The net time of `name` divided by that of `other`, round by round."""
+        # the floor's noise may exceed a cheap program's time, so that its net time is negative
         return _spread(np.maximum(self.net_times[name], 0.0) / np.maximum(self.net_times[other], 1e-9))
 
     def record(self) -> dict[str, Any]:
-        """All of it for JSON. `software` says that the times are to be shown as ratios only."""
+        """The measurement for JSON. If `software`, only ratios of the times are meaningful."""
         return {
             "device": self.device.renderer,
             "driver": self.device.version,
@@ -134,9 +134,9 @@ class Measured:
 def measure(
     programs: Sequence[Program], size: tuple[int, int] = SIZE, rounds: int = ROUNDS, sample: float = SAMPLE
 ) -> Measured:
-    """Draws the programs in turns and times them; `sample` is the least time, in ms, behind one number.
+    """Times the programs alternately; `sample` is the least time of one timer query, in ms.
 
-    Raises SssgenError where there is no OpenGL, and for a program that the driver refuses.
+    Raises SssgenError without OpenGL, and for a program that the driver rejects.
     """
     with _Stage(size) as stage:
         drawn: dict[str, _Drawn] = {}
@@ -162,7 +162,7 @@ def measure(
 
 
 def picture(program: Program, size: tuple[int, int]) -> npt.NDArray[np.float32]:
-    """What a program draws, (height, width, 4), row 0 at the bottom. Raises SssgenError as `measure` does."""
+    """The output of a program, (height, width, 4), row 0 at the bottom. Raises SssgenError as `measure` does."""
     with _Stage(size) as stage:
         stage.time(stage.prepare(program, program.fragment))
         return np.frombuffer(stage.frame.read(components=4, dtype="f4"), np.float32).reshape(size[1], size[0], 4)
@@ -170,22 +170,22 @@ def picture(program: Program, size: tuple[int, int]) -> npt.NDArray[np.float32]:
 
 @dataclass
 class _Drawn:
-    """A program in the driver, with what it is bound to."""
+    """A linked program with its textures."""
 
     array: Any
     textures: list[Any]
     """By texture unit."""
     draws: int = 1
-    """How many make one sample."""
+    """Draws per timer query."""
 
 
 class _Stage:
-    """The frame that all programs draw into, and the timer. What it made is released at its end."""
+    """The frame that all programs draw into, and the timer. The end releases all GPU objects."""
 
     def __init__(self, size: tuple[int, int]) -> None:
         self.gpu = cast(OpenGL, backends.needed("gl"))
         self.context: Any = self.gpu.context
-        self.made: list[Any] = []
+        self.objects: list[Any] = []
         self.uploaded: dict[int, Any] = {}
         self.size = size
         info = self.context.info
@@ -202,16 +202,16 @@ class _Stage:
         return self
 
     def __exit__(self, *failed: Any) -> None:
-        for one in reversed(self.made):
-            one.release()
+        for gpu_object in reversed(self.objects):
+            gpu_object.release()
         self.context.__exit__(*failed)
 
-    def _keep(self, one: Any) -> Any:
-        self.made.append(one)
-        return one
+    def _keep(self, gpu_object: Any) -> Any:
+        self.objects.append(gpu_object)
+        return gpu_object
 
     def prepare(self, program: Program, text: str) -> _Drawn:
-        """A text in the driver, with the program's uniforms and textures."""
+        """Links a text and sets the program's uniforms and textures."""
         try:
             linked = self._keep(self.context.program(vertex_shader=_SCREEN, fragment_shader=text))
         except Exception as error:
@@ -234,9 +234,9 @@ class _Stage:
         if isinstance(data, Texture):
             return self.gpu.upload(data)
         texels = np.ascontiguousarray(data, np.float32)
-        made = self.context.texture(texels.shape[1::-1], 4, texels.tobytes(), dtype="f4")
-        made.filter = (self.context.NEAREST, self.context.NEAREST)
-        return made
+        texture = self.context.texture(texels.shape[1::-1], 4, texels.tobytes(), dtype="f4")
+        texture.filter = (self.context.NEAREST, self.context.NEAREST)
+        return texture
 
     def time(self, drawn: _Drawn) -> float:
         """Milliseconds of one draw."""
@@ -258,7 +258,7 @@ class _Stage:
 
 
 def _warm(stage: _Stage, drawn: Sequence[_Drawn], sample: float) -> None:
-    """Draws until clocks and caches have settled, then finds how many draws each sample takes."""
+    """Draws until clocks and caches have settled, then chooses the draws per timer query."""
     for one in drawn:
         stage.time(one)  # some drivers compile at the first draw
     spent = 0.0
@@ -270,14 +270,14 @@ def _warm(stage: _Stage, drawn: Sequence[_Drawn], sample: float) -> None:
 
 
 def _key(text: str, program: Program) -> str:
-    """Programs of the same text, numbers and textures are the same: floors often are."""
+    """Programs with equal text, numbers and textures have equal keys: floors often have."""
     values = sorted((name, str(np.asarray(value).tolist())) for name, value in program.uniforms.items())
     return repr((text, values, sorted((name, id(data)) for name, data in program.textures.items())))
 
 
 def _write(member: Any, value: Any) -> None:
     kind = {"f": np.float32, "I": np.uint32}.get(member.fmt[-1], np.int32)
-    kept = 4 * member.dimension * member.array_length  # of an array the driver may drop what is not read
+    kept = 4 * member.dimension * member.array_length  # the driver may remove unused elements of an array
     member.write(np.ascontiguousarray(value, kind).tobytes()[:kept])
 
 

@@ -1,11 +1,12 @@
-"""Programs whose time is that of a material or of one technique, for `gpu_cost.measure`.
+"""GPU programs that time a material or a single technique, for `gpu_timing.measure`.
 
     ball = surface_points(scene_loading.load("ball.toml"), (1920, 1080))
     program = of_technique("lobe_exp2", ball)
 
-A full-screen pass reads the surface's points from three float textures, a place a pixel, and computes there what the
-fragment stage of the emitted shader computes; its floor reads the same and adds it up. Where one evaluation is too
-little to be seen beside the reading, each pixel has several, at places moved a little, so that none can be left out.
+A full-screen pass reads one surface point per pixel from three float textures, and runs the code of the emitted
+fragment stage there. Its floor, which is subtracted, reads the same textures and adds the values. Where one evaluation
+takes too little time compared with the reads, each pixel runs several, at slightly different points, so that the
+compiler cannot merge them.
 """
 
 from __future__ import annotations
@@ -35,17 +36,17 @@ from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.targets.numpy_textures import Texture
 
 EYE, LIGHT = (0.0, 0.0, 1.8), (2.5, 1.0, 0.3)
-"""Where the eye and the light of a single technique are: half of what is seen of a ball at the origin is lit."""
+"""Positions of the eye and of the light for single techniques: half of the visible part of a unit ball is lit."""
 
 MOST_RAYS = 500_000
-"""Cast on the CPU for one picture."""
+"""The limit of rays that the CPU casts for one picture."""
 
 
 class Points(NamedTuple):
-    """What a fragment stage is given at each pixel, as (height, width, 4) float32."""
+    """The inputs of a fragment stage at each pixel, as (height, width, 4) float32."""
 
-    place: Array
-    """Position in world space (or the ray, where a material makes its own geometry), and u."""
+    position: Array
+    """Position in world space (or the ray, for a material that has its own geometry), and u."""
     normal: Array
     """Normal, and v."""
     tangent: Array
@@ -53,7 +54,7 @@ class Points(NamedTuple):
 
 
 TARGET = "glsl-330"
-"""The target whose text is timed."""
+"""The target whose emitted text is timed."""
 
 _VARYINGS = {
     "v_position": ("vec3", "timing_place.xyz + moved"),
@@ -62,9 +63,9 @@ _VARYINGS = {
     "v_tangent": ("vec4", "timing_tangent + vec4(vec3(moved), 0.0)"),
     "v_uv": ("vec2", "vec2(timing_place.w, timing_normal.w) + moved"),
 }
-"""What emitted fragment stages read: its type, and what it is in a pass over points."""
+"""The varyings of emitted fragment stages: type, and GLSL expression in the timing pass."""
 
-_GIVEN = {
+_INPUTS = {
     "P": ("v_position", ("v_position",)),
     "p": ("v_position", ("v_position",)),
     "uv": ("v_uv", ("v_uv",)),
@@ -77,9 +78,9 @@ _GIVEN = {
     "ray_origin": ("timing_eye", ()),
     "ray_direction": ("normalize(v_position - timing_eye)", ("v_position",)),
 }
-"""A technique's input by its name, without its space: what it is, and the varyings that it is made of."""
+"""A technique's inputs by name, without the suffix of the space: GLSL expression, and the varyings in it."""
 
-_AMOUNTS = {
+_OTHER_INPUTS = {
     "float": "fract(dot(v_uv, vec2(3.0, 5.0)))",
     "vec2": "fract(v_uv * 3.0)",
     "vec3": "fract(vec3(v_uv, 0.5) * 3.0)",
@@ -88,7 +89,7 @@ _AMOUNTS = {
     "uint": "uint(v_uv.x * 8.0)",
     "bool": "v_uv.x > 0.5",
 }
-"""Any other input, by its type: it varies over the picture."""
+"""The expressions of all other inputs, by type; they vary over the picture."""
 
 _AS_VEC4 = {"float": "vec4({})", "bool": "vec4(float({}))", "int": "vec4(float({}))", "uint": "vec4(float({}))"}
 _AS_VEC4 |= {"vec2": "vec4({}, 0.0, 0.0)", "vec3": "vec4({}, 0.0)", "vec4": "{}"}
@@ -96,24 +97,24 @@ _AS_VEC4 |= {"vec2": "vec4({}, 0.0, 0.0)", "vec3": "vec4({}, 0.0)", "vec4": "{}"
 
 @lru_cache(4)
 def ball_points(size: tuple[int, int]) -> Points:
-    """A ball that fills the picture."""
-    found = _seen(Ball(), Camera(EYE, field_of_view=30.0), size)
-    assert found is not None
-    return found
+    """The points of a ball that fills the picture."""
+    points = _visible_points(Ball(), Camera(EYE, field_of_view=30.0), size)
+    assert points is not None
+    return points
 
 
 def surface_points(scene: Scene, size: tuple[int, int]) -> Points:
-    """The points of a scene's surface, those that its camera sees stretched until they fill the picture.
+    """The surface points that a scene's camera sees, stretched until they fill the picture.
 
-    A large picture has several smaller ones side by side, so that the CPU need not cast millions of rays. Of a scene
-    without geometry, the rays. Raises SssgenError where the camera sees nothing.
+    A large picture consists of tiles of a smaller one, because the CPU casts the rays. A scene without geometry gives
+    the rays instead. Raises SssgenError where the camera sees nothing.
     """
     if scene.geometry is None:
         return _rays(scene.camera, size)
-    found = _seen(scene.geometry, scene.camera, size)
-    if found is None:
+    points = _visible_points(scene.geometry, scene.camera, size)
+    if points is None:
         raise failure("the camera sees nothing of the scene's geometry", file=scene.document.reporter.file)
-    return found
+    return points
 
 
 def _rays(camera: Camera, size: tuple[int, int]) -> Points:
@@ -123,8 +124,8 @@ def _rays(camera: Camera, size: tuple[int, int]) -> Points:
     return _points(rays, np.zeros((height, width, 3)), np.zeros((height, width, 4)), np.dstack([u, v]))
 
 
-def _seen(geometry: Geometry, camera: Camera, size: tuple[int, int]) -> Points | None:
-    """The rows of what is hit, one after the other, each drawn out to the whole width."""
+def _visible_points(geometry: Geometry, camera: Camera, size: tuple[int, int]) -> Points | None:
+    """The hit points, row by row, each row resampled to the full width; None without a hit."""
     tiles = math.ceil(math.sqrt(size[0] * size[1] / MOST_RAYS))
     width, height = (math.ceil(side / tiles) for side in size)
     origin, directions = camera.rays(width, height)
@@ -142,31 +143,31 @@ def _seen(geometry: Geometry, camera: Camera, size: tuple[int, int]) -> Points |
     return _points(hits.position[index], hits.normal[index], hits.tangent[index], hits.uv[index])
 
 
-def _points(place: Array, normal: Array, tangent: Array, uv: Array) -> Points:
-    parts = np.dstack([place, uv[..., :1]]), np.dstack([normal, uv[..., 1:]]), tangent
+def _points(position: Array, normal: Array, tangent: Array, uv: Array) -> Points:
+    parts = np.dstack([position, uv[..., :1]]), np.dstack([normal, uv[..., 1:]]), tangent
     return Points(*(np.ascontiguousarray(part, np.float32) for part in parts))
 
 
 def of_material(
     name: str, material: Material | str, scene: Scene, points: Points, evaluations: int = 1, guards: str = "auto"
 ) -> Program:
-    """The fragment stage of a material's emitted shader (glsl-330), lit as in a scene, at points of its surface.
+    """The program of a material's emitted fragment stage (glsl-330), with a scene's lights, at surface points.
 
-    The text is the emitted one; only its varyings are variables and its `main` a function. Parameters are uniforms
-    with the scene's values. Raises SssgenError for a scene that does not fit the material.
+    The text is the emitted one, except that its varyings become variables and its `main` a function. Parameters are
+    uniforms with the scene's values. Raises SssgenError for a scene that does not fit the material.
     """
     material = material if isinstance(material, Material) else load_material(material)
     compiled = compile(material, TARGET, guards=guards)
-    height, width = points.place.shape[:2]
+    height, width = points.position.shape[:2]
     drawn = drawing(compiled, shell_of(scene, material, compiled.reflection), (width, height), None, None)
     text = drawn.fragment.text.text
     varyings = [varying for varying in _VARYINGS if re.search(rf"^in \w+ {varying};$", text, re.MULTILINE)]
     text = re.sub(r"^(?:in|out) (\w+ (?:v_\w+|fragment_color);)$", r"\1", text, flags=re.MULTILINE)
     text = re.sub(r"^void main\(\)", "void shade()", text, flags=re.MULTILINE)
-    text = text.replace("discard;", "return;")  # a pass that ends early would be timed shorter
+    text = text.replace("discard;", "return;")  # discarding would shorten the time
     textures = {name: bound.data for name, bound in drawn.textures.items()}
-    read = _sum((_VARYINGS[varying][0], varying) for varying in varyings)
-    floor = f"#version 330 core\n{_declared(varyings)}void shade() {{\n    fragment_color = {read};\n}}\n"
+    sum_of_reads = _sum((_VARYINGS[varying][0], varying) for varying in varyings)
+    floor = f"#version 330 core\n{_declared(varyings)}void shade() {{\n    fragment_color = {sum_of_reads};\n}}\n"
     uniforms = {**drawn.values, "timing_evaluations": evaluations}
     main = _main(varyings)
     return Program(name, text + main, uniforms, {**textures, **_bound(points)}, floor + main, evaluations)
@@ -181,11 +182,11 @@ def of_technique(
     text: str = "",
     values: Mapping[str, Any] | None = None,
 ) -> Program:
-    """One technique (as `sssgen eval` takes it, with functions bound to its slots) at points of a surface.
+    """The program of one technique (named as for `sssgen eval`, with functions bound to its slots) at surface points.
 
-    Its uniforms have their defaults, or what `values` says; whole numbers among them, which are counts, are constants,
-    as materials fix them. Textures are those of `samples`. With `text`, GLSL that has a function of the technique's
-    name with its inputs, that is timed instead: `text` declares the uniforms that it reads. Raises SssgenError.
+    Its uniforms have their defaults or those of `values`; integers, which are counts, are constants, as in materials.
+    Textures are random. `text` replaces the emitted GLSL by other GLSL with a function of the technique's name and
+    inputs, which declares its own uniforms. Raises SssgenError.
     """
     subject = probes.subject(name, bind)
     label = function = subject.probes[0].function.partition("_shows_")[0]
@@ -195,27 +196,31 @@ def of_technique(
     else:
         compiled = transpile(subject.module, TARGET, "timed", guards, subject.called, chained=subject.chained)
         text, renamed = next(iter(compiled.files.values())), compiled.reflection["renames"]
-    known = {key: one.default for key, one in subject.uniforms.items() if not isinstance(one.type, Sampler)}
+    defaults = {
+        key: uniform.default for key, uniform in subject.uniforms.items() if not isinstance(uniform.type, Sampler)
+    }
     for key in values or {}:
-        if key not in known:
+        if key not in defaults:
             raise failure(
-                f"{function} has no parameter '{key}'", did_you_mean(key, known) or f"it has: {', '.join(known)}"
+                f"{function} has no parameter '{key}'", did_you_mean(key, defaults) or f"it has: {', '.join(defaults)}"
             )
-    numbers: dict[str, Any] = {**known, **(values or {})}
+    numbers: dict[str, Any] = {**defaults, **(values or {})}
     shade = _shade(_signature(text, function, renamed), subject, numbers)
-    bound = {**numbers, **{f"value_{key}": value for key, value in numbers.items()}}
-    bound |= {"timing_eye": EYE, "timing_light": LIGHT, "timing_time": 1.5, "timing_evaluations": evaluations}
+    uniforms = {**numbers, **{f"value_{key}": value for key, value in numbers.items()}}
+    uniforms |= {"timing_eye": EYE, "timing_light": LIGHT, "timing_time": 1.5, "timing_evaluations": evaluations}
     head, main = "#version 330 core\n", _main(shade.varyings)
     fragment, floor = f"{head}{text}\n{shade.text}{main}", f"{head}{shade.floor}{main}"
-    return Program(label, fragment, bound, {**_textures(subject), **_bound(points)}, floor, evaluations)
+    return Program(label, fragment, uniforms, {**_textures(subject), **_bound(points)}, floor, evaluations)
 
 
 class _Input(NamedTuple):
-    """A parameter of a function: in GLSL's words, and what the technique calls it."""
+    """A parameter of a GLSL function."""
 
     direction: str
+    """in, out or inout"""
     type: str
     name: str
+    """As in the technique"""
 
 
 class _Signature(NamedTuple):
@@ -225,7 +230,7 @@ class _Signature(NamedTuple):
 
 
 class _Shade(NamedTuple):
-    """The function that shades a pixel with a technique, and the one that only reads its inputs."""
+    """The function that evaluates a technique at a pixel, and its floor, which only reads the inputs."""
 
     text: str
     floor: str
@@ -233,65 +238,71 @@ class _Shade(NamedTuple):
 
 
 def _signature(text: str, function: str, renamed: Mapping[str, str]) -> _Signature:
-    """How a function of a text is declared; `renamed` as in a reflection."""
-    shown = renamed.get(function, function)
-    match = re.search(rf"^(\w+) {shown}\(([^)]*)\)\s*\{{", text, re.MULTILINE)
+    """The declaration of a function in a text; `renamed` as in a reflection."""
+    emitted = renamed.get(function, function)
+    match = re.search(rf"^(\w+) {emitted}\(([^)]*)\)\s*\{{", text, re.MULTILINE)
     if match is None:
         raise failure(f"the text has no function '{function}'", "give it the technique's name")
-    known = {new: old.removeprefix(f"{function}.") for old, new in renamed.items() if old.startswith(f"{function}.")}
-    words = [param.split() for param in match[2].split(",") if param.strip()]
-    params = [_Input(word[0] if len(word) == 3 else "in", word[-2], known.get(word[-1], word[-1])) for word in words]
-    return _Signature(match[1], shown, params)
+    names = {new: old.removeprefix(f"{function}.") for old, new in renamed.items() if old.startswith(f"{function}.")}
+    declared = [param.split() for param in match[2].split(",") if param.strip()]
+    params = [_Input(part[0] if len(part) == 3 else "in", part[-2], names.get(part[-1], part[-1])) for part in declared]
+    return _Signature(match[1], emitted, params)
 
 
 def _shade(called: _Signature, subject: probes.Subject, numbers: Mapping[str, Any]) -> _Shade:
-    """A call with the values of a pixel and the technique's uniforms."""
-    declared = [_declaration(one, numbers) for one in called.params if one.name in subject.uniforms]
-    own = [one for one in called.params if one.name not in subject.uniforms]
-    read = {varying for one in own if one.direction != "out" for varying in _given(one)[1]}
+    """The functions that call a technique with a pixel's inputs and the technique's uniforms."""
+    uniforms = [param for param in called.params if param.name in subject.uniforms]
+    inputs = [param for param in called.params if param.name not in subject.uniforms and param.direction != "out"]
+    outputs = [param for param in called.params if param.name not in subject.uniforms and param.direction == "out"]
+    read = {varying for param in inputs for varying in _input(param)[1]}
     varyings = [varying for varying in _VARYINGS if varying in read]
-    prologue = "".join(
-        f"    {one.type} given_{one.name}{'' if one.direction == 'out' else f' = {_given(one)[0]}'};\n" for one in own
-    )
-    args = [("value_" if one.name in subject.uniforms else "given_") + one.name for one in called.params]
-    call = f"{called.function}({', '.join(args)})"
-    outputs = [(one.type, f"given_{one.name}") for one in own if one.direction != "in"]
+    locals_ = [f"    {param.type} given_{param.name} = {_input(param)[0]};\n" for param in inputs]
+    locals_ += [f"    {param.type} given_{param.name};\n" for param in outputs]
+    arguments = [("value_" if param in uniforms else "given_") + param.name for param in called.params]
+    call = f"{called.function}({', '.join(arguments)})"
+    results = [
+        (param.type, f"given_{param.name}")
+        for param in called.params
+        if param not in uniforms and param.direction != "in"
+    ]
     if called.result != "void":
-        call, outputs = f"{called.result} given_result = {call}", [(called.result, "given_result"), *outputs]
-    inputs = [(one.type, f"given_{one.name}") for one in own if one.direction != "out"]
+        call, results = f"{called.result} given_result = {call}", [(called.result, "given_result"), *results]
     shared = "uniform vec3 timing_eye;\nuniform vec3 timing_light;\nuniform float timing_time;\n" + _declared(varyings)
-    text = f"{''.join(declared)}{shared}void shade() {{\n{prologue}    {call};\n"
+    start = f"{shared}void shade() {{\n{''.join(locals_)}"
+    declarations = "".join(_declaration(param, numbers) for param in uniforms)
+    sum_of_inputs = _sum((param.type, f"given_{param.name}") for param in inputs)
     return _Shade(
-        f"{text}    fragment_color = {_sum(outputs)};\n}}\n",
-        f"{shared}void shade() {{\n{prologue}    fragment_color = {_sum(inputs)};\n}}\n",
+        f"{declarations}{start}    {call};\n    fragment_color = {_sum(results)};\n}}\n",
+        f"{start}    fragment_color = {sum_of_inputs};\n}}\n",
         varyings,
     )
 
 
-def _declaration(one: _Input, numbers: Mapping[str, Any]) -> str:
-    """A technique's uniform; a count is a constant."""
-    if one.type in ("int", "uint"):
-        return f"const {one.type} value_{one.name} = {one.type}({np.ravel(numbers[one.name])[0]});\n"
-    return f"uniform {one.type} value_{one.name};\n"
+def _declaration(uniform: _Input, numbers: Mapping[str, Any]) -> str:
+    """The declaration of a technique's uniform; a count is a constant."""
+    if uniform.type in ("int", "uint"):
+        value = np.ravel(numbers[uniform.name])[0]
+        return f"const {uniform.type} value_{uniform.name} = {uniform.type}({value});\n"
+    return f"uniform {uniform.type} value_{uniform.name};\n"
 
 
 def _textures(subject: probes.Subject) -> dict[str, Texture]:
-    found: dict[str, Texture] = {}
-    for key, one in subject.uniforms.items():
-        if isinstance(one.type, Sampler):
-            made = samples.texture(one.type.dim, np.random.default_rng(1))
-            found |= {key: made, f"value_{key}": made}
-    return found
+    textures: dict[str, Texture] = {}
+    for key, uniform in subject.uniforms.items():
+        if isinstance(uniform.type, Sampler):
+            textures[key] = samples.texture(uniform.type.dim, np.random.default_rng(1))
+            textures[f"value_{key}"] = textures[key]
+    return textures
 
 
-def _given(one: _Input) -> tuple[str, Sequence[str]]:
-    """What an input is at a pixel, and the varyings that it is made of."""
-    name = one.name.removesuffix("_object")
-    if name in _GIVEN:
-        return _GIVEN[name]
-    if one.type not in _AMOUNTS:
-        raise failure(f"an input of type {one.type} has no values to be timed with: '{one.name}'")
-    return _AMOUNTS[one.type], ("v_uv",)
+def _input(param: _Input) -> tuple[str, Sequence[str]]:
+    """The GLSL expression of an input at a pixel, and the varyings in it."""
+    name = param.name.removesuffix("_object")
+    if name in _INPUTS:
+        return _INPUTS[name]
+    if param.type not in _OTHER_INPUTS:
+        raise failure(f"an input of type {param.type} has no values for timing: '{param.name}'")
+    return _OTHER_INPUTS[param.type], ("v_uv",)
 
 
 def _sum(values: Iterable[tuple[str, str]]) -> str:
@@ -307,7 +318,7 @@ _SOURCES = {"timing_place": "timing_places", "timing_normal": "timing_normals", 
 
 
 def _main(varyings: Sequence[str]) -> str:
-    """The pass: it reads a point, and shades it and its neighbours."""
+    """The `main` of the pass: it reads a point and evaluates `shade` there and at points nearby."""
     moves = [f"        {varying} = {_VARYINGS[varying][1]};\n" for varying in varyings]
     used = [local for local in _SOURCES if any(local in move for move in moves)]
     samplers = "".join(f"uniform sampler2D {_SOURCES[local]};\n" for local in used)
@@ -332,27 +343,30 @@ def _bound(points: Points) -> dict[str, Array]:
     return dict(zip(_SOURCES.values(), points, strict=True))
 
 
-class Point(NamedTuple):
-    """A chain of techniques to be timed."""
+class TimedMaterial(NamedTuple):
+    """A material with the scene for its timing."""
 
     name: str
     material: Material | str
     """A checked material, a path, or an example's name."""
     scene: Scene
-    """Where it is shaded: its geometry, camera, lights, parameters and textures."""
+    """Geometry, camera, lights, parameters and textures."""
 
 
 def costs(
-    points: Sequence[Point], size: tuple[int, int] = SIZE, rounds: int = ROUNDS, evaluations: int = 1
+    materials: Sequence[TimedMaterial], size: tuple[int, int] = SIZE, rounds: int = ROUNDS, evaluations: int = 1
 ) -> Measured:
-    """What whole materials cost: `costs(...).net(name).median` is ms of shading at every pixel of a picture.
+    """The times of whole materials: `costs(...).net(name).median` is the time of shading a picture, in ms.
 
-    All lights of the scene, the standard light among what is timed; reading the surface's points is not. Raises
-    SssgenError where there is no OpenGL, and for a material that does not fit its scene.
+    The time includes the standard light, for all lights of the scene, and excludes the reads of the points. Raises
+    SssgenError without OpenGL, and for a material that does not fit its scene.
     """
-    surfaces = {id(point.scene): surface_points(point.scene, size) for point in points}
+    surfaces = {id(timed.scene): surface_points(timed.scene, size) for timed in materials}
     return measure(
-        [of_material(one.name, one.material, one.scene, surfaces[id(one.scene)], evaluations) for one in points],
+        [
+            of_material(timed.name, timed.material, timed.scene, surfaces[id(timed.scene)], evaluations)
+            for timed in materials
+        ],
         size,
         rounds,
     )

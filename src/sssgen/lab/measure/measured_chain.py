@@ -82,8 +82,8 @@ class Chain:
     def set(self, values: Mapping[str, Any], textures: Mapping[str, Texture]) -> None:
         """Sets parameters and textures, by their names in techniques; others keep their values.
 
-        The name may include the unit: `depth 1` is a depth in texture coordinates, and `depth` is any other. A value is a
-        number, its components, or its components with lanes last; a matrix is in column order.
+        The name may include the unit: `depth 1` is a depth in texture coordinates, and `depth` is any other. A value
+        is a number, its components, or its components with lanes last; a matrix is in column order.
         """
         for uniform in self.uniforms:
             name = uniform["technique_name"]
