@@ -125,7 +125,7 @@ def test_the_held_out_view_is_turned_about_the_vertical_through_the_target() -> 
         ("[medium]\n" + BALL + "[[light]]\nposition = [1, 1, 1]\n", "only lights from afar", 5),
         ("[medium]\n" + BALL, "nothing lights the scene", 1),
         ("[medium]\n" + LIT, "no geometry to measure", 0),
-        ('material = "ice"\n' + BALL + LIT, "does not say what its body is made of", 0),
+        ('material = "ice"\n' + BALL + LIT, "does not describe what its body is made of", 0),
         ("[inlay]\ndepth = 0\n" + BALL, "'depth' cannot be 0", 2),
         ("[inlay]\nior = 0.5\n" + BALL, "'ior' cannot be 0.5", 2),
         ("[inlay]\ndeph = 1\n" + BALL, "did you mean 'depth'", 2),

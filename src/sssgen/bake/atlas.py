@@ -1,4 +1,4 @@
-"""A mesh's texture coordinates as a map: which place of the surface each texel shows."""
+"""A mesh's texture coordinates as a map: the surface point of each texel."""
 
 from __future__ import annotations
 
@@ -18,33 +18,35 @@ from sssgen.support.paths import posix
 Indices: TypeAlias = npt.NDArray[np.int64]
 
 SHARED = 0.02
-"""The share of texels that several places claim, beyond which the map is told to be shared."""
+"""The share of texels with several surface points beyond which a warning is reported."""
 
 
 class Atlas(NamedTuple):
-    """The texels of a map that show a place of the surface."""
+    """The texels of a map that have a surface point."""
 
     texels: Indices
-    """(n,): which texels, row by row, row 0 at the top"""
+    """(n,): indices of the texels, row by row, row 0 at the top"""
     places: Array
-    """(n, 3): what their centres show"""
+    """(n, 3): the points of their centres"""
     flat: Array
     """(n, 3): the unit normals of the triangles there"""
     shared: float
-    """The share of texels that are claimed more than once"""
+    """The share of texels with more than one surface point"""
 
 
 def atlas(mesh: Triangles, uv: Array, size: tuple[int, int], path: str) -> Atlas:
-    """The places at the centres of a map's texels.
+    """The surface points at the centres of a map's texels.
 
-    `uv` is (f, 3, 2), v up; what lies beyond 0..1 is on the next tile. Raises SssgenError where texture coordinates
-    repeat the map, or cover no texel.
+    `uv` is (f, 3, 2), v up; coordinates outside 0..1 belong to the next tile. Raises SssgenError for texture
+    coordinates that repeat the map or cover no texel.
     """
     width, height = size
     tiles = np.floor(uv.min(axis=(0, 1)) + 0.5 / np.array(size)), np.ceil(uv.max(axis=(0, 1)) - 0.5 / np.array(size))
     if (tiles[0] < -1).any() or (tiles[1] > 2).any():
         hint = "--unwrap makes new ones"
-        raise failure("the texture coordinates repeat the map: its texels have many places", hint, posix(path))
+        raise failure(
+            "the texture coordinates repeat the map: its texels have several surface points", hint, posix(path)
+        )
     layout = uv * np.array([width, height])
     edges = layout[:, 1:] - layout[:, :1]
     areas = 0.5 * (edges[:, 0, 0] * edges[:, 1, 1] - edges[:, 0, 1] * edges[:, 1, 0])
@@ -75,18 +77,18 @@ def atlas(mesh: Triangles, uv: Array, size: tuple[int, int], path: str) -> Atlas
 
 
 def filled(values: Array, texels: Indices, size: tuple[int, int]) -> Array:
-    """The map (height, width) of values at texels (n,); every other texel has that of the nearest of them.
+    """The map (height, width) of values at texels (n,); every other texel has the value of the nearest of them.
 
-    So no filter and no mipmap mixes the surface with what is beside it.
+    So filters and mipmaps do not mix the surface with the background.
     """
     width, height = size
     nearest = need("scipy.ndimage", "scipy", "bake")
     empty = np.ones(width * height, np.bool_)
     empty[texels] = False
-    whole = np.zeros(width * height)
-    whole[texels] = values
+    sparse = np.zeros(width * height)
+    sparse[texels] = values
     rows, columns = nearest.distance_transform_edt(
         empty.reshape(height, width), return_distances=False, return_indices=True
     )
-    dilated: Array = whole.reshape(height, width)[rows, columns]
+    dilated: Array = sparse.reshape(height, width)[rows, columns]
     return dilated

@@ -1,4 +1,4 @@
-"""The light of a bake: from afar or from a place, as a JSON file or three numbers say it."""
+"""The light of a bake, directional or at a position, given by a JSON file or three numbers."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from sssgen.support import json_source
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import posix
 
-_FORMS = '{"direction": [x, y, z]} towards a light from afar, or {"position": [x, y, z]}, in the mesh\'s space'
+_FORMS = '{"direction": [x, y, z]} towards a directional light, or {"position": [x, y, z]}, in the mesh\'s space'
 
 
 class BakeLight(NamedTuple):
     """A light in the mesh's own space."""
 
     place: Array
-    """(3,): the unit direction towards it, or where it stands"""
+    """(3,): the unit direction towards it, or its position"""
     afar: bool
 
     def towards(self, points: Array) -> Array:
@@ -33,11 +33,11 @@ class BakeLight(NamedTuple):
         return unit
 
     def view(self, corners: Array, size: tuple[int, int]) -> LightView:
-        """Its depth map of what lies within corners (n, 3); `size` is (width, height)."""
+        """Its view of the box of corners (n, 3); `size` is (width, height)."""
         return from_afar(corners, self.place, size) if self.afar else from_place(corners, self.place, size)
 
     def facts(self) -> dict[str, Any]:
-        """As a JSON file says it."""
+        """As in its JSON file."""
         return {"direction" if self.afar else "position": [float(value) for value in self.place]}
 
 
@@ -69,13 +69,13 @@ def read(text: str) -> BakeLight:
 def _light(value: Any, afar: bool, shown: str) -> BakeLight:
     numbers = value if isinstance(value, list) else []
     fit = len(numbers) == 3 and all(
-        isinstance(one, int | float) and not isinstance(one, bool) and math.isfinite(one) and abs(one) < 1e9
-        for one in numbers
+        isinstance(number, int | float) and not isinstance(number, bool) and math.isfinite(number) and abs(number) < 1e9
+        for number in numbers
     )
     if not fit:
         raise failure(f"a light's {'direction' if afar else 'position'} is three numbers", f"write {_FORMS}", shown)
     place = np.array(numbers, float)
     length = float(np.linalg.norm(place))
     if afar and length < 1e-6:
-        raise failure("this direction has no length", "it leads towards the light", shown)
+        raise failure("this direction has no length", "it points towards the light", shown)
     return BakeLight(place / length if afar else place, afar)

@@ -1,4 +1,4 @@
-"""Writes baked textures, each with its JSON beside it, whole or not at all."""
+"""Writes baked textures and their JSON files atomically."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ PICTURES = images.SUFFIXES
 
 
 def volume_format(path: str, named: str | None) -> str:
-    """The format of a volume's file: the one named, or that of its ending. Told before the work starts.
+    """The format of a volume's file: `named`, or that of the path's suffix. Commands check it before the work.
 
-    Raises SssgenError for an unknown one, and where no such file can be written.
+    Raises SssgenError for an unknown format, and for a path that cannot be written.
     """
     _check_place(path)
     suffix = os.path.splitext(path)[1].lower()
     if named is None:
-        found = [name for name, ending in FORMATS.items() if ending == suffix]
-        if not found:
+        formats = [name for name, known in FORMATS.items() if known == suffix]
+        if not formats:
             hint = did_you_mean(suffix, FORMATS.values()) or f"end it in {', '.join(FORMATS.values())}"
             raise failure(f"'{suffix}' is no volume file's ending", f"{hint}, or name a --format", posix(path))
-        return found[0]
+        return formats[0]
     if named not in FORMATS:
         raise failure(f"unknown format '{named}'", did_you_mean(named, FORMATS) or f"one of: {', '.join(FORMATS)}")
     if suffix != FORMATS[named]:
@@ -43,16 +43,16 @@ def volume_format(path: str, named: str | None) -> str:
 
 
 def write_volume(path: str, texels: npt.NDArray[Any], format: str, facts: Mapping[str, Any]) -> list[str]:
-    """Writes a volume and its JSON; the paths."""
+    """Writes a volume and its JSON; returns the paths."""
     return _write(
         path, encoded(texels, format), {**facts, "file": {"name": os.path.basename(path), **layout(texels, format)}}
     )
 
 
 def picture_suffix(path: str, known: tuple[str, ...] = PICTURES) -> str:
-    """A picture file's ending, told before the work starts.
+    """The suffix of a picture's path. Commands check it before the work.
 
-    Raises SssgenError where it is none of those known, and where no such file can be written.
+    Raises SssgenError for a suffix that is not in `known`, and for a path that cannot be written.
     """
     _check_place(path)
     suffix = images.check_suffix(path)
@@ -68,10 +68,10 @@ def write_picture(
     bits: int = 16,
     beside: Mapping[str, str] | None = None,
 ) -> list[str]:
-    """Writes a picture (h, w) or (h, w, channels), row 0 at the top, its JSON, and texts `beside` it; the paths.
+    """Writes a picture (h, w) or (h, w, channels), row 0 at the top, its JSON, and more files `beside` it.
 
-    .png: values 0..1 in so many bits. .exr: as they are. .npy: as they are, in float32, row 0 at the bottom, as
-    sssgen reads arrays.
+    .png: values 0..1, with `bits` bits. .exr: float32. .npy: float32 with row 0 at the bottom, as sssgen reads arrays.
+    Returns the paths.
     """
     suffix = picture_suffix(path)
     layers = values if values.ndim == 3 else values[..., None]
@@ -82,7 +82,7 @@ def write_picture(
     elif suffix == ".exr":
         data, encoding = images.exr_bytes(layers), "r32f"
     else:
-        data, encoding = images.png_bytes(layers, bits), f"unorm{bits}"  # each number is half a step off at most
+        data, encoding = images.png_bytes(layers, bits), f"unorm{bits}"  # the error is at most half a step
     height, width = layers.shape[:2]
     about = {
         "name": os.path.basename(path), "size": {"x": width, "y": height}, "channels": layers.shape[2],
@@ -92,7 +92,7 @@ def write_picture(
 
 
 def check_apart(path: str, sources: Iterable[str]) -> None:
-    """Raises SssgenError where a file that would be written, at the path or beside it, is one that is read."""
+    """Raises SssgenError if an output, at the path or next to it, is one of the sources."""
     for written in (path, baked.sidecar(path), mesh_beside(path)):
         for source in sources:
             if os.path.exists(written) and os.path.exists(source) and os.path.samefile(written, source):
@@ -100,12 +100,12 @@ def check_apart(path: str, sources: Iterable[str]) -> None:
 
 
 def mesh_beside(path: str) -> str:
-    """The file of a mesh that got texture coordinates for a map."""
+    """The path of a mesh with new texture coordinates for a map."""
     return f"{path}.obj"
 
 
 def _check_place(path: str) -> None:
-    """Raises SssgenError where a folder has the file's name, or a file that of its folder."""
+    """Raises SssgenError if the path is a folder, or a parent of it is a file."""
     folder, name = os.path.split(path)
     check_names([name])
     if os.path.isdir(path):
@@ -118,7 +118,7 @@ def _check_place(path: str) -> None:
 
 def _write(path: str, data: bytes, facts: Mapping[str, Any], beside: Mapping[str, str] | None = None) -> list[str]:
     folder, name = os.path.split(path)
-    said = {"format": baked.FORMAT, "made_by": f"sssgen {VERSION}", **facts}
-    lines = [f" {json.dumps(key)}: {json.dumps(value)}" for key, value in said.items()]
+    content = {"format": baked.FORMAT, "made_by": f"sssgen {VERSION}", **facts}
+    lines = [f" {json.dumps(key)}: {json.dumps(value)}" for key, value in content.items()]
     text = "{\n" + ",\n".join(lines) + "\n}\n"
-    return [one.path for one in write_files(folder, {name: data, baked.sidecar(name): text, **(beside or {})})]
+    return [written.path for written in write_files(folder, {name: data, baked.sidecar(name): text, **(beside or {})})]

@@ -20,7 +20,7 @@ Bits: TypeAlias = npt.NDArray[np.uint32]
 FEATURES = ("f1", "f2-f1", "faceted")
 
 _BLOCK = 2**15
-"""Texels that are worked out at once: their arrays fit a processor's cache."""
+"""Texels per block: their arrays fit a processor's cache."""
 
 
 def voronoi(
@@ -74,9 +74,9 @@ def voronoi(
 
 
 def scale(feature: str, jitter: float) -> float:
-    """What 1 in the picture stands for, in cells; 1 for "faceted", whose heights are parts of the highest level.
+    """The distance, in cells, that the value 1 of a picture means; 1 for "faceted".
 
-    The largest values that there can be. F1 is largest in the corner where four cells meet with their sites at the far
+    It is the largest possible value. F1 is largest in the corner where four cells meet with their sites at the far
     corners. F2 is in a cell's middle: there the sites of the four cells beside it are furthest, and F1 may be 0.
     """
     _check_feature(feature)
@@ -89,7 +89,7 @@ def scale(feature: str, jitter: float) -> float:
 
 
 class Nearest(NamedTuple):
-    """What is known about places among the cells: arrays (rows, columns)."""
+    """The nearest sites of points: arrays (rows, columns)."""
 
     first: Array
     """F1, the distance to the nearest site, in cells"""

@@ -1,4 +1,4 @@
-"""How long a body is below places of its surface: the work of a thickness map, in blocks."""
+"""The lengths of chords inside a body from points of its surface: the work items of a thickness map."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ from sssgen.lab.reference.inside_lengths import thickness
 
 
 class Chords(NamedTuple):
-    """What is known of places; arrays are (n,)."""
+    """The chords of surface points; arrays are (n,)."""
 
     value: Array
     error: Array
     """The value's standard error; 0 where it is exact"""
     lost: Array
-    """The share of rays that never leave the body, through a hole; they do not count"""
+    """The share of rays that leave through a hole, which are excluded"""
 
 
 @lru_cache(2)
 def _mesh(path: str, digest: str) -> Mesh:
-    """The mesh, read once in a process; another content is another mesh."""
+    """The mesh, read once per process and content."""
     return Mesh(path=path)
 
 
 def along(path: str, digest: str, places: Array, ways: Array, attenuation: float) -> Chords:
-    """The length inside the mesh from places on along unit ways, (n, 3) each; or exp(−length / attenuation)."""
+    """The length inside the mesh from points along unit `ways`, (n, 3) each; or exp(−length / attenuation)."""
     length = thickness(_mesh(path, digest), places, ways)
     value = np.exp(-length / attenuation) if attenuation else length
     return Chords(value, np.zeros(len(length)), np.zeros(len(length)))
@@ -41,7 +41,7 @@ def inward(
 ) -> Chords:
     """The mean over inward directions, weighted by their cosine to −`flat`.
 
-    The unit square of directions has rays / 2 cells, and each cell two rays by chance: their difference gives an
+    The unit square of directions has rays / 2 cells, and each cell two random rays: their difference gives an
     unbiased standard error of the stratified mean (Cochran, Sampling Techniques, 1977, 5A.11).
     """
     cells = rays // 2

@@ -1,4 +1,4 @@
-"""Depth maps: how far each place is from a light's plane where the light first meets a mesh."""
+"""Depth maps: the distance from a light's plane to the first surface of a mesh."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from sssgen.targets.texture_import import import_settings
 
 
 def depth_map(
-    path: str, light: BakeLight, size: tuple[int, int], told: Progress = lambda *_: None
+    path: str, light: BakeLight, size: tuple[int, int], progress: Progress = lambda *_: None
 ) -> tuple[Array, dict[str, Any]]:
     """The map of a mesh, (height, width), row 0 at the top, in units of the mesh; and the facts for its JSON.
 
-    `size` is (width, height). What the light meets nothing at is far behind the mesh. Raises SssgenError for a mesh
-    that cannot be read, and for a light within it.
+    `size` is (width, height). Texels without a hit have a depth far behind the mesh. Raises SssgenError for a mesh
+    that cannot be read, and for a light inside it.
     """
     width, height = size
     memory.check(width * height * 100.0, "take a smaller --size")
@@ -29,13 +29,13 @@ def depth_map(
     low, high = mesh.bounds()
     view = light.view(mesh.triangles.places, size)
     away = np.maximum(np.linalg.norm(view.origins - 0.5 * (low + high), axis=1) - np.linalg.norm(high - low), 0.0)
-    starts = view.origins + away[:, None] * view.directions  # Embree counts in 32 bits: near the mesh there are more
+    starts = view.origins + away[:, None] * view.directions  # Embree has 32-bit floats: start near the mesh
     depth = np.empty(len(starts))
     for start in range(0, len(starts), BLOCK):
         part = slice(start, start + BLOCK)
         met, t = mesh.rays.nearest(starts[part], view.directions[part])
         depth[part] = np.where(met >= 0, (away[part] + t) * view.slopes[part], view.far)
-        told(min(start + BLOCK, len(starts)), len(starts), "depths")
+        progress(min(start + BLOCK, len(starts)), len(starts), "depths")
     reached = depth[depth < view.far]
     facts = {
         "kind": "depth", "holds": None, "light": light.facts(), "unit": "of the mesh",

@@ -1,4 +1,4 @@
-"""Distances as a texture's numbers, and how far off these are."""
+"""The encoding of distances in a texture, and its error."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from sssgen.harness.pictures import volumes
 from sssgen.harness.pictures.volumes import Encoding
 from sssgen.harness.scenes.scene import stored
 
-ENCODINGS = {one.name: one for one in volumes.ENCODINGS if one.channels == 1}
+ENCODINGS = {encoding.name: encoding for encoding in volumes.ENCODINGS if encoding.channels == 1}
 """By the names of the command line: unsigned normalised integers, and floats."""
 
 
 def encode(distance: Distances, inside: npt.NDArray[np.bool_], reach: float, encoding: Encoding) -> npt.NDArray[Any]:
     """The texels of unsigned distances, (z, y, x)."""
     texels = np.empty(distance.shape, encoding.dtype)
-    for layer in range(len(distance)):  # a layer at a time, as this goes through float64
+    for layer in range(len(distance)):  # layer by layer, because the intermediate values are float64
         value = stored(np.where(inside[layer], -1.0, 1.0) * distance[layer], reach)
         texels[layer] = np.rint(value * encoding.one) if encoding.dtype.kind == "u" else value
     return texels
 
 
 def error_at_texels(reach: float, encoding: Encoding, diagonal: float) -> float:
-    """The largest error of a decoded distance within the reach: half a step, and the distances' own rounding."""
+    """The largest error of a decoded distance up to `reach`: half a step plus the rounding of the distances."""
     step = 1.0 / encoding.one if encoding.dtype.kind == "u" else 0.5 * float(np.finfo(encoding.dtype).eps)
     return reach * step + 2.0**-23 * diagonal

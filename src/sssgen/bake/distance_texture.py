@@ -20,23 +20,23 @@ from sssgen.support.paths import posix
 from sssgen.targets.texture_import import import_settings
 
 SHEET = 1e-5
-"""A mesh that is flatter than this share of its size is a sheet, without an inside."""
+"""A mesh whose thickness is below this share of its size is a sheet, without an inside."""
 A_POINT = 200
-"""Bytes that a query takes for each point."""
+"""Bytes of memory for each point of a query."""
 A_TRIANGLE = 800
-"""Bytes that its trees take for each triangle."""
+"""Bytes of memory for each triangle, in the trees."""
 
 
 class Volume(NamedTuple):
     """A baked distance texture."""
 
     texels: npt.NDArray[Any]
-    """(z, y, x), as they are stored"""
+    """(z, y, x), as stored"""
     grid: Grid
     reach: float
-    """The distance that the largest number stands for"""
+    """The distance of the largest stored number"""
     facts: dict[str, Any]
-    """For the JSON beside it"""
+    """For the JSON file"""
 
 
 def sdf(
@@ -46,13 +46,13 @@ def sdf(
     encoding: str = "r16",
     reach: float | None = None,
     thin: float | None = None,
-    told: Progress = lambda *_: None,
+    progress: Progress = lambda *_: None,
 ) -> Volume:
     """The signed distance to a mesh, in its own space and units, negative inside.
 
-    `resolution`, `padding`: see `grid.around`. `reach`: the distance where the numbers end; without, the largest that
-    there is. `thin`: take the mesh as a sheet so thick, without an inside of its own. Raises SssgenError for a mesh
-    that has no inside, and for a grid that there is no memory for.
+    `resolution`, `padding`: see `voxel_grid.around`. `reach`: the largest stored distance; by default the largest that
+    occurs. `thin`: treats the mesh as a sheet of this thickness, which has no inside. Raises SssgenError for a mesh
+    without an inside, and for a grid that does not fit into memory.
     """
     if encoding not in ENCODINGS:
         hint = did_you_mean(encoding, ENCODINGS) or f"one of: {', '.join(ENCODINGS)}"
@@ -77,7 +77,7 @@ def sdf(
     )
     memory.check(wanted, "take a lower --resolution")
     solid = mesh.solid
-    unsigned = distances(solid, grid, told)
+    unsigned = distances(solid, grid, progress)
     if thin is None:
         within = inside(solid, grid, unsigned)
     else:
@@ -92,10 +92,10 @@ def sdf(
         "mesh": {
             "triangles": len(mesh.triangles.corners), "closed": solid.rim == 0.0, "inside_out": solid.inside_out,
             "mixed_sides": mixed_sides(mesh.triangles.corners),
-            "box_min": _told(low), "box_max": _told(high),
+            "box_min": _floats(low), "box_max": _floats(high),
         },
-        "texels": list(grid.counts), "voxel": _told(grid.voxel),
-        "box_min": _told(grid.low), "box_max": _told(grid.high),
+        "texels": list(grid.counts), "voxel": _floats(grid.voxel),
+        "box_min": _floats(grid.low), "box_max": _floats(grid.high),
         "encoding": encoding, "formula": "distance = (2 texel - 1) * range, texel from 0 to 1",
         "range": reach, "beyond_range": round(float((unsigned > reach).mean()), 6),
         "sign": f"negative within {thin:g} / 2 of the sheet" if thin else
@@ -106,7 +106,7 @@ def sdf(
             **({"but": "not across its holes, where the sign jumps"} if solid.rim and thin is None else {}),
         },
         "inside": round(float(within.mean()), 6),
-        "parameters": {"box_min": _told(grid.low), "box_max": _told(grid.high), "distance_range": reach},
+        "parameters": {"box_min": _floats(grid.low), "box_max": _floats(grid.high), "distance_range": reach},
         "import": import_settings("3D", "clamp", mipmaps=False),
     }  # fmt: skip
     return Volume(texels, grid, reach, facts)
@@ -127,5 +127,5 @@ def _without_inside(path: str, is_open: bool, thin: float | None, grid: Grid) ->
     raise failure("no voxel lies inside the mesh: its walls are thinner than a voxel", hint, posix(path))
 
 
-def _told(vector: Array) -> list[float]:
+def _floats(vector: Array) -> list[float]:
     return [float(value) for value in vector]

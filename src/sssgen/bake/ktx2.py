@@ -59,7 +59,7 @@ def _descriptor(encoding: Encoding) -> bytes:
 
 
 def _key_values(texts: dict[str, str]) -> bytes:
-    """Texts under their keys, sorted by these, each filled up to 4 bytes."""
+    """Key and value pairs, sorted by key, each padded to 4 bytes."""
     data = b""
     for key in sorted(texts):
         pair = f"{key}\0{texts[key]}\0".encode()

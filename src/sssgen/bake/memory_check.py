@@ -1,4 +1,4 @@
-"""Whether there is room for what is to be baked, told before the work starts."""
+"""Checks before a bake that it fits into memory."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ SPARE = 0.9
 
 
 def check(wanted: float, advice: str) -> None:
-    """Raises SssgenError where so many bytes are more than are free."""
+    """Raises SssgenError if `wanted` bytes exceed the free memory."""
     free = need("psutil", extra="bake").virtual_memory().available
     if wanted > SPARE * free:
-        raise failure(f"this needs {_told(wanted)} of memory, and {_told(free)} are free", advice)
+        raise failure(f"this needs {_text(wanted)} of memory, and {_text(free)} are free", advice)
 
 
-def _told(size: float) -> str:
+def _text(size: float) -> str:
     return f"{size / 2**30:.1f} GiB" if size >= 2**30 else f"{size / 2**20:.0f} MiB"

@@ -1,4 +1,4 @@
-"""Volumes as one picture: the slices side by side on a sheet, as engines import volumes from pictures."""
+"""Volumes as one picture: a sheet of slices, which engines import as a volume."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from sssgen.support.diagnostics import failure
 
 
 def columns_and_rows(depth: int, height: int, width: int) -> tuple[int, int]:
-    """How many slices lie side by side, and how many below one another, on the sheet that is nearest to a square.
+    """The columns and rows of slices on the sheet that is nearest to a square; columns × rows = depth.
 
-    columns × rows = depth: no place stays empty. Raises SssgenError where no such sheet keeps to LARGEST_SIDE.
+    Raises SssgenError if each such sheet has a side longer than LARGEST_SIDE.
     """
     divisors = (columns for columns in range(1, depth + 1) if depth % columns == 0)
     columns = min(divisors, key=lambda columns: (max(columns * width, depth // columns * height), -columns))
@@ -31,8 +31,8 @@ def columns_and_rows(depth: int, height: int, width: int) -> tuple[int, int]:
 def sheet(texels: npt.NDArray[Any]) -> npt.NDArray[Any]:
     """The picture of (depth, height, width) texels, (rows · height, columns · width), its row 0 at the top.
 
-    Slice 0 is at the top left, the next to its right, and so on downwards. Within a slice y goes up, as v of a picture
-    does: its top row is that of the largest y. Where v of a picture goes down, as in Unreal, it is to be read at 1 - v.
+    Slice 0 is at the top left, and slices follow row by row. Within a slice y points up, like v of a picture: its top
+    row has the largest y. In an engine whose v points down, like Unreal, sample it at 1 - v.
     """
     depth, height, width = texels.shape
     columns, rows = columns_and_rows(depth, height, width)

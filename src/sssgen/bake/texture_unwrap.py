@@ -20,21 +20,21 @@ PADDING = 4
 RESOLUTION = 1024
 
 
-def unwrapped(mesh: Triangles, told: Progress = lambda *_: None) -> Array:
+def unwrapped(mesh: Triangles, progress: Progress = lambda *_: None) -> Array:
     """New texture coordinates, (f, 3, 2), in 0..1, without overlaps.
 
-    xatlas crashes on some faultless meshes, so it works in a process of its own; what it cannot do whole it does in six
-    pieces, by the axis that triangles face most. Raises SssgenError where it can neither, and without it.
+    xatlas crashes on some valid meshes, so it runs in its own process. If it fails on the mesh, it gets six parts, by
+    the axis that a triangle faces most. Raises SssgenError if that fails too, and without xatlas.
     """
     need("xatlas", extra="bake")
     low, high = mesh.places.min(axis=0), mesh.places.max(axis=0)
-    places = ((mesh.places - low) / float((high - low).max())).astype(np.float32)  # it counts in 32 bits
+    places = ((mesh.places - low) / float((high - low).max())).astype(np.float32)  # it has 32-bit floats
     axis = np.abs(mesh.flat).argmax(axis=1)
     facing = 2 * axis + (mesh.flat[np.arange(len(axis)), axis] < 0.0)
     result: Any = None
     for parts in (np.zeros(len(axis), np.int64), facing):
         item = Item("sssgen.bake.texture_unwrap:charts", (places, mesh.corners, parts), "texture coordinates")
-        (result,) = run([item], processes=1, store=Store(""), progress=told)
+        (result,) = run([item], processes=1, store=Store(""), progress=progress)
         if not isinstance(result, Failure):
             return np.asarray(result, np.float64)
     hint = "give the mesh texture coordinates in a program for meshes"
@@ -42,7 +42,7 @@ def unwrapped(mesh: Triangles, told: Progress = lambda *_: None) -> Array:
 
 
 def charts(places: npt.NDArray[np.float32], corners: Indices, parts: Indices) -> npt.NDArray[np.float32]:
-    """The texture coordinates (f, 3, 2) of triangles whose parts, (f,), are laid out each by itself."""
+    """The texture coordinates (f, 3, 2) of triangles; each of the parts, (f,), is laid out separately."""
     xatlas = need("xatlas", extra="bake")
     atlas = xatlas.Atlas()
     faces = [np.flatnonzero(parts == part) for part in np.unique(parts)]
@@ -52,11 +52,11 @@ def charts(places: npt.NDArray[np.float32], corners: Indices, parts: Indices) ->
     pack = xatlas.PackOptions()
     pack.padding, pack.bilinear, pack.resolution = PADDING, True, RESOLUTION
     atlas.generate(xatlas.ChartOptions(), pack)
-    found = np.zeros((len(corners), 3, 2), np.float32)
+    result = np.zeros((len(corners), 3, 2), np.float32)
     for number, some in enumerate(faces):
         _, own, uv = atlas[number]
-        found[some] = uv[own.astype(np.int64)]
-    return found
+        result[some] = uv[own.astype(np.int64)]
+    return result
 
 
 def obj(mesh: Triangles, uv: Array) -> str:

@@ -43,11 +43,11 @@ class Map(NamedTuple):
     """A baked thickness map."""
 
     values: Array
-    """(height, width), row 0 at the top: 0..1, as they are stored"""
+    """(height, width), row 0 at the top: 0..1, as stored"""
     facts: dict[str, Any]
-    """For the JSON beside it"""
+    """For the JSON file"""
     mesh: str
-    """The mesh as a Wavefront file where it got new texture coordinates, else empty"""
+    """The mesh as a Wavefront file if it got new texture coordinates, otherwise empty"""
 
 
 def thickness_map(
@@ -57,9 +57,9 @@ def thickness_map(
     unwrap: bool = False,
     processes: int | None = None,
     scheduler: str = "",
-    told: Progress = lambda *_: None,
+    progress: Progress = lambda *_: None,
 ) -> Map:
-    """The map of a mesh, in units of the mesh over the largest length that occurs, or as transmittance.
+    """The map of a mesh: lengths relative to the largest one, or transmittance.
 
     Raises SssgenError for a mesh that cannot be read, without an inside, or with unfit texture coordinates.
     """
@@ -69,12 +69,13 @@ def thickness_map(
     body = Mesh(path=path)
     mesh = body.triangles
     fresh = unwrap or mesh.uv is None
-    uv = unwrapped(mesh, told) if fresh or mesh.uv is None else mesh.uv
+    uv = unwrapped(mesh, progress) if fresh or mesh.uv is None else mesh.uv
     shown = atlas(mesh, uv, size, path)
     if body.inside_out:
         shown = shown._replace(flat=-shown.flat)
     chords = [
-        np.concatenate(parts) for parts in zip(*_measured(path, shown, wanted, processes, scheduler, told), strict=True)
+        np.concatenate(parts)
+        for parts in zip(*_measured(path, shown, wanted, processes, scheduler, progress), strict=True)
     ]
     value, error, lost = chords
     if lost.min(initial=0.0) >= 1.0 or not value.any():
@@ -104,17 +105,17 @@ def thickness_map(
 
 
 def warnings(facts: dict[str, Any]) -> list[str]:
-    """What the user of a map should know of it."""
-    found = ["the mesh is inside out: taken the other way round"] if facts["mesh"]["inside_out"] else []
+    """Warnings about a map for the user."""
+    messages = ["the mesh is inside out: its normals are reversed for the bake"] if facts["mesh"]["inside_out"] else []
     if (shared := facts["mesh"]["shared_texels"]) > SHARED and not facts["mesh"]["new_uv"]:
-        found.append(
-            f"{shared:.0%} of the texels are claimed by several places: --unwrap makes texture coordinates anew"
+        messages.append(
+            f"{shared:.0%} of the texels have several surface points: --unwrap makes new texture coordinates"
         )
     if facts["mesh"]["mixed_sides"]:
-        found.append(MIXED)
+        messages.append(MIXED)
     if (lost := facts["lost_rays"]) > 0.001:
-        found.append(f"{lost:.1%} of the rays left through holes of the mesh, and do not count")
-    return found
+        messages.append(f"{lost:.1%} of the rays left through holes of the mesh and are excluded")
+    return messages
 
 
 def _is_exact(wanted: Request) -> bool:
@@ -133,9 +134,9 @@ def _check(wanted: Request) -> None:
 
 
 def _measured(
-    path: str, shown: Atlas, wanted: Request, processes: int | None, scheduler: str, told: Progress
+    path: str, shown: Atlas, wanted: Request, processes: int | None, scheduler: str, progress: Progress
 ) -> list[Any]:
-    """The chords of each block of texels, in their order."""
+    """The chords of each block of texels, in order."""
     with open(path, "rb") as file:
         digest = cache.digest(file.read())
     path, items = os.path.abspath(path), list[Item]()
@@ -152,7 +153,7 @@ def _measured(
         else:
             sampling = (wanted.rays, wanted.attenuation, (wanted.seed, number))
             items.append(Item("sssgen.bake.chord_lengths:inward", (path, digest, places, flat, *sampling), name))
-    results = run(items, scheduler, processes, Store(""), told)
+    results = run(items, scheduler, processes, Store(""), progress)
     if wrong := failures(results):
         raise failure(f"a part of the map failed: {wrong[0].message}", file=posix(path))
     return results

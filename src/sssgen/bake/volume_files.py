@@ -1,4 +1,4 @@
-"""Baked volumes as files: one channel, in the containers that engines and tools read."""
+"""Baked volumes of one channel as files, in formats that engines and tools read."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from sssgen.harness.pictures.volumes import ENCODINGS, Encoding
 from sssgen.support.diagnostics import did_you_mean, failure
 
 FORMATS = {"npy": ".npy", "dds": ".dds", "ktx2": ".ktx2", "exr-slices": ".exr", "raw+json": ".raw"}
-"""The formats and their files' endings."""
+"""Format → file name suffix."""
 
 
 def encoded(texels: npt.NDArray[Any], format: str) -> bytes:
     """The file of a volume; texels are little-endian.
 
-    `texels` is (depth, height, width) = z, y, x ascending; uint8 and uint16 stand for 0..1, float16 and float32 for
-    themselves. The JSON of `raw+json` is the caller's, who puts `layout` into it. Raises SssgenError for an unknown
-    format, another type or shape, and a volume that is too large for a sheet of slices.
+    `texels` is (depth, height, width) = z, y, x ascending; uint8 and uint16 are normalised to 0..1, float16 and
+    float32 are stored unchanged. For `raw+json` the caller writes the JSON, with `layout`. Raises SssgenError for an
+    unknown format, another type or shape, and a volume that is too large for a sheet of slices.
     """
     encoding = _encoding(texels, format)
     texels = np.ascontiguousarray(texels, encoding.dtype)
@@ -44,9 +44,9 @@ def encoded(texels: npt.NDArray[Any], format: str) -> bytes:
 
 
 def layout(texels: npt.NDArray[Any], format: str) -> dict[str, Any]:
-    """What somebody must know who reads the file of `encoded` by other means, as values for JSON.
+    """What a reader of the file of `encoded` must know, as values for JSON.
 
-    `size` is in texels; `one` is the stored number that stands for 1.0. Raises SssgenError as `encoded` does.
+    `size` is in texels; `one` is the stored number for 1.0. Raises SssgenError as `encoded` does.
     """
     encoding = _encoding(texels, format)
     depth, height, width = texels.shape
@@ -55,7 +55,7 @@ def layout(texels: npt.NDArray[Any], format: str) -> dict[str, Any]:
 
 
 def _encoding(texels: npt.NDArray[Any], format: str) -> Encoding:
-    """How the texels are stored, once all that is given has been checked."""
+    """Checks the arguments; returns the texels' encoding."""
     if format not in FORMATS:
         hint = did_you_mean(format, FORMATS) or f"there are {', '.join(FORMATS)}"
         raise failure(f"'{format}' is no format of volumes", hint)

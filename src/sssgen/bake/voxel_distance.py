@@ -1,4 +1,4 @@
-"""The signed distance to a mesh at the voxels of a grid, in layers, so that memory stays bounded."""
+"""The signed distance to a mesh at the voxels of a grid, layer by layer to limit memory."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ Distances: TypeAlias = npt.NDArray[np.float32]
 BLOCK = 2**18
 """Points of one query, at about a hundred bytes each."""
 TILE = 4
-"""Voxels along a side of what is asked for in a row."""
+"""Voxels along a side of a tile: the tiles are queried one after the other."""
 SPLIT = 3
-"""What a block's sides are divided by: an odd number, as a block's middle is a voxel then."""
+"""The subdivision of a block's sides: odd, so that a block's centre is a voxel."""
 COARSEST = SPLIT**3
-"""Voxels along a side of the blocks whose sign is asked for first."""
+"""Voxels along a side of the first, largest blocks."""
 SLACK = 0.05
-"""How far a fast winding number may be from the true one, five times over."""
+"""Five times the error of a fast winding number."""
 
 
-def distances(body: MeshDistance, grid: Grid, told: Progress = lambda *_: None) -> Distances:
-    """The unsigned distances, exact but for the rounding to float32: (z, y, x)."""
+def distances(body: MeshDistance, grid: Grid, progress: Progress = lambda *_: None) -> Distances:
+    """The unsigned distances, exact except for rounding to float32: (z, y, x)."""
     across, up, deep = grid.counts
     found = np.empty((deep, up, across), np.float32)
     layers = min(deep, max(1, BLOCK // (across * up * TILE)) * TILE)
@@ -38,27 +38,27 @@ def distances(body: MeshDistance, grid: Grid, told: Progress = lambda *_: None) 
         block = np.empty(len(order))
         block[order] = body.unsigned(grid.slab(start, end)[order])
         found[start:end] = block.reshape(end - start, up, across)
-        told(end, deep, "distances")
+        progress(end, deep, "distances")
     return found
 
 
 def _in_tiles(shape: tuple[int, int, int]) -> npt.NDArray[np.int64]:
-    """The order of voxels tile by tile: neighbours walk the same branches of a tree."""
+    """The order of voxels tile by tile: neighbours visit the same branches of a tree."""
     z, y, x = (at.ravel() // TILE for at in np.indices(shape, np.int32))
     return np.lexsort((x, y, z))
 
 
 def inside(body: MeshDistance, grid: Grid, unsigned: Distances) -> npt.NDArray[np.bool_]:
-    """Which voxels lie inside the mesh, by the winding number: (z, y, x).
+    """Which voxels are inside the mesh, by the winding number: (z, y, x).
 
-    It is asked for at the middle of blocks, large ones first, and stands for the whole of a block, or for the middle of
-    the next smaller ones, where it cannot cross one half on the way: see `_change`.
+    It is evaluated at the centres of blocks, large blocks first. It holds for a whole block, or for the centres of the
+    smaller blocks in it, where it cannot cross one half on the way there: see `_change`.
     """
     shape = np.array(unsigned.shape)
     size = COARSEST
     state = np.zeros(-(-shape // size), np.int8)
     before: npt.NDArray[np.float32] | None = None
-    rounding = 1e-6 * grid.diagonal  # what touches a triangle is not clear of it
+    rounding = 1e-6 * grid.diagonal  # a margin around triangles
     while True:
         turns = np.zeros(state.shape, np.float32)
         reach = float(np.linalg.norm(size // 2 * grid.voxel))
@@ -69,11 +69,11 @@ def inside(body: MeshDistance, grid: Grid, unsigned: Distances) -> npt.NDArray[n
             clear = unsigned[tuple(middle.T)].astype(np.float64)
             within = _change(body.rim, reach, clear - reach - rounding) if size > 1 else np.zeros(len(block))
             value, sure = np.zeros(len(block)), np.zeros(len(block), np.bool_)
-            if before is not None:  # what is known of the block that this is a part of may do
+            if before is not None:  # the value of the enclosing block may suffice
                 whole = block // SPLIT
                 there = _middle(whole, size * SPLIT, shape)
                 way = np.linalg.norm((middle - there)[:, ::-1] * grid.voxel, axis=1)
-                # the balls around both middles cover the way between them, so much is left beside it
+                # no triangle is nearer to the segment between both centres: the empty balls around them cover it
                 nearest = 0.5 * (clear + unsigned[tuple(there.T)] - way) - rounding
                 value = before[tuple(whole.T)].astype(np.float64)
                 sure = np.abs(value - INSIDE) > within + _change(body.rim, way, nearest) + SLACK
@@ -91,17 +91,17 @@ def inside(body: MeshDistance, grid: Grid, unsigned: Distances) -> npt.NDArray[n
 
 
 def _middle(block: npt.NDArray[np.int64], size: int, shape: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
-    """The voxel in the middle of blocks, (n, 3)."""
+    """The voxels at the centres of blocks, (n, 3)."""
     middle: npt.NDArray[np.int64] = np.minimum(block * size + size // 2, shape - 1)
     return middle
 
 
 def _change(rim: float, way: float | Array, nearest: Array) -> Array:
-    """How much the winding number can change along ways, (n,), that no triangle is nearer to than `nearest`.
+    """The largest change of the winding number along segments of length `way`, (n,), with no triangle within `nearest`.
 
-    Off the triangles it changes only by the view of the mesh's rims: it is the solid angle that they span, and its
-    gradient at most rim / (4π distance²) (Biot and Savart's law). Of a closed mesh it is constant there; through a
-    triangle it may be anything.
+    Away from triangles it depends only on the mesh's boundary edges: it is the solid angle that they span, and its
+    gradient is at most rim / (4π distance²) (Biot and Savart's law). For a closed mesh it is constant there. Where a
+    segment may cross a triangle, the change is unlimited.
     """
     change: Array = way * rim / (4.0 * np.pi * np.maximum(nearest, 1e-30) ** 2)
     return np.where(nearest > 0.0, change, np.inf)

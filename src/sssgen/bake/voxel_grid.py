@@ -1,4 +1,4 @@
-"""The box of a volume and its voxels: where the texels of a distance texture stand."""
+"""The box of a volume and its voxels: the positions of a distance texture's texels."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Array: TypeAlias = npt.NDArray[np.float64]
 LEAST = 4
 """Voxels along each axis: fewer have no slope to interpolate."""
 MOST = 2048
-"""Voxels along an axis that every engine takes (WebGPU's limit)."""
+"""The largest number of voxels along an axis that every engine supports (WebGPU's limit)."""
 FLAT = 1e-3
 """A side is at least this share of the box's diagonal, as in the technique's box_size."""
 TOLD_APART = 2.0**20

@@ -1,4 +1,4 @@
-"""How far values are from a reference of about 1 that has noise of its own."""
+"""The error of values against a noisy reference of about 1."""
 
 from __future__ import annotations
 
@@ -10,33 +10,34 @@ from sssgen.harness.pictures.picture_difference import EPSILON
 from sssgen.harness.pictures.picture_difference import compare as differ
 
 BARS = 2.0
-"""Standard errors to either side of an error that its bar shows."""
+"""Standard errors to either side, in an error bar."""
 
 
 def compare(values: Array, reference: Array, noise: Array | None = None) -> dict[str, float]:
-    """How far `values` (k, n) are from `reference` (k, n), whose standard errors are `noise` (k, n).
+    """The error of `values` (k, n) against `reference` (k, n), whose standard errors are `noise` (k, n).
 
-    `relmse` is the mean of (v − r)² / (r² + ε), less what the reference's noise adds to it on average; `value` its
-    square root, the relative error; `low` and `high` that error two standard errors to either side; `bias` the signed
-    mean, `p99` and `max` the differences, all relative to the reference's mean. NaN where a value is not finite.
+    `relmse`: the mean of (v − r)² / (r² + ε), minus the expected contribution of the reference's noise. `value`: its
+    square root, the relative error. `low`, `high`: the error minus and plus two standard errors. `bias`: the mean
+    difference. `p99`, `max`: of the absolute differences. The last three are relative to the reference's mean. The
+    result is NaN if a value is not finite.
     """
     sigma = np.zeros_like(reference) if noise is None else noise
     weight = 1.0 / (reference**2 + EPSILON)
-    apart = values - reference
-    square = apart**2 - sigma**2
+    difference = values - reference
+    square = difference**2 - sigma**2
     relmse = float((square * weight).mean())
-    # of a sum of independent (d + s)² − s²: their variance is 4 d² s² + 2 s⁴
+    # the terms (d + s)² − s² are independent, and their variance is 4 d² s² + 2 s⁴
     spread = 4.0 * np.maximum(square, 0.0) * sigma**2 + 2.0 * sigma**4
-    deviation = float(np.sqrt((weight**2 * spread).sum())) / apart.size
+    deviation = float(np.sqrt((weight**2 * spread).sum())) / difference.size
     scale = max(float(np.abs(reference).mean()), 1e-9)
     return {
         "value": _root(relmse),
         "low": _root(relmse - BARS * deviation),
         "high": _root(relmse + BARS * deviation),
         "relmse": max(relmse, 0.0),
-        "bias": float(apart.mean()) / scale,
-        "p99": float(np.percentile(np.abs(apart), 99.0)) / scale,
-        "max": float(np.abs(apart).max()) / scale,
+        "bias": float(difference.mean()) / scale,
+        "p99": float(np.percentile(np.abs(difference), 99.0)) / scale,
+        "max": float(np.abs(difference).max()) / scale,
     }
 
 

@@ -1,4 +1,4 @@
-"""Each scene's light transport, light by light, and the ball and the slab of the same medium that all is fitted to."""
+"""The light transport references of each scene, light by light, and its training scenes of the same medium."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from sssgen.lab.scene.media import Medium
 from sssgen.lab.scene.view_points import points
 
 SAMPLES = 512
-"""Of each ray and channel."""
+"""Per ray and channel."""
 TRAINING_SIDE = 40
 
 BALL_LIGHTS = ((0.0, 0.15, -1.0), (0.75, 0.2, -0.65), (-0.95, 0.3, 0.1), (0.35, 0.5, 0.8))
 SLAB_LIGHTS = ((0.0, 0.0, -1.0), (0.6, 0.35, -0.72), (-0.3, 0.5, 0.8))
-"""From behind, from the side, from the front: towards the light."""
+"""Directions towards lights behind, beside and in front of the body."""
 
 
 def transport(scene: MeasuredScene, light: int, samples: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
@@ -35,44 +35,46 @@ def transport(scene: MeasuredScene, light: int, samples: int, seed: int) -> tupl
     assert direction is not None
     origins = np.broadcast_to(at.origin, (at.count, 3))
     rays = np.ascontiguousarray(-at.inputs["V"].T)
-    found = radiance_along(scene.geometry, scene.medium, Beam(direction), origins, rays, samples, seed)
-    return found.mean.T.astype(np.float32), found.error.T.astype(np.float32)
+    result = radiance_along(scene.geometry, scene.medium, Beam(direction), origins, rays, samples, seed)
+    return result.mean.T.astype(np.float32), result.error.T.astype(np.float32)
 
 
 def items(scenes: Sequence[MeasuredScene], samples: int = SAMPLES, seed: int = 0) -> list[Item]:
-    """The work of their references, a light each, in order; those without a medium have none."""
+    """The work items of the references, one per light, in order; scenes without a medium have none."""
     return [
-        Item("sssgen.lab.measure.scene_references:transport", (one, number, samples, seed), f"reference of {one.name}")
-        for one in scenes
-        if one.medium is not None
-        for number in range(len(one.lights))
+        Item(
+            "sssgen.lab.measure.scene_references:transport", (scene, light, samples, seed), f"reference of {scene.name}"
+        )
+        for scene in scenes
+        if scene.medium is not None
+        for light in range(len(scene.lights))
     ]
 
 
 def by_scene(scenes: Sequence[MeasuredScene], results: Sequence[Seen]) -> dict[str, list[Seen]]:
     """The results of `items` by their scenes' keys."""
-    found: dict[str, list[Seen]] = {}
-    waiting = iter(results)
-    for one in scenes:
-        if one.medium is not None:
-            found[one.key] = [next(waiting) for _ in one.lights]
-    return found
+    references: dict[str, list[Seen]] = {}
+    remaining = iter(results)
+    for scene in scenes:
+        if scene.medium is not None:
+            references[scene.key] = [next(remaining) for _ in scene.lights]
+    return references
 
 
 def training(scene: MeasuredScene) -> list[MeasuredScene]:
-    """What a scene's chains are fitted to: balls and slabs of its medium, large and small beside its body.
+    """The training scenes: balls and slabs of the scene's medium, as large as its body and smaller.
 
-    Sizes go in steps of two, so that scenes of one medium share them.
+    Sizes are powers of two, so that scenes with the same medium share them.
     """
     assert scene.medium is not None
     corners = body.placed_corners(scene.geometry)
     size = 2.0 ** round(float(np.log2(max(np.ptp(corners, axis=0).max(), 1e-6))))
-    found = []
+    result = []
     for part in (size, 0.4 * size):
         ball, slab = Ball(0.5 * part), Slab(1.4 * part, 1.4 * part, 0.3 * part)
-        found.append(_lit("ball", ball, scene.medium, (0.0, 0.4 * part, 3.2 * part), BALL_LIGHTS))
-        found.append(_lit("slab", slab, scene.medium, (0.9 * part, 0.7 * part, 3.0 * part), SLAB_LIGHTS))
-    return found
+        result.append(_lit("ball", ball, scene.medium, (0.0, 0.4 * part, 3.2 * part), BALL_LIGHTS))
+        result.append(_lit("slab", slab, scene.medium, (0.9 * part, 0.7 * part, 3.0 * part), SLAB_LIGHTS))
+    return result
 
 
 def _lit(
@@ -85,7 +87,7 @@ def _lit(
 
 
 def plate(scene: MeasuredScene) -> MeasuredScene:
-    """What parallax is fitted to: a plane over the scene's inlay, seen from many sides."""
+    """The training scene of parallax: a plane above the scene's inlay, seen under many angles."""
     assert scene.inlay is not None
     depth = scene.inlay.depth
     slab = Slab(400.0 * depth, 400.0 * depth, 10.0 * depth)

@@ -1,7 +1,7 @@
-"""Measured scenes: scenes that say what is physically there, so that materials can be measured on them.
+"""Measured scenes: scenes with a physical description, so that materials can be measured on them.
 
-A scene file with `[medium]` (what the body is made of) or `[inlay]` (a picture below a clear surface) is one. Its body
-is lit by lights from afar.
+Their files have `[medium]`, the medium of the body, or `[inlay]`, a picture below a clear surface. Their lights are
+directional.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import place, posix, stem
 
 SIDE = 64
-"""Pixels along the longer side of what is measured."""
+"""Pixels along the longer side of a measured picture."""
 HELD_OUT = 50.0
 """Degrees about the vertical through the camera's target by which the held-out view is turned."""
 
@@ -44,14 +44,14 @@ class Inlay:
 
     @property
     def parameters(self) -> dict[str, float]:
-        """What parallax techniques call these."""
+        """By their names in parallax techniques."""
         indices = {"ior": self.ior, "outside_ior": self.outside_ior, "relative_ior": self.ior / self.outside_ior}
         return {"depth": self.depth, **indices}
 
 
 @dataclass(frozen=True, eq=False)
 class MeasuredScene:
-    """What is measured on. Two that say the same, of files with the same content, are equal."""
+    """A scene for measurements. Scenes with equal values, read from files of equal content, are equal."""
 
     name: str
     title: str
@@ -66,11 +66,11 @@ class MeasuredScene:
 
     @cached_property
     def key(self) -> str:
-        """Tells it from every other."""
+        """A digest of the scene."""
         return cache.digest(encoded(self.__getstate__()))
 
     def __getstate__(self) -> dict[str, Any]:
-        return {one.name: getattr(self, one.name) for one in dataclasses.fields(self)}
+        return {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, MeasuredScene) and self.key == other.key
@@ -79,10 +79,10 @@ class MeasuredScene:
         return hash(self.key)
 
     def held_out(self) -> MeasuredScene:
-        """The same, seen from the side: nothing is fitted to this view."""
+        """The scene from another side, for a view that no fit uses."""
         turn = np.radians(HELD_OUT)
         x, y, z = np.subtract(self.camera.position, self.camera.target)
-        if np.hypot(x, z) < 1e-6 * abs(y):  # from straight above the turn would show the same
+        if np.hypot(x, z) < 1e-6 * abs(y):  # from straight above the rotation has no effect
             x = 0.5 * abs(y)
         turned = np.array([np.cos(turn) * x + np.sin(turn) * z, y, np.cos(turn) * z - np.sin(turn) * x])
         x, y, z = (float(value) for value in turned + self.camera.target)
@@ -90,13 +90,13 @@ class MeasuredScene:
 
 
 def names() -> dict[str, str]:
-    """The scenes that come with the project: name → path."""
+    """The scenes of the project: name → path."""
     folder = os.path.join(place("examples"), "lab")
     return {stem(name): os.path.join(folder, name) for name in sorted(os.listdir(folder)) if name.endswith(".toml")}
 
 
 def load(name: str) -> MeasuredScene:
-    """The scene of a scene file, or one of ours by name. Raises SssgenError with all that is wrong with it."""
+    """The scene of a scene file, or one of the project by name. Raises SssgenError with all errors in it."""
     known = names()
     if not name.endswith(".toml") and "/" not in name and os.sep not in name:
         if name not in known:
@@ -107,11 +107,11 @@ def load(name: str) -> MeasuredScene:
 
 
 def of_scene(scene: Scene, path: str) -> MeasuredScene:
-    """The scene that a scene describes. Raises SssgenError where it says too little to be measured."""
+    """The scene that a scene describes. Raises SssgenError for an incomplete description."""
     document, shown = scene.document, posix(path)
     if not scene.measured:
         hint = 'add [medium] with preset = "marble", say; or [inlay] with depth = 0.02: docs/accuracy.md'
-        raise failure("the scene does not say what its body is made of", hint, shown)
+        raise failure("the scene does not describe what its body is made of", hint, shown)
     if scene.geometry is None:
         raise failure("the scene has no geometry to measure", "add [geometry]", shown)
     medium = _medium(scene) if "medium" in scene.measured else None
@@ -119,7 +119,7 @@ def of_scene(scene: Scene, path: str) -> MeasuredScene:
     for number, light in enumerate(scene.lights):
         if light.direction is None and medium is not None:
             span = document.place("light", number, "position").value
-            document.error(span, "only lights from afar can be measured", "write direction = […] towards the light")
+            document.error(span, "only directional lights can be measured", "write direction = […] towards the light")
     if medium is not None and not scene.lights:
         document.error(document.place().key, "nothing lights the scene", "add [[light]] with direction = […]")
     document.reporter.check()
@@ -133,7 +133,7 @@ def of_scene(scene: Scene, path: str) -> MeasuredScene:
 
 
 def contents(geometry: Geometry) -> str:
-    """A digest of the files that a shape is read from, '' where there are none."""
+    """A digest of the files of a shape, '' without files."""
     if isinstance(geometry, Union):
         return "".join(contents(part) for part in geometry.parts)
     if isinstance(geometry, Mesh):
@@ -154,13 +154,13 @@ def _medium(scene: Scene) -> Medium | None:
                 table.error(key, f"a preset has its own {key}", "give a preset, or the coefficients")
         name = table.text("preset", "", media.media())
         unit = table.number("unit_mm", 10.0, POSITIVE)
-        # the boundary is the engine's: its reflection is not what these techniques model
+        # without the boundary: the engine computes its reflection, not these techniques
         return media.preset(name, unit).matched() if name in media.media() else None
     absorption: Any = table.vector("absorption", (0.0, 0.0, 0.0), NOT_NEGATIVE)
     scattering: Any = table.vector("scattering", (5.0, 5.0, 5.0), NOT_NEGATIVE)
     anisotropy = table.number("anisotropy", 0.0, (-0.95, 0.95))
     if not any(scattering):
-        table.error("scattering", "nothing scatters in this medium", "no light would come through but straight on")
+        table.error("scattering", "nothing scatters in this medium", "only unscattered light would pass through")
     if "unit_mm" in table.content:
         table.error("unit_mm", "coefficients are given per world unit", "leave unit_mm out, or name a preset")
     return Medium("custom", absorption, scattering, anisotropy, 1.0, "the scene")

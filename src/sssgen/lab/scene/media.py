@@ -1,4 +1,4 @@
-"""Translucent media: what light transport needs to know of a material, and presets from published measurements."""
+"""Translucent media for light transport, and presets from published measurements."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _COEFFICIENT = (0.0, 1e6)
 
 @dataclass(frozen=True)
 class Medium:
-    """A homogeneous medium, for linear red, green and blue. Raises SssgenError for what no medium can be."""
+    """A homogeneous medium, for linear red, green and blue. Raises SssgenError for impossible values."""
 
     name: str
     absorption: Spectrum
@@ -29,9 +29,9 @@ class Medium:
     scattering: Spectrum
     """σs per world unit; at least 0"""
     anisotropy: float = 0.0
-    """g of Henyey and Greenstein's phase function, the mean cosine: between −1 and 1, 0 where all ways are equal"""
+    """g of Henyey and Greenstein's phase function, the mean cosine: between −1 and 1, 0 for isotropic scattering"""
     ior: float = 1.0
-    """Refractive index over that of the outside; 1 where the boundary neither reflects nor bends"""
+    """Refractive index relative to the outside; 1 for a boundary without reflection and refraction"""
     source: str = ""
 
     def __post_init__(self) -> None:
@@ -40,7 +40,7 @@ class Medium:
                 raise failure(f"the medium '{self.name}' has the coefficient {coefficient:g}", "it is at least 0")
         if not -1.0 < self.anisotropy < 1.0:
             message = f"the medium '{self.name}' has the anisotropy {self.anisotropy:g}"
-            raise failure(message, "it lies between -1 and 1; 0 scatters into all directions alike")
+            raise failure(message, "it is between -1 and 1; 0 is isotropic scattering")
         if not 1.0 <= self.ior <= 10.0:
             raise failure(f"the medium '{self.name}' has the refractive index {self.ior:g}", "it goes from 1 to 10")
 
@@ -52,12 +52,12 @@ class Medium:
 
     @property
     def albedo(self) -> Spectrum:
-        """σs / σt, the part of the light that survives an encounter; 0 where there is nothing to meet."""
+        """σs / σt, the share of the light that is not absorbed in a collision; 0 in empty space."""
         red, green, blue = (s / t if t > 0.0 else 0.0 for s, t in zip(self.scattering, self.extinction, strict=True))
         return red, green, blue
 
     def matched(self) -> Medium:
-        """The same medium behind a boundary that neither reflects nor bends."""
+        """The same medium with a boundary without reflection and refraction."""
         return replace(self, ior=1.0)
 
 
@@ -71,18 +71,18 @@ class Measured:
     """Per millimetre"""
     ior: float
     measured: bool
-    """Whether all of it is published; `source` says what is not"""
+    """Whether all values are published; `source` states which are not"""
     source: str
 
 
 def preset(name: str, unit_mm: float = 1.0, anisotropy: float = 0.0, file: str = "") -> Medium:
     """The medium `name` of `media.toml`, or of `file`, where one world unit is `unit_mm` millimetres.
 
-    Publications give the reduced scattering. With g = 0 it is the scattering itself: light that scatters as much, but
-    alike into all directions, spreads alike deep inside (Wyman, Patterson and Wilson, Similarity relations for the
-    interaction parameters in radiation transport, 1989). With another g the scattering is σs′ / (1 − g).
+    Publications give the reduced scattering. With g = 0 it is the scattering coefficient: isotropic scattering with the
+    reduced coefficient gives the same light deep inside (Wyman, Patterson and Wilson, Similarity relations for the
+    interaction parameters in radiation transport, 1989). With another g the coefficient is σs′ / (1 − g).
 
-    Raises SssgenError for a medium that there is not, a faulty file, a unit that is not above 0, |g| ≥ 1.
+    Raises SssgenError for an unknown medium, an invalid file, a unit that is not positive, and |g| ≥ 1.
     """
     known = media(file)
     if name not in known:
@@ -91,22 +91,22 @@ def preset(name: str, unit_mm: float = 1.0, anisotropy: float = 0.0, file: str =
         raise failure(f"a world unit cannot be {unit_mm:g} mm", "unit_mm is above 0")
     if not -1.0 < anisotropy < 1.0:
         raise failure(f"the anisotropy cannot be {anisotropy:g}", "it lies between -1 and 1")
-    found = known[name]
+    entry = known[name]
     return Medium(
         name,
-        _scaled(found.absorption, unit_mm),
-        _scaled(found.reduced_scattering, unit_mm / (1.0 - anisotropy)),
+        _scaled(entry.absorption, unit_mm),
+        _scaled(entry.reduced_scattering, unit_mm / (1.0 - anisotropy)),
         anisotropy,
-        found.ior,
-        found.source,
+        entry.ior,
+        entry.source,
     )
 
 
 def media(file: str = "") -> Mapping[str, Measured]:
-    """The media of `media.toml`, or of `file`, by name. Raises SssgenError with all that is wrong with the file."""
+    """The media of `media.toml`, or of `file`, by name. Raises SssgenError with all errors in the file."""
     path = file or _FILE
     document = parse(read_text(path, posix(path)), posix(path))
-    found = {}
+    result = {}
     for name, content in document.data.items():
         table = Table(document, (name,), content, _KEYS)
         for key in ("reduced_scattering", "absorption", "source"):
@@ -115,7 +115,7 @@ def media(file: str = "") -> Mapping[str, Measured]:
         measured = table.content.get("measured", False)
         if not isinstance(measured, bool):
             table.error("measured", "'measured' is true or false")
-        found[name] = Measured(
+        result[name] = Measured(
             table.vector("reduced_scattering", (1.0, 1.0, 1.0), _COEFFICIENT),
             table.vector("absorption", (0.0, 0.0, 0.0), _COEFFICIENT),
             table.number("ior", 1.0, (1.0, 10.0)),
@@ -123,7 +123,7 @@ def media(file: str = "") -> Mapping[str, Measured]:
             table.text("source", ""),
         )
     document.reporter.check()
-    return found
+    return result
 
 
 def _scaled(coefficients: Spectrum, factor: float) -> Spectrum:

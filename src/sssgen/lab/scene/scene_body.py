@@ -1,7 +1,7 @@
-"""A scene's body as materials measure it: a distance function to bind to slots, and the numbers that go with it.
+"""A scene's body for materials: a distance function to bind to slots, and its parameters.
 
-Of solids the text of the function is made here, with the scene's numbers in it; a library or file function is bound as
-it is; a mesh has a distance texture.
+Solids get a generated function with the scene's numbers. The functions of the library and of files are bound directly.
+A mesh has a distance texture.
 """
 
 from __future__ import annotations
@@ -20,24 +20,24 @@ from sssgen.material import slots
 from sssgen.support.diagnostics import failure
 
 TEXELS = 64
-"""Along the longest side of a distance texture."""
+"""Texels along the longest side of a distance texture."""
 FILE = "body.sss"
 
 
 @dataclass(frozen=True)
 class Body:
-    """What a material needs to know of a scene's body."""
+    """A scene's body for materials."""
 
     function: str
-    """What a slot of a position in world space is bound to"""
+    """The function for slots that take a position in world space"""
     files: Mapping[str, str] = field(default_factory=dict)
-    """The files that this names, to lie beside the material: name → text"""
+    """The files that it refers to, for the material's folder: name → text"""
     parameters: Mapping[str, object] = field(default_factory=dict)
     """The function's own parameters"""
 
 
 def body(geometry: Geometry) -> Body:
-    """The body's distance function in world space. Raises SssgenError for a shape that has none."""
+    """The body's distance function in world space. Raises SssgenError for a shape without one."""
     if isinstance(geometry, Mesh):
         return Body(slots.body("texture", "world_position"))
     if isinstance(geometry, Distance):
@@ -48,7 +48,7 @@ def body(geometry: Geometry) -> Body:
 
 
 def _function_of(geometry: Distance) -> Body:
-    """The function of a scene's own file goes beside the material, as its file."""
+    """The function of a file, with the file, or of the library."""
     file, colon, name = geometry.technique.rpartition(":")
     path = os.path.join(geometry.folder, file if colon else geometry.technique)
     if not os.path.isfile(path):
@@ -59,7 +59,7 @@ def _function_of(geometry: Distance) -> Body:
 
 
 def text(geometry: Geometry) -> str:
-    """A file in our language with the function `body`: the distance to the shape, in world space."""
+    """A .sss file with the function `body`: the distance to the shape, in world space."""
     lines: list[str] = []
     name = _write(geometry, lines)
     lines += [
@@ -73,18 +73,18 @@ def text(geometry: Geometry) -> str:
 
 
 def _write(geometry: Geometry, lines: list[str]) -> str:
-    """Appends the function of a shape, those of its parts first; gives its name."""
+    """Appends the function of a shape, after those of its parts; returns its name."""
     parts = [_write(part, lines) for part in geometry.parts] if isinstance(geometry, Union) else []
     number = sum(line.startswith("float ") for line in lines)
     name = f"{type(geometry).__name__.lower()}_{number + 1}"
-    inwards = geometry.to_object()
-    moved = not np.array_equal(inwards, np.eye(4))
+    to_object = geometry.to_object()
+    moved = not np.array_equal(to_object, np.eye(4))
     lines += [f"float {name}(vec3 {'at' if moved else 'p'})", "{"]
     if moved:
-        turned = not np.array_equal(inwards[:3, :3], np.eye(3))
-        place = f"at - {_vector(geometry.position)}"
-        matrix = ", ".join(_number(value) for value in inwards[:3, :3].T.ravel())
-        lines.append(f"    vec3 p = mat3({matrix}) * ({place});" if turned else f"    vec3 p = {place};")
+        turned = not np.array_equal(to_object[:3, :3], np.eye(3))
+        position = f"at - {_vector(geometry.position)}"
+        matrix = ", ".join(_number(value) for value in to_object[:3, :3].T.ravel())
+        lines.append(f"    vec3 p = mat3({matrix}) * ({position});" if turned else f"    vec3 p = {position};")
     *before, result = _formula(geometry, parts)
     lines += [f"    {line}" for line in before]
     lines += [
@@ -95,7 +95,7 @@ def _write(geometry: Geometry, lines: list[str]) -> str:
 
 
 def _formula(geometry: Geometry, parts: list[str]) -> list[str]:
-    """The lines of a distance at `p`, the last one an expression. Raises SssgenError for a shape that has none."""
+    """The lines of a distance at `p`, the last one an expression. Raises SssgenError for a shape without one."""
     if isinstance(geometry, Ball):
         return [f"length(p) - {_number(geometry.radius)}"]
     if isinstance(geometry, Box | Slab):
@@ -127,7 +127,7 @@ def _vector(values: Any) -> str:
 
 
 def bounds(geometry: Geometry) -> tuple[Array, Array]:
-    """The smallest and the largest corner of a box around the shape, in object space; tight but for distances."""
+    """The corners of the shape's bounding box in object space; not tight for distance functions."""
     if isinstance(geometry, Mesh):
         return geometry.bounds()
     if isinstance(geometry, Ball):
@@ -147,7 +147,7 @@ def bounds(geometry: Geometry) -> tuple[Array, Array]:
     assert isinstance(geometry, Distance)
     at = np.linspace(-geometry.reach, geometry.reach, 48)
     points = np.stack(np.meshgrid(at, at, at, indexing="ij"), axis=-1).reshape(-1, 3)
-    # a cell that the surface passes has it within half of the cell's diagonal of its corners
+    # a cell that the surface crosses has a corner within half of its diagonal from the surface
     near = points[geometry.distance(points) < 0.87 * (at[1] - at[0])]
     if not len(near):
         raise failure("the scene's body is empty", "its distance function is nowhere below 0 within its reach")
@@ -155,7 +155,7 @@ def bounds(geometry: Geometry) -> tuple[Array, Array]:
 
 
 def placed_corners(geometry: Geometry) -> Array:
-    """The eight corners of a shape's box, (8, 3), where the shape stands."""
+    """The eight corners of a shape's box, (8, 3), in world space."""
     low, high = bounds(geometry)
     corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
     matrix = geometry.to_world()
@@ -164,7 +164,7 @@ def placed_corners(geometry: Geometry) -> Array:
 
 
 def distance_texture(geometry: Geometry) -> DistanceTexture:
-    """The distance texture of a shape in its object space: its box with a margin, in texels that are about cubes."""
+    """The distance texture of a shape in object space: its box with a margin, with nearly cubic texels."""
     low, high = bounds(geometry)
     margin = 0.05 * float((high - low).max())
     low, high = low - margin, high + margin
@@ -179,7 +179,7 @@ def _vector_of(corner: Array) -> Vector:
 
 
 def given(geometry: Geometry, texture: DistanceTexture) -> dict[str, object]:
-    """The numbers that go with a shape's distance texture by the names of techniques, as TOML has them."""
+    """The parameters of a shape's distance texture by their names in techniques, as TOML values."""
     return {
         "box_min": [*texture.box_min], "box_max": [*texture.box_max], "distance_range": texture.range,
         **placement(geometry),
