@@ -44,7 +44,7 @@ def test_a_worker_with_other_code_is_refused(monkeypatch: pytest.MonkeyPatch) ->
     assert decoded(execute(one)) == (1, 1)
     monkeypatch.setattr(work, "code_stamp", lambda module: "another")
     refused = decoded(execute(one))
-    assert isinstance(refused, Failure) and "another state of sssgen" in refused.message
+    assert isinstance(refused, Failure) and "another version of sssgen" in refused.message
 
 
 def as_bytes(results: list[Any]) -> list[bytes]:

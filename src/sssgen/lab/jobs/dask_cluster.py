@@ -1,9 +1,9 @@
-"""Work items on a Dask cluster (https://distributed.dask.org): what a lost worker had, another one computes.
+"""Work items on a Dask cluster (https://distributed.dask.org); it reassigns the items of a lost worker.
 
     dask scheduler
     dask worker tcp://HOST:8786 --nthreads 1 --nworkers 8
 
-One thread a worker: a driver's context belongs to the thread that made it.
+One thread per worker: a graphics context belongs to the thread that created it.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from sssgen.support.diagnostics import failure
 from sssgen.support.extras import need
 
 SECONDS = 5
-"""How long a scheduler may take to answer."""
+"""The timeout for the scheduler's answer."""
 WORKERS_SECONDS = 30
-"""How long it may take until it has a worker."""
+"""The timeout for its first worker."""
 
 
 def on_cluster(tasks: list[Task], address: str) -> Generator[Ended]:
-    """The tasks as they end; to close it takes the others back. Raises SssgenError where there is no cluster."""
+    """Yields the tasks as they end; closing it cancels the others. Raises SssgenError without a cluster."""
     distributed = need("distributed", extra="cluster")
     with _client(distributed, address) as client:
         futures = {client.submit(execute, one, key=f"sssgen-{one.key}"): one for one in tasks}
@@ -33,16 +33,16 @@ def on_cluster(tasks: list[Task], address: str) -> Generator[Ended]:
         for future, result in ended:
             one = futures.pop(future)
             if future.status == "cancelled":
-                raise failure(f"the Dask scheduler at {address} was lost", "what is done is kept: run it again")
+                raise failure(f"the Dask scheduler at {address} was lost", "the results so far are kept: run it again")
             if future.status == "error":
-                result = encoded(Failure(one.name, _told(result)))
+                result = encoded(Failure(one.name, _message(result)))
             yield one.key, result
 
 
-def _told(error: Any) -> str:
-    """What an error says that is not the item's own: a worker died, again and again, or cannot import it."""
-    found = error[1] if isinstance(error, tuple) else error
-    return f"{type(found).__name__}: {found}"
+def _message(error: Any) -> str:
+    """The message of an error of the cluster: its workers died repeatedly, or cannot import the function."""
+    exception = error[1] if isinstance(error, tuple) else error
+    return f"{type(exception).__name__}: {exception}"
 
 
 @contextlib.contextmanager
@@ -50,7 +50,7 @@ def _client(distributed: Any, address: str) -> Iterator[Any]:
     logs = [logging.getLogger(name) for name in ("distributed", "distributed.client")]
     levels = [log.level for log in logs]
     for log in logs:
-        log.setLevel(logging.CRITICAL)  # what it says of lost workers is not for those who wait for a chart
+        log.setLevel(logging.CRITICAL)  # its messages about lost workers do not help the user
     try:
         with _connected(distributed, address) as client:
             yield client

@@ -1,11 +1,10 @@
 """Runs work items: here, in processes of this machine, or on a Dask cluster, with the same results to the byte.
 
     items = [Item("sssgen.lab.chart.charting:measured", (technique, setting, scene), f"{technique} on {scene}") for ...]
-    with ProgressBar() as told:
-        results = run(items, progress=told)
+    with ProgressBar() as progress:
+        results = run(items, progress=progress)
 
-Results are kept under a digest of the function, the arguments and the code, so that a run that was interrupted goes on
-where it stood.
+Results are stored under a digest of the function, the arguments and the code, so that an interrupted run continues.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from sssgen.lab.jobs.work_items import Ended, Failure, Item, Task, execute, task
 __all__ = ["Failure", "Item", "Progress", "failures", "run"]
 
 Progress = Callable[[int, int, str], None]
-"""Hears of each item as it ends: how many are done, of how many, and its name."""
+"""Called as each item ends: number of finished items, number of all items, name."""
 
 
 def run(
@@ -30,12 +29,12 @@ def run(
     store: Store | None = None,
     progress: Progress = lambda *_: None,
 ) -> list[Any]:
-    """The items' results, in their order; a Failure for each that raised, or that took its worker down every time.
+    """The items' results, in order; a Failure for each item that raised an exception or always killed its worker.
 
     They are computed by the Dask cluster whose scheduler has the address `scheduler` (`tcp://HOST:8786`); without one,
-    in so many `processes` of this machine (by default one a core), and with 0 in this one. What the store has is not
-    computed again; an item that stands there twice is computed once. An interrupt ends the workers, and keeps what is
-    done. Raises SssgenError where the scheduler does not answer or is lost.
+    in `processes` processes of this machine (by default one per core), or with 0 in this process. Stored results are
+    not computed again, and equal items are computed once. An interrupt ends the workers and keeps finished results.
+    Raises SssgenError if the scheduler does not answer or is lost.
     """
     store = Store() if store is None else store
     tasks = [task(item) for item in items]
@@ -70,7 +69,7 @@ def failures(results: Sequence[Any]) -> list[Failure]:
 
 
 def _ended(tasks: list[Task], scheduler: str, processes: int | None) -> Generator[Ended]:
-    """The tasks as they end, in whichever order. To close it ends the workers."""
+    """Yields the tasks as they end, in any order. Closing it ends the workers."""
     if not tasks:
         return
     if scheduler:

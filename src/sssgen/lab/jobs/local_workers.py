@@ -1,4 +1,4 @@
-"""Work items in processes of this machine. A process that dies takes down the item that it had, and no other."""
+"""Work items in processes of this machine. A process that dies affects only its current item."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from sssgen.lab.jobs.work_items import Ended, Failure, Task, execute
 from sssgen.support.worker_process import LostError, Process
 
 TRIES = 3
-"""How often an item is given to a process before it counts as what kills them."""
+"""The number of processes that an item may kill before it fails."""
 
 SECONDS = 7 * 24 * 3600.0
-"""How long one item may take."""
+"""The time limit of an item."""
 
 THREADS = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-"""For the processes' environment: they fill the cores already, and sums keep their order."""
+"""The processes' environment: they already use all cores, and one thread keeps the order of sums."""
 
 
 def in_processes(tasks: list[Task], processes: int) -> Generator[Ended]:
-    """The tasks as they end, computed in so many processes; to close it ends these."""
+    """Yields the tasks as they end, computed in `processes` processes; closing it ends these."""
     waiting: queue.SimpleQueue[Task] = queue.SimpleQueue()
     ended: queue.SimpleQueue[Ended | BaseException] = queue.SimpleQueue()
     for one in tasks:
@@ -32,10 +32,10 @@ def in_processes(tasks: list[Task], processes: int) -> Generator[Ended]:
         for worker in workers:
             worker.start()
         for _ in tasks:
-            found = ended.get()
-            if isinstance(found, BaseException):
-                raise found
-            yield found
+            result = ended.get()
+            if isinstance(result, BaseException):
+                raise result
+            yield result
     finally:
         for worker in workers:
             worker.stopped = True
@@ -44,7 +44,7 @@ def in_processes(tasks: list[Task], processes: int) -> Generator[Ended]:
 
 
 class _Worker(threading.Thread):
-    """Gives tasks to a process of its own, one at a time, and puts what comes of them where it is waited for."""
+    """A thread that gives tasks to its own process, one at a time, and queues the results."""
 
     def __init__(self, waiting: queue.SimpleQueue[Task], ended: queue.SimpleQueue[Ended | BaseException]) -> None:
         super().__init__(daemon=True)
@@ -53,7 +53,7 @@ class _Worker(threading.Thread):
         self.stopped = False
 
     def run(self) -> None:
-        """Until there is no more to do, or it is stopped."""
+        """Runs until there are no more tasks, or it is stopped."""
         try:
             while not self.stopped:
                 one = self.waiting.get_nowait()
@@ -66,19 +66,19 @@ class _Worker(threading.Thread):
             self.process.close()
 
     def _result(self, one: Task) -> bytes:
-        told = ""
+        reason = ""
         for _ in range(TRIES):
             try:
                 if self.stopped:
                     break
-                found: bytes = self.process.ask(one)
-                return found
-            except LostError as reason:
-                told = str(reason)
-        return encoded(Failure(one.name, f"its process {told}, {TRIES} times in a row"))
+                result: bytes = self.process.ask(one)
+                return result
+            except LostError as error:
+                reason = str(error)
+        return encoded(Failure(one.name, f"its process {reason}, {TRIES} times in a row"))
 
     def end(self) -> None:
-        """Ends the thread and its process, whatever it does; again until it has seen it."""
+        """Kills the process, repeatedly, until the thread has ended."""
         while self.is_alive():
             if (running := self.process.process) is not None:
                 running.kill()
@@ -86,5 +86,5 @@ class _Worker(threading.Thread):
 
 
 def serve(name: str) -> tuple[int, Callable[[Task], bytes]]:
-    """The process's number, and what answers tasks with results."""
+    """The process id, and the function that answers tasks with results."""
     return os.getpid(), execute

@@ -1,6 +1,6 @@
-"""Pictures of scenes as work items: a PNG, and how far the back ends' pictures are apart.
+"""Pictures of scenes as work items: a PNG, and the differences between back ends.
 
-A scene is named by its file in this installation, which every worker has.
+An item names an example of the installation, which every worker has.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ from sssgen.support.extras import need
 from sssgen.support.paths import place
 
 _one = threading.Lock()
-"""A worker's back ends draw one picture at a time."""
+"""The back ends of a worker draw one picture at a time."""
 
 
 class Apart(NamedTuple):
-    """How far a back end's picture is from what NumPy draws in float64."""
+    """The difference of a back end's picture from the picture by NumPy in float64."""
 
     worst: float
     """The largest difference of a channel, in 1/255 of the encoded sRGB value."""
     beyond: int
-    """The pixels with a channel that is more than 1/255 off."""
+    """The number of pixels with a channel that differs by more than 1/255."""
 
 
 def picture(example: str) -> bytes:
@@ -46,16 +46,16 @@ def picture(example: str) -> bytes:
 
 
 def apart(example: str, names: Sequence[str], size: tuple[int, int] | None, samples: int | None) -> list[Apart]:
-    """An example's scene on the back ends named, held against NumPy.
+    """Compares an example's scene on the named back ends with NumPy.
 
-    `size`, in pixels, and `samples`, a pixel, are the scene's own where they are None.
+    `size`, in pixels, and `samples`, per pixel, default to the scene's.
     """
     scene = _scene(example)
     scene = dataclasses.replace(scene, size=size or scene.size, samples=samples or scene.samples)
     with _one:
         wanted = render(scene, _backend("numpy")).encoded
-        far = [255.0 * np.abs(render(scene, _backend(name)).encoded - wanted).max(axis=2) for name in names]
-    return [Apart(float(one.max()), int((one > 1.0).sum())) for one in far]
+        differences = [255.0 * np.abs(render(scene, _backend(name)).encoded - wanted).max(axis=2) for name in names]
+    return [Apart(float(image.max()), int((image > 1.0).sum())) for image in differences]
 
 
 def _scene(example: str) -> Scene:

@@ -1,6 +1,6 @@
-"""Results as bytes, and the folder that keeps them: each is written whole or not at all, under its item's key.
+"""Results as bytes, and the folder that stores each atomically under its item's key.
 
-What an interrupted run has finished is found here by the next one. Losing the folder costs time only.
+A run finds the results of an interrupted one here. The folder may be deleted: that only costs time.
 """
 
 from __future__ import annotations
@@ -16,18 +16,17 @@ from sssgen.support.diagnostics import SssgenError
 from sssgen.support.file_writer import write_files
 
 FOLDER = os.path.join("lab", "results")
-"""Where in the cache folder the results lie."""
+"""The subfolder of the cache folder."""
 
 
 def encoded(value: Any) -> bytes:
-    """A value as bytes that depend on what it says alone: not on which equal objects are one, nor on how an array lies
-    in memory.
+    """A value as bytes that depend only on its content, not on shared objects or an array's memory layout.
 
-    The value is what pickle takes, without cycles (ValueError) and without sets, whose order differs between processes.
+    Pickle must accept the value. It has no cycles (ValueError) and no sets, whose order differs between processes.
     """
     file = io.BytesIO()
     pickler = _Pickler(file, protocol=5)
-    pickler.fast = True  # no references to what was written before
+    pickler.fast = True  # without references to earlier objects
     pickler.dump(value)
     return file.getvalue()
 
@@ -43,14 +42,14 @@ class _Pickler(pickle.Pickler):
 
 
 def decoded(data: bytes) -> Any:
-    """The value of `encoded` bytes: a new one each time."""
+    """The value of `encoded` bytes, a new object."""
     return pickle.loads(data)
 
 
 class Store:
-    """Bytes by key: `store.put(key, data)`, `store.get(key)`; in a folder, or in memory where that is ''.
+    """Bytes by key: `store.put(key, data)`, `store.get(key)`; in a folder, or in memory if it is ''.
 
-    `folder` is the cache's own by default, and '' where there is no cache folder.
+    The default folder is in the cache folder; it is '' without a cache folder.
     """
 
     def __init__(self, folder: str | None = None) -> None:
@@ -60,7 +59,7 @@ class Store:
         self.memory: dict[str, bytes] = {}
 
     def get(self, key: str) -> bytes | None:
-        """What lies under the key; nothing where that is missing or damaged."""
+        """The data of a key; None if it is missing or damaged."""
         if not self.folder:
             return self.memory.get(key)
         try:
@@ -71,7 +70,7 @@ class Store:
         return data if seal == _seal(data) else None
 
     def put(self, key: str, data: bytes) -> None:
-        """Keeps the data. That they cannot be written is no error: the next run makes them again."""
+        """Stores the data. A failed write is no error: the next run computes the data again."""
         if not self.folder:
             self.memory[key] = data
             return
@@ -83,5 +82,5 @@ class Store:
 
 
 def _seal(data: bytes) -> bytes:
-    """What stands before the data, so that a file cut short by a failing disk is known for one."""
+    """The digest before the data, which detects truncated files."""
     return cache.digest(data).encode()

@@ -1,6 +1,6 @@
-"""`sssgen stress` as work items, one for each technique: in processes, or on a Dask cluster.
+"""`sssgen stress` as work items, one per technique, in processes or on a Dask cluster.
 
-The results are not kept: whoever stresses a driver wants it to be run.
+The results are not stored: a stress test must run the driver.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from sssgen.support.diagnostics import Diagnostic, SssgenError
 from sssgen.support.progress import ProgressBar
 
 _one = threading.Lock()
-"""A worker's back ends answer one question at a time."""
+"""The back ends of a worker run one item at a time."""
 
 
 def spread(
@@ -28,13 +28,13 @@ def spread(
     scheduler: str = "",
     processes: int | None = None,
 ) -> Report:
-    """The report on what is chosen, on the back ends named: as one process makes it, but for the times.
+    """The report on the chosen techniques on the named back ends: as by one process, except for the times.
 
-    Raises SssgenError where the scheduler does not answer, and for a technique whose worker dies each time.
+    Raises SssgenError if the scheduler does not answer, and for a technique that always kills its worker.
     """
     items = [Item(f"{__name__}:stressed", (one, tuple(names), settings), one.title) for one in chosen]
-    with ProgressBar() as told:
-        results = run(items, scheduler, processes, Store(""), told)
+    with ProgressBar() as progress:
+        results = run(items, scheduler, processes, Store(""), progress)
     if failed := failures(results):
         raise SssgenError([Diagnostic("error", f"{one.name}: {one.message}") for one in failed])
     devices: dict[str, str] = {}
@@ -48,7 +48,7 @@ def spread(
 def stressed(
     specimen: Specimen, names: tuple[str, ...], settings: Settings
 ) -> tuple[Row, dict[str, str], dict[str, str]]:
-    """One technique; with it, what the back ends of this process are, and why others are missing."""
+    """The row of one technique, the devices of this process's back ends, and the reasons why others are missing."""
     with _one:
         machines = _machines(names)
         row = stress(specimen, machines, settings)
@@ -57,4 +57,4 @@ def stressed(
 
 @functools.cache
 def _machines(names: tuple[str, ...]) -> Machines:
-    return Machines(names)  # they end with the process
+    return Machines(names)  # closed with the process

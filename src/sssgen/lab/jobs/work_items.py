@@ -1,7 +1,6 @@
-"""A work item: a function by its name, its arguments as plain data, and the key that its result is kept under.
+"""A work item: a function by its name, its arguments as plain data, and the key of its result.
 
-The same arguments must give the same result everywhere: seeds, and the contents of what is read from files, belong to
-the arguments.
+Equal arguments must give equal results everywhere, so they include seeds and the contents of files.
 """
 
 from __future__ import annotations
@@ -20,41 +19,41 @@ from sssgen.support.diagnostics import SssgenError
 from sssgen.support.paths import PACKAGE, place
 
 Ended = tuple[str, bytes]
-"""The key of an item that has ended, and its encoded result."""
+"""The key of a finished item, and its encoded result."""
 
 
 class Failure(NamedTuple):
-    """Stands for an item's result where there is none. It is not kept: the next run tries again."""
+    """Replaces the result of a failed item. It is not stored: the next run tries again."""
 
     name: str
     """The item's."""
     message: str
-    """What went wrong, and where."""
+    """The error and its position."""
 
 
 class Item(NamedTuple):
-    """A call of `function`, as "package.module:name", with `arguments`: what pickle takes, without sets or cycles."""
+    """A call of `function`, as "package.module:name", with picklable `arguments`, without sets or cycles."""
 
     function: str
     arguments: tuple[Any, ...] = ()
     name: str = ""
-    """What people know it as; it is no part of the key."""
+    """The name for messages, which is not part of the key."""
 
     @property
     def title(self) -> str:
-        """The name, or else the function's."""
+        """The name, by default that of the function."""
         return self.name or self.function.partition(":")[2]
 
 
 class Task(NamedTuple):
-    """An item as it goes to a worker."""
+    """An item in the form for workers."""
 
     key: str
     name: str
     function: str
     arguments: bytes
     stamp: str
-    """The state of the code that is to run it."""
+    """The digest of the code that must run it."""
 
 
 def task(item: Item) -> Task:
@@ -66,15 +65,15 @@ def task(item: Item) -> Task:
 
 
 def execute(one: Task) -> bytes:
-    """Runs a task in this process; its encoded result, which is a Failure where the function raised."""
+    """Runs a task in this process; returns the encoded result, or a Failure if the function raised an exception."""
     try:
         module, _, name = one.function.partition(":")
         if code_stamp(module) != one.stamp:
-            return encoded(Failure(one.name, "this worker has another state of sssgen: start it, or the run, anew"))
+            return encoded(Failure(one.name, "this worker has another version of sssgen: restart it, or the run"))
         function = getattr(importlib.import_module(module), name)
         return encoded(function(*decoded(one.arguments)))
     except SssgenError as error:
-        return encoded(Failure(one.name, "; ".join(found.message for found in error.diagnostics)))
+        return encoded(Failure(one.name, "; ".join(diagnostic.message for diagnostic in error.diagnostics)))
     except (Exception, SystemExit) as error:
         at = traceback.extract_tb(error.__traceback__)[-1]
         place = f"{os.path.basename(at.filename)}:{at.lineno}"
@@ -83,8 +82,8 @@ def execute(one: Task) -> bytes:
 
 @functools.cache
 def code_stamp(module: str) -> str:
-    """Tells one state of the code from another, on every machine alike: a digest of sssgen's files and of what lies
-    beside them, of the module's own where it is another's, and of the versions of Python and NumPy.
+    """A digest of the code, the same on every machine: of sssgen's files, of the module's file if it is not part of
+    sssgen, and of the versions of Python and NumPy.
     """
     parts = [b"Python %d.%d" % sys.version_info[:2], _numpy().encode(), _own().encode()]
     if not module.startswith("sssgen."):
@@ -106,12 +105,12 @@ def _numpy() -> str:
 @functools.cache
 def _own() -> str:
     folders = [PACKAGE, *map(place, ("targets", "templates", "examples"))]
-    found = []
+    digests = []
     for top in folders:
         for folder, below, names in os.walk(top):
             below[:] = sorted(name for name in below if name not in ("__pycache__", "_data"))
-            found += [f"{name} {cache.digest(_content(os.path.join(folder, name)))}" for name in sorted(names)]
-    return cache.digest("\n".join(found))
+            digests += [f"{name} {cache.digest(_content(os.path.join(folder, name)))}" for name in sorted(names)]
+    return cache.digest("\n".join(digests))
 
 
 def _content(path: str) -> bytes:

@@ -1,8 +1,8 @@
-"""Closed triangle meshes of geometry, for renderers that know nothing else.
+"""Closed triangle meshes of geometry, for renderers that support only triangles.
 
-A box and a slab are exact, and so is a mesh, and the union of such. Triangles have their corners on a torus, and on
-the zero level of a distance function, and lie inside them by at most c² / 8r, for edges of length c and a radius of
-curvature r; what is thinner than a cell of the grid may be missed.
+Boxes, slabs, meshes and their unions are exact. The vertices of other meshes are on the torus or on the zero level of
+the distance function; the triangles are inside by at most c² / 8r, for edges of length c and a radius of curvature r.
+Parts thinner than a cell of the grid may be missing.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
 RESOLUTION = 96
-"""Cells along a side of the grid about a distance function, and half of the steps around a torus and its tube."""
+"""Cells along a side of a distance function's grid, and half of the steps around a torus and its tube."""
 
 _NEWTON_STEPS = 4
 
@@ -28,7 +28,7 @@ _NEWTON_STEPS = 4
 def mesh_of(geometry: Geometry, resolution: int = RESOLUTION) -> tuple[Array, Indices]:
     """A closed mesh in world space: vertices (v, 3), and faces (f, 3), counter-clockwise seen from outside.
 
-    Raises SssgenError for a mesh with a hole, a distance function that is nowhere negative, a missing libigl.
+    Raises SssgenError for a mesh with a hole, a distance function without negative values, and a missing libigl.
     """
     if isinstance(geometry, Mesh):
         vertices, faces = geometry.triangles.places, geometry.triangles.corners
@@ -68,7 +68,7 @@ def _box(size: Array) -> tuple[Array, Indices]:
 
 
 def _ring(major: float, minor: float, steps: int) -> tuple[Array, Indices]:
-    """A torus about y, as many steps around the axis as around the tube."""
+    """A torus about y, with equally many steps around the axis and around the tube."""
     around, tube = (angle.ravel() for angle in np.meshgrid(*[np.arange(steps) * (2.0 * np.pi / steps)] * 2))
     distance = major + minor * np.cos(tube)
     vertices = np.stack([distance * np.sin(around), minor * np.sin(tube), distance * np.cos(around)], axis=1)
@@ -79,14 +79,14 @@ def _ring(major: float, minor: float, steps: int) -> tuple[Array, Indices]:
 
 
 def _united(parts: list[tuple[Array, Indices]]) -> tuple[Array, Indices]:
-    """The surface of closed meshes together, without what lies inside one of them."""
+    """The surface of the union of closed meshes."""
     manifold = need("manifold3d", "manifold3d", "reference")
     solids = [
         manifold.Manifold(manifold.Mesh64(np.ascontiguousarray(vertices), np.ascontiguousarray(faces, np.uint64)))
         for vertices, faces in parts
     ]
-    whole = manifold.Manifold.batch_boolean(solids, manifold.OpType.Add).to_mesh64()
-    return np.asarray(whole.vert_properties, np.float64)[:, :3], np.asarray(whole.tri_verts, np.int64)
+    union = manifold.Manifold.batch_boolean(solids, manifold.OpType.Add).to_mesh64()
+    return np.asarray(union.vert_properties, np.float64)[:, :3], np.asarray(union.tri_verts, np.int64)
 
 
 def _halves(quads: Indices) -> Indices:
@@ -94,7 +94,7 @@ def _halves(quads: Indices) -> Indices:
 
 
 def _level(distance: Callable[[Array], Array], reach: float, resolution: int) -> tuple[Array, Indices]:
-    """The surface where the distance is 0, closed at the ball of radius `reach`: marching cubes, and Newton's steps."""
+    """The zero level of a distance inside the ball of radius `reach`: marching cubes, then Newton steps."""
 
     def cut(points: Array) -> Array:
         values: Array = np.maximum(distance(points), np.linalg.norm(points, axis=1) - reach)
@@ -108,15 +108,15 @@ def _level(distance: Callable[[Array], Array], reach: float, resolution: int) ->
     values = np.concatenate([cut(part) for part in np.array_split(grid, 16)])
     if not (values < 0.0).any():
         raise failure("the distance function is nowhere negative: there is no inside", "widen its reach")
-    # a value of just 0 at a corner of the grid makes triangles without area
+    # a value of exactly 0 at a grid point makes triangles without area
     values = np.where(np.abs(values) < 1e-9 * reach, 1e-9 * reach, values)
-    found = igl.marching_cubes(values, grid, count, count, count, 0.0)
-    vertices, faces = np.asarray(found[0], np.float64), np.asarray(found[1], np.int64)
+    result = igl.marching_cubes(values, grid, count, count, count, 0.0)
+    vertices, faces = np.asarray(result[0], np.float64), np.asarray(result[1], np.int64)
     return _on_level(cut, vertices, 0.5 * float(side[1] - side[0])), faces
 
 
 def _on_level(cut: Callable[[Array], Array], vertices: Array, farthest: float) -> Array:
-    """Vertices moved onto the zero level, by Newton's steps along the gradient; none farther than `farthest`."""
+    """Vertices moved onto the zero level by Newton steps along the gradient, at most by `farthest`."""
     step = 1e-4 * farthest
     points = vertices
     for _ in range(_NEWTON_STEPS):
@@ -136,10 +136,10 @@ def _volume(vertices: Array, faces: Indices) -> float:
 
 
 def _check_closed(vertices: Array, faces: Indices, path: str) -> None:
-    """Raises SssgenError unless as many triangles run along each edge one way as the other."""
+    """Raises SssgenError unless each edge has equally many triangles in both directions."""
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     there = edges[:, 0] * len(vertices) + edges[:, 1]
     back = edges[:, 1] * len(vertices) + edges[:, 0]
     if not np.array_equal(np.sort(there), np.sort(back)):
-        message = "the mesh has a hole, or triangles that face different ways: light transport needs an inside"
+        message = "the mesh has a hole, or triangles with different orientations: light transport needs an inside"
         raise failure(message, "close it, and make all its triangles counter-clockwise seen from outside", path)

@@ -1,7 +1,7 @@
-"""Where an inlay is seen through a clear surface: true refraction in three dimensions, on flat and curved bodies.
+"""The apparent position of an inlay below a clear surface: exact refraction on flat and curved bodies.
 
-The inlay lies `depth` below the surface, along its normal, all over. A ray refracts where it enters, goes straight on,
-and meets the layer; the place seen is the one on the surface right above. On a plane this is the formula of
+The inlay is a layer at constant `depth` below the surface, along its normal. A ray refracts at the surface, continues
+straight and hits the layer; the visible point is the surface point above the hit. On a plane this is the formula of
 On Subsurface Parallax Shading.
 """
 
@@ -20,19 +20,19 @@ TOUCHED = 1e-9
 
 
 class Seen(NamedTuple):
-    """What n points show of the inlay."""
+    """The inlay as n points show it."""
 
     hit: Array
-    """(n,): whether the ray meets the layer at all; through a curved edge it may pass it"""
+    """(n,): whether the ray hits the layer; near a curved edge it may miss"""
     offset: Array
-    """(2, n): the way along the surface, in world units along T and B, from the point to what it shows"""
+    """(2, n): the offset on the surface from the point to the visible point, in world units along T and B"""
     depth: float
 
 
 def refracted(V: Array, N: Array, eta: float) -> Array:
-    """The unit directions (3, n) in which rays from the eye go on inside; `eta` is n outside over n inside.
+    """The unit directions (3, n) of rays from the eye after refraction; `eta` is n outside over n inside.
 
-    Snell's law in vector form; 0 past the critical angle.
+    Snell's law in vector form; 0 beyond the critical angle.
     """
     cosine = np.einsum("cn,cn->n", V, N)
     k = 1.0 - eta**2 * (1.0 - cosine**2)
@@ -41,7 +41,7 @@ def refracted(V: Array, N: Array, eta: float) -> Array:
 
 
 def plane_offset(sine: Array, depth: float, n: float) -> Array:
-    """How far an inlay below a plane seems to have moved, for an eye at an angle with that sine: closed form.
+    """The apparent offset of an inlay below a plane, for a view angle with that sine, in closed form.
 
     depth · sin θ / √(n² − sin² θ), with n = n inside over n outside.
     """
@@ -49,30 +49,30 @@ def plane_offset(sine: Array, depth: float, n: float) -> Array:
 
 
 def seen(scene: MeasuredScene, at: Points) -> Seen:
-    """What the scene's points show of its inlay. Its geometry's distance must be exact inside."""
+    """The scene's inlay as its points show it. The geometry's distance must be exact inside."""
     assert scene.inlay is not None
     geometry, inlay = scene.geometry, scene.inlay
     N, T, B = at.inputs["N"], at.inputs["T"], at.inputs["B"]
-    inwards, scale = geometry.to_object(), geometry.scale
+    to_object, scale = geometry.to_object(), geometry.scale
     depth = inlay.depth / scale
     start = at.inputs["P_object"]
-    turn = inwards[:3, :3] * scale
+    turn = to_object[:3, :3] * scale
     ray = turn @ refracted(at.inputs["V"], N, inlay.outside_ior / inlay.ior)
     t = np.zeros(at.count)
     hit = np.zeros(at.count, np.bool_)
-    going = np.abs(ray).any(axis=0)
+    active = np.abs(ray).any(axis=0)
     for _ in range(STEPS):
-        # no layer is nearer than the distance says
+        # the layer is at least this far away
         left = depth + geometry.distance((start + t * ray).T)
-        hit |= going & (left < TOUCHED * depth)
-        going &= (left >= TOUCHED * depth) & (left < depth * 1.001 + TOUCHED)
-        if not going.any():
+        hit |= active & (left < TOUCHED * depth)
+        active &= (left >= TOUCHED * depth) & (left < depth * 1.001 + TOUCHED)
+        if not active.any():
             break
-        t = np.where(going, t + np.maximum(left, 0.0), t)
+        t = np.where(active, t + np.maximum(left, 0.0), t)
     layer = start + t * ray
     outward = _outward(scene, layer, depth)
     chord = scale * turn.T @ (layer + depth * outward - start)
-    # along the surface the way is an arc: as on the ball that has these two normals
+    # the path on the surface is an arc, approximated by the ball with these two normals
     half = 0.5 * np.arccos(np.clip((outward * (turn @ N)).sum(axis=0), -1.0, 1.0))
     arc = np.linalg.norm(chord, axis=0) / np.sinc(half / np.pi)
     along = np.stack([(chord * T).sum(axis=0), (chord * B).sum(axis=0)])
@@ -81,7 +81,7 @@ def seen(scene: MeasuredScene, at: Points) -> Seen:
 
 
 def _outward(scene: MeasuredScene, layer: Array, depth: float) -> Array:
-    """The surface's unit normals right above places of the layer, by the gradient of the distance: (3, n)."""
+    """The surface's unit normals above points of the layer, by the gradient of the distance: (3, n)."""
     step = 1e-5 * max(depth, 1e-3)
     distance = scene.geometry.distance
     slopes = np.stack([

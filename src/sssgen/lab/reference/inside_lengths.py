@@ -1,7 +1,7 @@
-"""How much of a line lies inside a body: exact thickness in a direction, the target of every thickness technique.
+"""The length of a line inside a body: exact thickness in a direction, the target of every thickness technique.
 
-Solids have closed forms, meshes exact ray casting, distance functions the roots of their sign. A concave body, or one
-with gaps, has several intervals; thickness is the sum of their lengths.
+Solids have closed forms, meshes use exact ray casting, and distance functions bisection. A concave body, or one with
+gaps, has several intervals; thickness is the sum of their lengths.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometr
 from sssgen.harness.scenes.placed import Array
 
 ROOTS = 80
-"""Halvings of a bracket: past the last bit."""
+"""Bisection steps: enough for the last bit."""
 
 
 def thickness(geometry: Geometry, origins: Array, directions: Array) -> Array:
-    """The length inside the body from `origins` on along unit `directions`, (n, 3) each, in world space: (n,).
+    """The length inside the body from `origins` along unit `directions`, (n, 3) each, in world space: (n,).
 
-    What lies behind the origin does not count. Raises SssgenError for a mesh that cannot be read.
+    Parts behind the origin do not count. Raises SssgenError for a mesh that cannot be read.
     """
     starts, ways = _to_object(geometry, origins, directions)
     parts = np.maximum(intervals(geometry, starts, ways), 0.0)
@@ -30,22 +30,22 @@ def thickness(geometry: Geometry, origins: Array, directions: Array) -> Array:
 
 
 def _to_object(geometry: Geometry, origins: Array, directions: Array) -> tuple[Array, Array]:
-    inwards = geometry.to_object()
-    return origins @ inwards[:3, :3].T + inwards[:3, 3], directions @ inwards[:3, :3].T * geometry.scale
+    to_object = geometry.to_object()
+    return origins @ to_object[:3, :3].T + to_object[:3, 3], directions @ to_object[:3, :3].T * geometry.scale
 
 
 @singledispatch
 def intervals(geometry: Geometry, origins: Array, directions: Array) -> Array:
-    """Where lines are inside the body, in object space: (n, k, 2), from and to, apart and in order.
+    """The intervals of lines inside the body, in object space: (n, k, 2), start and end, disjoint and in order.
 
-    The whole line counts, before its origin too, but for meshes and distance functions: there from the origin on. Where
-    a line has fewer than k intervals the others are empty.
+    They include the part behind the origin, except for meshes and distance functions. A line with fewer than k
+    intervals has empty ones.
     """
     raise NotImplementedError(type(geometry).__name__)  # each shape that a scene can have is registered below
 
 
 def _one(enters: Array, leaves: Array) -> Array:
-    """Lines with one interval each; none where they leave before they enter."""
+    """Lines with one interval each; empty where the end is before the start."""
     hit = enters < leaves
     return np.stack([np.where(hit, enters, 0.0), np.where(hit, leaves, 0.0)], axis=1)[:, None]
 
@@ -62,7 +62,7 @@ def _box(size: Array, origins: Array, directions: Array) -> Array:
     with np.errstate(divide="ignore", invalid="ignore"):
         ends = (np.array([[-0.5], [0.5]])[:, None] * size - origins) / directions
     between = np.where(np.abs(origins) <= 0.5 * size, np.inf, -np.inf)
-    along = directions == 0.0  # between a pair of faces always, or never
+    along = directions == 0.0  # parallel to a pair of faces: always or never between them
     enters = np.where(along, -between, ends.min(axis=0)).max(axis=1)
     leaves = np.where(along, between, ends.max(axis=0)).min(axis=1)
     return _one(enters, leaves)
@@ -99,7 +99,7 @@ def _(geometry: Torus, origins: Array, directions: Array) -> Array:
     companion[:, 1, 0] = companion[:, 2, 1] = companion[:, 3, 2] = 1.0
     companion[:, 0, 3], companion[:, 1, 3], companion[:, 2, 3] = -c, -b, -a
     roots = np.sort(np.linalg.eigvals(companion).real, axis=1)
-    for _ in range(3):  # Newton: the real roots to the last bits; what is no root does not matter, see below
+    for _ in range(3):  # Newton steps for the real roots; complex ones are sorted out below
         value = ((roots**2 + a[:, None]) * roots + b[:, None]) * roots + c[:, None]
         slopes = (4.0 * roots**2 + 2.0 * a[:, None]) * roots + b[:, None]
         step = np.divide(value, slopes, out=np.zeros_like(value), where=np.abs(slopes) > 1e-9)
@@ -114,12 +114,12 @@ def _(geometry: Torus, origins: Array, directions: Array) -> Array:
 
 @intervals.register
 def _(geometry: Union, origins: Array, directions: Array) -> Array:
-    found = [part.scale * intervals(part, *_to_object(part, origins, directions)) for part in geometry.parts]
-    return merged(np.concatenate(found, axis=1))
+    parts = [part.scale * intervals(part, *_to_object(part, origins, directions)) for part in geometry.parts]
+    return merged(np.concatenate(parts, axis=1))
 
 
 def merged(parts: Array) -> Array:
-    """Intervals (n, k, 2) that may overlap, as intervals that do not."""
+    """Overlapping intervals (n, k, 2) as disjoint ones."""
     order = np.argsort(parts[..., 0], axis=1, kind="stable")
     parts = np.take_along_axis(parts, order[..., None], axis=1)
     result = np.zeros_like(parts)
@@ -134,15 +134,15 @@ def merged(parts: Array) -> Array:
 
 @intervals.register
 def _(geometry: Mesh, origins: Array, directions: Array) -> Array:
-    """The triangles that a ray passes: it leaves where it goes along a face's normal, and enters against it."""
+    """The triangles that a ray crosses: it leaves along a face's normal, and enters against it."""
     mesh = geometry.triangles
     size = float(np.linalg.norm(mesh.places.max(axis=0) - mesh.places.min(axis=0)))
     rays, faces, t = geometry.rays.all(origins, directions)
     side = np.sign(np.einsum("nc,nc->n", mesh.flat[faces], directions[rays])) * (-1.0 if geometry.inside_out else 1.0)
-    keep = (t > 1e-5 * size) & (side != 0.0)  # the surface that a ray starts from is none that it passes
+    keep = (t > 1e-5 * size) & (side != 0.0)  # without the surface that the ray starts from
     order = np.lexsort((t[keep], rays[keep]))
     t, rays, side = t[keep][order], rays[keep][order], side[keep][order]
-    # an edge is passed once, though both of its triangles tell of it
+    # a ray through an edge crosses both of its triangles, but the surface only once
     again = (
         (np.diff(rays, prepend=-1) == 0) & (np.diff(t, prepend=0.0) < 1e-7 * size) & (np.diff(side, prepend=0.0) == 0.0)
     )
@@ -153,7 +153,7 @@ def _(geometry: Mesh, origins: Array, directions: Array) -> Array:
     starts = np.diff(rays, prepend=-1) != 0
     left = np.cumsum(side)
     left -= np.repeat((left - side)[starts], np.diff(np.flatnonzero(starts), append=len(rays)))
-    # parts may lie within another, and a ray is in one from its origin on where it leaves more than it enters
+    # parts may be nested; a ray starts inside a part where it leaves more often than it enters
     deep = np.zeros(len(origins))
     np.maximum.at(deep, rays, left)
     inside = deep[rays] - left + side > 0.0
@@ -165,7 +165,7 @@ def _(geometry: Mesh, origins: Array, directions: Array) -> Array:
 
 @intervals.register
 def _(geometry: Distance, origins: Array, directions: Array) -> Array:
-    """By the function's changes of sign, as `Distance` itself finds the first: bracketed by sphere tracing."""
+    """The sign changes of the function, bracketed by sphere tracing as in `Distance`."""
     shortest = 1e-4 * geometry.reach
     nearest = -np.einsum("nc,nc->n", origins, directions)
     closest = origins + nearest[:, None] * directions
@@ -189,7 +189,7 @@ def _(geometry: Distance, origins: Array, directions: Array) -> Array:
     rays = rays.astype(np.int64)
     at = _bisected(geometry, origins[rays], directions[rays], low, high)
     ends_inside = np.flatnonzero(value < 0.0)
-    # a ray enters and leaves in turns: inside from its origin on, and inside at its end, are a turn each
+    # entries and exits alternate; a start or an end inside the body counts as one of them
     rays = np.concatenate([starts_inside, rays, ends_inside])
     at = np.concatenate([np.zeros(len(starts_inside)), at, end[ends_inside]])
     order = np.lexsort((at, rays))
@@ -197,7 +197,7 @@ def _(geometry: Distance, origins: Array, directions: Array) -> Array:
 
 
 def _bisected(geometry: Geometry, origins: Array, directions: Array, low: Array, high: Array) -> Array:
-    """Where the distance changes its sign between low and high, along each ray."""
+    """The position of the sign change between low and high, along each ray."""
     negative = geometry.distance(origins + low[:, None] * directions) < 0.0
     for _ in range(ROOTS):
         middle = 0.5 * (low + high)
@@ -207,7 +207,7 @@ def _bisected(geometry: Geometry, origins: Array, directions: Array, low: Array,
 
 
 def _gathered(rays: Any, ends: Array, count: int) -> Array:
-    """Intervals (m, 2) of rays, in order, side by side: (count, k, 2)."""
+    """The intervals (m, 2) of rays, in order, as an array (count, k, 2)."""
     rank = np.arange(len(rays)) - np.searchsorted(rays, rays)
     result = np.zeros((count, int(rank.max(initial=0)) + 1, 2))
     result[rays, rank] = ends

@@ -1,7 +1,7 @@
-"""Renders kept by their content, as far as they got: so an interrupted one goes on, and a finer one starts from it.
+"""A cache of renders, so that an interrupted render continues, and one with more samples starts from it.
 
-What is kept after n batches is their number, their sum and the sum of their squares: mean and noise follow from it.
-The state after n batches is the same whichever run reached it, so a kept one changes no number.
+An entry has the number of batches, their sum and the sum of their squares, which give mean and noise. The state after n
+batches does not depend on the run, so caching does not change results.
 """
 
 from __future__ import annotations
@@ -42,22 +42,22 @@ class Batches(NamedTuple):
 
 
 def nothing(shape: tuple[int, ...]) -> Batches:
-    """No batch yet."""
+    """The sum of no batches."""
     return Batches(0, np.zeros(shape), np.zeros(shape))
 
 
 def kept(key: str, shape: tuple[int, ...], wanted: int) -> Batches:
-    """The most batches, at most `wanted`, that are kept under a key; none where there is no cache folder."""
+    """The largest cached state of a key with at most `wanted` batches; no batches without a cache folder."""
     for count in sorted(_counts(key), reverse=True):
         if count <= wanted:
-            found = _read(_name(key, count), shape)
-            if found is not None and found.number == count:
-                return found
+            state = _read(_name(key, count), shape)
+            if state is not None and state.number == count:
+                return state
     return nothing(shape)
 
 
 def keep(key: str, batches: Batches, instead_of: int = 0) -> None:
-    """Writes the batches, whole or not at all, and drops those kept under the same key as `instead_of` batches."""
+    """Writes the state atomically, and deletes the key's state of `instead_of` batches."""
     if not cache.folder():
         return
     packed = io.BytesIO()
@@ -73,7 +73,7 @@ def _name(key: str, count: int) -> str:
 
 
 def _counts(key: str) -> list[int]:
-    """How many batches the entries of a key hold."""
+    """The numbers of batches of a key's entries."""
     if not cache.folder():
         return []
     try:
@@ -86,11 +86,11 @@ def _counts(key: str) -> list[int]:
 
 
 def _read(name: str, shape: tuple[int, ...]) -> Batches | None:
-    """An entry; None for a damaged one, whatever is wrong with it."""
+    """An entry; None for a damaged one."""
     try:
         with np.load(io.BytesIO(cache.read(name)), allow_pickle=False) as entry:
-            found = Batches(int(entry["count"]), entry["total"], entry["squares"])
-    except Exception:  # it is made again
+            state = Batches(int(entry["count"]), entry["total"], entry["squares"])
+    except Exception:  # a damaged entry is rendered again
         return None
-    sound = found.total.shape == found.squares.shape == shape and bool(np.isfinite(found.squares).all())
-    return found if sound else None
+    valid = state.total.shape == state.squares.shape == shape and bool(np.isfinite(state.squares).all())
+    return state if valid else None

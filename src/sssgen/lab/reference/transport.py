@@ -1,4 +1,4 @@
-"""The reference: what light transport makes of a translucent body, by Monte Carlo with its noise beside it.
+"""The reference: light transport in a translucent body by Monte Carlo, with an estimate of its noise.
 
 Readings are π L / E: outgoing radiance L over the irradiance E of the light on a plane that faces it, times π. A white
 Lambert surface that faces the light reads 1.
@@ -29,10 +29,10 @@ BATCH = 16
 """Samples of a pixel in one batch."""
 
 FEWEST_BATCHES = 8
-"""So many are rendered at least: the noise is estimated from their spread."""
+"""The least number of batches: the noise is estimated from their spread."""
 
 _VERSION = 1
-"""Of what kept references hold: one more whenever this package would compute other numbers."""
+"""The version of cached references: to increase whenever this package computes other numbers."""
 
 _SECONDS_BETWEEN_WRITES = 5.0
 
@@ -44,9 +44,9 @@ class Transport:
     mean: Array
     """(h, w, 3), row 0 at the bottom, or (n, 3)"""
     error: Array
-    """The standard error of each mean, from the spread of independent batches; of the same shape"""
+    """The standard error of each mean, from the spread of independent batches; the same shape"""
     samples: int
-    """Of each pixel and channel"""
+    """Per pixel and channel"""
 
     @property
     def noise(self) -> float:
@@ -65,17 +65,17 @@ def radiance(
     seed: int = 0,
     resolution: int = RESOLUTION,
 ) -> Transport:
-    """The picture, (height, width, 3), of a body of `medium` in front of black, lit from one direction alone.
+    """The picture, (height, width, 3), of a body of `medium` in front of black, with one light.
 
     Its pixels are those of `camera.rays(*size)`, the rays through their centres, row 0 at the bottom; `light_direction`
-    is the unit vector towards the light, or a `Light`. `samples` is rounded up to whole batches of 16, 8 of them at
-    least. Rays that miss the geometry read 0. The same arguments give the same numbers, whatever the number of threads.
-    Torus, distance function and mesh are triangles (see `shapes_mesh`, which has `resolution`).
+    is the unit vector towards the light, or a `Light`. `samples` is rounded up to whole batches of 16, at
+    least 8. Rays that miss the geometry read 0. The same arguments give the same numbers for any number of threads.
+    Torus, distance function and mesh are triangles (see `geometry_mesh`, for `resolution`).
 
-    A boundary with another index than 1 is smooth, and paths must find the light through it by chance: there the light
-    needs a radius, 10 degrees or so. The light itself is seen through the body then.
+    A boundary with an index other than 1 is smooth, and only random paths reach the light through it: the light needs a
+    radius then, of about 10 degrees. In this case the light itself is visible through the body.
 
-    Raises SssgenError for what is out of these bounds, a body without an inside, a camera in the body, a missing
+    Raises SssgenError for values out of these bounds, a body without an inside, a camera in the body, and a missing
     package.
     """
     light = light_direction if isinstance(light_direction, Light) else Light(light_direction)
@@ -83,14 +83,14 @@ def radiance(
     origin, directions = camera.rays(width, height)
     hit = np.flatnonzero(geometry.hits(origin, directions).hit)
     origins = np.broadcast_to(origin, (len(hit), 3))
-    found = radiance_along(geometry, medium, light, origins, directions[hit], samples, seed, resolution)
+    result = radiance_along(geometry, medium, light, origins, directions[hit], samples, seed, resolution)
 
     def picture(values: Array) -> Array:
-        whole = np.zeros((height * width, 3))
-        whole[hit] = values
-        return whole.reshape(height, width, 3)
+        pixels = np.zeros((height * width, 3))
+        pixels[hit] = values
+        return pixels.reshape(height, width, 3)
 
-    return Transport(picture(found.mean), picture(found.error), found.samples)
+    return Transport(picture(result.mean), picture(result.error), result.samples)
 
 
 def radiance_along(
@@ -106,9 +106,9 @@ def radiance_along(
 ) -> Transport:
     """The readings, (n, 3), along rays from outside the body: origins and unit directions (n, 3), in world space.
 
-    Rays that miss the body see the light, if it has a radius or is everywhere. With `scatterings` above 0 only light
-    that was scattered at most so often counts. One sample in ten thousand falls to the ray next in the list, as
-    Mitsuba counts them in single precision. The rest is as for `radiance`.
+    Rays that miss the body see the light, if it has a radius or comes from everywhere. With `scatterings` above 0, only
+    light with at most that many scatterings counts. About one sample in ten thousand is assigned to the next ray,
+    because Mitsuba indexes them in single precision. Otherwise as `radiance`.
     """
     _check(geometry, medium, light, origins, directions, samples)
     batches = max(-(-samples // BATCH), FEWEST_BATCHES)
@@ -122,39 +122,41 @@ def radiance_along(
         Channel(extinction, albedo, medium.anisotropy, medium.ior)
         for extinction, albedo in zip(medium.extinction, medium.albedo, strict=True)
     ]
-    # each channel by itself: distances that are drawn for one channel serve another with a far larger spread
+    # each channel separately: free paths sampled for one channel have a far larger variance in another
     for channel in dict.fromkeys(channels):
-        found = _converge(body, channel, light, rays, batches, seed, scatterings)
-        same = [at for at, other in enumerate(channels) if other == channel]
-        mean[:, same], error[:, same] = found.mean()[:, None], found.error()[:, None]
+        state = _converge(body, channel, light, rays, batches, seed, scatterings)
+        same = [index for index, other in enumerate(channels) if other == channel]
+        mean[:, same], error[:, same] = state.mean()[:, None], state.error()[:, None]
     return Transport(mean, error, batches * BATCH)
 
 
 def _converge(
     body: Body, channel: Channel, light: Light, rays: tuple[Array, Array], wanted: int, seed: int, scatterings: int
 ) -> Batches:
-    """So many batches of one channel: those that are kept, and the rest rendered."""
-    what = (_VERSION, mitsuba().__version__, BATCH, channel, light, seed, scatterings)
-    content = b"".join([repr(what).encode(), body.content(), rays[0].tobytes(), rays[1].tobytes()])
+    """The `wanted` batches of one channel: cached ones, and newly rendered ones."""
+    arguments = (_VERSION, mitsuba().__version__, BATCH, channel, light, seed, scatterings)
+    content = b"".join([repr(arguments).encode(), body.content(), rays[0].tobytes(), rays[1].tobytes()])
     key = cache.digest(content)
     state = kept(key, (len(rays[0]),), wanted)
     if state.number == wanted:
         return state
     base = int(np.random.SeedSequence(int(cache.digest(content + b"stream"), 16)).generate_state(1)[0])
     renderer = Renderer(body, channel, light, rays, base, scatterings)
-    on_the_way, written = 0, time.monotonic()
+    written_batches, written = 0, time.monotonic()
     while state.number < wanted:
         state = state.and_another(renderer.batch(state.number, BATCH))
         if state.number < wanted and time.monotonic() - written > _SECONDS_BETWEEN_WRITES:
-            keep(key, state, instead_of=on_the_way)
-            on_the_way, written = state.number, time.monotonic()
-    keep(key, state, instead_of=on_the_way)
+            keep(key, state, instead_of=written_batches)
+            written_batches, written = state.number, time.monotonic()
+    keep(key, state, instead_of=written_batches)
     return state
 
 
 def _check(geometry: Geometry, medium: Medium, light: Light, origins: Array, directions: Array, samples: int) -> None:
     if samples < 1:
-        raise failure(f"there cannot be {samples} samples", "a few hundred give a picture, thousands a reference")
+        raise failure(
+            f"there cannot be {samples} samples", "a few hundred are enough for a picture, thousands for a reference"
+        )
     if not 0.0 <= light.radius < 90.0:
         raise failure(f"the light cannot have a radius of {light.radius:g} degrees", "it goes from 0 to below 90")
     if light.direction is not None and abs(np.linalg.norm(light.direction) - 1.0) > 1e-6:
@@ -162,9 +164,9 @@ def _check(geometry: Geometry, medium: Medium, light: Light, origins: Array, dir
     if not np.allclose(np.linalg.norm(directions, axis=1), 1.0, atol=1e-6):
         raise failure("a ray's direction is not of length 1", "divide it by its length")
     if medium.ior != 1.0 and light.direction is not None and light.radius == 0.0:
-        message = f"'{medium.name}' has the refractive index {medium.ior:g}: no path finds a light without width"
+        message = f"'{medium.name}' has the refractive index {medium.ior:g}: no path reaches a light without a radius"
         raise failure(message, "use medium.matched(), or a Light with a radius of 10 degrees or so")
-    places = np.unique(origins, axis=0)
-    inside = geometry.to_object()
-    if len(places) and (geometry.distance(places @ inside[:3, :3].T + inside[:3, 3]) < 0.0).any():
+    starts = np.unique(origins, axis=0)
+    to_object = geometry.to_object()
+    if len(starts) and (geometry.distance(starts @ to_object[:3, :3].T + to_object[:3, 3]) < 0.0).any():
         raise failure("a ray starts in the body", "move the camera out of it")

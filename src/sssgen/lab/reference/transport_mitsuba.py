@@ -1,7 +1,7 @@
 """The reference's renderer: Mitsuba 3 traces given rays through one homogeneous body, for one colour channel at a time.
 
-Of its variants `scalar_rgb` is used, which needs neither a GPU nor LLVM, with the integrator `volpath` and no limit to
-the depth of paths.
+It uses the variant `scalar_rgb`, which needs neither a GPU nor LLVM, and the integrator `volpath` without a limit of
+path depth.
 """
 
 from __future__ import annotations
@@ -21,43 +21,44 @@ from sssgen.support.diagnostics import failure
 Array = npt.NDArray[np.float64]
 
 _BLOCK = 32
-"""The side of a render block in pixels. It is set as Mitsuba's own choice, and so the noise, follows the threads."""
+"""The side of a render block in pixels. Mitsuba's own choice depends on the number of threads."""
 
 _FAINT = 1e-3
-"""From which weight on paths end by chance: so late that few of those that go on weigh much."""
+"""The weight below which Russian roulette ends paths: so low that few surviving paths weigh much."""
 
 _ROULETTE_ALBEDO = 0.95
-"""Up to which albedo. Mitsuba lets at most 95 of 100 go on, so above, those that do would grow heavier without end."""
+"""The largest albedo for Russian roulette. Mitsuba continues at most 95 % of the paths, so that above it their weights
+grow without bound."""
 
 _NEVER = 2**30
 
 _FAR = 1000.0
-"""How many of the body's radii a light of some width is away."""
+"""The distance of a light with a radius, in radii of the body."""
 
 
 @dataclass(frozen=True)
 class Body:
-    """What Mitsuba is given of a geometry, in world space: a shape of its own with a matrix, or triangles."""
+    """A geometry for Mitsuba, in world space: one of its shapes with a matrix, or triangles."""
 
     kind: str
     """sphere, cube (from −1 to 1) or mesh"""
     matrix: Array
-    """(4, 4): to world space; of a mesh 1"""
+    """(4, 4): to world space; the identity for a mesh"""
     vertices: Array
     """(v, 3)"""
     faces: npt.NDArray[np.int64]
     """(f, 3)"""
     centre: Array
-    """(3,), with `radius` a ball that holds the body"""
+    """(3,): with `radius` a ball that encloses the body"""
     radius: float
 
     def content(self) -> bytes:
-        """What tells it from other bodies."""
+        """The bytes that identify it."""
         return b"".join([self.kind.encode(), self.matrix.tobytes(), self.vertices.tobytes(), self.faces.tobytes()])
 
 
 def body_of(geometry: Geometry, resolution: int = RESOLUTION) -> Body:
-    """A ball, a box and a slab exactly; all else as triangles, see `shapes_mesh`. Raises SssgenError as that does."""
+    """Ball, box and slab are exact; other shapes become triangles, see `geometry_mesh`, with its SssgenError."""
     none = np.zeros((0, 3))
     if isinstance(geometry, Ball | Box | Slab):
         half = np.full(3, geometry.radius) if isinstance(geometry, Ball) else 0.5 * np.array(box_size(geometry))
@@ -87,9 +88,9 @@ class Light:
     """The only light: an irradiance of 1 on a plane that faces it."""
 
     direction: tuple[float, float, float] | None
-    """Unit, world space, towards the light; None for light from everywhere alike"""
+    """Unit, world space, towards the light; None for uniform light from everywhere"""
     radius: float = 0.0
-    """In degrees, as seen from the body: 0 for a light in one direction alone, else a disc; below 90"""
+    """In degrees, as seen from the body: 0 for a directional light, otherwise a disc; below 90"""
 
 
 class Renderer:
@@ -98,9 +99,9 @@ class Renderer:
     def __init__(
         self, body: Body, channel: Channel, light: Light, rays: tuple[Array, Array], base: int, scatterings: int
     ) -> None:
-        """`rays` are origins and unit directions, (n, 3) each; `base` tells one stream of chance from another.
+        """`rays` are origins and unit directions, (n, 3) each; `base` is the seed of the random stream.
 
-        With `scatterings` above 0 only light that was scattered at most so often counts.
+        With `scatterings` above 0, only light with at most that many scatterings counts.
         """
         self._mitsuba = mitsuba()
         # Mitsuba seeds pixel i of block b in render s with  base + s · (pixels) + b · (a block's pixels) + i.  The
@@ -155,9 +156,9 @@ class Renderer:
         if body.kind != "mesh":
             to_world = mi.ScalarTransform4f(body.matrix)
             return {"type": body.kind, "to_world": to_world, "bsdf": boundary, "interior": medium}
-        given = mi.Properties()
-        given["mesh_bsdf"], given["interior"] = mi.load_dict(boundary), mi.load_dict(medium)
-        mesh = mi.Mesh("body", len(body.vertices), len(body.faces), props=given)
+        properties = mi.Properties()
+        properties["mesh_bsdf"], properties["interior"] = mi.load_dict(boundary), mi.load_dict(medium)
+        mesh = mi.Mesh("body", len(body.vertices), len(body.faces), props=properties)
         parameters = mi.traverse(mesh)
         parameters["vertex_positions"] = np.ravel(body.vertices).astype(np.float32)
         parameters["faces"] = np.ravel(body.faces).astype(np.uint32)
@@ -182,19 +183,19 @@ class Renderer:
 
 
 def _roulette_depth(albedo: float) -> int:
-    """After how many encounters a path's weight is faint; never where roulette would do harm."""
+    """The number of collisions after which a path's weight is below _FAINT; _NEVER without roulette."""
     if albedo > _ROULETTE_ALBEDO:
         return _NEVER
     return 1 + (math.ceil(math.log(_FAINT) / math.log(albedo)) if albedo > 0.0 else 0)
 
 
 def _across(direction: Array) -> Array:
-    """Some direction across another."""
+    """A direction perpendicular to another."""
     return np.cross(direction, np.eye(3)[np.argmin(np.abs(direction))])
 
 
 def mitsuba() -> Any:
-    """Mitsuba, ready for use. Raises SssgenError where it is missing."""
+    """Mitsuba with its variant set. Raises SssgenError if it is missing."""
     try:
         module = importlib.import_module("mitsuba")
     except ImportError as error:
