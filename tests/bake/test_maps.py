@@ -247,7 +247,7 @@ def test_normals_of_a_line_of_texels() -> None:
 
 def test_heights_that_are_refused() -> None:
     flat = np.zeros((2, 2))
-    assert "no way of green" in failing(from_height, flat, 1.0, green="up")
+    assert "no convention of green" in failing(from_height, flat, 1.0, green="up")
     assert "did you mean 'directx'" in failing(from_height, flat, 1.0, green="DirectX")
     assert "shape (2, 2, 3)" in failing(from_height, np.zeros((2, 2, 3)), 1.0)
     assert "strength is nan" in failing(from_height, flat, float("nan"))

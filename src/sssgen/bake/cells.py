@@ -77,7 +77,7 @@ def scale(feature: str, jitter: float) -> float:
     """The distance, in cells, that the value 1 of a picture means; 1 for "faceted".
 
     It is the largest possible value. F1 is largest in the corner where four cells meet with their sites at the far
-    corners. F2 is in a cell's middle: there the sites of the four cells beside it are furthest, and F1 may be 0.
+    corners. F2 is largest in a cell's middle: there the sites of the four adjacent cells are furthest, and F1 may be 0.
     """
     _check_feature(feature)
     largest = {

@@ -1,4 +1,4 @@
-"""Several pictures' channels in one texture: engines sample it once."""
+"""Packs channels of several pictures into one texture, which engines sample once."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from sssgen.support.paths import posix
 Array: TypeAlias = npt.NDArray[np.float64]
 
 _NAMES = {1: "r", 2: "ra", 3: "rgb", 4: "rgba"}
-"""A picture's channels, by how many it has."""
+"""Number of channels → their names."""
 
 
 class Source(NamedTuple):
-    """What a channel is filled from: a picture's channel, or a constant where there is no picture."""
+    """The source of a channel: a picture's channel, or a constant if there is no picture."""
 
     file: str = ""
     channel: str = ""
     """r, g, b, a or 0..3; '' is the first"""
     inverted: bool = False
-    """One minus it"""
+    """Whether the value is 1 minus the channel"""
     constant: float = 0.0
     """0..1"""
 
@@ -33,8 +33,8 @@ class Source(NamedTuple):
 def parse(text: str) -> Source:
     """A source from the command line: FILE, FILE:CHANNEL, 1-FILE, 1-FILE:CHANNEL, or a number from 0 to 1.
 
-    CHANNEL is r, g, b, a, or counted from 0; without one it is the first, which is a gray picture's only. 1-FILE is one
-    minus it; a file whose own name begins so is written ./1-FILE. Raises SssgenError for what is none of these.
+    CHANNEL is r, g, b, a or an index from 0; the default is the first channel. 1-FILE is 1 minus
+    it; a file whose name begins with `1-` is written ./1-FILE. Raises SssgenError for any other text.
     """
     try:
         constant = float(text)
@@ -56,9 +56,9 @@ def parse(text: str) -> Source:
 
 
 def load(sources: Sequence[Source | None]) -> list[Array | float | None]:
-    """The channels that sources name, each (height, width) as stored, or a number; None stays None.
+    """The channels of sources, each (height, width) as stored, or a number; None stays None.
 
-    Raises SssgenError for pictures that cannot be read, and where a picture has no such channel.
+    Raises SssgenError for pictures that cannot be read, and for a channel that a picture does not have.
     """
     files = {source.file for source in sources if source is not None and source.file}
     pictures = {file: images.upright(file) for file in sorted(files)}
@@ -70,33 +70,33 @@ def _channel(source: Source, pictures: Mapping[str, Array]) -> Array | float:
         return source.constant
     picture, shown = pictures[source.file], posix(source.file)
     names = _NAMES[picture.shape[-1]]
-    at = int(source.channel) if source.channel.isdigit() else names.find(source.channel)  # '' is found at 0
-    if not 0 <= at < len(names):
+    index = int(source.channel) if source.channel.isdigit() else names.find(source.channel)  # 0 for ''
+    if not 0 <= index < len(names):
         raise failure(f"the picture has no channel {source.channel}", f"it has {', '.join(names)}", shown)
-    values: Array = picture[..., at]
+    values: Array = picture[..., index]
     return 1.0 - values if source.inverted else values
 
 
 def pack(channels: Sequence[Array | float | None]) -> Array:
     """Up to four channels in one texture, (height, width, 1, 3 or 4): arrays (height, width), or constants.
 
-    None is 0 where another channel follows. Two channels become three, the third 0: picture files take two as gray and
-    alpha. Raises SssgenError where the sizes differ, there is no array to tell the size, or more than four channels.
+    None is 0 if another channel follows. Two channels become three, the third 0, as picture files store two as gray and
+    alpha. Raises SssgenError for different sizes, no array at all, or more than four channels.
     """
     if len(channels) > 4:
         raise failure(f"{len(channels)} channels do not fit in a texture", "four at most")
     sized = {name: values for name, values in zip("rgba", channels, strict=False) if isinstance(values, np.ndarray)}
     if not sized:
-        raise failure("no picture to pack", "name one for a channel at least: it tells the size")
+        raise failure("no picture to pack", "at least one channel needs a picture, which determines the size")
     (first, array), *others = sized.items()
     for name, other in others:
         if other.shape != array.shape:
             hint = f"{first} is {_size(array)}, {name} is {_size(other)}"
             raise failure("pictures of different sizes do not fit in a texture", hint)
-    count = max(at for at, values in enumerate(channels, start=1) if values is not None)
+    count = max(index for index, values in enumerate(channels, start=1) if values is not None)
     texture = np.zeros((*array.shape, 3 if count == 2 else count))
-    for at, values in enumerate(channels[:count]):
-        texture[..., at] = 0.0 if values is None else values
+    for index, values in enumerate(channels[:count]):
+        texture[..., index] = 0.0 if values is None else values
     return texture
 
 

@@ -18,25 +18,24 @@ GREENS = ("opengl", "directx")
 def from_height(height: Array, strength: float, tileable: bool = True, green: str = "opengl") -> Array:
     """The tangent-space normals of heights (height, width), as colours 0..1, (height, width, 3), row 0 at the top.
 
-    strength: how far white (1) rises above black (0), in widths of the picture, whatever its resolution; below 0,
-    white is deep. Texels are square, so a picture is height / width of them high. Slopes are central differences of
-    texels, over the border where tileable; else on the border to the one neighbour that there is.
+    strength: the height of white (1) above black (0), in widths of the picture; negative for depths. Texels are square.
+    Slopes are central differences of texels, which wrap around if tileable, and otherwise one-sided at the border.
 
-    n = normalize(-dh/du, -dh/dv, 1), v up, is stored as 0.5 n + 0.5, as glTF 2.0 and the technique normal_map read it
-    back. green: "opengl", what faces up (+v) is greener; "directx", what faces down. In 8 bits a flat (0.5, 0.5, 1)
-    becomes (128, 128, 255), as everywhere: there is no half of 255, and 128 is half a step off, a tilt of 0.3 degrees
-    that is the same all over. With 16 bits it is 0.001 degrees.
+    n = normalize(-dh/du, -dh/dv, 1), v up, is stored as 0.5 n + 0.5, as glTF 2.0 and the technique normal_map expect.
+    green: "opengl", slopes that face up (+v) are greener; "directx", those that face down. In 8 bits a flat normal
+    becomes (128, 128, 255), as usual: 128 is half a step from 0.5, a constant tilt of 0.3 degrees. With 16 bits the
+    tilt is 0.001 degrees.
 
-    Raises SssgenError for another shape, numbers that are not finite, and another green.
+    Raises SssgenError for another shape, values that are not finite, and another green.
     """
     if green not in GREENS:
-        raise failure(f"'{green}' is no way of green", did_you_mean(green, GREENS) or ", ".join(GREENS))
+        raise failure(f"'{green}' is no convention of green", did_you_mean(green, GREENS) or ", ".join(GREENS))
     if height.ndim != 2 or 0 in height.shape:
         raise failure(f"an array of shape {height.shape} has no heights", "(height, width)")
     if not math.isfinite(strength):
         raise failure(f"the normals' strength is {strength}", "a finite number: height in widths of the picture")
     if not np.isfinite(height).all():
-        raise failure("some heights are not finite numbers", "mend the picture")
+        raise failure("some heights are not finite numbers", "repair the picture")
     per_texel = strength * height.shape[1]
     up = 1.0 if green == "opengl" else -1.0
     normals = np.empty((*height.shape, 3))
@@ -50,7 +49,7 @@ def from_height(height: Array, strength: float, tileable: bool = True, green: st
 
 
 def _difference(height: Array, axis: int, tileable: bool) -> Array:
-    """What a height grows by from texel to texel along an axis."""
+    """The increase of the height per texel along an axis."""
     if height.shape[axis] == 1:
         return np.zeros_like(height)
     if tileable:

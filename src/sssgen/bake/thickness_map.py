@@ -31,11 +31,11 @@ class Request(NamedTuple):
     mode: str = "mean"
     """mean: over inward directions; chord: the length along −N; transmittance: the share of light that passes"""
     light: BakeLight | None = None
-    """The length towards this instead"""
+    """If given, the map has the length towards this light"""
     rays: int = 256
-    """For each texel; even"""
+    """Rays per texel; even"""
     attenuation: float = 0.0
-    """Of the mode transmittance: the length after which 1 / e of the light is left"""
+    """For the mode transmittance: the length after which 1 / e of the light remains"""
     seed: int = 0
 
 
@@ -124,9 +124,12 @@ def _is_exact(wanted: Request) -> bool:
 
 def _check(wanted: Request) -> None:
     if wanted.mode == "transmittance" and not 0.0 < wanted.attenuation < 1e9:
-        raise failure("--mode transmittance needs a length", "--attenuation D: where 1/e of the light is left, as 0.1")
+        raise failure(
+            "--mode transmittance needs a length",
+            "--attenuation D: the length after which 1/e of the light remains, as 0.1",
+        )
     if wanted.mode != "transmittance" and wanted.attenuation:
-        raise failure(f"--mode {wanted.mode} is a length: it knows no attenuation", "take --mode transmittance")
+        raise failure(f"--mode {wanted.mode} is a length: it has no attenuation", "take --mode transmittance")
     if not (2 <= wanted.rays <= 65536 and wanted.rays % 2 == 0):
         raise failure(f"{wanted.rays} is no number of rays", "an even number from 2 to 65536")
     if not 0 <= wanted.seed < 2**32:

@@ -28,7 +28,7 @@ SLACK = 0.05
 def distances(body: MeshDistance, grid: Grid, progress: Progress = lambda *_: None) -> Distances:
     """The unsigned distances, exact except for rounding to float32: (z, y, x)."""
     across, up, deep = grid.counts
-    found = np.empty((deep, up, across), np.float32)
+    result = np.empty((deep, up, across), np.float32)
     layers = min(deep, max(1, BLOCK // (across * up * TILE)) * TILE)
     order = _in_tiles((layers, up, across))
     for start in range(0, deep, layers):
@@ -37,9 +37,9 @@ def distances(body: MeshDistance, grid: Grid, progress: Progress = lambda *_: No
             order = _in_tiles((end - start, up, across))
         block = np.empty(len(order))
         block[order] = body.unsigned(grid.slab(start, end)[order])
-        found[start:end] = block.reshape(end - start, up, across)
+        result[start:end] = block.reshape(end - start, up, across)
         progress(end, deep, "distances")
-    return found
+    return result
 
 
 def _in_tiles(shape: tuple[int, int, int]) -> npt.NDArray[np.int64]:
@@ -70,12 +70,12 @@ def inside(body: MeshDistance, grid: Grid, unsigned: Distances) -> npt.NDArray[n
             within = _change(body.rim, reach, clear - reach - rounding) if size > 1 else np.zeros(len(block))
             value, sure = np.zeros(len(block)), np.zeros(len(block), np.bool_)
             if before is not None:  # the value of the enclosing block may suffice
-                whole = block // SPLIT
-                there = _middle(whole, size * SPLIT, shape)
+                enclosing = block // SPLIT
+                there = _middle(enclosing, size * SPLIT, shape)
                 way = np.linalg.norm((middle - there)[:, ::-1] * grid.voxel, axis=1)
                 # no triangle is nearer to the segment between both centres: the empty balls around them cover it
                 nearest = 0.5 * (clear + unsigned[tuple(there.T)] - way) - rounding
-                value = before[tuple(whole.T)].astype(np.float64)
+                value = before[tuple(enclosing.T)].astype(np.float64)
                 sure = np.abs(value - INSIDE) > within + _change(body.rim, way, nearest) + SLACK
             z, y, x = middle[~sure].astype(np.float64).T
             value[~sure] = body.winding(grid.centers(x, y, z))

@@ -19,8 +19,8 @@ MOST = 2048
 """The largest number of voxels along an axis that every engine supports (WebGPU's limit)."""
 FLAT = 1e-3
 """A side is at least this share of the box's diagonal, as in the technique's box_size."""
-TOLD_APART = 2.0**20
-"""Voxels between the origin and the box, beyond which float32 coordinates blur them."""
+FARTHEST = 2.0**20
+"""The largest distance of the box from the origin, in voxels: float32 coordinates cannot resolve more."""
 
 
 class Grid(NamedTuple):
@@ -46,29 +46,29 @@ class Grid(NamedTuple):
 
     def centers(self, x: Array, y: Array, z: Array) -> Array:
         """The centres of voxels by their indices (n,) along each axis: (n, 3)."""
-        found: Array = self.low + (np.stack([x, y, z], axis=-1) + 0.5) * self.voxel
-        return found
+        centers: Array = self.low + (np.stack([x, y, z], axis=-1) + 0.5) * self.voxel
+        return centers
 
     def slab(self, start: int, end: int) -> Array:
         """The centres of the layers `start` to `end` along z, x fastest: (n, 3)."""
         across, up, _ = self.counts
-        found = np.empty((end - start, up, across, 3))
+        centers = np.empty((end - start, up, across, 3))
         for axis, (first, last) in enumerate(((0, across), (0, up), (start, end))):
             along = self.low[axis] + (np.arange(first, last) + 0.5) * self.voxel[axis]
-            found[..., axis] = along.reshape([-1 if axis == 2 - at else 1 for at in range(3)])
-        return found.reshape(-1, 3)
+            centers[..., axis] = along.reshape([-1 if axis == 2 - at else 1 for at in range(3)])
+        return centers.reshape(-1, 3)
 
 
 def around(low: Array, high: Array, resolution: Sequence[int], padding: float) -> Grid:
-    """The grid around what lies between two corners (3,).
+    """The grid around a box, given by two corners (3,).
 
-    `resolution` is the count along the longest side, with voxels that are cubes, or three counts. `padding` is added
-    on every side, in parts of the longest, and where there is any, at least a voxel. Raises SssgenError for a
-    resolution or padding that makes no grid.
+    `resolution` is the count along the longest side, for cubic voxels, or three counts. `padding` is the margin on
+    every side relative to the longest one; if not 0, it is at least a voxel. Raises SssgenError for an invalid
+    resolution or padding.
     """
     if len(resolution) not in (1, 3) or not all(LEAST <= count <= MOST for count in resolution):
-        told = ",".join(map(str, resolution))
-        raise failure(f"'{told}' is no resolution", f"N or X,Y,Z, each from {LEAST} to {MOST}")
+        text = ",".join(map(str, resolution))
+        raise failure(f"'{text}' is no resolution", f"N or X,Y,Z, each from {LEAST} to {MOST}")
     if not 0.0 <= padding <= 10.0:
         raise failure(f"{padding:g} is no padding", "a part of the longest side, from 0 to 10, as 0.05")
     size, middle = high - low, 0.5 * (low + high)
@@ -81,16 +81,16 @@ def around(low: Array, high: Array, resolution: Sequence[int], padding: float) -
         counts = list(resolution)
     grid = Grid((counts[0], counts[1], counts[2]), middle - 0.5 * size, middle + 0.5 * size)
     far = float(np.abs([grid.low, grid.high]).max() / grid.voxel.min())
-    if far > TOLD_APART:
-        raise failure("the mesh stands too far from its origin for shaders' 32-bit numbers", "move it nearer")
+    if far > FARTHEST:
+        raise failure("the mesh is too far from its origin for shaders' 32-bit numbers", "move it nearer")
     return grid
 
 
 def _margin(size: Array, resolution: Sequence[int], padding: float) -> Array | float:
-    """What is added on every side: the padding, and a voxel at least, so that there is an outside."""
+    """The margin on every side: the padding, at least a voxel, so that the grid has outside voxels."""
     if not padding:
         return 0.0
-    between = np.array(resolution) - 2  # voxels that are left for the mesh
+    between = np.array(resolution) - 2  # voxels for the mesh
     voxel = size / between if len(resolution) == 3 else size.max() / between[0]
     margin: Array = np.maximum(padding * size.max(), voxel)
     return margin

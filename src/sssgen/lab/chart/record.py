@@ -1,7 +1,7 @@
-"""What a chart is drawn from: a record, as plain JSON; its checks, the Pareto front, the hypervolume, CSV and JSON.
+"""The record of a chart, as plain JSON: its checks, the Pareto front, the hypervolume, CSV and JSON.
 
-A record has the scenes, and a point for every technique with each of its settings on each scene. Lower is better, in
-cost and in error. Nothing is measured here.
+A record has the scenes, and a point for every technique with each of its settings on each scene. Lower cost and lower
+error are better.
 """
 
 from __future__ import annotations
@@ -16,32 +16,31 @@ from typing import Any, TypeGuard
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 
 FORMAT = 1
-"""The version of a record's form."""
+"""The version of the record's format."""
 
 ROLES = ("coordinates", "thickness", "translucency", "material")
-"""What points are compared within, in the order of the charts."""
+"""Points of the same role are compared; in the order of the charts."""
 
 COSTS = {"value": "cost", "operations": "operations", "transcendentals": "transcendentals", "fetches": "fetches"}
 COSTS |= {"distance_evaluations": "distance evaluations", "gpu_ms": "GPU ms"}
-"""What a point's cost may have → its column; `value` is what is drawn."""
+"""Key of a point's cost → table column; charts show `value`."""
 
 ERRORS = {"value": "error", "low": "low", "high": "high", "relmse": "relMSE", "bias": "bias", "p99": "p99"}
 ERRORS |= {"max": "max", "flip": "FLIP"}
-"""What a point's error may have → its column; `value` is what is drawn, between `low` and `high`."""
+"""Key of a point's error → table column; charts show `value`, with a bar from `low` to `high`."""
 
 LEAST = 1e-6
-"""Costs and errors below this count as this much where their logarithm is taken: it is below float32's rounding."""
+"""Logarithms of smaller costs and errors use this value, which is below the rounding of float32."""
 
 Point = Mapping[str, Any]
 Record = Mapping[str, Any]
 
 
 def checked(record: Any) -> dict[str, Any]:
-    """A copy of the record with None for numbers that are not finite. Raises SssgenError for everything wrong in it."""
+    """A copy of the record with None for numbers that are not finite. Raises SssgenError with all errors in it."""
     faults = list(_faults(record)) if isinstance(record, dict) else ["it is no JSON object"]
     if faults:
-        told = [failure(f"this is no record of a chart: {fault}").diagnostics[0] for fault in faults[:20]]
-        raise SssgenError(told)
+        raise SssgenError([failure(f"this is no record of a chart: {fault}").diagnostics[0] for fault in faults[:20]])
     copy: dict[str, Any] = _finite(record)
     return copy
 
@@ -61,10 +60,10 @@ def _faults(record: dict[str, Any]) -> Iterator[str]:
         yield f"its format is {record.get('format')!r}, not {FORMAT}"
     for name, kind in (("record", dict), ("scenes", list), ("points", list), ("cost", str), ("cost_unit", str)):
         if not isinstance(record.get(name), kind):
-            yield f"'{name}' is missing, or of a wrong kind"
+            yield f"'{name}' is missing, or has the wrong type"
     scenes = [scene.get("name") for scene in _objects(record.get("scenes"))]
     if not all(isinstance(scene, str) and scene for scene in scenes) or len(set(scenes)) != len(scenes):
-        yield "each scene needs a name of its own"
+        yield "each scene needs a unique name"
     for number, point in enumerate(_objects(record.get("points"))):
         for fault in _point_faults(point, scenes):
             yield f"point {number}: {fault}"
@@ -115,25 +114,25 @@ def measures(point: Point) -> tuple[float, float]:
 
 
 def front(points: Iterable[Point]) -> list[Point]:
-    """The points that no other beats: none is as good in both and better in one. By cost; without failed ones.
+    """The Pareto front, sorted by cost, without failed points: no other point is as good in both and better in one.
 
-    Errors below LEAST are alike, and those that differ by a millionth: that is rounding.
+    Errors below LEAST are equal, and so are errors that differ by a millionth, which is rounding.
     """
     ordered = sorted((point for point in points if math.isfinite(measures(point)[1])), key=measures)
-    best, found = (math.inf, math.inf), []
+    best, result = (math.inf, math.inf), []
     for point in ordered:
         cost, error = measures(point)[0], max(measures(point)[1], LEAST)
         if error < best[1] * (1.0 - LEAST) or (cost, error) == best:
             best = (cost, error)
-            found.append(point)
-    return found
+            result.append(point)
+    return result
 
 
 def hypervolume(points: Iterable[Point], reference_point: Sequence[float]) -> float:
     """The area that points dominate up to a reference point (cost, error), in decades of cost × decades of error.
 
-    Larger is better: 1 is a point with a tenth of the reference's cost and a tenth of its error. Both axes are
-    logarithmic, and end at LEAST. After Zitzler and Thiele, "Multiobjective optimization using evolutionary
+    Larger is better: a point with a tenth of the reference's cost and a tenth of its error has 1. Both axes are
+    logarithmic and end at LEAST. After Zitzler and Thiele, "Multiobjective optimization using evolutionary
     algorithms", PPSN 1998.
     """
     right, top = map(_log, reference_point)
@@ -161,12 +160,12 @@ def roles(record: Record) -> list[str]:
 
 
 def to_json(record: Record) -> str:
-    """The record as text: the same for the same record, whatever order its entries came in."""
+    """The record as text, independent of the order of its keys."""
     return json.dumps(record, indent=1, sort_keys=True, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def to_csv(record: Record) -> str:
-    """A line for each point, below one with the names of the columns."""
+    """A line per point, after a line of column names."""
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
     columns = ["scene", "role", "name", "label", "baseline", "front", "failed", "chain", "settings", "parameters"]

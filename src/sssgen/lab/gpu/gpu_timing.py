@@ -277,8 +277,8 @@ def _key(text: str, program: Program) -> str:
 
 def _write(member: Any, value: Any) -> None:
     kind = {"f": np.float32, "I": np.uint32}.get(member.fmt[-1], np.int32)
-    kept = 4 * member.dimension * member.array_length  # the driver may remove unused elements of an array
-    member.write(np.ascontiguousarray(value, kind).tobytes()[:kept])
+    size = 4 * member.dimension * member.array_length  # the driver may remove unused elements of an array
+    member.write(np.ascontiguousarray(value, kind).tobytes()[:size])
 
 
 def _spread(values: npt.NDArray[np.float64]) -> Spread:

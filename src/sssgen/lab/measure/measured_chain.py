@@ -139,11 +139,11 @@ class Chain:
         return np.array(np.broadcast_to(value, (len(np.atleast_2d(value)), count)))
 
 
-def _shaped(type_name: str, given: Any, dtype: Any) -> Any:
+def _shaped(type_name: str, data: Any, dtype: Any) -> Any:
     """A value in the emitted module's layout: components first, lanes last."""
     type_ = BY_NAME[type_name.partition("[")[0]]
     kind = dtype if kind_of(type_) == "float" else np.int32
-    value = np.asarray(given, kind)
+    value = np.asarray(data, kind)
     if isinstance(type_, Matrix):
         return value.reshape(type_.size, type_.size, -1)
     if isinstance(type_, Vector):

@@ -50,7 +50,7 @@ def of_scene(scene: MeasuredScene) -> SceneInputs:
         return Texture(values[None, :, None], "nearest", "clamp")
 
     # one lane for all points: a vector of three is not mistaken for three points
-    parameters = body.given(geometry, distances) | {"stored_range": distances.range}
+    parameters = body.texture_parameters(geometry, distances) | {"stored_range": distances.range}
     values = {
         name: np.array(value)[:, None] if isinstance(value, list) else value for name, value in parameters.items()
     }

@@ -46,7 +46,7 @@ def nothing(shape: tuple[int, ...]) -> Batches:
     return Batches(0, np.zeros(shape), np.zeros(shape))
 
 
-def kept(key: str, shape: tuple[int, ...], wanted: int) -> Batches:
+def cached(key: str, shape: tuple[int, ...], wanted: int) -> Batches:
     """The largest cached state of a key with at most `wanted` batches; no batches without a cache folder."""
     for count in sorted(_counts(key), reverse=True):
         if count <= wanted:
@@ -56,7 +56,7 @@ def kept(key: str, shape: tuple[int, ...], wanted: int) -> Batches:
     return nothing(shape)
 
 
-def keep(key: str, batches: Batches, instead_of: int = 0) -> None:
+def store(key: str, batches: Batches, instead_of: int = 0) -> None:
     """Writes the state atomically, and deletes the key's state of `instead_of` batches."""
     if not cache.folder():
         return

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Geometry
 from sssgen.lab.reference.geometry_mesh import RESOLUTION
-from sssgen.lab.reference.render_cache import Batches, keep, kept
+from sssgen.lab.reference.render_cache import Batches, cached, store
 from sssgen.lab.reference.transport_mitsuba import Body, Channel, Light, Renderer, body_of, mitsuba
 from sssgen.lab.scene.media import Medium
 from sssgen.support import cache
@@ -137,7 +137,7 @@ def _converge(
     arguments = (_VERSION, mitsuba().__version__, BATCH, channel, light, seed, scatterings)
     content = b"".join([repr(arguments).encode(), body.content(), rays[0].tobytes(), rays[1].tobytes()])
     key = cache.digest(content)
-    state = kept(key, (len(rays[0]),), wanted)
+    state = cached(key, (len(rays[0]),), wanted)
     if state.number == wanted:
         return state
     base = int(np.random.SeedSequence(int(cache.digest(content + b"stream"), 16)).generate_state(1)[0])
@@ -146,9 +146,9 @@ def _converge(
     while state.number < wanted:
         state = state.and_another(renderer.batch(state.number, BATCH))
         if state.number < wanted and time.monotonic() - written > _SECONDS_BETWEEN_WRITES:
-            keep(key, state, instead_of=written_batches)
+            store(key, state, instead_of=written_batches)
             written_batches, written = state.number, time.monotonic()
-    keep(key, state, instead_of=written_batches)
+    store(key, state, instead_of=written_batches)
     return state
 
 

@@ -178,7 +178,7 @@ def _vector_of(corner: Array) -> Vector:
     return x, y, z
 
 
-def given(geometry: Geometry, texture: DistanceTexture) -> dict[str, object]:
+def texture_parameters(geometry: Geometry, texture: DistanceTexture) -> dict[str, object]:
     """The parameters of a shape's distance texture by their names in techniques, as TOML values."""
     return {
         "box_min": [*texture.box_min], "box_max": [*texture.box_max], "distance_range": texture.range,
