@@ -122,7 +122,7 @@ def test_the_held_out_view_is_turned_about_the_vertical_through_the_target() -> 
         ("[medium]\nanisotropy = 1\n" + BALL + LIT, "'anisotropy' cannot be 1", 2),
         ("[medium]\npresett = 1\n" + BALL + LIT, "did you mean 'preset'", 2),
         ("medium = 3\n" + LIT + BALL, "'medium' is a table", 1),
-        ("[medium]\n" + BALL + "[[light]]\nposition = [1, 1, 1]\n", "only lights from afar", 5),
+        ("[medium]\n" + BALL + "[[light]]\nposition = [1, 1, 1]\n", "only directional lights", 5),
         ("[medium]\n" + BALL, "nothing lights the scene", 1),
         ("[medium]\n" + LIT, "no geometry to measure", 0),
         ('material = "ice"\n' + BALL + LIT, "does not describe what its body is made of", 0),
