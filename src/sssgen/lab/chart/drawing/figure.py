@@ -223,7 +223,7 @@ def _draw_labels(axes: Any, panel: Panel, styles: dict[str, Style]) -> None:
         axes, x, y, texts, x_scatter=x_points, y_scatter=y_points, x_lines=list(x_lines), y_lines=list(y_lines),
         textsize=LABEL_SIZE, textcolor=colors, linecolor=colors, linewidth=0.5, draw_all=False,
         avoid_label_lines_overlap=True, priority_strategy="largest", margin=0.008, min_distance=0.02,
-        max_distance=0.8, nbr_candidates=2000, scatter_sizes=radii, zorder=7,
+        max_distance=0.8, nbr_candidates=2000, scatter_sizes=radii, va="bottom", zorder=7,
     )  # fmt: skip
 
 
