@@ -111,13 +111,13 @@ def awkward(function: Function, calls: Calls) -> list[Stmt]:
     are always evaluated; and what other passes compute before the statement would be computed too early.
     """
     lifter = _Lifter(function, calls)
-    found = []
+    stmts = []
     for stmt in statements(function.body or ()):
         for expr in expressions(stmt):
             alone = isinstance(expr, Call) and not (isinstance(stmt, Assign) and lifter.meets(stmt))
             if any(map(lifter.writes, operands(expr) if alone else (expr,))):
-                found.append(stmt)
-    return found
+                stmts.append(stmt)
+    return stmts
 
 
 def out_arguments(call: Expr, functions: Functions) -> list[str]:

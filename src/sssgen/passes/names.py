@@ -70,7 +70,7 @@ class _Namer:
         self.reserved, self.reserved_folded = reserved, reserved_folded
         self.uniform_name, self.mangle_overloads = uniform_name, mangle_overloads
         self.matrix_overloads = matrix_overloads
-        self.known: dict[str, bool] = {}
+        self.legality: dict[str, bool] = {}
         """Whether a name is legal."""
         self.renamed: dict[str, str] = {}
         self.structs: dict[Type, Type] = {}
@@ -102,16 +102,16 @@ class _Namer:
     # The module's own names
 
     def legal(self, name: str) -> bool:
-        known = self.known.get(name)
-        if known is None:
-            known = self.known[name] = not (
+        cached = self.legality.get(name)
+        if cached is None:
+            cached = self.legality[name] = not (
                 name in self.reserved
                 or "__" in name
                 or name == "_"
                 or name.startswith("gl_")
                 or name.lower() in self.reserved_folded
             )
-        return known
+        return cached
 
     def choose(self, name: str, taken: Container[str]) -> str:
         """A legal name that is like `name` and is not taken."""

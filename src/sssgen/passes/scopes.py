@@ -51,12 +51,12 @@ def mentions(function: Function) -> tuple[set[str], set[str]]:
 
 def outs_of(functions: Iterable[Function]) -> dict[str, tuple[int, ...]]:
     """The keys of the functions that write through parameters, and the positions of these."""
-    found = {}
+    outs = {}
     for function in functions:
         places = tuple([index for index, param in enumerate(function.params) if param.direction != "in"])
         if places:
-            found[function.key] = places
-    return found
+            outs[function.key] = places
+    return outs
 
 
 def assigned(function: Function, outs: Mapping[str, tuple[int, ...]]) -> set[str]:
@@ -135,8 +135,9 @@ class Renamer(Transformer):
             return function
         self.scope, params = {}, []
         for param in function.params:
-            params.append(param._replace(name=self.new_name(param.name)))
-            self.scope[param.name] = params[-1]
+            name = self.new_name(param.name)
+            new = self.scope[param.name] = param if name == param.name else param._replace(name=name)
+            params.append(new)
         body = self.block(function.body)
         same = body is function.body and not self.renamed
         return function if same else function._replace(params=tuple(params), body=body)

@@ -26,36 +26,35 @@ def uniforms_to_parameters(module: Module, textures: bool = True) -> Module:
     uniforms = {
         uniform.name: uniform for uniform in module.uniforms if textures or not isinstance(uniform.type, Sampler)
     }
-    handed = {
+    parameters = {
         name: Param(name, uniform.type, "in", uniform.quantity, uniform.span) for name, uniform in uniforms.items()
     }
-    if not handed:
+    if not parameters:
         return module
-    closer = Closer(module, handed, {})
+    closer = Closer(module, parameters, {})
     return module._replace(functions=closer.run())
 
 
 class Closer:
     """Gives functions parameters for the globals that they use, themselves or through what they call.
 
-    `handed` are the globals with their parameters; `written` says which of them a function writes, by its key: they
+    `parameters` are the globals with their parameters; `written` says which of them a function writes, by its key: they
     are inout there.
     """
 
-    def __init__(self, module: Module, handed: Mapping[str, Param], written: Mapping[str, Container[str]]) -> None:
-        self.handed, self.written = handed, written
+    def __init__(self, module: Module, parameters: Mapping[str, Param], written: Mapping[str, Container[str]]) -> None:
+        self.parameters, self.written = parameters, written
         self.functions = {function.key: function for function in module.functions}
-        self.order = {name: position for position, name in enumerate(handed)}
+        self.order = {name: position for position, name in enumerate(parameters)}
         self.reads: dict[str, list[str]] = {}
         self.names: dict[str, str] = {}
-        """The new name of each function, by its old key: another overload may have the new parameters
-        already."""
+        """The new name of each function, by its old key: another overload may have the new parameter types."""
         self.keys: dict[str, str] = {}
         taken = set[str]()
         # functions that stay as they are come first, so that the others avoid their names
         for key, function in sorted(self.functions.items(), key=lambda item: bool(self.read(item[0]))):
             types = [param.type for param in function.params]
-            types += [handed[name].type for name in self.read(key)]
+            types += [parameters[name].type for name in self.read(key)]
             name, count = function.name, 2
             while function_key(name, types) in taken:
                 name, count = f"{function.name}_{count}", count + 1
@@ -68,16 +67,16 @@ class Closer:
 
     def read(self, key: str) -> list[str]:
         """The globals that a function uses, in the order of their declaration."""
-        found = self.reads.get(key)
-        if found is None:
+        ordered = self.reads.get(key)
+        if ordered is None:
             names, self.reads[key] = set[str](), []
             if key in self.functions:
                 globals_, calls = mentions(self.functions[key])
-                names = globals_ & self.handed.keys()
+                names = globals_ & self.parameters.keys()
                 for callee in calls:
                     names.update(self.read(callee))
-            found = self.reads[key] = sorted(names, key=self.order.__getitem__)
-        return found
+            ordered = self.reads[key] = sorted(names, key=self.order.__getitem__)
+        return ordered
 
     def function(self, key: str, function: Function) -> Function:
         names = self.read(key)
@@ -88,14 +87,14 @@ class Closer:
             function, _ = rename_locals(function, hidden, fresh)
 
         def change(node: Expr) -> Expr:
-            if type(node) is Global and node.name in self.handed:
+            if type(node) is Global and node.name in self.parameters:
                 return Local(node.type, node.name, node.span)
             if type(node) is Call and self.reads.get(node.function):
-                extra = [Local(self.handed[name].type, name, node.span) for name in self.read(node.function)]
+                extra = [Local(self.parameters[name].type, name, node.span) for name in self.read(node.function)]
                 return Call(node.type, self.keys[node.function], (*node.args, *extra), node.span)
             return node
 
         function = rewrite_function(function, change)
         written = self.written.get(key, ())
-        params = [self.handed[name]._replace(direction="inout" if name in written else "in") for name in names]
+        params = [self.parameters[name]._replace(direction="inout" if name in written else "in") for name in names]
         return function._replace(name=self.names[key], params=(*function.params, *params))

@@ -28,8 +28,8 @@ def effects(module: Module) -> dict[str, Effects]:
     if not module.variables:
         return {}
     finder = _Finder(module)
-    found = {function.key: finder.of(function.key) for function in module.functions}
-    return {key: effect for key, effect in found.items() if effect != NONE}
+    every = {function.key: finder.of(function.key) for function in module.functions}
+    return {key: effect for key, effect in every.items() if effect != NONE}
 
 
 class _Finder:
@@ -37,15 +37,15 @@ class _Finder:
         self.functions = {function.key: function for function in module.functions}
         self.outs = outs_of(module.functions)
         self.variables = frozenset(variable.name for variable in module.variables)
-        self.found: dict[str, Effects] = {}
+        self.effects: dict[str, Effects] = {}
 
     def of(self, key: str) -> Effects:
-        known = self.found.get(key)
-        if known is None:
-            self.found[key] = NONE
+        effect = self.effects.get(key)
+        if effect is None:
+            self.effects[key] = NONE
             function = self.functions.get(key)
-            known = self.found[key] = self.function(function) if function is not None else NONE
-        return known
+            effect = self.effects[key] = self.function(function) if function is not None else NONE
+        return effect
 
     def function(self, function: Function) -> Effects:
         reads: set[str] = set()
@@ -67,7 +67,7 @@ class _Finder:
                     calls.add(node.function)
                     targets += [node.args[index] for index in self.outs.get(node.function, ())]
                 stack += operands(node)
-        writes = {found.name for found in map(written_root, targets) if isinstance(found, Global)}
+        writes = {place.name for place in map(written_root, targets) if isinstance(place, Global)}
         called = [self.of(key) for key in calls]
         return Effects(
             frozenset(reads & self.variables).union(*[effect.reads for effect in called]),

@@ -24,8 +24,8 @@ def technique_file(module: Module, shown: str, wanted: str = "") -> tuple[str, s
     """The name of the technique and the text of its file.
 
     `wanted` is the function's name; '' means the last one of the file `shown`. Raises SssgenError where there is none,
-    and where the function does what a technique cannot: its loops must be seen to end, and it has no variables
-    outside of itself.
+    and where a technique cannot have the function: its loops must be provably bounded, and it cannot use module
+    variables.
     """
     function = _chosen(module, shown, wanted)
     program = make_library(module, registry.load(_LANGUAGE)._replace(parameters=()), "none", [function.key], keep=True)
@@ -39,9 +39,9 @@ def technique_file(module: Module, shown: str, wanted: str = "") -> tuple[str, s
     blocks = ["\n".join(block) for kind in ("types", "constants") for block in parts[kind]]
     blocks += map(_uniform, program.module.uniforms)
     blocks += ["\n".join(block) for block in parts["functions"]]
-    made = "\n\n".join([*filter(None, blocks), _doc(function) + own]) + "\n"
-    load_text(made, f"{name}.sss")  # raises SssgenError for what a technique cannot do
-    return name, made
+    text = "\n\n".join([*filter(None, blocks), _doc(function) + own]) + "\n"
+    load_text(text, f"{name}.sss")  # raises SssgenError for what a technique cannot do
+    return name, text
 
 
 def _chosen(module: Module, shown: str, wanted: str) -> Function:
@@ -49,9 +49,9 @@ def _chosen(module: Module, shown: str, wanted: str) -> Function:
     if wanted:
         own = [one for one in own if one.name == wanted]
     if not own:
-        known = [one.name for one in module.functions]
+        names = [one.name for one in module.functions]
         message = f"there is no function '{wanted}' in this file" if wanted else "there is no function in this file"
-        raise failure(message, did_you_mean(wanted, known), shown)
+        raise failure(message, did_you_mean(wanted, names), shown)
     return own[-1]
 
 
@@ -73,15 +73,15 @@ def _uniform(uniform: Uniform) -> str:
 
 
 def _doc(function: Function) -> str:
-    """The doc comment to fill in, with what each parameter could be."""
-    said = function.doc.strip().splitlines()
+    """The doc comment to complete, after comments with the possible quantities of each parameter."""
+    doc = function.doc.strip().splitlines()
     role = _ROLES.get(function.result, "surface")
-    lines = [said[0] if said else "The result, in one sentence.", f"role: {role}"]
+    lines = [doc[0] if doc else "The result, in one sentence.", f"role: {role}"]
     lines += ["formula: ", "source: ", "units: ", "limits: "]
     text = "/**\n" + "".join(f" * {line}".rstrip() + "\n" for line in lines) + " */\n"
     notes = [f"// role: one of {', '.join(ROLES)}"]
-    for what, type_ in [("the result", function.result), *((one.name, one.type) for one in function.params)]:
-        fitting = [name for name, plain in QUANTITIES.items() if plain == type_]
-        if fitting:
-            notes.append(f"// {what}: {spell(type_)}, or if it measures that: {', '.join(fitting)}")
+    for name, type_ in [("the result", function.result), *((one.name, one.type) for one in function.params)]:
+        quantities = [quantity for quantity, plain in QUANTITIES.items() if plain == type_]
+        if quantities:
+            notes.append(f"// {name}: {spell(type_)}, or if it measures that: {', '.join(quantities)}")
     return "\n".join(notes) + "\n" + text

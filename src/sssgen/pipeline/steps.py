@@ -85,8 +85,8 @@ def read_level_zero(state: State) -> Module:
 
 
 def note_differences(state: State) -> Module:
-    found = remarks(state.module, state.stage_builtins, state.y_down, state.target.capabilities)
-    state.notes += [Note(*remark) for remark in found]
+    differences = remarks(state.module, state.stage_builtins, state.y_down, state.target.capabilities)
+    state.notes += [Note(*remark) for remark in differences]
     return state.module
 
 

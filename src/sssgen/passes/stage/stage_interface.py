@@ -77,14 +77,14 @@ def interface(module: Module, kind: str, function: str, builtins: Collection[str
     `function` is the key of its main function, `builtins` are those that the target has; any other
     output is dropped. `turned`: the framebuffer's y counts from the top.
     """
-    given = [variable for variable in module.variables if variable.storage == "in"]
-    made = [variable for variable in module.variables if variable.storage == "out"]
-    for variable in given:
+    inputs = [variable for variable in module.variables if variable.storage == "in"]
+    outputs = [variable for variable in module.variables if variable.storage == "out"]
+    for variable in inputs:
         if variable.builtin and variable.builtin not in builtins:
             raise Unsupported(f"a {kind} shader of this target is given no {variable.builtin}", variable.span)
-    made = [one for one in made if not one.builtin or one.builtin in builtins or one.builtin in COLORS]
+    outputs = [one for one in outputs if not one.builtin or one.builtin in builtins or one.builtin in COLORS]
     resolution = resolution_of(module) if turned and kind == "fragment" else ""
-    return Stage(kind, function, _slots(given), _slots(made), resolution)
+    return Stage(kind, function, _slots(inputs), _slots(outputs), resolution)
 
 
 def resolution_of(module: Module) -> str:

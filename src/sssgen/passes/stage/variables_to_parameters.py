@@ -41,17 +41,17 @@ def variables_to_parameters(module: Module, entry: str = "") -> Handed:
     calls = Calls({function.key: function for function in module.functions}, shared)
     # from here on a call that writes is a statement of its own, so that no variable is passed twice
     module = module._replace(functions=tuple([lift(one, calls) for one in module.functions]))
-    handed = {one.name: Param(one.name, one.type, "in", "", one.span) for one in module.variables}
-    closer = Closer(module, handed, {key: effect.writes for key, effect in shared.items()})
+    parameters = {one.name: Param(one.name, one.type, "in", "", one.span) for one in module.variables}
+    closer = Closer(module, parameters, {key: effect.writes for key, effect in shared.items()})
     added: dict[str, tuple[Param, ...]] = {}
-    made = []
+    functions = []
     for old, new in zip(module.functions, closer.run(), strict=True):
         if old.key == entry:
             new = _entered(new, len(old.params), module)
         if len(new.params) > len(old.params):
             added[old.key] = new.params[len(old.params) :]
-        made.append(new)
-    return Handed(module._replace(functions=tuple(made), variables=()), added)
+        functions.append(new)
+    return Handed(module._replace(functions=tuple(functions), variables=()), added)
 
 
 def _entered(function: Function, own: int, module: Module) -> Function:
