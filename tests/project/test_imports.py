@@ -11,8 +11,6 @@ EMIT = "`sssgen emit` with a warm cache does not need it, and would take noticea
 EXTRA = "an optional package: what does not need it works without it"
 HELP = "the module is imported for its options, too: `--help` works without optional packages"
 
-MOVE = "to be moved to the top of the module"
-
 LAZY_IMPORTS = {
     "sssgen.cli.bake": HELP,
     "sssgen.cli.chart": HELP,
@@ -37,6 +35,7 @@ LAZY_IMPORTS = {
     "sssgen.harness.testing.pytest_plugin": "pytest imports it in every test run, of other projects, too",
     "sssgen.lab.chart.drawing": EXTRA,
     "sssgen.lab.jobs.executor": EXTRA,
+    "sssgen.lab.jobs.result_store": EXTRA,
     "sssgen.lang.loader": EMIT,
     "sssgen.lang.syntax.grammar_tables": "only building the tables needs lark",
     "sssgen.material.model": EMIT,
@@ -52,16 +51,6 @@ LAZY_IMPORTS = {
     "sssgen.targets.reflection": EMIT,
     "sssgen.targets.registry": EMIT,
     "sssgen.targets.templates": EMIT,
-    # Not yet cleared
-    "sssgen.ir.nodes": MOVE,
-    "sssgen.lab.chart.drawing.page": MOVE,
-    "sssgen.lab.jobs.result_store": MOVE,
-    "sssgen.lab.jobs.work_items": MOVE,
-    "sssgen.lang.polyfills": MOVE,
-    "sssgen.material.baked": MOVE,
-    "sssgen.material.chain_assembly": MOVE,
-    "sssgen.passes.divergence": MOVE,
-    "sssgen.passes.names": MOVE,
 }
 """Module → why it imports inside a function."""
 

@@ -11,7 +11,7 @@ from typing import NamedTuple, TypeAlias
 
 from sssgen.ir.spans import NOWHERE as NOWHERE
 from sssgen.ir.spans import Span as Span
-from sssgen.ir.types import Type
+from sssgen.ir.types import Type, spell
 
 # Expressions
 
@@ -313,6 +313,4 @@ class Module(NamedTuple):
 
 def function_key(name: str, types: list[Type]) -> str:
     """The key under which a function with these parameter types is called."""
-    from sssgen.ir.types import spell
-
     return f"{name}({','.join(map(spell, types))})"

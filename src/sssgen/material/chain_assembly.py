@@ -36,7 +36,8 @@ from sssgen.ir.nodes import (
     Stmt,
     StructDecl,
 )
-from sssgen.ir.types import BOOL, FLOAT, VEC2, VEC3, VEC4, Field, Struct, Type
+from sssgen.ir.transform import rewrite, rewrite_block
+from sssgen.ir.types import BOOL, FLOAT, VEC2, VEC3, VEC4, VOID, Field, Struct, Type
 from sssgen.passes.link import LinkError
 
 QUANTITIES = ("thickness", "thinness", "transmittance")
@@ -168,8 +169,6 @@ def _written(stage: ChainStage) -> set[str]:
 
 def _result_name(stage: ChainStage) -> str:
     """The name of the value that a stage's result becomes."""
-    from sssgen.ir.types import VOID
-
     if stage.function.result == VOID:
         return ""
     return _RESULT_OF_ROLE.get(stage.role) or stage.function.quantity or "translucency"
@@ -373,14 +372,10 @@ _SURFACE = Struct("Surface", ())
 
 def _retype(expr: Expr, struct: Struct) -> Expr:
     """Gives references to the surface their type, which is known only once every stage has been added."""
-    from sssgen.ir.transform import rewrite
-
     return rewrite(expr, lambda node: node._replace(type=struct) if node.type == _SURFACE else node)
 
 
 def _retyped(statements: Sequence[Stmt], struct: Struct) -> list[Stmt]:
-    from sssgen.ir.transform import rewrite_block
-
     change = lambda node: node._replace(type=struct) if node.type == _SURFACE else node  # noqa: E731
     return list(rewrite_block(tuple(statements), change))
 

@@ -13,6 +13,7 @@ from collections.abc import Iterable, Mapping
 from functools import cache
 from typing import Any, NamedTuple
 
+from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import (
     Assign,
     Binary,
@@ -44,16 +45,12 @@ from sssgen.passes.variable_effects import NONE, Effects, effects
 @cache
 def implicit() -> frozenset[str]:
     """The builtins that need uniform control flow, by the intrinsic table."""
-    from sssgen.ir.intrinsics import BUILTINS
-
     return frozenset(name for name, row in BUILTINS.items() if row.uniform_flow)
 
 
 @cache
 def varying_builtins() -> frozenset[str]:
     """The builtins whose results differ from pixel to pixel for all arguments."""
-    from sssgen.ir.intrinsics import BUILTINS
-
     rows = BUILTINS.items()
     return frozenset(name for name, row in rows if row.reads_neighbours_or_textures and not row.size_query)
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Container, Mapping
 
+from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import (
     Block,
     Call,
@@ -248,8 +249,6 @@ class _Namer:
 
     def hidden(self, function: Function, names: set[str]) -> set[str]:
         """The names of a function's variables that are also those of declarations or builtins it uses."""
-        from sssgen.ir.intrinsics import BUILTINS
-
         names = {name for name in names if name in self.taken or name in BUILTINS}
         return names & self.used(function) if names else names
 

@@ -11,6 +11,7 @@ import importlib.util
 import os
 import sys
 import traceback
+from importlib.metadata import PackageNotFoundError, version
 from typing import Any, NamedTuple
 
 from sssgen.lab.jobs.result_store import decoded, encoded
@@ -94,8 +95,6 @@ def code_stamp(module: str) -> str:
 
 
 def _numpy() -> str:
-    from importlib.metadata import PackageNotFoundError, version
-
     try:
         return version("numpy")
     except PackageNotFoundError:

@@ -6,13 +6,12 @@ import functools
 import os
 import re
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 
 from sssgen.lab.chart.drawing.panels import Chart, number
 from sssgen.lab.chart.record import COSTS, ERRORS, Point, Record
-
-if TYPE_CHECKING:
-    from jinja2 import Template
 
 COLUMNS = ("scene", "role", "technique", "cost", "error", "low", "high", "front", "failed", "settings", "chain")
 """The table's first columns; the other numbers follow."""
@@ -45,8 +44,6 @@ def written(record: Record, charts: Sequence[Chart], pictures: Sequence[str]) ->
 
 @functools.cache
 def _template() -> Template:
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
     loader = FileSystemLoader(os.path.dirname(__file__))
     environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True)
     return environment.get_template("page.html")
