@@ -96,7 +96,9 @@ FILES: dict[str, tuple[str, Callable[[], str | bytes], str]] = {
 
 @pytest.mark.parametrize("what", ["sdf", "thickness", "depth"])
 @pytest.mark.parametrize("name", FILES)
-def test_files_that_are_no_mesh(capsys: pytest.CaptureFixture[str], idle: None, what: str, name: str) -> None:
+def test_files_that_are_not_meshes_are_refused(
+    capsys: pytest.CaptureFixture[str], idle: None, what: str, name: str
+) -> None:
     file, content, said = FILES[name]
     data = content()
     Path(file).write_bytes(data if isinstance(data, bytes) else data.encode())
@@ -227,7 +229,7 @@ LIGHTS = {
 
 
 @pytest.mark.parametrize("text", LIGHTS)
-def test_lights_that_are_none(capsys: pytest.CaptureFixture[str], idle: None, text: str) -> None:
+def test_invalid_lights_are_refused(capsys: pytest.CaptureFixture[str], idle: None, text: str) -> None:
     Path("light.json").write_text(text, encoding="utf-8")
     arguments = ["depth", "box.obj", "-o", "o.npy", "--direction", "light.json", "--size", "8"]
     assert LIGHTS[text] in refused(capsys, *arguments)
@@ -245,7 +247,7 @@ def test_a_sheet_has_no_thickness_map(capsys: pytest.CaptureFixture[str]) -> Non
     assert "no inside" in told
 
 
-def test_what_is_read_is_not_overwritten(capsys: pytest.CaptureFixture[str], idle: None) -> None:
+def test_inputs_are_not_overwritten(capsys: pytest.CaptureFixture[str], idle: None) -> None:
     """Neither by the texture nor by what is written beside it: its JSON, and a mesh that gets texture coordinates."""
     box = meshes.box()._replace(uv=None)
     write(Path("box.png.obj"), box)
@@ -262,14 +264,14 @@ def test_what_is_read_is_not_overwritten(capsys: pytest.CaptureFixture[str], idl
     assert before == {name: Path(name).read_bytes() for name in before}
 
 
-def test_other_files_beside_the_map_are_left_alone() -> None:
+def test_other_files_are_not_overwritten() -> None:
     write(Path("plain.obj"), meshes.box()._replace(uv=None))
     Path("map.obj").write_text("mine", encoding="utf-8")
     bake("thickness", "plain.obj", "-o", "map.png", "--mode", "chord", "--size", "16", "--processes", "1")
     assert Path("map.obj").read_text(encoding="utf-8") == "mine" and Path("map.png.obj").is_file()
 
 
-def test_triangles_that_face_opposite_ways_are_told(capsys: pytest.CaptureFixture[str]) -> None:
+def test_inconsistent_winding_is_reported(capsys: pytest.CaptureFixture[str]) -> None:
     box = meshes.box()
     faces = box.faces.copy()
     faces[::2] = faces[::2, ::-1]
@@ -285,18 +287,18 @@ def test_triangles_that_face_opposite_ways_are_told(capsys: pytest.CaptureFixtur
     assert not facts("right.npy")["mesh"]["mixed_sides"]
 
 
-def test_a_light_that_meets_nothing_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_light_that_hits_nothing_is_reported(capsys: pytest.CaptureFixture[str]) -> None:
     write(Path("sheet.obj"), SHEET)
     bake("depth", "sheet.obj", "-o", "d.exr", "--direction", "1,0,0", "--size", "16")
     assert "the light meets nothing" in capsys.readouterr().out
 
 
-def test_folders_are_made() -> None:
+def test_missing_folders_are_created() -> None:
     bake("sdf", "box.obj", "-o", "new/deep/o.npy", "--resolution", "8")
     assert {"new/deep/o.npy", "new/deep/o.npy.json"} < {path.replace(os.sep, "/") for path in there()}
 
 
-def test_what_is_said(capsys: pytest.CaptureFixture[str]) -> None:
+def test_bake_reports_its_files(capsys: pytest.CaptureFixture[str]) -> None:
     bake("sdf", "box.obj", "-o", "o.npy", "--resolution", "16")
     assert "wrote o.npy, o.npy.json" in capsys.readouterr().out
     bake("sdf", "box.obj", "-o", "o.npy", "--resolution", "16", "--json")
@@ -389,7 +391,7 @@ def test_processes_make_no_difference() -> None:
 
 
 @pytest.mark.parametrize("encoding", ENCODINGS)
-def test_all_formats_hold_the_same(encoding: str) -> None:
+def test_all_formats_hold_the_same_texels(encoding: str) -> None:
     common = ["sdf", "box.obj", "--resolution", "12,10,9", "--encode", encoding]
     for name in ("npy", "dds", "ktx2"):
         bake(*common, "-o", f"o.{name}")

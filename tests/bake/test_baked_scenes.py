@@ -98,7 +98,7 @@ def test_thin_parts_are_bright_and_the_three_ways_differ(
 
 
 @pytest.mark.parametrize("material", ["wax_distance", "wax_map", "wax_depth", "ice_baked"])
-def test_what_is_imported_is_said(material: str, folder: Path) -> None:
+def test_import_settings_are_reported(material: str, folder: Path) -> None:
     textures = compile(folder / f"{material}.toml", "wgsl").reflection["textures"]
     said = {texture["technique_name"]: texture["import"] for texture in textures}
     if material == "wax_distance":
@@ -122,7 +122,7 @@ PAIRS = {
 
 
 @pytest.mark.parametrize("pair", PAIRS)
-def test_what_does_not_fit_is_refused(pair: str, tmp_path: Path) -> None:
+def test_incompatible_textures_are_refused(pair: str, tmp_path: Path) -> None:
     technique, texture, words, message = PAIRS[pair]
     assert main(["bake", "voronoi", "-o", str(tmp_path / "cells.png"), "--size", "16", "--cells", "4"]) == 0
     words = [str(tmp_path / word) if FILE.search(word) else word for word in words]

@@ -99,7 +99,7 @@ def test_a_map_of_the_right_one_compiles_for_all_targets(maps: None, quantity: s
     assert len(list(Path("out").iterdir())) > 8
 
 
-def test_the_factor_is_the_maps_unless_the_material_says_it(maps: None) -> None:
+def test_the_factor_defaults_to_that_of_the_map(maps: None) -> None:
     made = load_material(material("made.toml", mapped("thickness", "thickness.png")))
     top = facts("thickness.png")["range"][1]
     assert made.stages[0].values["thickness_factor"] == (pytest.approx(top),) and 0.4 < top < 1.3
@@ -109,7 +109,7 @@ def test_the_factor_is_the_maps_unless_the_material_says_it(maps: None) -> None:
     assert alias.stages[0].values["thickness_factor"] == (2.5,)
 
 
-def test_a_map_without_its_json_is_taken_as_it_is(maps: None) -> None:
+def test_a_map_without_json_is_accepted(maps: None) -> None:
     Path("thickness.png.json").unlink()
     made = load_material(material("made.toml", mapped("transmittance", "thickness.png")))
     assert made.stages[0].textures == {"transmittance_texture": "thickness.png"}
@@ -158,7 +158,7 @@ def shell(textures: str, section: str, place: str = "", parameters: str = "") ->
 
 
 @pytest.mark.parametrize("format", ["npy", "dds", "ktx2"])
-def test_scenes_take_distance_textures(format: str) -> None:
+def test_scenes_read_distance_textures(format: str) -> None:
     bake("sdf", "box.obj", "-o", f"o.{format}", "--resolution", "16")
     told = facts(f"o.{format}")["parameters"]
     found = shell(f'distance_map = "o.{format}"', MARCH, "scale = 2.0\nposition = [1.0, 2.0, 3.0]")
@@ -175,7 +175,7 @@ def test_scenes_take_distance_textures(format: str) -> None:
     assert given.parameters["distance_range"] == (3.0,)
 
 
-def test_scenes_take_maps(maps: None) -> None:
+def test_scenes_read_maps(maps: None) -> None:
     found = shell('thickness_texture = "thickness.png"', '[thickness]\ntechnique = "thickness_map"', "scale = 3.0")
     top = facts("thickness.png")["range"][1]
     assert found.parameters["thickness_factor"] == pytest.approx((3.0 * top,))  # units of the world
@@ -200,7 +200,7 @@ def raw(encoding: str) -> tuple[tuple[int, int, int], bytes]:
 
 
 @pytest.mark.parametrize(("encoding", "dtype"), [("r8", "f1"), ("r16", "nu2"), ("r16f", "f2"), ("r32f", "f4")])
-def test_opengl_takes_the_bytes(backend: Callable[[str], Backend], encoding: str, dtype: str) -> None:
+def test_opengl_accepts_the_bytes(backend: Callable[[str], Backend], encoding: str, dtype: str) -> None:
     context: Any = getattr(backend("gl"), "context")  # noqa: B009 - of that back end only
     size, data = raw(encoding)
     with context:
@@ -212,7 +212,7 @@ def test_opengl_takes_the_bytes(backend: Callable[[str], Backend], encoding: str
 
 
 @pytest.mark.parametrize(("encoding", "format"), [("r8", "r8unorm"), ("r16f", "r16float"), ("r32f", "r32float")])
-def test_webgpu_takes_the_bytes(backend: Callable[[str], Backend], encoding: str, format: str) -> None:
+def test_webgpu_accepts_the_bytes(backend: Callable[[str], Backend], encoding: str, format: str) -> None:
     device: Any = getattr(backend("webgpu"), "gpu")  # noqa: B009 - of that back end only
     import wgpu
 

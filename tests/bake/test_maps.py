@@ -67,7 +67,7 @@ def test_far_sites_matter_at_full_jitter() -> None:
     assert np.abs(np.floor(second) - np.floor(places)).max() == 2
 
 
-def test_one_stands_for_the_largest_distances_there_can_be() -> None:
+def test_one_is_the_largest_possible_distance() -> None:
     """By sites put where they are furthest; and no picture goes beyond, nor stays far below."""
     for jitter in (0.0, 0.3, 1.0):
         reach = 0.5 + 0.5 * jitter  # sites at the far corners of four cells around the origin
@@ -108,7 +108,7 @@ def test_tiles_have_no_seam(feature: str) -> None:
     assert np.abs(lone[:, 0] - lone[:, -1]).max() > 5.0 * np.abs(np.diff(lone, axis=1)).max()
 
 
-def test_a_tile_goes_on_in_its_neighbours() -> None:
+def test_a_tile_continues_in_its_neighbours() -> None:
     """The sites of the tile, repeated by hand around it, give the picture of the tiles to its right and above."""
     tile = voronoi((40, 30), (4, 3), seed=2, feature="f1") * scale("f1", 1.0)
     once = sites(4, 3, 1.0, 2, False, beyond=0)
@@ -123,7 +123,7 @@ def test_blocks_of_rows_make_no_difference(monkeypatch: pytest.MonkeyPatch) -> N
     assert np.array_equal(voronoi((50, 37), (5, 4)), whole)
 
 
-def test_cells_are_the_same_everywhere() -> None:
+def test_cells_depend_on_an_integer_hash() -> None:
     """Sites by the integers of the hash, worked out with Python's."""
 
     def scrambled(x: int) -> int:
@@ -158,7 +158,7 @@ def test_cells_are_the_same_everywhere() -> None:
         ({"feature": "facetted"}, "did you mean 'faceted'"),
     ],
 )
-def test_cells_that_are_refused(changed: dict[str, Any], told: str) -> None:
+def test_invalid_cells_are_refused(changed: dict[str, Any], told: str) -> None:
     assert told in failing(voronoi, **{"size": (64, 64), "cells": (4, 4), **changed})
 
 
@@ -171,7 +171,7 @@ def of_slopes(along_u: Any, along_v: Any) -> Array:
 
 
 @pytest.mark.parametrize(("width", "height"), [(16, 16), (20, 8), (5, 31)])
-def test_a_plane_has_its_slope_all_over(width: int, height: int) -> None:
+def test_a_plane_has_a_constant_slope(width: int, height: int) -> None:
     """Heights 0.4 u + 0.3 y with u and y in widths of the picture; white is 2 widths high."""
     places = centers(width, height) * [1.0, height / width]
     normal = 2.0 * from_height(places @ [0.4, 0.3], 2.0, tileable=False) - 1.0
@@ -197,7 +197,7 @@ def test_normals_of_a_wave_converge_to_its_own() -> None:
     assert errors[1] / errors[2] == pytest.approx(4.0, rel=0.05)
 
 
-def test_a_tile_of_normals_has_no_seam() -> None:
+def test_normals_of_a_tile_have_no_seam() -> None:
     """Normals of the tile are those of the middle one of nine, which have the same height in a third of the widths."""
     tile = voronoi((40, 24), (5, 3))
     nine = from_height(np.tile(tile, (3, 3)), 0.05 / 3.0, tileable=False)
@@ -216,7 +216,7 @@ def test_green_is_up_or_down() -> None:
     close(from_height(bump, -0.2)[..., :2], 1.0 - normals[..., :2])
 
 
-def test_the_technique_normal_map_reads_what_is_baked() -> None:
+def test_the_technique_normal_map_reads_baked_maps() -> None:
     heights, expected = wave(24, 24)
     picture = from_height(heights, 0.1)
     sampled = Texture(picture[::-1], "nearest")  # row 0 of this one is at v = 0
@@ -245,7 +245,7 @@ def test_normals_of_a_line_of_texels() -> None:
     assert (normals[..., 0] < 0.5).all()
 
 
-def test_heights_that_are_refused() -> None:
+def test_invalid_heights_are_refused() -> None:
     flat = np.zeros((2, 2))
     assert "no convention of green" in failing(from_height, flat, 1.0, green="up")
     assert "did you mean 'directx'" in failing(from_height, flat, 1.0, green="DirectX")
@@ -277,7 +277,7 @@ def test_sources_of_the_command_line(text: str, source: Source) -> None:
     assert parse(text) == source
 
 
-def test_sources_that_are_none() -> None:
+def test_invalid_channel_sources_are_refused() -> None:
     for text in ("2", "-0.5", "nan", "inf"):
         assert "a number from 0 to 1" in failing(parse, text)
     for text in ("", "1-", ":r", "1-:r"):
@@ -286,7 +286,7 @@ def test_sources_that_are_none() -> None:
         assert "is no channel" in failing(parse, text)
 
 
-def test_channels_come_where_they_belong(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_channels_are_packed_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     color, gray = np.arange(24).reshape(2, 3, 4) / 255, np.arange(6).reshape(2, 3) / 51
     write_png("color.png", color)

@@ -105,7 +105,7 @@ def dent(made: Made, exact: Any) -> float:
 
 
 @pytest.mark.parametrize("level", [1, 4])
-def test_a_coarse_ball_is_as_far_off_as_its_triangles(level: int) -> None:
+def test_the_error_of_a_coarse_ball_is_that_of_its_triangles(level: int) -> None:
     made = meshes.icosphere(0.9, level)
     body = solid(made)
     grid = grid_about(body)
@@ -238,7 +238,7 @@ def test_blocks_have_the_sign_of_every_voxel_in_them(name: str, resolution: int)
     assert (inside(body, grid, distances(body, grid)).ravel() == (body.winding(centers(grid)) > INSIDE)).all()
 
 
-def test_what_is_hollow_is_outside_within() -> None:
+def test_a_cavity_is_outside() -> None:
     grid = grid_about(solid(HOLLOW), 21)
     found = signed(solid(HOLLOW), grid)
     at = centers(grid)
@@ -293,7 +293,7 @@ def test_a_coarse_grid_has_voxels_outside() -> None:
     assert signs[shell].all() and not signs.all()
 
 
-def test_where_the_sign_jumps_is_said() -> None:
+def test_an_uncertain_sign_is_reported() -> None:
     whole, box = meshes.box(), meshes.box()
     cut = box._replace(faces=box.faces[2:])
     assert "but" not in sdf(write(Path("whole.obj"), whole), (12,)).facts["error"]
@@ -313,7 +313,7 @@ def test_voxels_are_cubes_and_the_box_is_padded() -> None:
     assert 0.5 * (made.grid.low + made.grid.high) == pytest.approx([5.0, 0.0, -3.0])
 
 
-def test_three_counts_are_taken_as_they_are() -> None:
+def test_three_counts_set_the_resolution() -> None:
     made = sdf(write(Path("body.obj"), meshes.box((1.0, 2.0, 0.5))), (8, 16, 9), padding=0.25)
     assert made.texels.shape == (9, 16, 8)
     assert made.facts["texels"] == [8, 16, 9]
@@ -321,7 +321,7 @@ def test_three_counts_are_taken_as_they_are() -> None:
     assert made.facts["voxel"] == pytest.approx([2.0 / 8, 3.0 / 16, 1.5 / 9])
 
 
-def test_the_facts_are_what_was_baked() -> None:
+def test_the_facts_describe_the_texture() -> None:
     path = write(Path("body.obj"), meshes.box((1.0, 2.0, 0.5)).moved((5.0, 0.0, -3.0)).without(0))
     made = sdf(path, (20,), encoding="r8")
     facts = made.facts
@@ -346,7 +346,7 @@ def test_vertices_of_no_triangle_do_not_widen_the_box() -> None:
     assert sdf(write(Path("body.ply"), joined(CUBE, stray)), (8,)).facts["mesh"]["box_max"] == [0.5, 0.5, 0.5]
 
 
-def test_a_thin_plate_keeps_voxels_that_are_cubes() -> None:
+def test_a_thin_plate_has_cubic_voxels() -> None:
     made = sdf(write(Path("body.obj"), meshes.box((1.0, 0.02, 1.0))), (64,), padding=0.05)
     assert made.grid.voxel == pytest.approx(np.full(3, 1.1 / 64.0))
     assert made.grid.counts == (64, 7, 64)
@@ -354,7 +354,7 @@ def test_a_thin_plate_keeps_voxels_that_are_cubes() -> None:
     assert np.abs(stored(made) - exact).max() <= made.facts["error"]["at_texels"]
 
 
-def test_a_sheet_is_as_thick_as_it_is_told_to_be() -> None:
+def test_a_sheet_has_the_requested_thickness() -> None:
     square = Made(
         np.array([[-0.5, 0, -0.5], [-0.5, 0, 0.5], [0.5, 0, 0.5], [0.5, 0, -0.5]], float),
         np.array([[0, 1, 2], [0, 2, 3]]),
@@ -373,7 +373,7 @@ def test_padding_0_still_has_a_box() -> None:
     assert made.facts["box_min"] == [-0.5, -0.5, -0.5] and made.facts["inside"] == 1.0
 
 
-def test_the_sign_of_a_mesh_inside_out_is_said_and_right() -> None:
+def test_an_inverted_mesh_is_reported_and_has_the_right_sign() -> None:
     made = sdf(write(Path("body.obj"), CUBE.turned_out()), (12,))
     assert made.facts["mesh"]["inside_out"] and made.facts["mesh"]["closed"]
     assert np.array_equal(made.texels, sdf(write(Path("right.obj"), CUBE), (12,)).texels)
@@ -390,7 +390,7 @@ def stored(made: Volume) -> Array:
 
 @pytest.mark.parametrize("encoding", ENCODINGS)
 @pytest.mark.parametrize("reach", [None, 0.2])
-def test_the_error_is_within_what_is_told(encoding: str, reach: float | None) -> None:
+def test_the_error_is_within_the_reported_bound(encoding: str, reach: float | None) -> None:
     made = sdf(write(Path("body.obj"), tilted(meshes.box((1.0, 0.7, 0.4)), 25.0)), (30,), 0.2, encoding, reach)
     mesh = Mesh(path="body.obj")
     exact = np.clip(mesh.distance(centers(made.grid)), -made.reach, made.reach)
@@ -453,7 +453,7 @@ def test_the_marched_thickness_is_right_to_a_voxel(path: Path, method: str, step
     assert np.median(error) <= 1.0
 
 
-def test_added_matter_never_makes_it_thinner() -> None:
+def test_added_matter_never_reduces_thickness() -> None:
     """But for what texels leave open: where a ray is steep on all faces, a wall that moves by less than a voxel."""
     first, second = tilted(CUBE, 20.0), tilted(meshes.box((0.6, 0.6, 1.6)), 50.0).moved((0.3, 0.2, 0.1))
     ends = [meshes.box((0.01, 0.01, 0.01)).moved(place) for place in (np.full(3, -1.0), np.full(3, 1.2))]

@@ -96,7 +96,7 @@ def test_a_ball_is_four_thirds_of_its_radius(globe: str) -> None:
 
 
 @pytest.mark.parametrize("depth", [0.3, 1.0, 20.0])
-def test_a_ball_lets_as_much_light_pass_as_its_integral_says(globe: str, depth: float) -> None:
+def test_a_ball_has_its_analytic_transmittance(globe: str, depth: float) -> None:
     """With chords 2 R cos, weighted by the cosine: 2 (1 - (1 + a) exp(-a)) / a², a = 2 R / depth."""
     a = 2.0 * 0.8 / depth
     found = sampled(globe, shown(globe, (24, 12)), 512, depth)
@@ -196,7 +196,7 @@ def test_straight_in_is_exact() -> None:
     "light", [BakeLight(unit([0.3, 0.9, -0.4]), True), BakeLight(np.array([2.0, 3.0, 4.0]), False)]
 )
 @pytest.mark.parametrize("depth", [0.0, 0.7])
-def test_towards_a_light_it_is_exact(light: BakeLight, depth: float) -> None:
+def test_thickness_towards_a_light_is_exact(light: BakeLight, depth: float) -> None:
     size = np.array([1.0, 2.0, 3.0])
     path = write(Path("box.obj"), meshes.box(size).moved((0.1, 0.2, 0.3)))
     wanted = Request("transmittance" if depth else "mean", light, attenuation=depth)
@@ -208,7 +208,7 @@ def test_towards_a_light_it_is_exact(light: BakeLight, depth: float) -> None:
     assert 0.1 < lit.mean() < 0.9
 
 
-def test_a_mesh_that_is_inside_out_is_as_thick() -> None:
+def test_an_inverted_mesh_has_the_same_thickness() -> None:
     ring = meshes.torus(1.0, 0.4, 24, 12)
     turned = ring._replace(faces=ring.faces[:, ::-1], uv=None if ring.uv is None else ring.uv[:, ::-1])
     right, wrong = (
@@ -220,7 +220,7 @@ def test_a_mesh_that_is_inside_out_is_as_thick() -> None:
     assert any("inside out" in one for one in warnings(wrong.facts))
 
 
-def test_a_hole_is_said_and_its_rays_do_not_count() -> None:
+def test_a_hole_is_reported_and_its_rays_do_not_count() -> None:
     path = write(Path("box.obj"), meshes.box()._replace(faces=meshes.box().faces[:-2], uv=meshes.box().uv[:-2]))
     made = baked(path, (24, 16), Request(rays=64))
     assert 0.05 < made.facts["lost_rays"] < 0.5
@@ -314,7 +314,7 @@ def test_suzanne_gets_texture_coordinates() -> None:
     assert np.median(np.abs(again.values - made.values)) < 0.02
 
 
-def test_texture_coordinates_on_the_next_tile_are_taken(globe: str) -> None:
+def test_texture_coordinates_on_another_tile_are_accepted(globe: str) -> None:
     made = meshes.box((1.0, 2.0, 3.0))
     here = baked(write(Path("here.obj"), made), (30, 20), Request("chord"))
     assert made.uv is not None
@@ -334,7 +334,7 @@ def test_texture_coordinates_that_do_not_fit(scale: float, message: str) -> None
     assert baked(path, (64, 64), Request("chord"), unwrap=True).facts["mean"] == pytest.approx(1.0, abs=1e-5)
 
 
-def test_charts_that_lie_on_one_another_are_told() -> None:
+def test_overlapping_charts_are_reported() -> None:
     made = meshes.box()
     assert made.uv is not None
     once = np.concatenate([made.uv[:2]] * 6)
@@ -404,7 +404,7 @@ def test_gltf_keeps_its_parts_and_their_texture_coordinates() -> None:
         assert volume == pytest.approx([1.0, 1.0, 0.0], abs=0.02)
 
 
-def test_what_xatlas_cannot_do_whole_it_does_in_parts(monkeypatch: pytest.MonkeyPatch, globe: str) -> None:
+def test_a_mesh_that_xatlas_loses_is_unwrapped_in_parts(monkeypatch: pytest.MonkeyPatch, globe: str) -> None:
     asked: list[int] = []
 
     def once_lost(items: Any, **options: Any) -> list[Any]:

@@ -57,14 +57,14 @@ def words(data: bytes, at: int, count: int) -> list[int]:
 @pytest.mark.parametrize("format", ["dds", "ktx2"])
 @pytest.mark.parametrize("dtype", TYPES)
 @pytest.mark.parametrize("size", SIZES)
-def test_what_is_written_is_read(size: tuple[int, int, int], dtype: str, format: str) -> None:
+def test_written_files_are_read_back(size: tuple[int, int, int], dtype: str, format: str) -> None:
     texels = volume(size, dtype)
     expected = texels.astype(np.float64)[..., None] / ONE[dtype]
     assert np.array_equal(read_bytes(file_of(texels, format), format), expected)
 
 
 @pytest.mark.parametrize("dtype", TYPES)
-def test_dds_is_as_microsoft_says(dtype: str) -> None:
+def test_dds_follows_microsofts_specification(dtype: str) -> None:
     texels = volume((3, 5, 7), dtype)
     data = file_of(texels, "dds")
     assert data[:4] == b"DDS "
@@ -80,7 +80,7 @@ def test_dds_is_as_microsoft_says(dtype: str) -> None:
 
 @pytest.mark.parametrize("dtype", TYPES)
 @pytest.mark.parametrize("size", SIZES)
-def test_ktx2_is_as_khronos_says(size: tuple[int, int, int], dtype: str) -> None:
+def test_ktx2_follows_khronos_specification(size: tuple[int, int, int], dtype: str) -> None:
     texels = volume(size, dtype)
     depth, height, width = size
     data = file_of(texels, "ktx2")
@@ -97,7 +97,7 @@ def test_ktx2_is_as_khronos_says(size: tuple[int, int, int], dtype: str) -> None
 
 
 @pytest.mark.parametrize("dtype", TYPES)
-def test_the_data_format_descriptor_says_what_a_texel_is(dtype: str) -> None:
+def test_the_data_format_descriptor_describes_a_texel(dtype: str) -> None:
     data = file_of(volume((3, 5, 7), dtype), "ktx2")
     bits = 8 * np.dtype(dtype).itemsize
     descriptor = data[104 : 104 + words(data, 52, 1)[0]]
@@ -130,7 +130,7 @@ def test_the_keys_are_sorted_ended_and_filled_up() -> None:
 
 @pytest.mark.parametrize("dtype", TYPES)
 @pytest.mark.parametrize("size", SIZES)
-def test_a_sheet_has_every_texel_where_its_layout_says(size: tuple[int, int, int], dtype: str) -> None:
+def test_a_sheet_follows_its_layout(size: tuple[int, int, int], dtype: str) -> None:
     pytest.importorskip("OpenEXR", reason="OpenEXR is missing: pip install 'sssgen[render]'")
     texels = volume(size, dtype)
     Path("sheet.exr").write_bytes(file_of(texels, "exr-slices"))
@@ -156,7 +156,7 @@ def test_a_sheet_is_nearly_square_and_full() -> None:
 
 
 @pytest.mark.parametrize("dtype", TYPES)
-def test_raw_is_read_by_what_the_layout_says(dtype: str) -> None:
+def test_raw_data_follows_its_layout(dtype: str) -> None:
     texels = volume((3, 5, 7), dtype)
     told = layout(texels, "raw+json")
     assert told["axes"] == ["z", "y", "x"] and told["byte_order"] == "little"
@@ -188,7 +188,7 @@ def test_memory_order_and_byte_order_leave_no_trace(format: str) -> None:
     assert file_of(big, format) == file_of(texels, format)
 
 
-def test_what_is_no_volume_is_not_written() -> None:
+def test_unsupported_volumes_are_not_written() -> None:
     with pytest.raises(SssgenError, match="did you mean 'ktx2'"):
         encoded(volume((1, 1, 1), "uint8"), "ktx")
     with pytest.raises(SssgenError, match="texels of type int32"):
@@ -226,7 +226,7 @@ def test_a_faulty_file_is_refused(format: str, at: int, bytes_: bytes, message: 
         read_bytes(data[:at] + bytes_ + data[at + len(bytes_) :], format)
 
 
-def test_what_a_header_claims_is_not_believed() -> None:
+def test_sizes_in_headers_are_checked() -> None:
     dds = bytearray(file_of(volume((1, 1, 1), "float32"), "dds"))
     ktx2 = bytearray(file_of(volume((1, 1, 1), "float32"), "ktx2"))
     for at in (12, 16, 24):
@@ -292,7 +292,7 @@ def test_four_channels_are_read() -> None:
         assert np.array_equal(read_bytes(bytes(data), format), texels.reshape(2, 3, 2, 4) / 255.0)
 
 
-def test_what_is_no_volume_file_is_said_to_be_none() -> None:
+def test_files_that_are_not_volumes_are_refused() -> None:
     with pytest.raises(SssgenError, match="cannot find the volume"):
         read("nothing.dds", "nothing.dds")
     Path("body.vdb").write_bytes(b"")

@@ -122,7 +122,7 @@ def test_ctrl_c(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such pipes")
 @pytest.mark.parametrize("arguments", [["list", "techniques"], ["show", "nothing", "--json"]])
-def test_a_reader_that_goes_away_is_no_error(arguments: list[str]) -> None:
+def test_a_closed_pipe_is_no_error(arguments: list[str]) -> None:
     reading, writing = os.pipe()
     os.close(reading)
     done = subprocess.run(
@@ -190,7 +190,7 @@ def test_new(argument: str, run: Run) -> None:
     assert (material.name, material.title) == ("wood", "Wood")
 
 
-def test_new_starts_with_what_its_comments_offer(run: Run) -> None:
+def test_the_comments_of_a_new_material_are_valid(run: Run) -> None:
     """Every line that is commented out can be used."""
     run("new", "wood")
     text = Path("wood.toml").read_text(encoding="utf-8")
@@ -239,7 +239,7 @@ def test_a_file_that_would_not_change_is_left_alone(run: Run, compiler: FakeComp
     assert Path("out/wax.wgsl.txt").stat().st_mtime_ns == before
 
 
-def test_warnings_are_beside_the_result(run: Run, compiler: FakeCompiler) -> None:
+def test_warnings_do_not_change_the_result(run: Run, compiler: FakeCompiler) -> None:
     compiler.warnings = [Diagnostic("warning", "beware", Span("wax.toml", 1, 1, 1, 2))]
     ran = run("emit", "wax.toml", "-t", "all", "-o", "out")
     assert ran.status == 0
@@ -274,7 +274,7 @@ def test_two_sources_of_one_file(run: Run, compiler: FakeCompiler) -> None:
 # Writing
 
 
-def test_a_failed_emit_leaves_the_old_files_whole(run: Run, compiler: FakeCompiler) -> None:
+def test_a_failed_emit_keeps_the_old_files(run: Run, compiler: FakeCompiler) -> None:
     run("emit", "wax.toml", "-t", "all", "-o", "out")
     old = folder_content()
     compiler.text, compiler.failing = "text 2", {"wgsl": failure("no")}
@@ -285,7 +285,7 @@ def test_a_failed_emit_leaves_the_old_files_whole(run: Run, compiler: FakeCompil
 @pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()])
 @pytest.mark.parametrize("step", ["_write_bytes", "_replace"])
 @pytest.mark.parametrize("at", [0, 1, 3])
-def test_an_interrupted_emit_leaves_every_file_whole(
+def test_an_interrupted_emit_writes_atomically(
     error: BaseException,
     step: str,
     at: int,

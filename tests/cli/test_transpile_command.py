@@ -76,7 +76,7 @@ def test_transpile_for_every_target(run: Run) -> None:
         assert "twice" in ran.out
 
 
-def test_what_was_included_is_not_overwritten(run: Run) -> None:
+def test_included_files_are_not_overwritten(run: Run) -> None:
     Path("lib.glsl").write_text("float twice(float x) { return x + x; }\n", encoding="utf-8")
     Path("own.glsl").write_text('#include "lib.glsl"\nfloat f(float x) { return twice(x); }\n', encoding="utf-8")
     ran = run("transpile", "own.glsl", "-t", "glsl-330", "-o", "lib.glsl")
@@ -85,7 +85,7 @@ def test_what_was_included_is_not_overwritten(run: Run) -> None:
     assert Path("lib.glsl").read_text(encoding="utf-8").startswith("float twice")
 
 
-def test_prune_keeps_what_is_reached(run: Run) -> None:
+def test_prune_keeps_reachable_declarations(run: Run) -> None:
     text = "uniform float far;\nconst float A = 1.0;\nstruct S { float x; };\nfloat g;\nfloat f() { return 1.0; }\n"
     Path("lib.glsl").write_text(text, encoding="utf-8")
     Path("own.glsl").write_text('#include "lib.glsl"\nfloat h(float x) { return x; }\n', encoding="utf-8")
@@ -94,14 +94,14 @@ def test_prune_keeps_what_is_reached(run: Run) -> None:
     assert not any(word in out for word in ("far", "const", "struct", "float g", "float f("))
 
 
-def test_renamed_is_what_the_language_reserves(run: Run) -> None:
+def test_reserved_names_are_renamed(run: Run) -> None:
     Path("own.glsl").write_text("float half4(float half) { return half; }\n", encoding="utf-8")
     assert "renamed: half4 → half4_ (hlsl reserves it)" in run("transpile", "own.glsl", "-t", "unity-urp").err
     assert "float half4_(float half_)" in run("transpile", "own.glsl", "-t", "unity-urp").out
     assert run("transpile", "own.glsl", "-t", "glsl-330").out.count("half4_") == 0
 
 
-def test_a_technique_has_the_name_that_its_text_has(run: Run) -> None:
+def test_a_technique_has_the_name_of_its_emitted_function(run: Run) -> None:
     text = "// Half of it.\nfloat half(float x) { return x * 0.5; }\nfloat g(float x) { return half(x); }\n"
     Path("own.glsl").write_text(text, encoding="utf-8")
     ran = run("transpile", "own.glsl", "--as", "technique", "--function", "half", "-o", ".")
@@ -111,7 +111,7 @@ def test_a_technique_has_the_name_that_its_text_has(run: Run) -> None:
     assert written.endswith("float half_(float x) {\n    return x * 0.5;\n}\n")
 
 
-def test_what_a_void_return_does_is_done_once(run: Run) -> None:
+def test_a_void_return_is_evaluated_once(run: Run) -> None:
     text = "void add(int k);\nvoid add(int k) {}\nvoid f(inout int k) { return add(k++); }\n"
     Path("own.glsl").write_text(text, encoding="utf-8")
     assert run("transpile", "own.glsl", "-t", "glsl-330").out.count("k++") == 1

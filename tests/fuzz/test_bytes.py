@@ -33,7 +33,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize("name", FRONT_ENDS)
 @examples(60, 1.0)
 @given(draw=st.data())
-def test_nearly_right(name: str, folder: Path, draw: st.DataObject) -> None:
+def test_mutated_valid_input(name: str, folder: Path, draw: st.DataObject) -> None:
     front_end = FRONT_ENDS[name]
     survives(front_end, draw.draw(mutated(front_end.seeds(), not front_end.is_text)), folder)
 

@@ -30,7 +30,7 @@ def test_a_pipe_is_not_waited_for(name: str, tmp_path: Path) -> None:
 @posix
 @pytest.mark.parametrize("name", FRONT_ENDS)
 @pytest.mark.parametrize("target", ["/dev/zero", "itself"])
-def test_links_to_devices_and_to_themselves(name: str, target: str, tmp_path: Path) -> None:
+def test_links_to_devices_and_cyclic_links(name: str, target: str, tmp_path: Path) -> None:
     path = tmp_path / f"{NAME}{FRONT_ENDS[name].suffix}"
     path.symlink_to(path if target == "itself" else target)
     assert not taken(FRONT_ENDS[name], path) or name in BESIDE
@@ -38,7 +38,7 @@ def test_links_to_devices_and_to_themselves(name: str, target: str, tmp_path: Pa
 
 @pytest.mark.skipif(os.name != "posix" or os.geteuid() == 0, reason="there is nothing that root may not read")
 @pytest.mark.parametrize("name", FRONT_ENDS)
-def test_a_file_that_may_not_be_read(name: str, tmp_path: Path) -> None:
+def test_an_unreadable_file(name: str, tmp_path: Path) -> None:
     path = tmp_path / f"{NAME}{FRONT_ENDS[name].suffix}"
     path.write_bytes(FRONT_ENDS[name].seeds()[0])
     path.chmod(0)
@@ -72,7 +72,7 @@ def test_a_chain_of_files(tmp_path: Path) -> None:
     assert f"more than {loader.MAX_INCLUDED} deep" in included(chain(tmp_path, 1000))
 
 
-def test_ways_that_double(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_paths_that_double(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each file includes the next by two names: twice as many ways with each, which are not all gone."""
     read: list[str] = []
     original = loader.read_text
@@ -81,7 +81,7 @@ def test_ways_that_double(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     assert len(read) < 30 * 30
 
 
-def test_many_times_the_same(tmp_path: Path) -> None:
+def test_many_includes_of_one_file(tmp_path: Path) -> None:
     (tmp_path / "a.sss").write_text("float f() { return 1.0; }\n", encoding="utf-8")
     (tmp_path / "many.sss").write_text('#include "a.sss"\n' * 20_000, encoding="utf-8")
     assert included(tmp_path / "many.sss") == ""
@@ -101,7 +101,7 @@ def test_cycles(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "name", [".", "..", "nothing.sss", "/dev/null", "/dev/stdin", "a\\b", "pipe.sss", "dangling.sss"]
 )
-def test_nothing_to_include(name: str, tmp_path: Path) -> None:
+def test_invalid_include_paths_are_refused(name: str, tmp_path: Path) -> None:
     if os.name == "posix":
         os.mkfifo(tmp_path / "pipe.sss")
         (tmp_path / "dangling.sss").symlink_to(tmp_path / "gone.sss")

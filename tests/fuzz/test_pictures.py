@@ -147,7 +147,7 @@ def test_wrong_pictures(title: str, tmp_path: Path) -> None:
         assert not survives(FRONT_ENDS["png"], PICTURES[title], tmp_path)
 
 
-def test_the_picture_that_the_wrong_ones_are_made_of(tmp_path: Path) -> None:
+def test_the_valid_picture_is_read(tmp_path: Path) -> None:
     assert survives(FRONT_ENDS["png"], GOOD, tmp_path)
 
 
@@ -157,7 +157,7 @@ def test_wrong_arrays(title: str, tmp_path: Path) -> None:
         assert not survives(FRONT_ENDS["npy"], ARRAYS[title], tmp_path)
 
 
-def test_the_array_that_the_wrong_ones_are_made_of(tmp_path: Path) -> None:
+def test_the_valid_array_is_read(tmp_path: Path) -> None:
     assert survives(FRONT_ENDS["npy"], npy(described("'<f4'", "(1, 1)"), b"0000"), tmp_path)
 
 
@@ -177,7 +177,7 @@ def test_wrong_meshes(title: str, tmp_path: Path) -> None:
         assert not survives(FRONT_ENDS[title.rpartition(".")[2]], MESHES[title], tmp_path)
 
 
-def test_a_mesh_at_the_end_of_the_world(tmp_path: Path) -> None:
+def test_the_largest_coordinates_do_not_overflow(tmp_path: Path) -> None:
     """The largest coordinates there may be overflow nowhere: a warning would be an error here."""
     far = np.array([[1e9, 0, 0], [-1e9, 0, 0], [0, 1e9, -1e9]])
     corners = "".join(f"v {x} {y} {z}\n" for x, y, z in far)

@@ -89,12 +89,12 @@ TAKEN = {
 
 
 @pytest.mark.parametrize("title", REFUSED)
-def test_what_is_refused(title: str) -> None:
+def test_invalid_programs_are_refused(title: str) -> None:
     assert refused(REFUSED[title]) is not None
 
 
 @pytest.mark.parametrize("title", TAKEN)
-def test_what_is_long_but_right(title: str) -> None:
+def test_long_valid_programs_are_accepted(title: str) -> None:
     error = refused(TAKEN[title])
     assert error is None, error
 
@@ -121,7 +121,7 @@ def test_files_that_include_each_other(tmp_path: Path) -> None:
     assert raised.value.diagnostics[0].span.line
 
 
-def test_files_that_double(tmp_path: Path) -> None:
+def test_files_that_double_at_each_include(tmp_path: Path) -> None:
     """Each includes the next one twice."""
     for number in range(40):
         text = f'#include "{number + 1}.glsl"\n' * 2 if number < 39 else "\n"

@@ -111,13 +111,13 @@ def test_the_sandbox_changes_no_text(tmp_path: Path) -> None:
                 assert sandboxed == sssgen.compile(material, target, form).files
 
 
-def test_what_a_template_does_to_the_target_is_its_own(tmp_path: Path) -> None:
+def test_a_template_cannot_change_the_target(tmp_path: Path) -> None:
     before = repr(registry.load("glsl-330"))
     rendered(tmp_path, "{% set _ = target.types.clear() %}{% set _ = target.inputs.update({'uv': 'x'}) %}")
     assert repr(registry.load("glsl-330")) == before
 
 
 @pytest.mark.parametrize("mark", ["\x02999999\x03", "\x02abc\x03", "\x02", "\x03\x02", "\x020\x03", "\x02٣\x03"])
-def test_marks_that_are_not_ours(mark: str, tmp_path: Path) -> None:
+def test_templates_may_contain_line_marks(mark: str, tmp_path: Path) -> None:
     """A template may hold the characters by which lines are known."""
     assert rendered(tmp_path, f"// x{mark}y\n").startswith("#version")

@@ -108,7 +108,7 @@ def test_wrong_toml(title: str, tmp_path: Path) -> None:
         assert not survives(FRONT_ENDS[name], TEXTS[title].encode("utf-8", "surrogatepass"), tmp_path)
 
 
-def test_the_writer_writes_what_was_read() -> None:
+def test_written_documents_are_read_back() -> None:
     for seed in (*FRONT_ENDS["material"].seeds(), *FRONT_ENDS["scene"].seeds()):
         document = tomllib.loads(seed.decode())
         text = "\n".join(f"{key} = {written(value)}" for key, value in document.items())

@@ -111,7 +111,7 @@ def test_vertices_and_blocks(browser: Browser) -> None:
     assert picture == pytest.approx(np.stack([x, 2 * y, 0 * x - 3, 0 * x + 4], axis=-1), abs=1e-5)
 
 
-def test_words_keep_their_bits(browser: Browser) -> None:
+def test_integer_textures_keep_their_bits(browser: Browser) -> None:
     text = PICTURE.replace("-> @location(0) vec4f", "-> @location(0) vec4u").replace(
         "return vec4f(x, place.y, 0.0, 1.0)", "return textureLoad(words, vec2i(place.xy), 0)"
     )
@@ -127,7 +127,7 @@ def test_large_picture(browser: Browser) -> None:
     assert picture[-1, -1].tolist() == [1919.5, 1439.5, 0.0, 1.0]
 
 
-def test_a_refused_text_has_its_line_and_its_origin(browser: Browser) -> None:
+def test_errors_name_the_line_and_its_origin(browser: Browser) -> None:
     broken = PICTURE.replace("place.y, 0.0,", "place.y, missing,")
     line = 1 + next(i for i, text in enumerate(broken.splitlines()) if "missing" in text)
     todo = drawing(broken)
@@ -139,7 +139,7 @@ def test_a_refused_text_has_its_line_and_its_origin(browser: Browser) -> None:
     assert_draws(browser)
 
 
-def test_what_the_device_cannot(browser: Browser) -> None:
+def test_unsupported_drawings_are_errors(browser: Browser) -> None:
     assert "exceeded maximum texture size" in refusal(browser, drawing(PICTURE, (100_000, 1)))
     assert "doesn't exist" in refusal(browser, drawing(PICTURE.replace("fn pixel", "fn other")))
     assert_draws(browser)
@@ -187,7 +187,7 @@ def short_folder() -> Iterator[Path]:
         yield Path(folder)
 
 
-def test_nothing_is_left_behind_by_a_killed_python(browser: Browser, short_folder: Path) -> None:
+def test_a_killed_python_leaves_nothing(browser: Browser, short_folder: Path) -> None:
     """The folder goes when the browser has ended."""
     script = "from sssgen.harness import backends; print(backends.get('browser').device(), flush=True); input()"
     python = subprocess.Popen(

@@ -120,7 +120,7 @@ def test_a_material_means_every_target_that_a_compiler_reads() -> None:
     assert found == {language for record in COMPILERS.values() for language in record.languages}
 
 
-def test_a_folder_takes_what_is_a_shader(run: Run) -> None:
+def test_a_folder_selects_its_shaders(run: Run) -> None:
     write({**emitted("numpy"), "sub/b.py": "x = \n", "sub/README.md": "# no shader\n", ".hidden/c.frag": "no"})
     ran = run(".")
     assert ran.status == 0
@@ -224,7 +224,7 @@ def test_a_material_leads_to_the_technique_without_files(compiler: Callable[[str
     assert result.origin(result.messages[0]).startswith("conversion/beer_lambert.sss:")
 
 
-def test_an_error_in_the_other_stage_is_that_ones(run: Run, compiler: Callable[[str], Compiler]) -> None:
+def test_an_error_in_the_other_stage_names_that_stage(run: Run, compiler: Callable[[str], Compiler]) -> None:
     compiler("gl")
     files = emitted("glsl-330")
     files["ice.glsl-330.vert"] = files["ice.glsl-330.vert"].replace("gl_Position =", "gl_Nowhere =")
@@ -248,7 +248,7 @@ def test_an_error_outside_of_the_file_has_no_line_of_it(compiler: Callable[[str]
 # Compilers that are missing or misbehave
 
 
-def test_a_missing_compiler_is_told(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_compiler_is_reported(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     write({"a.wgsl": WGSL})
     monkeypatch.setenv("SSSGEN_NODE_MODULES", "nowhere")
     ran = run("a.wgsl", "--json")
@@ -264,7 +264,7 @@ def test_a_missing_compiler_is_told(run: Run, monkeypatch: pytest.MonkeyPatch) -
     assert "error: tint is not here\n  help: " in named.err
 
 
-def test_nothing_compiled_is_no_success(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_check_without_a_compilation_fails(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     write({"a.hlsl": HLSL, "a.shader": 'Shader "A/B" { }\n'})
     monkeypatch.setenv("PATH", "nowhere")
     monkeypatch.setenv("SSSGEN_GLSLANG", "nowhere")
@@ -358,6 +358,6 @@ def test_which_headers_of_unity(run: Run, compiler: Callable[[str], Compiler]) -
     assert f"Unity's own headers in {own.resolve()}" in ran.out
 
 
-def test_arguments_that_are_the_same_are_one() -> None:
+def test_equal_arguments_are_read_once() -> None:
     write({"a.frag": FRAGMENT})
     assert len(read(["a.frag", "./a.frag", "a.frag"], ())) == 1

@@ -33,7 +33,7 @@ def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("CI", raising=False)
 
 
-def test_what_is_found() -> None:
+def test_cases_are_collected_from_folders() -> None:
     write_files(
         ".",
         {
@@ -86,7 +86,7 @@ def test_folders_with_nothing_to_check() -> None:
         assert cli.main(["ci", folder]) == cli.WRONG_INPUT
 
 
-def test_faulty_files_are_failures_and_the_rest_goes_on(capsys: pytest.CaptureFixture[str]) -> None:
+def test_faulty_files_fail_and_the_others_still_run(capsys: pytest.CaptureFixture[str]) -> None:
     write_files(".", {"all/broken.toml": "[material]\nname = \n", "all/half.eval.json": json.dumps(HALF)})
     status = cli.main(["ci", "all", "--backend", "numpy-f32", "--json", "--junit", "report.xml"])
     found = json.loads(capsys.readouterr().out)
@@ -133,7 +133,7 @@ def test_numbers(change: dict[str, Any], state: str, told: str) -> None:
 
 
 @pytest.mark.parametrize("text", ["", "{", "[]", "{}", "[" * 100000, '"a"'])
-def test_numbers_that_are_none(text: str) -> None:
+def test_invalid_numbers_fail(text: str) -> None:
     write_files(".", {"bad.eval.json": text})
     with Run() as run:
         assert run(Case("eval", "bad.eval.json")).outcome.state == "failed"
@@ -152,7 +152,7 @@ def test_a_back_end_that_dies_fails_one_case(backend: Callable[[str], Backend]) 
         assert run(case).outcome.state == "passed"
 
 
-def test_the_report_is_xml_whatever_was_said() -> None:
+def test_the_report_is_valid_xml_for_any_message() -> None:
     said = "a\x00b\x1b[31m <&> ]]> \ud800 \ufffe\nsecond line"
     results = [
         Ran(Case("compile", "odd \x01 <name>.toml"), Outcome("failed", said, said), 0.25),

@@ -107,7 +107,7 @@ def test_with_the_command() -> None:
     assert (status, failures()) == (0, []), told
 
 
-def test_a_missing_back_end_is_skipped_and_in_ci_a_failure() -> None:
+def test_a_missing_back_end_is_skipped_and_fails_in_ci() -> None:
     status, told = run_ci("scenes", "--junit", "report.xml", **NO_DRIVER)
     assert status == 1 and "nothing was checked" in told and "libgl1-mesa-dri" in told
     skipped = report()[1]["render"].find("skipped")
@@ -144,7 +144,7 @@ def test_folders_that_cannot_be_written() -> None:
     assert status == 2 and "cannot write" in told and "render" not in told
 
 
-def test_the_workflow_runs_what_is_here() -> None:
+def test_the_workflow_runs_the_commands_of_the_example() -> None:
     text = Path(".github/workflows/shaders.yml").read_text(encoding="utf-8")
     assert "python -m pytest --junitxml report.xml" in text
     assert "sssgen ci . --junit report.xml" in text

@@ -144,7 +144,7 @@ def test_calls_pass_every_kind_of_parameter() -> None:
         ("graph.hlsl", "unity-shadergraph"),
     ],
 )
-def test_unity_takes_the_samples(file: str, language: str, assert_compiles: Callable[[Source], None]) -> None:
+def test_unity_accepts_the_samples(file: str, language: str, assert_compiles: Callable[[Source], None]) -> None:
     text = (SAMPLES / file).read_text(encoding="utf-8")
     assert_compiles(Source(text, language, "fragment" if file.endswith(".shader") else "library", name=file))
 
@@ -169,7 +169,7 @@ def test_unity_takes_the_samples(file: str, language: str, assert_compiles: Call
         ("graph.hlsl", "float3(0.5, 0.5, 0.0)", "missing", "preview"),
     ],
 )  # fmt: skip
-def test_unity_refuses_what_is_wrong(
+def test_unity_refuses_wrong_samples(
     file: str, right: str, wrong: str, said: str, compiler: Callable[[str], Compiler]
 ) -> None:
     text = (SAMPLES / file).read_text(encoding="utf-8")

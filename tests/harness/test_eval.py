@@ -235,7 +235,7 @@ def test_a_missing_back_end(given: Callable[..., str]) -> None:
 # Drivers that refuse, crash and hang
 
 
-def test_a_refusal_comes_with_the_techniques_line(backend: Callable[[str], Backend]) -> None:
+def test_a_refusal_names_the_techniques_line(backend: Callable[[str], Backend]) -> None:
     """A text that the driver does not take: its message stands at the line of ours that it came from."""
     from sssgen.harness.backends import Call, Text
     from sssgen.ir.types import FLOAT
@@ -257,7 +257,7 @@ def test_a_refusal_comes_with_the_techniques_line(backend: Callable[[str], Backe
         assert first.message.startswith(f"{name}: ") and "return y;" in first.hint, name
 
 
-def test_a_back_end_that_crashes_comes_again(backend: Callable[[str], Backend]) -> None:
+def test_a_crashed_back_end_is_restarted(backend: Callable[[str], Backend]) -> None:
     backend("gl")
     gpu = isolated("gl")
     technique, wanted = subject("lobe_gdc2011"), None
@@ -272,7 +272,7 @@ def test_a_back_end_that_crashes_comes_again(backend: Callable[[str], Backend]) 
         gpu.close()
 
 
-def test_a_lost_device_is_told_and_replaced(backend: Callable[[str], Backend]) -> None:
+def test_a_lost_device_is_reported_and_replaced(backend: Callable[[str], Backend]) -> None:
     """As when a driver is reset. The browser's and the processes' own losses are in test_browser.py and here below."""
     gpu = backend("webgpu")
     technique, given = subject("beer_lambert"), {"d": [0.1, 0.2], "attenuation_distance": 0.1}
@@ -305,7 +305,7 @@ def test_no_driver_on_this_machine(tmp_path: Path) -> None:
     assert "libegl1" in done.stdout and "libEGL.so not loaded" in done.stdout
 
 
-def test_textures_are_shared_as_half_floats() -> None:
+def test_half_float_textures_are_converted_once() -> None:
     from sssgen.harness.evaluate.evaluation import half
 
     texture = Texture(np.full((2, 2, 3), 0.1))

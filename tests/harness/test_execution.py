@@ -110,7 +110,7 @@ def uniforms_of(reflection: dict[str, Any]) -> tuple[bytes, dict[str, tuple[floa
 
 
 @pytest.mark.parametrize("gpu", [name for name in TARGETS if name != "unity"], indirect=True)  # has no block
-def test_uniforms_lie_where_the_reflection_says(gpu: Backend, tmp_path: Path) -> None:
+def test_uniforms_have_the_offsets_of_the_reflection(gpu: Backend, tmp_path: Path) -> None:
     (tmp_path / "layout_probe.sss").write_text(PROBE, encoding="utf-8")
     (tmp_path / "layout.toml").write_text(MATERIAL, encoding="utf-8")
     made = sssgen.compile(tmp_path / "layout.toml", gpu.target.name)

@@ -65,7 +65,7 @@ def test_light_comes_through() -> None:
     assert lantern[8:34, 32].max() > lantern[8:34, 32].min() + 0.4  # paper, and a hoop
 
 
-def test_the_textures_are_what_their_script_makes(tmp_path: Path) -> None:
+def test_the_textures_equal_the_output_of_their_script(tmp_path: Path) -> None:
     script = runpy.run_path(str(ROOT / "examples" / "textures.py"))
     kept = set((ROOT / "examples").glob("*/textures/*"))
     for example in script["EXAMPLES"]:
@@ -88,7 +88,7 @@ def test_textures_tile() -> None:
         assert np.abs(texels[:, 0] - texels[:, -1]).mean() <= inside.max()
 
 
-def test_every_example_has_its_scene() -> None:
+def test_every_example_has_a_scene() -> None:
     for name in examples():
         assert load(ROOT / "examples" / name / "scene.toml").material == name
 
@@ -103,7 +103,7 @@ def test_the_gallery_shows_every_example() -> None:
         assert re.search(rf"^\| `{name}` \|( 0\.\d{{3}} \|){{4}}$", page, re.MULTILINE), "a difference is 1/255 or more"
 
 
-def test_the_gallery_is_as_small_as_its_pictures_allow() -> None:
+def test_the_gallery_is_small() -> None:
     files = list((ROOT / "docs" / "gallery").iterdir())
     assert sum(file.stat().st_size for file in files) < 1_500_000
     for file in files:
@@ -111,7 +111,7 @@ def test_the_gallery_is_as_small_as_its_pictures_allow() -> None:
             assert (picture.format, picture.mode, picture.size) == ("PNG", "RGB", (640, 480))
 
 
-def test_the_gallery_shows_the_scenes_as_they_are(backend: Callable[[str], Backend]) -> None:
+def test_the_gallery_is_current(backend: Callable[[str], Backend]) -> None:
     """A scene that was changed is drawn again: its small picture is the gallery's, made small."""
     backend("gl")
     for name in examples():

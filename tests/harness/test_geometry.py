@@ -78,7 +78,7 @@ def test_a_torus_along_its_axis_and_across() -> None:
 
 
 @pytest.mark.parametrize("shape", SOLIDS)
-def test_points_lie_on_the_surface_and_on_their_rays_and_nothing_stands_before_them(shape: Geometry) -> None:
+def test_points_are_the_first_hits_of_their_rays(shape: Geometry) -> None:
     local, world, directions, *_ = found(shape)
     assert np.abs(shape.distance(local)).max() < 1e-9
     assert np.abs(np.cross(world - CAMERA.position, directions)).max() < 1e-9
@@ -90,7 +90,7 @@ def test_points_lie_on_the_surface_and_on_their_rays_and_nothing_stands_before_t
 
 
 @pytest.mark.parametrize("shape", SOLIDS)
-def test_rays_that_miss_do_not_come_near(shape: Geometry) -> None:
+def test_rays_that_miss_stay_outside(shape: Geometry) -> None:
     origin, directions = CAMERA.rays(40, 30)
     missed = directions[~shape.hits(origin, directions).hit]
     inwards = shape.to_object()
@@ -190,7 +190,7 @@ def test_the_distance_of_a_union_is_right_outside_and_no_more_than_the_depth_ins
     assert -union.distance(at[3:]) < np.hypot(0.3 - 0.25, np.sqrt(0.6**2 - 0.25**2))
 
 
-def test_rotation_goes_about_x_then_y_then_z() -> None:
+def test_rotation_is_about_x_then_y_then_z() -> None:
     turned = Ball(rotation=(90.0, 90.0, 0.0)).to_world()[:3, :3] @ [0.0, 1.0, 0.0]
     assert turned == pytest.approx([1.0, 0.0, 0.0], abs=1e-12)  # y → z → x
     shape = SOLIDS[-1]

@@ -42,7 +42,7 @@ def png(
 
 
 @pytest.mark.parametrize("channels", [1, 2, 3, 4])
-def test_what_is_written_is_read(channels: int) -> None:
+def test_written_files_are_read_back(channels: int) -> None:
     picture = RAMP[..., :channels]
     write_png("out/ramp.png", picture)
     assert np.array_equal(read("out/ramp.png"), np.rint(picture * 255) / 255)
@@ -117,7 +117,7 @@ def test_a_transparent_colour_of_a_deep_png() -> None:
     assert (read("key.png") * 65535).round().tolist() == [[[1, 2, 3, 0], [1, 2, 4, 65535]]]
 
 
-def test_deep_pngs_that_are_refused() -> None:
+def test_unsupported_deep_pngs_are_refused() -> None:
     row = struct.pack(">BHHH", 0, 1, 2, 3)
     Path("woven.png").write_bytes(png(1, 1, 16, 2, row, interlaced=1))
     assert "interlaced" in wrong("woven.png")
@@ -156,7 +156,7 @@ def test_numpy_files(array: Any, expected: Any) -> None:
     assert read("map.npy").tolist() == expected
 
 
-def test_srgb_at_points_of_the_standard() -> None:
+def test_srgb_at_values_of_the_standard() -> None:
     assert encode_srgb([0.0, 0.0031308, 0.21404114, 1.0]) == pytest.approx([0.0, 0.040449936, 0.5, 1.0], abs=1e-7)
     assert encode_srgb([-1.0, 9.0]) == pytest.approx([0.0, 1.0], abs=1e-12)
 
@@ -167,7 +167,7 @@ def wrong(path: str) -> str:
     return str(caught.value)
 
 
-def test_what_is_no_picture() -> None:
+def test_files_that_are_not_pictures_are_refused() -> None:
     for name in ("none.png", "none.exr", "none.npy"):
         assert "cannot find the picture" in wrong(name)
         assert name in wrong(name)
@@ -194,7 +194,7 @@ def test_files_that_end_early(suffix: str) -> None:
             assert "part" in wrong(f"part.{suffix}")
 
 
-def test_pictures_that_are_refused() -> None:
+def test_unsupported_pictures_are_refused() -> None:
     Path("huge.png").write_bytes(png(30000, 30000, 8, 0, b""))
     assert "too large" in wrong("huge.png")
     np.save("objects.npy", np.array([[None]]), allow_pickle=True)
@@ -232,7 +232,7 @@ CAMERAS = [
 
 @pytest.mark.parametrize("camera", CAMERAS)
 @pytest.mark.parametrize("zero_to_one", [False, True])
-def test_rays_go_through_the_pixels_that_the_matrix_gives(camera: Camera, zero_to_one: bool) -> None:
+def test_rays_project_to_their_pixels(camera: Camera, zero_to_one: bool) -> None:
     width, height = 13, 8
     origin, directions = camera.rays(width, height)
     points = origin + directions * np.linspace(0.5, 40.0, width * height)[:, None]

@@ -85,7 +85,7 @@ def test_json_for_editors(hazards: str, capsys: pytest.CaptureFixture[str]) -> N
     assert "inversesqrt" in found["normalize"]["help"]
 
 
-def test_examples_may_be_left_out(hazards: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_examples_are_optional(hazards: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["lint", "--no-examples", hazards]) == 1
     told = capsys.readouterr().out
     assert "a division by 0 (not proven)" in told
@@ -93,7 +93,7 @@ def test_examples_may_be_left_out(hazards: str, capsys: pytest.CaptureFixture[st
     assert "2 proven safe, 0 may fail, 2 not proven" in told
 
 
-def test_a_material_is_judged_as_a_whole() -> None:
+def test_a_material_is_analysed_as_a_whole() -> None:
     """In a chain a quantity is in its range; alone a function takes any number."""
     alone = {(one.site.what, one.verdict) for one in lint("thickness_from_thinness")}
     assert ("thickness", MAY_FAIL) in alone
@@ -160,7 +160,7 @@ def test_names_mean_nothing_in_plain_functions(tmp_path: Path) -> None:
     assert [one.verdict for one in lint(str(path))] == [MAY_FAIL, MAY_FAIL]
 
 
-def test_what_cannot_be_drawn_has_no_example(tmp_path: Path) -> None:
+def test_parameters_that_cannot_be_sampled_have_no_example(tmp_path: Path) -> None:
     path = tmp_path / "types.glsl"
     path.write_text(
         "struct S { float a; };\nfloat f(S s) { return sqrt(s.a); }\nfloat g(float a[3]) { return 1.0 / a[1]; }\n"

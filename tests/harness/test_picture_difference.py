@@ -13,14 +13,14 @@ pytest.importorskip("flip_evaluator", reason="flip-evaluator is missing: pip ins
 GRAY = np.full((20, 30, 3), 0.5)
 
 
-def test_a_picture_is_itself() -> None:
+def test_equal_pictures_have_no_difference() -> None:
     found = compare(GRAY, GRAY)
     assert found[:4] == (0.0, 0.0, 0.0, 0.0)
     assert found.picture.shape == GRAY.shape
     assert found.picture.max() < 0.02  # magma begins almost black
 
 
-def test_black_and_white_are_far_apart() -> None:
+def test_black_and_white_differ_most() -> None:
     found = compare(np.ones((20, 30, 3)), np.zeros((20, 30, 3)))
     assert found.flip == pytest.approx(0.97, abs=0.01)
     assert found.relmse == pytest.approx(100.0)
@@ -43,11 +43,11 @@ def test_the_second_picture_is_the_reference() -> None:
     assert compare(GRAY / 2, GRAY).relmse == pytest.approx(0.0625 / (0.25 + 0.01))
 
 
-def test_values_are_cut_to_what_a_display_shows() -> None:
+def test_values_are_clamped_to_the_display_range() -> None:
     assert compare(GRAY + 9.0, np.ones_like(GRAY)).max == 0.0
 
 
-def test_what_cannot_be_compared() -> None:
+def test_incomparable_pictures_are_refused() -> None:
     with pytest.raises(SssgenError, match="different sizes: 30 × 20 and 20 × 10 pixels"):
         compare(GRAY, GRAY[:10, :20])
     with pytest.raises(SssgenError, match="the picture has the shape"):

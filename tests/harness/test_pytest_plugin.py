@@ -59,7 +59,7 @@ def test_compile(run: Run) -> None:
     done.assert_outcomes(passed=1)
 
 
-def test_a_compiler_s_error_stands_at_the_technique_s_line(run: Run, pytester: pytest.Pytester) -> None:
+def test_a_compiler_s_error_is_at_the_technique_s_line(run: Run, pytester: pytest.Pytester) -> None:
     """No material that this machine's compilers refuse is known, so the compiler is one that refuses everything."""
     refuse = pytester.path / "glslangValidator"
     refuse.write_text(
@@ -93,7 +93,7 @@ def test_it(sssgen_compile, monkeypatch):
         ("sssgen_golden('scene.toml', 'lamp', flip=2.0)", "*2.0 is not a threshold*"),
     ],
 )
-def test_wrong_input_is_told_at_the_test_s_line(run: Run, call: str, told: str) -> None:
+def test_wrong_input_is_reported_at_the_test_s_line(run: Run, call: str, told: str) -> None:
     fixture = call.partition("(")[0]
     done = run(f"def test_it({fixture}):\n    {call}\n")
     done.assert_outcomes(failed=1)
@@ -101,7 +101,7 @@ def test_wrong_input_is_told_at_the_test_s_line(run: Run, call: str, told: str) 
     done.stdout.no_fnmatch_line("*harness*.py:*")
 
 
-def test_run_gives_outputs_and_checks_them(run: Run, pytester: pytest.Pytester) -> None:
+def test_run_returns_outputs_and_checks_them(run: Run, pytester: pytest.Pytester) -> None:
     pytester.path.joinpath("loss.sss").write_text(
         "/**\n * Loses all that is small: 1 + x - 1.\n * role: conversion\n */\n"
         "transmittance loss(thickness d)\n{\n    return transmittance((16777216.0 + d) - 16777216.0);\n}\n",
@@ -141,7 +141,7 @@ def test_the_folder_of_golden_pictures_is_the_ini_file_s(run: Run, pytester: pyt
     assert (pytester.path / "kept" / "pictures" / "lamp.png").is_file()
 
 
-def test_a_picture_of_one_s_own(run: Run) -> None:
+def test_a_users_picture(run: Run) -> None:
     test = """
 import numpy as np
 
@@ -159,7 +159,7 @@ def test_almost(sssgen_render, sssgen_golden):
     run(test).assert_outcomes(passed=2)
 
 
-def test_a_picture_of_one_s_own_needs_no_back_end(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_users_picture_needs_no_back_end(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("__EGL_VENDOR_LIBRARY_FILENAMES", os.devnull)
     test = "import numpy as np\n\ndef test_it(sssgen_golden):\n    sssgen_golden(np.zeros((8, 8, 3)), 'black')\n"
     run(test, "--sssgen-update").assert_outcomes(passed=1)
@@ -218,7 +218,7 @@ def python(folder: Path, *arguments: str, **variables: str) -> str:
     return done.stdout
 
 
-def test_pytest_finds_it_and_it_costs_next_to_nothing(tmp_path: Path) -> None:
+def test_pytest_loads_the_plugin_and_it_imports_little(tmp_path: Path) -> None:
     (tmp_path / "test_it.py").write_text(
         "import sys\n\ndef test_it(request):\n"
         "    assert request.config.pluginmanager.has_plugin('sssgen')\n"

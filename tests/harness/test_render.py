@@ -74,7 +74,7 @@ def probe(tmp_path: Path) -> Callable[..., Path]:
 
 @pytest.mark.parametrize("name", DRAWING)
 @pytest.mark.parametrize("alpha_mode", ["opaque", "mask", "blend"])
-def test_everything_that_a_shell_gives(
+def test_every_input_of_a_shell(
     name: str, alpha_mode: str, backend: Callable[[str], Backend], scene: Callable[..., str], probe: Callable[..., Path]
 ) -> None:
     """Positions, frames, matrices, uniforms in their blocks, textures, lights, time and alpha: all as in NumPy."""
@@ -91,7 +91,7 @@ def test_everything_that_a_shell_gives(
 
 @pytest.mark.parametrize("name", DRAWING)
 @pytest.mark.parametrize("material", ["paper_lantern", "ice", "resin_inlay", "jelly_cubes"])
-def test_examples_as_in_numpy(
+def test_examples_equal_numpy(
     name: str, material: str, backend: Callable[[str], Backend], scene: Callable[..., str]
 ) -> None:
     surface = "" if material == "jelly_cubes" else BALL
@@ -115,7 +115,7 @@ def test_the_ball_is_where_the_camera_sees_it(backend: Callable[[str], Backend],
         assert top > 2.0 * bottom
 
 
-def test_what_comes_through_is_a_factor_on_each_lights_color(
+def test_transmitted_light_is_a_factor_on_each_lights_color(
     backend: Callable[[str], Backend], scene: Callable[..., str], tmp_path: Path
 ) -> None:
     """Though it reads no light: without one it is dark, and two give the sum. What glows is there without a lamp."""
@@ -146,7 +146,7 @@ def test_background_exposure_and_averaging(scene: Callable[..., str]) -> None:
     assert found.covered.max() == 0.0
 
 
-def test_dice_put_a_vertex_into_each_pixels_centre() -> None:
+def test_dicing_places_a_vertex_at_each_pixels_centre() -> None:
     """Projected again, a hit's vertex is the pixel's centre, to a thousandth of a pixel in float32."""
     camera, size, ball = Camera((0.3, 0.4, 3.0)), (40, 30), Ball(radius=1.0, rotation=(10.0, 20.0, 30.0), scale=0.8)
     origin, directions = camera.rays(*size)
@@ -186,7 +186,7 @@ def test_render_and_compare(
     assert "FLIP   0.00" in capsys.readouterr().out
 
 
-def test_time_moves_what_moves(scene: Callable[..., str], tmp_path: Path) -> None:
+def test_time_changes_an_animated_picture(scene: Callable[..., str], tmp_path: Path) -> None:
     path = scene('material = "jelly_cubes"\nsamples = 1\n')
     pictures = []
     for time in ("0", "1.5"):
@@ -265,7 +265,7 @@ def test_a_surface_material_needs_geometry(scene: Callable[..., str]) -> None:
         render(load(scene('material = "paper_lantern"\n')), backends.get("numpy"), (8, 8))
 
 
-def test_nan_is_told_and_not_written(scene: Callable[..., str], tmp_path: Path) -> None:
+def test_nan_is_reported_and_not_written(scene: Callable[..., str], tmp_path: Path) -> None:
     (tmp_path / "hole.sss").write_text(
         "/** A hole.\nrole: surface\n*/\n"
         "void hole(uv_position uv, out vec3 albedo) { albedo = vec3(sqrt(uv.x - 0.9)); }\n",
@@ -288,7 +288,7 @@ def test_field_of_view_grows_by_the_border() -> None:
     np.testing.assert_allclose(whole[1:-1, 1:-1], inner, atol=1e-12)
 
 
-def test_a_texture_that_the_driver_does_not_take(
+def test_a_texture_too_large_for_the_driver(
     backend: Callable[[str], Backend], scene: Callable[..., str], tmp_path: Path
 ) -> None:
     """OpenGL would draw on with nothing in it, and say nothing."""

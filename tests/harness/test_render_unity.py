@@ -107,7 +107,7 @@ def test_a_raymarched_scene(unity: UnityHLSL) -> None:
 
 
 @pytest.mark.parametrize("alpha_mode", ["opaque", "mask", "blend"])
-def test_everything_that_the_engine_gives(unity: UnityHLSL, alpha_mode: str, tmp_path: Path) -> None:
+def test_every_input_of_the_engine(unity: UnityHLSL, alpha_mode: str, tmp_path: Path) -> None:
     """Spaces, uniforms of every kind, textures, time and alpha: all as in NumPy; with our own lighting, light too."""
     (tmp_path / "probe.sss").write_text(PROBE, encoding="utf-8")
     images.write_png(tmp_path / "marks.png", np.random.default_rng(5).random((8, 16, 3)))
@@ -123,7 +123,7 @@ def test_everything_that_the_engine_gives(unity: UnityHLSL, alpha_mode: str, tmp
 
 
 @pytest.mark.parametrize("name", ["paper_lantern", "ice", "resin_inlay"])
-def test_examples_as_in_glsl(standin: UnityHLSL, name: str) -> None:
+def test_examples_equal_glsl(standin: UnityHLSL, name: str) -> None:
     shown = example(name)
     gl = drawn(shown, backends.get("gl"))
     assert apart(drawn(shown, standin), gl) < 0.3
@@ -141,7 +141,7 @@ def test_an_unlit_surface_with_a_lighting_of_its_own(unity: UnityHLSL, tmp_path:
 
 
 @pytest.mark.parametrize("lights", LIT_FROM_BEHIND.values(), ids=LIT_FROM_BEHIND)
-def test_light_that_comes_through_is_the_same(unity: UnityHLSL, lights: str) -> None:
+def test_transmitted_light_is_equal_in_glsl(unity: UnityHLSL, lights: str) -> None:
     """The translucency lobe of each kind of light, and of none twice, whatever lighting is around it."""
     ball = '[geometry]\nkind = "ball"\nrotation = [20, 30, 40]\nscale = 0.9\n'
     values = "[parameters]\npower = 2.0\nscale = 1.5\ndistortion = 0.4\n"

@@ -33,7 +33,7 @@ def wrong(text: str) -> SssgenError:
     return caught.value
 
 
-def test_a_whole_scene() -> None:
+def test_a_scene_with_every_key() -> None:
     Path("scenes").mkdir()
     Path("scenes/wax.toml").write_text("", encoding="utf-8")
     np.save("scenes/ribs.npy", np.full((2, 2), 0.25))
@@ -85,7 +85,7 @@ other = { file = "ribs.npy", wrap = "clamp" }
     assert [scene.places[key].line for key in ("material", "parameters.power", "textures.other")] == [2, 23, 27]
 
 
-def test_what_is_left_out_has_its_default() -> None:
+def test_omitted_keys_have_defaults() -> None:
     scene = read(HEAD)
     assert (scene.material, scene.size, scene.samples, scene.time) == ("paper_lantern", (640, 480), 2, 0.0)
     assert scene.geometry is None
@@ -177,7 +177,7 @@ def test_a_distance_texture_has_the_technique_s_convention() -> None:
         (HEAD + "[textures]\na = { distance_of_geometry = [8, 8, 8], box_max = [-2, 1, 1] }\n", "has no inside", 3),
     ],
 )
-def test_what_is_wrong_is_said_at_its_place(text: str, message: str, line: int) -> None:
+def test_errors_are_reported_at_their_place(text: str, message: str, line: int) -> None:
     error = wrong(text)
     assert message in str(error)
     said = next(one for one in error.diagnostics if message in f"{one.message} {one.hint}")

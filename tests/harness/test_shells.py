@@ -200,7 +200,7 @@ def test_examples_on_hostile_points(material: str, name: str, backend: Callable[
 
 
 @pytest.mark.parametrize("name", ["gl", "gl-es", "webgpu", "hlsl", "unity-urp", "numpy-f32"])
-def test_a_short_normal_is_no_sharp_mirror(name: str, backend: Callable[[str], Backend]) -> None:
+def test_a_short_normal_does_not_sharpen_the_highlight(name: str, backend: Callable[[str], Backend]) -> None:
     """A direction shorter than 1 gives a highlight of its inverse cube: a normal is whole, or 0, which is not lit."""
     machine = backend(name)
     compiled = compile(load_material("resin_inlay"), machine.target.name)
@@ -258,7 +258,7 @@ def test_no_shell_normalises_by_itself(target: str, made: Callable[[str, str], C
 
 
 @pytest.mark.parametrize("target", [target for target in all_targets() if target != "numpy"])
-def test_a_technique_may_have_the_name(target: str, tmp_path: Path) -> None:
+def test_a_technique_can_use_a_name_of_the_shell(target: str, tmp_path: Path) -> None:
     """The author's function of that name gets another one; the shell's keeps it."""
     text = UNLIT.replace("/**", "vec3 unit_vector(world_direction v) { return vec3(v) * 0.5; }\n/**", 1)
     (tmp_path / "unlit.sss").write_text(text.replace("0.5 + 0.1", "unit_vector(N) + 0.1"), encoding="utf-8")

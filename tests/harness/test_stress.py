@@ -99,7 +99,7 @@ def test_dangerous_row(row: str, name: str, machines: Callable[[str], Machines])
     assert not faults
 
 
-def test_the_table_is_whole() -> None:
+def test_the_table_is_complete() -> None:
     """Every row has a name of its own, what it asks, and inputs, or where else it is held."""
     assert len({row.name for row in dangerous.ROWS}) == len(dangerous.ROWS) == 26
     assert all(row.inputs and row.requires and (row.trials or row.elsewhere) for row in dangerous.ROWS)
@@ -186,7 +186,7 @@ def test_other_planted_faults(
     assert kind in {fault.kind for fault in faults} and all(fault.counts == counts for fault in faults)
 
 
-def test_a_jump_of_the_formula_is_told(planted: Callable[..., str]) -> None:
+def test_a_jump_of_the_formula_is_reported(planted: Callable[..., str]) -> None:
     head, _, _ = PLANTED.partition("    return")
     jumping = technique(planted(f"{head}    return transmittance(0.25 + 0.5 * step(0.7, a) + 0.0 * d * b.x);\n}}\n"))
     (found,) = jumps.of_model(jumping, exact(jumping, Settings(1)))
@@ -209,7 +209,7 @@ def test_a_jump_of_a_back_end_alone() -> None:
     assert jumps.largest(specimen, oracle, oracle)[0] < 1e-3
 
 
-def test_a_back_end_that_computes_otherwise(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_back_end_with_wrong_results(monkeypatch: pytest.MonkeyPatch) -> None:
     """A thousandth off: a failure in a row of the table, a remark on random inputs."""
     off = Machines(["numpy-f32"])
     right = off.here["numpy-f32"]
@@ -220,7 +220,7 @@ def test_a_back_end_that_computes_otherwise(monkeypatch: pytest.MonkeyPatch) -> 
     assert {("thick-matter", True), (RANDOM, False)} <= found and column.deviation == pytest.approx(1e-3, rel=0.01)
 
 
-def test_a_path_must_not_leap() -> None:
+def test_a_back_end_may_not_jump_on_a_path() -> None:
     """Against the oracle: a leap of its own excuses one of the back end a step later."""
     specimen = technique("transmittance_from_thinness")
     inputs = drawn(specimen, 10, np.random.default_rng(0))
@@ -269,7 +269,7 @@ def test_boundary_values_come_in_pairs() -> None:
     assert beyond and all((trial.inputs.values["d"] < 0.0).any() for trial in beyond)
 
 
-def test_what_is_held_to_energy() -> None:
+def test_techniques_that_are_checked_for_energy() -> None:
     held = [one.title for one in specimens([]) if any(True for _ in energy.trials(one, 0))]
     assert {"beer_lambert", "absorption_tint", "thinness_from_thickness"} <= set(held)
     assert "lobe_normalized" not in held
@@ -292,7 +292,7 @@ def test_a_row_skips_what_a_material_fixes(machines: Callable[[str], Machines]) 
     assert not told(resin, machines("numpy-f32"), Settings(100))
 
 
-def test_bits_tell_what_is_no_number() -> None:
+def test_non_finite_numbers_are_recognized_by_their_bits() -> None:
     for dtype in (np.float16, np.float32, np.float64):
         values = np.array([0.0, np.nan, np.inf, -np.inf, 1.0, np.finfo(dtype).max, np.finfo(dtype).tiny], dtype)
         assert non_finite(values).tolist() == [False, True, True, True, False, False, False]
@@ -374,7 +374,7 @@ def test_wrong_arguments(arguments: list[str], said: str, capsys: pytest.Capture
     assert said in capsys.readouterr().err
 
 
-def test_a_missing_back_end_is_said() -> None:
+def test_a_missing_back_end_is_reported() -> None:
     """The rest goes on; with CI set it is a failure, and so it is where none is here."""
     command = [sys.executable, "-m", "sssgen", "stress", "beer_lambert", "--samples", "10", "-b"]
     bare = {**os.environ, "SSSGEN_CHROMIUM": "/nowhere/chromium", "CI": ""}
@@ -401,7 +401,7 @@ def test_an_interrupted_run_leaves_no_report(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
-def test_half_precision_has_its_own_contract(capsys: pytest.CaptureFixture[str]) -> None:
+def test_half_precision_has_its_own_limits(capsys: pytest.CaptureFixture[str]) -> None:
     found = answer(capsys, "beer_lambert", "--precision", "f16", "-b", "numpy", "--samples", "1000", status=0)
     assert found["precision"] == "f16" and found["backends"][0]["name"] == "numpy-f16"
 

@@ -89,7 +89,7 @@ MISTAKES = [
 """One in each function."""
 
 
-def test_what_is_read_wrong_is_found_in_every_text() -> None:
+def test_errors_of_the_front_end_are_found_in_every_text() -> None:
     found = rows(FUNCTIONS, misread(*MISTAKES))
     assert len(found) == len(MISTAKES)
     for row in found.values():
@@ -101,7 +101,7 @@ def test_what_is_read_wrong_is_found_in_every_text() -> None:
 
 
 @pytest.mark.slow
-def test_a_hash_is_compared_where_it_can_be_and_a_wrong_one_is_not_passed() -> None:
+def test_ill_conditioned_hashes_are_compared_and_wrong_ones_fail() -> None:
     text = "float scatter(vec2 p) { return fract(sin(dot(p, vec2(12.9898, 78.233))) * 43758.5453); }"
     row = rows(text)["scatter(vec2)"]
     assert row.ok and row.comparisons["glsl"] == Comparison(0.0)
@@ -112,7 +112,7 @@ def test_a_hash_is_compared_where_it_can_be_and_a_wrong_one_is_not_passed() -> N
 
 
 @pytest.mark.slow
-def test_an_edge_in_the_inputs_is_no_excuse_for_the_rest() -> None:
+def test_an_edge_in_the_inputs_does_not_hide_other_errors() -> None:
     text = "float edge(float x) { return x < 0.7 ? 0.0 : fract(70000.0 * x); }"
     assert rows(text)["edge(float)"].ok
     assert not rows(text, misread(("0.7", "0.71")))["edge(float)"].ok
@@ -126,7 +126,7 @@ def test_lanes_without_a_result_are_counted() -> None:
     assert not row.ok and row.reason == "every result is infinity or NaN"
 
 
-def test_a_text_that_ends_nowhere_costs_its_own_row() -> None:
+def test_an_unsupported_function_fails_only_its_own_row() -> None:
     long = ", ".join(f"float x{i}" for i in range(70))
     text = f"float many({long}) {{ return x0; }}\nvoid nothing(float x) {{ }}\nfloat same(float x) {{ return x; }}"
     found = rows(text)
@@ -163,7 +163,7 @@ void main() {
 
 
 @pytest.mark.slow
-def test_a_whole_shader_is_run_function_by_function() -> None:
+def test_a_shader_is_run_function_by_function() -> None:
     found = rows(SHADER)
     assert list(found) == ["ring(vec2)", "keep(vec3)", "kept()", "main()"]
     for row in found.values():
@@ -177,7 +177,7 @@ def test_a_whole_shader_is_run_function_by_function() -> None:
     assert not any(row.ok for row in rows(SHADER, wrong).values())
 
 
-def test_old_glsl_runs_as_it_is_written() -> None:
+def test_old_glsl_runs_unchanged() -> None:
     text = """
 #ifdef GL_ES
 precision mediump float;
@@ -194,7 +194,7 @@ void main() {
 
 
 @pytest.mark.slow
-def test_what_drivers_give_roughly_is_no_excuse_for_more_than_that() -> None:
+def test_the_tolerance_of_drivers_does_not_hide_larger_errors() -> None:
     text = "float f(float x) { return asin(clamp(x, -1.0, 1.0)); }"
     row = rows(text)["f(float)"]
     assert row.ok and row.comparisons["hlsl"].limit == GOAL < row.comparisons["wgsl"].limit < 0.01
@@ -202,7 +202,7 @@ def test_what_drivers_give_roughly_is_no_excuse_for_more_than_that() -> None:
     assert not any(one.ok for one in wrong.comparisons.values())
 
 
-def test_what_a_variable_begins_with_needs_no_main() -> None:
+def test_initial_values_of_variables_need_no_main() -> None:
     text = "uniform float time;\nfloat start = time * 2.0;\nfloat next(float x) { return start + x; }"
     assert rows(text)["next(float)"].ok
 
@@ -223,7 +223,7 @@ def test_a_scene_of_shadertoy_has_its_uniforms() -> None:
     assert [row.function for row in report.rows] == ["mainImage(vec4,vec2)"] and report.ok
 
 
-def test_what_a_driver_does_not_take_is_said() -> None:
+def test_refusals_of_the_driver_are_reported() -> None:
     text = "float f(sampler2DShadow map, vec3 p) { return texture(map, p); }"
     text += "\nfloat g(float x) { return later(x); }\nfloat later(float x) { return x; }"
     found = rows(text, misread(("later(x); }\nfloat", "x; }\nfloat")))
@@ -237,7 +237,7 @@ def test_the_same_seed_gives_the_same_rows() -> None:
     assert once == again
 
 
-def test_the_report_says_it_all() -> None:
+def test_the_report_lists_every_row() -> None:
     rows = [
         Row("f(float)", 1, 100, 3, {"glsl": Comparison(0.0), "hlsl": Comparison(float("inf"), 2, "result[0]: nan")}),
         Row("g(float)", 2, reason="it has no outputs"),

@@ -106,7 +106,7 @@ def assert_inside(found: Value, result: Type, made: Array, said: object) -> None
 
 
 @pytest.mark.parametrize("row", [row for row in COMPUTED if not row.unbounded], ids=lambda row: row.name)
-def test_results_lie_in_the_range(row: Builtin) -> None:
+def test_results_are_in_the_computed_range(row: Builtin) -> None:
     """For all members of random boxes; and finite where the table says that nothing can go wrong."""
     rng = np.random.default_rng(zlib.crc32(row.name.encode()))
     checked = 0
@@ -143,7 +143,7 @@ def _hull(arg: Array) -> list[Range]:
     return [Range(float(part.min()), float(part.max())) for part in arg]
 
 
-def test_a_narrower_range_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_check_of_ranges_detects_wrong_rows(monkeypatch: pytest.MonkeyPatch) -> None:
     """The test above fails for a wrong row."""
     for name, wrong in (
         ("cos", within(0.0, 1.0)),
@@ -154,10 +154,10 @@ def test_a_narrower_range_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
         with monkeypatch.context() as patch:
             patch.setitem(BUILTINS, name, BUILTINS[name]._replace(range=wrong))
             with pytest.raises(AssertionError):
-                test_results_lie_in_the_range(BUILTINS[name])
+                test_results_are_in_the_computed_range(BUILTINS[name])
 
 
-def test_a_result_of_whole_vectors_is_not_that_of_one_component() -> None:
+def test_results_of_vectors_differ_from_those_of_components() -> None:
     """Value numbers: what differs in any component may differ in the result; so do components of one result."""
     analysis = RangeAnalysis(ir.Module(), FLOAT32)
     x, y, z = (analysis.numbers.fresh() for _ in range(3))
@@ -281,7 +281,7 @@ def assert_safe(case: Guarded, got: Array) -> int:
 
 @pytest.mark.parametrize("mode", ["auto", "all"])
 @pytest.mark.parametrize("name", ["numpy-f32", "gl", "webgpu", "hlsl"])
-def test_guarded_builtins_are_finite_and_the_same_in_the_domain(
+def test_guarded_builtins_are_finite_and_exact_in_the_domain(
     name: str, mode: str, backend: Callable[[str], Backend]
 ) -> None:
     chosen = guarded_cases()

@@ -74,7 +74,7 @@ def rounded(found: Range, format: Format = FLOAT32) -> Range:
 
 
 @pytest.mark.parametrize("name", ONE)
-def test_of_one(name: str) -> None:
+def test_intervals_of_functions_of_one_argument(name: str) -> None:
     rng = np.random.default_rng(1)
     over, of = ONE[name]
     for _ in range(ROUNDS):
@@ -84,7 +84,7 @@ def test_of_one(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", TWO)
-def test_of_two(name: str) -> None:
+def test_intervals_of_functions_of_two_arguments(name: str) -> None:
     rng = np.random.default_rng(2)
     over, of = TWO[name]
     for _ in range(ROUNDS):
@@ -111,7 +111,7 @@ def test_quotients() -> None:
     assert apart > ROUNDS / 4
 
 
-def test_clip() -> None:
+def test_intervals_of_clip() -> None:
     rng = np.random.default_rng(4)
     for _ in range(ROUNDS):
         x, y, z = (a_range(rng) for _ in range(3))

@@ -105,7 +105,7 @@ def test_row_is_complete(row: Builtin) -> None:
     assert not missing(row), f"{row.name} lacks {', '.join(missing(row))}"
 
 
-def test_what_a_row_lacks_is_named() -> None:
+def test_missing_fields_of_a_row_are_named() -> None:
     lacking = missing(Builtin("no_such", ("genF(genF)",), "Of no use."))
     assert [field.split()[0] for field in lacking] == ["range", "three", "a"]
     assert missing(BUILTINS["sin"]._replace(clause="", vectors=())) == [
@@ -116,7 +116,7 @@ def test_what_a_row_lacks_is_named() -> None:
 
 
 @pytest.mark.parametrize("row", BUILTINS.values(), ids=lambda row: row.name)
-def test_functions_of_a_row_take_the_arguments_of_every_overload(row: Builtin) -> None:
+def test_functions_of_a_row_accept_the_arguments_of_every_overload(row: Builtin) -> None:
     for params in signatures.overloads(row.name):
         for taken, also in ((row.range, 1), (row.inside, 1), (row.size, 1), (row.fold, 0)):
             if taken not in (None, min, max, math.log):  # these have no signature

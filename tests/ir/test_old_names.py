@@ -40,7 +40,7 @@ def test_an_old_name_means_a_function_with_these_arguments(old: str) -> None:
         assert old not in (new, *overloads(old))
 
 
-def test_other_names_and_other_counts_are_left_alone() -> None:
+def test_other_names_and_argument_counts_are_unchanged() -> None:
     assert new_name("texture2D", 4) is None
     assert new_name("texture2DLod", 2) is None
     assert new_name("texture", 2) is None

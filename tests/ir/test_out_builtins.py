@@ -174,7 +174,7 @@ def test_reads_that_compare(name: str, backend: Callable[[str], Backend]) -> Non
 # What there is
 
 
-def test_there_is_one_for_each_size_and_none_for_others() -> None:
+def test_each_size_has_an_out_builtin() -> None:
     for name in KINDS:
         for size in (1, 2, 3, 4):
             source = out_builtin(name, typed(name, size))

@@ -51,7 +51,7 @@ def test_text_reads_back(module: ir.Module) -> None:
 
 @settings(max_examples=100)
 @given(modules())
-def test_front_end_gives_the_module_that_was_written(module: ir.Module) -> None:
+def test_the_front_end_reproduces_a_written_module(module: ir.Module) -> None:
     checked = of_source(as_source(module))
     assert print_module(checked, spans=False) == print_module(module)
     assert exact(read_module(print_module(checked))) == exact(checked)
@@ -73,7 +73,7 @@ def test_floats_are_exact(value: float) -> None:
 
 
 @pytest.mark.parametrize("value", [float("inf"), float("-inf"), float("nan")])
-def test_what_is_not_finite_has_no_text(value: float) -> None:
+def test_non_finite_constants_have_no_text(value: float) -> None:
     constant = ir.Constant("x", FLOAT, ir.Literal(FLOAT, value, NOWHERE), NOWHERE)
     with pytest.raises(ValueError, match="has no text"):
         print_module(ir.Module(constants=(constant,)))

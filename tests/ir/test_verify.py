@@ -393,6 +393,6 @@ def test_constructors_by_hand() -> None:
         assert constructs(type_, args) == fits, f"{spell(type_)} {args}"
 
 
-def test_rules_cover_what_has_no_type_of_its_own() -> None:
+def test_only_expressions_without_an_own_type_have_rules() -> None:
     with pytest.raises(TypeError):
         inferred(number(1.0))

@@ -89,7 +89,7 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return ran
 
 
-def test_what_is_measured_is_not_measured_again(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_measurements_are_cached(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     ran = counted(monkeypatch)
     one = cube()
     first = chart.charted([one], settings())
@@ -118,7 +118,7 @@ def test_what_is_measured_is_not_measured_again(monkeypatch: pytest.MonkeyPatch,
     assert len(ran) > 20
 
 
-def test_no_light_is_followed_for_roles_that_need_none(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_roles_without_light_need_no_reference(monkeypatch: pytest.MonkeyPatch) -> None:
     ran = counted(monkeypatch)
     alone = chart.charted([cube()], settings(roles=("thickness",)))["points"]
     assert ran and not any("reference" in title for title in ran)
@@ -128,7 +128,7 @@ def test_no_light_is_followed_for_roles_that_need_none(monkeypatch: pytest.Monke
 
 
 @pytest.mark.slow
-def test_the_same_bytes_in_processes_as_here(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_results_do_not_depend_on_processes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     scenes, roles = [cube(), measured_scene.load("inlay_ball")], ("coordinates", "translucency")
     here = to_json(chart.charted(scenes, settings(roles=roles)))
     in_cache(tmp_path / "other", monkeypatch)
@@ -137,7 +137,7 @@ def test_the_same_bytes_in_processes_as_here(monkeypatch: pytest.MonkeyPatch, tm
     assert json.loads(here)["points"]
 
 
-def test_a_record_is_sound_and_says_what_was_done() -> None:
+def test_a_record_is_valid_and_complete() -> None:
     scenes = [cube(), measured_scene.load("inlay_plate")]
     record = chart.charted(scenes, settings())
     assert checked(record) == record == json.loads(to_json(record))
@@ -195,7 +195,7 @@ def test_hypervolumes_are_of_ours_and_of_the_baselines() -> None:
     assert found["ours"] > found["baselines"] > 0.0
 
 
-def test_dearer_settings_go_on_only_where_they_pay(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_costlier_settings_are_tried_while_the_error_falls(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.undo()  # the library's own list
     chains = {one.label: list(one.techniques) for one in candidates.thickness()}
     errors = {"march_light, 1 steps": 0.5, "march_light, 2 steps": 0.46, "march_light, 4 steps": 0.3,
@@ -208,7 +208,7 @@ def test_dearer_settings_go_on_only_where_they_pay(monkeypatch: pytest.MonkeyPat
     assert labels == ["march_light, 1 steps", "march_light, 4 steps", "march_light, 16 steps", "constant_thickness"]
 
 
-def test_what_fails_is_named() -> None:
+def test_failures_are_named() -> None:
     with pytest.raises(SssgenError) as caught:
         chart._results([executor.Item("executor_items:fail", ("said",), "fit this")], settings())
     assert "fit this: the scene has no light" in str(caught.value)
@@ -222,7 +222,7 @@ def test_what_fails_is_named() -> None:
     assert isinstance(executor.run([executor.Item("executor_items:fail", ("x",), "that")], processes=0)[0], Failure)
 
 
-def test_two_scenes_that_say_the_same_are_measured_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_equal_scenes_are_measured_once(monkeypatch: pytest.MonkeyPatch) -> None:
     ran = counted(monkeypatch)
     plate = measured_scene.load("inlay_plate")
     chart.charted([plate, replace(plate)], settings())
@@ -275,7 +275,7 @@ def test_by_gpu_times_are_the_costs() -> None:
     assert (found["cost"], found["cost_unit"]) == ("gpu", "ms at 1080p")
 
 
-def test_a_scene_of_ones_own_is_timed(tmp_path: Path, backend: Callable[[str], Backend]) -> None:
+def test_a_users_scene_is_timed(tmp_path: Path, backend: Callable[[str], Backend]) -> None:
     backend("gl")
     text = '[inlay]\ndepth = 0.1\n[geometry]\nkind = "box"\n[camera]\nposition = [0.5, 1.0, 3.0]\n'
     (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
@@ -295,7 +295,7 @@ def test_a_scene_of_ones_own_is_timed(tmp_path: Path, backend: Callable[[str], B
 # --- the commands ---
 
 
-def test_the_chart_command_writes_its_files_and_says_which(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_chart_command_writes_and_lists_its_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("matplotlib")
     wanted = ["chart", "inlay_plate", "--samples", "8", "--processes", "1", "-o", str(tmp_path / "out")]
     assert main([*wanted, "--json"]) == 0
@@ -336,7 +336,7 @@ def test_the_fit_command_shows_parameters(tmp_path: Path, capsys: pytest.Capture
         (["fit", "cueb"], "did you mean 'cube'"),
     ],
 )
-def test_errors_are_said_to_people(
+def test_errors_have_readable_messages(
     arguments: list[str],
     message: str,
     tmp_path: Path,
@@ -351,7 +351,7 @@ def test_errors_are_said_to_people(
     assert message in said and "Traceback" not in said
 
 
-def test_materials_bring_the_thickness_that_they_are_made_of(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_materials_select_their_thickness_technique(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[Settings] = []
 
     def charted(_: Any, given: Settings) -> dict[str, Any]:

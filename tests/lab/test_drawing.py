@@ -82,7 +82,7 @@ NUMBERS = st.sampled_from([0.0, 1e-7, 0.1, 0.25, 1.0, 3.0, 40.0])
 
 
 @given(st.lists(st.tuples(NUMBERS, NUMBERS, st.booleans()), max_size=12))
-def test_front_is_what_nothing_beats(given_points: list[tuple[float, float, bool]]) -> None:
+def test_the_front_has_the_points_that_none_dominates(given_points: list[tuple[float, float, bool]]) -> None:
     points = [point(cost, error, failed="NaN" if failed else "") for cost, error, failed in given_points]
 
     def beaten(one: dict[str, Any]) -> bool:
@@ -174,7 +174,7 @@ def test_medians() -> None:
     assert other["failed"] == "fails on 2 of 3 scenes" and not other["front"]
 
 
-def test_numbers_for_people() -> None:
+def test_numbers_are_formatted() -> None:
     values = (None, 0.0, 12.345, 123456.7, 2.5e-6)
     assert [number(value) for value in values] == ["–", "0", "12.3", "123,457", "2.5e-06"]
 

@@ -52,7 +52,7 @@ def as_bytes(results: list[Any]) -> list[bytes]:
     return [encoded(result) for result in results]
 
 
-def test_same_bytes_in_processes_as_here(tmp_path: Path) -> None:
+def test_results_do_not_depend_on_processes(tmp_path: Path) -> None:
     todo = items(tmp_path, 6)
     here = run(todo, processes=0, store=Store(""))
     assert [result.name for result in here] == [f"item {number}" for number in range(6)]
@@ -90,7 +90,7 @@ def test_duplicates_run_once(tmp_path: Path) -> None:
     assert as_bytes(results[:3]) == as_bytes(results[3:])
 
 
-def test_what_is_kept_is_not_made_again(tmp_path: Path) -> None:
+def test_stored_results_are_not_recomputed(tmp_path: Path) -> None:
     store, noted = Store(str(tmp_path / "store")), tmp_path / "runs"
     noted.mkdir()
     first = run(items(noted, 3), processes=0, store=store)
@@ -101,7 +101,7 @@ def test_what_is_kept_is_not_made_again(tmp_path: Path) -> None:
     assert told == [(number + 1, 4, f"item {number}") for number in range(4)]
 
 
-def test_damaged_entries_are_made_again(tmp_path: Path) -> None:
+def test_damaged_entries_are_recomputed(tmp_path: Path) -> None:
     store, noted = Store(str(tmp_path / "store")), tmp_path / "runs"
     noted.mkdir()
     first = run(items(noted, 2), processes=0, store=store)
@@ -119,7 +119,7 @@ def test_no_cache_folder_is_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("processes", [0, 2])
-def test_a_failure_stands_for_its_item_alone(processes: int) -> None:
+def test_a_failure_concerns_its_item_alone(processes: int) -> None:
     todo = [Item("executor_items:fail", (how,), how) for how in ("said", "raised", "exit")]
     todo += [Item("executor_items:missing", (), "missing"), Item("no_such_module:name", (), "module")]
     todo += [Item("executor_items:echo", (1,), "good")]
@@ -140,7 +140,7 @@ def test_a_killed_process_costs_nothing(tmp_path: Path) -> None:
     assert runs(tmp_path) == [0, 0, 1, 1, 2, 2, 3, 4, 5]
 
 
-def test_what_kills_every_process_is_named(tmp_path: Path) -> None:
+def test_an_item_that_kills_every_process_is_named(tmp_path: Path) -> None:
     deadly, good = Item("executor_items:die", (str(tmp_path), 7), "the seventh"), Item("executor_items:echo", (1,))
     assert run([deadly, good], processes=2, store=Store("")) == [
         Failure("the seventh", "its process crashed (SIGKILL), 3 times in a row"),
@@ -149,7 +149,7 @@ def test_what_kills_every_process_is_named(tmp_path: Path) -> None:
     assert runs(tmp_path) == [7, 7, 7]
 
 
-def test_interrupt_here_keeps_what_is_done() -> None:
+def test_an_interrupt_without_processes_keeps_finished_items() -> None:
     store = Store("")
     with pytest.raises(KeyboardInterrupt):
         run([Item("executor_items:interrupted", (number,)) for number in range(5)], processes=0, store=store)
@@ -157,7 +157,7 @@ def test_interrupt_here_keeps_what_is_done() -> None:
 
 
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
-def test_an_interrupted_run_goes_on(tmp_path: Path, how: int) -> None:
+def test_an_interrupted_run_continues(tmp_path: Path, how: int) -> None:
     noted, folder = tmp_path / "runs", tmp_path / "store"
     noted.mkdir()
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(TESTS / "tools"), *filter(None, sys.path)])}
@@ -181,7 +181,7 @@ def test_an_interrupted_run_goes_on(tmp_path: Path, how: int) -> None:
     assert as_bytes(results) == as_bytes(run(todo, processes=0, store=Store(str(folder))))
 
 
-def test_bar_is_silent_where_there_is_no_terminal(capfd: pytest.CaptureFixture[str]) -> None:
+def test_the_bar_is_silent_without_a_terminal(capfd: pytest.CaptureFixture[str]) -> None:
     with ProgressBar() as told:
         run([Item("executor_items:echo", (1,))], processes=0, store=Store(""), progress=told)
     assert capfd.readouterr() == ("", "")
@@ -222,7 +222,7 @@ def dask() -> Iterator[Any]:
 
 
 @pytest.mark.filterwarnings("default")
-def test_same_bytes_on_dask_though_a_worker_dies(tmp_path: Path, dask: Any) -> None:
+def test_results_on_dask_survive_a_dead_worker(tmp_path: Path, dask: Any) -> None:
     local, remote = tmp_path / "local", tmp_path / "remote"
     for folder in (local, remote):
         folder.mkdir()
@@ -251,7 +251,7 @@ def test_same_bytes_on_dask_though_a_worker_dies(tmp_path: Path, dask: Any) -> N
 
 
 @pytest.mark.filterwarnings("default")
-def test_what_kills_every_dask_worker_is_named(tmp_path: Path, dask: Any) -> None:
+def test_an_item_that_kills_every_dask_worker_is_named(tmp_path: Path, dask: Any) -> None:
     deadly = Item("executor_items:die", (str(tmp_path), 7), "the seventh")
     failed, good = run([deadly, Item("executor_items:echo", (1,))], dask.scheduler_address, store=Store(""))
     assert good == (1, 1) and failed.name == "the seventh" and "KilledWorker" in failed.message
@@ -260,7 +260,7 @@ def test_what_kills_every_dask_worker_is_named(tmp_path: Path, dask: Any) -> Non
 
 @pytest.mark.filterwarnings("default")
 @pytest.mark.parametrize("where", ["processes", "dask"])
-def test_stress_is_the_same_when_it_is_shared_out(
+def test_distributed_stress_gives_the_same_results(
     where: str, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     scheduler = request.getfixturevalue("dask").scheduler_address if where == "dask" else ""
@@ -303,7 +303,7 @@ def test_the_command_shares_out(capsys: pytest.CaptureFixture[str]) -> None:
     assert "'0' is not a number of processes" in capsys.readouterr().err
 
 
-def test_pictures_apart_are_the_same_when_they_are_shared_out() -> None:
+def test_distributed_rendering_gives_the_same_differences() -> None:
     todo = [Item("sssgen.lab.jobs.render_items:apart", ("resin_inlay", ("numpy-f32", "numpy"), (32, 24), 1))]
     [[single, same]] = here = run(todo, processes=0, store=Store(""))
     assert 0.0 < single.worst < 1.0 and single.beyond == 0 and same == (0.0, 0)

@@ -61,7 +61,7 @@ def synthetic(view: View, made: Chain, given: Mapping[str, Any], scale: Array) -
         (("lobe_henyey_greenstein",), {"anisotropy": -0.3}, [0.4, 0.9, 1.4]),
     ],
 )
-def test_it_finds_the_parameters_that_made_the_light(
+def test_the_fit_recovers_the_parameters_of_synthetic_light(
     names: tuple[str, ...], given: dict[str, float], scale: list[float], training: tuple[View, ...], tmp_path: Path
 ) -> None:
     one = candidate("exact_thickness", "beer_lambert", *names, role="translucency")
@@ -80,12 +80,12 @@ def test_it_finds_the_parameters_that_made_the_light(
     assert channels / channels[0] == pytest.approx(np.array(scale) / scale[0], rel=2e-3)
 
 
-def test_the_same_twice_is_the_same(training: tuple[View, ...]) -> None:
+def test_the_fit_is_deterministic(training: tuple[View, ...]) -> None:
     one = candidate("exact_thickness", "beer_lambert", "lobe_normalized", role="translucency")
     assert measure.fitted(one, training) == measure.fitted(one, training)
 
 
-def test_neither_scale_nor_matte_is_below_nought(training: tuple[View, ...], tmp_path: Path) -> None:
+def test_scale_and_matte_are_not_negative(training: tuple[View, ...], tmp_path: Path) -> None:
     # light that the lobe would have to take away: the best there is, is none of it
     view = training[0]
     one = candidate("exact_thickness", "beer_lambert", "lobe_gdc2011")
@@ -140,7 +140,7 @@ def test_the_scale_is_no_more_than_its_parameter_can_be(training: tuple[View, ..
     assert found.scale == pytest.approx((2.0, 2.0, 2.0))
 
 
-def test_a_chain_that_is_left_out_is_fitted_by_what_the_front_reflects(training: tuple[View, ...]) -> None:
+def test_an_empty_chain_is_fitted_by_front_reflection(training: tuple[View, ...]) -> None:
     found = measure.fitted(Candidate("material", "none", "none", (), ()), training)
     assert found.parameters == {} and found.scale == (0.0, 0.0, 0.0)
     assert [round(matte, 1) for matte in found.matte] != [0.0, 0.0, 0.0]
@@ -164,7 +164,7 @@ def picked(one: MeasuredScene, point: Mapping[str, Any]) -> Pick:
 
 
 @pytest.mark.parametrize("names", CHAINS.values(), ids=CHAINS)
-def test_the_emitted_material_gives_the_light_that_was_measured(
+def test_the_emitted_material_gives_the_measured_light(
     names: tuple[str, ...], cube: View, training: tuple[View, ...], tmp_path: Path
 ) -> None:
     settings = (("steps", 3),) if names[0] == "march_light" else ()
@@ -206,9 +206,7 @@ def test_the_emitted_material_compiles_for_every_target(
         assert compile(material, target).files, target
 
 
-def test_every_technique_of_light_has_a_parameter_that_takes_the_scale(
-    training: tuple[View, ...], tmp_path: Path
-) -> None:
+def test_every_translucency_technique_has_a_scale_parameter(training: tuple[View, ...], tmp_path: Path) -> None:
     # else what is emitted could not be as bright as what was measured
     for one in candidates.translucency():
         if one.techniques and not candidates.is_published(candidates.load(one.name)):
@@ -219,7 +217,7 @@ def test_every_technique_of_light_has_a_parameter_that_takes_the_scale(
             assert fit.free_parameters(made, names, asked)[1] is not None, one.label
 
 
-def test_of_an_inlay_the_slide_has_the_scenes_numbers(tmp_path: Path) -> None:
+def test_the_parallax_of_an_inlay_has_the_scenes_parameters(tmp_path: Path) -> None:
     one = small("inlay_plate")
     asked = [each for each in candidates.coordinates() if each.name == "parallax_refracted"]
     plate = View("plate", replace(references.plate(one), size=SIZE))

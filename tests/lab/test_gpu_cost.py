@@ -85,12 +85,12 @@ def test_the_floor_is_subtracted(counted: None) -> None:
     assert found.net("bare") == found.raw("bare") == (500.0, 500.0, 500.0)
 
 
-def test_net_is_of_one_evaluation(counted: None) -> None:
+def test_the_net_time_is_per_evaluation(counted: None) -> None:
     found = measured(Program("ten", LOOP, {"count": 1000}, evaluations=10))
     assert found.net("ten").median == 100.0 and found.raw("ten").median == 1000.0
 
 
-def test_the_record_says_what_has_drawn(opengl: Backend) -> None:
+def test_the_record_names_the_device(opengl: Backend) -> None:
     found = measured(Program("one", LOOP, {"count": 10}, floor=FLOOR))
     record = found.record()
     assert record["device"] in opengl.device() and record["size"] == [128, 72] and record["rounds"] == 5
@@ -156,7 +156,7 @@ def test_a_material_has_its_scene_s_colours(opengl: Backend) -> None:
     np.testing.assert_allclose(made.mean(axis=(0, 1)), mean, rtol=0.25)
 
 
-def test_a_material_with_its_own_camera_draws_its_picture(opengl: Backend) -> None:
+def test_a_material_with_its_own_camera_is_rendered(opengl: Backend) -> None:
     shown = dataclasses.replace(render.with_samples(scene_loading.load("jelly_cubes"), 1), size=SIZE)
     points = gpu_programs.surface_points(shown, SIZE)
     made = gpu_cost.picture(gpu_programs.of_material("cubes", shown.material, shown, points), SIZE)[::-1, :, :3]
@@ -179,7 +179,7 @@ def test_a_camera_that_sees_nothing() -> None:
         gpu_programs.surface_points(dataclasses.replace(shown, camera=away), SIZE)
 
 
-def test_by_hand_is_the_same(benchmark: ModuleType) -> None:
+def test_emitted_techniques_equal_those_written_by_hand(benchmark: ModuleType) -> None:
     """What is compared must compute the same: every technique that benchmarks/by_hand has."""
     pairs = benchmark.techniques(gpu_programs.ball_points(SIZE), 1)
     assert len(pairs) > 40
@@ -189,7 +189,7 @@ def test_by_hand_is_the_same(benchmark: ModuleType) -> None:
         assert np.abs(emitted - by_hand).max() < 1e-3 * scale, one.name
 
 
-def test_seed_0_as_published_and_as_emitted(benchmark: ModuleType) -> None:
+def test_the_published_seed_0_equals_the_emitted_one(benchmark: ModuleType) -> None:
     size = (320, 180)
     pictures = [
         gpu_cost.picture(make(size[0] / size[1]), size)[::-1, :, :3]

@@ -93,7 +93,7 @@ def test_a_slab_has_its_thickness_over_the_cosine() -> None:
     )
 
 
-def test_a_box_by_its_slabs() -> None:
+def test_the_thickness_of_a_box() -> None:
     box = Box(size=(1.0, 2.0, 4.0))
     assert [one(box, -3.0 * axis, axis) for axis in np.eye(3)] == pytest.approx([1.0, 2.0, 4.0])
     assert one(box, (-2.0, -2.0, 0.0), (1.0, 1.0, 0.0)) == pytest.approx(np.sqrt(2.0))
@@ -146,7 +146,7 @@ def test_a_capsule() -> None:
     assert one(Capsule(0.3, 0.0), (0.1, -4.0, 0.0), (0.0, 1.0, 0.0)) == pytest.approx(2.0 * np.sqrt(0.08))  # a ball
 
 
-def test_a_union_counts_what_overlaps_once_and_gaps_not() -> None:
+def test_a_union_counts_overlaps_once_and_no_gaps() -> None:
     apart = Union((Ball(0.5, position=(-1.0, 0.0, 0.0)), Ball(0.25, position=(1.0, 0.0, 0.0))))
     assert one(apart, (-5.0, 0.0, 0.0), (1.0, 0.0, 0.0)) == pytest.approx(1.5)
     assert one(apart, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)) == pytest.approx(0.5)  # what lies behind does not count
@@ -159,7 +159,7 @@ def test_a_union_counts_what_overlaps_once_and_gaps_not() -> None:
     assert one(nested, (0.0, 9.0, -9.0), Z) == pytest.approx(3.0)
 
 
-def test_merged_intervals_are_apart_in_order_and_cover_the_same() -> None:
+def test_merged_intervals_are_disjoint_sorted_and_cover_the_same() -> None:
     generator = np.random.default_rng(7)
     ends = np.sort(generator.uniform(0.0, 1.0, (300, 5, 2)), axis=2)
     ends[:, 2] = 0.0  # an empty one
@@ -175,7 +175,7 @@ def test_merged_intervals_are_apart_in_order_and_cover_the_same() -> None:
 
 
 @pytest.mark.parametrize("shape", BODIES, ids=repr)
-def test_turned_scaled_and_moved_it_is_the_same_times_the_scale(shape: Geometry) -> None:
+def test_thickness_follows_rotation_scale_and_translation(shape: Geometry) -> None:
     origins, ways = rays(400, 1.0)
     placed = replace(shape, **ASKEW)
     matrix = placed.to_world()
@@ -186,7 +186,7 @@ def test_turned_scaled_and_moved_it_is_the_same_times_the_scale(shape: Geometry)
 
 
 @pytest.mark.parametrize("shape", [*BODIES, *(replace(body, **ASKEW) for body in BODIES)], ids=repr)
-def test_as_much_as_samples_of_the_distance_find(shape: Geometry) -> None:
+def test_thickness_equals_that_of_distance_samples(shape: Geometry) -> None:
     origins, ways = through(shape, 150)
     reach = 8.0 * shape.scale
     exact = thickness(shape, origins, ways)
@@ -199,7 +199,7 @@ def test_as_much_as_samples_of_the_distance_find(shape: Geometry) -> None:
     assert np.abs(rest - sampled(shape, starts, onwards, reach, 4000)).max() < 6.0 * reach / 4000
 
 
-def test_another_part_never_makes_a_union_thinner() -> None:
+def test_another_part_never_reduces_thickness() -> None:
     origins, ways = rays(2000, 1.5)
     parts: tuple[Geometry, ...] = ()
     before = np.zeros(len(origins))
@@ -287,7 +287,7 @@ def test_a_mesh_of_a_ball_is_nearly_the_ball(tmp_path: Path) -> None:
     assert (thickness(ball, origins, ways)[exact == 0.0] == 0.0).all()
 
 
-def test_a_mesh_with_a_part_inside_another_counts_it_once(tmp_path: Path) -> None:
+def test_nested_parts_of_a_mesh_count_once(tmp_path: Path) -> None:
     trimesh = pytest.importorskip("trimesh")
     pytest.importorskip("embreex")
     whole, part = trimesh.creation.box((2.0, 2.0, 2.0)), trimesh.creation.box((2.0, 0.5, 0.5))

@@ -51,7 +51,7 @@ pytestmark = pytest.mark.usefixtures("no_cache")
 # --- chains ---
 
 
-def test_a_chain_computes_its_formula_with_what_it_was_given(tmp_path: Path) -> None:
+def test_a_chain_computes_its_formula(tmp_path: Path) -> None:
     names = (("thickness", "constant_thickness"), ("thickness", "beer_lambert"), ("translucency", "lobe_gdc2011"))
     made = Chain(material_of([Stage(*one) for one in names], str(tmp_path)))
     at = points(small("torus"))
@@ -75,7 +75,7 @@ def test_a_chain_computes_its_formula_with_what_it_was_given(tmp_path: Path) -> 
     assert found == pytest.approx(color[:, None] * (1.5 * lobe + 0.1) * np.exp(-lengths / 0.7), rel=1e-9)
 
 
-def test_lights_one_by_one_and_what_shines_by_itself_once(tmp_path: Path) -> None:
+def test_separate_lights_sum_and_emission_counts_once(tmp_path: Path) -> None:
     text = "/** Shines.\nrole: surface\n*/\nvoid lamp(out vec3 emission)\n{\n    emission = vec3(0.25, 0.0, 0.0);\n}\n"
     (tmp_path / "lamp.sss").write_text(text, encoding="utf-8")
     made = Chain(material_of([Stage("surface", "lamp.sss"), Stage("translucency", "wrap_lighting")], str(tmp_path)))
@@ -90,7 +90,7 @@ def test_lights_one_by_one_and_what_shines_by_itself_once(tmp_path: Path) -> Non
         assert found[0] == pytest.approx(wrapped + more, abs=1e-12)
 
 
-def test_the_text_of_a_chain_says_what_its_stages_do() -> None:
+def test_the_text_of_a_chain_lists_its_stages() -> None:
     stages = [
         Stage("thickness", "march_light", (("steps", 5), ("reach", 1e-5)), ("steps",), (("sdf", "a.sss:b"),)),
         Stage("surface", "base_color", (("tint", [1.0, 0.5, 1e7, np.float64(1.0)]), ("on", True), ("a", 'b"\n'))),
@@ -140,12 +140,12 @@ def thickness_error(one: MeasuredScene, *names: str, **settings: int) -> float:
     return float(point["error"]["value"])
 
 
-def test_given_the_exact_length_the_error_is_nought() -> None:
+def test_the_exact_length_has_no_error() -> None:
     for name in ("cube", "bracket", "torus"):
         assert thickness_error(small(name), "exact_thickness") < 1e-9
 
 
-def test_a_depth_map_measures_convex_bodies_and_takes_gaps_for_matter() -> None:
+def test_a_depth_map_counts_gaps_as_matter() -> None:
     # its own bias is a hundredth, and its texels are a two-hundredth of the body
     assert thickness_error(small("cube"), "depth_map_thickness") < 0.1
     assert thickness_error(small("bracket"), "depth_map_thickness") > 0.25
@@ -158,7 +158,7 @@ def test_light_that_meets_no_matter_asks_for_no_thickness() -> None:
         problem.of_thickness(lit)
 
 
-def test_lights_side_by_side_give_what_each_gives_alone(cube: View, tmp_path: Path) -> None:
+def test_lights_in_one_call_equal_separate_calls(cube: View, tmp_path: Path) -> None:
     one = small("capsule")
     asked = problem.of_light(one, made_up(one).seen)
     assert asked is not None and len(asked.parts) == 2
@@ -176,7 +176,7 @@ def test_lights_side_by_side_give_what_each_gives_alone(cube: View, tmp_path: Pa
     assert few.values(made, {"power": 2.0}) == pytest.approx(together[:, chosen])
 
 
-def test_of_all_lights_together_the_colours_are_added() -> None:
+def test_colours_of_all_lights_are_added() -> None:
     one = small("capsule")
     view = made_up(one)
     each, whole = (problem.of_material(one, view.seen, summed) for summed in (False, True))
@@ -188,7 +188,7 @@ def test_of_all_lights_together_the_colours_are_added() -> None:
     assert whole.noise / whole.gain == pytest.approx(1e-3 * np.sqrt((colors**2).sum(axis=1)) * np.ones((3, count)))
 
 
-def test_what_stands_in_its_own_shadow_gets_no_light_from_the_front() -> None:
+def test_shadowed_points_get_no_light_from_the_front() -> None:
     body_of = Union((Box(size=(2.0, 0.2, 2.0)), Ball(0.4, position=(0.0, 0.9, 0.0))))  # a ball over a board
     one = replace(small("bracket"), geometry=body_of, lights=(Light(None, (0.0, 1.0, 0.0), (1.0, 1.0, 1.0)),))
     one = replace(one, camera=Camera((0.0, 2.5, 3.0), (0.0, 0.0, 0.0), 40.0), size=(24, 24))
@@ -209,7 +209,7 @@ def test_what_stands_in_its_own_shadow_gets_no_light_from_the_front() -> None:
 # --- errors, and what is known beforehand ---
 
 
-def test_a_chain_that_gives_no_number_has_failed(cube: View, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_chain_with_nan_has_failed(cube: View, monkeypatch: pytest.MonkeyPatch) -> None:
     one = candidate("wrap_lighting")
     values = Problem.values
 
@@ -223,7 +223,7 @@ def test_a_chain_that_gives_no_number_has_failed(cube: View, monkeypatch: pytest
     assert point["failed"] == f"4 of {points(cube.scene).count} points are not finite"
 
 
-def test_seed_3_as_published_is_ambient_light_times_transmittance(
+def test_the_published_seed_3_is_ambient_light_times_transmittance(
     cube: View, training: tuple[View, ...], tmp_path: Path
 ) -> None:
     (one,) = (each for each in candidates.materials([]) if each.name == "Unity ice")
@@ -281,7 +281,7 @@ def test_seed_4_corrected_is_exact_on_a_plane_and_nearly_on_a_ball() -> None:
 
 
 @pytest.mark.slow
-def test_light_transport_ranks_the_techniques_as_it_must() -> None:
+def test_light_transport_ranks_the_techniques() -> None:
     # real references: the exact thickness with a lobe comes nearer than nothing, and than the Unity ice lobe
     pytest.importorskip("mitsuba")
     cube = small("cube")
@@ -314,7 +314,7 @@ def test_a_view_keeps_the_size_and_the_lanes_of_its_pixels() -> None:
 # --- what cannot be measured is said ---
 
 
-def test_a_camera_that_looks_away_an_inlay_too_deep_and_light_that_never_comes_through() -> None:
+def test_scenes_without_visible_light_are_refused() -> None:
     plate = small("inlay_plate")
     with pytest.raises(SssgenError, match="the camera of 'inlay_plate' sees nothing of its body"):
         points(replace(plate, camera=Camera((0.0, 0.0, 3.0), (0.0, 0.0, 6.0), 30.0)))
@@ -331,7 +331,7 @@ def test_a_camera_that_looks_away_an_inlay_too_deep_and_light_that_never_comes_t
         measure.measured(through, Fitted({}, (1.0,) * 3, (0.0,) * 3, 0.0), [dark])
 
 
-def test_a_rest_fitted_after_its_first_technique_errs_as_the_whole_chain_does(training: tuple[View, ...]) -> None:
+def test_fitting_in_two_steps_equals_fitting_the_chain(training: tuple[View, ...]) -> None:
     whole = candidate("march_light", "beer_lambert", "lobe_exp2", settings=(("steps", 4),))
     before = {"reach": (0.8,)}
     found = measure.fitted(whole, training[:2], before)
@@ -348,7 +348,7 @@ def test_a_rest_fitted_after_its_first_technique_errs_as_the_whole_chain_does(tr
     assert np.sqrt(np.mean(squares)) == pytest.approx(found.error, rel=1e-6)
 
 
-def test_what_only_shows_a_value_costs_nothing_and_steps_cost_what_they_are(tmp_path: Path) -> None:
+def test_cost_counts_steps_and_no_output(tmp_path: Path) -> None:
     one = View("own", small("cube"))
 
     def cost(*names: str, **counts: int) -> float:

@@ -38,14 +38,14 @@ def diffuse_reflectance(albedo: float, ior: float) -> float:
 
 
 @pytest.mark.parametrize("name", JENSEN)
-def test_coefficients_give_the_reflectance_published_beside_them(name: str) -> None:
+def test_coefficients_give_the_published_reflectance(name: str) -> None:
     medium = preset(name)
     got = [diffuse_reflectance(albedo, medium.ior) for albedo in medium.albedo]
     # the coefficients are rounded to two figures or so, the reflectances to two places
     assert np.allclose(got, REFLECTANCES[name], atol=0.03), (got, REFLECTANCES[name])
 
 
-def test_every_medium_says_where_it_is_from() -> None:
+def test_every_medium_has_a_source() -> None:
     for name, found in media().items():
         assert len(found.source) > 20, name
         assert found.measured == (name in JENSEN), name
@@ -58,7 +58,7 @@ def test_absorption_of_ice_follows_from_its_refractive_index() -> None:
     assert np.allclose(preset("ice").absorption, 4.0 * np.pi * index / wavelength_mm, rtol=1e-3)
 
 
-def test_a_world_unit_has_as_many_millimetres_as_one_says() -> None:
+def test_coefficients_scale_with_the_world_unit() -> None:
     one, ten = preset("marble"), preset("marble", unit_mm=10.0)
     assert np.allclose(np.multiply(one.absorption, 10.0), ten.absorption)
     assert np.allclose(np.multiply(one.scattering, 10.0), ten.scattering)
@@ -78,7 +78,7 @@ def test_a_matched_medium_differs_in_its_index_only() -> None:
     assert medium.matched() == Medium("skin1", medium.absorption, medium.scattering, 0.0, 1.0, medium.source)
 
 
-def test_nothing_to_meet_has_albedo_0() -> None:
+def test_a_medium_without_interaction_has_albedo_0() -> None:
     assert Medium("air", (0.0,) * 3, (0.0,) * 3).albedo == (0.0, 0.0, 0.0)
 
 
@@ -101,7 +101,7 @@ def test_wrong_media_are_refused(make: Callable[[], Medium], said: str) -> None:
     assert said in str(caught.value)
 
 
-def test_every_fault_of_a_file_is_said_with_its_place(tmp_path: Path) -> None:
+def test_every_error_of_a_file_has_its_place(tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"
     file.write_text(
         '[soap]\nreduced_scatering = [1.0, 1.0, 1.0]\nabsorption = [-1.0, 0.0, 0.0]\nsource = "mine"\n'
@@ -117,7 +117,7 @@ def test_every_fault_of_a_file_is_said_with_its_place(tmp_path: Path) -> None:
     assert "'reduced_scattering' takes 3 numbers" in text and "'measured' is true or false" in text
 
 
-def test_media_of_a_file_of_ones_own(tmp_path: Path) -> None:
+def test_media_of_a_users_file(tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"
     text = '[soap]\nreduced_scattering = [3.0, 2.0, 1.0]\nabsorption = [0, 0.1, 0.2]\nsource = "mine"\n'
     file.write_text(text, encoding="utf-8")

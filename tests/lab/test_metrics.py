@@ -10,7 +10,7 @@ import pytest
 from sssgen.lab.measure.error_metric import EPSILON, compare, flip
 
 
-def test_by_hand() -> None:
+def test_metrics_of_known_values() -> None:
     reference = np.array([[1.0, 0.5], [0.0, 0.1]])
     values = np.array([[1.1, 0.5], [0.05, 0.0]])
     told = compare(values, reference)
@@ -50,7 +50,7 @@ def trials(apart: float, noise: float, count: int = 1500, lanes: int = 400) -> t
 
 
 @pytest.mark.parametrize(("apart", "noise"), [(0.1, 0.02), (0.1, 0.05), (0.3, 0.02), (0.03, 0.02)])
-def test_noise_adds_nothing_on_average_and_the_bars_hold_the_truth(apart: float, noise: float) -> None:
+def test_noise_is_unbiased_and_the_bars_contain_the_truth(apart: float, noise: float) -> None:
     right, found = trials(apart, noise)
     relmse, low, high, value, plain = found.T
     # the weight has the noisy reference in it: a bias of second order is left, a quarter of what is corrected at most
@@ -64,7 +64,7 @@ def test_noise_adds_nothing_on_average_and_the_bars_hold_the_truth(apart: float,
     assert ((narrow[0] <= sqrt(right)) & (sqrt(right) <= narrow[1])).mean() < 0.6
 
 
-def test_an_error_that_noise_hides_may_be_nought_but_not_less() -> None:
+def test_an_error_below_the_noise_is_not_negative() -> None:
     _, found = trials(0.0, 0.05, 200)
     relmse, low, high, value, _ = found.T
     assert (relmse == 0.0).any() and (relmse >= 0.0).all()
@@ -73,7 +73,7 @@ def test_an_error_that_noise_hides_may_be_nought_but_not_less() -> None:
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
-def test_what_is_not_finite_gives_no_error_that_looks_like_one(bad: float) -> None:
+def test_non_finite_values_give_nan_errors(bad: float) -> None:
     values = np.ones((3, 20))
     values[1, 7] = bad
     told = compare(values, np.ones((3, 20)), np.full((3, 20), 0.01))
@@ -81,7 +81,7 @@ def test_what_is_not_finite_gives_no_error_that_looks_like_one(bad: float) -> No
     assert not np.isfinite(told["relmse"])
 
 
-def test_flip_of_equal_pictures_is_nought_and_grows_with_what_is_seen() -> None:
+def test_flip_is_0_for_equal_pictures_and_grows() -> None:
     pytest.importorskip("flip_evaluator")
     reference = np.random.default_rng(3).uniform(0.2, 0.6, (32, 40, 3))
     errors = [flip(reference + more, reference) for more in (0.0, 0.01, 0.05, 0.2)]

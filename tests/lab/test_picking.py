@@ -69,12 +69,12 @@ def test_the_most_accurate_within_a_cost(max_cost: float, expected: Any) -> None
     assert found.chain is expected and found.met
 
 
-def test_where_nothing_keeps_the_limit_the_nearest_is_picked() -> None:
+def test_without_a_chain_within_the_limit_the_nearest_is_picked() -> None:
     assert (picked(0.05).chain, picked(0.05).met) == (MARCH, False)
     assert (picked(None, 0.5).chain, picked(None, 0.5).met) == (NONE, False)
 
 
-def test_what_is_next() -> None:
+def test_the_next_cheaper_and_better_chains() -> None:
     found = picked(0.5)
     assert (found.chain, found.cheaper, found.better) == (MAP, PLAIN, MARCH)  # DEAR is on no front
     assert (picked(2.0).cheaper, picked(2.0).better) == (None, WRAP)
@@ -91,7 +91,7 @@ def test_published_forms_and_failed_points_are_never_picked() -> None:
     assert {"alisavakis_lobe", "ice_shader_lobe", "gltf_volume", "three_js_port"} <= kept and "lobe_gdc2011" not in kept
 
 
-def test_equally_good_the_cheaper_and_equally_dear_the_better() -> None:
+def test_ties_are_broken_by_cost_then_error() -> None:
     assert chosen([MAP, {**MAP, "cost": {"value": 40.0}}], 0.5, None)[0]["cost"]["value"] == 40.0  # type: ignore[index]
     twin = point(MAP["chain"], 60.0, 0.25)
     assert chosen([MAP, twin], 0.5, None)[0] is twin
@@ -119,7 +119,7 @@ def test_roles_are_left_out_by_numbers() -> None:
     assert said["translucency"][0] == "lobe_exp2"
 
 
-def test_coordinates_are_picked_by_the_same_limit() -> None:
+def test_coordinates_have_the_same_limit() -> None:
     none, slide = (
         point((), 1.0, 0.9, "coordinates"),
         point(("parallax_refracted", "shown_uv"), 40.0, 0.01, "coordinates"),
@@ -169,7 +169,7 @@ def run(*arguments: str) -> int:
     return main(["pick", "inlay_plate", "--samples", "8", *arguments])
 
 
-def test_from_a_chart_in_the_cache_nothing_is_measured(
+def test_a_cached_chart_is_not_measured_again(
     charted: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(chart, "run", lambda *_, **__: pytest.fail("it measures"))
@@ -198,7 +198,7 @@ def test_another_number_of_samples_is_another_chart(charted: str, monkeypatch: p
     assert calls
 
 
-def test_it_emits_what_was_picked(charted: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_picked_chain_is_emitted(charted: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
     assert run("--max-error", "0.01", "--emit", str(out), "--target", "wgsl,glsl-330") == 0
     names = sorted(path.name for path in out.iterdir())
@@ -235,7 +235,7 @@ def test_wrong_arguments(
     assert not Path("out").exists()
 
 
-def test_a_process_of_its_own_answers_from_the_cache(charted: str) -> None:
+def test_another_process_uses_the_cache(charted: str) -> None:
     code = (
         "from sssgen.cli.main import main; from sssgen.lab.scene import measured_scene; measured_scene.SIDE = 12; "
         "raise SystemExit(main())"

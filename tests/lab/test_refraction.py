@@ -44,7 +44,7 @@ def test_refracted_rays_keep_snells_law(n: float) -> None:
     assert n * np.cross(inside.T, N.T) == pytest.approx(-np.cross(V.T, N.T), abs=1e-12)
 
 
-def test_past_the_critical_angle_no_ray_goes_on() -> None:
+def test_past_the_critical_angle_no_ray_is_refracted() -> None:
     angle = np.radians([40.0, 41.7, 41.9, 80.0])  # asin(1 / 1.5) = 41.81°
     V = np.stack([np.sin(angle), np.zeros(4), np.cos(angle)])
     length = np.linalg.norm(refracted(V, np.tile([[0.0], [0.0], [1.0]], 4), 1.5), axis=0)
@@ -121,7 +121,7 @@ def test_a_ray_may_pass_the_layer_at_a_curved_edge() -> None:
     assert (aside > 0.3).any()
 
 
-def test_straight_from_above_nothing_moves() -> None:
+def test_seen_from_above_nothing_moves() -> None:
     one = looking_at(Box(size=(1.0, 1.0, 1.0)), (0.0, 0.0, 300.0), Inlay(0.1, 1.5), 0.15)
     at = points(one)
     assert at.count > 100

@@ -49,7 +49,7 @@ def test_a_capsule_and_a_union_arrive() -> None:
     assert scene.measured == {"medium": {"unit_mm": 2.0, "preset": "cream"}}
 
 
-def test_every_scene_of_ours_is_one() -> None:
+def test_every_scene_of_the_library_loads() -> None:
     for name in measured_scene.names():
         one = measured_scene.load(name)
         assert one.name == name and one.title
@@ -57,7 +57,7 @@ def test_every_scene_of_ours_is_one() -> None:
         assert points(replace(one, size=(12, 12))).count > 10
 
 
-def test_a_situation_says_what_its_scene_does() -> None:
+def test_a_situation_describes_its_scene() -> None:
     one = measured('title = "Mine"\nsize = [200, 100]\n[medium]\npreset = "marble"\nunit_mm = 4\n' + BALL + LIT)
     assert (one.name, one.title, one.size) == ("my_scene", "Mine", (64, 32))
     assert one.medium == media.preset("marble", 4.0).matched()
@@ -70,7 +70,7 @@ def test_a_situation_says_what_its_scene_does() -> None:
     assert measured("[inlay]\ndepth = 0.2\nior = 1.33\noutside_ior = 1.1\n" + BALL).inlay == Inlay(0.2, 1.33, 1.1)
 
 
-def test_situations_are_what_they_say(tmp_path: Path) -> None:
+def test_situations_are_compared_by_value(tmp_path: Path) -> None:
     text = '[medium]\npreset = "marble"\n' + BALL + LIT
     one, same = measured(text), measured(text + "\n# the same\n")
     assert one is not same and one == same and hash(one) == hash(same)
@@ -131,7 +131,7 @@ def test_the_held_out_view_is_turned_about_the_vertical_through_the_target() -> 
         ("[inlay]\ndeph = 1\n" + BALL, "did you mean 'depth'", 2),
     ],
 )
-def test_what_is_wrong_is_said_at_its_place(text: str, message: str, line: int) -> None:
+def test_errors_are_reported_at_their_place(text: str, message: str, line: int) -> None:
     with pytest.raises(SssgenError) as caught:
         measured(text)
     found = [one for one in caught.value.diagnostics if message in f"{one.message} {one.hint}"]
@@ -187,7 +187,7 @@ def test_the_text_of_a_body_computes_its_distance(shape: Geometry, tmp_path: Pat
     assert evaluated(made.files[body.FILE], tmp_path)(at) == pytest.approx(exact, abs=3e-6)
 
 
-def test_other_bodies_are_bound_as_they_are(tmp_path: Path) -> None:
+def test_bodies_without_a_transform_are_bound_directly(tmp_path: Path) -> None:
     sphere = Distance("sphere", parameters={"radius": 0.4})
     assert body.body(sphere) == body.Body("sphere", {}, {"radius": 0.4})
     text = "float egg(vec3 p)\n{\n    return length(p) - 0.5;\n}\n"
@@ -232,7 +232,7 @@ def test_placed_corners_hold_the_body() -> None:
 # --- what scenes are fitted to ---
 
 
-def test_what_is_fitted_to_goes_in_steps_of_two() -> None:
+def test_training_sizes_are_powers_of_two() -> None:
     one = replace(measured('[medium]\npreset = "cream"\n' + BALL + LIT))
     sizes = [references.training(replace(one, geometry=Ball(radius)))[0].geometry for radius in (0.9, 1.0, 1.1, 2.0)]
     assert sizes == [Ball(1.0), Ball(1.0), Ball(1.0), Ball(2.0)]

@@ -216,7 +216,7 @@ SHAPES = [
 
 
 @pytest.mark.parametrize("geometry", SHAPES, ids=lambda shape: type(shape).__name__)
-def test_what_absorbs_nothing_vanishes_in_an_even_sky(geometry: Geometry) -> None:
+def test_a_medium_without_absorption_vanishes_in_an_even_sky(geometry: Geometry) -> None:
     found = radiance(geometry, grey(1.0, 3.0), SKY, CAMERA, (24, 18), 512, resolution=32)
     hit = geometry.hits(*CAMERA.rays(24, 18)).hit.reshape(18, 24)
     assert hit.any() and not hit.all()
@@ -271,7 +271,7 @@ def test_the_error_is_that_of_equal_rays() -> None:
         assert abs(found.mean[:, 0].mean() - want) < 3.0 * spread / np.sqrt(400)
 
 
-def test_channels_differ_as_media_do() -> None:
+def test_channels_have_their_own_coefficients() -> None:
     medium = Medium("skin", (0.1, 0.5, 0.1), (0.9, 0.5, 0.9))
     found = radiance_along(wide_slab(60.0), medium, Light((0.0, 0.0, 1.0)), *looking(np.array([1.0])), 8192)
     assert (found.mean[:, 0] == found.mean[:, 2]).all()
@@ -297,7 +297,7 @@ def test_numbers_do_not_depend_on_threads() -> None:
 # --- boundaries, meshes, errors ---
 
 
-def test_a_boundary_that_bends_keeps_the_light_too() -> None:
+def test_a_refracting_boundary_conserves_energy() -> None:
     medium = Medium("glassy", (0.0,) * 3, (2.0,) * 3, ior=1.4)
     found = radiance(SHAPES[0], medium, SKY, CAMERA, (20, 15), 512)
     hit = SHAPES[0].hits(*CAMERA.rays(20, 15)).hit.reshape(15, 20)
@@ -313,7 +313,7 @@ def test_a_slab_that_bends_by_adding_and_doubling() -> None:
     assert_agrees(found, [reflected + through], 0.01)
 
 
-def test_a_light_of_some_width_is_nearly_the_one_without() -> None:
+def test_a_light_of_small_width_is_nearly_a_point() -> None:
     cosines = np.array([0.9, 0.4])
     narrow = half_space(0.8, 0.7, cosines)
     found = radiance_along(wide_slab(60.0), grey(0.8), Light(towards(0.7), radius=5.0), *looking(cosines), 8192)
@@ -352,7 +352,7 @@ def test_volumes_are_those_of_the_shapes() -> None:
         ({"camera": Camera(position=(0.2, 0.1, 0.3))}, "move the camera out"),
     ],
 )
-def test_what_cannot_be_is_refused(change: dict[str, object], said: str) -> None:
+def test_invalid_scenes_are_refused(change: dict[str, object], said: str) -> None:
     given: dict[str, object] = {
         "geometry": SHAPES[0], "medium": grey(0.9), "light_direction": (0.0, 0.0, 1.0), "camera": CAMERA,
         "size": (8, 6), "samples": 128,
@@ -390,7 +390,7 @@ def rendered(monkeypatch: pytest.MonkeyPatch, stop_at: int = 10**9) -> list[int]
     return numbers
 
 
-def test_what_is_kept_is_not_rendered_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_cached_pictures_are_not_rendered_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     numbers = rendered(monkeypatch)
     few = render(128)
     assert numbers == list(range(8))
@@ -405,7 +405,7 @@ def test_what_is_kept_is_not_rendered_again(folder: Path, monkeypatch: pytest.Mo
         assert kept.samples == fresh.samples
 
 
-def test_an_interrupted_render_goes_on_where_it_was(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_interrupted_render_continues(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     whole = render(160)
     for entry in folder.iterdir():
         entry.unlink()
@@ -419,7 +419,7 @@ def test_an_interrupted_render_goes_on_where_it_was(folder: Path, monkeypatch: p
     assert (resumed.mean == whole.mean).all() and (resumed.error == whole.error).all()
 
 
-def test_a_damaged_entry_is_made_again(folder: Path) -> None:
+def test_a_damaged_entry_is_recomputed(folder: Path) -> None:
     first = render(128)
     (entry,) = folder.glob("reference-*.npz")
     entry.write_bytes(entry.read_bytes()[:1000])

@@ -52,7 +52,7 @@ def assumptions(module: ir.Module) -> list[ir.Assume]:
 # Read
 
 
-def test_it_is_a_statement() -> None:
+def test_an_assumption_is_a_statement() -> None:
     (stmt,) = assumptions(module_of(SOURCE))
     assert stmt.condition.type == BOOL and stmt.span.line == 4
 
@@ -99,7 +99,7 @@ def test_the_verifier_wants_a_condition() -> None:
 # The passes
 
 
-def test_fold_drops_decided_ones_and_computes_the_others() -> None:
+def test_fold_removes_decided_assumptions() -> None:
     head = "uniform float s = 1.0;\n"
     source = head + "float f(float x) { assume(1.0 < 2.0); assume(x < 1.0 + 2.0); assume(s > 0.5); return x; }"
     assert_is(
@@ -129,7 +129,7 @@ def test_conversions_hoist_and_names_keep_it() -> None:
 
 
 @pytest.mark.parametrize("target", registry.names())
-def test_no_target_prints_it(target: str) -> None:
+def test_no_target_prints_assumptions(target: str) -> None:
     for mode in GUARDS:
         made = transpile(module_of(SOURCE), target, "case", guards=mode)
         shown = "".join(text for name, text in made.files.items() if not name.endswith(".json"))
@@ -228,7 +228,7 @@ def test_an_assumption_that_does_not_hold_is_seen(name: str) -> None:
     assert dropped(wrong.subject, fitted(chosen, samples(chosen, 400, 1))).mean() > 0.2
 
 
-def test_the_library_assumes_what_this_file_checks() -> None:
+def test_the_library_has_assumptions() -> None:
     assert len(assuming()) >= 7 and {"thinness_hemisphere", "march_distance_texture"} <= {*assuming()}
 
 

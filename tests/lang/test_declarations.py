@@ -224,7 +224,7 @@ def test_spans() -> None:
     assert [arg.span[1:] for arg in left.args] == [(2, 16, 2, 20), (3, 16, 3, 20)]
 
 
-def test_line_ends_of_windows() -> None:
+def test_windows_line_ends() -> None:
     source = "/// Doc.\r\nuniform float a;\r\nfloat f() {\r\n    return a;\r\n}\r\n"
     module = checked(source)
     assert module.uniforms[0].doc == "Doc."

@@ -19,7 +19,7 @@ def test_error_text(name: str) -> None:
 
 
 @pytest.mark.parametrize("said", LONG)
-def test_what_is_too_much(said: str) -> None:
+def test_too_long_programs_are_refused(said: str) -> None:
     error = errors_of(LONG[said])
     assert said in error.diagnostics[0].message
     assert error.diagnostics[0].span.file == FILE

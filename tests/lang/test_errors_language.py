@@ -130,7 +130,7 @@ def test_snapshots_have_cases() -> None:
     assert {path.stem for path in folder.glob("*.txt")} == set(CASES)
 
 
-def test_conversions_that_are_named_exist() -> None:
+def test_suggested_conversions_exist() -> None:
     """What a hint names is in the library."""
     library = LANG.parent / "techniques"
     text = "\n".join(path.read_text("utf-8") for path in library.rglob("*.sss"))
@@ -223,7 +223,7 @@ def test_hostile_text(name: str) -> None:
 
 
 @pytest.mark.parametrize("piece", ["(", "abs(", "- ", "if (b) ", "{", "b ? x : ", "a[0]+", "while (i < 3) "])
-def test_as_deep_as_is_allowed(piece: str) -> None:
+def test_nesting_up_to_the_limit_is_accepted(piece: str) -> None:
     """Just below the limit everything works: the checker, the verifier, with the stack that a caller has used."""
     close = {"(": ")", "abs(": ")", "{": "}"}.get(piece, "")
     for depth in range(MAX_DEPTH, 20, -1):
@@ -287,7 +287,7 @@ def test_text_with_a_piece_replaced(data: st.DataObject) -> None:
         assert verify(module) == []
 
 
-def test_as_many_errors_as_anyone_reads() -> None:
+def test_the_number_of_errors_is_limited() -> None:
     source = "float f() { return x; }\n" * 500
     error = errors_of(source)
     assert len(error.diagnostics) == diagnostics.MAX_ERRORS + 1
@@ -305,14 +305,14 @@ def test_control_characters_are_harmless() -> None:
     assert "a␛[2Jb.sss:1:20" in shown
 
 
-def test_carets_stand_below() -> None:
+def test_carets_mark_the_token() -> None:
     error = errors_of("float f() {\n\treturn 1.0 + zork;\n}")
     line, caret = str(error).split("\n")[2:4]
     assert caret.index("^") == line.index("zork")
     assert caret.count("^") == len("zork")
 
 
-def test_line_ends_are_counted_as_editors_do() -> None:
+def test_lines_are_counted_as_in_editors() -> None:
     """Form feeds and the like are no line ends."""
     error = errors_of("// \x0c \x0b \u2028\r\nfloat f() { return zork; }\r\n")
     assert error.diagnostics[0].span[1:3] == (2, 20)

@@ -25,7 +25,7 @@ def test_tables_survive_json() -> None:
     assert grammar_tables.from_json(grammar_tables.to_json(built, GRAMMAR), digest(GRAMMAR)) == built
 
 
-def test_tables_of_another_grammar_are_not_used() -> None:
+def test_tables_of_another_grammar_are_ignored() -> None:
     assert grammar_tables.from_json(SHIPPED, digest(GRAMMAR + "\n")) is None
 
 
@@ -40,7 +40,7 @@ def test_a_changed_grammar_is_built(monkeypatch: pytest.MonkeyPatch, tmp_path: P
 
 
 @pytest.mark.parametrize("version", ["1.1.8", "1.4.0", "2.0.0b1"])
-def test_another_lark_is_refused(monkeypatch: pytest.MonkeyPatch, version: str) -> None:
+def test_another_lark_version_is_refused(monkeypatch: pytest.MonkeyPatch, version: str) -> None:
     monkeypatch.setattr(lark, "__version__", version)
     with pytest.raises(SssgenError) as error:
         grammar_tables.build(GRAMMAR)

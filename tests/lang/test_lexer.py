@@ -54,7 +54,7 @@ RESERVED = """
 
 
 @pytest.mark.parametrize("kind", WORDS)
-def test_what_a_word_is(kind: str) -> None:
+def test_tokens_of_each_kind(kind: str) -> None:
     for word in WORDS[kind].split():
         tokens, _ = scan(word, "a.glsl")
         assert [token[:2] for token in tokens] == [(kind, word)]
@@ -82,7 +82,7 @@ def test_signs_and_reserved_words_have_terminals_of_their_own() -> None:
         ("a\rb\fc\vd\te\r\n", ["a", "b", "c", "d", "e"]),
     ],
 )
-def test_the_longest_word_is_taken(text: str, words: list[str]) -> None:
+def test_the_longest_token_wins(text: str, words: list[str]) -> None:
     assert [token.text for token in scan(text, "a.glsl")[0]] == words
 
 
@@ -96,18 +96,18 @@ def test_places_count_from_where_the_text_begins() -> None:
     assert comments == [Comment(7, 8, "/* x\n y */"), Comment(9, 9, "// end")]
 
 
-def test_a_line_comment_goes_on_behind_a_backslash() -> None:
+def test_a_line_comment_continues_after_a_backslash() -> None:
     tokens, comments = scan("// one \\\n two\nx // three \\ four\ny", "f")
     assert [token.text for token in tokens] == ["x", "y"]
     assert comments == [Comment(1, 2, "// one \\\n two"), Comment(3, 3, "// three \\ four")]
 
 
-def test_other_keywords_may_be_given() -> None:
+def test_keywords_are_a_parameter() -> None:
     tokens, _ = scan("normal vec3 ##", "f", keywords={"normal": "TYPE", "##": "PASTE"})
     assert [token.type for token in tokens] == ["TYPE", "NAME", "PASTE"]
 
 
-def test_every_fault_is_told_at_its_place() -> None:
+def test_every_error_is_reported_at_its_place() -> None:
     assert faults("a @ 1f\n 0x 3.x\n'é\n\"open\n/* open") == [
         ("unknown character '@'", (1, 3, 1, 4), ""),
         ("'1f' is not a number", (1, 5, 1, 7), "write 1.0"),
@@ -121,7 +121,7 @@ def test_every_fault_is_told_at_its_place() -> None:
 
 
 @pytest.mark.parametrize("text", ["/*/", "/*", "/**", "\\", "\\ \n", '"', "#", "##", "$", "`", "\x1c", "\xa0", "\x00"])
-def test_what_is_no_word_is_refused(text: str) -> None:
+def test_invalid_tokens_are_refused(text: str) -> None:
     assert len(faults(text)) == 1
 
 
@@ -143,7 +143,7 @@ def test_a_text_of_too_many_tokens_is_refused() -> None:
 @pytest.mark.parametrize(
     "repeated", ["a + ", "/", "/**/", '"', "1", "1e", "\\\n", "x", "/*", "//\\", " ", "0x", "é", "1."]
 )
-def test_a_line_of_a_megabyte_takes_no_long(repeated: str) -> None:
+def test_a_line_of_a_megabyte_is_fast(repeated: str) -> None:
     try:
         with bounded():  # quadratic algorithms take minutes
             scan(repeated * (1_000_000 // len(repeated)), "f")
@@ -156,7 +156,7 @@ PIECES += [" ", "\n", "\\\n", "\t", "\r", "{", "}", "(", ")", "é", "@", "#", '"
 
 
 @given(st.lists(st.sampled_from(PIECES), max_size=30).map("".join))
-def test_the_words_are_the_text(text: str) -> None:
+def test_tokens_cover_the_text(text: str) -> None:
     """Each word's text stands at its place, and between the words are only blanks and comments."""
     try:
         tokens, comments = scan(text, "f")

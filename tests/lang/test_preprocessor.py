@@ -162,7 +162,7 @@ def test_faulty_conditions(expression: str, message: str, column: int) -> None:
     assert faults(f"#if {expression}\n#endif") == [(message, "main", 1, column)]
 
 
-def test_one_branch_is_taken_and_the_others_are_not_looked_at() -> None:
+def test_one_branch_is_taken_and_the_others_are_ignored() -> None:
     text = "#if {0}\na\n#elif {1}\nb\n#elif {2}\nc\n#else\nd\n#endif"
     assert [words(text.format(*values)) for values in ((1, "1/0", "@"), (0, 1, "1/0"), (0, 0, 1), (0, 0, 0))] == [
         *"abcd"
@@ -175,7 +175,7 @@ def test_one_branch_is_taken_and_the_others_are_not_looked_at() -> None:
     assert words("#if 0\n/*\n#endif\n*/ // \\\n#endif\na\n#endif\nb") == "b"
 
 
-def test_directives_in_comments_and_within_lines_are_none() -> None:
+def test_directives_in_comments_and_within_lines_are_ignored() -> None:
     assert words("/*\n#if 0\n*/ a // \\\n#error no\n b") == "a b"
     assert words("/* x */ # /* y */ define /* z */ A /* w\n*/ b +\n  # \nA") == "b +"
     assert faults("# \\\n /*\n*/ undef \\\n A\n@ b")[0] == ("unknown character '@'", "main", 5, 1)
@@ -226,7 +226,7 @@ def test_extensions_pragmas_and_lines() -> None:
     assert [token.span[1:3] for token in made.tokens] == [(6, 1)]
 
 
-def test_errors_of_people_and_of_directives() -> None:
+def test_error_directives_and_malformed_directives() -> None:
     assert faults(
         "#error no // really\n @\n#foo\n#elseif\n#define\n#define f(a\n#define g(a,a) a\n#define 1\n#undef A B"
     ) == [
@@ -293,7 +293,7 @@ def test_includes() -> None:
     ]
 
 
-def test_a_guarded_circle_is_none() -> None:
+def test_guarded_include_cycles_are_allowed() -> None:
     guarded = '#ifndef A\n#define A\n#include "b"\na\n#endif'
     assert words('#include "a"\n#include "b"', {"a": guarded, "b": '#include "a"\nb'}) == "b a b"
 
@@ -338,7 +338,7 @@ def test_a_text_without_directives_is_only_split(text: str) -> None:
 
 
 @given(st.lists(st.sampled_from(PIECES), max_size=40).map("".join))
-def test_directives_that_do_nothing_change_nothing(text: str) -> None:
+def test_directives_without_effect_change_nothing(text: str) -> None:
     """#if 1 around each line that is no part of a comment, and a macro for a name, leave the words as they are."""
     plain = run(text).tokens
     assert [t[:2] for t in run("#define unused(x) y\n#if 1\n" + text + "\n#endif").tokens] == [t[:2] for t in plain]
@@ -346,13 +346,13 @@ def test_directives_that_do_nothing_change_nothing(text: str) -> None:
     assert [t[:2] for t in named] == [t[:2] for t in plain]
 
 
-def test_line_ends_of_windows() -> None:
+def test_windows_line_ends() -> None:
     text = "#define A(x) x + \\\n 1\n#if A(1) == 2 // c\nA(2) /* d\n */;\n#endif\n"
     one, other = run(text), run(text.replace("\n", "\r\n"))
     assert (one.tokens, spaced("2 + 1;")) == (other.tokens, " ".join(token.text for token in other.tokens))
 
 
-def test_comments_of_what_is_switched_on() -> None:
+def test_comments_of_active_text() -> None:
     files = {"a": "// a1\n#if 0\n// a2\n#endif\n#define B 1 /* a3 */\n"}
     made = run('// m1\n#include "a"\n#include "a"\n/* m2 */ #if 1 // m3\n// m4\n#else\n// m5\n#endif', files)
     assert {file: [comment.text.strip() for comment in found] for file, found in made.comments.items()} == {

@@ -76,7 +76,7 @@ def spelled(tokens: list[Token]) -> list[str]:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_random_macros_become_what_c_makes_of_them(seed: int) -> None:
+def test_random_macros_expand_as_in_c(seed: int) -> None:
     command = [or_skip(lambda _: cpp(), "cpp"), "-P", "-undef", "-w", "-std=c99"]
     chance = random.Random(seed)
     compared = kept = 0

@@ -20,7 +20,7 @@ KEPT = {
 
 
 @pytest.mark.parametrize("value", KEPT)
-def test_names_of_numbers_are_kept(value: str) -> None:
+def test_macros_of_numbers_become_constants(value: str) -> None:
     made = run(f"#define B 2\n#define UNUSED 7\n#define A {value} // its name\nfloat x = A;")
     assert " ".join(token.text for token in made.tokens) == spaced(KEPT[value] + " float x = A;")
     assert made.macros == (["B", "A"] if "B" in value else ["A"])
@@ -55,7 +55,7 @@ def test_names_of_numbers_are_kept(value: str) -> None:
         "UNDEFINED",
     ],
 )
-def test_what_is_no_constant_is_text(value: str) -> None:
+def test_other_macros_are_expanded(value: str) -> None:
     made = run(f"#define C 1 +\n#define A {value}\nq = A;")
     assert made.macros == []
     assert " ".join(token.text for token in made.tokens) == spaced(f"q = {value.replace('C', '1 +')};")
@@ -103,7 +103,7 @@ def test_places_of_constants() -> None:
         ("#define A 1\n#define f(x) 2\na = f(A);", "a = 2;"),
     ],
 )  # fmt: skip
-def test_constants_stand_only_where_they_may(text: str, made: str) -> None:
+def test_constants_are_used_only_where_valid(text: str, made: str) -> None:
     assert words(text) == spaced(made)
 
 

@@ -137,7 +137,7 @@ MEASURED = {
 
 
 @pytest.mark.parametrize("expression", MEASURED)
-def test_what_an_expression_measures(expression: str) -> None:
+def test_quantities_of_expressions(expression: str) -> None:
     for plain in (FLOAT, VEC3):
         if fits(expression, "", plain):
             assert measures(expression, plain) == MEASURED[expression]
@@ -176,7 +176,7 @@ def test_quantities_that_do_not_go_together(expression: str) -> None:
     assert not fits(expression, "")
 
 
-def test_every_mixup_says_what_to_do() -> None:
+def test_every_quantity_error_suggests_a_conversion() -> None:
     for source in ("", *QUANTITIES):
         for target in QUANTITIES:
             if source != target:

@@ -109,7 +109,7 @@ def test_parameters_of_a_bound_function_belong_to_the_stage() -> None:
 EGG = "float egg(world_position p)\n{\n    return length(vec3(p)) - 1.0;\n}\n"
 
 
-def test_a_slot_takes_a_function_of_a_file_beside_the_material() -> None:
+def test_a_slot_accepts_a_function_of_a_file_of_the_material() -> None:
     Path("shapes").mkdir()
     Path("shapes/egg.sss").write_text(EGG, encoding="utf-8")
     for bound in ("shapes/egg.sss", "shapes/egg.sss:egg", "distance/sphere.sss", "box"):
@@ -137,7 +137,7 @@ def test_slots_of_bound_functions_are_bound_too() -> None:
     assert "calls 'outside' again" in str(errors_of(start + 'outside = "hollow.sss"\n'))
 
 
-def test_a_technique_may_be_a_file_beside_the_material() -> None:
+def test_a_technique_can_be_a_file_of_the_material() -> None:
     Path("glow.sss").write_text(
         "/**\n * Glows.\n * role: translucency\n */\nfloat glow(world_direction N, world_direction L)\n"
         "{\n    return max(-dot(N, L), 0.0);\n}\n",
@@ -289,7 +289,7 @@ def test_a_file_that_is_missing_or_no_text(tmp_path: Path) -> None:
     check_snapshot("cli/material/unreadable_files.txt", "\n".join(texts))
 
 
-def test_a_name_that_is_a_file_beside() -> None:
+def test_a_missing_suffix_is_suggested() -> None:
     Path("wax.toml").write_text(LOBE, encoding="utf-8")
     with pytest.raises(SssgenError, match=r"did you mean 'wax\.toml'"):
         load_material("wax")
@@ -316,13 +316,13 @@ def test_a_huge_file_is_refused() -> None:
     assert "too large" in str(errors_of("#" * (MAX_CHARACTERS + 1)))
 
 
-def test_errors_stop_where_nobody_would_read_on() -> None:
+def test_the_number_of_errors_is_limited() -> None:
     error = errors_of(HEAD + "".join(f'[[surface]]\ntechnique = "base_color"\nzzz{n} = 1\n' for n in range(3000)))
     assert len(error.diagnostics) == MAX_ERRORS + 1  # which says that there are more
 
 
 @given(st.data())
-def test_whatever_is_wrong_is_an_error_for_people(data: st.DataObject) -> None:
+def test_random_faults_give_readable_errors(data: st.DataObject) -> None:
     text = (HEAD + BOUND + CHAIN.split("[translucency]")[1] + 'tint = ["#ff8000", { value = 1 }]\n').replace("\n", "\n")
     for _ in range(data.draw(st.integers(1, 3))):
         at = data.draw(st.integers(0, len(text)))

@@ -34,6 +34,6 @@ def test_conversions(before: str, after: str) -> None:
     assert_is(module, f"{FUNCTIONS}{head}{after}; }}")
 
 
-def test_a_module_without_conversions_is_the_same() -> None:
+def test_a_module_without_conversions_is_unchanged() -> None:
     module = module_of("float square(float x) { return x * x; }")
     assert drop_conversions(module) is module

@@ -212,7 +212,7 @@ def test_a_fixed_parameter_decides_branches() -> None:
     )
 
 
-def test_a_spliced_block_keeps_its_names_apart() -> None:
+def test_a_spliced_block_gets_unique_names() -> None:
     becomes(
         """
         float f(float x) {
@@ -295,7 +295,7 @@ def test_assignments_that_change_nothing_go() -> None:
     )
 
 
-def test_what_has_effects_is_not_dropped() -> None:
+def test_effects_are_not_dropped() -> None:
     source = """
         float g(float x, out float y) { y = x; return x; }
         float f(float x) {
@@ -308,12 +308,12 @@ def test_what_has_effects_is_not_dropped() -> None:
     becomes(source, source)
 
 
-def test_an_idle_run_keeps_every_node() -> None:
+def test_a_run_without_changes_keeps_every_node() -> None:
     module = module_of("uniform float k = 1.0; float f(float x) { float y = x * 2.0; if (x > k) { y = k; } return y; }")
     assert all(one is other for one, other in zip(fold(module).functions, module.functions, strict=True))
 
 
-def test_literals_keep_the_place_of_what_they_replace() -> None:
+def test_literals_keep_the_place_of_the_expression() -> None:
     module = module_of("uniform float k = 1.0;\nfloat f(float x) {\n    return k;\n}")
     (stmt,) = fold(module, {"k": (0.5,)}).functions[0].body or ()
     assert isinstance(stmt, Return) and stmt.value is not None

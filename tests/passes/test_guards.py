@@ -77,7 +77,7 @@ def test_lines(source: str, auto: str, everywhere: str | None) -> None:
         assert body(source, "all") == everywhere
 
 
-def test_none_adds_nothing_and_takes_assumptions_out() -> None:
+def test_mode_none_adds_no_guards_and_removes_assumptions() -> None:
     source = "float f(float x) { assume(x > 0.0); return sqrt(x) / x + normalize(vec2(x, 1.0)).x; }"
     assert body(source, "none") == "return sqrt(x) / x + normalize(vec2(x, 1.0)).x;"
     found = guarded(source, "none")
@@ -85,12 +85,12 @@ def test_none_adds_nothing_and_takes_assumptions_out() -> None:
 
 
 @pytest.mark.parametrize("mode", GUARDS)
-def test_no_assumption_is_left(mode: str) -> None:
+def test_assumptions_are_removed(mode: str) -> None:
     module = guarded("float f(float x) { if (x > 0.0) { assume(x > 1.0); } return 1.0 / x; }", mode).module
     assert not [stmt for stmt in statements(module.functions[-1].body or ()) if isinstance(stmt, Assume)]
 
 
-def test_only_what_is_not_proven_is_guarded() -> None:
+def test_only_unproven_sites_are_guarded() -> None:
     source = "float f(float x) { return sqrt(x) + sqrt(x * x) + sqrt(abs(x)) + sqrt(exp(min(x, 1.0))); }"
     assert [site.proven for site in guarded(source).sites if site.what == "sqrt"].count(False) == 1
     assert body(source).count("max(") == 1 and "\n".join(lines(source, "all")).count("max(") == 4
@@ -221,7 +221,7 @@ def test_the_guarded_library_compiles(target: str, assert_compiles: Callable[[So
     assert count >= len(NAMES) and errors([]) == []
 
 
-def test_what_the_lighting_relies_on_is_kept_where_it_is_made(tmp_path: Path) -> None:
+def test_surface_outputs_are_clamped_where_they_are_computed(tmp_path: Path) -> None:
     """A surface technique may give any roughness; the lighting takes it to be 0 to 1."""
     (tmp_path / "rough.sss").write_text(
         "/**\n * A rough surface.\n * role: surface\n */\n"

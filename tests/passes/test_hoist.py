@@ -36,7 +36,7 @@ def stays(source: str) -> None:
     assert result is module and not notes
 
 
-def test_uniform_flow_stays_as_it_is() -> None:
+def test_uniform_flow_is_unchanged() -> None:
     stays(
         """
         vec4 read(vec2 uv) { return texture(map, uv); }
@@ -69,7 +69,7 @@ def test_a_read_in_a_branch_is_moved_before_it() -> None:
     )
 
 
-def test_a_variable_of_the_branch_is_followed_to_what_was_there_before() -> None:
+def test_variables_of_the_branch_are_substituted_by_their_values() -> None:
     becomes(
         """
         vec4 f(vec2 uv, float x) {
@@ -175,7 +175,7 @@ def test_flow_after_an_early_return_is_not_uniform() -> None:
     )
 
 
-def test_samples_come_before_a_discard_even_in_a_function() -> None:
+def test_samples_move_before_a_discard_in_a_function() -> None:
     becomes(
         """
         float cut(float x) { if (x < 0.0) { discard; } return x; }
@@ -188,7 +188,7 @@ def test_samples_come_before_a_discard_even_in_a_function() -> None:
     )
 
 
-def test_whole_calls_are_moved() -> None:
+def test_complete_calls_are_moved() -> None:
     becomes(
         """
         vec4 read(vec2 uv) { vec4 texel = texture(map, uv); return texel * depth; }
@@ -207,7 +207,7 @@ def test_whole_calls_are_moved() -> None:
     )
 
 
-def test_a_loop_that_pixels_leave_apart() -> None:
+def test_a_loop_with_divergent_exit() -> None:
     becomes(
         """
         vec4 f(vec2 uv, float x) {
@@ -237,7 +237,7 @@ def test_a_loop_that_pixels_leave_apart() -> None:
     )
 
 
-def test_sums_keep_the_part_that_is_known() -> None:
+def test_a_partially_known_sum_is_hoisted() -> None:
     becomes(
         """
         vec4 f(vec2 uv, float x) {
@@ -291,7 +291,7 @@ def test_an_offset_stays_and_a_layer_has_no_slope() -> None:
     )
 
 
-def test_a_comparison_is_made_at_level_0() -> None:
+def test_a_shadow_comparison_reads_level_0() -> None:
     becomes(
         """
         uniform sampler2DShadow shade;
@@ -311,7 +311,7 @@ def test_a_comparison_is_made_at_level_0() -> None:
     )
 
 
-def test_what_cannot_be_known_before_gets_level_0() -> None:
+def test_coordinates_unknown_before_the_branch_read_level_0() -> None:
     becomes(
         """
         float g(float x, out float y) { y = x; return x; }
@@ -359,7 +359,7 @@ def test_a_function_that_must_stay_in_the_branch_reads_level_0() -> None:
     )
 
 
-def test_parameters_vary_as_the_calls_say() -> None:
+def test_parameters_vary_with_their_calls() -> None:
     becomes(
         """
         vec4 some(vec2 uv, float a) { vec4 c = vec4(0.0); if (a > 0.0) { c = texture(map, uv); } return c; }
@@ -376,7 +376,7 @@ def test_parameters_vary_as_the_calls_say() -> None:
     )
 
 
-def test_a_variable_varies_from_where_it_is_set() -> None:
+def test_a_variable_varies_from_its_assignment() -> None:
     becomes(
         """
         vec4 f(vec2 uv, float x) {

@@ -140,7 +140,7 @@ def test_a_pass_keeps_the_order_of_reads_and_writes(name: str, random: Random, a
 
 @settings(max_examples=60)
 @given(st.randoms(use_true_random=False), st.booleans())
-def test_without_variables_numpy_gives_the_same(random: Random, keep: bool) -> None:
+def test_numpy_results_are_equal_without_module_variables(random: Random, keep: bool) -> None:
     module = read_module(Programs(random).module())
     text = transpile(module, "numpy", "x", keep=keep).files["x_functions.py"]
     functions: dict[str, Any] = {}

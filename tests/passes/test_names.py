@@ -27,7 +27,7 @@ def becomes(
     assert names == renamed
 
 
-def test_nothing_to_do_keeps_every_node() -> None:
+def test_a_pass_without_changes_keeps_every_node() -> None:
     module = module_of("uniform float a1 = 1.0; float f2(float x3) { float v_4 = x3 * a1; return v_4; }")
     result, names = rename(module, frozenset(), str, True)
     assert names == {} and all(one is other for one, other in zip(result.functions, module.functions, strict=True))
@@ -81,7 +81,7 @@ def test_uniform_style_and_collisions_in_it() -> None:
     )
 
 
-def test_overloads_are_told_apart_by_as_few_types_as_it_takes() -> None:
+def test_overload_suffixes_have_the_fewest_types() -> None:
     becomes(
         """
         float box(vec3 p, float r) { return p.x - r; } float box(vec2 p, float r) { return p.x - r; }
@@ -110,7 +110,7 @@ def test_overloads_are_told_apart_by_as_few_types_as_it_takes() -> None:
     )  # fmt: skip
 
 
-def test_overloads_stay_together_where_they_may() -> None:
+def test_overloads_keep_one_name_where_allowed() -> None:
     becomes(
         "float lerp(vec3 p) { return p.x; } float lerp(vec2 p) { return p.x; } "
         "float f(vec3 p) { return lerp(p) + lerp(p.xy); }",
@@ -121,7 +121,7 @@ def test_overloads_stay_together_where_they_may() -> None:
     )
 
 
-def test_a_variable_may_hide_what_its_function_does_not_use() -> None:
+def test_a_variable_may_hide_an_unused_declaration() -> None:
     source = """
         uniform float depth = 1.0;
         float g(float depth) { return depth; }
@@ -130,7 +130,7 @@ def test_a_variable_may_hide_what_its_function_does_not_use() -> None:
     becomes(source, source, {})
 
 
-def test_a_variable_that_hides_what_its_function_uses() -> None:
+def test_a_variable_that_hides_a_used_declaration_is_renamed() -> None:
     module = module_of("uniform float a = 1.0; float h(float b) { return b * a; } float f(float c) { return h(c); }")
     # in the IR a variable may be called like a declaration that it does not hide
     locals_ = module_of("float f(float a, float h) { float c = a; return c * h; }")

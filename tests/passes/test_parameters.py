@@ -36,7 +36,7 @@ def test_textures_may_stay_global() -> None:
     assert [param.name for param in result.functions[-1].params] == ["uv", "depth", "tint"]
 
 
-def test_quantities_and_places_come_along() -> None:
+def test_quantities_and_places_are_preserved() -> None:
     source = (
         "uniform float depth = 1.0; uniform thickness d = thickness(1.0); float f(float x) { return x * depth * d; }"
     )
@@ -68,7 +68,7 @@ def test_variables_make_way_for_uniforms() -> None:
     )
 
 
-def test_overloads_that_would_meet() -> None:
+def test_colliding_overloads_get_different_names() -> None:
     assert_is(
         uniforms_to_parameters(
             module_of(
@@ -89,7 +89,7 @@ def test_overloads_that_would_meet() -> None:
     )
 
 
-def test_functions_that_read_nothing_are_the_same() -> None:
+def test_functions_without_uniforms_are_unchanged() -> None:
     module = module_of(SOURCE)
     result = uniforms_to_parameters(module)
     assert result.functions[1] is module.functions[1]

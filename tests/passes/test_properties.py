@@ -117,7 +117,7 @@ def test_hoist(seed: int, discards: bool) -> None:
 
 
 @given(SEEDS, st.booleans())
-def test_all_together(seed: int, discards: bool) -> None:
+def test_all_passes_in_sequence(seed: int, discards: bool) -> None:
     def change(module: Module) -> Module:
         module = prune(fold(module, {"mode": (1,)}), [key(module, "f")])
         module = hoist(module, [key(module, "f")])[0]

@@ -18,7 +18,7 @@ def becomes(before: str, after: str, *roots: str) -> None:
     assert all(one is other for one, other in zip(again, result, strict=True)), "pruning twice changes nothing"
 
 
-def test_unreachable_declarations_go() -> None:
+def test_unreachable_declarations_are_removed() -> None:
     becomes(
         """
         struct Used { float a; }; struct Unused { float a; }; struct Outer { Used inner; };
@@ -38,7 +38,7 @@ def test_unreachable_declarations_go() -> None:
     )
 
 
-def test_a_chain_of_unused_variables_goes_with_what_only_it_used() -> None:
+def test_chains_of_unused_variables_are_removed() -> None:
     becomes(
         """
         uniform float k = 1.0;
@@ -52,7 +52,7 @@ def test_a_chain_of_unused_variables_goes_with_what_only_it_used() -> None:
     )
 
 
-def test_a_variable_that_only_feeds_itself_goes() -> None:
+def test_self_referencing_unused_variables_are_removed() -> None:
     becomes(
         "float f(float x) { float n = 0.0; for (int i = 0; i < 4; i++) { n = n + x; if (n > 2.0) { break; } } "
         "return x; }",
@@ -73,7 +73,7 @@ def test_loops_keep_their_counters_and_jumps() -> None:
     becomes(source, source)
 
 
-def test_a_dead_loop_goes_though_another_uses_its_names() -> None:
+def test_a_dead_loop_is_removed_though_another_uses_its_names() -> None:
     becomes(
         """
         float f(float x) {
@@ -93,7 +93,7 @@ def test_a_dead_loop_goes_though_another_uses_its_names() -> None:
     )
 
 
-def test_what_is_not_reached_goes() -> None:
+def test_unreachable_statements_are_removed() -> None:
     becomes(
         """
         float f(float x) {
@@ -170,12 +170,12 @@ def test_a_call_that_discards_stays() -> None:
     )
 
 
-def test_what_follows_a_discard_stays_for_targets_that_want_a_return() -> None:
+def test_a_return_after_a_discard_is_kept() -> None:
     source = "float f(float x) { discard; return x; }"
     becomes(source, source)
 
 
-def test_callees_come_first_and_the_rest_stays_in_order() -> None:
+def test_callees_are_first_and_the_order_is_stable() -> None:
     module = module_of(
         """
         float c(float x);
@@ -192,7 +192,7 @@ def test_callees_come_first_and_the_rest_stays_in_order() -> None:
     assert verify(result, linked=True) == []
 
 
-def test_an_idle_run_keeps_every_node() -> None:
+def test_a_run_without_changes_keeps_every_node() -> None:
     module = module_of("uniform float k = 1.0; float f(float x) { float y = x; if (x > 0.0) { y = k; } return y; }")
     result = prune(module, [key(module, "f")])
     assert result.functions is module.functions and result.uniforms is module.uniforms

@@ -32,7 +32,7 @@ def programs(first: int, count: int) -> list[tuple[int, ir.Module]]:
     return found
 
 
-def test_every_value_of_random_programs_lies_in_its_range() -> None:
+def test_values_of_random_programs_are_in_their_ranges() -> None:
     chosen = programs(0, PROGRAMS)
     values = 0
     for seed, module in chosen:
@@ -49,7 +49,7 @@ def test_every_value_of_random_programs_lies_in_its_range() -> None:
 
 
 @pytest.mark.slow
-def test_every_value_of_many_random_programs_lies_in_its_range() -> None:
+def test_values_of_many_random_programs_are_in_their_ranges() -> None:
     for seed, module in programs(1000, 4000):
         analysis, random = recorded(module, "f"), Random(seed)
         for _ in range(RUNS):
@@ -133,7 +133,7 @@ def test_values_that_must_be_in_the_range(body: str, params: str, head: str, num
     has(range_of(body, params, head), *numbers)
 
 
-def test_a_clamped_quantity_says_nothing_of_what_was_clamped() -> None:
+def test_a_clamped_quantity_does_not_bound_its_argument() -> None:
     """deep(x) >= 0 always holds; x may still be negative."""
     text = "thickness deep(float x) { return thickness(x); }\nfloat f(float x) { %s return 0.0; }"
     sites = analyse(module_of(text % "if (float(deep(x)) >= 0.0) { return sqrt(x); }"), ["f(float)"]).sites
@@ -146,7 +146,7 @@ def test_a_call_that_moves_the_index_of_its_own_out_argument() -> None:
     has(range_of(body, "float x", head), 5.0)
 
 
-def test_a_long_sum_takes_no_long_time() -> None:
+def test_a_long_sum_is_fast() -> None:
     """x + x of x + x of …: as many terms as there are doublings, not two to that power."""
     body = "x += x;" * 60 + "for (int i = 0; i < 3; i++) { y += x; y -= x; }" + "if (x < y) { return 1.0; } return 0.0;"
     has(range_of(body), 0.0, 1.0)
@@ -271,7 +271,7 @@ def test_not_proven(what: str, body: str, params: str, head: str) -> None:
         ("return sqrt(x * y - x * y);", "float x, float y"),
     ],
 )  # fmt: skip
-def test_what_was_taken_for_proven(body: str, params: str) -> None:
+def test_these_sites_are_not_proven(body: str, params: str) -> None:
     found = verdicts(body, params, "")
     assert not found.get("/", found.get("sqrt")), found
 
@@ -288,20 +288,20 @@ def test_ranges_of_results() -> None:
     assert part.low == 0.0 and 1.0 <= part.high < 1.000001
 
 
-def test_where_the_counter_is_below_the_count() -> None:
+def test_loop_counters_are_below_the_count() -> None:
     body = "float t = 0.5; for (int i = 0; i < n; i++) { t = (float(i) + 0.5) / float(n); } return t;"
     found = range_of(body, "float x", STEPS)
     assert found.low > 0.0 and found.high < 1.0
 
 
-def test_only_what_is_called_from_outside_takes_anything() -> None:
+def test_only_entry_points_have_unknown_arguments() -> None:
     text = "float inner(float v) { return sqrt(v); }\nfloat f(float x) { return inner(x * x); }"
     module = module_of(text)
     assert all(site.proven for site in analyse(module, ["f(float)"]).sites if site.what == "sqrt")
     assert not all(site.proven for site in analyse(module, ["f(float)", "inner(float)"]).sites if site.what == "sqrt")
 
 
-def test_a_count_that_is_negative_elsewhere_keeps_its_sign() -> None:
+def test_a_count_that_may_be_negative_keeps_its_sign() -> None:
     """One guard serves all calls of a function."""
     text = "float part(int k) { return 8.0 / float(k); }\nfloat f(int n) { return part(max(n, 0)) + part(-4); }"
     (site,) = [site for site in analyse(module_of(text), ["f(int)"]).sites if site.what == "/"]

@@ -51,7 +51,7 @@ def values(numbers: tuple[float, ...], shape: Any) -> Any:
 
 @pytest.mark.parametrize("i", [0, 1])
 @pytest.mark.parametrize("j", [0, 1])
-def test_a_struct_of_uniforms_reads_the_same_apart(i: int, j: int) -> None:
+def test_a_split_struct_of_uniforms_reads_the_same(i: int, j: int) -> None:
     module = read_module(LIGHTS)
     check_module(module)
     split = uniform_structs(module)

@@ -96,6 +96,6 @@ def test_opengl(view: View, compiler: Callable[[str], Any]) -> None:
     assert difference(in_opengl(view, compiler("gl").context), by_hand(view)) <= LEVEL
 
 
-def test_a_silhouette_is_where_roundings_decide() -> None:
+def test_silhouettes_are_where_rounding_decides() -> None:
     """In float32 the ray of this pixel ends a step earlier, in a shadow, and the color differs by 28/255."""
     assert by_hand(VIEWS["from behind"]).silhouette[16, 55]

@@ -61,7 +61,7 @@ def test_the_command_line_loads_nothing_heavy(tmp_path: Path) -> None:
     assert loaded("import sssgen.cli.main, sssgen.cli.emit", tmp_path, *heavy) == set()
 
 
-def test_what_an_emit_with_warm_caches_loads(tmp_path: Path) -> None:
+def test_an_emit_with_warm_caches_imports_little(tmp_path: Path) -> None:
     source, kept = tmp_path / "lantern.toml", tmp_path / "cache"
     heavy = (
         "numpy",
@@ -116,7 +116,7 @@ def test_a_changed_file_is_compiled_again(tmp_path: Path) -> None:
     assert "other.wgsl" in third.files
 
 
-def test_what_is_kept_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_caches_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(compiler, "_CACHE_SIZE", 4)
     for number in range(12):
         compiler.compile(edited(load_material("resin_inlay"), number), "wgsl")
@@ -146,9 +146,7 @@ def _edited(stage: Stage, number: int) -> Stage:
 
 
 @pytest.mark.parametrize("name", examples())
-def test_a_variant_is_what_it_is_when_its_values_go_through_the_passes(
-    name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_variant_equals_a_compilation_from_source(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     original, variant = load_material(name), edited(load_material(name), 0)
     kept = {}
     for target in TARGETS:
@@ -189,7 +187,7 @@ def test_variants_cost_no_pass_and_one_rendering_each(monkeypatch: pytest.Monkey
         assert runs == ["rendering"] * count
 
 
-def test_what_changes_the_program_makes_another_one() -> None:
+def test_structural_changes_compile_another_program() -> None:
     material = parse_material(LANTERN, "lantern.toml")
     fixed = parse_material(LANTERN.replace(EDITED[0], "distortion = { value = 0.15, fixed = true }"), "lantern.toml")
     texts = [compiler.compile(one, "glsl-330").files["paper_lantern.glsl-330.frag"] for one in (material, fixed)]
@@ -224,7 +222,7 @@ def test_a_command_is_recalled_until_something_changes(tmp_path: Path, monkeypat
     assert emitted_cache.load(*command) is None
 
 
-def test_a_damaged_entry_is_made_again(tmp_path: Path) -> None:
+def test_a_damaged_entry_is_recomputed(tmp_path: Path) -> None:
     material = load_material("resin_inlay")
     first = compiler.compile(material, "wgsl").files
     entries = [path for path in tmp_path.iterdir() if path.is_file()]

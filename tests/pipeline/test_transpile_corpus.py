@@ -65,7 +65,7 @@ CASES = [(name, target) for name in FILES for target in TARGETS]
 
 
 @pytest.mark.parametrize(("name", "target"), CASES)
-def test_the_text_is_as_it_was(name: str, target: str) -> None:
+def test_the_text_is_unchanged(name: str, target: str) -> None:
     try:
         text = made(name, target)
     except SssgenError as error:
@@ -80,7 +80,7 @@ def test_no_snapshot_is_left_over() -> None:
 
 
 @pytest.mark.parametrize("compiler", COMPILERS)
-def test_other_compilers_take_it(compiler: str) -> None:
+def test_other_compilers_accept_it(compiler: str) -> None:
     found = compiler_or_skip(compiler)
     wrong = []
     for name, target in CASES:
@@ -90,7 +90,7 @@ def test_other_compilers_take_it(compiler: str) -> None:
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_one_trip_makes_it_stable(name: str) -> None:
+def test_a_second_transpilation_changes_nothing(name: str) -> None:
     """GLSL made of GLSL is that GLSL, and means the same."""
     title = name.split(".")[0]
     text = HEADER.sub("", made(name, "glsl-330"))
@@ -124,12 +124,12 @@ def machines(backend: Callable[[str], Backend]) -> None:
 
 @pytest.mark.usefixtures("machines")
 @pytest.mark.parametrize("name", QUICK)
-def test_functions_compute_what_they_did(name: str) -> None:
+def test_functions_keep_their_results(name: str) -> None:
     computed(name, 64)
 
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("machines")
 @pytest.mark.parametrize("name", FILES)
-def test_all_functions_compute_what_they_did(name: str) -> None:
+def test_all_functions_keep_their_results(name: str) -> None:
     computed(name, 512)

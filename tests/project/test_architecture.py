@@ -41,11 +41,11 @@ def test_the_layers_are_those_of_the_contracts() -> None:
     assert rows == order
 
 
-def test_the_root_of_the_package_is_small() -> None:
+def test_the_root_of_the_package_has_few_files() -> None:
     assert len(list(PACKAGE.glob("*.py"))) <= MAX_ROOT_MODULES
 
 
-def test_no_two_modules_have_one_name() -> None:
+def test_module_names_are_unique() -> None:
     """A name says which module is meant. A command may have the name of what it runs."""
     names = Counter(
         path.name for path in python_files() if path.name != "__init__.py" and path.parent != PACKAGE / "cli"

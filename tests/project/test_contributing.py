@@ -108,7 +108,7 @@ def plugin(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, st
 TOY = "from sssgen.targets import registry\ndef toy():\n    return registry.load('glsl-330')._replace(name='{}')\n"
 
 
-def test_a_plugin_may_give_a_target(plugin: Callable[[str, str], None]) -> None:
+def test_a_plugin_can_add_a_target(plugin: Callable[[str, str], None]) -> None:
     plugin("toy = toy_target:toy", TOY.format("toy"))
     assert "toy" in registry.names()
     assert registry.load("toy").language == "glsl"
@@ -193,6 +193,6 @@ def test_own_descriptors_declare_every_capability() -> None:
     assert not any(Capabilities())
 
 
-def test_the_keys_of_descriptors_are_what_the_front_end_and_the_chain_know() -> None:
+def test_the_keys_of_descriptors_equal_the_inputs_of_the_chain() -> None:
     assert set(descriptor.CHAIN_INPUTS) == {*INPUTS, "surface", "color"}
     assert set(descriptor.STAGE_BUILTINS) < set(BUILTIN_VARIABLES)

@@ -55,7 +55,7 @@ def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return programs
 
 
-def test_the_wheel_carries_what_it_needs_and_nothing_else(wheel: Path) -> None:
+def test_the_wheel_has_exactly_its_data(wheel: Path) -> None:
     with zipfile.ZipFile(wheel) as archive:
         names = set(archive.namelist())
         texts = {name: archive.read(name) for name in names}
@@ -85,7 +85,7 @@ def test_the_source_distribution_carries_the_qualification() -> None:
         assert "from qualification" not in text, path
 
 
-def test_the_wheel_emits_what_the_checkout_emits(installed: Path, tmp_path: Path) -> None:
+def test_the_wheel_and_the_checkout_emit_equal_files(installed: Path, tmp_path: Path) -> None:
     """Every example for every target, each side with its own hash seed and with no cache to begin with."""
     names = list(examples())
     wheel_run = [installed / "sssgen", "emit", *names, "--target", "all", "-o", "wheel"]
@@ -133,7 +133,7 @@ def test_the_version_is_in_the_changelog_or_unreleased() -> None:
     assert f"## [{VERSION}]" in text or "## [Unreleased]" in text
 
 
-def test_what_is_imported_is_asked_for() -> None:
+def test_every_import_is_a_dependency() -> None:
     """Every module from outside that src/ imports is a dependency, or one of an extra."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     asked = str([project["dependencies"], project["optional-dependencies"]])

@@ -42,7 +42,9 @@ TESTED = [
 
 
 @pytest.mark.parametrize("block", TESTED, ids=str)
-def test_what_a_document_shows(block: Block, reader: Reader, compiler: Callable[[str], Any]) -> None:
+def test_the_commands_of_a_document_give_its_output(
+    block: Block, reader: Reader, compiler: Callable[[str], Any]
+) -> None:
     if block.argument == "gl":
         compiler("gl")
     reader.follow(block)

@@ -41,7 +41,7 @@ def told(erratum: Erratum, found: tuple[float, ...]) -> str:
 
 
 @pytest.mark.parametrize("name", BACKENDS)
-def test_the_published_techniques_are_off_as_theory_says(backend: Get, name: str) -> None:
+def test_the_published_techniques_have_the_predicted_errors(backend: Get, name: str) -> None:
     machine = backend(name)
     for erratum in ERRATA:
         if erratum.everywhere:
@@ -51,7 +51,7 @@ def test_the_published_techniques_are_off_as_theory_says(backend: Get, name: str
 
 
 @pytest.mark.parametrize("name", BACKENDS)
-def test_ours_hold(backend: Get, name: str) -> None:
+def test_the_corrected_techniques_hold(backend: Get, name: str) -> None:
     machine = backend(name)
     for erratum in ERRATA:
         found = as_mended(erratum, machine)
@@ -59,7 +59,7 @@ def test_ours_hold(backend: Get, name: str) -> None:
         assert not erratum.everywhere or not shows(erratum, found), told(erratum, found)
 
 
-def test_what_is_undefined_is_wrong_somewhere(backend: Get) -> None:
+def test_undefined_results_are_wrong_somewhere(backend: Get) -> None:
     """With NumPy's float32, whose pow(0, 0) is 1. A driver may give a number that happens to be right."""
     undefined = [erratum for erratum in ERRATA if not erratum.everywhere and erratum.name != "pow(0, 0)"]
     assert len(undefined) >= 4
@@ -68,14 +68,14 @@ def test_what_is_undefined_is_wrong_somewhere(backend: Get) -> None:
         assert not holds(erratum, found), told(erratum, found)
 
 
-def test_theory_is_what_is_known() -> None:
+def test_predicted_errors_equal_the_published_figures() -> None:
     for erratum in ERRATA:
         if known := PUBLISHED_FIGURES.get((erratum.source, erratum.name)):
             assert erratum.theory == pytest.approx(known, abs=6e-6, rel=1e-5)
     assert set(PUBLISHED_FIGURES) <= {(one.source, one.name) for one in ERRATA}
 
 
-def test_every_published_source_has_its_errata() -> None:
+def test_every_published_source_has_errata() -> None:
     baselines = {technique.name for technique in library.load_all() if "baselines" in str(technique.path)}
     assert baselines == {erratum.published.technique for erratum in (*ERRATA, *OPEN)} & baselines
     assert not {erratum.mended.technique for erratum in ERRATA} & baselines
@@ -84,14 +84,14 @@ def test_every_published_source_has_its_errata() -> None:
     assert all(one.reason for one in UNSHOWN)
 
 
-def test_what_is_open_is_open(backend: Get) -> None:
+def test_open_errata_are_not_fixed(backend: Get) -> None:
     for erratum in OPEN:
         assert shows(erratum, as_published(erratum, backend("numpy-f32")))
         found = as_mended(erratum, backend("numpy-f32"))
         assert not holds(erratum, found), f"{told(erratum, found)} is mended: move it to its chapter"
 
 
-def test_what_is_compared() -> None:
+def test_errata_are_compared_with_tolerances() -> None:
     erratum = ERRATA[0]._replace(theory=(1.0, math.nan, math.inf), right=(Right(0.0, 1.0),))
     assert shows(erratum, (1.00009, math.nan, math.inf)) and shows(erratum, (1.0, math.nan, math.nan))
     for wrong in ((1.001, math.nan, math.inf), (1.0, 0.0, math.inf), (1.0, math.nan, 9.0), (1.0, math.nan)):

@@ -61,7 +61,7 @@ def call(gpu: Backend, source: str, result: Type, *args: Array) -> Array:
 # The printer
 
 
-def test_half_is_no_target_for_users() -> None:
+def test_half_precision_is_an_internal_target() -> None:
     target = registry.load(TARGET)
     assert target.half_of == "wgsl" and set(target.files) == {"functions"}
     assert TARGET not in registry.names()
@@ -79,7 +79,7 @@ def test_every_half_is_read_back_from_its_text() -> None:
     ]  # fmt: skip
 
 
-def test_what_there_is_in_float32_alone_is_converted() -> None:
+def test_builtins_that_exist_only_in_float32_are_converted() -> None:
     text = text_of(
         "vec2 f(sampler2D map, vec2 uv, uint bits) {\n"
         "    return dFdx(uv) + texture(map, uv * 0.1).xy + unpackUnorm2x16(bits);\n}\n"
@@ -144,7 +144,7 @@ def test_every_operation_rounds_to_half(backend: Get) -> None:
     assert (found == each).mean() > 0.9 > 0.8 > (found == once.astype(np.float16)).mean()
 
 
-def test_literals_arrive_as_they_are(backend: Get) -> None:
+def test_literals_are_exact(backend: Get) -> None:
     gpu = backend("webgpu-f16")
     values = np.random.default_rng(1).integers(0x400, 0x7C00, 200).astype(np.uint16).view(np.float16)
     listed = ", ".join(repr(float(value)) for value in values)
@@ -152,7 +152,7 @@ def test_literals_arrive_as_they_are(backend: Get) -> None:
     assert (call(gpu, source, FLOAT, np.arange(200)) == values).all()
 
 
-def test_infinity_and_nan_come_back(backend: Get) -> None:
+def test_infinity_and_nan_are_returned(backend: Get) -> None:
     gpu = backend("webgpu-f16")
     given = np.array([np.inf, -np.inf, np.nan, 65504.0, 1e6])
     np.testing.assert_array_equal(
@@ -187,7 +187,7 @@ def test_every_technique_compiles_and_runs(backend: Get, compiler: Callable[[str
 
 
 @pytest.mark.parametrize("name", SIMPLE)
-def test_a_simple_technique_is_as_in_numpy(name: str, backend: Get) -> None:
+def test_a_simple_technique_equals_numpy(name: str, backend: Get) -> None:
     gpu = backend("webgpu-f16")
     chosen, given = technique(name, 1000)
     fit = fitted(chosen, given)
@@ -224,7 +224,7 @@ def test_eval_refuses(named: str, precision: str, capsys: pytest.CaptureFixture[
         assert "webgpu-f16 computes in its own precision, not in f32" in told
 
 
-def test_an_adapter_without_halves_is_said(backend: Get, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_adapter_without_halves_is_reported(backend: Get, monkeypatch: pytest.MonkeyPatch) -> None:
     backend("webgpu")
 
     class Without:

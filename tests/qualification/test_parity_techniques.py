@@ -95,7 +95,7 @@ def test_a_lane_at_a_step_is_excluded_and_a_wrong_one_is_not(tmp_path: Path) -> 
     assert deviation(off, oracle).excluded == 0
 
 
-def test_nan_is_not_excluded() -> None:
+def test_nan_is_not_an_excluded_lane() -> None:
     right = {"result": np.ones(4)}
     got = {"result": np.array([1.0, np.nan, 1.0, 1.0])}
     worst = deviation(got, right, lambda: {"result": np.full(4, 0.1)})
@@ -151,7 +151,7 @@ def test_samples_are_the_same_for_the_same_seed() -> None:
     assert (drawn("sphere", 50)["p"] == first["p"]).all(), "a parameter's numbers do not depend on the others"
 
 
-def test_samples_give_numbers_for_every_technique() -> None:
+def test_samples_give_finite_results_for_every_technique() -> None:
     """Finite ones, but for the baseline that marches without end."""
     for name in library.index():
         chosen = subject(name)
@@ -173,7 +173,7 @@ def test_eval_compares_on_samples(capsys: pytest.CaptureFixture[str]) -> None:
     assert data["lanes"] == 3000 and data["outputs"] == {} and data["backends"][1]["excluded"] > 0
 
 
-def test_eval_puts_given_inputs_before_samples(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_given_inputs_of_eval_replace_samples(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "in.json").write_text('{"through": 0.0}', encoding="utf-8")
     asked = ["eval", "lobe_gdc2011", "--samples", "20", "--inputs", str(tmp_path / "in.json"), "--json"]
     assert cli.main(asked) == 0

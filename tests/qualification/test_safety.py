@@ -60,7 +60,7 @@ def test_most_is_proven() -> None:
     assert proven > 2 * guarded > 0
 
 
-def test_the_page_has_the_counts_of_now() -> None:
+def test_the_page_has_the_current_counts() -> None:
     text = PAGE.read_text(encoding="utf-8")
     for one in counted():
         row = [one.proven, one.guarded, one.costs["none"].operations, one.added("auto"), one.added("all")]

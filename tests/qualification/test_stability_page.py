@@ -54,7 +54,7 @@ def figures(cell: str, backend: str) -> list[float]:
 
 
 @pytest.mark.parametrize("name", ["numpy-f32", "gl"])
-def test_the_figures_are_those_of_now(backend: Get, name: str) -> None:
+def test_the_figures_are_current(backend: Get, name: str) -> None:
     """What a driver may decide is compared on NumPy only."""
     machine = backend(name)
     for erratum in (*ERRATA, *OPEN):
@@ -94,7 +94,7 @@ def test_the_pictures_are_small() -> None:
             assert (picture.mode, picture.size) == ("RGB", (count * WIDTH + (count - 1) * script()["GAP"], HEIGHT))
 
 
-def test_the_pictures_are_those_of_now(backend: Get) -> None:
+def test_the_pictures_are_current(backend: Get) -> None:
     """Scenes drawn at a quarter of their size, and the maps as they are."""
     backend("gl"), backend("browser")
     for name, picture in script()["PICTURES"].items():
@@ -114,7 +114,7 @@ def no_number(picture: npt.NDArray[np.float64]) -> int:
     return int((picture == MAGENTA).all(axis=2).sum())
 
 
-def test_the_cube_has_its_dead_square() -> None:
+def test_the_published_cube_has_a_black_square() -> None:
     published, ours = (picture[120:155, 120:155].mean() for picture in panels("cube"))
     assert published < 0.02 and ours > 0.2
 

@@ -43,7 +43,7 @@ def test_a_cut_entry_is_not_read(folder: Path, length: int) -> None:
     assert cache.read("entry") == b""
 
 
-def test_a_value_of_another_stamp_is_made_again() -> None:
+def test_a_value_of_another_stamp_is_recomputed() -> None:
     assert cache.load_or_make("value", 1, lambda: "first") == "first"
     assert cache.load_or_make("value", 1, lambda: "second") == "first"
     assert cache.load_or_make("value", 2, lambda: "third") == "third"
@@ -51,7 +51,7 @@ def test_a_value_of_another_stamp_is_made_again() -> None:
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has other permissions")
 @pytest.mark.parametrize("mode", [0o770, 0o707, 0o777])
-def test_a_folder_that_others_can_write_is_not_used(folder: Path, mode: int) -> None:
+def test_a_folder_writable_by_others_is_not_used(folder: Path, mode: int) -> None:
     folder.mkdir()
     folder.chmod(mode)
     assert cache.folder() == ""
@@ -74,7 +74,7 @@ def test_a_full_disk_is_no_error(folder: Path, monkeypatch: pytest.MonkeyPatch) 
     assert not list(folder.iterdir())
 
 
-def test_a_folder_that_cannot_be_made_is_no_error(folder: Path) -> None:
+def test_a_folder_that_cannot_be_created_is_no_error(folder: Path) -> None:
     folder.write_text("a file in its place")
     assert cache.folder() == ""
     assert cache.load_or_make("value", 1, lambda: "made") == "made"

@@ -17,13 +17,13 @@ def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
-def test_what_climbing_names_are_told() -> None:
+def test_names_that_leave_the_folder_are_refused() -> None:
     with pytest.raises(SssgenError) as caught:
         check_names(["fine.txt", "../x", "/x", "a\x00b"])
     check_snapshot("cli/names_that_climb_out.txt", f"{caught.value}\n")
 
 
-def test_sub_folders_are_made_but_links_out_are_not_followed(tmp_path: Path) -> None:
+def test_sub_folders_are_created_and_links_outside_are_not_followed(tmp_path: Path) -> None:
     write_files(Path("out"), {"include/wax.hlsl": "a\n"})
     assert Path("out/include/wax.hlsl").read_bytes() == b"a\n"
     (tmp_path / "elsewhere").mkdir()

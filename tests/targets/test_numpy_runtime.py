@@ -70,7 +70,7 @@ def test_constructors() -> None:
 
 
 @pytest.mark.parametrize("dtype", ["float16", "float32", "float64"])
-def test_precision_is_kept(dtype: str) -> None:
+def test_precision_is_preserved(dtype: str) -> None:
     x = np.ones(3, dtype)
     with precision(dtype):
         v = vec(x, 0.5, to_float(np.arange(3, dtype=np.int32)))
@@ -293,7 +293,7 @@ def test_texels_of_integers_keep_all_their_bits() -> None:
     assert rt.texelFetch(uints, np.array([[0], [0]]), 0)[0, 0] == 2**32 - 1
 
 
-def test_a_comparison_is_made_before_the_filter() -> None:
+def test_a_comparison_precedes_the_filter() -> None:
     shade = Texture(np.array([[[0.25], [0.75]]]), wrap="clamp", compare=True)
     reference = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
     across = np.array([0.5] * 5)  # half way between the texels
@@ -315,7 +315,7 @@ def test_offsets_are_in_texels_of_each_level() -> None:
     np.testing.assert_array_equal(rt.texelFetchOffset(texture, np.array([[1], [1]]), 0, vec(1, -1))[0], 2.0)
 
 
-def test_a_gather_gives_the_texels_of_the_linear_filter() -> None:
+def test_a_gather_returns_the_texels_of_the_linear_filter() -> None:
     image = np.zeros((2, 3, 4))
     image[..., 2] = np.arange(6.0).reshape(2, 3)
     texture = Texture(image, wrap="clamp")

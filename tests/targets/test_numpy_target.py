@@ -220,7 +220,7 @@ def test_control_flow(title: str) -> None:
     assert_agrees(source, [(x,) for x in X.tolist()])
 
 
-def test_lanes_that_are_all_one_stay_one() -> None:
+def test_uniform_lanes_stay_scalar() -> None:
     assert run(CASES["break"][0], np.float64(0.5)) == 2.5
     assert (
         run("float f(float x) { float s = 0.0; for (int i = 0; i < 3; i++) s += x; return s; }", np.float64(2)) == 6.0
@@ -281,7 +281,7 @@ float f(float x, inout float y) { if (x < 2.0) cut(x + 1.0); y += 1.0; if (y > 3
 # Values
 
 
-def test_parts_are_stored_without_touching_what_shares_them() -> None:
+def test_stores_to_components_do_not_change_aliases() -> None:
     source = """
 vec3 f(inout vec3 v, out vec3 w) {
     w = v;

@@ -50,7 +50,7 @@ def test_renames_are_reported() -> None:
 
 
 @pytest.mark.parametrize("target", sssgen.all_targets())
-def test_conventions_are_said(target: str) -> None:
+def test_conventions_are_reported(target: str) -> None:
     """Which way is up, what is column and what row, who encodes: nothing in the text shows it."""
     conventions = sssgen.compile("ice", target).reflection["conventions"]
     assert {"matrices", "framebuffer_y", "uv_origin", "color_space"} <= set(conventions)
@@ -58,7 +58,7 @@ def test_conventions_are_said(target: str) -> None:
     assert {"clip_y", "clip_z"} <= set(conventions) or not in_a_shell
 
 
-def test_precision_is_said_where_there_is_no_default() -> None:
+def test_precision_is_declared_where_there_is_no_default() -> None:
     made = sssgen.compile("wax_mouse", "glsl-es-300").files["wax_mouse.glsl-es-300.frag"]
     code = [line for line in made.splitlines() if line and not line.startswith("//")]
     assert code[0] == "#version 300 es"

@@ -20,7 +20,7 @@ def test_a_whole_shader_compiles(name: str, target: str, keep: bool) -> None:
     assert wrong(text, target, stage) == [], text  # type: ignore[arg-type]  # one of its two words
 
 
-def test_colours_that_nothing_gives_are_left_out() -> None:
+def test_unused_colour_outputs_are_omitted() -> None:
     assert "out vec4 FragData[2];" in whole(SEVERAL, "glsl-es-300")
     assert "SV_Target1" in whole(SEVERAL, "hlsl")
     assert "SV_Target2" not in whole(SEVERAL, "hlsl")
@@ -36,7 +36,7 @@ def test_the_stages_meet() -> None:
         assert all(place in text for text in wgsl)
 
 
-def test_what_the_framebuffer_turns() -> None:
+def test_coordinates_follow_the_framebuffers_direction() -> None:
     assert "FragCoord.y = iResolution.y - FragCoord.y;" in whole(FRAGMENT, "hlsl")
     assert "FragCoord.w = 1.0 / FragCoord.w;" in whole(FRAGMENT, "hlsl")
     assert "FragCoord.y = material.iResolution.y - FragCoord.y;" in whole(FRAGMENT, "wgsl")
@@ -50,7 +50,7 @@ def test_what_the_framebuffer_turns() -> None:
     assert transpile(read_module(without), "glsl-330", "x", keep=True).warnings == []
 
 
-def test_glsl_is_kept() -> None:
+def test_glsl_is_unchanged() -> None:
     """The text is the author's, unused functions and all, in the order of its operands."""
     text = whole(FRAGMENT + "function float unused() {\n    return (1.0 + 1.0);\n}\n", "glsl-330")
     assert "float a = rand() + rand() * seed;" in text
@@ -61,7 +61,7 @@ def test_glsl_is_kept() -> None:
     assert "unused" not in next(iter(pruned.files.values()))
 
 
-def test_what_a_stage_cannot_have_is_refused() -> None:
+def test_unsupported_stage_inputs_are_refused() -> None:
     point = 'variable in vec2 gl_PointCoord [builtin("gl_PointCoord")]\n' + OLD
     with pytest.raises(SssgenError, match="is given no gl_PointCoord"):
         transpile(read_module(point), "wgsl", "x", keep=True)
@@ -70,7 +70,7 @@ def test_what_a_stage_cannot_have_is_refused() -> None:
         transpile(read_module(loose), "wgsl", "x", keep=True)
 
 
-def test_a_constant_that_is_no_number_is_refused_where_it_must_be() -> None:
+def test_a_non_finite_constant_is_refused_where_required() -> None:
     text = "function float f() {\n    return (1.0 / 0.0);\n}\n"
     assert "1.0 / 0.0" in whole(text, "glsl-330")
     with pytest.raises(SssgenError, match="divided by 0"):
@@ -87,7 +87,7 @@ def test_a_vertex_shader_reads_textures_at_level_0() -> None:
         assert wrong(made, target, "vertex") == []
 
 
-def test_an_interpolation_that_a_target_has_not_is_told() -> None:
+def test_an_unsupported_interpolation_is_reported() -> None:
     text = 'variable in vec2 uv [interpolation("noperspective")]\n' + OLD
     assert "noperspective in vec2 uv;" in whole(text, "glsl-330")
     assert "@interpolate(linear)" in whole(text, "wgsl")
@@ -96,7 +96,7 @@ def test_an_interpolation_that_a_target_has_not_is_told() -> None:
     assert "with perspective" in made.warnings[0].message
 
 
-def test_what_main_calls_alike_for_all_pixels_may_sample_in_a_loop() -> None:
+def test_functions_called_in_uniform_flow_may_sample_in_a_loop() -> None:
     """A function of a whole shader is judged by its calls: here the loop's bound is a constant."""
     text = """uniform sampler2D map
 variable in vec2 uv

@@ -78,7 +78,7 @@ def test_shapes(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["sphere", "box", "torus", "capsule"])
-def test_shapes_in_object_space_are_the_same(name: str) -> None:
+def test_shapes_in_object_space_have_the_same_distance(name: str) -> None:
     values, expected, tolerance = SHAPES[name]
     close(technique(f"distance/{name}.sss:{name}_object")(p=P, **values), expected(), atol=tolerance)
 
@@ -205,7 +205,7 @@ def box_normal(p: Array) -> Array:
 
 @pytest.mark.parametrize("march", ["raymarch", "cheap_sss_raymarch"])
 @pytest.mark.parametrize("shape", ["sphere", "box"])
-def test_marches_meet_what_the_closed_form_meets(march: str, shape: str) -> None:
+def test_marches_hit_the_analytic_intersection(march: str, shape: str) -> None:
     origin = 3.0 * units(500, 1)
     ray = unit(1.1 * units(500, 2) - origin)
     solve = ray_to_sphere if shape == "sphere" else ray_to_box
@@ -230,7 +230,7 @@ def test_marches_meet_what_the_closed_form_meets(march: str, shape: str) -> None
     close(v, -ray)
 
 
-def test_raymarch_goes_no_farther_than_it_should() -> None:
+def test_raymarch_stops_at_its_maximum_distance() -> None:
     values = {"ray_origin": [0.0, 5.0, 0.0], "ray_direction": -UP}
     march = technique("raymarch", scene_distance="ground_plane")
     assert march(max_distance=6.0, **values)[0]

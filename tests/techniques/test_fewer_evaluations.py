@@ -136,7 +136,7 @@ def evaluations(method: str, name: str, **values: Any) -> float:
 
 
 @shapes
-def test_four_taps_are_the_whole_integral(name: str) -> None:
+def test_four_taps_equal_the_integral(name: str) -> None:
     assert off(thinness(name, "thinness_traced", 4), integral(name)) <= 0.01
     assert off(thinness(name, "thinness_uniform", 29), integral(name)) > 0.01
 
@@ -161,7 +161,7 @@ def test_a_wide_slab_needs_one_tap(taps: int, width: float) -> None:
 
 
 @pytest.mark.parametrize("outside", [-9e-4, 5e-4, 1e-3])
-def test_a_hit_that_is_not_on_the_surface_makes_no_noise(outside: float) -> None:
+def test_hits_off_the_surface_add_no_noise(outside: float) -> None:
     """A raymarched hit is as far off as its tolerance."""
     p, n, _ = points("cube")
     made = technique("thinness_traced", body_distance="box")
@@ -169,7 +169,7 @@ def test_a_hit_that_is_not_on_the_surface_makes_no_noise(outside: float) -> None
     assert np.abs(found - integral("cube")).max() < 0.01
 
 
-def test_normals_that_are_bent() -> None:
+def test_bent_normals_converge() -> None:
     """As a normal map bends them: with more taps it still converges."""
     p, n, _ = points("torus")
     bent = unit(n + 0.3 * units(len(n), 5))
@@ -206,7 +206,7 @@ def test_the_front_moves() -> None:
         assert min(found for evaluated, found in traced if evaluated <= count) < 0.6 * error
 
 
-def test_a_body_in_parts() -> None:
+def test_a_body_of_several_parts() -> None:
     """Two balls and a wall: gaps do not count, and what is beyond them does."""
     p = 0.3 * units(150) + np.where(units(150)[:, 1:2] > 0.0, 1.0, -1.0) * [0.0, 0.4, 0.0]
     light = units(150, 9)

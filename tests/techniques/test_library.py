@@ -39,7 +39,7 @@ STRUCTURED = {"role", "formula", "superseded_by", "suggested", "legend", "shape"
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_doc_comment_says_all(name: str) -> None:
+def test_the_doc_comment_is_complete(name: str) -> None:
     technique = library.load(name)
     doc = technique.doc
     assert doc.keys() >= SECTIONS, sorted(doc)
@@ -106,7 +106,7 @@ def uniforms() -> dict[str, Uniform]:
     return found
 
 
-def test_uniforms_say_what_they_are() -> None:
+def test_uniforms_are_documented() -> None:
     """A sentence, and a range and unit, or a reason why not."""
     wrong = []
     for name, uniform in uniforms().items():
@@ -127,7 +127,7 @@ def test_uniforms_say_what_they_are() -> None:
     assert named >= UNBOUNDED.keys()
 
 
-def test_aliases_mean_one_thing() -> None:
+def test_aliases_are_unique() -> None:
     """Within one technique a name means one uniform."""
     for name in NAMES:
         words = [

@@ -104,7 +104,7 @@ def test_lobes(name: str) -> None:
 
 
 @pytest.mark.parametrize("distortion", [0.0, 0.2, 0.99])
-def test_seed_3_as_published_is_constant_ambient(distortion: float) -> None:
+def test_the_published_seed_3_is_constant_ambient(distortion: float) -> None:
     values = {"ambient": 0.3, "attenuation": 0.5, "scale": 20.0, "distortion": distortion}
     result = technique("ice_shader_lobe")(N=N, L=L, through=0.5, **values)
     close(result, 0.075, rtol=1e-14)
@@ -116,7 +116,7 @@ def test_the_three_js_port_is_lobe_normalized() -> None:
     close(port, technique("lobe_normalized")(V=V, N=N, L=L, through=THROUGH, **own), atol=1e-15)
 
 
-def test_seed_1_as_published_is_dark_by_default() -> None:
+def test_the_published_seed_1_is_dark_by_default() -> None:
     assert not technique("alisavakis_lobe")(V=V, N=N, L=L, d=0.5).any()
 
 
@@ -130,7 +130,7 @@ def test_the_phase_function_integrates_to_1_and_has_mean_cosine_g(g: float) -> N
     close((weight * lobe * cosine).sum() / 2.0, g, atol=1e-6)
 
 
-def test_what_the_notes_say_of_exp2() -> None:
+def test_the_notes_on_exp2_hold() -> None:
     """A floor of 2^-power, and 1.44 power + 1.44 lets through as much as pow does, within 2 %."""
     values = {"scale": 1.0, "ambient": 0.0, "distortion": 0.0, "through": 1.0, "N": UP}
     close(technique("lobe_exp2")(V=UP, L=UP, power=6.0, **values), 2.0**-6)
@@ -144,7 +144,7 @@ def test_what_the_notes_say_of_exp2() -> None:
         close(cheap, exact, rtol=0.02)
 
 
-def test_what_the_notes_say_of_gdc_2011() -> None:
+def test_the_notes_on_gdc_2011_hold() -> None:
     """Opposite the light the peak is (1 - distortion dot(n, v))^power."""
     facing = N * np.sign(dot(N, V))[:, None]
     values = {"scale": 1.0, "ambient": 0.0, "power": 6.0, "distortion": 0.3}

@@ -29,7 +29,7 @@ def slanted(degrees: Any) -> Array:
 
 
 @pytest.mark.parametrize("ior", OFFSETS)
-def test_refracted_parallax_slides_as_the_table_says(ior: float) -> None:
+def test_refracted_parallax_has_the_offsets_of_the_table(ior: float) -> None:
     ours = technique("parallax_refracted")(uv=(0.3, 0.4), V=slanted(DEGREES), depth=0.1, ior=ior, **FLAT)
     close((0.3 - ours[:, 0]) / 0.1, OFFSETS[ior], atol=5.1e-6)
     close(ours[:, 1], 0.4)

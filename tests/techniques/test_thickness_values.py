@@ -115,12 +115,12 @@ def test_taps_along_the_normal(name: str) -> None:
 
 @pytest.mark.parametrize("name", [*TAPS, "thinness_hemisphere", "thinness_traced"])
 @pytest.mark.parametrize(("body", "expected"), [(HALF_SPACE, 0.0), (VOID, 1.0), (FULL, 0.0)])
-def test_thinness_is_0_in_deep_matter_and_1_in_none(name: str, body: str, expected: float) -> None:
+def test_thinness_is_0_in_deep_matter_and_1_in_air(name: str, body: str, expected: float) -> None:
     """Also for fields that are no distances: each tap is bounded."""
     close(technique(name, body_distance=body)(P=ORIGIN, N=UP), expected, atol=1e-15)
 
 
-def test_xt95_as_published() -> None:
+def test_the_published_xt95_formula() -> None:
     p, n = on_torus(40)
     hashes = np.sin(np.arange(6.0)) * 3538.5453
     lengths = 6.0 * (hashes - np.floor(hashes))
@@ -190,7 +190,7 @@ def test_march_through_flat_faces_is_exact(degrees: float) -> None:
     close(technique("march_light", body_distance=HALF_SPACE)(P=ORIGIN, L=light, reach=0.25), 0.25)  # no farther
 
 
-def test_march_sums_what_is_inside() -> None:
+def test_the_march_sums_the_inside_lengths() -> None:
     """Two slabs of 0.3 and 0.5 with a gap; the depth map of the same body takes the gap for matter."""
     slabs = technique("march_light", body_distance=TWO_SLABS)
     close(slabs(P=ORIGIN, L=UP, steps=50), 0.8, atol=1e-12)
@@ -272,7 +272,7 @@ def test_march_in_a_flat_box_is_finite() -> None:
     close(result, 2e-4, atol=5e-5)
 
 
-def test_seed_2_as_published() -> None:
+def test_the_published_seed_2_formula() -> None:
     """Its sums; that deep voxels count least, so that more matter reads as less; and its uvw for a box above 0."""
     march = technique("distance_field_march", distance_at="sphere:sphere_object")
     p, v, light = 0.4 * units(20), units(20)[::-1], np.roll(units(20), 3, axis=0)
@@ -339,7 +339,7 @@ def test_thickness_from_the_lights_depth_map() -> None:
     close(technique("depth_map_thickness")(P=p, **values), expected, atol=1e-12)
 
 
-def test_depth_map_absorption_as_published() -> None:
+def test_the_published_depth_map_absorption() -> None:
     """No bound: it may be greater than 1."""
     p, matrix, depths, _, entry = lights_view()
     view = np.array([[0.0, 1.0, 0.0, 0.5], [-1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.25], [0.0, 0.0, 0.0, 1.0]])
