@@ -22,7 +22,7 @@ from sssgen.passes.capabilities import Capabilities
 from sssgen.targets import descriptor, registry
 
 CONTRIBUTING = ROOT / "CONTRIBUTING.md"
-COPIED = ("src", "targets", "templates", "examples", "tests", "pyproject.toml", "README.md", "LICENSE")
+COPIED = ("src", "targets", "templates", "examples", "tests", "docs", "pyproject.toml", "README.md", "LICENSE")
 
 
 def checkout(folder: Path, programs: Path) -> Reader:
@@ -50,6 +50,24 @@ def test_add_a_technique(tmp_path: Path, compiler: Callable[[str], Any]) -> None
         reader.follow(step)
     assert "sheet_thickness" in reader.run("sssgen list techniques --role thickness")[0]
     assert "sheet_thickness(" in (tmp_path / "out" / "sheet" / "frosted_sheet.wgsl").read_text("utf-8")
+
+
+def test_add_a_builtin(tmp_path: Path, compiler: Callable[[str], Any]) -> None:
+    compiler("gl")
+    reader = checkout(tmp_path, programs(tmp_path / "programs"))
+    for step in blocks(CONTRIBUTING, "Add a builtin"):
+        reader.follow(step)
+    assert "`genF clampSigned(genF)`<br>clamp(x, -1, 1)." in read(tmp_path / "docs" / "intrinsics.md")
+
+
+def test_add_a_role(tmp_path: Path, compiler: Callable[[str], Any]) -> None:
+    for name in ("gl", "glslang", "naga", "tint", "dxc", "unity"):
+        compiler(name)
+    reader = checkout(tmp_path, programs(tmp_path / "programs"))
+    for step in blocks(CONTRIBUTING, "Add a role"):
+        reader.follow(step)
+    assert "wetness" in reader.run("sssgen list techniques --role weathering")[0]
+    assert "wetness(" in read(tmp_path / "out" / "wet" / "wet_paper.wgsl")
 
 
 def test_add_a_target(tmp_path: Path, compiler: Callable[[str], Any]) -> None:

@@ -4,6 +4,7 @@
     <!-- part of: PATH -->         its lines stand in that file, in this order
     <!-- emitted: MATERIAL TARGET FORM FILE -->   the block is that file as `sssgen.compile` makes it
     <!-- write: PATH -->           the block is written there, in the reader's folder
+    <!-- change: PATH -->          a diff without line numbers, applied to that file in the reader's folder
     <!-- run -->                   its commands succeed there; `<!-- run: gl -->` where there is an OpenGL driver
     <!-- output: sssgen … -->      the block is what the command prints
     <!-- findings: sssgen … -->    the same, where the command ends with status 1
@@ -95,6 +96,8 @@ class Reader:
             path = self.folder / block.argument
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(block.text, encoding="utf-8", newline="\n")
+        elif block.verb == "change":
+            _change(self.folder / block.argument, block)
         elif block.verb == "run":
             self.run(block.text)
         elif block.verb == "python":
@@ -140,6 +143,14 @@ def check(block: Block, wanted: str) -> None:
         block.document.write_text(text[:start] + wanted + text[start + len(block.text) :], encoding="utf-8")
         return
     assert block.text == wanted, f"{block} is not so any more; UPDATE_SNAPSHOTS=1 puts it right"
+
+
+def _change(path: Path, block: Block) -> None:
+    lines = block.text.splitlines(keepends=True)
+    before, after = ("".join(line[1:] for line in lines if line[0] in f" {sign}") for sign in "-+")
+    text = read(path)
+    assert text.count(before) == 1, f"{block}: the lines to change are not in the file once"
+    path.write_text(text.replace(before, after), encoding="utf-8", newline="\n")
 
 
 def _session(block: Block) -> None:
