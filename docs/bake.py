@@ -24,7 +24,7 @@ from sssgen.harness.pictures.picture_difference import compare
 from sssgen.harness.scenes.mesh import Mesh
 from sssgen.support.extras import need
 from sssgen.support.file_writer import write_files
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 HERE = Path(__file__).parent
 PAGE, FOLDER = HERE / "bake.md", HERE / "bake"

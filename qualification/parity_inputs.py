@@ -20,7 +20,7 @@ from sssgen.ir import signatures
 from sssgen.ir.intrinsics import BUILTINS, Builtin
 from sssgen.ir.types import BY_NAME, INT, Matrix, Sampler, Scalar, Type, Vector, components, kind_of, spell
 from sssgen.targets import numpy_runtime as runtime
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 FEW = 12
 """Lanes of the texture reads and derivatives."""

@@ -14,7 +14,7 @@ from sssgen.bake.cells import scale, voronoi
 from sssgen.bake.channel_packing import Source, load, pack, parse
 from sssgen.bake.normal_map import from_height
 from sssgen.support.diagnostics import SssgenError
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 pytest.importorskip("PIL", reason="Pillow is missing: pip install 'sssgen[render]'")
 

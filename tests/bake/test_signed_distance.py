@@ -25,7 +25,7 @@ from sssgen.bake.voxel_grid import Grid, around
 from sssgen.harness.scenes.mesh import Mesh
 from sssgen.harness.scenes.mesh_distance import INSIDE, MeshDistance
 from sssgen.lab.reference.inside_lengths import thickness
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 
 @pytest.fixture(autouse=True)

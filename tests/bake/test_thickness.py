@@ -28,7 +28,7 @@ from sssgen.bake.depth_map import depth_map
 from sssgen.bake.thickness_map import Map, Request, thickness_map, warnings
 from sssgen.harness.scenes.mesh import Mesh
 from sssgen.lab.jobs.executor import Failure, run
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 
 @pytest.fixture(autouse=True)

@@ -21,7 +21,7 @@ from sssgen.harness.backends.browser import Browser
 from sssgen.ir.types import BY_NAME, FLOAT, INT, VEC2, VEC3, VEC4
 from sssgen.lang.loader import load_text
 from sssgen.support.diagnostics import SssgenError
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 from validate import code
 
 PICTURE = """

@@ -24,7 +24,7 @@ from sssgen.harness.evaluate.evaluation import evaluate
 from sssgen.harness.evaluate.probes import subject
 from sssgen.harness.pictures.images import write_exr, write_png
 from sssgen.support.diagnostics import SssgenError
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 LOBE: dict[str, Any] = {"V": [0, 0, 1], "N": [0, 0, 1], "L": [[0, 0, -1], [0.6, 0, -0.8]], "through": 0.5}
 

@@ -12,7 +12,7 @@ from sssgen.harness.scenes.geometry import Ball, Box, Distance, Mesh, Slab, Toru
 from sssgen.harness.scenes.scene import DistanceTexture, Light, Picture, Scene
 from sssgen.harness.scenes.scene_loading import load, parse_scene
 from sssgen.support.diagnostics import SssgenError
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 HEAD = 'material = "paper_lantern"\n'
 

@@ -21,7 +21,7 @@ from sssgen.lab.scene import scene_body as body
 from sssgen.lab.scene.measured_scene import Inlay, MeasuredScene
 from sssgen.lab.scene.view_points import points
 from sssgen.support.diagnostics import SssgenError
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 BALL = '[geometry]\nkind = "ball"\n'
 LIT = "[[light]]\ndirection = [0, 0, -2]\n"

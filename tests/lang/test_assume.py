@@ -33,7 +33,7 @@ from sssgen.passes.prune import prune
 from sssgen.pipeline.compiler import GUARDS, transpile
 from sssgen.support.diagnostics import SssgenError
 from sssgen.targets import registry
-from sssgen.targets.numpy_values import grid, precision
+from sssgen.targets.runtime.numpy_values import grid, precision
 
 SOURCE = """
 float f(float x, float y) {

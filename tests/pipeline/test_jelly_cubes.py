@@ -11,7 +11,7 @@ import pytest
 
 import sssgen
 from jelly_cubes_by_hand import LEVEL, Array, Scene, image
-from sssgen.targets.numpy_values import precision
+from sssgen.targets.runtime.numpy_values import precision
 
 WIDTH, HEIGHT = 80, 60
 CONSTANTS = 1.0e-5

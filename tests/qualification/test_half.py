@@ -28,7 +28,7 @@ from sssgen.material import library
 from sssgen.pipeline.compiler import transpile
 from sssgen.support.diagnostics import SssgenError
 from sssgen.targets import registry
-from sssgen.targets.wgsl_half import half_text
+from sssgen.targets.printers.wgsl_half import half_text
 
 TARGET = "wgsl-f16"
 ULP = 2.0**-10

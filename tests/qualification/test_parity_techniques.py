@@ -20,7 +20,7 @@ from sssgen.harness.evaluate.evaluation import fitted, run
 from sssgen.harness.evaluate.probes import subject
 from sssgen.harness.evaluate.random_inputs import samples
 from sssgen.material import library
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 PAGE = DOCS / "parity_techniques.md"
 FEW = 500

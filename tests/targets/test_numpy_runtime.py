@@ -12,8 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sssgen.targets import numpy_runtime as rt
-from sssgen.targets.numpy_textures import _FACES, Texture
-from sssgen.targets.numpy_values import (
+from sssgen.targets.runtime.numpy_textures import _FACES, Texture
+from sssgen.targets.runtime.numpy_values import (
     Record,
     array,
     diagonal,

@@ -16,10 +16,10 @@ from numpy_cases import assert_agrees, compiled, module_of, python_of, run
 from random_programs import Programs
 from sssgen.ir.types import Sampler
 from sssgen.targets import numpy_runtime
-from sssgen.targets.numpy_printer import NumpyPrinter
-from sssgen.targets.numpy_textures import Texture
-from sssgen.targets.numpy_values import Record, precision, vec
+from sssgen.targets.printers.numpy_printer import NumpyPrinter
 from sssgen.targets.registry import load
+from sssgen.targets.runtime.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_values import Record, precision, vec
 from sssgen.targets.uniform_layout import place
 
 X = np.array([-2.0, -0.5, 0.0, 0.5, 1.0, 3.0])

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from oracle import UP, Array, close, rng, technique, unit, units
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 P = rng().uniform(-1.5, 1.5, (400, 3))
 CENTER, HALF, START, END = np.array([[0.1, -0.2, 0.3], [0.7, 0.4, 0.5], [-0.6, 0.2, 0.1], [0.5, 0.9, -0.4]])

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from oracle import Array, close, lowbias32, rng, technique, unit, units
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 X, Y, Z = np.eye(3)
 FLAT = {"T": X, "B": Y, "N": Z}

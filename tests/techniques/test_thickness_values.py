@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from oracle import UP, Array, close, lowbias32, rng, technique, unit, units
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 ORIGIN = np.zeros(3)
 HALF_SPACE = "ground_plane"

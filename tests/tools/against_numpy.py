@@ -15,7 +15,7 @@ from sssgen.ir.nodes import Function, Module, Param
 from sssgen.ir.types import Sampler, kind_of
 from sssgen.pipeline.compiler import transpile
 from sssgen.targets import numpy_runtime as rt
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 from validate import code
 
 HEIGHT = 2

@@ -14,9 +14,9 @@ from sssgen.lang.check.module_checker import check
 from sssgen.lang.syntax.parser import parse
 from sssgen.passes.names import rename
 from sssgen.passes.numpy.predicate import predicate
-from sssgen.targets.numpy_printer import print_functions
-from sssgen.targets.numpy_values import Record, precision
+from sssgen.targets.printers.numpy_printer import print_functions
 from sssgen.targets.registry import load
+from sssgen.targets.runtime.numpy_values import Record, precision
 
 DTYPES: dict[str, Any] = {"float": np.float64, "int": np.int32, "uint": np.uint32, "bool": np.bool_}
 

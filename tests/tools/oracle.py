@@ -30,8 +30,8 @@ from sssgen.material.library import TECHNIQUES
 from sssgen.material.slots import find
 from sssgen.passes.link import LinkStage, link
 from sssgen.pipeline.compiler import transpile
-from sssgen.targets.numpy_textures import Texture
-from sssgen.targets.numpy_values import precision
+from sssgen.targets.runtime.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_values import precision
 
 DTYPES: dict[str, Any] = {"float": np.float64, "int": np.int32, "uint": np.uint32, "bool": np.bool_}
 

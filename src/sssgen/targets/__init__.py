@@ -1,1 +1,1 @@
-"""Targets: descriptors, printers, uniform layout, reflection, and the assembly of a shader from its parts."""
+"""Targets: descriptors, uniform layout, reflection, the assembly of a shader from its parts; printers and runtime."""

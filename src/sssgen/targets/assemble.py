@@ -15,7 +15,7 @@ from sssgen.ir.types import Sampler, Struct, spell
 from sssgen.passes.stage.stage_interface import Stage
 from sssgen.support.diagnostics import Diagnostic, failure
 from sssgen.targets.descriptor import Target
-from sssgen.targets.printer import Comments, Line, Printer, comment_text
+from sssgen.targets.printers.printer import Comments, Line, Printer, comment_text
 from sssgen.targets.templates import render
 from sssgen.targets.uniform_layout import Member, place
 
@@ -78,10 +78,10 @@ class Emitted(NamedTuple):
 
 
 _PRINTERS = {
-    "glsl": "sssgen.targets.glsl:GlslPrinter",
-    "hlsl": "sssgen.targets.hlsl:HlslPrinter",
-    "wgsl": "sssgen.targets.wgsl:WgslPrinter",
-    "python": "sssgen.targets.numpy_printer:NumpyPrinter",
+    "glsl": "sssgen.targets.printers.glsl:GlslPrinter",
+    "hlsl": "sssgen.targets.printers.hlsl:HlslPrinter",
+    "wgsl": "sssgen.targets.printers.wgsl:WgslPrinter",
+    "python": "sssgen.targets.printers.numpy_printer:NumpyPrinter",
 }
 
 

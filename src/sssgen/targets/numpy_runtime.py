@@ -11,11 +11,11 @@ from math import pi
 
 import numpy as np
 
-from sssgen.targets.numpy_bits import *
-from sssgen.targets.numpy_reads import *
-from sssgen.targets.numpy_textures import Texture as Texture
-from sssgen.targets.numpy_values import *
-from sssgen.targets.numpy_values import Value, silent
+from sssgen.targets.runtime.numpy_bits import *
+from sssgen.targets.runtime.numpy_reads import *
+from sssgen.targets.runtime.numpy_textures import Texture as Texture
+from sssgen.targets.runtime.numpy_values import *
+from sssgen.targets.runtime.numpy_values import Value, silent
 
 # 8.1 and 8.2 Trigonometry and exponentials: NumPy's own functions, NaN or infinity outside of their domain
 

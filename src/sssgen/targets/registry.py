@@ -17,7 +17,7 @@ from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.paths import place, stem
 from sssgen.targets.descriptor import Names, Target, read, table_of, target_of
 
-HALF_PRECISION = {"wgsl-f16": "sssgen.targets.wgsl_half", "numpy-f16": "sssgen.targets.numpy_half"}
+HALF_PRECISION = {"wgsl-f16": "sssgen.targets.printers.wgsl_half", "numpy-f16": "sssgen.targets.printers.numpy_half"}
 """Targets for the harness only, which `names` leaves out: the module whose `target()` makes each."""
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from sssgen.ir import nodes as ir
-from sssgen.targets.glsl import GlslPrinter
-from sssgen.targets.printer import Line, documented
+from sssgen.targets.printers.glsl import GlslPrinter
+from sssgen.targets.printers.printer import Line, documented
 from sssgen.targets.uniform_layout import Member
 
 DESCRIPTOR = Path(__file__).with_name("vulkan.toml")

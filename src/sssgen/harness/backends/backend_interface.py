@@ -15,7 +15,7 @@ from sssgen.lang.source_lines import source_line
 from sssgen.pipeline.compiler import Compiled
 from sssgen.support.diagnostics import Diagnostic, SssgenError
 from sssgen.targets.descriptor import Target
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 Array: TypeAlias = npt.NDArray[Any]
 
@@ -36,7 +36,7 @@ def emitted(compiled: Compiled, reflection: Mapping[str, Any], name: str) -> Tex
 class Call(NamedTuple):
     """One function applied to arrays of lanes; an argument for a texture is the texture's name.
 
-    Values have components on the first axes and lanes on the last, as in `sssgen.targets.numpy_values`: a float is
+    Values have components on the first axes and lanes on the last, as in `numpy_values`: a float is
     (lanes,), a vec3 (3, lanes), a mat3 (3, 3, lanes) column by column.
     """
 

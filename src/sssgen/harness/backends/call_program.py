@@ -14,8 +14,8 @@ import numpy as np
 from sssgen.harness.backends.backend_interface import Array, Bound, Call, Drawing, Place, Stage, Text
 from sssgen.ir.types import Matrix, Sampler, Scalar, Type, Vector, components, kind_of, spell, vector_of
 from sssgen.targets.descriptor import Target
-from sssgen.targets.numpy_textures import Texture
 from sssgen.targets.registry import load
+from sssgen.targets.runtime.numpy_textures import Texture
 
 WIDTH = 4096
 """The most lanes in a row; every driver takes pictures twice as wide."""

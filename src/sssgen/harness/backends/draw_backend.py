@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from sssgen.harness.backends import call_program as programs
 from sssgen.harness.backends.backend_interface import Array, Backend, Call, Drawing, Text, gave_up
 from sssgen.targets import registry
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 
 class DrawingBackend(Backend):

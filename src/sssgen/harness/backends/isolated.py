@@ -15,7 +15,7 @@ from sssgen.harness.backends.backend_interface import gave_up
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.worker_process import LostError, Process
 from sssgen.targets import registry
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 SECONDS = 300.0
 """How long one answer may take; software drivers compile large shaders slowly."""

@@ -11,8 +11,8 @@ import numpy as np
 from sssgen.harness.backends import call_program as programs
 from sssgen.harness.backends.backend_interface import Array, Backend, Call, Text, gave_up
 from sssgen.targets import registry
-from sssgen.targets.numpy_textures import Texture
-from sssgen.targets.numpy_values import grid, precision
+from sssgen.targets.runtime.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_values import grid, precision
 
 
 class Reference(Backend):

@@ -13,7 +13,7 @@ from sssgen.harness import compilers
 from sssgen.harness.backends.backend_interface import ATTRIBUTES, Array, Block, Drawing, Text, gave_up, refused
 from sssgen.harness.backends.draw_backend import DrawingBackend
 from sssgen.harness.compilers.gl_driver import DriverGL, messages
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 _HEADS = {
     "glsl-330": "#version 330 core\n#line 1\n",

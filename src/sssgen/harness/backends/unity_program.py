@@ -18,7 +18,7 @@ from sssgen.harness.backends.backend_interface import Array, Block, Bound, Drawi
 from sssgen.harness.backends.hlsl_spirv import HLSL, compiled, crossed
 from sssgen.harness.compilers import Message
 from sssgen.harness.compilers import unity_compiler as unity
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 _BINDING = re.compile(r"layout\(binding = \d+(?:, )?")
 """Each stage has its own numbers, and a block of both must not differ: moderngl assigns new ones."""

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sssgen.harness.backends.backend_interface import ATTRIBUTES, Array, Bound, Drawing
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 _WRAP = {"repeat": "repeat", "clamp": "clamp-to-edge", "mirror": "mirror-repeat"}
 

@@ -23,7 +23,7 @@ from sssgen.ir.types import Matrix, Sampler, Type, Vector, components, kind_of, 
 from sssgen.passes.ranges.sites import Site
 from sssgen.pipeline.compiler import transpile
 from sssgen.support.diagnostics import did_you_mean, failure
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 DTYPES: dict[str, Any] = {"float": np.float64, "int": np.int32, "uint": np.uint32, "bool": np.bool_}
 

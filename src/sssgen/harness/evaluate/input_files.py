@@ -14,7 +14,7 @@ from sssgen.harness.pictures import images
 from sssgen.support import json_source
 from sssgen.support.diagnostics import failure
 from sssgen.support.text_files import MAX_BYTES, refuse_special
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 
 def bindings(given: Sequence[str]) -> dict[str, str]:

@@ -20,7 +20,7 @@ from sssgen.harness.evaluate.probes import Subject
 from sssgen.ir.nodes import Param, Uniform
 from sssgen.ir.types import Matrix, Sampler, Scalar, Vector, kind_of
 from sssgen.support.paths import stem
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 ENDS = 0.04
 """The share of numbers that are exactly an end of their range."""

@@ -21,7 +21,7 @@ from sssgen.material.model import Material
 from sssgen.material.values import WrongValue, read_value
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.paths import posix
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 
 def shell_of(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> Shell:

@@ -15,7 +15,7 @@ from sssgen.harness.evaluate.evaluation import default_texture
 from sssgen.harness.render.shell_values import Shell, inverse
 from sssgen.ir.types import BY_NAME, Matrix, Vector, kind_of
 from sssgen.pipeline.compiler import Compiled
-from sssgen.targets.numpy_values import grid, precision
+from sssgen.targets.runtime.numpy_values import grid, precision
 
 BAND = 1 << 16
 """About how many pixels are shaded at once."""

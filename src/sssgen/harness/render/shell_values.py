@@ -15,7 +15,7 @@ from sssgen.harness.backends import Array, Block, Bound, Drawing, Place, Stage, 
 from sssgen.harness.evaluate.evaluation import default_texture
 from sssgen.ir.types import BY_NAME, Matrix, Vector, kind_of
 from sssgen.pipeline.compiler import Compiled
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 LIGHTS = 4
 """The number of lights of a shell."""

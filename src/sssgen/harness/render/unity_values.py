@@ -18,7 +18,7 @@ from sssgen.harness.render import pixel_mesh
 from sssgen.harness.render.shell_values import Shell, inverse, textures
 from sssgen.ir.types import BY_NAME, Matrix, Vector
 from sssgen.pipeline.compiler import Compiled
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 _BASE = ("UNITY_PASS_FORWARDBASE=1", "DIRECTIONAL=1", "LIGHTPROBE_SH=1")
 _ADD = {0.0: ("UNITY_PASS_FORWARDADD=1", "DIRECTIONAL=1"), 1.0: ("UNITY_PASS_FORWARDADD=1", "POINT=1")}

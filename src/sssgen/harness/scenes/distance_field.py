@@ -24,7 +24,7 @@ from sssgen.passes.fold import fold
 from sssgen.passes.link import LinkStage, link
 from sssgen.pipeline.compiler import transpile
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
-from sssgen.targets.numpy_values import precision
+from sssgen.targets.runtime.numpy_values import precision
 
 PROJECTIONS = {"spherical": spherical, "planar": planar}
 """Points (n, 3) → their uv (n, 2) and the gradients of u and of v, (n, 3) each, up to a positive factor."""

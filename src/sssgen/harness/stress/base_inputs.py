@@ -14,7 +14,7 @@ from sssgen.ir.formats import FLOAT16, FLOAT32, Format
 from sssgen.ir.nodes import Intrinsic
 from sssgen.ir.types import Matrix, Sampler, kind_of, spell
 from sssgen.ir.walk import all_expressions
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 _PLAIN: dict[str, Any] = {
     "N": (0, 0, 1), "V": (0, 0, 1), "L": (0, 0, -1), "T": (1, 0, 0), "B": (0, 1, 0), "normal": (0, 0, 1),

@@ -15,7 +15,7 @@ from sssgen.harness.stress.subject import Specimen
 from sssgen.harness.stress.trial import BEYOND, BOUNDARY, Trial
 from sssgen.ir.formats import FLOAT32, Format
 from sssgen.ir.types import Matrix, Sampler, kind_of
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 MIXED = 4096
 """Lanes of which every input has a boundary value."""

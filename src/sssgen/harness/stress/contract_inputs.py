@@ -17,7 +17,7 @@ from sssgen.ir.formats import FLOAT32, Format
 from sssgen.ir.nodes import Param, Uniform
 from sssgen.ir.types import Matrix, Sampler, kind_of, spell
 from sssgen.ir.vector_ranges import LENGTH, Contract
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 TINY = 1e-45
 """The smallest number drawn: float32's smallest subnormal."""

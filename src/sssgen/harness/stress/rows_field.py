@@ -14,7 +14,7 @@ from sssgen.harness.stress.subject import Specimen
 from sssgen.harness.stress.trial import Trial
 from sssgen.ir.types import kind_of
 from sssgen.material import library, slots
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 
 def _bound(specimen: Specimen, shape: str) -> Specimen | None:

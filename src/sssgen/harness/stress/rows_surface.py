@@ -15,7 +15,7 @@ from sssgen.harness.stress.rows_light import AXES
 from sssgen.harness.stress.subject import Specimen
 from sssgen.harness.stress.trial import Trial
 from sssgen.ir.types import Sampler
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 UV = np.array([0.3, 0.6], np.float32)
 _NANS = (0x7E00, 0x7C01, 0xFE00, 0xFFFF, 0x7C00, 0xFC00)

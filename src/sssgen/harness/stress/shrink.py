@@ -16,7 +16,7 @@ from sssgen.harness.evaluate.evaluation import Inputs, default_texture
 from sssgen.harness.stress.contract_inputs import contract, fixed, opaque, whole_range
 from sssgen.harness.stress.subject import Specimen
 from sssgen.ir.types import kind_of, spell
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 Fails = Callable[[Inputs], Array]
 """Whether inputs fail: (lanes,) bool."""

@@ -14,7 +14,7 @@ from sssgen.harness.backends import Array
 from sssgen.harness.evaluate.evaluation import shape_of
 from sssgen.harness.evaluate.random_inputs import texture
 from sssgen.ir.types import Sampler, Type, kind_of
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 SPECIAL, WITHIN = 0.12, 0.5
 """The shares of numbers that are 0, 1 or -1, and of those in [0, 1]."""

@@ -44,7 +44,7 @@ from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
 from sssgen.pipeline.compiler import transpile
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.targets import registry
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 SAMPLES = 1000
 ROUNDS = 4

@@ -26,7 +26,7 @@ from sssgen.harness import backends
 from sssgen.harness.backends.backend_interface import Text, refused
 from sssgen.harness.backends.opengl import OpenGL, is_loose
 from sssgen.harness.compilers.gl_driver import messages
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 SIZE = (1920, 1080)
 ROUNDS = 31

@@ -33,7 +33,7 @@ from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import compile, transpile
 from sssgen.support.diagnostics import did_you_mean, failure
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 EYE, LIGHT = (0.0, 0.0, 1.8), (2.5, 1.0, 0.3)
 """Positions of the eye and of the light for single techniques: half of the visible part of a unit ball is lit."""

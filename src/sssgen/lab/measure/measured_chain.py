@@ -16,8 +16,8 @@ from sssgen.ir.types import BY_NAME, Matrix, Vector, kind_of
 from sssgen.material.material_loading import parse_material
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import Compiled, compile
-from sssgen.targets.numpy_textures import Texture
-from sssgen.targets.numpy_values import grid, precision
+from sssgen.targets.runtime.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_values import grid, precision
 
 NAME = "measured"
 

@@ -17,7 +17,7 @@ from sssgen.lab.reference.inside_lengths import thickness
 from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.lab.scene.view_points import Points, points
 from sssgen.support.diagnostics import failure
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 UV_RANGE = 32.0
 """The probe shown_uv divides texture coordinates by this. Here they are lengths in depths of the inlay."""

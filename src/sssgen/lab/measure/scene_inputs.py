@@ -18,7 +18,7 @@ from sssgen.lab.reference.inside_lengths import intervals, thickness
 from sssgen.lab.scene import scene_body as body
 from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.lab.scene.view_points import points
-from sssgen.targets.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_textures import Texture
 
 RAYS = 32
 """Inward rays per point for the mean chord."""

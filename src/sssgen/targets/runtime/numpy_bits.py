@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.targets.numpy_values import Value, silent, to_int, to_uint, working
+from sssgen.targets.runtime.numpy_values import Value, silent, to_int, to_uint, working
 
 __all__ = [
     "bitCount",

@@ -8,7 +8,7 @@ from __future__ import annotations
 from sssgen.ir import nodes as ir
 from sssgen.ir.types import Sampler
 from sssgen.ir.walk import all_expressions
-from sssgen.targets.printer import Line
+from sssgen.targets.printers.printer import Line
 
 
 def asked(function: ir.Function) -> list[str]:

@@ -13,10 +13,10 @@ from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import FLOAT, Sampler, kind_of
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.targets.descriptor import OutputFile, Target
-from sssgen.targets.printer import PRIMARY, Line, shortest
+from sssgen.targets.printers.printer import PRIMARY, Line, shortest
+from sssgen.targets.printers.wgsl import WgslPrinter
 from sssgen.targets.registry import load
 from sssgen.targets.uniform_layout import Member
-from sssgen.targets.wgsl import WgslPrinter
 
 
 def target() -> Target:

@@ -14,9 +14,9 @@ from sssgen.ir.types import VOID, Scalar, Struct
 from sssgen.ir.walk import all_expressions, subexpressions
 from sssgen.passes.numpy.uniformity import count
 from sssgen.targets.descriptor import Target
-from sssgen.targets.numpy_expressions import PYTHON_PRECEDENCE, NumpyExpressions
-from sssgen.targets.printer import POSTFIX, Line, summary
-from sssgen.targets.python_text import texture_text, value_text, wrap
+from sssgen.targets.printers.numpy_expressions import PYTHON_PRECEDENCE, NumpyExpressions
+from sssgen.targets.printers.printer import POSTFIX, Line, summary
+from sssgen.targets.printers.python_text import texture_text, value_text, wrap
 from sssgen.targets.registry import load
 from sssgen.targets.uniform_layout import Member
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from sssgen.targets.numpy_textures import Texture
-from sssgen.targets.numpy_values import Value, arrays, image_shape, working
+from sssgen.targets.runtime.numpy_textures import Texture
+from sssgen.targets.runtime.numpy_values import Value, arrays, image_shape, working
 
 __all__ = [
     "dFdx",

@@ -5,8 +5,8 @@ from __future__ import annotations
 from sssgen.ir import nodes as ir
 from sssgen.ir.types import INT, UINT, Array, Matrix, Scalar, Struct, Vector, components, kind_of
 from sssgen.targets.descriptor import Target
-from sssgen.targets.numpy_numbers import Numbers, nonzero
-from sssgen.targets.printer import POSTFIX, PRIMARY, UNARY, Printer
+from sssgen.targets.printers.numpy_numbers import Numbers, nonzero
+from sssgen.targets.printers.printer import POSTFIX, PRIMARY, UNARY, Printer
 
 _OPERATORS = {"||": "|", "^^": "^", "&&": "&"}
 PYTHON_PRECEDENCE = {

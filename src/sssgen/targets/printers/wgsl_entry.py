@@ -5,7 +5,7 @@ from __future__ import annotations
 from sssgen.ir.nodes import NOWHERE
 from sssgen.ir.types import INT, kind_of
 from sssgen.passes.stage.stage_interface import Slot, Stage
-from sssgen.targets.entry_points import (
+from sssgen.targets.printers.entry_points import (
     adjusted,
     depth_halved,
     is_count,
@@ -15,7 +15,7 @@ from sssgen.targets.entry_points import (
     parameters,
     place_text,
 )
-from sssgen.targets.printer import Line, Printer, wrap
+from sssgen.targets.printers.printer import Line, Printer, wrap
 
 _INTERPOLATION = {"flat": "flat", "noperspective": "linear", "centroid": "perspective, centroid"}
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from sssgen.ir.nodes import NOWHERE
 from sssgen.ir.types import INT, kind_of
 from sssgen.passes.stage.stage_interface import Slot, Stage
-from sssgen.targets.entry_points import (
+from sssgen.targets.printers.entry_points import (
     adjusted,
     depth_halved,
     is_count,
@@ -19,7 +19,7 @@ from sssgen.targets.entry_points import (
     parameters,
     place_text,
 )
-from sssgen.targets.printer import Line, Printer, wrap
+from sssgen.targets.printers.printer import Line, Printer, wrap
 
 _INTERPOLATION = {"flat": "nointerpolation ", "noperspective": "noperspective ", "centroid": "centroid "}
 _INPUT_SEMANTICS = {"vertex": "ATTR", "fragment": "TEXCOORD"}

@@ -6,7 +6,7 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.types import Scalar, Vector, kind_of
 from sssgen.passes.stage.stage_interface import COLORS
 from sssgen.targets.descriptor import Target
-from sssgen.targets.printer import Line, Printer, documented
+from sssgen.targets.printers.printer import Line, Printer, documented
 from sssgen.targets.uniform_layout import Member
 
 

@@ -13,10 +13,10 @@ from __future__ import annotations
 from sssgen.ir import nodes as ir
 from sssgen.ir.types import Array, Matrix, Scalar, Struct, Vector, kind_of
 from sssgen.passes.uniform_blocks import block_type
-from sssgen.targets import hlsl_sizes
 from sssgen.targets.descriptor import Target
-from sssgen.targets.hlsl_entry import print_entry
-from sssgen.targets.printer import POSTFIX, PRIMARY, UNARY, Line, Printer, documented
+from sssgen.targets.printers import hlsl_sizes
+from sssgen.targets.printers.hlsl_entry import print_entry
+from sssgen.targets.printers.printer import POSTFIX, PRIMARY, UNARY, Line, Printer, documented
 from sssgen.targets.uniform_layout import Member
 
 LONGEST_UNROLLED = 8

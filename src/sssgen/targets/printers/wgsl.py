@@ -11,9 +11,9 @@ from sssgen.ir.walk import subexpressions
 from sssgen.passes.scopes import assigned, outs_of
 from sssgen.passes.uniform_blocks import block_type
 from sssgen.targets.descriptor import Target
-from sssgen.targets.printer import PRIMARY, UNARY, Line, Printer, documented, wrap
+from sssgen.targets.printers.printer import PRIMARY, UNARY, Line, Printer, documented, wrap
+from sssgen.targets.printers.wgsl_entry import print_entry
 from sssgen.targets.uniform_layout import Member
-from sssgen.targets.wgsl_entry import print_entry
 
 _TYPED = (ir.Local, ir.Global, ir.Call, ir.Construct)
 
