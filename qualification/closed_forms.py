@@ -37,8 +37,8 @@ def h_function(albedo: float, cosine: npt.ArrayLike) -> Array:
         h = after
         if done:
             break
-    at = np.asarray(cosine, np.float64)
-    integral = (weights * nodes * h / (at[..., None] + nodes)).sum(axis=-1)
+    cosines = np.asarray(cosine, np.float64)
+    integral = (weights * nodes * h / (cosines[..., None] + nodes)).sum(axis=-1)
     solved: Array = 1.0 / (escape + 0.5 * albedo * integral)
     return solved
 
@@ -103,7 +103,7 @@ def ball_once(
     `light` is the unit direction towards the light. The integral  σs p ∫ exp(−σt (s + c(s))) ds  along the chord,
     where c is the way from the point to the ball's surface towards the light, on Gauss points. Rays that miss read 0.
     """
-    start, along, sun = (np.asarray(given, np.float64) for given in (origin, directions, light))
+    start, along, sun = (np.asarray(vector, np.float64) for vector in (origin, directions, light))
     nearest = -along @ start
     foot = start + nearest[:, None] * along
     half = np.sqrt(np.maximum(radius**2 - np.einsum("nc,nc->n", foot, foot), 0.0))

@@ -45,18 +45,18 @@ def mutants(specimen: Specimen, machines: Machines) -> Iterable[Mutant]:
             yield Mutant(specimen, site, shown, seen)
 
 
-def _seen(found: Witness, site: Site, backend: Backend) -> str:
+def _seen(shown: Witness, site: Site, backend: Backend) -> str:
     """The fault of the witness's inputs without the guard, compared with the result with it."""
-    subject, change = found.specimen.subject, only(site.what, site.place, "drop")
+    subject, change = shown.specimen.subject, only(site.what, site.place, "drop")
     try:
-        right = evaluated(subject, found.more, backend, "auto")
-        got = evaluated(subject, found.more, backend, "auto", change)
+        right = evaluated(subject, shown.more, backend, "auto")
+        got = evaluated(subject, shown.more, backend, "auto", change)
     except SssgenError as error:
         return error.diagnostics[0].message
     values = [(got[name], right[name]) for name in right if right[name].dtype.kind == "f"]
-    if any(_non_finite(one) for one, _ in values):
+    if any(_non_finite(left) for left, _ in values):
         return "non-finite"
-    return "another value" if any(_apart(one, other) > CHANGED for one, other in values) else ""
+    return "another value" if any(_apart(left, other) > CHANGED for left, other in values) else ""
 
 
 def _non_finite(value: Array) -> bool:

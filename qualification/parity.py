@@ -99,8 +99,8 @@ def measure(backend: Backend, chosen: Sequence[Case]) -> dict[str, Figure]:
 def supported(case: Case, backend: Backend) -> bool:
     """Whether a back end's target has the overload, and the back end its textures."""
     types = [spell(type_) for type_ in case.params]
-    made = all(name in backend.target.types and name not in backend.unmade for name in types)
-    return made and _written(case.name, case.params, backend.target.dialect)
+    has_types = all(name in backend.target.types and name not in backend.unmade for name in types)
+    return has_types and _written(case.name, case.params, backend.target.dialect)
 
 
 @cache
@@ -152,7 +152,8 @@ def _program(backend: Backend, chosen: Sequence[Case]) -> list[Array]:
         passed_in = [index for index in range(len(case.params)) if index not in case.constant]
         params = ", ".join(f"{spell(case.params[index])} p{index}" for index in passed_in)
         args = [
-            f"p{at}" if at in passed_in else _literal(case.params[at], case.args[at]) for at in range(len(case.params))
+            f"p{index}" if index in passed_in else _literal(case.params[index], case.args[index])
+            for index in range(len(case.params))
         ]
         lines.append(f"{spell(case.result)} case_{number}({params}) {{ return {case.name}({', '.join(args)}); }}")
         passed = (
@@ -203,8 +204,8 @@ def _figure(results: Sequence[tuple[Case, Array]]) -> Figure:
     at = ""
     worst = [float(np.max(_badness(row, lanes), initial=0.0)) for lanes in lanes_of_cases]
     if max(worst) > 0.0:
-        which = int(np.argmax(worst))
-        at = _told(*results[which], int(np.argmax(_badness(row, lanes_of_cases[which]))))
+        worst_case = int(np.argmax(worst))
+        at = _described(*results[worst_case], int(np.argmax(_badness(row, lanes_of_cases[worst_case]))))
     return Figure(
         lanes=len(ulp),
         ulp=float(ulp.max(initial=0.0)),
@@ -284,7 +285,7 @@ def _each_lane(good: Array, lanes: int) -> Array:
     return np.asarray(good.reshape(-1, lanes).all(axis=0))
 
 
-def _told(case: Case, got: Array, lane: int) -> str:
+def _described(case: Case, got: Array, lane: int) -> str:
     args = ", ".join(arg if isinstance(arg, str) else str(arg[..., lane].tolist()) for arg in case.args)
     wanted = np.broadcast_to(oracle(case), got.shape)[..., lane]
     return f"{case.title} at {args}: {got[..., lane].tolist()} is not {wanted.tolist()}"

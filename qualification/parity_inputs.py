@@ -112,7 +112,7 @@ def cases(lanes: int) -> tuple[Case, ...]:
 
     The table's test vectors stand in the first lanes.
     """
-    found = []
+    all_cases = []
     for row in BUILTINS.values():
         for params, (result, _) in signatures.overloads(row.name).items():
             if row.kind == "derivative":
@@ -121,8 +121,8 @@ def cases(lanes: int) -> tuple[Case, ...]:
                 args = reads(row, params)
             else:
                 args = _drawn(row, params, lanes)
-            found.append(Case(row.name, params, result, args))
-    return tuple(found)
+            all_cases.append(Case(row.name, params, result, args))
+    return tuple(all_cases)
 
 
 @cache
@@ -130,7 +130,7 @@ def textures() -> dict[str, Texture]:
     """A texture of each kind: of numbers that float16 holds, of depths, or of integers."""
     rng = np.random.default_rng(11)
     sizes = {"2D": (8, 16), "3D": (4, 4, 8), "Cube": (6, 4, 4)}
-    found = {}
+    by_name = {}
     for spelt, name in TEXTURES.items():
         type_ = BY_NAME[spelt]
         assert isinstance(type_, Sampler)
@@ -140,11 +140,11 @@ def textures() -> dict[str, Texture]:
         if type_.kind != "float":
             low = -(2**31) if type_.kind == "int" else 0
             data = rng.integers(low, low + 2**32, size)
-        found[name] = Texture(
+        by_name[name] = Texture(
             data, "linear" if type_.kind == "float" else "nearest", dim=type_.dim, mipmaps=plain,
             layers=type_.array, kind=type_.kind, compare=type_.shadow,
         )  # fmt: skip
-    return found
+    return by_name
 
 
 def evaluated(function: Callable[..., Any], args: tuple[Any, ...]) -> Array:
@@ -202,12 +202,12 @@ def _column(row: Builtin, index: int, type_: Type, count: int, rng: np.random.Ge
             low, high = samples.integers[index]
             return rng.integers(low, high + 1, size).astype(DTYPES[kind])
         info = np.iinfo(DTYPES[kind])
-        edges = np.array([sign * one for one in INTEGERS for sign in (1, -1)], np.int64)
+        edges = np.array([sign * number for number in INTEGERS for sign in (1, -1)], np.int64)
         edges = edges[(edges >= info.min) & (edges <= info.max)]
         low = -9 if kind == "int" else 0
         drawn = [_each(edges, third, rng), rng.integers(low, 10, third), rng.integers(info.min, info.max, rest)]
-        found: Array = np.concatenate(drawn, axis=-1).astype(DTYPES[kind])
-        return found
+        integers: Array = np.concatenate(drawn, axis=-1).astype(DTYPES[kind])
+        return integers
     low_end, high_end = samples.interval(index) or (-MAX, MAX)
     edges = np.append(EDGES, [low_end, high_end]).astype(np.float32)
     if samples.special:
@@ -250,12 +250,12 @@ def _repeat(pool: list[Array], params: tuple[Type, ...], rng: np.random.Generato
 
 def _vectors(row: Builtin, params: tuple[Type, ...]) -> tuple[Array, ...]:
     """The arguments of the test vectors that are of this overload."""
-    given = [args for args, _ in row.vectors if len(args) == len(params) and all(map(_fits, args, params))]
-    made = []
+    matching = [args for args, _ in row.vectors if len(args) == len(params) and all(map(_fits, args, params))]
+    columns = []
     for index, type_ in enumerate(params):
-        value = np.array([args[index] for args in given], DTYPES[kind_of(type_)]).reshape(-1, *shape_of(type_))
-        made.append(np.moveaxis(value, 0, -1))
-    return tuple(made)
+        value = np.array([args[index] for args in matching], DTYPES[kind_of(type_)]).reshape(-1, *shape_of(type_))
+        columns.append(np.moveaxis(value, 0, -1))
+    return tuple(columns)
 
 
 def _fits(value: object, type_: Type) -> bool:
@@ -311,7 +311,7 @@ def reads(row: Builtin, params: tuple[Type, ...]) -> tuple[Any, ...]:
             value -= CONSTANTS[spell(type_)][..., None] * bool(offsets)  # the texel that is read lies inside
         elif index == 1 and isinstance(type_, Vector):
             further = [layer + 0.25] * texture.layers + [reference] * texture.compare
-            value = np.concatenate([linear, *(one[None] for one in further)])[: type_.size]
+            value = np.concatenate([linear, *(part[None] for part in further)])[: type_.size]
         elif isinstance(type_, Vector):
             value = slopes[index - params.index(type_, 2)]
         elif last_int and kind_of(params[1]) == "int":

@@ -34,10 +34,10 @@ def safety(subject: Subject) -> Safety:
         mode: guard(module, subject.called, mode, guard_source, polyfill, chained=subject.chained) for mode in GUARDS
     }
     costs = {}
-    for mode, one in compiled.items():
+    for mode, guarded in compiled.items():
         total = Cost()
         for key in subject.called:
-            total = total.plus(cost_of(one.module, key))
+            total = total.plus(cost_of(guarded.module, key))
         costs[mode] = total
     sites = compiled["auto"].sites
     proven = sum(site.proven for site in sites)

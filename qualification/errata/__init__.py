@@ -35,4 +35,4 @@ CHAPTERS: dict[str, tuple[Erratum, ...]] = {
     "absorption": ABSORPTION,
 }
 
-ERRATA: tuple[Erratum, ...] = tuple(one for chapter in CHAPTERS.values() for one in chapter)
+ERRATA: tuple[Erratum, ...] = tuple(erratum for chapter in CHAPTERS.values() for erratum in chapter)

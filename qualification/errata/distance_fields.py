@@ -90,8 +90,8 @@ _RADIUS = 0.05
 
 def _directions() -> Any:
     """Unit vectors in all directions, (2000, 3)."""
-    found = np.random.default_rng(1).normal(size=(2000, 3))
-    return found / np.linalg.norm(found, axis=1)[:, None]
+    vectors = np.random.default_rng(1).normal(size=(2000, 3))
+    return vectors / np.linalg.norm(vectors, axis=1)[:, None]
 
 
 _OUTWARD = _directions()

@@ -80,7 +80,7 @@ def as_mended(erratum: Erratum, backend: Backend) -> Figures:
 
 def _figures(measure: Measure, backend: Backend, guards: str) -> Figures:
     chosen = subject_of(measure.technique, tuple(sorted(measure.bind.items())))
-    every = (evaluate(chosen, given, backend, guards) for given in measure.runs)
+    every = (evaluate(chosen, inputs, backend, guards) for inputs in measure.runs)
     return tuple(figure + 0.0 for outputs in every for figure in measure.made(outputs))  # + 0: no -0
 
 

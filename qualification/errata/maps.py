@@ -36,8 +36,8 @@ def ball(technique: str, power: float, backend: Backend) -> Array:
     origin, rays = camera.rays(SIZE[0] * _SAMPLES, SIZE[1] * _SAMPLES)
     hits = Ball().hits(origin, rays)
     light = np.array((0.9, 0.25, -0.35))
-    given: dict[str, Any] = {"V": -rays[hits.hit], "N": hits.normal[hits.hit], "L": light / np.linalg.norm(light)}
-    lobe = _found(technique, given | _lobe(technique, power) | {"distortion": 0.5}, backend)
+    inputs: dict[str, Any] = {"V": -rays[hits.hit], "N": hits.normal[hits.hit], "L": light / np.linalg.norm(light)}
+    lobe = _result_of(technique, inputs | _lobe(technique, power) | {"distortion": 0.5}, backend)
     color = np.full((len(rays), 3), _BEHIND)
     color[hits.hit] = _WAX * (lobe + _DIM)
     return _picture(color)
@@ -52,9 +52,9 @@ def half_vector(technique: str, distortion: float, backend: Backend) -> Array:
     x, y = np.meshgrid(np.arange(wide) - wide // 2, np.arange(high) - high // 2)
     across = 0.1 / wide * np.stack([x, -y], axis=-1).reshape(-1, 2)
     down = -np.sqrt(1.0 - (across**2).sum(axis=1))
-    given: dict[str, Any] = {"V": (math.sqrt(0.5), 0.0, math.sqrt(0.5)), "N": (0.0, 0.0, 1.0)}
-    given |= {"L": np.column_stack([across, down]), "distortion": distortion}
-    lobe = _found(technique, given | _lobe(technique, 2.0), backend).astype(np.float64).reshape(high, wide, 3)
+    inputs: dict[str, Any] = {"V": (math.sqrt(0.5), 0.0, math.sqrt(0.5)), "N": (0.0, 0.0, 1.0)}
+    inputs |= {"L": np.column_stack([across, down]), "distortion": distortion}
+    lobe = _result_of(technique, inputs | _lobe(technique, 2.0), backend).astype(np.float64).reshape(high, wide, 3)
     large = _colored(lobe).repeat(8, axis=0).repeat(8, axis=1)
     return np.pad(large, ((4, 4), (4, 4), (0, 0)), mode="edge")
 
@@ -70,10 +70,10 @@ def floor(technique: str, index: dict[str, float], backend: Backend) -> Array:
     """A floor with an inlay .3 below it: (240, 320, 3), encoded, row 0 on top."""
     camera = Camera((0.0, 1.0, 0.0), (0.0, 0.2, -1.0), 50.0)
     origin, rays = camera.rays(SIZE[0] * _SAMPLES, SIZE[1] * _SAMPLES)
-    at = origin - rays * (origin[1] / rays[:, 1])[:, None]
+    points = origin - rays * (origin[1] / rays[:, 1])[:, None]
     frame = {"T": (1.0, 0.0, 0.0), "B": (0.0, 0.0, -1.0), "N": (0.0, 1.0, 0.0)}
-    given = {**frame, **index, "uv": np.stack([at[:, 0], -at[:, 2]], axis=1), "V": -rays, "depth": 0.3}
-    return _picture(_inlay(_found(technique, given, backend)))
+    inputs = {**frame, **index, "uv": np.stack([points[:, 0], -points[:, 2]], axis=1), "V": -rays, "depth": 0.3}
+    return _picture(_inlay(_result_of(technique, inputs, backend)))
 
 
 def mirrored(technique: str, signed: bool, index: dict[str, float], backend: Backend) -> Array:
@@ -83,20 +83,20 @@ def mirrored(technique: str, signed: bool, index: dict[str, float], backend: Bac
     """
     camera = Camera((0.0, -2.6, 3.0), (0.0, 0.0, 0.0), 40.0)
     origin, rays = camera.rays(SIZE[0] * _SAMPLES, SIZE[1] * _SAMPLES)
-    at = origin - rays * (origin[2] / rays[:, 2])[:, None]
-    hand = np.where(at[:, 0] < 0.0, -1.0, 1.0)
+    points = origin - rays * (origin[2] / rays[:, 2])[:, None]
+    hand = np.where(points[:, 0] < 0.0, -1.0, 1.0)
     zero = np.zeros_like(hand)
     tangent = np.column_stack([hand, zero, zero])
     bitangent = np.column_stack([zero, np.ones_like(hand) if signed else hand, zero])
-    given = {"T": tangent, "B": bitangent, "N": (0.0, 0.0, 1.0), **index, "depth": 0.3}
-    given |= {"uv": np.column_stack([np.abs(at[:, 0]), at[:, 1]]), "V": -rays}
-    return _picture(_inlay(_found(technique, given, backend)))
+    inputs = {"T": tangent, "B": bitangent, "N": (0.0, 0.0, 1.0), **index, "depth": 0.3}
+    inputs |= {"uv": np.column_stack([np.abs(points[:, 0]), points[:, 1]]), "V": -rays}
+    return _picture(_inlay(_result_of(technique, inputs, backend)))
 
 
-def _found(technique: str, given: dict[str, Any], backend: Backend) -> Array:
+def _result_of(technique: str, inputs: dict[str, Any], backend: Backend) -> Array:
     """The result of a technique: of a published one without our guards."""
     published = bool(library.load(technique).attributes.superseded_by)
-    return evaluate(subject_of(technique), given, backend, "none" if published else "auto")["result"]
+    return evaluate(subject_of(technique), inputs, backend, "none" if published else "auto")["result"]
 
 
 def _inlay(uv: Array) -> Array:

@@ -158,13 +158,13 @@ SUBSURFACE_PARALLAX = (
         Measure(
             "subsurface_parallax",
             ({**_FRAME, "V": [_view(45.0, 90.0)], "T": (-1.0, 0.0, 0.0), "B": (0.0, -1.0, 0.0), "eta": _AIR_TO_GLASS},),
-            lambda found: _both(found)[1:],
+            lambda outputs: _both(outputs)[1:],
         ),
         (-_slide(45.0, _AIR_TO_GLASS),),
         Measure(
             "parallax_refracted",
             ({**_FRAME, "V": [_view(45.0, 90.0)], "T": (-1.0, 0.0, 0.0), "B": (0.0, 1.0, 0.0), "ior": 1.5},),
-            lambda found: _both(found)[1:],
+            lambda outputs: _both(outputs)[1:],
         ),
         (about(_slide(45.0, _AIR_TO_GLASS), 1e-5),),
     ),

@@ -26,7 +26,7 @@ from sssgen.harness.scenes import scene_loading
 from sssgen.harness.stress import boundaries, energy, jumps
 from sssgen.harness.stress import dangerous_inputs as dangerous
 from sssgen.harness.stress.contract_inputs import contract, drawn
-from sssgen.harness.stress.result_checks import judged, non_finite
+from sssgen.harness.stress.result_checks import faults_of, non_finite
 from sssgen.harness.stress.stress_run import Fault, Machines, Settings, exact, stress
 from sssgen.harness.stress.subject import Specimen, specimens, technique
 from sssgen.harness.stress.trial import RANDOM, Trial
@@ -227,8 +227,8 @@ def test_a_back_end_may_not_jump_on_a_path() -> None:
     trial = Trial("", specimen, inputs, path=True)
     leap = np.where(np.arange(10) < 5, 0.2, 0.9)
     late = {"result": np.where(np.arange(10) < 6, 0.2, 0.9)}
-    assert [one.kind for one in judged(trial, {"result": leap}, {"result": np.full(10, 0.2)})] == ["jump"]
-    assert not judged(trial, {"result": leap}, late)
+    assert [one.kind for one in faults_of(trial, {"result": leap}, {"result": np.full(10, 0.2)})] == ["jump"]
+    assert not faults_of(trial, {"result": leap}, late)
 
 
 # What is tried

@@ -86,7 +86,7 @@ class Finding(NamedTuple):
             if span.line == span.end_line and 0 < len(operand_text) <= LONGEST and re.search(rf"\b{letter}\b", text):
                 operand_texts[letter] = operand_text
         if all(re.fullmatch(r"[\w.]+", operand_text) for operand_text in operand_texts.values()):
-            return re.sub(r"\b[xyz]\b", lambda found: operand_texts.get(found[0], found[0]), text)
+            return re.sub(r"\b[xyz]\b", lambda match: operand_texts.get(match[0], match[0]), text)
         return f"{text}; {', '.join(f'{letter} is {operand_text}' for letter, operand_text in operand_texts.items())}"
 
     def as_json(self) -> dict[str, Any]:
@@ -110,11 +110,11 @@ def lint(name: str, with_examples: bool = True) -> list[Finding]:
     for every argument, with no guard to help it. Raises SssgenError.
     """
     if name.endswith(".toml") or name in examples():
-        return _found(guarded_sites(load_material(name)), _stages(name) if with_examples else [])
+        return _findings(guarded_sites(load_material(name)), _stages(name) if with_examples else [])
     if name.endswith(".sss") or name in library.index():
-        made = _technique(name)
-        sites = library_sites(made.subject.module, made.subject.called, made.subject.chained)
-        return _found(sites, [made] if with_examples else [])
+        specimen = _technique(name)
+        sites = library_sites(specimen.subject.module, specimen.subject.called, specimen.subject.chained)
+        return _findings(sites, [specimen] if with_examples else [])
     if name.endswith((".glsl", ".frag", ".vert", ".inc")) or os.path.isfile(name):
         return _plain(name, with_examples)
     names = [*library.index(), *examples()]
@@ -129,8 +129,10 @@ def _plain(path: str, with_examples: bool) -> list[Finding]:
     module = load_glsl(path, path).module
     specimens = []
     if with_examples and not any(map(endless, module.functions)):
-        specimens = [_technique(f"{path}:{one.name}") for one in module.functions if _evaluable(module, one)]
-    return _found(library_sites(module), specimens, guarded=False)
+        specimens = [
+            _technique(f"{path}:{function.name}") for function in module.functions if _evaluable(module, function)
+        ]
+    return _findings(library_sites(module), specimens, guarded=False)
 
 
 def _evaluable(module: Module, function: Function) -> bool:
@@ -152,7 +154,7 @@ def _stages(name: str) -> list[Any]:
     return [*named(name), _technique(registry.load("glsl-330").lighting)]
 
 
-def _found(sites: list[Site], specimens: list[Any], guarded: bool = True) -> list[Finding]:
+def _findings(sites: list[Site], specimens: list[Any], guarded: bool = True) -> list[Finding]:
     findings = []
     for site in sorted(sites, key=lambda site: (site.node.span, site.what)):
         if site.proven:
@@ -170,8 +172,8 @@ def _example(site: Site, specimens: list[Any]) -> str:
     from sssgen.harness.stress.guard_witness import sites, witness
 
     for specimen in specimens:
-        if any((one.what, one.place) == (site.what, site.place) and not one.proven for one in sites(specimen)):
-            seen = witness(specimen, site)
-            if seen is not None:
-                return seen.command
+        if any((own.what, own.place) == (site.what, site.place) and not own.proven for own in sites(specimen)):
+            shown = witness(specimen, site)
+            if shown is not None:
+                return shown.command
     return ""

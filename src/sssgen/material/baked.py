@@ -59,43 +59,45 @@ def read(path: str) -> Baked | None:
         return None  # another program's JSON
     if data.get("format") != FORMAT:
         raise failure(f"this is of another format than {FORMAT}", "bake it anew", shown)
-    parameters, how = data.get("parameters", {}), data.get("import", {})
-    if not isinstance(parameters, dict) or not isinstance(how, dict):
+    parameters, settings = data.get("parameters", {}), data.get("import", {})
+    if not isinstance(parameters, dict) or not isinstance(settings, dict):
         raise failure("'parameters' and 'import' are tables", "bake it anew", shown)
     for name, value in parameters.items():
         numbers = value if isinstance(value, list) else [value]
-        if not all(isinstance(one, int | float) and abs(one) < LARGEST for one in numbers):
+        if not all(isinstance(number, int | float) and abs(number) < LARGEST for number in numbers):
             raise failure(f"'parameters': '{name}' is not made of numbers", "bake it anew", shown)
-    return Baked(data["kind"], str(data.get("holds") or ""), parameters, how, data)
+    return Baked(data["kind"], str(data.get("holds") or ""), parameters, settings, data)
 
 
-def check(made: Baked, uniform: Uniform, name: str) -> None:
+def check(baked_texture: Baked, uniform: Uniform, name: str) -> None:
     """Raises SssgenError where a texture's uniform takes another quantity or shape than what was baked."""
     assert isinstance(uniform.type, Sampler)
-    wanted = uniform.quantity
-    if wanted and made.holds != wanted:
-        holds = made.holds or f"no quantity: it is a {made.kind} texture"
-        raise failure(f"'{name}' holds {holds}, and '{uniform.name}' takes {wanted}", _readers(made.holds))
-    dimension = made.settings.get("dimension", uniform.type.dim)
+    quantity = uniform.quantity
+    if quantity and baked_texture.holds != quantity:
+        holds = baked_texture.holds or f"no quantity: it is a {baked_texture.kind} texture"
+        raise failure(f"'{name}' holds {holds}, and '{uniform.name}' takes {quantity}", _readers(baked_texture.holds))
+    dimension = baked_texture.settings.get("dimension", uniform.type.dim)
     if dimension != uniform.type.dim:
         raise failure(f"'{name}' is a {dimension} texture, and '{uniform.name}' is {uniform.type.dim}")
     hints = dict(uniform.hints)
     is_normal, is_color = "normal_map" in hints, "source_color" in hints
-    if (is_color and made.kind != "packed") or is_normal != (made.kind == "normal"):
+    if (is_color and baked_texture.kind != "packed") or is_normal != (baked_texture.kind == "normal"):
         takes = "normals" if is_normal else "colours" if is_color else "other numbers"
-        raise failure(f"'{name}' is a {made.kind} texture, and '{uniform.name}' takes {takes}")
-    if is_normal and made.facts.get("green") == "directx":
+        raise failure(f"'{name}' is a {baked_texture.kind} texture, and '{uniform.name}' takes {takes}")
+    if is_normal and baked_texture.facts.get("green") == "directx":
         raise failure(f"the green of '{name}' is down, as DirectX has it", "bake it with --green opengl")
-    if "repeat_disable" in hints and not wanted and made.holds:
-        raise failure(f"'{name}' holds {made.holds}, and '{uniform.name}' takes what a view of the body sees")
+    if "repeat_disable" in hints and not quantity and baked_texture.holds:
+        raise failure(f"'{name}' holds {baked_texture.holds}, and '{uniform.name}' takes what a view of the body sees")
 
 
 def _readers(quantity: str) -> str:
     """A hint with the techniques that take a texture of a quantity."""
     if not quantity:
         return "sssgen bake thickness makes a map of a quantity"
-    known = [library.load(name) for name in library.index()]
-    reading = [one.name for one in known if any(_takes(uniform, quantity) for uniform in one.uniforms)]
+    techniques = [library.load(name) for name in library.index()]
+    reading = [
+        technique.name for technique in techniques if any(_takes(uniform, quantity) for uniform in technique.uniforms)
+    ]
     if not reading:
         return "bake it anew"
     return f"{quantity} is read by {' and '.join(reading)}; a conversion makes another quantity of it"

@@ -271,8 +271,8 @@ class _Body:
 
     def hands_over(self, name: str) -> bool:
         """Whether the lights read this value from the surface, where it was computed or changed."""
-        made = name in self.values and name not in ("N", *PER_LIGHT)
-        return made and (name not in self.inputs or name in self.changed())
+        is_computed = name in self.values and name not in ("N", *PER_LIGHT)
+        return is_computed and (name not in self.inputs or name in self.changed())
 
     def changed(self) -> set[str]:
         """The inputs that a stage has written over."""
@@ -316,8 +316,8 @@ class _Body:
 
     def function(self, result: Type, body: Block, doc: str, struct: Struct | None) -> Function:
         leading = (Param("surface", struct, "in", "", self.span),) if struct is not None else ()
-        given = tuple(Param(name, type_, "in", "", self.span) for name, type_ in self.inputs.items())
-        return Function(self.name, leading + given, result, "", body, doc, self.span)
+        inputs = tuple(Param(name, type_, "in", "", self.span) for name, type_ in self.inputs.items())
+        return Function(self.name, leading + inputs, result, "", body, doc, self.span)
 
     def finish_surface(self, struct: Struct) -> Entry:
         span = self.span
@@ -330,9 +330,9 @@ class _Body:
         """Returns one value; where its declaration is the last statement, the value itself."""
         value: Expr = Local(type_, name, self.span)
         statements = self.statements
-        given = _given(statements[-1], name)
-        if given is not None:
-            value, statements = given, statements[:-1]
+        assigned = _assigned_value(statements[-1], name)
+        if assigned is not None:
+            value, statements = assigned, statements[:-1]
         if struct is not None:
             statements = _retyped(statements, struct)
             value = _retype(value, struct)
@@ -351,14 +351,14 @@ class _Body:
         if self.after_hit:
             statements.append(If(Local(BOOL, "hit", span), tuple(self.after_hit), (), span))
         statements += self.after
-        given = "alpha" in self.values and not opaque
-        alpha: Expr = Local(FLOAT, "alpha", span) if given else Literal(FLOAT, 1.0, span)
+        has_alpha = "alpha" in self.values and not opaque
+        alpha: Expr = Local(FLOAT, "alpha", span) if has_alpha else Literal(FLOAT, 1.0, span)
         result = Construct(VEC4, (Local(VEC3, "color", span), alpha), span)
         body = (*statements, Return(result, span))
         return Entry(self.function(VEC4, body, "The colour of one fragment.", None), tuple(self.inputs))
 
 
-def _given(last: Stmt, name: str) -> Expr | None:
+def _assigned_value(last: Stmt, name: str) -> Expr | None:
     """The value that a statement assigns to the variable `name`, if it does nothing else."""
     if isinstance(last, Declare) and last.name == name:
         return last.value
@@ -389,5 +389,5 @@ def constant(type_: Type, values: tuple[float, ...], span: Span) -> Expr:
 
 
 def _missing(name: str, param: Param, stage: ChainStage) -> str:
-    what = f"a {name}" if param.quantity in QUANTITIES else f"'{name}'"
-    return f"{stage.technique} reads {what}, which no stage before it gives"
+    value = f"a {name}" if param.quantity in QUANTITIES else f"'{name}'"
+    return f"{stage.technique} reads {value}, which no stage before it gives"

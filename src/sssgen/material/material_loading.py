@@ -34,9 +34,9 @@ def load_material(path_or_name: str | os.PathLike[str]) -> Material:
         path = os.path.join(place("examples"), text, f"{text}.toml")
         if not os.path.isfile(path):
             names = examples()
-            beside = f"did you mean '{text}.toml'?" if os.path.isfile(f"{text}.toml") else ""
+            file_hint = f"did you mean '{text}.toml'?" if os.path.isfile(f"{text}.toml") else ""
             hint = f"give a path that ends in .toml, or one of: {', '.join(names)}"
-            raise failure(f"unknown material '{text}'", beside or did_you_mean(text, names) or hint)
+            raise failure(f"unknown material '{text}'", file_hint or did_you_mean(text, names) or hint)
         return _remembered(path, f"examples/{text}/{text}.toml")
     return _remembered(text, posix(text))
 

@@ -33,7 +33,7 @@ def read_material(text: str, path: str, shown: str) -> Material:
     """The material that a TOML text describes; see `material.parse_material`."""
     reader = _Reader(parse(text, shown), path)
     material = reader.material()
-    own = sorted(reader.document.reporter.diagnostics, key=lambda found: found.span[1:3])
+    own = sorted(reader.document.reporter.diagnostics, key=lambda diagnostic: diagnostic.span[1:3])
     if own or reader.foreign:
         raise SssgenError([*own, *reader.foreign])
     return material
@@ -130,7 +130,7 @@ class _Reader:
         if not isinstance(content, dict | list):
             return []
         tables = list(enumerate(content)) if isinstance(content, list) else [(None, content)]
-        found = []
+        stages = []
         for number, table in tables:
             path: tuple[str | int, ...] = (section,) if number is None else (section, number)
             if not isinstance(table, dict):
@@ -141,8 +141,8 @@ class _Reader:
             if stage is None:
                 self.complete = False
             else:
-                found.append(stage)
-        return found
+                stages.append(stage)
+        return stages
 
     def stage(self, section: str, path: tuple[str | int, ...], table: dict[str, Any]) -> Stage | None:
         """One stage; None where its technique is not known."""
@@ -157,19 +157,19 @@ class _Reader:
             names, _ = slots.needs(binding.module, binding.function)
             uniforms |= {uniform.span: uniform for uniform in binding.module.uniforms if uniform.name in names}
         stage = Stage(technique, {}, frozenset(), {}, bindings, span)
-        said: dict[Span, str] = {}
+        key_of: dict[Span, str] = {}
         for key, raw in table.items():
             if key in ("technique", "bind"):
                 continue
-            meant = [uniform for uniform in uniforms.values() if key in _names(uniform)]
-            if not meant:
+            matches = [uniform for uniform in uniforms.values() if key in _names(uniform)]
+            if not matches:
                 self.unknown_parameter(technique, list(uniforms.values()), (*path, key))
-            for uniform in meant:
-                if uniform.span in said:
-                    message = f"'{said[uniform.span]}' and '{key}' are the same parameter, given twice"
+            for uniform in matches:
+                if uniform.span in key_of:
+                    message = f"'{key_of[uniform.span]}' and '{key}' are the same parameter, given twice"
                     self.document.error(self.document.place(*path, key).key, message, "remove one of the two")
                     continue
-                said[uniform.span] = key
+                key_of[uniform.span] = key
                 stage = self.parameter(stage, uniform, (*path, key), raw)
         return self.baked(stage, list(uniforms.values()), path, table)
 
@@ -199,13 +199,13 @@ class _Reader:
             elif name in library.index():
                 technique = library.load(name)
             else:
-                known = _of_roles(allowed)
-                near = did_you_mean(name, known) or did_you_mean(name, library.index())
-                hint = near or f"techniques: {', '.join(known)}"
+                names = _of_roles(allowed)
+                near = did_you_mean(name, names) or did_you_mean(name, library.index())
+                hint = near or f"techniques: {', '.join(names)}"
                 error(span, f"unknown technique '{name}'", hint)
                 return None
         except SssgenError as faulty:
-            self.foreign += [found for found in faulty.diagnostics if found not in self.foreign]
+            self.foreign += [diagnostic for diagnostic in faulty.diagnostics if diagnostic not in self.foreign]
             return None
         if technique.role not in allowed:
             home = "thickness" if technique.role == "conversion" else technique.role
@@ -258,8 +258,8 @@ class _Reader:
                 if fixed:
                     stage = stage._replace(fixed=stage.fixed | {uniform.name})
         except WrongValue as wrong:
-            at = path if wrong.index is None else (*path, wrong.index)
-            error(place(*at).value, wrong.message, wrong.hint)
+            faulty_path = path if wrong.index is None else (*path, wrong.index)
+            error(place(*faulty_path).value, wrong.message, wrong.hint)
             return stage
         if uniform.span.file != stage.technique.function.span.file:
             self.share(stage, uniform, path, value)
@@ -274,22 +274,24 @@ class _Reader:
             span = self.document.place(*path, key).value
             file = os.path.join(os.path.dirname(self.path), stage.textures[uniform.name])
             try:
-                made = baked.read(file)
-                if made is None:
+                texture = baked.read(file)
+                if texture is None:
                     continue
-                baked.check(made, uniform, stage.textures[uniform.name])
-            except SssgenError as wrong:
-                for found in wrong.diagnostics:
-                    self.document.error(span, found.message, found.hint)
+                baked.check(texture, uniform, stage.textures[uniform.name])
+            except SssgenError as error:
+                for diagnostic in error.diagnostics:
+                    self.document.error(span, diagnostic.message, diagnostic.hint)
                 continue
             for other in uniforms:
-                given = [table[name] for name in _names(other) if name in table]
-                if other.name in made.parameters and all(isinstance(raw, dict) and "value" not in raw for raw in given):
+                own_values = [table[name] for name in _names(other) if name in table]
+                if other.name in texture.parameters and all(
+                    isinstance(raw, dict) and "value" not in raw for raw in own_values
+                ):
                     try:
-                        components = read_value(other, made.parameters[other.name])
-                    except WrongValue as wrong:
-                        message = f"what is baked into '{stage.textures[uniform.name]}' does not fit: {wrong.message}"
-                        self.document.error(span, message, "; ".join(filter(None, (wrong.hint, baked.UNITS))))
+                        components = read_value(other, texture.parameters[other.name])
+                    except WrongValue as error:
+                        message = f"what is baked into '{stage.textures[uniform.name]}' does not fit: {error.message}"
+                        self.document.error(span, message, "; ".join(filter(None, (error.hint, baked.UNITS))))
                         continue
                     stage = stage._replace(values={**stage.values, other.name: components})
         return stage
@@ -314,22 +316,22 @@ class _Reader:
         if not isinstance(table, dict):
             error(place(*path, "bind").value, "'bind' takes a table", 'write bind = { slot = "function" }')
             return {}
-        found: dict[str, Binding] = {}
+        bindings: dict[str, Binding] = {}
         unbound: list[Function] = []
         waiting = list(slots.needs(technique.module, technique.function)[1])
-        known: dict[str, Function] = {}
+        reached: dict[str, Function] = {}
         while waiting:
             slot = waiting.pop(0)
-            if slot.name in known:
+            if slot.name in reached:
                 continue
-            known[slot.name] = slot
+            reached[slot.name] = slot
             if slot.name not in table:
                 unbound.append(slot)
             elif binding := self.binding(slot, table[slot.name], place(*path, "bind", slot.name).value):
-                found[slot.name] = binding
+                bindings[slot.name] = binding
                 waiting += slots.needs(binding.module, binding.function)[1]
-        for name in table.keys() - known.keys():
-            hint = did_you_mean(name, known) or (f"slots: {', '.join(known)}" if known else "it has no slots")
+        for name in table.keys() - reached.keys():
+            hint = did_you_mean(name, reached) or (f"slots: {', '.join(reached)}" if reached else "it has no slots")
             error(place(*path, "bind", name).key, f"'{technique.name}' has no slot '{name}'", hint)
             unbound = [slot for slot in unbound if f"'{slot.name}'" not in hint]  # it was misspelled
         for slot in unbound:
@@ -342,13 +344,13 @@ class _Reader:
             )
             where = place(*path, "bind").key if table else place(*path, "technique").value
             error(where, f"slot '{slot.name}' of '{technique.name}' is not bound", hint)
-        for name in _cycle(found):
+        for name in _cycle(bindings):
             error(
                 place(*path, "bind", name).value,
                 f"the function bound to '{name}' calls '{name}' again",
                 "bind another one",
             )
-        return found
+        return bindings
 
     def binding(self, slot: Function, raw: object, span: Span) -> Binding | None:
         """The function that a slot is bound to; None where there is an error."""
@@ -357,12 +359,12 @@ class _Reader:
             return None
         try:
             return Binding(*slots.find(raw, slot, os.path.dirname(self.path)))
-        except SssgenError as wrong:
-            for found in wrong.diagnostics:
-                if found.span.line:  # an error inside the file
-                    self.foreign.append(found)
+        except SssgenError as error:
+            for diagnostic in error.diagnostics:
+                if diagnostic.span.line:  # an error inside the file
+                    self.foreign.append(diagnostic)
                 else:
-                    self.document.error(span, found.message, found.hint)
+                    self.document.error(span, diagnostic.message, diagnostic.hint)
             return None
 
 

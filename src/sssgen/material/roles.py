@@ -54,17 +54,17 @@ def check_chain(links: Sequence[Link], shading: str, report: Report) -> None:
     """Reports each parameter that no stage supplies, and each technique whose result does not fit its role."""
     values = {name: _Value(type_, VALUE_QUANTITIES.get(name, "")) for name, type_ in INPUTS.items()}
     values |= {name: _Value(type_, VALUE_QUANTITIES.get(name, "")) for name, (type_, _) in DEFAULTS.items()}
-    given: dict[str, str] = {}
+    sources: dict[str, str] = {}
     unread: set[str] = set()
     colored = False
     for technique, span in links:
-        if wrong := wrong_result(technique):
-            report(span, wrong, "")
+        if error := wrong_result(technique):
+            report(span, error, "")
         written = {technique.function.quantity} & set(SCALARS)
         for param in technique.function.params:
             if param.quantity in SCALARS:
                 if param.direction != "out":
-                    _check_given(technique, param.quantity, given, span, report)
+                    _check_quantity(technique, param.quantity, sources, span, report)
                     unread.discard(param.quantity)
                 if param.direction != "in":
                     written.add(param.quantity)
@@ -73,9 +73,9 @@ def check_chain(links: Sequence[Link], shading: str, report: Report) -> None:
                 colored = colored or (param.name == "color" and param.direction != "in")
         for quantity in sorted(written):
             if quantity in unread:
-                earlier = f"but that of '{given[quantity]}' has not been used"
+                earlier = f"but that of '{sources[quantity]}' has not been used"
                 report(span, f"'{technique.name}' gives {words(quantity)}, {earlier}", "remove one of the two")
-            given[quantity] = technique.name
+            sources[quantity] = technique.name
             unread.add(quantity)
         colored = colored or technique.role == "lighting"
         if technique.role == "geometry" and technique.function.result == BOOL and shading == "lit":
@@ -121,18 +121,18 @@ def wrong_result(technique: Technique) -> str:
     return f"'{technique.name}' is a {role} technique, which returns {text}, but it returns {returned}"
 
 
-def _check_given(technique: Technique, quantity: str, given: dict[str, str], span: Span, report: Report) -> None:
-    if quantity in given:
+def _check_quantity(technique: Technique, quantity: str, sources: dict[str, str], span: Span, report: Report) -> None:
+    if quantity in sources:
         return
-    for source in reversed(list(given)):
+    for source in reversed(list(sources)):
         name = suggested_conversions()[source, quantity]
-        hint = f"add a conversion stage after '{given[source]}': [[thickness]] technique = \"{name}\""
+        hint = f"add a conversion stage after '{sources[source]}': [[thickness]] technique = \"{name}\""
         report(span, f"'{technique.name}' takes {words(quantity)}, but the chain has {words(source)}", hint)
         return
     report(
         span,
         f"'{technique.name}' takes {words(quantity)}, which no stage before it gives",
-        f"add a [thickness] stage: {', '.join(_givers(quantity))}",
+        f"add a [thickness] stage: {', '.join(_producers(quantity))}",
     )
 
 
@@ -158,7 +158,7 @@ def _check_value(technique: Technique, param: Param, values: dict[str, _Value], 
         )
 
 
-def _givers(quantity: str) -> list[str]:
+def _producers(quantity: str) -> list[str]:
     """The library's thickness techniques that return a quantity."""
     paths = {name: path for name, path in index().items() if folder_of(path) == "thickness"}
     return [name for name, path in paths.items() if load_path(path).function.quantity == quantity]

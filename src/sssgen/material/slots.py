@@ -16,17 +16,17 @@ from sssgen.support.paths import stem
 
 Needs = tuple[frozenset[str], tuple[Function, ...]]
 
-_known: dict[int, tuple[Module, Function, Needs]] = {}
-_KEPT = 4096
+_needs_of: dict[int, tuple[Module, Function, Needs]] = {}
+_CACHE_SIZE = 4096
 
 
 def needs(module: Module, function: Function) -> Needs:
     """The names of the globals that a function reads and the slots it calls, itself or through others."""
-    cached = _known.get(id(function))
+    cached = _needs_of.get(id(function))
     if cached is None or cached[0] is not module or cached[1] is not function:
-        if len(_known) >= _KEPT:
-            _known.clear()
-        cached = _known[id(function)] = (module, function, _needs(module, function))
+        if len(_needs_of) >= _CACHE_SIZE:
+            _needs_of.clear()
+        cached = _needs_of[id(function)] = (module, function, _needs(module, function))
     return cached[2]
 
 
@@ -37,10 +37,10 @@ def _needs(module: Module, function: Function) -> Needs:
     slots: list[Function] = []
     waiting, seen = [function], {function.key}
     while waiting:
-        at = waiting.pop()
-        if at.body is None:
-            slots.append(at)
-        for expr in all_expressions(at.body or ()):
+        current = waiting.pop()
+        if current.body is None:
+            slots.append(current)
+        for expr in all_expressions(current.body or ()):
             kind = type(expr)
             if kind is Call and expr.function not in seen:  # type: ignore[union-attr]  # it is a Call
                 seen.add(expr.function)  # type: ignore[union-attr]
@@ -64,8 +64,8 @@ def signature(function: Function) -> str:
 def fits(slot: Function, function: Function) -> bool:
     """Whether calls of the slot may go to the function: the same types; quantities may only be dropped."""
 
-    def drops(given: str, wanted: str) -> bool:
-        return wanted in ("", given)
+    def drops(source: str, target: str) -> bool:
+        return target in ("", source)
 
     return (
         function.body is not None
@@ -73,11 +73,11 @@ def fits(slot: Function, function: Function) -> bool:
         and drops(function.quantity, slot.quantity)
         and len(slot.params) == len(function.params)
         and all(
-            one.type == other.type
-            and one.direction == other.direction
-            and (one.direction == "out" or drops(one.quantity, other.quantity))
-            and (one.direction == "in" or drops(other.quantity, one.quantity))
-            for one, other in zip(slot.params, function.params, strict=True)
+            expected.type == param.type
+            and expected.direction == param.direction
+            and (expected.direction == "out" or drops(expected.quantity, param.quantity))
+            and (expected.direction == "in" or drops(param.quantity, expected.quantity))
+            for expected, param in zip(slot.params, function.params, strict=True)
         )
     )
 
@@ -144,7 +144,11 @@ def body(shape: str, place: str) -> str:
     '' where there is none: `body("box", "object_position")` is `box:box_object`.
     """
     for technique in library.load_all():
-        own = [one for one in technique.module.functions if one.span.file == library.shown_name(technique.path)]
+        own = [
+            function
+            for function in technique.module.functions
+            if function.span.file == library.shown_name(technique.path)
+        ]
         for function in own if technique.attributes.shape == shape else ():
             if [param.quantity for param in function.params] == [place]:
                 return technique.name if function.name == technique.name else f"{technique.name}:{function.name}"

@@ -36,7 +36,7 @@ def read_value(uniform: Uniform, raw: object) -> tuple[float, ...]:
         return (_number(uniform, raw, None),)
     flat = _flatten(raw) if isinstance(raw, list) else None
     if flat is None:
-        raise WrongValue(f"'{uniform.name}' takes {wanted(uniform)}, but this is {_word(raw)}")
+        raise WrongValue(f"'{uniform.name}' takes {wanted(uniform)}, but this is {_kind_of_raw(raw)}")
     if len(flat) != components(type_):
         count = f"{len(flat)} value{'' if len(flat) == 1 else 's'}"
         raise WrongValue(f"'{uniform.name}' takes {wanted(uniform)}, but this has {count}")
@@ -47,7 +47,7 @@ def read_value(uniform: Uniform, raw: object) -> tuple[float, ...]:
 def read_texture(uniform: Uniform, raw: object) -> str:
     """The picture file of a texture. Raises WrongValue."""
     if not isinstance(raw, str):
-        raise WrongValue(f"'{uniform.name}' takes {wanted(uniform)}, but this is {_word(raw)}")
+        raise WrongValue(f"'{uniform.name}' takes {wanted(uniform)}, but this is {_kind_of_raw(raw)}")
     if not raw or any(ord(character) < 32 for character in raw):
         raise WrongValue(f"{raw!r} is no file name", "leave the line out to use the texture's default")
     return raw
@@ -102,7 +102,7 @@ def _colour(uniform: Uniform, text: str) -> tuple[float, ...]:
     digits = text[1:]
     if len(digits) == 3:
         digits = "".join(digit * 2 for digit in digits)
-    values = [int(digits[at : at + 2], 16) / 255 for at in range(0, len(digits), 2)]
+    values = [int(digits[start : start + 2], 16) / 255 for start in range(0, len(digits), 2)]
     count = components(uniform.type)
     if len(values) > count:
         raise WrongValue(f"'{uniform.name}' has no alpha", f'write "{text[:7]}"')
@@ -115,23 +115,23 @@ def _number(uniform: Uniform, raw: Any, index: int | None) -> float:
     kind, name = _kind(uniform.type), uniform.name
     if kind == "bool":
         if not isinstance(raw, bool):
-            raise WrongValue(f"'{name}' takes {wanted(uniform)}, but this is {_word(raw)}", "", index)
+            raise WrongValue(f"'{name}' takes {wanted(uniform)}, but this is {_kind_of_raw(raw)}", "", index)
         return float(raw)
     if isinstance(raw, bool) or not isinstance(raw, int | float):
-        raise WrongValue(f"'{name}' takes {wanted(uniform)}, but this is {_word(raw)}", "", index)
+        raise WrongValue(f"'{name}' takes {wanted(uniform)}, but this is {_kind_of_raw(raw)}", "", index)
     if kind != "float" and isinstance(raw, float):
         hint = f"write {raw:.0f}" if raw.is_integer() and abs(raw) < 2**32 else ""
         raise WrongValue(f"'{name}' takes {wanted(uniform)}, but this is {raw:g}", hint, index)
     low, high = _LIMITS[kind]
     if not low <= raw <= high:  # also true of nan
-        what = (
+        shown = (
             str(raw)
             if isinstance(raw, float) and not math.isfinite(raw)
             else f"a number of {len(str(raw))} digits"
             if abs(raw) > 1e300
             else f"{raw:g}"
         )
-        raise WrongValue(f"'{name}' cannot be {what}", f"{with_article(kind)} has 32 bits", index)
+        raise WrongValue(f"'{name}' cannot be {shown}", f"{with_article(kind)} has 32 bits", index)
     for hint, args in uniform.hints:
         if hint == "hint_range" and not float(args[0]) <= raw <= float(args[1]):
             default = ", ".join(f"{value:g}" for value in dict.fromkeys(uniform.default))
@@ -161,13 +161,13 @@ def _flatten(raw: list[Any]) -> list[Any]:
     return flat
 
 
-def _word(raw: object) -> str:
+def _kind_of_raw(raw: object) -> str:
     """The kind of a TOML value, for messages."""
     if isinstance(raw, bool):
         return "true" if raw else "false"
     if isinstance(raw, int | float):
         return "a number"
-    for kind, word in ((str, "a text"), (list, "a list"), (dict, "a table")):
+    for kind, description in ((str, "a text"), (list, "a list"), (dict, "a table")):
         if isinstance(raw, kind):
-            return word
+            return description
     return "a date or time"

@@ -37,21 +37,25 @@ class Inputs(NamedTuple):
     lanes: int
 
 
-def evaluate(subject: Subject, given: Mapping[str, Any], backend: Backend, guards: str = "auto") -> dict[str, Array]:
+def evaluate(subject: Subject, values: Mapping[str, Any], backend: Backend, guards: str = "auto") -> dict[str, Array]:
     """The outputs by name (`result` is the return value), lanes first.
 
     `given` has numbers, arrays and `Texture`s by the name of the technique's parameter or uniform; uniforms left out
     have their defaults; `guards` as in `compile`. Raises SssgenError for inputs that do not fit and for a back end that
     refuses.
     """
-    return run(subject, fitted(subject, given), backend, guards)
+    return run(subject, fitted(subject, values), backend, guards)
 
 
 def run(
-    subject: Subject, inputs: Inputs, backend: Backend, guards: str = "auto", at: Callable[[Site], str] | None = None
+    subject: Subject,
+    inputs: Inputs,
+    backend: Backend,
+    guards: str = "auto",
+    guard_change: Callable[[Site], str] | None = None,
 ) -> dict[str, Array]:
     """The outputs, lanes first; `at` is that of `passes.guards.guard`."""
-    text, names = _emitted(subject, backend.target.name, guards, at)
+    text, names = _emitted(subject, backend.target.name, guards, guard_change)
     calls = [
         Call(
             names.get(probe.function, probe.function),
@@ -61,10 +65,10 @@ def run(
         )
         for probe in subject.probes
     ]
-    found = backend.run(text, calls, inputs.textures)
+    results = backend.run(text, calls, inputs.textures)
     return {
         probe.output: np.moveaxis(value, -1, 0) if value.ndim else value
-        for probe, value in zip(subject.probes, found, strict=True)
+        for probe, value in zip(subject.probes, results, strict=True)
     }
 
 
@@ -79,27 +83,27 @@ _texts: dict[tuple[object, ...], tuple[Subject, Text, dict[str, str]]] = {}
 
 
 def _emitted(
-    subject: Subject, target: str, guards: str, at: Callable[[Site], str] | None
+    subject: Subject, target: str, guards: str, guard_change: Callable[[Site], str] | None
 ) -> tuple[Text, dict[str, str]]:
     """The functions form of a subject for a target, and its renamed functions."""
-    key = (id(subject.module), target, guards, at)
-    kept = _texts.get(key)
-    if kept is None or kept[0].module is not subject.module:
-        made = transpile(subject.module, target, "evaluated", guards, subject.called, at, subject.chained)
-        file, reflection = next(name for name in made.files if not name.endswith(".json")), made.reflection
+    key = (id(subject.module), target, guards, guard_change)
+    cached = _texts.get(key)
+    if cached is None or cached[0].module is not subject.module:
+        compiled = transpile(subject.module, target, "evaluated", guards, subject.called, guard_change, subject.chained)
+        file, reflection = next(name for name in compiled.files if not name.endswith(".json")), compiled.reflection
         if len(_texts) >= 256:
             _texts.clear()
-        kept = _texts[key] = subject, emitted(made, reflection, file), reflection["renames"]
-    return kept[1], kept[2]
+        cached = _texts[key] = subject, emitted(compiled, reflection, file), reflection["renames"]
+    return cached[1], cached[2]
 
 
-def fitted(subject: Subject, given: Mapping[str, Any]) -> Inputs:
+def fitted(subject: Subject, raw: Mapping[str, Any]) -> Inputs:
     """Inputs as the subject's parameters want them, in float32's numbers, which all back ends share.
 
     Raises SssgenError for a name it does not have, a missing one, a wrong shape, NaN and infinity.
     """
     params = subject.params
-    for name in given:
+    for name in raw:
         if name not in params:
             hint = did_you_mean(name, params) or f"it takes: {', '.join(params)}"
             raise failure(f"{subject.name} has no input '{name}'", hint)
@@ -107,17 +111,17 @@ def fitted(subject: Subject, given: Mapping[str, Any]) -> Inputs:
     textures: dict[str, Texture] = {}
     for name, param in params.items():
         if isinstance(param.type, Sampler):
-            textures[name] = _texture(subject, name, param.type, given.get(name))
-        elif name in given:
-            values[name] = _value(name, param.type, given[name])
+            textures[name] = _texture(subject, name, param.type, raw.get(name))
+        elif name in raw:
+            values[name] = _value(name, param.type, raw[name])
         elif name in subject.uniforms and subject.uniforms[name].default:
             default = np.array(subject.uniforms[name].default, np.float64)
             values[name] = _value(name, param.type, default.reshape(shape_of(param.type)))
         else:
             missing = [
-                f"{name} ({spell(one.type)})"
-                for name, one in params.items()
-                if name not in given and not isinstance(one.type, Sampler) and name not in subject.uniforms
+                f"{name} ({spell(param.type)})"
+                for name, param in params.items()
+                if name not in raw and not isinstance(param.type, Sampler) and name not in subject.uniforms
             ]
             raise failure(f"{subject.name} needs more inputs: {', '.join(missing or [name])}")
     counts = {name: value.shape[-1] for name, value in values.items() if value.shape[-1] != 1}
@@ -134,13 +138,13 @@ def shape_of(type_: Type) -> tuple[int, ...]:
     return (type_.size,) if isinstance(type_, Vector) else ()
 
 
-def _value(name: str, type_: Type, given: Any) -> Array:
+def _value(name: str, type_: Type, raw: Any) -> Array:
     """An input, lanes last."""
     if isinstance(type_, ArrayType):
         raise failure(f"input '{name}' is an array of {spell(type_.element)}: a technique with one cannot be evaluated")
     shape, wanted = shape_of(type_), spell(type_)
     try:
-        array = np.asarray(given)
+        array = np.asarray(raw)
     except ValueError:
         raise failure(f"input '{name}': its rows have different lengths", f"a list of {wanted}") from None
     if array.dtype.kind not in "fiub" or (kind_of(type_) == "bool") != (array.dtype.kind == "b"):
@@ -181,21 +185,21 @@ def default_texture(type_: str, color: str) -> Texture:
     return Texture(data, dim=dim)
 
 
-def _texture(subject: Subject, name: str, type_: Sampler, given: Any) -> Texture:
+def _texture(subject: Subject, name: str, type_: Sampler, raw: Any) -> Texture:
     """A texture in float16's numbers, which all back ends share; one texel of the default where none is given."""
-    if given is None:
+    if raw is None:
         hints = [hint.removeprefix("default_") for hint, _ in subject.uniforms[name].hints]
-        given = default_texture(spell(type_), next((hint for hint in hints if hint in _DEFAULTS), "white"))
-    if not isinstance(given, Texture):
+        raw = default_texture(spell(type_), next((hint for hint in hints if hint in _DEFAULTS), "white"))
+    if not isinstance(raw, Texture):
         try:
-            given = Texture(np.asarray(given), dim=type_.dim)
+            raw = Texture(np.asarray(raw), dim=type_.dim)
         except ValueError as error:
             raise failure(f"texture '{name}': {error}", "(height, width, channels), in 3-D (depth, …)") from None
-    if given.dim != type_.dim:
-        raise failure(f"texture '{name}' is {given.dim}, and {subject.name} takes {with_article(spell(type_))}")
-    if not all(np.isfinite(level).all() for level in given.levels):
+    if raw.dim != type_.dim:
+        raise failure(f"texture '{name}' is {raw.dim}, and {subject.name} takes {with_article(spell(type_))}")
+    if not all(np.isfinite(level).all() for level in raw.levels):
         raise failure(f"texture '{name}' has NaN or infinity in it")
-    return half(given)
+    return half(raw)
 
 
 @lru_cache(64)
@@ -205,6 +209,6 @@ def half(texture: Texture) -> Texture:
         levels = [level.astype(np.float16) for level in texture.levels]
     if not all(np.isfinite(level).all() for level in levels):
         raise failure("a texture has NaN, infinity or numbers beyond 65504 in it", "these are no texels of 16 bits")
-    made = Texture(levels[0], texture.filter, texture.wrap, texture.dim)
-    made.levels = levels
-    return made
+    rounded = Texture(levels[0], texture.filter, texture.wrap, texture.dim)
+    rounded.levels = levels
+    return rounded

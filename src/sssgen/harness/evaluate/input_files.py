@@ -17,10 +17,10 @@ from sssgen.support.text_files import MAX_BYTES, refuse_special
 from sssgen.targets.runtime.numpy_textures import Texture
 
 
-def bindings(given: Sequence[str]) -> dict[str, str]:
+def bindings(texts: Sequence[str]) -> dict[str, str]:
     """`SLOT=FUNCTION` texts as slot → function. Raises SssgenError."""
     functions: dict[str, str] = {}
-    for text in given:
+    for text in texts:
         slot, equals, function = text.partition("=")
         if not (equals and slot and function):
             raise failure(f"'{text}' binds nothing", "--bind SLOT=FUNCTION or SLOT=FILE:FUNCTION")
@@ -61,10 +61,14 @@ def read(path: str, subject: Subject) -> dict[str, Any]:
     }
 
 
-def _texture(name: str, given: str | dict[str, Any], beside: Path, srgb: bool) -> Texture:
-    known = {"file", "wrap", "filter"}
-    options = {"file": given} if isinstance(given, str) else given
-    if "file" not in options or options.keys() - known or not all(isinstance(one, str) for one in options.values()):
+def _texture(name: str, raw: str | dict[str, Any], beside: Path, srgb: bool) -> Texture:
+    keys = {"file", "wrap", "filter"}
+    options = {"file": raw} if isinstance(raw, str) else raw
+    if (
+        "file" not in options
+        or options.keys() - keys
+        or not all(isinstance(option, str) for option in options.values())
+    ):
         raise failure(
             f"texture '{name}' is given in a way that is not understood",
             'a file name, or {"file": …, "wrap": …, "filter": …}',

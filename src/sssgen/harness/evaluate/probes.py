@@ -98,8 +98,8 @@ def _is_function(name: str) -> bool:
 def _technique(name: str) -> tuple[Module, Function, str]:
     file, _, inner = name.rpartition(":")
     if not _is_function(name):
-        found = library.load(name)
-        return found.module, found.function, found.role
+        technique = library.load(name)
+        return technique.module, technique.function, technique.role
     if file.endswith(".sss"):
         module = load_file(file, library.shown_name(file), (library.TECHNIQUES,))
     else:
@@ -114,30 +114,32 @@ def _bound(
     name: str, module: Module, function: Function, bind: Mapping[str, str]
 ) -> dict[str, tuple[Module, Function]]:
     """Each slot with its function, and the slots of what is bound likewise."""
-    found: dict[str, tuple[Module, Function]] = {}
+    bindings: dict[str, tuple[Module, Function]] = {}
     waiting = list(needs(module, function)[1])
     while waiting:
         slot = waiting.pop()
-        if slot.name in found:
+        if slot.name in bindings:
             continue
         chosen = bind.get(slot.name) or next(iter(slots.candidates(slot)), "")
         if not chosen:
             raise failure(f"nothing is bound to the slot {slots.signature(slot)}", f"--bind {slot.name}=FILE:FUNCTION")
-        found[slot.name] = find(chosen, slot, library.TECHNIQUES if not bind.get(slot.name) else ".")
-        waiting += needs(*found[slot.name])[1]
-    if unknown := [slot for slot in bind if slot not in found]:
-        hint = did_you_mean(unknown[0], found) or (f"its slots: {', '.join(found)}" if found else "it has no slots")
+        bindings[slot.name] = find(chosen, slot, library.TECHNIQUES if not bind.get(slot.name) else ".")
+        waiting += needs(*bindings[slot.name])[1]
+    if unknown := [slot for slot in bind if slot not in bindings]:
+        hint = did_you_mean(unknown[0], bindings) or (
+            f"its slots: {', '.join(bindings)}" if bindings else "it has no slots"
+        )
         raise failure(f"{stem(name)} has no slot '{unknown[0]}'", hint)
-    return found
+    return bindings
 
 
 def probes_of(function: Function) -> list[tuple[str, Function]]:
     """(output, function), one for each output of a technique."""
     span = function.span
     outs = [param for param in function.params if param.direction != "in"]
-    shown: list[Param | None] = [None, *outs] if function.result != VOID else [*outs]
+    outputs: list[Param | None] = [None, *outs] if function.result != VOID else [*outs]
     probes = []
-    for output in shown:
+    for output in outputs:
         start: list[Stmt] = []
         args = []
         for param in function.params:
@@ -151,9 +153,9 @@ def probes_of(function: Function) -> list[tuple[str, Function]]:
         start.append(
             Evaluate(call, span) if function.result == VOID else Declare(value_name, function.result, call, span)
         )
-        given = f"{output.name}_given" if output else value_name
+        returned = f"{output.name}_given" if output else value_name
         type_ = output.type if output else function.result
-        body = (*start, Return(Local(type_, given, span), span))
+        body = (*start, Return(Local(type_, returned, span), span))
         params = tuple(param._replace(direction="in") for param in function.params if param.direction != "out")
         title = output.name if output else RESULT
         probe = function._replace(name=f"{function.name}_shows_{title}", params=params, result=type_, body=body)

@@ -52,15 +52,15 @@ def samples(subject: Subject, count: int, seed: int = 0) -> dict[str, Any]:
 
 def texture(dim: str, rng: np.random.Generator) -> Texture:
     """A texture of float16's numbers: a smooth half and a hard one; in 3-D the distance field of a ball."""
-    at = (np.arange(TEXELS) + 0.5) / TEXELS
+    centers = (np.arange(TEXELS) + 0.5) / TEXELS
     if dim == "3D":
-        z, y, x = np.meshgrid(at, at, at, indexing="ij")
+        z, y, x = np.meshgrid(centers, centers, centers, indexing="ij")
         distance = np.sqrt((x - 0.45) ** 2 + (y - 0.5) ** 2 + (z - 0.55) ** 2) - 0.3
         return Texture((0.5 + 0.5 * distance)[..., None].astype(np.float16), wrap="clamp")
     size = (6, TEXELS, TEXELS, 4) if dim == "Cube" else (TEXELS, TEXELS, 4)
-    waves = 0.5 + 0.5 * np.sin(2.0 * np.pi * (at[:, None, None] + at[:, None] + rng.random(4)))
+    waves = 0.5 + 0.5 * np.sin(2.0 * np.pi * (centers[:, None, None] + centers[:, None] + rng.random(4)))
     hard = rng.choice([0.0, 1.0, 0.25, 0.7], size)
-    return Texture(np.where(at[:, None] < 0.5, waves, hard).astype(np.float16), dim=dim)
+    return Texture(np.where(centers[:, None] < 0.5, waves, hard).astype(np.float16), dim=dim)
 
 
 def _parameter(param: Param, count: int, seed: int) -> Array:

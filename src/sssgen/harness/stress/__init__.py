@@ -1,4 +1,5 @@
 """Stress: techniques on dangerous, boundary and random inputs, on every back end, and the faults of the results.
 
-`run.stress` does it, `report` tells it; `dangerous` has the table's rows, `judge` the rules.
+`stress_run.stress` runs it, `stress_report` formats the results; `dangerous_inputs` has the rows of the table,
+`result_checks` the rules.
 """

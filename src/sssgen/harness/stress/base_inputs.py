@@ -25,20 +25,20 @@ _OF_QUANTITY = {"thickness": 0.1, "thinness": 0.5, "transmittance": 0.5}
 
 
 def plain(specimen: Specimen, lanes: int, given: dict[str, Any] | None = None) -> Inputs:
-    """Defaults for uniforms, a lit surface for parameters; over them `given`, lanes last, where there is such an input.
+    """Defaults for uniforms, a lit surface for parameters; values in `given`, lanes last, replace those of such inputs.
 
-    A texture of `given` stands under its uniform's name.
+    A texture in `given` has its uniform's name as the key.
     """
     values: dict[str, Array] = {}
     textures: dict[str, Texture] = {}
-    told = given or {}
+    changes = given or {}
     for name, param in specimen.subject.params.items():
         if isinstance(param.type, Sampler):
             hints = [hint.removeprefix("default_") for hint, _ in specimen.subject.uniforms[name].hints]
             color = next((hint for hint in hints if hint in ("white", "black", "gray", "bump")), "white")
-            textures[name] = told.get(name) or default_texture(spell(param.type), color)
-        elif name in told and name not in specimen.settings:
-            values[name] = _shaped(told[name], shape_of(param.type))
+            textures[name] = changes.get(name) or default_texture(spell(param.type), color)
+        elif name in changes and name not in specimen.settings:
+            values[name] = _shaped(changes[name], shape_of(param.type))
         elif name in specimen.subject.uniforms:
             values[name] = fixed(specimen, name)
         else:
@@ -62,15 +62,15 @@ def _shaped(value: Any, shape: tuple[int, ...]) -> Array:
 
 
 def mixed(specimen: Specimen, choices: dict[str, list[Any]], lanes: int = 4096) -> Inputs:
-    """Each lane has for each input one of its choices; the others are plain."""
+    """Each lane has one of the choices of each input; the other inputs are plain."""
     rng = np.random.default_rng(7)
-    given = {}
+    changes = {}
     for name, listed in choices.items():
         if name in specimen.subject.params:
             shape = shape_of(specimen.subject.params[name].type)
-            each = np.stack([np.broadcast_to(np.asarray(one, np.float32), shape) for one in listed], axis=-1)
-            given[name] = each[..., rng.integers(0, len(listed), lanes)]
-    return plain(specimen, lanes, given)
+            each = np.stack([np.broadcast_to(np.asarray(choice, np.float32), shape) for choice in listed], axis=-1)
+            changes[name] = each[..., rng.integers(0, len(listed), lanes)]
+    return plain(specimen, lanes, changes)
 
 
 def directions(specimen: Specimen) -> list[str]:
@@ -97,7 +97,7 @@ def scalars(specimen: Specimen, format: Format = FLOAT32) -> dict[str, list[floa
 def calls(specimen: Specimen, *names: str) -> bool:
     """Whether a technique calls one of these builtins."""
     bodies = [function.body or () for function in specimen.subject.module.functions]
-    return any(isinstance(one, Intrinsic) and one.name in names for body in bodies for one in all_expressions(body))
+    return any(isinstance(expr, Intrinsic) and expr.name in names for body in bodies for expr in all_expressions(body))
 
 
 def samplers(specimen: Specimen, data: bool = False) -> list[str]:

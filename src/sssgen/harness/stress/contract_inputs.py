@@ -1,6 +1,6 @@
 """Random inputs over the whole contract, in float32, fast: most of ordinary size, many at and near special values.
 
-In contrast to `samples`, which draws what scenes hold, nothing is left out that `ir.contracts` allows.
+Unlike `samples`, which draws what scenes contain, it covers everything that `ir.contracts` allows.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ TEXELS = 16
 
 
 def drawn(specimen: Specimen, lanes: int, rng: np.random.Generator, format: Format = FLOAT32) -> Inputs:
-    """`lanes` random inputs of the contract; whole numbers and textures are the same for all lanes, as in a draw."""
+    """`lanes` random inputs of the contract; integers and textures are the same for all lanes, as in a draw call."""
     values: dict[str, Array] = {}
     textures: dict[str, Texture] = {}
     line = _unit(rng.standard_normal((3, lanes), np.float32))
@@ -54,7 +54,7 @@ def contract(specimen: Specimen, name: str, format: Format = FLOAT32) -> Contrac
 
 
 def outside(specimen: Specimen, name: str, format: Format = FLOAT32) -> Contract:
-    """The range of an input where the caller does not keep quantities in their ranges."""
+    """The range of an input if the caller does not keep quantities in their ranges."""
     if name in specimen.subject.uniforms:
         return contract(specimen, name, format)
     return contracts.from_outside(specimen.subject.params[name], format, specimen.subject.chained)
@@ -74,39 +74,39 @@ def whole_range(param: Param, uniform: Uniform | None) -> tuple[int, int]:
         return 0, 1
     if uniform is None or "hint_range" not in dict(uniform.hints):
         return 0, 9
-    found = contracts.of_uniform(uniform)
-    return int(found.low), int(found.high)
+    ends = contracts.of_uniform(uniform)
+    return int(ends.low), int(ends.high)
 
 
-def is_direction(name: str, found: Contract) -> bool:
+def is_direction(name: str, ends: Contract) -> bool:
     """Whether an input is a direction."""
-    return found.length == LENGTH
+    return ends.length == LENGTH
 
 
 def _floats(
-    size: tuple[int, ...], found: Contract, param: Param, uniform: Uniform | None, line: Array, rng: np.random.Generator
+    size: tuple[int, ...], ends: Contract, param: Param, uniform: Uniform | None, line: Array, rng: np.random.Generator
 ) -> Array:
-    if is_direction(param.name, found):
+    if is_direction(param.name, ends):
         return directions(size, line, rng)
     if isinstance(param.type, Matrix) and uniform is not None:
         near = np.array(uniform.default, np.float32).reshape(*size[:-1], 1)
         moved = near + rng.uniform(-1.0, 1.0, size).astype(np.float32)
-        kept: Array = np.where(rng.random(size[-1]) < 0.5, moved, numbers(size, found, rng))
-        return kept
-    return opaque(uniform, numbers(size, found, rng))
+        mixture: Array = np.where(rng.random(size[-1]) < 0.5, moved, numbers(size, ends, rng))
+        return mixture
+    return opaque(uniform, numbers(size, ends, rng))
 
 
 def opaque(uniform: Uniform | None, values: Array) -> Array:
-    """Values of a colour, its opacity kept to 0 and 1."""
-    at = contracts.alpha_at(uniform) if uniform is not None else None
-    if at is not None:
-        values[at] = np.clip(values[at], 0.0, 1.0)
+    """Values of a colour, with its opacity clamped to 0..1."""
+    alpha = contracts.alpha_at(uniform) if uniform is not None else None
+    if alpha is not None:
+        values[alpha] = np.clip(values[alpha], 0.0, 1.0)
     return values
 
 
-def numbers(size: tuple[int, ...], found: Contract, rng: np.random.Generator) -> Array:
-    """Numbers of a range: half evenly, a fourth evenly by their powers of ten, an eighth at special values."""
-    low, high = found.low, found.high
+def numbers(size: tuple[int, ...], ends: Contract, rng: np.random.Generator) -> Array:
+    """Numbers of a range: five eighths uniform, a quarter by their logarithm, an eighth at special values."""
+    low, high = ends.low, ends.high
     bits = rng.integers(0, 1 << 32, size, np.uint32)
     share = (bits >> np.uint32(8)).astype(np.float32) * np.float32(2.0**-24)
     kind = bits & np.uint32(7)
@@ -115,8 +115,8 @@ def numbers(size: tuple[int, ...], found: Contract, rng: np.random.Generator) ->
     small = kind >= 5
     negative = low < 0.0 and (high <= 0.0 or (bits[small] & np.uint32(8)) != 0)
     smallest, largest = np.log2(max(low, TINY)), np.log2(max(abs(low), abs(high), TINY))
-    size_of = np.exp2(smallest + share[small].astype(np.float64) * (largest - smallest))
-    drawn[small] = np.where(negative, -size_of, size_of)
+    sizes = np.exp2(smallest + share[small].astype(np.float64) * (largest - smallest))
+    drawn[small] = np.where(negative, -sizes, sizes)
     special = kind == 7
     values = _special(low, high)
     drawn[special] = values[(bits[special] >> np.uint32(8)) % np.uint32(len(values))]
@@ -127,13 +127,15 @@ def _special(low: float, high: float) -> Array:
     """0, -0, the smallest numbers, 1, the ends and their neighbours, as far as they are in the range."""
     inner = [0.0, -0.0, 1e-45, 1.2e-38, 1e-20, 1e-6, 0.5, 1.0 - 2.0**-24, 1.0, -1.0, -1e-45, -1e-6]
     ends = np.array([low, high], np.float32)
-    return np.array([*ends, *np.nextafter(ends, ends[::-1]), *(one for one in inner if low <= one <= high)], np.float32)
+    return np.array(
+        [*ends, *np.nextafter(ends, ends[::-1]), *(value for value in inner if low <= value <= high)], np.float32
+    )
 
 
 def directions(size: tuple[int, ...], line: Array, rng: np.random.Generator) -> Array:
-    """Unit vectors of all kinds, and shorter ones down to 0, as interpolation and missing attributes give them.
+    """Unit vectors, and shorter ones down to 0, as interpolation and missing attributes produce them.
 
-    Of several directions of a lane many lie along one `line`, exactly, or nearly.
+    Many lie exactly or nearly along `line`, so that several directions of a lane are often parallel.
     """
     kind = rng.integers(0, 256, size[-1], np.uint8)
     anywhere = _unit(rng.standard_normal(size, np.float32))
@@ -148,27 +150,27 @@ def directions(size: tuple[int, ...], line: Array, rng: np.random.Generator) -> 
     length = np.where(kind >= 248, 1.0 + (LENGTH - 1.000001) * share, length)
     length = np.where((kind >= 212) & (kind < 222), 0.0, length).astype(np.float32)
     along = [kind < 110, kind < 150, kind < 180, kind < 212]
-    found: Array = np.select(along, [anywhere, near, sign * line, axis], anywhere) * length
-    return found
+    vectors: Array = np.select(along, [anywhere, near, sign * line, axis], anywhere) * length
+    return vectors
 
 
 def _unit(vectors: Array) -> Array:
     lengths = np.sqrt(np.einsum("ij,ij->j", vectors, vectors))
-    found: Array = vectors / np.where(lengths > 0.0, lengths, np.float32(1.0))
-    return found
+    unit: Array = vectors / np.where(lengths > 0.0, lengths, np.float32(1.0))
+    return unit
 
 
 def _whole(param: Param, uniform: Uniform | None, rng: np.random.Generator) -> Array:
     low, high = whole_range(param, uniform)
     if uniform is not None and high - low > 2:
-        # steps and taps cost time: most draws have few
+        # steps and taps cost time, so most draws have few
         high = min(high, max(low, int(2 * max(uniform.default))) if rng.random() < 0.9 else high)
     dtype: Any = {"int": np.int32, "uint": np.uint32, "bool": np.bool_}[kind_of(param.type)]
     return rng.integers(low, high + 1, (*shape_of(param.type), 1)).astype(dtype)
 
 
 def texture(uniform: Uniform | None, dim: str, rng: np.random.Generator) -> Texture:
-    """A texture of the contract: the default, evenly random texels, hard ones, or any 16 bits where it holds data."""
+    """A texture of the contract: the default, uniform random texels, only 0 and 1, or any 16 bits if it holds data."""
     assert uniform is not None
     kind = int(rng.integers(0, 4))
     if kind == 0:

@@ -30,11 +30,11 @@ class DangerousRow(NamedTuple):
     inputs: str
     requires: str
     trials: Makes | None
-    """None where the row does not test a technique."""
+    """None if the row does not test a technique."""
     elsewhere: str = ""
-    """What tests it then."""
+    """What tests it instead."""
     alike: bool = True
-    """Whether the back ends must agree; not where drivers may compute levels and blend infinities freely."""
+    """Whether the back ends must agree; False if drivers may choose mip levels or blend infinities freely."""
 
 
 ROWS = (
@@ -118,7 +118,7 @@ def chosen(names: Sequence[str]) -> tuple[str, ...]:
 
 
 def trials(specimen: Specimen, names: Sequence[str] = (), format: Format = FLOAT32) -> Iterator[Trial]:
-    """The trials of the rows (of all, if none is named) that concern a technique, as a format can hold them."""
+    """The trials of the rows (all, if none is named) that apply to a technique, in the range of a format."""
     for row in ROWS:
         if row.trials is not None and (not names or row.name in names):
             for trial in row.trials(specimen):
@@ -127,7 +127,7 @@ def trials(specimen: Specimen, names: Sequence[str] = (), format: Format = FLOAT
 
 
 def _in_half(trial: Trial, half: Format) -> Trial:
-    """A trial in half precision: numbers of the contract, and directions, come into the narrower one."""
+    """A trial in half precision: contract values and directions are clamped to the narrower contract."""
     values = {}
     for name, value in trial.inputs.values.items():
         if value.dtype.kind == "f":

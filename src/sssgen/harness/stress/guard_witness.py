@@ -1,7 +1,7 @@
 """Inputs that show why a guard is there: with NaN in place of what the guard would change, the result is NaN.
 
-A shading language may compute anything outside a builtin's domain, so NaN stands for all of it. What no input of the
-stress test reaches is told as unknown: neither proven nor seen.
+A shading language may compute anything outside a builtin's domain; NaN represents all of it. A guard that no input of
+the stress test reaches is reported as unknown.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from sssgen.passes.ranges.sites import Site
 from sssgen.pipeline.programs import library_sites
 
 SAMPLES = 20_000
-"""Random inputs, after the table's and the boundary values."""
+"""Random inputs, tried after the rows of the table and the boundary values."""
 MORE = 64
 """Inputs of a trial that a witness keeps."""
 
@@ -54,7 +54,7 @@ def sites(specimen: Specimen) -> list[Site]:
 
 
 def witness(specimen: Specimen, site: Site, seed: int = 0) -> Witness | None:
-    """The simplest input found that needs the guard of this operation, on NumPy in float32; None: none was found."""
+    """The simplest input found that needs the guard of this operation, on NumPy in float32; None if none was found."""
     poison = only(site.what, site.place, "poison")
     for trial in _trials(specimen, seed):
         broken = _broken(trial.specimen, trial.inputs, poison)
@@ -71,9 +71,9 @@ def witness(specimen: Specimen, site: Site, seed: int = 0) -> Witness | None:
 
 def _some(inputs: Inputs, lanes: Array) -> Inputs:
     """The first of the lanes that fail."""
-    at = np.flatnonzero(lanes)[:MORE]
-    values = {name: value if value.shape[-1] == 1 else value[..., at] for name, value in inputs.values.items()}
-    return Inputs(values, inputs.textures, len(at))
+    failing = np.flatnonzero(lanes)[:MORE]
+    values = {name: value if value.shape[-1] == 1 else value[..., failing] for name, value in inputs.values.items()}
+    return Inputs(values, inputs.textures, len(failing))
 
 
 def _fails(specimen: Specimen, change: Callable[[Site], str], output: str, inputs: Inputs) -> Array:
@@ -82,7 +82,7 @@ def _fails(specimen: Specimen, change: Callable[[Site], str], output: str, input
 
 @cache
 def only(what: str, place: str, change: str) -> Callable[[Site], str]:
-    """The guard modes: `change` for the one named, `keep` for all others."""
+    """What to do with each guard: `change` for the one named, `keep` for all others."""
     return lambda site: change if (site.what, site.place) == (what, place) else "keep"
 
 
@@ -96,15 +96,15 @@ def _trials(specimen: Specimen, seed: int) -> Iterator[Trial]:
 
 
 def _broken(specimen: Specimen, inputs: Inputs, change: Callable[[Site], str]) -> dict[str, Array]:
-    """Lanes of each output that are NaN or infinite with the change, and finite with every guard."""
+    """The lanes of each output that are NaN or infinite with the change, but finite with every guard."""
     numpy = get("numpy-f32")
     with np.errstate(all="ignore"):
         changed = evaluated(specimen.subject, inputs, numpy, "auto", change)
-        found = {name: _lanes(value, inputs.lanes) for name, value in changed.items() if value.dtype.kind == "f"}
-        if any(bad.any() for bad in found.values()):
-            whole = evaluated(specimen.subject, inputs, numpy, "auto")
-            found = {name: bad & ~_lanes(whole[name], inputs.lanes) for name, bad in found.items()}
-    return found
+        broken = {name: _lanes(value, inputs.lanes) for name, value in changed.items() if value.dtype.kind == "f"}
+        if any(bad.any() for bad in broken.values()):
+            guarded = evaluated(specimen.subject, inputs, numpy, "auto")
+            broken = {name: bad & ~_lanes(guarded[name], inputs.lanes) for name, bad in broken.items()}
+    return broken
 
 
 def _lanes(value: Array, count: int) -> Array:

@@ -1,4 +1,4 @@
-"""Jumps: how far an output moves when one input takes a small step, against the oracle's own."""
+"""Jumps: how far an output changes for a small step of one input, compared with the oracle's change."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ STEP = 1e-4
 LONG_STEP = 1e-2
 """The same, where jumps of the formula are looked for."""
 STEEPEST, PARTS, DIVISIONS = 16, 16, 6
-"""How many of the longer steps are divided, into how many parts, and how often, to tell a jump from a steep slope."""
+"""How many of the longer steps are divided, into how many parts, and how often, to distinguish jumps from slopes."""
 
 
 class ModelJump(NamedTuple):
@@ -33,7 +33,7 @@ class ModelJump(NamedTuple):
     input: str
     output: str
     size: float
-    """Relative to the larger of the output's size and 1; what is left of it when the step is nearly nothing."""
+    """The jump for a step of nearly 0, relative to the larger of the output's size and 1."""
     inputs: Inputs
     """One lane, just before it."""
 
@@ -44,30 +44,30 @@ Run = Callable[[Inputs], dict[str, Array]]
 def largest(specimen: Specimen, run: Run, oracle: Run) -> tuple[float, str, Inputs | None]:
     """The largest step of an output on a back end where the oracle's own is small; of which input, and where.
 
-    The oracle's is its largest over a step, and over the ones before and behind it: where float32 decides a little
-    sooner or later than float64 the model jumps, and not the back end.
+    The oracle's change is its largest over the step and the steps before and after it: where float32 decides a little
+    earlier or later than float64, the formula jumps and not the back end.
     """
     worst: tuple[float, str, Inputs | None] = (0.0, "", None)
     for name, (before, first, second, behind) in _walks(specimen):
-        exact = [oracle(one) for one in (before, first, second, behind)]
-        got = [run(one) for one in (first, second)]
+        exact = [oracle(inputs) for inputs in (before, first, second, behind)]
+        got = [run(inputs) for inputs in (first, second)]
         for output, value in got[0].items():
             if value.dtype.kind != "f" or not value.ndim:
                 continue
             own = np.max([_apart(a[output], b[output]) for a, b in pairwise(exact)], axis=0)
             moved = np.where(own < 0.1 * JUMP, _apart(value, got[1][output]), 0.0)
-            at = int(np.argmax(moved))
-            if moved[at] > worst[0]:
-                worst = float(moved[at]), name, lane(first, at)
+            worst_lane = int(np.argmax(moved))
+            if moved[worst_lane] > worst[0]:
+                worst = float(moved[worst_lane]), name, lane(first, worst_lane)
     return worst
 
 
 def of_model(specimen: Specimen, run: Run) -> tuple[ModelJump, ...]:
     """The largest jump of the formula itself, as `run` computes it, along each input; empty for most.
 
-    Of the longer steps those over which most changes are divided until a slope, however steep, has nothing left.
+    The steps with the largest changes are divided until the change of a slope, however steep, vanishes.
     """
-    found = []
+    model_jumps = []
     for name, (_, first, second, _) in _walks(specimen, LONG_STEP):
         a, b = run(first), run(second)
         for output, value in a.items():
@@ -77,15 +77,15 @@ def of_model(specimen: Specimen, run: Run) -> tuple[ModelJump, ...]:
             worst = np.argsort(moved)[-STEEPEST:]
             if moved[worst[-1]] > JUMP:
                 sizes, places = _divided(run, _lanes(first, worst), _lanes(second, worst), name, output)
-                at = int(np.argmax(sizes))
-                if sizes[at] > JUMP:
-                    found.append(ModelJump(name, output, float(sizes[at]), lane(places, at)))
-    return tuple(found)
+                largest_lane = int(np.argmax(sizes))
+                if sizes[largest_lane] > JUMP:
+                    model_jumps.append(ModelJump(name, output, float(sizes[largest_lane]), lane(places, largest_lane)))
+    return tuple(model_jumps)
 
 
 def _divided(run: Run, first: Inputs, second: Inputs, name: str, output: str) -> tuple[Array, Inputs]:
-    """The changes that are left when steps are divided again and again, each time the part that changes most kept."""
-    a, b = (one.values[name] for one in (first, second))
+    """The changes that remain after repeated division of the steps; each time the part that changes most is kept."""
+    a, b = (inputs.values[name] for inputs in (first, second))
     count, share = a.shape[-1], np.linspace(0.0, 1.0, PARTS + 1)
     lanes = np.repeat(np.arange(count), PARTS + 1)
     for _ in range(DIVISIONS):
@@ -99,7 +99,7 @@ def _divided(run: Run, first: Inputs, second: Inputs, name: str, output: str) ->
 
 
 def _walks(specimen: Specimen, step: float = STEP) -> Iterator[tuple[str, tuple[Inputs, Inputs, Inputs, Inputs]]]:
-    """For each input that is a number four neighbouring places, a step apart, from what scenes hold."""
+    """For each float input four neighbouring values, a step apart, drawn from what scenes contain."""
     base = fitted(specimen.subject, samples(specimen.subject, LANES))
     base = base._replace(values=base.values | {name: fixed(specimen, name) for name in specimen.settings})
     for name, param in specimen.subject.params.items():
@@ -126,5 +126,5 @@ def _with(inputs: Inputs, name: str, value: Array) -> Inputs:
 
 def _apart(a: Array, b: Array) -> Array:
     with np.errstate(invalid="ignore"):
-        found = errors(np.atleast_1d(a), np.atleast_1d(b))
-    return np.where(np.isfinite(found), found, 0.0)
+        relative = errors(np.atleast_1d(a), np.atleast_1d(b))
+    return np.where(np.isfinite(relative), relative, 0.0)

@@ -23,12 +23,12 @@ ULPS = 4.0
 JUMP = 0.02
 """The largest step of an output, relative to the larger of its size and 1, between neighbours on a path."""
 GROWTH = 1e-5
-"""How much light rounding may add where there is more matter, relative to the larger of its size and 1."""
+"""How much light rounding may add when there is more matter, relative to the larger of its size and 1."""
 
 _LIGHTS = {"translucency", "lighting", "output"}
 
 
-class Found(NamedTuple):
+class OutputFaults(NamedTuple):
     """Faults of one kind in one output."""
 
     kind: str
@@ -38,18 +38,20 @@ class Found(NamedTuple):
 
 
 def non_finite(value: Array) -> Array:
-    """Where a float's exponent bits are all set: (…,) bool. No comparison that fast-math could remove."""
+    """Where a float's exponent bits are all set: (…,) bool. It uses no comparison that fast-math could remove."""
     masks: dict[int, tuple[Any, int]] = {
         2: (np.uint16, 0x7C00),
         4: (np.uint32, 0x7F800000),
         8: (np.uint64, 0x7FF << 52),
     }
     dtype, mask = masks[value.dtype.itemsize]
-    found: Array = (np.ascontiguousarray(value).view(dtype) & dtype(mask)) == dtype(mask)
-    return found
+    broken: Array = (np.ascontiguousarray(value).view(dtype) & dtype(mask)) == dtype(mask)
+    return broken
 
 
-def judged(trial: Trial, outputs: Mapping[str, Array], oracle: Mapping[str, Array] | None = None) -> list[Found]:
+def faults_of(
+    trial: Trial, outputs: Mapping[str, Array], oracle: Mapping[str, Array] | None = None
+) -> list[OutputFaults]:
     """The faults of a back end's outputs, lanes first."""
     faults = []
     for name, value in outputs.items():
@@ -57,10 +59,10 @@ def judged(trial: Trial, outputs: Mapping[str, Array], oracle: Mapping[str, Arra
             continue
         lanes = np.broadcast_to(value, (trial.inputs.lanes, *value.shape[1:]) if value.ndim else (trial.inputs.lanes,))
         broken = _any(non_finite(lanes))
-        faults.append(Found("non-finite", name, broken))
+        faults.append(OutputFaults("non-finite", name, broken))
         for kind, test in _TESTS.items():
-            faults.append(Found(kind, name, test(trial, name, lanes, oracle) & ~broken))
-    return [one for one in faults if one.bad.any()]
+            faults.append(OutputFaults(kind, name, test(trial, name, lanes, oracle) & ~broken))
+    return [fault for fault in faults if fault.bad.any()]
 
 
 def _out_of_range(trial: Trial, output: str, value: Array, _: Mapping[str, Array] | None) -> Array:
@@ -80,19 +82,19 @@ def _out_of_range(trial: Trial, output: str, value: Array, _: Mapping[str, Array
 
 def bounds(specimen: Specimen, output: str) -> tuple[float, float, float]:
     """Lowest, highest value and greatest length that an output may have, by its quantity, its name and the role."""
-    made = specimen.output(output)
-    found = of_param(made)
-    if is_direction(output, found):
-        return -np.inf, np.inf, found.length
-    if made.quantity and not made.quantity.endswith("_position"):
-        return found.low, found.high, np.inf
-    if found.low >= 0.0:  # a colour has no highest value, a fraction has
-        return 0.0, 1.0 if found.high <= 1.0 else np.inf, np.inf
+    param = specimen.output(output)
+    range_of = of_param(param)
+    if is_direction(output, range_of):
+        return -np.inf, np.inf, range_of.length
+    if param.quantity and not param.quantity.endswith("_position"):
+        return range_of.low, range_of.high, np.inf
+    if range_of.low >= 0.0:  # a colour has no highest value, a fraction has
+        return 0.0, 1.0 if range_of.high <= 1.0 else np.inf, np.inf
     return (0.0 if output == RESULT and specimen.role in _LIGHTS else -np.inf), np.inf, np.inf
 
 
 def _energy(trial: Trial, _: str, value: Array, __: Mapping[str, Array] | None) -> Array:
-    """Where more matter lets more light through."""
+    """The lanes where more matter transmits more light."""
     if not trial.grows:
         return _none(value)
     thin, thick = np.split(value.astype(np.float64), 2)
@@ -125,7 +127,7 @@ def _wrong(trial: Trial, output: str, value: Array, _: Mapping[str, Array] | Non
 
 
 def growing_input(specimen: Specimen) -> str:
-    """The thickness that a technique turns into light, or into what lets light through; '' where it does not."""
+    """The thickness input of a technique that returns light, thinness or transmittance; '' if it has none."""
     lets_through = {specimen.quantity(probe.output) for probe in specimen.subject.probes} & {
         "transmittance",
         "thinness",
@@ -137,7 +139,7 @@ def growing_input(specimen: Specimen) -> str:
 
 
 def not_longer(trial: Trial) -> Array:
-    """The lanes of which no direction is longer than 1, (lanes,): longer ones may darken a light below 0."""
+    """The lanes in which no direction is longer than 1, (lanes,) bool; longer ones may make a light negative."""
     short: Array = np.ones(trial.inputs.lanes, np.bool_)
     for name, value in trial.inputs.values.items():
         if value.dtype.kind == "f" and is_direction(name, contract(trial.specimen, name)):

@@ -38,27 +38,27 @@ def not_lipschitz(specimen: Specimen) -> Iterator[Trial]:
     rng = np.random.default_rng(17)
     texels = Texture(rng.integers(0, 2, (TEXELS,) * 3 + (1,)).astype(np.float16), wrap="clamp")
     lanes = 512
-    at = rng.uniform(-1.0, 1.0, (3, lanes))
+    positions = rng.uniform(-1.0, 1.0, (3, lanes))
     axes = [(0, 0, 1), (0.6, 0, 0.8), (0, -1, 0)]
-    given = {"distance_map": texels, "distance_range": 100.0, "P": at, "P_object": at}
+    changes = {"distance_map": texels, "distance_range": 100.0, "P": positions, "P_object": positions}
     turned = mixed(steep, dict.fromkeys(("N", "L", "V_object", "L_object"), axes), lanes).values
-    yield Trial("", steep, plain(steep, lanes, {**turned, **given}))
+    yield Trial("", steep, plain(steep, lanes, {**turned, **changes}))
 
 
 def medial_axis(specimen: Specimen) -> Iterator[Trial]:
     """Over the face of a box, across its diagonals: no jump. A jump of the slope is documented by the technique."""
     if _measures(specimen) and (boxed := _bound(specimen, "box")):
         along = np.linspace(-0.45, 0.45, 2001)
-        at = np.stack([along, np.full_like(along, 0.2), np.full_like(along, 0.5)])
-        yield Trial("", boxed, plain(boxed, len(along), {"P": at, "P_object": at}), path=True)
+        positions = np.stack([along, np.full_like(along, 0.2), np.full_like(along, 0.5)])
+        yield Trial("", boxed, plain(boxed, len(along), {"P": positions, "P_object": positions}), path=True)
 
 
 def hit_offset(specimen: Specimen) -> Iterator[Trial]:
-    """A hit that lies a little inside, or outside: about the result of the surface itself."""
+    """A hit a little inside or outside the surface: nearly the result of the surface itself."""
     if _measures(specimen) and (boxed := _bound(specimen, "box")):
         off = np.linspace(-2e-3, 2e-3, 1001)
-        at = np.stack([np.full_like(off, 0.1), np.full_like(off, 0.2), 0.5 + off])
-        yield Trial("", boxed, plain(boxed, len(off), {"P": at, "P_object": at}), path=True)
+        positions = np.stack([np.full_like(off, 0.1), np.full_like(off, 0.2), 0.5 + off])
+        yield Trial("", boxed, plain(boxed, len(off), {"P": positions, "P_object": positions}), path=True)
 
 
 def grazing_march(specimen: Specimen) -> Iterator[Trial]:
@@ -66,8 +66,8 @@ def grazing_march(specimen: Specimen) -> Iterator[Trial]:
     if _measures(specimen) and (ball := _bound(specimen, "sphere")):
         sine, cosine = angles(-5.0, 5.0)
         light = np.stack([cosine, 0.0 * sine, sine])
-        given = {"P": (0, 0, 1), "P_object": (0, 0, 1), "L": light, "L_object": light, "V_object": -light}
-        yield Trial("", ball, plain(ball, len(sine), given), path=True)
+        changes = {"P": (0, 0, 1), "P_object": (0, 0, 1), "L": light, "L_object": light, "V_object": -light}
+        yield Trial("", ball, plain(ball, len(sine), changes), path=True)
 
 
 def flat_box(specimen: Specimen) -> Iterator[Trial]:
@@ -91,31 +91,31 @@ def concave(specimen: Specimen) -> Iterator[Trial]:
         return
     if ring := _bound(specimen, "torus"):
         many, few = np.array([128], np.int32), np.array([64], np.int32)
-        given = {
+        changes = {
             "P": (-1.25, 0, 0), "P_object": (-1.25, 0, 0), "L": (1, 0, 0), "L_object": (1, 0, 0),
             "V_object": (-1, 0, 0), "reach": 4.0, "steps": many, "view_steps": few, "light_steps": few,
             "box_min": (-1.3, -0.3, -1.3), "box_max": (1.3, 0.3, 1.3),
         }  # fmt: skip
-        yield Trial("", ring, plain(ring, 4, given), expected={"result": np.ones(1)}, tolerance=0.02)
+        yield Trial("", ring, plain(ring, 4, changes), expected={"result": np.ones(1)}, tolerance=0.02)
 
 
 def few_steps(specimen: Specimen) -> Iterator[Trial]:
-    """No step, one, less than none; and one step that is larger than the body."""
+    """Step counts of 0, 1 and below 0; and a single step that is larger than the body."""
     uniforms = specimen.subject.uniforms
-    kinds = {name: kind_of(one.type) for name, one in uniforms.items() if name not in specimen.settings}
+    kinds = {name: kind_of(uniform.type) for name, uniform in uniforms.items() if name not in specimen.settings}
     counts = {
         name: {"int": np.int32, "uint": np.uint32}[kind] for name, kind in kinds.items() if kind in ("int", "uint")
     }
     for count in (0, 1, -1) if counts else ():
-        given: dict[str, Any] = {}
+        changes: dict[str, Any] = {}
         for name, dtype in counts.items():
-            given[name] = np.full(1, max(count, 0) if dtype is np.uint32 else count, dtype)
+            changes[name] = np.full(1, max(count, 0) if dtype is np.uint32 else count, dtype)
         far = {"reach": np.array([0.1, 0.4, 10.0])} if "reach" in uniforms else {}
-        yield Trial("", specimen, plain(specimen, 3, {**given, **far}), counts=count >= 0)
+        yield Trial("", specimen, plain(specimen, 3, {**changes, **far}), counts=count >= 0)
 
 
 def coinciding(specimen: Specimen) -> Iterator[Trial]:
-    """Two points in one place: the ends of an axis, and a place that is just a Voronoi cell's site."""
+    """Two points that coincide: the ends of an axis, and a position exactly at the site of a Voronoi cell."""
     params = specimen.subject.params
     if "start" in params and "end" in params:
         point = np.array([[0.3], [-0.2], [0.1]])
@@ -125,8 +125,8 @@ def coinciding(specimen: Specimen) -> Iterator[Trial]:
         site = _site().astype(np.float32)
         steps = np.array([[x, y] for x in (-1, 0, 1) for y in (-1, 0, 1)], np.float32).T
         near = site[:, None] + steps * np.spacing(site)[:, None]
-        given = {"uv": near, "cell_count": np.ones(1), "relief": np.ones(1)}
-        yield Trial("", specimen, plain(specimen, near.shape[1], given))
+        changes = {"uv": near, "cell_count": np.ones(1), "relief": np.ones(1)}
+        yield Trial("", specimen, plain(specimen, near.shape[1], changes))
 
 
 def _site() -> Array:
@@ -137,7 +137,7 @@ def _site() -> Array:
 
 
 def _hashed(x: int) -> int:
-    """common/hash.sss, on 32 bits."""
+    """`hash_bits` of common/hash.sss, on 32 bits."""
     x &= 0xFFFFFFFF
     x = ((x ^ (x >> 16)) * 0x7FEB352D) & 0xFFFFFFFF
     x = ((x ^ (x >> 15)) * 0x846CA68B) & 0xFFFFFFFF

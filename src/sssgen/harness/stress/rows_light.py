@@ -25,7 +25,7 @@ def powers(specimen: Specimen) -> Iterator[Trial]:
 
 
 def large_powers(specimen: Specimen) -> Iterator[Trial]:
-    """All exponents at their highest, with the lobe from its peak to its end."""
+    """All exponents at their maximum, over the lobe from its peak to its end."""
     if calls(specimen, "pow", "exp2") and directions(specimen):
         sine, cosine = angles(0.0, 100.0)
         swept = np.stack([sine, 0.0 * sine, cosine])
@@ -36,7 +36,7 @@ def large_powers(specimen: Specimen) -> Iterator[Trial]:
 
 
 def zero_vectors(specimen: Specimen) -> Iterator[Trial]:
-    """L = -N at every distortion, up to the one at which the half vector is zero; no vectors, and far too long ones."""
+    """L = -N up to the distortion at which the half vector is zero; zero vectors, and vectors that are far too long."""
     names = directions(specimen)
     if not names:
         return
@@ -83,7 +83,7 @@ def wrong_quantities(specimen: Specimen) -> Iterator[Trial]:
         choices |= {name: [*values, *(outside(specimen, name)[:2])] for name in names}
         inputs = mixed(specimen, choices, 512)
         yield Trial("", specimen, inputs, ranged=False)
-        yield Trial("", specimen, inputs, counts=False)  # outputs are in their ranges only where inputs are
+        yield Trial("", specimen, inputs, counts=False)  # outputs are in their ranges only if the inputs are
 
 
 def thick_matter(specimen: Specimen) -> Iterator[Trial]:

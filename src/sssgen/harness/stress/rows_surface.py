@@ -19,23 +19,23 @@ from sssgen.targets.runtime.numpy_textures import Texture
 
 UV = np.array([0.3, 0.6], np.float32)
 _NANS = (0x7E00, 0x7C01, 0xFE00, 0xFFFF, 0x7C00, 0xFC00)
-"""Halves: quiet, signalling, negative and full NaN, infinities."""
+"""Half-precision bit patterns: quiet, signalling, negative and all-ones NaN, infinities."""
 
 
 def _parallax(specimen: Specimen) -> bool:
     return {"uv", "V", "T", "B", "N"} <= specimen.subject.params.keys() and specimen.role == "coordinates"
 
 
-def _free(specimen: Specimen, wanted: dict[str, float]) -> bool:
+def _free(specimen: Specimen, values: dict[str, float]) -> bool:
     """Whether a material leaves these uniforms free, or fixes them at these values."""
-    return all(specimen.settings.get(name, (value,)) == (value,) for name, value in wanted.items())
+    return all(specimen.settings.get(name, (value,)) == (value,) for name, value in values.items())
 
 
-def _swept(specimen: Specimen, start: float, end: float, given: dict[str, Any] | None = None) -> Trial:
+def _swept(specimen: Specimen, start: float, end: float, changes: dict[str, Any] | None = None) -> Trial:
     """The view from one angle to the normal to another, in degrees: a path."""
     sine, cosine = angles(start, end)
     view = np.stack([sine, 0.0 * sine, cosine])
-    inputs = plain(specimen, len(sine), {"V": view, "uv": UV, **(given or {})})
+    inputs = plain(specimen, len(sine), {"V": view, "uv": UV, **(changes or {})})
     return Trial("", specimen, inputs, path=True)
 
 
@@ -47,7 +47,7 @@ def _longest(specimen: Specimen) -> float:
 
 
 def grazing(specimen: Specimen) -> Iterator[Trial]:
-    """The view goes to grazing, without refraction: the slide is bounded, and 0 at 90 degrees."""
+    """The view becomes grazing, without refraction: the slide is bounded, and 0 at 90 degrees."""
     still = {"ior": 1.0, "outside_ior": 1.0, "eta": 1.0}
     if _parallax(specimen) and _free(specimen, still):
         swept = _swept(specimen, -90.0, 90.0, still)
@@ -58,7 +58,7 @@ def grazing(specimen: Specimen) -> Iterator[Trial]:
 
 
 def past_the_critical_angle(specimen: Specimen) -> Iterator[Trial]:
-    """Into a thinner body: a smooth fade to the base texture coordinates, where no ray enters."""
+    """Into a medium with a lower index: a smooth fade to the base texture coordinates, where no ray enters."""
     thinner = {"ior": 1.0, "outside_ior": 1.5, "eta": 1.5}
     refracts = {"ior", "eta"} & specimen.subject.params.keys()
     if _parallax(specimen) and refracts and _free(specimen, thinner):
@@ -68,7 +68,7 @@ def past_the_critical_angle(specimen: Specimen) -> Iterator[Trial]:
 
 
 def from_behind(specimen: Specimen) -> Iterator[Trial]:
-    """The view goes round to the back."""
+    """The view direction turns to the back of the surface."""
     if {"V", "N"} <= specimen.subject.params.keys():
         sine, cosine = angles(0.0, 180.0)
         view = np.stack([sine, 0.0 * sine, cosine])
@@ -77,7 +77,7 @@ def from_behind(specimen: Specimen) -> Iterator[Trial]:
 
 
 def bad_frames(specimen: Specimen) -> Iterator[Trial]:
-    """Mirrored, sheared, scaled, flat and missing tangents; without one nothing slides."""
+    """Mirrored, sheared, scaled, flat and missing tangents; without a tangent there is no slide."""
     if not {"T", "B", "N"} <= specimen.subject.params.keys():
         return
     frames: dict[str, list[Any]] = {
@@ -110,14 +110,14 @@ def seams(specimen: Specimen) -> Iterator[Trial]:
 
 
 def _swept_texels(specimen: Specimen, lanes: int) -> dict[str, Any]:
-    """Positions all over a texture, for every kind of coordinate."""
+    """Random positions over a whole texture, for every kind of coordinate."""
     rng = np.random.default_rng(11)
     flat, solid = rng.random((2, lanes)), rng.uniform(-1.0, 1.0, (3, lanes))
     return {"uv": flat, "P": solid, "p": solid, "P_object": solid}
 
 
 def bad_texels(specimen: Specimen) -> Iterator[Trial]:
-    """Texels below 0, above 1, and NaN, in textures that hold data: reads must give values in the range."""
+    """Texels below 0, above 1, and NaN, in textures that hold a quantity: results must stay in the range."""
     yield from _with_texels(specimen, (0xC000, 0x8001, 0x4000, 0x7BFF, 0xFBFF, *_NANS[:1]))
 
 

@@ -1,6 +1,6 @@
-"""Reduces a failing input to the simplest that still fails, and prints the `sssgen eval` line that shows it.
+"""Reduces a failing input to the simplest that still fails, and prints the `sssgen eval` command that shows it.
 
-Greedy and deterministic: input by input, the candidates from the simplest on, until nothing gets simpler.
+Greedy and deterministic: for each input it tries the candidates, the simplest first, until nothing gets simpler.
 """
 
 from __future__ import annotations
@@ -28,41 +28,43 @@ _TEXELS = (0.25, 2.0, -1.0, 65504.0, -65504.0, np.nan, np.inf, -np.inf)
 _AXES = ((0, 0, 1), (0, 0, -1), (0, 0, 0), (1, 0, 0), (0, 1, 0), (-1, 0, 0), (0, -1, 0))
 
 
-def lane(inputs: Inputs, at: int) -> Inputs:
+def lane(inputs: Inputs, index: int) -> Inputs:
     """One lane of the inputs, as arrays of one."""
-    values = {name: value[..., at : at + 1] if value.shape[-1] > 1 else value for name, value in inputs.values.items()}
+    values = {
+        name: value[..., index : index + 1] if value.shape[-1] > 1 else value for name, value in inputs.values.items()
+    }
     return Inputs(values, inputs.textures, 1)
 
 
 def shrunk(specimen: Specimen, failing: Inputs, fails: Fails) -> Inputs:
-    """The simplest inputs found that still fail, one lane; `failing` itself where it does not fail alone."""
-    at = failing
-    if not fails(at).all():
+    """The simplest inputs found that still fail, one lane; `failing` itself if it does not fail when run alone."""
+    simplest = failing
+    if not fails(simplest).all():
         return failing
-    at = _plainer_textures(specimen, at, fails)
+    simplest = _plainer_textures(specimen, simplest, fails)
     for _ in range(ROUNDS):
-        before = at
-        for name in at.values:
-            at = _simpler(specimen, at, name, fails)
-        if all(np.array_equal(at.values[name], value) for name, value in before.values.items()):
+        before = simplest
+        for name in simplest.values:
+            simplest = _simpler(specimen, simplest, name, fails)
+        if all(np.array_equal(simplest.values[name], value) for name, value in before.values.items()):
             break
-    return at
+    return simplest
 
 
-def _plainer_textures(specimen: Specimen, at: Inputs, fails: Fails) -> Inputs:
+def _plainer_textures(specimen: Specimen, simplest: Inputs, fails: Fails) -> Inputs:
     for name, uniform in specimen.subject.uniforms.items():
-        if name not in at.textures:
+        if name not in simplest.textures:
             continue
         hints = [hint.removeprefix("default_") for hint, _ in uniform.hints if hint.startswith("default_")]
         plain = [default_texture(spell(uniform.type), color) for color in (*hints[:1], "white", "black", "gray")]
         values = (0.25,) if contract(specimen, name).finite else _TEXELS
-        plain += [_one_texel(at.textures[name], value) for value in values]
+        plain += [_one_texel(simplest.textures[name], value) for value in values]
         for texture in plain:
-            simpler = at._replace(textures={**at.textures, name: texture})
+            simpler = simplest._replace(textures={**simplest.textures, name: texture})
             if fails(simpler).all():
-                at = simpler
+                simplest = simpler
                 break
-    return at
+    return simplest
 
 
 def _one_texel(texture: Texture, value: float) -> Texture:
@@ -70,26 +72,28 @@ def _one_texel(texture: Texture, value: float) -> Texture:
     return Texture(np.full(size, value, np.float16), dim=texture.dim)
 
 
-def _simpler(specimen: Specimen, at: Inputs, name: str, fails: Fails) -> Inputs:
-    """The inputs with one of them as simple as possible; the others stay."""
-    value = at.values[name]
+def _simpler(specimen: Specimen, inputs: Inputs, name: str, fails: Fails) -> Inputs:
+    """The inputs with one of them simplified as far as possible; the others are unchanged."""
+    value = inputs.values[name]
     if name in specimen.settings:
-        return at
+        return inputs
     candidates = list(_candidates(specimen, name, value))
     candidates = candidates[: _index(candidates, value)]
     if _allowed(specimen, name, value):  # a value in the contract stays in it
-        candidates = [one for one in candidates if _allowed(specimen, name, one)]
+        candidates = [candidate for candidate in candidates if _allowed(specimen, name, candidate)]
     if not candidates:
-        return at
+        return inputs
     lanes = np.concatenate(candidates, axis=-1)
-    values = {other: np.broadcast_to(one, (*one.shape[:-1], lanes.shape[-1])) for other, one in at.values.items()}
-    failing = np.flatnonzero(fails(Inputs({**values, name: lanes}, at.textures, lanes.shape[-1])))
-    return at._replace(values={**at.values, name: candidates[int(failing[0])]}) if len(failing) else at
+    values = {
+        other: np.broadcast_to(array, (*array.shape[:-1], lanes.shape[-1])) for other, array in inputs.values.items()
+    }
+    failing = np.flatnonzero(fails(Inputs({**values, name: lanes}, inputs.textures, lanes.shape[-1])))
+    return inputs._replace(values={**inputs.values, name: candidates[int(failing[0])]}) if len(failing) else inputs
 
 
 def _index(candidates: list[Array], value: Array) -> int:
     """The index of the value among the candidates; their number where it is not among them."""
-    same = (i for i, one in enumerate(candidates) if np.array_equal(one, value))
+    same = (i for i, candidate in enumerate(candidates) if np.array_equal(candidate, value))
     return next(same, len(candidates))
 
 
@@ -97,15 +101,15 @@ def _allowed(specimen: Specimen, name: str, value: Array) -> bool:
     if value.dtype.kind != "f":
         low, high = whole_range(specimen.subject.params[name], specimen.subject.uniforms.get(name))
         return bool(((value >= low) & (value <= high)).all())
-    found = contract(specimen, name)
-    within = ((value >= np.float32(found.low)) & (value <= np.float32(found.high))).all()
+    ends = contract(specimen, name)
+    within = ((value >= np.float32(ends.low)) & (value <= np.float32(ends.high))).all()
     if not np.array_equal(opaque(specimen.subject.uniforms.get(name), value.copy()), value):
         return False
-    return bool(within) and not float(np.linalg.norm(value.astype(np.float64))) > found.length * (1.0 + 1e-6)
+    return bool(within) and not float(np.linalg.norm(value.astype(np.float64))) > ends.length * (1.0 + 1e-6)
 
 
 def _candidates(specimen: Specimen, name: str, value: Array) -> Iterator[Array]:
-    """Values to try, the simplest first: the default, axes, plain numbers, fewer digits; then by component."""
+    """Values to try, the simplest first: the default, axes, simple numbers, single components, fewer digits."""
     if name in specimen.subject.uniforms:
         yield fixed(specimen, name)
     kind = kind_of(specimen.subject.params[name].type)
@@ -122,35 +126,37 @@ def _candidates(specimen: Specimen, name: str, value: Array) -> Iterator[Array]:
         return
     for index in np.ndindex(value.shape[:-1] if value.ndim > 1 else (0,)):
         for number in _SIMPLE[:2]:
-            one = value.copy()
-            one[index] = number
-            yield one
+            changed = value.copy()
+            changed[index] = number
+            yield changed
     for digits in DIGITS:
-        yield np.array([np.float32(f"{one:.{digits - 1}e}") for one in value.ravel()], np.float32).reshape(value.shape)
+        yield np.array([np.float32(f"{number:.{digits - 1}e}") for number in value.ravel()], np.float32).reshape(
+            value.shape
+        )
 
 
-def line(specimen: Specimen, at: Inputs, backend: str, guards: str = "auto") -> str:
+def line(specimen: Specimen, inputs: Inputs, backend: str, guards: str = "auto") -> str:
     """The command that evaluates these inputs on a back end."""
-    given = {name: _plain(value) for name, value in at.values.items() if not _is_default(specimen, name, value)}
-    before, unsaid = "", []
-    for name, texture in at.textures.items():
+    arguments = {name: _plain(value) for name, value in inputs.values.items() if not _is_default(specimen, name, value)}
+    before, omitted = "", []
+    for name, texture in inputs.textures.items():
         texels = texture.levels[0]
         same = np.array_equal(texels, np.broadcast_to(texels.reshape(-1, 4)[0], texels.shape), equal_nan=True)
         if _is_plain_default(specimen, name, texture):
             continue
         if same and np.isfinite(texels).all():
             shape = (*(1,) * (texels.ndim - 1), 4)
-            values = [float(one) for one in texels.reshape(-1, 4)[0]]
+            values = [float(component) for component in texels.reshape(-1, 4)[0]]
             before += f"python -c 'import numpy; numpy.save(\"{name}.npy\", numpy.full({shape}, {values}))' && "
-            given[name] = f"{name}.npy"
+            arguments[name] = f"{name}.npy"
         else:
-            told = f"texels of {texels.flat[0]}, which eval does not take," if same else "random texels"
-            unsaid.append(f"{told} in {name}")
+            description = f"texels of {texels.flat[0]}, which eval does not take," if same else "random texels"
+            omitted.append(f"{description} in {name}")
     command = f"sssgen eval {shlex.quote(specimen.technique)} --inputs - --backend {_backend(backend)}"
     command += f" --guards {guards}" * (guards != "auto")
     command += "".join(f" --bind {shlex.quote(f'{slot}={function}')}" for slot, function in specimen.bind.items())
-    note = f"  # and {' and '.join(unsaid)}" if unsaid else ""
-    return f"{before}echo {shlex.quote(json.dumps(given))} | {command}{note}"
+    note = f"  # and {' and '.join(omitted)}" if omitted else ""
+    return f"{before}echo {shlex.quote(json.dumps(arguments))} | {command}{note}"
 
 
 def _backend(name: str) -> str:
@@ -173,9 +179,9 @@ def _is_plain_default(specimen: Specimen, name: str, texture: Texture) -> bool:
 
 
 def _plain(value: Array) -> object:
-    """Numbers for JSON, each as short as it reads back; a matrix in columns."""
+    """Numbers for JSON, each in the shortest form that reads back the same; a matrix in columns."""
     lanes = np.moveaxis(value, -1, 0)
-    numbers = np.array([json.loads(_number(one)) for one in lanes.ravel()], dtype=object).reshape(lanes.shape)
+    numbers = np.array([json.loads(_number(number)) for number in lanes.ravel()], dtype=object).reshape(lanes.shape)
     return numbers.tolist()[0] if len(lanes) == 1 else numbers.tolist()
 
 

@@ -57,8 +57,8 @@ def as_json(report: Report) -> dict[str, Any]:
 
 def _technique(row: Row) -> dict[str, Any]:
     jumps = [
-        {"input": one.input, "output": one.output, "size": one.size, "inputs": _inputs(one.inputs)}
-        for one in row.model_jumps
+        {"input": jump.input, "output": jump.output, "size": jump.size, "inputs": _inputs(jump.inputs)}
+        for jump in row.model_jumps
     ]
     return {
         "name": row.specimen.title,
@@ -103,9 +103,9 @@ def _inputs(inputs: Inputs) -> dict[str, Any]:
 
 
 def _numbers(value: Array) -> Any:
-    """Numbers for JSON, which has no NaN: that and infinity are texts."""
+    """Numbers for JSON; NaN and infinity, which JSON lacks, become strings."""
     if value.ndim:
-        return [_numbers(one) for one in value]
+        return [_numbers(element) for element in value]
     number = value.item()
     return str(number) if isinstance(number, float) and not np.isfinite(number) else number
 
@@ -135,25 +135,25 @@ def _remark(row: Row) -> list[str]:
 
 
 def faults(row: Row, beyond: bool = False) -> Iterator[str]:
-    """The faults of one technique: those that count, and on request those that do not.
+    """The faults of one technique: those that count and, with `beyond`, those that do not.
 
-    What several back ends have in common is told once, with the numbers and the line of the first of them.
+    Faults that several back ends share are reported once, with the numbers and the command of the first of them.
     """
     for column in row.columns:
         if column.error:
             yield f"{row.specimen.title}: {column.backend}: {visible(column.error)}"
-    alike: dict[tuple[str, str, str, bool], list[tuple[str, Fault]]] = {}
+    by_kind: dict[tuple[str, str, str, bool], list[tuple[str, Fault]]] = {}
     for column in row.columns:
         for fault in column.faults:
             if fault.counts or beyond:
                 key = (fault.trial, fault.kind, fault.output, fault.counts)
-                alike.setdefault(key, []).append((column.backend, fault))
-    for (trial, kind, output, counts), found in alike.items():
-        fault = found[0][1]
+                by_kind.setdefault(key, []).append((column.backend, fault))
+    for (trial, kind, output, counts), same_faults in by_kind.items():
+        fault = same_faults[0][1]
         got = np.array2string(fault.got, precision=7, separator=", ")
-        where = f"{output} is {got} in {fault.lanes} of {fault.of}, on {', '.join(name for name, _ in found)}"
+        where = f"{output} is {got} in {fault.lanes} of {fault.of}, on {', '.join(name for name, _ in same_faults)}"
         yield f"{row.specimen.title}: {trial}: {kind}: {where}{'' if counts else ', which does not count'}"
-        if command := next((fault.command for _, fault in found if fault.command), ""):
+        if command := next((fault.command for _, fault in same_faults if fault.command), ""):
             yield f"  {command}"
 
 
@@ -182,14 +182,14 @@ def as_markdown(report: Report) -> str:
         cells = [_cell(column) for column in row.columns]
         deviation = max((column.deviation for column in row.columns), default=0.0)
         jump = max((column.jump for column in row.columns), default=0.0)
-        told = " ".join(_remark(row)).strip()
-        lines.append(f"| {row.specimen.title} | {' | '.join(cells)} | {deviation:.2g} | {jump:.2g} | {told} |")
+        remark = " ".join(_remark(row)).strip()
+        lines.append(f"| {row.specimen.title} | {' | '.join(cells)} | {deviation:.2g} | {jump:.2g} | {remark} |")
     lines += ["", "Deviation: the largest difference to float64 that rounding does not explain. Jump: the largest"]
     lines += ["change for a small step of an input where the oracle's own is small.", "", "## Back ends", ""]
     lines += [f"- {name}: {device}" for name, device in report.devices.items()]
     lines += [f"- {name}: not here: {' '.join(how.split())}" for name, how in report.missing.items()]
-    found = [line for row in report.rows for line in faults(row, beyond=True)]
-    lines += ["", "## Faults", "", *(["```text", *found, "```"] if found else ["None."])]
+    fault_lines = [line for row in report.rows for line in faults(row, beyond=True)]
+    lines += ["", "## Faults", "", *(["```text", *fault_lines, "```"] if fault_lines else ["None."])]
     lines += ["", "## Dangerous inputs", "", "| Row | Input | Asked |", "|---|---|---|"]
     lines += [f"| {row.name} | {row.inputs} | {row.requires} |".replace("|L|", "length of L") for row in ROWS]
     return "\n".join(lines) + "\n"

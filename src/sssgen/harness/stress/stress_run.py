@@ -20,7 +20,7 @@ from sssgen.harness.evaluate.evaluation import run as evaluated
 from sssgen.harness.stress import boundaries, energy, jumps
 from sssgen.harness.stress import dangerous_inputs as dangerous
 from sssgen.harness.stress.contract_inputs import drawn
-from sssgen.harness.stress.result_checks import JUMP, KINDS, Found, judged
+from sssgen.harness.stress.result_checks import JUMP, KINDS, OutputFaults, faults_of
 from sssgen.harness.stress.shrink import lane, line, shrunk
 from sssgen.harness.stress.subject import Specimen
 from sssgen.harness.stress.trial import RANDOM, STEPS, Trial
@@ -28,7 +28,7 @@ from sssgen.ir.formats import FLOAT16, FLOAT32, Format
 from sssgen.support.diagnostics import SssgenError
 
 CHUNK = 1 << 16
-"""Lanes at a time: more is slower, since they leave the cache."""
+"""Lanes per evaluation; more are slower because they do not fit into the cache."""
 COMPARED = 1000
 """Random lanes that are compared with the oracle."""
 SHOWN = 3
@@ -60,7 +60,7 @@ class Fault(NamedTuple):
     kind: str
     output: str
     counts: bool
-    """Whether it is a failure; otherwise the inputs were beyond the contract."""
+    """Whether it is a failure; otherwise the inputs were outside the contract."""
     lanes: int
     of: int
     """The number of lanes that failed, and of those tried."""
@@ -68,7 +68,7 @@ class Fault(NamedTuple):
     """The first that failed."""
     got: Array
     command: str = ""
-    """The command that shows the simplest input found; '' where none was searched."""
+    """The command that shows the simplest input found; '' if none was searched for."""
 
 
 class Column(NamedTuple):
@@ -79,11 +79,11 @@ class Column(NamedTuple):
     seconds: float
     faults: tuple[Fault, ...]
     jump: float
-    """The largest step of an output where the oracle's own is small, for small steps of each input."""
+    """The largest change of an output for a small step of an input, where the oracle's own change is small."""
     deviation: float
     """The largest difference to the oracle that rounding does not explain."""
     error: str = ""
-    """Why the results are incomplete: the driver refused, crashed or hung."""
+    """Why the results are incomplete: the driver rejected the program, crashed or hung."""
 
     @property
     def ok(self) -> bool:
@@ -122,36 +122,38 @@ class Machines:
     def __enter__(self) -> Machines:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
         for backend in self.here.values():
             if (close := getattr(backend, "close", None)) is not None:
                 close()
 
 
-Told = Callable[[str, int], None]
+Progress = Callable[[str, int], None]
 """Receives the progress: the current task, and how much of it is done."""
 
 
-def stress(specimen: Specimen, machines: Machines, settings: Settings, told: Told = lambda *_: None) -> Row:
+def stress(specimen: Specimen, machines: Machines, settings: Settings, progress: Progress = lambda *_: None) -> Row:
     """All trials of one technique on all back ends."""
     gathered = [_Gathered(name, backend, specimen, settings) for name, backend in machines.here.items()]
     for trial in _trials(specimen, settings):
-        told(trial.name, 0)
+        progress(trial.name, 0)
         reference = _Reference(trial, settings)
-        for one in gathered:
-            one.take(trial, reference)
+        for results in gathered:
+            results.take(trial, reference)
     if not settings.rows:
-        for one in gathered:
-            told("small steps", 0)
-            one.step()
+        for results in gathered:
+            progress("small steps", 0)
+            results.step()
         done = 0
         for trial in _random(specimen, settings):
-            for one in gathered:
-                one.take(trial, None)
+            for results in gathered:
+                results.take(trial, None)
             done += trial.inputs.lanes
-            told(RANDOM, done)
-    model = jumps.of_model(specimen, exact(specimen, settings)) if not settings.rows else ()
-    return Row(specimen, tuple(one.column() for one in gathered), model)
+            progress(RANDOM, done)
+    model_jumps = jumps.of_model(specimen, exact(specimen, settings)) if not settings.rows else ()
+    return Row(specimen, tuple(results.column() for results in gathered), model_jumps)
 
 
 def _trials(specimen: Specimen, settings: Settings) -> Iterator[Trial]:
@@ -165,7 +167,7 @@ def _trials(specimen: Specimen, settings: Settings) -> Iterator[Trial]:
 
 
 def _random(specimen: Specimen, settings: Settings) -> Iterator[Trial]:
-    """The same for each back end, and as far as they go for every number of samples."""
+    """Random inputs: the same for each back end, and a prefix of those for any larger number of samples."""
     for number, first in enumerate(range(0, settings.samples, CHUNK)):
         rng = np.random.default_rng([settings.seed, 3, number])
         lanes = min(CHUNK, settings.samples - first)
@@ -173,7 +175,7 @@ def _random(specimen: Specimen, settings: Settings) -> Iterator[Trial]:
 
 
 def evaluate(specimen: Specimen, inputs: Inputs, backend: Backend, settings: Settings) -> dict[str, Array]:
-    """The outputs, lanes first. Raises SssgenError where the back end refuses."""
+    """The outputs, lanes first. Raises SssgenError if the back end rejects the program."""
     return evaluated(specimen.subject, inputs, backend, settings.guards)
 
 
@@ -196,7 +198,7 @@ class _Reference:
     @cached_property
     def rounding(self) -> dict[str, Array]:
         """See `deviation.rounding_deviation`."""
-        with np.errstate(over="ignore"):  # beyond the largest number there is no next one
+        with np.errstate(over="ignore"):  # the largest number has no next one
             return rounding_deviation(self.trial.specimen.subject, self.trial.inputs, self.outputs)
 
 
@@ -220,7 +222,7 @@ class _Gathered:
         return outputs
 
     def take(self, trial: Trial, reference: _Reference | None) -> None:
-        """One trial; nothing once the back end has failed."""
+        """Runs one trial; does nothing once the back end has failed."""
         if self.error:
             return
         trial = trial._replace(epsilon=self.settings.format.epsilon)
@@ -231,72 +233,74 @@ class _Gathered:
             return
         self.lanes[trial.name, trial.counts] += trial.inputs.lanes
         steady = reference.outputs if reference is not None and trial.path else None
-        found = judged(trial, outputs, steady)
+        faults = faults_of(trial, outputs, steady)
         if reference is not None and trial.compared and not self.settings.half:
-            found += self.compare(trial, outputs, reference)
-        for one in found:
-            self.add(trial, one, outputs[one.output])
+            faults += self.compare(trial, outputs, reference)
+        for fault in faults:
+            self.add(trial, fault, outputs[fault.output])
 
-    def add(self, trial: Trial, found: Found, value: Array) -> None:
-        """Faults; the first of their kind is kept."""
-        # with any input of the contract float32 may decide otherwise; with a row of the table it may not
-        counts = trial.counts and (found.kind != "disagreement" or trial.name != RANDOM)
-        key = (trial.name, found.kind, found.output, counts)
-        count = int(found.bad.sum())
+    def add(self, trial: Trial, faults: OutputFaults, value: Array) -> None:
+        """Records faults; of each kind the first input is kept."""
+        # float32 may decide differently on random inputs of the contract, but not on a row of the table
+        counts = trial.counts and (faults.kind != "disagreement" or trial.name != RANDOM)
+        key = (trial.name, faults.kind, faults.output, counts)
+        count = int(faults.bad.sum())
         if key in self.faults:
-            old = self.faults[key]
-            self.faults[key] = old._replace(lanes=old.lanes + count)
+            earlier = self.faults[key]
+            self.faults[key] = earlier._replace(lanes=earlier.lanes + count)
             return
-        at = int(np.argmax(found.bad))
-        got = np.array(value[at] if value.ndim else value)
+        first = int(np.argmax(faults.bad))
+        got = np.array(value[first] if value.ndim else value)
         self.trials[key] = trial
         self.faults[key] = Fault(
-            trial.name, found.kind, found.output, counts, count, trial.inputs.lanes, lane(trial.inputs, at), got
+            trial.name, faults.kind, faults.output, counts, count, trial.inputs.lanes, lane(trial.inputs, first), got
         )
 
-    def compare(self, trial: Trial, outputs: Mapping[str, Array], reference: _Reference) -> Iterator[Found]:
-        """Where finite outputs deviate from the oracle's by more than rounding explains."""
+    def compare(self, trial: Trial, outputs: Mapping[str, Array], reference: _Reference) -> Iterator[OutputFaults]:
+        """The lanes where finite outputs deviate from the oracle's by more than rounding explains."""
         for name, wanted in reference.outputs.items():
             got = outputs[name]
             if got.dtype.kind != "f" or not got.ndim:
                 continue
             apart = errors(got, wanted)
-            apart[~np.isfinite(apart)] = 0.0  # that is a fault of its own
+            apart[~np.isfinite(apart)] = 0.0  # reported as non-finite
             bad = apart > GOAL
             if bad.any():
                 bad &= apart > MARGIN * reference.rounding[name]
                 self.deviation = max(self.deviation, float(apart[bad].max(initial=0.0)))
                 if bad.any():
-                    yield Found("disagreement", name, bad)
+                    yield OutputFaults("disagreement", name, bad)
             else:
                 self.deviation = max(self.deviation, float(apart.max()))
 
     def step(self) -> None:
-        """The largest jump for a small step of each input."""
+        """Measures the largest jump for a small step of each input."""
         if self.error or self.settings.half:
             return
         try:
             self.jump, name, inputs = jumps.largest(
-                self.specimen, lambda one: self.run(self.specimen, one), exact(self.specimen, self.settings)
+                self.specimen,
+                lambda inputs_of_step: self.run(self.specimen, inputs_of_step),
+                exact(self.specimen, self.settings),
             )
         except SssgenError as error:
             self.error = error.diagnostics[0].message
             return
         if self.jump > JUMP and inputs is not None:
-            what = f"a step of {name}"
-            self.faults[STEPS, "jump", what, True] = Fault(
-                STEPS, "jump", what, True, 1, jumps.LANES, inputs, np.array(self.jump)
+            output = f"a step of {name}"
+            self.faults[STEPS, "jump", output, True] = Fault(
+                STEPS, "jump", output, True, 1, jumps.LANES, inputs, np.array(self.jump)
             )
 
     def column(self) -> Column:
         """The results, with the simplest inputs of the worst faults."""
         order = sorted(self.faults, key=lambda key: (not key[3], KINDS.index(key[1])))
-        found = [self.told(key, number < SHOWN) for number, key in enumerate(order)]
+        faults = [self.with_command(key, number < SHOWN) for number, key in enumerate(order)]
         return Column(
-            self.name, self.evaluations, self.seconds, tuple(found), self.jump, self.deviation, self.error
+            self.name, self.evaluations, self.seconds, tuple(faults), self.jump, self.deviation, self.error
         )  # fmt: skip
 
-    def told(self, key: tuple[str, str, str, bool], shrink: bool) -> Fault:
+    def with_command(self, key: tuple[str, str, str, bool], shrink: bool) -> Fault:
         """A fault with the command that shows it."""
         fault, trial = self.faults[key], self.trials.get(key)
         if trial is not None:
@@ -308,12 +312,12 @@ class _Gathered:
         if trial is not None and fault.kind in ("non-finite", "out of range"):
             bare = trial._replace(expected={}, path=False, grows="", compared=False)
 
-            def fails(given: Inputs) -> Array:
-                outputs = self.run(specimen, given)
-                found = judged(bare._replace(inputs=given), outputs)
-                alike = [one.bad for one in found if one.kind == fault.kind and one.output == fault.output]
-                return alike[0] if alike else np.zeros(given.lanes, np.bool_)
+            def fails(candidates: Inputs) -> Array:
+                outputs = self.run(specimen, candidates)
+                faults = faults_of(bare._replace(inputs=candidates), outputs)
+                same_kind = [other.bad for other in faults if other.kind == fault.kind and other.output == fault.output]
+                return same_kind[0] if same_kind else np.zeros(candidates.lanes, np.bool_)
 
-            with contextlib.suppress(SssgenError):  # then it stays as it was found
+            with contextlib.suppress(SssgenError):  # then the input stays unreduced
                 inputs = shrunk(specimen, inputs, fails)
         return fault._replace(inputs=inputs, command=line(specimen, inputs, self.name, self.settings.guards))

@@ -16,7 +16,7 @@ from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 
 
 class Specimen(NamedTuple):
-    """A subject, and the facts about its technique."""
+    """A subject, and what is known about its technique."""
 
     title: str
     """As reports call it: `beer_lambert`, or `ice: beer_lambert`."""
@@ -26,7 +26,7 @@ class Specimen(NamedTuple):
     role: str
     doc: Mapping[str, str]
     baseline: bool = False
-    """Whether this is a source as published, faults and all, for which the library has a better technique."""
+    """Whether this is a formula as published, with its faults, for which the library has a better technique."""
     bind: Mapping[str, str] = {}
     """Slot → function, as `--bind` takes them."""
     settings: Mapping[str, tuple[float, ...]] = {}
@@ -34,7 +34,7 @@ class Specimen(NamedTuple):
 
     @property
     def slots(self) -> tuple[str, ...]:
-        """The slots that another function may be bound to; none for a material's stage, which has bound its own."""
+        """The slots that another function may be bound to; none for a material's stage, which is already bound."""
         if self.title != self.technique or not self.doc:
             return ()
         return tuple(slot.name for slot in library.load(self.technique).slots)
@@ -48,31 +48,31 @@ class Specimen(NamedTuple):
         """An output as a parameter, with its name and its quantity."""
         probe = next(probe for probe in self.subject.probes if probe.output == name)
         called = probe.function.removesuffix(f"_shows_{name}")
-        function = next(one for one in self.subject.module.functions if one.name == called)
+        function = next(function for function in self.subject.module.functions if function.name == called)
         written = next((param for param in function.params if param.name == name and param.direction != "in"), None)
         return written or Param(RESULT, function.result, "out", function.quantity, function.span)
 
     def quantity(self, output: str) -> str:
         """The quantity of an output; '' where it has none or does not exist."""
-        known = any(probe.output == output for probe in self.subject.probes)
-        return self.output(output).quantity if known else ""
+        exists = any(probe.output == output for probe in self.subject.probes)
+        return self.output(output).quantity if exists else ""
 
 
 def specimens(names: Sequence[str]) -> list[Specimen]:
-    """The techniques and materials named, each material stage by stage; without names the library but its baselines.
+    """The techniques and the stages of the materials named; without names, the library except its baselines.
 
     A name is a technique, a .sss file, FILE:FUNCTION, an example or a .toml file. Raises SssgenError.
     """
     if not names:
-        return [technique(one.name) for one in library.load_all() if not one.attributes.superseded_by]
-    wrong, chosen = [], []
+        return [technique(loaded.name) for loaded in library.load_all() if not loaded.attributes.superseded_by]
+    errors, chosen = [], []
     for name in dict.fromkeys(names):
         try:
             chosen += named(name)
         except SssgenError as error:
-            wrong += error.diagnostics
-    if wrong:
-        raise SssgenError(wrong)
+            errors += error.diagnostics
+    if errors:
+        raise SssgenError(errors)
     return chosen
 
 
@@ -81,8 +81,8 @@ def named(name: str) -> list[Specimen]:
     if name.endswith(".toml") or name in examples():
         return stages(load_material(name))
     if name not in library.index() and not name.rpartition(":")[0] and not name.endswith((".sss", ".glsl")):
-        known = [*library.index(), *examples()]
-        hint = did_you_mean(name, known) or "see: sssgen list techniques, sssgen list materials"
+        names = [*library.index(), *examples()]
+        hint = did_you_mean(name, names) or "see: sssgen list techniques, sssgen list materials"
         raise failure(f"'{name}' is neither a technique nor a material", hint)
     return [technique(name)]
 
@@ -97,14 +97,17 @@ def technique(name: str, bind: Mapping[str, str] | None = None) -> Specimen:
 
 
 def stages(material: Material) -> list[Specimen]:
-    """A material's stages, each with its bindings; what the material fixes stays at its value."""
+    """A material's stages, each with its bindings; uniforms that the material fixes keep their values."""
     specimens = []
     for stage in material.stages:
         chosen = stage.technique
         bound = {slot: (binding.module, binding.function) for slot, binding in stage.bindings.items()}
         link = LinkStage(chosen.name, chosen.role, chosen.module, chosen.function, bound, stage.values, frozenset())
         probes = of_stages(chosen.name, [link])
-        bind = {slot: _shown(one.function.span.file, one.function.name) for slot, one in stage.bindings.items()}
+        bind = {
+            slot: _shown(bound_function.function.span.file, bound_function.function.name)
+            for slot, bound_function in stage.bindings.items()
+        }
         settings = {
             name: stage.values[name] for name in stage.fixed if name in probes.uniforms and name in stage.values
         }
