@@ -63,8 +63,8 @@ def by_open3d() -> Bake:
     def bake(places: Array, corners: Indices, _: Grid, points: Array) -> npt.NDArray[np.float32]:
         scene = open3d.t.geometry.RaycastingScene()
         scene.add_triangles(tensor(places.astype(np.float32)), tensor(corners.astype(np.uint32)))
-        found: npt.NDArray[np.float32] = scene.compute_signed_distance(tensor(points.astype(np.float32))).numpy()
-        return found
+        result: npt.NDArray[np.float32] = scene.compute_signed_distance(tensor(points.astype(np.float32))).numpy()
+        return result
 
     return bake
 
@@ -77,8 +77,8 @@ def by_mesh_to_sdf(surface: str, sign: str) -> Bake:
 
     def bake(places: Array, corners: Indices, _: Grid, points: Array) -> npt.NDArray[np.float32]:
         mesh = trimesh.Trimesh(places, corners, process=False)
-        found = mesh_to_sdf.mesh_to_sdf(mesh, points, surface_point_method=surface, sign_method=sign)
-        return np.asarray(found, np.float32)
+        result = mesh_to_sdf.mesh_to_sdf(mesh, points, surface_point_method=surface, sign_method=sign)
+        return np.asarray(result, np.float32)
 
     return bake
 
@@ -109,7 +109,7 @@ def true_distances(points: Array, triangles: Array) -> Array:
     edges = np.roll(triangles, -1, axis=1) - triangles
     normals = np.cross(edges[:, 0], edges[:, 1])
     tiny = np.finfo(np.float64).tiny
-    found = np.empty(len(points))
+    result = np.empty(len(points))
     for index, point in enumerate(points):
         ways = point - triangles
         along = np.einsum("fkc,fkc->fk", ways, edges) / np.maximum(np.einsum("fkc,fkc->fk", edges, edges), tiny)
@@ -118,8 +118,8 @@ def true_distances(points: Array, triangles: Array) -> Array:
         over = (np.einsum("fkc,fkc->fk", np.cross(normals[:, None], edges), ways) >= 0.0).all(axis=1)
         heights = np.einsum("fc,fc->f", ways[:, 0], normals) ** 2
         planes = heights / np.maximum(np.einsum("fc,fc->f", normals, normals), tiny)
-        found[index] = np.sqrt(np.where(over, planes, squares).min())
-    return found
+        result[index] = np.sqrt(np.where(over, planes, squares).min())
+    return result
 
 
 def rounds(first: float) -> int:
@@ -146,14 +146,14 @@ def measure(tools: dict[str, Bake], name: str, places: Array, corners: Indices, 
                 continue
             start = time.perf_counter()
             try:
-                found = bake(places, corners, grid, points)
+                result = bake(places, corners, grid, points)
             except Exception as error:  # whatever a tool of others fails with
                 print(f"fails: {tool.strip()} ({type(error).__name__}: {error})")
                 del tools[tool]
                 continue
             times.setdefault(tool, []).append(time.perf_counter() - start)
-            off = np.abs(np.abs(found[chosen].astype(np.float64)) - lengths) / grid.voxel.max()
-            wrong = float(((found[chosen] < 0.0) != within).mean())
+            off = np.abs(np.abs(result[chosen].astype(np.float64)) - lengths) / grid.voxel.max()
+            wrong = float(((result[chosen] < 0.0) != within).mean())
             errors[tool] = float(off.max()), float(off.mean()), wrong
 
     unit = statistics.median(times[OURS])
@@ -179,10 +179,10 @@ def subdivided(places: Array, corners: Indices) -> tuple[Array, Indices]:
 
     for _ in range(3):
         places, corners = trimesh.remesh.subdivide(places, corners)
-    split, kept = corners[::5], np.delete(corners, np.s_[::5], axis=0)
+    split, stored = corners[::5], np.delete(corners, np.s_[::5], axis=0)
     middle = len(places) + np.arange(len(split))
     fans = [np.stack([split[:, k], split[:, (k + 1) % 3], middle], axis=1) for k in range(3)]
-    return np.concatenate([places, places[split].mean(axis=1)]), np.concatenate([kept, *fans])
+    return np.concatenate([places, places[split].mean(axis=1)]), np.concatenate([stored, *fans])
 
 
 PEAK = (
@@ -196,9 +196,9 @@ def command(mesh: Path, resolution: int, output: Path) -> tuple[float, float]:
     """Seconds and MiB of one `sssgen bake sdf`."""
     baking = [sys.executable, "-m", "sssgen", "bake", "sdf", str(mesh), "--resolution", str(resolution)]
     start = time.perf_counter()
-    said = subprocess.run([sys.executable, "-c", PEAK, *baking, "-o", str(output)], capture_output=True, check=True)
+    message = subprocess.run([sys.executable, "-c", PEAK, *baking, "-o", str(output)], capture_output=True, check=True)
     seconds = time.perf_counter() - start
-    return seconds, int(said.stdout) / (2**20 if sys.platform == "darwin" else 2**10)
+    return seconds, int(message.stdout) / (2**20 if sys.platform == "darwin" else 2**10)
 
 
 def measure_growth(name: str, places: Array, corners: Indices) -> None:

@@ -59,10 +59,10 @@ def cold(name: str, folder: Path) -> dict[str, Case]:
     """The cases in processes of their own."""
     out, cache = folder / "out", folder / "cache"
 
-    def emit(case: str, text: str, kept: Path = cache) -> None:
+    def emit(case: str, text: str, stored: Path = cache) -> None:
         source = folder / f"{case}.toml"
         source.write_text(text, "utf-8")
-        process([sys.executable, "-m", "sssgen", "emit", str(source), "--target", "all", "-o", str(out)], kept)
+        process([sys.executable, "-m", "sssgen", "emit", str(source), "--target", "all", "-o", str(out)], stored)
 
     for case in ("same", "changed", "rebuilt"):  # bytecode and caches
         emit(case, variant(name, 0))
@@ -113,7 +113,7 @@ def measure(name: str) -> None:
                 start = time.perf_counter()
                 run(index)
                 times[case].append(time.perf_counter() - start)
-    medians = {case: statistics.median(found[1:]) for case, found in times.items()}
+    medians = {case: statistics.median(result[1:]) for case, result in times.items()}
     unit = medians["one glslangValidator process"]
     print(f"\n| {name:38} |  ratio |        ms |\n|{'-' * 40}|-------:|----------:|")
     for case, seconds in medians.items():
@@ -156,9 +156,9 @@ def machine() -> str:
     if Path("/proc/cpuinfo").is_file():
         lines = Path("/proc/cpuinfo").read_text("utf-8").splitlines()
         name = next((line.partition(": ")[2] for line in lines if line.startswith("model name")), name)
-    said = subprocess.run(["glslangValidator", "--version"], capture_output=True, text=True, check=True).stdout
+    output = subprocess.run(["glslangValidator", "--version"], capture_output=True, text=True, check=True).stdout
     python = f"Python {platform.python_version()}"
-    return f"{name}, {os.cpu_count()} cores, {platform.system()}, {python}, {said.splitlines()[0]}"
+    return f"{name}, {os.cpu_count()} cores, {platform.system()}, {python}, {output.splitlines()[0]}"
 
 
 if __name__ == "__main__":

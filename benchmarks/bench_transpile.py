@@ -54,9 +54,9 @@ class Pool:
             self.free.put(one)
         self.threads = ThreadPoolExecutor(jobs)
 
-    def ask(self, what: str, given: Sequence[tuple[object, ...]]) -> list[Any]:
+    def ask(self, what: str, inputs: Sequence[tuple[object, ...]]) -> list[Any]:
         """The answers, in order; what a process was lost on is answered by the LostError."""
-        return list(self.threads.map(lambda one: self._ask((what, one)), given))
+        return list(self.threads.map(lambda one: self._ask((what, one)), inputs))
 
     def _ask(self, question: object) -> Any:
         process = self.free.get()
@@ -79,22 +79,22 @@ def judged(
 ) -> list[Verdict]:
     """The verdict on each file."""
     answers: list[dict[str, Made] | LostError] = pool.ask("made", [(code, folders, targets) for code in codes])
-    said = [{"": Made(None, f"the process {one}")} if isinstance(one, LostError) else one for one in answers]
+    reported = [{"": Made(None, f"the process {one}")} if isinstance(one, LostError) else one for one in answers]
     sources = [
-        made.source
-        for one in said
-        for target, made in one.items()
-        if made.source is not None and ("glslang", target) in BATCHED
+        result.source
+        for one in reported
+        for target, result in one.items()
+        if result.source is not None and ("glslang", target) in BATCHED
     ]
     messages = iter(glslang(sources))
-    found = []
-    for code, one in zip(codes, said, strict=True):
-        problems = {target or READ: made.problem for target, made in one.items() if made.problem}
-        for target, made in one.items():
-            if made.source is not None and ("glslang", target) in BATCHED and (message := next(messages)):
+    results = []
+    for code, one in zip(codes, reported, strict=True):
+        problems = {target or READ: result.problem for target, result in one.items() if result.problem}
+        for target, result in one.items():
+            if result.source is not None and ("glslang", target) in BATCHED and (message := next(messages)):
                 problems.setdefault(target, f"glslang: {message}")
-        found.append(Verdict(kind, code.path, problems))
-    return found
+        results.append(Verdict(kind, code.path, problems))
+    return results
 
 
 def asked_naga(verdicts: Sequence[Verdict], folders: Sequence[Path], pool: Pool) -> list[Verdict]:
@@ -102,8 +102,8 @@ def asked_naga(verdicts: Sequence[Verdict], folders: Sequence[Path], pool: Pool)
     codes = [read(verdict.path, folders) for verdict in verdicts]
     texts = [(preprocessed(code), code.stage) for code in codes]
     answers = pool.ask(naga_glsl.__name__, texts)
-    said = [f"the process {one}" if isinstance(one, LostError) else str(one) for one in answers]
-    return [verdict._replace(naga=one) for verdict, one in zip(verdicts, said, strict=True)]
+    messages = [f"the process {one}" if isinstance(one, LostError) else str(one) for one in answers]
+    return [verdict._replace(naga=one) for verdict, one in zip(verdicts, messages, strict=True)]
 
 
 def files_of(folder: Path, endings: Sequence[str]) -> list[Path]:
@@ -162,40 +162,40 @@ def main() -> None:
     parser.add_argument("--naga", action="store_true")
     parser.add_argument("--json", type=Path)
     parser.add_argument("--speed", action="store_true")
-    given = parser.parse_args()
-    kinds = {Path(folder).name: Path(folder) for folder in given.FOLDER}
-    kinds |= {name: Path(folder) for name, _, folder in (one.partition("=") for one in given.kind)}
-    targets = given.target or ["wgsl", "hlsl", "glsl-330"]
-    if given.speed:
+    options = parser.parse_args()
+    kinds = {Path(folder).name: Path(folder) for folder in options.FOLDER}
+    kinds |= {name: Path(folder) for name, _, folder in (one.partition("=") for one in options.kind)}
+    targets = options.target or ["wgsl", "hlsl", "glsl-330"]
+    if options.speed:
         from transpile_speed import report as speed
 
         speed(targets)
     if kinds:
-        measure(kinds, targets, given)
+        measure(kinds, targets, options)
 
 
-def measure(kinds: dict[str, Path], targets: Sequence[str], given: argparse.Namespace) -> None:
+def measure(kinds: dict[str, Path], targets: Sequence[str], inputs: argparse.Namespace) -> None:
     """Judges all files and prints what was found."""
     skipped: Counter[str] = Counter()
     verdicts: list[Verdict] = []
-    pool = Pool(given.jobs)
+    pool = Pool(inputs.jobs)
     try:
         for kind, folder in kinds.items():
             codes = [
-                read(path, given.include_dir)
-                for path in files_of(folder, given.ext or [".glsl", ".frag", ".vert"])[:: given.every]
+                read(path, inputs.include_dir)
+                for path in files_of(folder, inputs.ext or [".glsl", ".frag", ".vert"])[:: inputs.every]
             ]
             refusals = accepted(codes)
             counting = [code for code, refusal in zip(codes, refusals, strict=True) if not refusal]
             skipped[kind] = len(codes) - len(counting)
-            found = judged(kind, counting, given.include_dir, targets, pool)
-            verdicts += asked_naga(found, given.include_dir, pool) if given.naga else found
+            result = judged(kind, counting, inputs.include_dir, targets, pool)
+            verdicts += asked_naga(result, inputs.include_dir, pool) if inputs.naga else result
             print(f"{kind}: {len(codes)} files", file=sys.stderr)
     finally:
         pool.close()
-    report(verdicts, skipped, targets, given.reasons)
-    if given.json is not None:
-        given.json.write_text(json.dumps(as_json(verdicts, skipped), indent=1), "utf-8")
+    report(verdicts, skipped, targets, inputs.reasons)
+    if inputs.json is not None:
+        inputs.json.write_text(json.dumps(as_json(verdicts, skipped), indent=1), "utf-8")
 
 
 if __name__ == "__main__":

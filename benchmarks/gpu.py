@@ -51,18 +51,18 @@ def published(aspect: float) -> Program:
 
 def emitted(aspect: float) -> Program:
     """The same, as emitted: only its image is made as wide as the other."""
-    made = sssgen.compile("jelly_cubes", "glsl-330")
-    values = {one["name"]: one["default"] for one in made.reflection["uniforms"]}
+    compiled = sssgen.compile("jelly_cubes", "glsl-330")
+    values = {one["name"]: one["default"] for one in compiled.reflection["uniforms"]}
     # 0.9 of a mean that was never more than 0.38667
     values |= {"time": [TIME], "aspect": [aspect], "glow_strength": [0.9 * 0.38667]}
-    return Program("jelly_cubes emitted", made.files["jelly_cubes.glsl-330.frag"], values)
+    return Program("jelly_cubes emitted", compiled.files["jelly_cubes.glsl-330.frag"], values)
 
 
 def hand_written() -> dict[str, str]:
     """Technique → the text that has it by hand."""
     texts = [path.read_text() for path in sorted(BY_HAND.glob("*.glsl"))]
-    found = {name: text for text in texts for name in re.findall(r"^\w+ (\w+)\(", text, re.MULTILINE)}
-    return {name: text for name, text in found.items() if name in library.index()}
+    results = {name: text for text in texts for name in re.findall(r"^\w+ (\w+)\(", text, re.MULTILINE)}
+    return {name: text for name, text in results.items() if name in library.index()}
 
 
 def techniques(points: gpu_programs.Points, evaluations: int) -> list[tuple[Program, Program]]:
@@ -72,10 +72,10 @@ def techniques(points: gpu_programs.Points, evaluations: int) -> list[tuple[Prog
         technique = library.load(name)
         bind = {slot.name: BODY[slot.name] for slot in needs(technique.module, technique.function)[1]}
         values = {"reach": REACH} if bind and name.startswith("thinness_") else {}
-        made = [
+        result = [
             gpu_programs.of_technique(name, points, bind, evaluations, text=one, values=values) for one in ("", text)
         ]
-        pairs.append((made[0], made[1]))
+        pairs.append((result[0], result[1]))
     return pairs
 
 
@@ -93,41 +93,41 @@ def jelly_cubes(size: tuple[int, int], rounds: int) -> tuple[Table, Measured, di
     pair = published(size[0] / size[1]), emitted(size[0] / size[1])
     pictures = [gpu_cost.picture(one, size)[::-1, :, :3] for one in pair]
     flip = compare(pictures[1], pictures[0]).flip
-    found = gpu_cost.measure(pair, size, rounds)
+    result = gpu_cost.measure(pair, size, rounds)
     rows = [
-        [one.name, frame(found.raw(one.name), found.device.software), times(found.ratio(one.name, pair[0].name))]
+        [one.name, frame(result.raw(one.name), result.device.software), times(result.ratio(one.name, pair[0].name))]
         for one in pair
     ]
     title = f"42yeah's scene; FLIP between the two pictures {flip:.4f}"
-    return Table(title, ["", "ms a frame", "× published"], rows), found, {"flip": flip}
+    return Table(title, ["", "ms a frame", "× published"], rows), result, {"flip": flip}
 
 
 def by_technique(size: tuple[int, int], rounds: int, evaluations: int) -> tuple[Table, Measured, dict[str, Any]]:
     """Each technique, and the ratio to its hand-written twin."""
     pairs = techniques(gpu_programs.ball_points(size), evaluations)
-    found = gpu_cost.measure([one for pair in pairs for one in pair], size, rounds)
+    result = gpu_cost.measure([one for pair in pairs for one in pair], size, rounds)
     rows, ratios = [], {}
     for one, other in pairs:
-        ratio = found.ratio(one.name, other.name)
+        ratio = result.ratio(one.name, other.name)
         ratios[one.name] = [round(value, 4) for value in ratio]
-        cells = [frame(found.net(name), found.device.software) for name in (one.name, other.name)]
+        cells = [frame(result.net(name), result.device.software) for name in (one.name, other.name)]
         rows.append([one.name, *cells, times(ratio)])
     title = (
         f"Each technique, {evaluations} evaluations a pixel; ms of one at every pixel, less the reading of its inputs"
     )
-    return Table(title, ["", "emitted", "by hand", "emitted / by hand"], rows), found, {"ratios": ratios}
+    return Table(title, ["", "emitted", "by hand", "emitted / by hand"], rows), result, {"ratios": ratios}
 
 
 def by_example(size: tuple[int, int], rounds: int) -> tuple[Table, Measured, dict[str, Any]]:
     """The examples' materials in their scenes."""
     scenes = {name: scene_loading.load(name) for name in examples()}
     chosen = [gpu_programs.TimedMaterial(name, one.material, one) for name, one in scenes.items()]
-    found = gpu_programs.costs(chosen, size, rounds)
+    timing = gpu_programs.costs(chosen, size, rounds)
     rows = [
-        [one.name, frame(found.net(one.name), found.device.software), times(found.ratio(one.name, chosen[0].name))]
+        [one.name, frame(timing.net(one.name), timing.device.software), times(timing.ratio(one.name, chosen[0].name))]
         for one in chosen
     ]
-    return Table("The examples' materials", ["", "ms a frame", f"× {chosen[0].name}"], rows), found, {}
+    return Table("The examples' materials", ["", "ms a frame", f"× {chosen[0].name}"], rows), timing, {}
 
 
 def as_markdown(table: Table) -> str:
@@ -154,26 +154,28 @@ def main() -> None:
     parser.add_argument("--evaluations", type=int, default=EVALUATIONS, help="of a technique at each pixel")
     parser.add_argument("--json", help="a file for all numbers")
     parser.add_argument("--markdown", help="a file for the tables")
-    given = parser.parse_args()
-    width, height = (int(side) for side in given.size.split("x"))
+    options = parser.parse_args()
+    width, height = (int(side) for side in options.size.split("x"))
     size = width, height
 
     tables, record = [], {}
-    for name, (table, found, more) in {
-        "jelly_cubes": jelly_cubes(size, given.rounds),
-        "techniques": by_technique(size, given.rounds, given.evaluations),
-        "examples": by_example(size, given.rounds),
+    for name, (table, result, more) in {
+        "jelly_cubes": jelly_cubes(size, options.rounds),
+        "techniques": by_technique(size, options.rounds, options.evaluations),
+        "examples": by_example(size, options.rounds),
     }.items():
         tables.append(table)
-        record[name] = {**found.record(), **more}
+        record[name] = {**result.record(), **more}
         print(as_text(table), flush=True)
-    device = f"{found.device.renderer}, {found.device.version}; {width} × {height}, medians of {given.rounds} rounds"
-    told = f"{device}, with what 8 of 10 rounds lie between."
-    print(told + (" Software: ratios only." if found.device.software else ""))
-    if given.json:
-        Path(given.json).write_text(json.dumps(record, indent=1) + "\n")
-    if given.markdown:
-        Path(given.markdown).write_text("\n".join([*map(as_markdown, tables), told, ""]))
+    device = (
+        f"{result.device.renderer}, {result.device.version}; {width} × {height}, medians of {options.rounds} rounds"
+    )
+    message = f"{device}, with what 8 of 10 rounds lie between."
+    print(message + (" Software: ratios only." if result.device.software else ""))
+    if options.json:
+        Path(options.json).write_text(json.dumps(record, indent=1) + "\n")
+    if options.markdown:
+        Path(options.markdown).write_text("\n".join([*map(as_markdown, tables), message, ""]))
 
 
 if __name__ == "__main__":

@@ -85,13 +85,13 @@ def read(path: Path, folders: Sequence[Path]) -> Code:
 
 def accepted(codes: Sequence[Code]) -> list[str]:
     """What glslang says of each file: '' where it counts."""
-    said = _in_batches([(code.stage, _whole(code, own_version=True)) for code in codes])
-    again = [index for index, message in enumerate(said) if message and _VERSION.search(codes[index].text)]
+    reported = _in_batches([(code.stage, _whole(code, own_version=True)) for code in codes])
+    again = [index for index, message in enumerate(reported) if message and _VERSION.search(codes[index].text)]
     for index, message in zip(
         again, _in_batches([(codes[i].stage, _whole(codes[i], own_version=False)) for i in again]), strict=True
     ):
-        said[index] = message
-    return said
+        reported[index] = message
+    return reported
 
 
 def glslang(sources: Sequence[Source]) -> list[str]:
@@ -145,10 +145,10 @@ def _has_main(bare: str) -> bool:
 
 def _in_batches(programs: Sequence[tuple[str, str]]) -> list[str]:
     """The first complaint about each (stage, text)."""
-    found: list[str] = []
+    results: list[str] = []
     for start in range(0, len(programs), BATCH):
-        found += _batch(programs[start : start + BATCH])
-    return found
+        results += _batch(programs[start : start + BATCH])
+    return results
 
 
 def _batch(programs: Sequence[tuple[str, str]]) -> list[str]:
@@ -168,15 +168,15 @@ def _batch(programs: Sequence[tuple[str, str]]) -> list[str]:
         return [message for one in programs for message in _batch([one])]
     if done.returncode == 0:
         return [""] * len(programs)
-    said = ["glslang says nothing of it"] * len(programs)
+    messages = ["glslang says nothing of it"] * len(programs)
     number = -1
     for line in done.stdout.splitlines():
         if number + 1 < len(paths) and line.strip() == str(paths[number + 1]):
             number += 1
-            said[number] = ""
-        elif line.startswith("ERROR:") and number >= 0 and not said[number]:
-            said[number] = re.sub(r"^ERROR: (?:[^:]*:\d+: )?", "", line).strip()
-    return said
+            messages[number] = ""
+        elif line.startswith("ERROR:") and number >= 0 and not messages[number]:
+            messages[number] = re.sub(r"^ERROR: (?:[^:]*:\d+: )?", "", line).strip()
+    return messages
 
 
 Question = tuple[str, tuple[object, ...]]
@@ -212,17 +212,17 @@ def made(code: Code, folders: Sequence[Path], targets: Sequence[str]) -> dict[st
         module = load_glsl(code.path, code.path.name, tuple(folders), entry=entry).module
     except Exception as error:
         return {"": Made(None, _reason(error))}
-    found = {}
+    results = {}
     for target in targets:
         try:
             files = transpile(module, target, "file", keep=True).files
         except Exception as error:
-            found[target] = Made(None, _reason(error))
+            results[target] = Made(None, _reason(error))
             continue
         text = "\n".join(text for name, text in files.items() if not name.endswith(".json"))
         source = hand_written(text, target, "made")[0]
-        found[target] = Made(source, next(_complaints(source), ""))
-    return found
+        results[target] = Made(source, next(_complaints(source), ""))
+    return results
 
 
 def _complaints(source: Source) -> Iterator[str]:

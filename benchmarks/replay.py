@@ -96,7 +96,7 @@ def main() -> int:
     names = sorted(before.keys() | after.keys())
     differing = [name for name in names if before.get(name) != after.get(name)]
     for name in differing:
-        texts = [found.get(name, "").splitlines() for found in (before, after)]
+        texts = [result.get(name, "").splitlines() for result in (before, after)]
         lines = list(difflib.unified_diff(*texts, f"old/{name}", f"new/{name}", lineterm="", n=1))
         print("\n".join(lines[:SHOWN]), f"\n… {len(lines) - SHOWN} more lines\n" if len(lines) > SHOWN else "\n")
     print(f"{len(differing)} of {len(names)} texts differ")

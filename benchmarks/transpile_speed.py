@@ -74,14 +74,14 @@ def text_of(size: int) -> str:
 
 def stages(text: str, targets: Sequence[str]) -> dict[str, float]:
     """Stage → seconds; of several rounds the shortest."""
-    found: dict[str, float] = {}
+    results: dict[str, float] = {}
 
     def timed(name: str, work: Callable[[], Made]) -> Made:
         with paused():  # as it is for users
             start = time.perf_counter()
-            made = work()
-        found[name] = min(found.get(name, float("inf")), time.perf_counter() - start)
-        return made
+            result = work()
+        results[name] = min(results.get(name, float("inf")), time.perf_counter() - start)
+        return result
 
     for _ in range(ROUNDS):
         words = timed("lex and preprocess", partial(preprocessed, text, FILE))
@@ -90,7 +90,7 @@ def stages(text: str, targets: Sequence[str]) -> dict[str, float]:
         module = timed("check", partial(check_plain, tree, reporter, False))
         for target in targets:
             timed(target, partial(transpile, module, target, "speed", keep=True))
-    return found
+    return results
 
 
 def report(targets: Sequence[str]) -> None:

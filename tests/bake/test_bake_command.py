@@ -60,14 +60,14 @@ def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
     before = there()
     capsys.readouterr()
     status = main(["bake", *arguments])
-    told = capsys.readouterr()
-    assert status == 2 and "Traceback" not in told.err and told.out == "", told
+    output = capsys.readouterr()
+    assert status == 2 and "Traceback" not in output.err and output.out == "", output
     assert there() == before
     status = main(["bake", *arguments, "--json"])
     as_json = json.loads(capsys.readouterr().out)
-    assert status == 2 and not as_json["ok"] and as_json["diagnostics"][0]["message"] in told.err
+    assert status == 2 and not as_json["ok"] and as_json["diagnostics"][0]["message"] in output.err
     assert there() == before
-    return told.err
+    return output.err
 
 
 def with_vertex(text: str) -> str:
@@ -99,21 +99,21 @@ FILES: dict[str, tuple[str, Callable[[], str | bytes], str]] = {
 def test_files_that_are_not_meshes_are_refused(
     capsys: pytest.CaptureFixture[str], idle: None, what: str, name: str
 ) -> None:
-    file, content, said = FILES[name]
+    file, content, message = FILES[name]
     data = content()
     Path(file).write_bytes(data if isinstance(data, bytes) else data.encode())
     more = ["--direction", "0,1,0"] if what == "depth" else []
-    assert said in refused(capsys, what, file, "-o", "o.npy", *more)
+    assert message in refused(capsys, what, file, "-o", "o.npy", *more)
 
 
-@pytest.mark.parametrize(("size", "said"), [(1e-30, "is only 1e-30 units large"), (1e30, "no number, or beyond")])
+@pytest.mark.parametrize(("size", "message"), [(1e-30, "is only 1e-30 units large"), (1e30, "no number, or beyond")])
 def test_sizes_that_numbers_do_not_reach(
-    capsys: pytest.CaptureFixture[str], idle: None, size: float, said: str
+    capsys: pytest.CaptureFixture[str], idle: None, size: float, message: str
 ) -> None:
     box = meshes.box()
     write(Path("a.obj"), box._replace(vertices=size * box.vertices))
     for what in ("sdf", "thickness"):
-        assert said in refused(capsys, what, "a.obj", "-o", "o.npy")
+        assert message in refused(capsys, what, "a.obj", "-o", "o.npy")
 
 
 @pytest.mark.parametrize("size", [2e-6, 1e8])
@@ -194,9 +194,9 @@ WRONG: list[tuple[list[str], str]] = [
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"), WRONG, ids=lambda part: " ".join(part) if isinstance(part, list) else ""
+    ("arguments", "message"), WRONG, ids=lambda part: " ".join(part) if isinstance(part, list) else ""
 )
-def test_wrong_arguments(capsys: pytest.CaptureFixture[str], idle: None, arguments: list[str], said: str) -> None:
+def test_wrong_arguments(capsys: pytest.CaptureFixture[str], idle: None, arguments: list[str], message: str) -> None:
     for name in ("folder.npy", "folder.png"):
         Path(name).mkdir()
     write(Path("sheet.obj"), SHEET)
@@ -205,7 +205,7 @@ def test_wrong_arguments(capsys: pytest.CaptureFixture[str], idle: None, argumen
     write(Path("tiled.obj"), box._replace(uv=10.0 * box.uv))
     images.write_png("a.png", np.full((4, 4), 0.5))
     images.write_png("b.png", np.full((4, 8), 0.5))
-    assert said in refused(capsys, *arguments)
+    assert message in refused(capsys, *arguments)
 
 
 LIGHTS = {
@@ -243,8 +243,8 @@ def test_a_sheet_with_a_thickness_is_a_body() -> None:
 
 def test_a_sheet_has_no_thickness_map(capsys: pytest.CaptureFixture[str]) -> None:
     write(Path("sheet.obj"), SHEET)
-    told = refused(capsys, "thickness", "sheet.obj", "-o", "o.png", "--size", "16", "--rays", "8", "--processes", "1")
-    assert "no inside" in told
+    output = refused(capsys, "thickness", "sheet.obj", "-o", "o.png", "--size", "16", "--rays", "8", "--processes", "1")
+    assert "no inside" in output
 
 
 def test_inputs_are_not_overwritten(capsys: pytest.CaptureFixture[str], idle: None) -> None:
@@ -302,9 +302,9 @@ def test_bake_reports_its_files(capsys: pytest.CaptureFixture[str]) -> None:
     bake("sdf", "box.obj", "-o", "o.npy", "--resolution", "16")
     assert "wrote o.npy, o.npy.json" in capsys.readouterr().out
     bake("sdf", "box.obj", "-o", "o.npy", "--resolution", "16", "--json")
-    told = json.loads(capsys.readouterr().out)
-    assert told["ok"] and told["files"] == ["o.npy", "o.npy.json"]
-    assert told["parameters"] == facts("o.npy")["parameters"]
+    report = json.loads(capsys.readouterr().out)
+    assert report["ok"] and report["files"] == ["o.npy", "o.npy.json"]
+    assert report["parameters"] == facts("o.npy")["parameters"]
 
 
 # Interrupts
@@ -359,11 +359,11 @@ def test_ctrl_c_ends_all_of_it(arguments: list[str]) -> None:
         wait_until_busy(process, 8.0)
         os.killpg(process.pid, signal.SIGINT)
         try:
-            _, told = process.communicate(timeout=HANG)
+            _, message = process.communicate(timeout=HANG)
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
             raise
-    assert process.returncode == 130 and told.strip() == "interrupted"
+    assert process.returncode == 130 and message.strip() == "interrupted"
     assert there() == before
 
     def all_ended() -> bool:
@@ -401,12 +401,12 @@ def test_all_formats_hold_the_same_texels(encoding: str) -> None:
     assert expected.shape == (9, 10, 12, 1) and expected.min() >= 0.0 and expected.max() <= 1.0
     assert np.array_equal(images.read("o.dds"), expected)
     assert np.array_equal(images.read("o.ktx2"), expected)
-    told = facts("o.raw")["file"]
-    stored = np.fromfile("o.raw", np.dtype(told["dtype"]).newbyteorder("<"))
-    assert np.array_equal(stored.reshape(9, 10, 12) / told["one"], expected[..., 0])
-    sheet, told = images.read("o.exr")[..., 0], facts("o.exr")["file"]
+    description = facts("o.raw")["file"]
+    stored = np.fromfile("o.raw", np.dtype(description["dtype"]).newbyteorder("<"))
+    assert np.array_equal(stored.reshape(9, 10, 12) / description["one"], expected[..., 0])
+    sheet, description = images.read("o.exr")[..., 0], facts("o.exr")["file"]
     for z in range(9):
-        row, column = divmod(z, told["columns"])
+        row, column = divmod(z, description["columns"])
         part = sheet[10 * row : 10 * (row + 1), 12 * column : 12 * (column + 1)]
         assert part[::-1] == pytest.approx(expected[z, ..., 0], abs=1e-7)
     assert len({json.dumps({**facts(f"o.{name}"), "file": 0}) for name in ("npy", "dds", "ktx2", "exr", "raw")}) == 1

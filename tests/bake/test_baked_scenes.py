@@ -42,21 +42,21 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The examples with everything baked."""
     top = tmp_path_factory.mktemp("bake")
     shutil.copytree(ROOT / "examples" / "ice", top / "ice")
-    made: Path = shutil.copytree(ROOT / "examples" / "bake", top / "bake")
+    result: Path = shutil.copytree(ROOT / "examples" / "bake", top / "bake")
     for name in NAMES:
         if (MESHES / f"{name}.obj").is_file():
-            shutil.copy(MESHES / f"{name}.obj", made)
-    for scene in sorted(made.glob("*.toml")):
+            shutil.copy(MESHES / f"{name}.obj", result)
+    for scene in sorted(result.glob("*.toml")):
         text = scene.read_text(encoding="utf-8")
-        if (needed := re.search(r'file = "([a-z]+)[_.]', text)) and not (made / f"{needed[1]}.obj").is_file():
+        if (needed := re.search(r'file = "([a-z]+)[_.]', text)) and not (result / f"{needed[1]}.obj").is_file():
             continue
         for command in re.findall(r"^# sssgen (bake [^;\n]*)", text, re.MULTILINE):
             words = [
-                str(made / word) if re.search(r"\.(obj|npy|png|exr|json)$", word) else word
+                str(result / word) if re.search(r"\.(obj|npy|png|exr|json)$", word) else word
                 for word in shlex.split(command)
             ]
             assert main([*words, *COARSE.get(words[1], [])]) == 0
-    return made
+    return result
 
 
 @cache
@@ -100,16 +100,16 @@ def test_thin_parts_are_bright_and_the_three_ways_differ(
 @pytest.mark.parametrize("material", ["wax_distance", "wax_map", "wax_depth", "ice_baked"])
 def test_import_settings_are_reported(material: str, folder: Path) -> None:
     textures = compile(folder / f"{material}.toml", "wgsl").reflection["textures"]
-    said = {texture["technique_name"]: texture["import"] for texture in textures}
+    messages = {texture["technique_name"]: texture["import"] for texture in textures}
     if material == "wax_distance":
-        volume = said["distance_map"]
+        volume = messages["distance_map"]
         assert (volume["dimension"], volume["wrap"], volume["mipmaps"], volume["srgb"]) == ("3D", "clamp", False, False)
     if material == "wax_depth":
-        assert said["light_depth_map"]["wrap"] == "clamp" and not said["light_depth_map"]["mipmaps"]
+        assert messages["light_depth_map"]["wrap"] == "clamp" and not messages["light_depth_map"]["mipmaps"]
     if material == "ice_baked":
-        assert said["normal_texture"]["normal_map"] and not said["thickness_texture"]["srgb"]
-        assert said["thickness_texture"]["wrap"] == "repeat" and said["thickness_texture"]["mipmaps"]
-    assert said["base_color_texture"]["srgb"]
+        assert messages["normal_texture"]["normal_map"] and not messages["thickness_texture"]["srgb"]
+        assert messages["thickness_texture"]["wrap"] == "repeat" and messages["thickness_texture"]["mipmaps"]
+    assert messages["base_color_texture"]["srgb"]
 
 
 PAIRS = {
@@ -149,7 +149,7 @@ def test_a_fixed_parameter_is_the_baked_one(tmp_path: Path) -> None:
     text = compile(tmp_path / "m.toml", "wgsl").files["m.wgsl"]
     assert "return 0.25 * " in text and "material.thickness_factor" not in text
     for wrong in ("1" + 400 * "0", '"a"', "[[1]]", "NaN"):
-        said = f'"holds": "thickness", "parameters": {{"thickness_factor": {wrong}}}'
-        (tmp_path / "t.png.json").write_text(f'{{"format": 1, "kind": "thickness", {said}}}', encoding="utf-8")
+        message = f'"holds": "thickness", "parameters": {{"thickness_factor": {wrong}}}'
+        (tmp_path / "t.png.json").write_text(f'{{"format": 1, "kind": "thickness", {message}}}', encoding="utf-8")
         with pytest.raises(SssgenError, match="not made of numbers"):
             compile(tmp_path / "m.toml", "wgsl")

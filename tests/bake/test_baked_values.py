@@ -87,9 +87,9 @@ def test_a_map_of_another_quantity_is_refused(maps: None, quantity: str) -> None
     (other,) = MODES.keys() - {quantity}
     with pytest.raises(SssgenError) as caught:
         load_material(material("made.toml", mapped(quantity, f"{other}.png")))
-    told = str(caught.value)
-    assert f"'{other}.png' holds {other}, and '{quantity}_texture' takes {quantity}" in told
-    assert f"{other}_map" in told and "made.toml:7" in told
+    message = str(caught.value)
+    assert f"'{other}.png' holds {other}, and '{quantity}_texture' takes {quantity}" in message
+    assert f"{other}_map" in message and "made.toml:7" in message
 
 
 @pytest.mark.parametrize("quantity", MODES)
@@ -100,19 +100,19 @@ def test_a_map_of_the_right_one_compiles_for_all_targets(maps: None, quantity: s
 
 
 def test_the_factor_defaults_to_that_of_the_map(maps: None) -> None:
-    made = load_material(material("made.toml", mapped("thickness", "thickness.png")))
+    loaded = load_material(material("made.toml", mapped("thickness", "thickness.png")))
     top = facts("thickness.png")["range"][1]
-    assert made.stages[0].values["thickness_factor"] == (pytest.approx(top),) and 0.4 < top < 1.3
-    said = load_material(material("said.toml", mapped("thickness", "thickness.png", "thickness_factor = 2.5")))
-    assert said.stages[0].values["thickness_factor"] == (2.5,)
+    assert loaded.stages[0].values["thickness_factor"] == (pytest.approx(top),) and 0.4 < top < 1.3
+    message = load_material(material("said.toml", mapped("thickness", "thickness.png", "thickness_factor = 2.5")))
+    assert message.stages[0].values["thickness_factor"] == (2.5,)
     alias = load_material(material("alias.toml", mapped("thickness", "thickness.png", "thicknessFactor = 2.5")))
     assert alias.stages[0].values["thickness_factor"] == (2.5,)
 
 
 def test_a_map_without_json_is_accepted(maps: None) -> None:
     Path("thickness.png.json").unlink()
-    made = load_material(material("made.toml", mapped("transmittance", "thickness.png")))
-    assert made.stages[0].textures == {"transmittance_texture": "thickness.png"}
+    loaded = load_material(material("made.toml", mapped("transmittance", "thickness.png")))
+    assert loaded.stages[0].textures == {"transmittance_texture": "thickness.png"}
 
 
 def test_a_faulty_json_is_an_error(maps: None) -> None:
@@ -131,12 +131,12 @@ bind = { body_distance = "distance_texture_world" }
 
 def test_a_distance_texture_brings_its_box() -> None:
     bake("sdf", "box.obj", "-o", "o.dds", "--resolution", "16")
-    made = load_material(material("made.toml", MARCH + 'distance_map = "o.dds"'))
+    loaded = load_material(material("made.toml", MARCH + 'distance_map = "o.dds"'))
     for name, value in facts("o.dds")["parameters"].items():
-        assert made.stages[0].values[name] == pytest.approx(np.atleast_1d(value))
-    given = load_material(material("given.toml", MARCH + 'distance_map = "o.dds"\ndistance_range = 3.0'))
-    assert given.stages[0].values["distance_range"] == (3.0,)
-    assert given.stages[0].values["box_min"] == made.stages[0].values["box_min"]
+        assert loaded.stages[0].values[name] == pytest.approx(np.atleast_1d(value))
+    inputs = load_material(material("given.toml", MARCH + 'distance_map = "o.dds"\ndistance_range = 3.0'))
+    assert inputs.stages[0].values["distance_range"] == (3.0,)
+    assert inputs.stages[0].values["box_min"] == loaded.stages[0].values["box_min"]
 
 
 def test_a_picture_is_no_volume(maps: None) -> None:
@@ -153,34 +153,34 @@ def shell(textures: str, section: str, place: str = "", parameters: str = "") ->
         encoding="utf-8",
     )
     scene = load(Path("scene.toml"))
-    made = load_material(path)
-    return shell_of(scene, made, compile(made, "numpy").reflection)
+    loaded = load_material(path)
+    return shell_of(scene, loaded, compile(loaded, "numpy").reflection)
 
 
 @pytest.mark.parametrize("format", ["npy", "dds", "ktx2"])
 def test_scenes_read_distance_textures(format: str) -> None:
     bake("sdf", "box.obj", "-o", f"o.{format}", "--resolution", "16")
-    told = facts(f"o.{format}")["parameters"]
-    found = shell(f'distance_map = "o.{format}"', MARCH, "scale = 2.0\nposition = [1.0, 2.0, 3.0]")
-    texture = found.textures["distance_map"]
+    description = facts(f"o.{format}")["parameters"]
+    scene_read = shell(f'distance_map = "o.{format}"', MARCH, "scale = 2.0\nposition = [1.0, 2.0, 3.0]")
+    texture = scene_read.textures["distance_map"]
     assert texture.dim == "3D" and texture.wrap == "clamp"
     expected = images.read(f"o.{format}")[..., 0]
     assert texture.levels[0][..., 0] == pytest.approx(expected, abs=2.0**-11)
-    for name, value in told.items():
-        assert found.parameters[name] == pytest.approx(np.atleast_1d(value))
-    assert found.parameters["object_scale"] == (2.0,)
-    to_object = np.reshape(found.parameters["world_to_object"], (4, 4)).T
+    for name, value in description.items():
+        assert scene_read.parameters[name] == pytest.approx(np.atleast_1d(value))
+    assert scene_read.parameters["object_scale"] == (2.0,)
+    to_object = np.reshape(scene_read.parameters["world_to_object"], (4, 4)).T
     assert to_object @ [3.0, 2.0, 3.0, 1.0] == pytest.approx([1.0, 0.0, 0.0, 1.0])
-    given = shell(f'distance_map = "o.{format}"', MARCH, parameters="distance_range = 3.0")
-    assert given.parameters["distance_range"] == (3.0,)
+    inputs = shell(f'distance_map = "o.{format}"', MARCH, parameters="distance_range = 3.0")
+    assert inputs.parameters["distance_range"] == (3.0,)
 
 
 def test_scenes_read_maps(maps: None) -> None:
-    found = shell('thickness_texture = "thickness.png"', '[thickness]\ntechnique = "thickness_map"', "scale = 3.0")
+    scene_read = shell('thickness_texture = "thickness.png"', '[thickness]\ntechnique = "thickness_map"', "scale = 3.0")
     top = facts("thickness.png")["range"][1]
-    assert found.parameters["thickness_factor"] == pytest.approx((3.0 * top,))  # units of the world
+    assert scene_read.parameters["thickness_factor"] == pytest.approx((3.0 * top,))  # units of the world
     stored = images.read("thickness.png")
-    assert found.textures["thickness_texture"].levels[0][..., 0] == pytest.approx(
+    assert scene_read.textures["thickness_texture"].levels[0][..., 0] == pytest.approx(
         np.flipud(stored)[..., 0], abs=2.0**-11
     )
     with pytest.raises(SssgenError, match="holds transmittance, and 'thickness_texture' takes thickness"):

@@ -53,11 +53,11 @@ def distances(places: Array, of_sites: Array) -> Array:
 def test_the_two_nearest_of_all_sites_are_found(across: int, up: int, jitter: float, tileable: bool) -> None:
     for seed in range(4):
         all_of_them = sites(across, up, jitter, seed, tileable)
-        found = np.sort(distances(centers(41, 32) * [across, up], all_of_them), axis=-1)
-        first, second = found[..., 0], found[..., 1]
-        asked: Any = {"size": (41, 32), "cells": (across, up), "jitter": jitter, "seed": seed, "tileable": tileable}
-        close(voronoi(**asked, feature="f1") * scale("f1", jitter), first, atol=1e-12)
-        close(voronoi(**asked, feature="f2-f1") * scale("f2-f1", jitter), second - first, atol=1e-12)
+        result = np.sort(distances(centers(41, 32) * [across, up], all_of_them), axis=-1)
+        first, second = result[..., 0], result[..., 1]
+        options: Any = {"size": (41, 32), "cells": (across, up), "jitter": jitter, "seed": seed, "tileable": tileable}
+        close(voronoi(**options, feature="f1") * scale("f1", jitter), first, atol=1e-12)
+        close(voronoi(**options, feature="f2-f1") * scale("f2-f1", jitter), second - first, atol=1e-12)
 
 
 def test_far_sites_matter_at_full_jitter() -> None:
@@ -99,12 +99,12 @@ def test_facets_have_level_tops_and_edges_at_0() -> None:
 
 @pytest.mark.parametrize("feature", cells.FEATURES)
 def test_tiles_have_no_seam(feature: str) -> None:
-    asked: Any = {"size": (384, 512), "cells": (3, 4), "seed": 9, "feature": feature, "bevel": 1.0}
-    tile = voronoi(**asked)
+    options: Any = {"size": (384, 512), "cells": (3, 4), "seed": 9, "feature": feature, "bevel": 1.0}
+    tile = voronoi(**options)
     for axis in (0, 1):
         step = np.abs(np.diff(tile, axis=axis)).max()
         assert np.abs(np.take(tile, 0, axis) - np.take(tile, -1, axis)).max() <= step
-    lone = voronoi(**asked, tileable=False)
+    lone = voronoi(**options, tileable=False)
     assert np.abs(lone[:, 0] - lone[:, -1]).max() > 5.0 * np.abs(np.diff(lone, axis=1)).max()
 
 
@@ -136,13 +136,13 @@ def test_cells_depend_on_an_integer_hash() -> None:
 
     columns, rows = np.array([-2, 0, 7]), np.array([-1, 3])
     for seed in (0, 1, 2**32 - 1):
-        found = cells._keys(columns, rows, None, seed)
-        assert found.tolist() == [[key(int(column), int(row), seed) for column in columns] for row in rows]
+        result = cells._keys(columns, rows, None, seed)
+        assert result.tolist() == [[key(int(column), int(row), seed) for column in columns] for row in rows]
     assert not np.array_equal(voronoi((32, 32), (4, 4), seed=1), voronoi((32, 32), (4, 4), seed=2))
 
 
 @pytest.mark.parametrize(
-    ("changed", "told"),
+    ("changed", "message"),
     [
         ({"cells": (0, 4)}, "0 x 4 cells"),
         ({"cells": (4, 65)}, "no more than texels"),
@@ -158,8 +158,8 @@ def test_cells_depend_on_an_integer_hash() -> None:
         ({"feature": "facetted"}, "did you mean 'faceted'"),
     ],
 )
-def test_invalid_cells_are_refused(changed: dict[str, Any], told: str) -> None:
-    assert told in failing(voronoi, **{"size": (64, 64), "cells": (4, 4), **changed})
+def test_invalid_cells_are_refused(changed: dict[str, Any], message: str) -> None:
+    assert message in failing(voronoi, **{"size": (64, 64), "cells": (4, 4), **changed})
 
 
 # Normals
@@ -292,8 +292,8 @@ def test_channels_are_packed_in_order(tmp_path: Path, monkeypatch: pytest.Monkey
     write_png("color.png", color)
     write_png("gray.png", gray)
     write_png("veiled.png", color[..., :2])
-    asked = ["color.png:b", "1-gray.png", "0.5", "color.png:3"]
-    packed = pack(load([parse(text) for text in asked]))
+    sources = ["color.png:b", "1-gray.png", "0.5", "color.png:3"]
+    packed = pack(load([parse(text) for text in sources]))
     close(packed, np.stack([color[..., 2], 1.0 - gray, np.full((2, 3), 0.5), color[..., 3]], axis=-1))
     close(pack(load([parse("color.png"), None, parse("veiled.png:a")])), color[..., [0, 0, 1]] * [1.0, 0.0, 1.0])
     assert failing(load, [parse("gray.png:g")]).endswith("it has r")
@@ -313,8 +313,8 @@ def test_how_many_channels_there_are() -> None:
 
 
 def test_channels_that_do_not_fit() -> None:
-    told = failing(pack, [np.zeros((2, 3)), 0.5, np.zeros((4, 3))])
-    assert "different sizes" in told
-    assert "r is 3 x 2, b is 3 x 4" in told
+    message = failing(pack, [np.zeros((2, 3)), 0.5, np.zeros((4, 3))])
+    assert "different sizes" in message
+    assert "r is 3 x 2, b is 3 x 4" in message
     assert "no picture" in failing(pack, [0.5, None])
     assert "four at most" in failing(pack, [np.zeros((2, 2))] * 5)

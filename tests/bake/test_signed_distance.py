@@ -35,16 +35,16 @@ def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def decode(texels: npt.NDArray[Any], reach: float, name: str) -> Array:
     """The distances that texels stand for, as the technique distance_texture reads them."""
-    found: Array = (2.0 * texels.astype(np.float64) / ENCODINGS[name].one - 1.0) * reach
-    return found
+    result: Array = (2.0 * texels.astype(np.float64) / ENCODINGS[name].one - 1.0) * reach
+    return result
 
 
 def rng(seed: int = 5) -> np.random.Generator:
     return np.random.default_rng(seed)
 
 
-def solid(made: Made) -> MeshDistance:
-    return Mesh(path=write(Path("body.ply"), made)).solid
+def solid(result: Made) -> MeshDistance:
+    return Mesh(path=write(Path("body.ply"), result)).solid
 
 
 def grid_about(body: MeshDistance, resolution: int = 24, padding: float = 0.1) -> Grid:
@@ -54,8 +54,8 @@ def grid_about(body: MeshDistance, resolution: int = 24, padding: float = 0.1) -
 def centers(grid: Grid) -> Array:
     """(z y x, 3), written out anew."""
     z, y, x = np.mgrid[: grid.counts[2], : grid.counts[1], : grid.counts[0]]
-    found: Array = grid.low + (np.stack([x, y, z], axis=-1).reshape(-1, 3) + 0.5) * grid.voxel
-    return found
+    result: Array = grid.low + (np.stack([x, y, z], axis=-1).reshape(-1, 3) + 0.5) * grid.voxel
+    return result
 
 
 def signed(body: MeshDistance, grid: Grid) -> Array:
@@ -68,19 +68,19 @@ def signed(body: MeshDistance, grid: Grid) -> Array:
 
 
 def to_ball(points: Array, radius: float) -> Array:
-    found: Array = np.linalg.norm(points, axis=1) - radius
-    return found
+    result: Array = np.linalg.norm(points, axis=1) - radius
+    return result
 
 
 def to_torus(points: Array, major: float, minor: float) -> Array:
-    found: Array = np.hypot(np.hypot(points[:, 0], points[:, 2]) - major, points[:, 1]) - minor
-    return found
+    result: Array = np.hypot(np.hypot(points[:, 0], points[:, 2]) - major, points[:, 1]) - minor
+    return result
 
 
 def to_box(points: Array, half: npt.ArrayLike) -> Array:
     beyond = np.abs(points) - half
-    found: Array = np.linalg.norm(np.maximum(beyond, 0.0), axis=1) + np.minimum(beyond.max(axis=1), 0.0)
-    return found
+    result: Array = np.linalg.norm(np.maximum(beyond, 0.0), axis=1) + np.minimum(beyond.max(axis=1), 0.0)
+    return result
 
 
 @pytest.mark.parametrize("size", [(1.0, 1.0, 1.0), (1.0, 2.0, 0.3)])
@@ -93,33 +93,33 @@ def test_a_box_has_its_distance(size: Any, middle: Any) -> None:
     assert (exact < 0.0).mean() > 0.2
 
 
-def dent(made: Made, exact: Any) -> float:
+def dent(result: Made, exact: Any) -> float:
     """How far the triangles are from the surface that they stand for, at 66 places of each."""
     weights = np.array([(i, j, 10 - i - j) for i in range(11) for j in range(11 - i)]) / 10.0
     worst = 0.0
-    for some in np.array_split(made.faces, max(1, len(made.faces) // 20_000)):
+    for some in np.array_split(result.faces, max(1, len(result.faces) // 20_000)):
         worst = max(
-            worst, float(np.abs(exact(np.einsum("wv,fvc->fwc", weights, made.vertices[some]).reshape(-1, 3))).max())
+            worst, float(np.abs(exact(np.einsum("wv,fvc->fwc", weights, result.vertices[some]).reshape(-1, 3))).max())
         )
     return worst
 
 
 @pytest.mark.parametrize("level", [1, 4])
 def test_the_error_of_a_coarse_ball_is_that_of_its_triangles(level: int) -> None:
-    made = meshes.icosphere(0.9, level)
-    body = solid(made)
+    mesh = meshes.icosphere(0.9, level)
+    body = solid(mesh)
     grid = grid_about(body)
-    depth = 0.9 - float(np.abs(np.einsum("fc,fc->f", made.triangles[:, 0], normals(made))).min())
+    depth = 0.9 - float(np.abs(np.einsum("fc,fc->f", mesh.triangles[:, 0], normals(mesh))).min())
     error = signed(body, grid) - to_ball(centers(grid), 0.9)
     assert error.min() >= -1e-7 and error.max() <= depth + 1e-7  # the mesh lies within the ball
     assert error.max() > 0.3 * depth
 
 
-def normals(made: Made) -> Array:
-    a, b, c = np.moveaxis(made.triangles, 1, 0)
+def normals(built: Made) -> Array:
+    a, b, c = np.moveaxis(built.triangles, 1, 0)
     across = np.cross(b - a, c - a)
-    found: Array = across / np.linalg.norm(across, axis=1, keepdims=True)
-    return found
+    result: Array = across / np.linalg.norm(across, axis=1, keepdims=True)
+    return result
 
 
 @pytest.mark.slow
@@ -127,25 +127,25 @@ def normals(made: Made) -> Array:
 def test_a_fine_mesh_has_the_closed_forms_distance(shape: str) -> None:
     """Within 1e-6 of the diagonal, of which its triangles take the most: their corners stand a little outside."""
     if shape == "ball":
-        made = meshes.icosphere(1.0 + 1.8e-6, 8)
+        mesh = meshes.icosphere(1.0 + 1.8e-6, 8)
 
         def exact(points: Array) -> Array:
             return to_ball(points, 1.0)
 
     else:
-        made = meshes.torus(1.0, 0.4 + 3.4e-6 * 0.75, 1600, 800)
+        mesh = meshes.torus(1.0, 0.4 + 3.4e-6 * 0.75, 1600, 800)
 
         def exact(points: Array) -> Array:
             return to_torus(points, 1.0, 0.4)
 
-    body = solid(made)
+    body = solid(mesh)
     grid = grid_about(body, 40, 0.05)
-    assert dent(made, exact) <= 0.95e-6 * grid.diagonal
-    wanted = exact(centers(grid))
-    error = np.abs(signed(body, grid) - wanted).max()
-    print(f"{shape}: {len(made.faces)} triangles, worst error {error / grid.diagonal:.2e} of the diagonal")
+    assert dent(mesh, exact) <= 0.95e-6 * grid.diagonal
+    expected = exact(centers(grid))
+    error = np.abs(signed(body, grid) - expected).max()
+    print(f"{shape}: {len(mesh.faces)} triangles, worst error {error / grid.diagonal:.2e} of the diagonal")
     assert error <= 1e-6 * grid.diagonal
-    assert 0.1 < (wanted < 0.0).mean() < 0.9
+    assert 0.1 < (expected < 0.0).mean() < 0.9
 
 
 # All triangles, one by one
@@ -175,20 +175,20 @@ def turns(points: Array, triangles: Array) -> Array:
         volume = np.einsum("nc,nc->n", a, np.cross(b, c))
         dots = [np.einsum("nc,nc->n", *pair) for pair in ((a, b), (b, c), (c, a))]
         total += 2.0 * np.arctan2(volume, la * lb * lc + dots[0] * lc + dots[1] * la + dots[2] * lb)
-    found: Array = total / (4.0 * np.pi)
-    return found
+    result: Array = total / (4.0 * np.pi)
+    return result
 
 
-def tilted(made: Made, by: float) -> Made:
+def tilted(result: Made, by: float) -> Made:
     """Turned about y and a little about x, so that no voxel's centre lies in a face."""
     y, x = np.radians([by, 0.4 * by])
     about_y = np.array([[np.cos(y), 0.0, np.sin(y)], [0.0, 1.0, 0.0], [-np.sin(y), 0.0, np.cos(y)]])
     about_x = np.array([[1.0, 0.0, 0.0], [0.0, np.cos(x), -np.sin(x)], [0.0, np.sin(x), np.cos(x)]])
-    return made._replace(vertices=made.vertices @ about_y.T @ about_x.T)
+    return result._replace(vertices=result.vertices @ about_y.T @ about_x.T)
 
 
-def noisy(made: Made, by: float) -> Made:
-    return made._replace(vertices=made.vertices + rng().normal(scale=by, size=made.vertices.shape))
+def noisy(result: Made, by: float) -> Made:
+    return result._replace(vertices=result.vertices + rng().normal(scale=by, size=result.vertices.shape))
 
 
 CUBE = meshes.box()
@@ -215,19 +215,19 @@ ODD = {
 
 @pytest.mark.parametrize("name", ODD)
 def test_distance_and_sign_of_odd_meshes_are_those_of_all_their_triangles(name: str) -> None:
-    made = ODD[name]
-    body = solid(made)
+    result = ODD[name]
+    body = solid(result)
     grid = grid_about(body, 14)
     points = centers(grid)
     unsigned = distances(body, grid)
-    exact = to_triangles(points, made.triangles)
+    exact = to_triangles(points, result.triangles)
     assert np.abs(unsigned.ravel() - exact).max() <= 2e-7 * grid.diagonal
-    turn = turns(points, made.triangles)
+    turn = turns(points, result.triangles)
     turn = -turn if name in ("inside out", "open and inside out") else turn
-    found = inside(body, grid, unsigned).ravel()
+    results = inside(body, grid, unsigned).ravel()
     clear = np.abs(turn - INSIDE) > 0.02  # what the fast number may be off by
-    assert (found == (turn > INSIDE))[clear].all()
-    assert clear.mean() > 0.9 and 0.01 < found.mean() < 0.9
+    assert (results == (turn > INSIDE))[clear].all()
+    assert clear.mean() > 0.9 and 0.01 < results.mean() < 0.9
 
 
 @pytest.mark.parametrize("name", ODD)
@@ -240,18 +240,18 @@ def test_blocks_have_the_sign_of_every_voxel_in_them(name: str, resolution: int)
 
 def test_a_cavity_is_outside() -> None:
     grid = grid_about(solid(HOLLOW), 21)
-    found = signed(solid(HOLLOW), grid)
-    at = centers(grid)
-    assert (found[np.abs(at).max(axis=1) < 0.24] > 0.0).all()
-    assert (found[(np.abs(at).max(axis=1) > 0.26) & (np.abs(at).max(axis=1) < 0.49)] < 0.0).all()
+    result = signed(solid(HOLLOW), grid)
+    places = centers(grid)
+    assert (result[np.abs(places).max(axis=1) < 0.24] > 0.0).all()
+    assert (result[(np.abs(places).max(axis=1) > 0.26) & (np.abs(places).max(axis=1) < 0.49)] < 0.0).all()
 
 
-def vote(made: Array, points: Array, rays: int) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
+def vote(result: Array, points: Array, rays: int) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
     """Which points all of so many random rays call outside, and which most of them call inside, by their parity."""
     odd = np.zeros(len(points), np.int64)
     for seed in range(rays):
         ways = rng(seed).normal(size=points.shape)
-        _, met = meshes.passed(made, points, ways / np.linalg.norm(ways, axis=1, keepdims=True))
+        _, met = meshes.passed(result, points, ways / np.linalg.norm(ways, axis=1, keepdims=True))
         odd += met.sum(axis=1) % 2
     return odd == 0, 2 * odd > rays
 
@@ -260,9 +260,9 @@ def leak(path: Path, resolution: int, rays: int) -> tuple[float, float]:
     """The share of voxels that all rays call outside which are inside; and of those most rays call inside, outside."""
     mesh = Mesh(path=str(path))
     grid = grid_about(mesh.solid, resolution, 0.05)
-    found = inside(mesh.solid, grid, distances(mesh.solid, grid)).ravel()
+    result = inside(mesh.solid, grid, distances(mesh.solid, grid)).ravel()
     outside, within = vote(mesh.triangles.places[mesh.triangles.corners], centers(grid), rays)
-    return float(found[outside].mean()), float(1.0 - found[within].mean())
+    return float(result[outside].mean()), float(1.0 - result[within].mean())
 
 
 @needs_meshes
@@ -286,8 +286,8 @@ def test_suzanne_does_not_leak_in_fine_voxels() -> None:
 
 def test_a_coarse_grid_has_voxels_outside() -> None:
     """Where there is padding, a voxel of it on every side."""
-    made = sdf(write(Path("body.obj"), meshes.box((1.0, 2.0, 1.0))), (6,), encoding="r32f")
-    signs = decode(made.texels, made.reach, "r32f") > 0.0
+    volume = sdf(write(Path("body.obj"), meshes.box((1.0, 2.0, 1.0))), (6,), encoding="r32f")
+    signs = decode(volume.texels, volume.reach, "r32f") > 0.0
     shell = np.ones(signs.shape, np.bool_)
     shell[1:-1, 1:-1, 1:-1] = False
     assert signs[shell].all() and not signs.all()
@@ -302,37 +302,37 @@ def test_an_uncertain_sign_is_reported() -> None:
 
 def test_voxels_are_cubes_and_the_box_is_padded() -> None:
     path = write(Path("body.obj"), meshes.box((1.0, 2.0, 0.5)).moved((5.0, 0.0, -3.0)))
-    made = sdf(path, (40,), padding=0.1)
-    voxel = made.grid.voxel
+    volume = sdf(path, (40,), padding=0.1)
+    voxel = volume.grid.voxel
     assert voxel == pytest.approx(np.full(3, 2.4 / 40.0))
-    assert made.grid.counts == (24, 40, 15)  # (1 + 0.4) / 0.06 and (0.5 + 0.4) / 0.06, and up
-    assert made.texels.shape == (15, 40, 24)
-    assert made.grid.low[1] == pytest.approx(-1.2) and made.grid.high[1] == pytest.approx(1.2)
-    assert (made.grid.low <= np.array([4.5, -1.0, -3.25]) - 0.2 + 1e-12).all()
-    assert (made.grid.high >= np.array([5.5, 1.0, -2.75]) + 0.2 - 1e-12).all()
-    assert 0.5 * (made.grid.low + made.grid.high) == pytest.approx([5.0, 0.0, -3.0])
+    assert volume.grid.counts == (24, 40, 15)  # (1 + 0.4) / 0.06 and (0.5 + 0.4) / 0.06, and up
+    assert volume.texels.shape == (15, 40, 24)
+    assert volume.grid.low[1] == pytest.approx(-1.2) and volume.grid.high[1] == pytest.approx(1.2)
+    assert (volume.grid.low <= np.array([4.5, -1.0, -3.25]) - 0.2 + 1e-12).all()
+    assert (volume.grid.high >= np.array([5.5, 1.0, -2.75]) + 0.2 - 1e-12).all()
+    assert 0.5 * (volume.grid.low + volume.grid.high) == pytest.approx([5.0, 0.0, -3.0])
 
 
 def test_three_counts_set_the_resolution() -> None:
-    made = sdf(write(Path("body.obj"), meshes.box((1.0, 2.0, 0.5))), (8, 16, 9), padding=0.25)
-    assert made.texels.shape == (9, 16, 8)
-    assert made.facts["texels"] == [8, 16, 9]
-    assert made.grid.high - made.grid.low == pytest.approx([2.0, 3.0, 1.5])
-    assert made.facts["voxel"] == pytest.approx([2.0 / 8, 3.0 / 16, 1.5 / 9])
+    volume = sdf(write(Path("body.obj"), meshes.box((1.0, 2.0, 0.5))), (8, 16, 9), padding=0.25)
+    assert volume.texels.shape == (9, 16, 8)
+    assert volume.facts["texels"] == [8, 16, 9]
+    assert volume.grid.high - volume.grid.low == pytest.approx([2.0, 3.0, 1.5])
+    assert volume.facts["voxel"] == pytest.approx([2.0 / 8, 3.0 / 16, 1.5 / 9])
 
 
 def test_the_facts_describe_the_texture() -> None:
     path = write(Path("body.obj"), meshes.box((1.0, 2.0, 0.5)).moved((5.0, 0.0, -3.0)).without(0))
-    made = sdf(path, (20,), encoding="r8")
-    facts = made.facts
-    assert facts["box_min"] == made.grid.low.tolist() and facts["box_max"] == made.grid.high.tolist()
+    volume = sdf(path, (20,), encoding="r8")
+    facts = volume.facts
+    assert facts["box_min"] == volume.grid.low.tolist() and facts["box_max"] == volume.grid.high.tolist()
     assert facts["parameters"] == {
         "box_min": facts["box_min"], "box_max": facts["box_max"], "distance_range": facts["range"]
     }  # fmt: skip
     assert facts["mesh"]["triangles"] == 11 and not facts["mesh"]["closed"] and not facts["mesh"]["inside_out"]
     assert facts["mesh"]["box_min"] == [4.5, -1.0, -3.25] and facts["mesh"]["box_max"] == [5.5, 1.0, -2.75]
     body = Mesh(path=path).solid
-    exact = signed(body, made.grid)
+    exact = signed(body, volume.grid)
     assert facts["range"] == pytest.approx(np.abs(exact).max())
     assert facts["inside"] == pytest.approx((exact < 0.0).mean(), abs=1e-6)
     assert facts["beyond_range"] == 0.0
@@ -347,11 +347,11 @@ def test_vertices_of_no_triangle_do_not_widen_the_box() -> None:
 
 
 def test_a_thin_plate_has_cubic_voxels() -> None:
-    made = sdf(write(Path("body.obj"), meshes.box((1.0, 0.02, 1.0))), (64,), padding=0.05)
-    assert made.grid.voxel == pytest.approx(np.full(3, 1.1 / 64.0))
-    assert made.grid.counts == (64, 7, 64)
-    exact = to_box(centers(made.grid), [0.5, 0.01, 0.5])
-    assert np.abs(stored(made) - exact).max() <= made.facts["error"]["at_texels"]
+    volume = sdf(write(Path("body.obj"), meshes.box((1.0, 0.02, 1.0))), (64,), padding=0.05)
+    assert volume.grid.voxel == pytest.approx(np.full(3, 1.1 / 64.0))
+    assert volume.grid.counts == (64, 7, 64)
+    exact = to_box(centers(volume.grid), [0.5, 0.01, 0.5])
+    assert np.abs(stored(volume) - exact).max() <= volume.facts["error"]["at_texels"]
 
 
 def test_a_sheet_has_the_requested_thickness() -> None:
@@ -362,57 +362,61 @@ def test_a_sheet_has_the_requested_thickness() -> None:
     path = write(Path("sheet.obj"), square)
     with pytest.raises(SssgenError, match="flat sheet"):
         sdf(path, (16,))
-    made = sdf(path, (32,), thin=0.2)
-    exact = to_box(centers(made.grid), [0.5, 0.0, 0.5]) - 0.1
-    assert np.abs(stored(made) - exact).max() <= made.facts["error"]["at_texels"]
-    assert made.facts["inside"] == pytest.approx((exact < 0.0).mean(), abs=1e-6) and made.facts["inside"] > 0.05
+    volume = sdf(path, (32,), thin=0.2)
+    exact = to_box(centers(volume.grid), [0.5, 0.0, 0.5]) - 0.1
+    assert np.abs(stored(volume) - exact).max() <= volume.facts["error"]["at_texels"]
+    assert volume.facts["inside"] == pytest.approx((exact < 0.0).mean(), abs=1e-6) and volume.facts["inside"] > 0.05
 
 
 def test_padding_0_still_has_a_box() -> None:
-    made = sdf(write(Path("body.obj"), CUBE), (8,), padding=0.0)
-    assert made.facts["box_min"] == [-0.5, -0.5, -0.5] and made.facts["inside"] == 1.0
+    volume = sdf(write(Path("body.obj"), CUBE), (8,), padding=0.0)
+    assert volume.facts["box_min"] == [-0.5, -0.5, -0.5] and volume.facts["inside"] == 1.0
 
 
 def test_an_inverted_mesh_is_reported_and_has_the_right_sign() -> None:
-    made = sdf(write(Path("body.obj"), CUBE.turned_out()), (12,))
-    assert made.facts["mesh"]["inside_out"] and made.facts["mesh"]["closed"]
-    assert np.array_equal(made.texels, sdf(write(Path("right.obj"), CUBE), (12,)).texels)
+    volume = sdf(write(Path("body.obj"), CUBE.turned_out()), (12,))
+    assert volume.facts["mesh"]["inside_out"] and volume.facts["mesh"]["closed"]
+    assert np.array_equal(volume.texels, sdf(write(Path("right.obj"), CUBE), (12,)).texels)
 
 
 # What is stored
 
 
-def stored(made: Volume) -> Array:
+def stored(built: Volume) -> Array:
     """The distances that the texels stand for, (z y x,)."""
-    found: Array = decode(made.texels, made.reach, made.facts["encoding"]).ravel()
-    return found
+    result: Array = decode(built.texels, built.reach, built.facts["encoding"]).ravel()
+    return result
 
 
 @pytest.mark.parametrize("encoding", ENCODINGS)
 @pytest.mark.parametrize("reach", [None, 0.2])
 def test_the_error_is_within_the_reported_bound(encoding: str, reach: float | None) -> None:
-    made = sdf(write(Path("body.obj"), tilted(meshes.box((1.0, 0.7, 0.4)), 25.0)), (30,), 0.2, encoding, reach)
+    volume = sdf(write(Path("body.obj"), tilted(meshes.box((1.0, 0.7, 0.4)), 25.0)), (30,), 0.2, encoding, reach)
     mesh = Mesh(path="body.obj")
-    exact = np.clip(mesh.distance(centers(made.grid)), -made.reach, made.reach)
-    told = made.facts["error"]
-    off = np.abs(stored(made) - exact)
-    assert off.max() <= told["at_texels"]
+    exact = np.clip(mesh.distance(centers(volume.grid)), -volume.reach, volume.reach)
+    message = volume.facts["error"]
+    off = np.abs(stored(volume) - exact)
+    assert off.max() <= message["at_texels"]
     # the bound is no wish: the steps are as coarse as that
     floor = {"r8": 0.5, "r16": 0.5, "r16f": 0.5, "r32f": 0.0}[encoding]
-    assert off.max() >= floor * told["at_texels"]
-    points = rng().uniform(made.grid.low + 0.5 * made.grid.voxel, made.grid.high - 0.5 * made.grid.voxel, (20_000, 3))
-    between = np.abs(sampled(made, points) - np.clip(mesh.distance(points), -made.reach, made.reach))
-    assert between.max() <= told["between_texels"] + told["at_texels"]
+    assert off.max() >= floor * message["at_texels"]
+    points = rng().uniform(
+        volume.grid.low + 0.5 * volume.grid.voxel, volume.grid.high - 0.5 * volume.grid.voxel, (20_000, 3)
+    )
+    between = np.abs(sampled(volume, points) - np.clip(mesh.distance(points), -volume.reach, volume.reach))
+    assert between.max() <= message["between_texels"] + message["at_texels"]
 
 
-def sampled(made: Volume, points: Array) -> Array:
+def sampled(result: Volume, points: Array) -> Array:
     """The distance by the library's technique."""
-    found: Array = technique("distance_texture")(p=points, distance_map=texture(made), **made.facts["parameters"])
-    return found
+    function: Array = technique("distance_texture")(
+        p=points, distance_map=texture(result), **result.facts["parameters"]
+    )
+    return function
 
 
-def texture(made: Volume) -> Texture:
-    texels = made.texels.astype(np.float64) / ENCODINGS[made.facts["encoding"]].one
+def texture(result: Volume) -> Texture:
+    texels = result.texels.astype(np.float64) / ENCODINGS[result.facts["encoding"]].one
     return Texture(texels[..., None], "linear", "clamp")
 
 
@@ -432,11 +436,16 @@ def on_the_surface(mesh: Mesh, count: int, seed: int = 3) -> tuple[Array, Array]
     return np.einsum("nv,nvc->nc", weights, corners[face]), ways
 
 
-def marched(made: Volume, points: Array, ways: Array, method: str = "march_light", steps: int = 400) -> Array:
-    found: Array = technique(method, body_distance="distance_texture_world")(
-        P=points, L=ways, reach=made.grid.diagonal, steps=steps, distance_map=texture(made), **made.facts["parameters"]
+def marched(result: Volume, points: Array, ways: Array, method: str = "march_light", steps: int = 400) -> Array:
+    function: Array = technique(method, body_distance="distance_texture_world")(
+        P=points,
+        L=ways,
+        reach=result.grid.diagonal,
+        steps=steps,
+        distance_map=texture(result),
+        **result.facts["parameters"],
     )
-    return found
+    return function
 
 
 @needs_meshes
@@ -446,10 +455,10 @@ def test_the_marched_thickness_is_right_to_a_voxel(path: Path, method: str, step
     mesh = Mesh(path=str(path))
     points, ways = on_the_surface(mesh, 2000)
     exact = thickness(mesh, points, ways)
-    made = sdf(str(path), (64,))
-    error = np.abs(marched(made, points, ways, method, steps) - exact) / made.grid.voxel.max()
+    volume = sdf(str(path), (64,))
+    error = np.abs(marched(volume, points, ways, method, steps) - exact) / volume.grid.voxel.max()
     print(f"{path.stem}, {method}: median {np.median(error):.3f} voxels, 90 % within {np.percentile(error, 90):.2f}")
-    assert np.median(exact) > 5.0 * made.grid.voxel.max()
+    assert np.median(exact) > 5.0 * volume.grid.voxel.max()
     assert np.median(error) <= 1.0
 
 

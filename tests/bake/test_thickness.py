@@ -41,8 +41,8 @@ def rng(seed: int = 5) -> np.random.Generator:
 
 
 def unit(vectors: Any) -> Array:
-    found: Array = np.asarray(vectors, float) / np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return found
+    result: Array = np.asarray(vectors, float) / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return result
 
 
 def shown(path: str, size: tuple[int, int]) -> Atlas:
@@ -55,14 +55,14 @@ def sampled(path: str, at: Atlas, rays: int, attenuation: float = 0.0, seed: int
     return inward(path, str(Path(path).resolve()), at.places, at.flat, rays, attenuation, (seed, 0))
 
 
-def baked(path: str, size: tuple[int, int], wanted: Request, unwrap: bool = False) -> Map:
-    return thickness_map(path, size, wanted, unwrap, processes=0)
+def baked(path: str, size: tuple[int, int], expected: Request, unwrap: bool = False) -> Map:
+    return thickness_map(path, size, expected, unwrap, processes=0)
 
 
-def lengths(made: Map, at: Atlas) -> Array:
+def lengths(built: Map, at: Atlas) -> Array:
     """What the texels of an atlas stand for."""
-    found: Array = made.values.ravel()[at.texels] * made.facts["range"][1]
-    return found
+    result: Array = built.values.ravel()[at.texels] * built.facts["range"][1]
+    return result
 
 
 def assert_sound(value: Array, exact: Any, error: Array, bias: float = 0.0) -> None:
@@ -88,50 +88,50 @@ BIAS = 3e-4
 
 
 def test_a_ball_is_four_thirds_of_its_radius(globe: str) -> None:
-    at = shown(globe, (32, 16))
-    assert len(at.texels) == 32 * 16
-    found = sampled(globe, at, 256)
-    assert_sound(found.value, 4.0 / 3.0 * 0.8, found.error, BIAS)
-    assert found.lost.max() <= 0.01
+    texels = shown(globe, (32, 16))
+    assert len(texels.texels) == 32 * 16
+    samples = sampled(globe, texels, 256)
+    assert_sound(samples.value, 4.0 / 3.0 * 0.8, samples.error, BIAS)
+    assert samples.lost.max() <= 0.01
 
 
 @pytest.mark.parametrize("depth", [0.3, 1.0, 20.0])
 def test_a_ball_has_its_analytic_transmittance(globe: str, depth: float) -> None:
     """With chords 2 R cos, weighted by the cosine: 2 (1 - (1 + a) exp(-a)) / a², a = 2 R / depth."""
     a = 2.0 * 0.8 / depth
-    found = sampled(globe, shown(globe, (24, 12)), 512, depth)
+    samples = sampled(globe, shown(globe, (24, 12)), 512, depth)
     exact = 2.0 * (1.0 - (1.0 + a) * np.exp(-a)) / a**2
-    assert_sound(found.value, exact, found.error, BIAS * min(1.0, 1.0 / depth))
+    assert_sound(samples.value, exact, samples.error, BIAS * min(1.0, 1.0 / depth))
     mean = sampled(globe, shown(globe, (24, 12)), 512).value
-    assert (found.value >= np.exp(-mean / depth) - 1e-9).all() and (found.value <= 1.0).all()  # Jensen
+    assert (samples.value >= np.exp(-mean / depth) - 1e-9).all() and (samples.value <= 1.0).all()  # Jensen
 
 
 def test_the_standard_error_is_the_spread_over_seeds(globe: str) -> None:
-    at = shown(globe, (12, 6))
-    runs = [sampled(globe, at, 64, seed=seed) for seed in range(40)]
+    texels = shown(globe, (12, 6))
+    runs = [sampled(globe, texels, 64, seed=seed) for seed in range(40)]
     spread = np.var([run.value for run in runs], axis=0, ddof=1)
-    told = np.mean([run.error**2 for run in runs], axis=0)
-    assert spread.mean() == pytest.approx(told.mean(), rel=0.08)  # of 39 · 72 degrees of freedom: 2.7 %
+    output = np.mean([run.error**2 for run in runs], axis=0)
+    assert spread.mean() == pytest.approx(output.mean(), rel=0.08)  # of 39 · 72 degrees of freedom: 2.7 %
     assert not np.array_equal(runs[0].value, runs[1].value)
 
 
 def test_four_times_the_rays_halve_the_error_or_better(globe: str) -> None:
-    at = shown(globe, (16, 8))
-    few, many = sampled(globe, at, 64).error.mean(), sampled(globe, at, 256).error.mean()
+    texels = shown(globe, (16, 8))
+    few, many = sampled(globe, texels, 64).error.mean(), sampled(globe, texels, 256).error.mean()
     assert many < 0.55 * few
 
 
 def test_the_facts_of_a_map(globe: str) -> None:
-    made, at = baked(globe, (32, 16), Request(rays=64)), shown(globe, (32, 16))
-    assert made.facts["mean"] == pytest.approx(4.0 / 3.0 * 0.8, rel=2e-3)
-    assert made.facts["parameters"] == {"thickness_factor": made.facts["range"][1]}
-    assert made.values.max() == 1.0 and made.values.min() > 0.9
-    assert made.facts["holds"] == "thickness" and made.facts["rays"] == 64 and not made.mesh
-    told = made.facts["error"]
+    result, at = baked(globe, (32, 16), Request(rays=64)), shown(globe, (32, 16))
+    assert result.facts["mean"] == pytest.approx(4.0 / 3.0 * 0.8, rel=2e-3)
+    assert result.facts["parameters"] == {"thickness_factor": result.facts["range"][1]}
+    assert result.values.max() == 1.0 and result.values.min() > 0.9
+    assert result.facts["holds"] == "thickness" and result.facts["rays"] == 64 and not result.mesh
+    message = result.facts["error"]
     exact = sampled(globe, at, 64)  # one block of work, with the same rays
-    assert lengths(made, at) == pytest.approx(exact.value, abs=1e-12)
-    assert told["mean_standard_error"] == pytest.approx(exact.error.mean())
-    assert told["largest_standard_error"] == pytest.approx(exact.error.max())
+    assert lengths(result, at) == pytest.approx(exact.value, abs=1e-12)
+    assert message["mean_standard_error"] == pytest.approx(exact.error.mean())
+    assert message["largest_standard_error"] == pytest.approx(exact.error.max())
 
 
 # A box, and a wide plate
@@ -140,8 +140,8 @@ def test_the_facts_of_a_map(globe: str) -> None:
 def to_exit(size: Array, places: Array, ways: Array) -> Array:
     """The length inside a box about the origin, from places within it on."""
     with np.errstate(divide="ignore"):
-        found: Array = ((0.5 * size * np.sign(ways) - places) / ways).min(axis=-1)
-    return np.maximum(found, 0.0)
+        result: Array = ((0.5 * size * np.sign(ways) - places) / ways).min(axis=-1)
+    return np.maximum(result, 0.0)
 
 
 def by_quadrature(size: Array, place: Array, normal: Array, of: Callable[[Array], Array], count: int = 200) -> float:
@@ -160,27 +160,27 @@ def by_quadrature(size: Array, place: Array, normal: Array, of: Callable[[Array]
 @pytest.mark.parametrize("depth", [0.0, 0.4])
 def test_a_box_has_its_integral(size: Any, depth: float) -> None:
     path = write(Path("box.obj"), meshes.box(size))
-    at = shown(path, (48, 32))
-    some = rng().choice(len(at.texels), 150, replace=False)
-    found = sampled(path, at._replace(places=at.places[some], flat=at.flat[some]), 512, depth)
+    texels = shown(path, (48, 32))
+    some = rng().choice(len(texels.texels), 150, replace=False)
+    samples = sampled(path, texels._replace(places=texels.places[some], flat=texels.flat[some]), 512, depth)
 
     def light(length: Array) -> Array:
         return np.exp(-length / depth) if depth else length
 
-    pairs = zip(at.places[some], at.flat[some], strict=True)
+    pairs = zip(texels.places[some], texels.flat[some], strict=True)
     exact = np.array([by_quadrature(np.array(size), place, flat, light) for place, flat in pairs])
-    assert_sound(found.value, exact, found.error, 2e-4)
+    assert_sound(samples.value, exact, samples.error, 2e-4)
 
 
 def test_the_middle_of_a_wide_plate_is_twice_its_thickness() -> None:
     """2 t for an infinite one; what is beyond the radius r is missing: t²/r at most, in the mean over its disk."""
     path = write(Path("plate.obj"), meshes.box((10.0, 0.05, 10.0)))
-    at = shown(path, (96, 64))
-    middle = (np.abs(at.flat[:, 1]) == 1.0) & (np.hypot(*at.places[:, [0, 2]].T) < 3.0)
-    found = sampled(path, at._replace(places=at.places[middle], flat=at.flat[middle]), 1024)
+    texels = shown(path, (96, 64))
+    middle = (np.abs(texels.flat[:, 1]) == 1.0) & (np.hypot(*texels.places[:, [0, 2]].T) < 3.0)
+    samples = sampled(path, texels._replace(places=texels.places[middle], flat=texels.flat[middle]), 1024)
     assert middle.sum() > 200
-    assert found.value.mean() == pytest.approx(
-        0.1, abs=4.0 * found.error.mean() / np.sqrt(middle.sum()) + 0.05**2 / 2.0
+    assert samples.value.mean() == pytest.approx(
+        0.1, abs=4.0 * samples.error.mean() / np.sqrt(middle.sum()) + 0.05**2 / 2.0
     )
 
 
@@ -199,12 +199,12 @@ def test_straight_in_is_exact() -> None:
 def test_thickness_towards_a_light_is_exact(light: BakeLight, depth: float) -> None:
     size = np.array([1.0, 2.0, 3.0])
     path = write(Path("box.obj"), meshes.box(size).moved((0.1, 0.2, 0.3)))
-    wanted = Request("transmittance" if depth else "mean", light, attenuation=depth)
-    made, at = baked(path, (60, 40), wanted), shown(path, (60, 40))
+    expected = Request("transmittance" if depth else "mean", light, attenuation=depth)
+    result, at = baked(path, (60, 40), expected), shown(path, (60, 40))
     ways = np.tile(light.place, (len(at.places), 1)) if light.afar else unit(light.place - at.places)
     lit = np.einsum("nc,nc->n", ways, at.flat) > 0.0
     exact = np.where(lit, 0.0, to_exit(size, at.places - [0.1, 0.2, 0.3], ways))
-    assert lengths(made, at) == pytest.approx(np.exp(-exact / depth) if depth else exact, abs=1e-5)
+    assert lengths(result, at) == pytest.approx(np.exp(-exact / depth) if depth else exact, abs=1e-5)
     assert 0.1 < lit.mean() < 0.9
 
 
@@ -222,8 +222,8 @@ def test_an_inverted_mesh_has_the_same_thickness() -> None:
 
 def test_a_hole_is_reported_and_its_rays_do_not_count() -> None:
     path = write(Path("box.obj"), meshes.box()._replace(faces=meshes.box().faces[:-2], uv=meshes.box().uv[:-2]))
-    made = baked(path, (24, 16), Request(rays=64))
-    assert 0.05 < made.facts["lost_rays"] < 0.5
+    result = baked(path, (24, 16), Request(rays=64))
+    assert 0.05 < result.facts["lost_rays"] < 0.5
 
 
 # A mesh of many triangles
@@ -232,10 +232,10 @@ def test_a_hole_is_reported_and_its_rays_do_not_count() -> None:
 @needs_meshes
 def test_spot_has_the_integral_over_all_her_triangles() -> None:
     """She is closed: a ray that starts inward is inside up to the first triangle, and again from the second on."""
-    at = shown(str(SPOT), (64, 64))
-    some = rng().choice(len(at.texels), 5, replace=False)
-    places, flat = at.places[some], at.flat[some]
-    found = sampled(str(SPOT), at._replace(places=places, flat=flat), 8192)
+    texels = shown(str(SPOT), (64, 64))
+    some = rng().choice(len(texels.texels), 5, replace=False)
+    places, flat = texels.places[some], texels.flat[some]
+    samples = sampled(str(SPOT), texels._replace(places=places, flat=flat), 8192)
     mesh = Mesh(path=str(SPOT)).triangles
     for at_texel, (place, normal) in enumerate(zip(places, flat, strict=True)):
         # uniform on the ball that touches the surface: weighted by the cosine about −normal
@@ -246,40 +246,40 @@ def test_spot_has_the_integral_over_all_her_triangles() -> None:
         assert (np.isfinite(crossings).sum(axis=1) % 2 == 1).mean() > 0.99
         ends = np.where(np.isfinite(crossings), crossings, 0.0)
         length = (ends * np.where(np.arange(12) % 2 == 0, 1.0, -1.0)).sum(axis=1)
-        error = np.hypot(found.error[at_texel], length.std() / np.sqrt(len(length)))
-        assert abs(length.mean() - found.value[at_texel]) <= 4.0 * error + 1e-3 * length.mean()
+        error = np.hypot(samples.error[at_texel], length.std() / np.sqrt(len(length)))
+        assert abs(length.mean() - samples.value[at_texel]) <= 4.0 * error + 1e-3 * length.mean()
 
 
 # Texture coordinates
 
 
-def on_edges(made: Made, count: int = 60) -> tuple[Array, Array]:
+def on_edges(result: Made, count: int = 60) -> tuple[Array, Array]:
     """uv on the edges of every face's triangle, (n, 2), and the faces they are of."""
-    assert made.uv is not None
+    assert result.uv is not None
     along = np.linspace(0.0, 1.0, count)[:, None]
-    points = [(1.0 - along) * face[a] + along * face[b] for face in made.uv for a, b in ((0, 1), (1, 2), (2, 0))]
-    return np.concatenate(points), np.repeat(np.arange(len(made.uv)), 3 * count)
+    points = [(1.0 - along) * face[a] + along * face[b] for face in result.uv for a, b in ((0, 1), (1, 2), (2, 0))]
+    return np.concatenate(points), np.repeat(np.arange(len(result.uv)), 3 * count)
 
 
 def test_seams_mix_nothing_in() -> None:
     """A box whose three pairs of faces have a length each: what is sampled on a chart's edge is its own."""
     size = np.array([1.0, 2.0, 3.0])
-    made = meshes.box(size)
-    baked_map = baked(write(Path("box.obj"), made), (60, 40), Request("chord"))
+    mesh = meshes.box(size)
+    baked_map = baked(write(Path("box.obj"), mesh), (60, 40), Request("chord"))
     assert baked_map.values.min() > 0.3  # no texel is left empty
-    uv, faces = on_edges(made)
+    uv, faces = on_edges(mesh)
     texture = Texture(np.flipud(baked_map.values)[..., None], "linear", "repeat")
-    found = texture.sample(uv.T)[0] * baked_map.facts["range"][1]
-    normal = np.cross(*(made.triangles[:, 1:] - made.triangles[:, :1]).transpose(1, 0, 2))
-    assert found == pytest.approx(np.abs(unit(normal)[faces]) @ size, abs=1e-5)
+    result = texture.sample(uv.T)[0] * baked_map.facts["range"][1]
+    normal = np.cross(*(mesh.triangles[:, 1:] - mesh.triangles[:, :1]).transpose(1, 0, 2))
+    assert result == pytest.approx(np.abs(unit(normal)[faces]) @ size, abs=1e-5)
 
 
 def test_a_ball_has_no_seam(globe: str) -> None:
-    made = baked(globe, (32, 16), Request(rays=256))
-    texture = Texture(np.flipud(made.values)[..., None], "linear", "clamp")
+    result = baked(globe, (32, 16), Request(rays=256))
+    texture = Texture(np.flipud(result.values)[..., None], "linear", "clamp")
     along = np.linspace(0.0, 1.0, 200)
     for uv in (np.array([0.0 * along, along]), np.array([0.0 * along + 1.0, along]), np.array([along, 0.0 * along])):
-        assert texture.sample(uv)[0] * made.facts["range"][1] == pytest.approx(4.0 / 3.0 * 0.8, rel=0.03)
+        assert texture.sample(uv)[0] * result.facts["range"][1] == pytest.approx(4.0 / 3.0 * 0.8, rel=0.03)
 
 
 def covered(uv: Array, size: int) -> Any:
@@ -299,46 +299,46 @@ def covered(uv: Array, size: int) -> Any:
 
 @needs_meshes
 def test_suzanne_gets_texture_coordinates() -> None:
-    made = baked(str(SUZANNE), (128, 128), Request(rays=16))
-    assert made.facts["mesh"]["new_uv"] and made.facts["mesh"]["shared_texels"] < 0.02
-    Path("new.obj").write_text(made.mesh, encoding="utf-8")
+    result = baked(str(SUZANNE), (128, 128), Request(rays=16))
+    assert result.facts["mesh"]["new_uv"] and result.facts["mesh"]["shared_texels"] < 0.02
+    Path("new.obj").write_text(result.mesh, encoding="utf-8")
     old, new = Mesh(path=str(SUZANNE)).triangles, Mesh(path="new.obj").triangles
     assert new.places[new.corners] == pytest.approx(old.places[old.corners], abs=1e-6)
     assert new.uv is not None and new.uv.min() >= 0.0 and new.uv.max() <= 1.0
     count = covered(new.uv, 512)
     assert count.max() == 1 and (count == 1).mean() > 0.4
-    assert made.values.min() > 0.0  # no texel is left empty
+    assert result.values.min() > 0.0  # no texel is left empty
     # the map fits the mesh that was written: baked on that, it is the same
     again = baked("new.obj", (128, 128), Request(rays=16))
     assert not again.facts["mesh"]["new_uv"]
-    assert np.median(np.abs(again.values - made.values)) < 0.02
+    assert np.median(np.abs(again.values - result.values)) < 0.02
 
 
 def test_texture_coordinates_on_another_tile_are_accepted(globe: str) -> None:
-    made = meshes.box((1.0, 2.0, 3.0))
-    here = baked(write(Path("here.obj"), made), (30, 20), Request("chord"))
-    assert made.uv is not None
-    there = baked(
-        write(Path("there.obj"), made._replace(uv=made.uv + np.array([0.5, -0.25]))), (30, 20), Request("chord")
+    mesh = meshes.box((1.0, 2.0, 3.0))
+    here = baked(write(Path("here.obj"), mesh), (30, 20), Request("chord"))
+    assert mesh.uv is not None
+    moved = baked(
+        write(Path("there.obj"), mesh._replace(uv=mesh.uv + np.array([0.5, -0.25]))), (30, 20), Request("chord")
     )
-    assert there.values == pytest.approx(np.roll(here.values, (5, 15), axis=(0, 1)), abs=1e-6)
+    assert moved.values == pytest.approx(np.roll(here.values, (5, 15), axis=(0, 1)), abs=1e-6)
 
 
 @pytest.mark.parametrize(("scale", "message"), [(10.0, "repeat the map"), (0.0, "no area")])
 def test_texture_coordinates_that_do_not_fit(scale: float, message: str) -> None:
-    made = meshes.box()
-    assert made.uv is not None
-    path = write(Path("box.obj"), made._replace(uv=scale * made.uv))
+    mesh = meshes.box()
+    assert mesh.uv is not None
+    path = write(Path("box.obj"), mesh._replace(uv=scale * mesh.uv))
     with pytest.raises(SssgenError, match=message):
         baked(path, (16, 16), Request("chord"))
     assert baked(path, (64, 64), Request("chord"), unwrap=True).facts["mean"] == pytest.approx(1.0, abs=1e-5)
 
 
 def test_overlapping_charts_are_reported() -> None:
-    made = meshes.box()
-    assert made.uv is not None
-    once = np.concatenate([made.uv[:2]] * 6)
-    facts = baked(write(Path("box.obj"), made._replace(uv=once)), (60, 40), Request("chord")).facts
+    mesh = meshes.box()
+    assert mesh.uv is not None
+    once = np.concatenate([mesh.uv[:2]] * 6)
+    facts = baked(write(Path("box.obj"), mesh._replace(uv=once)), (60, 40), Request("chord")).facts
     assert facts["mesh"]["shared_texels"] == pytest.approx(5.0 / 6.0, abs=0.02)
 
 
@@ -357,7 +357,7 @@ def test_the_depth_map_of_a_ball_is_its_chord(globe: str, light: BakeLight) -> N
     places = 0.8 * unit(rng().normal(size=(4000, 3)))
     ways = np.tile(light.place, (len(places), 1)) if light.afar else unit(light.place - places)
     slope = np.einsum("nc,nc->n", ways, unit(places))
-    found = technique("depth_map_thickness")(
+    function = technique("depth_map_thickness")(
         P=places,
         light_depth_map=Texture(np.flipud(depth)[..., None], "linear", "clamp"),
         light_matrix=np.reshape(facts["parameters"]["light_matrix"], (4, 4)).T,
@@ -368,8 +368,8 @@ def test_the_depth_map_of_a_ball_is_its_chord(globe: str, light: BakeLight) -> N
     # a texel of the map, on the side that the light meets: how much deeper is the next one
     texel = 1.1 * 1.6 * (1.0 if light.afar else 1.5) / count
     clear = np.abs(slope) > 0.3
-    assert np.abs(found - exact)[clear].max() <= texel / 0.3
-    assert np.median(np.abs(found - exact)[clear]) <= 0.3 * texel
+    assert np.abs(function - exact)[clear].max() <= texel / 0.3
+    assert np.median(np.abs(function - exact)[clear]) <= 0.3 * texel
     assert clear.sum() > 2000
     assert facts["nothing"] == depth.max() and 0.3 < facts["covered"] < 0.9
 
@@ -382,10 +382,10 @@ def test_a_light_in_the_body_is_refused(globe: str) -> None:
 
 def test_gltf_keeps_its_parts_and_their_texture_coordinates() -> None:
     trimesh = pytest.importorskip("trimesh", reason="trimesh is missing: pip install 'sssgen[bake]'")
-    made = meshes.box((1.0, 0.6, 0.4))
-    assert made.uv is not None
-    corners = made.triangles.reshape(-1, 3)
-    visual = trimesh.visual.TextureVisuals(uv=made.uv.reshape(-1, 2))
+    solid_mesh = meshes.box((1.0, 0.6, 0.4))
+    assert solid_mesh.uv is not None
+    corners = solid_mesh.triangles.reshape(-1, 3)
+    visual = trimesh.visual.TextureVisuals(uv=solid_mesh.uv.reshape(-1, 2))
     part = trimesh.Trimesh(corners, np.arange(len(corners)).reshape(-1, 3), visual=visual, process=False)
     scene = trimesh.Scene()
     mirrored = np.diag([-2.0, 1.0, 1.0, 1.0])
@@ -396,8 +396,8 @@ def test_gltf_keeps_its_parts_and_their_texture_coordinates() -> None:
         scene.export(f"parts.{suffix}")
         mesh = Mesh(path=f"parts.{suffix}")
         assert len(mesh.triangles.corners) == 24 and mesh.triangles.uv is not None
-        wanted = np.concatenate([made.uv, made.uv])
-        assert np.sort(mesh.triangles.uv.ravel()) == pytest.approx(np.sort(wanted.ravel()), abs=1e-6)
+        expected = np.concatenate([solid_mesh.uv, solid_mesh.uv])
+        assert np.sort(mesh.triangles.uv.ravel()) == pytest.approx(np.sort(expected.ravel()), abs=1e-6)
         assert mesh.triangles.places.max(axis=0)[0] == pytest.approx(6.0, abs=1e-6)
         assert not mesh.inside_out and mesh.solid.rim == 0.0
         volume = mesh.solid.winding(np.array([[0.0, 0.0, 0.0], [5.0, 0.0, 0.0], [2.5, 0.0, 0.0]]))
@@ -405,16 +405,16 @@ def test_gltf_keeps_its_parts_and_their_texture_coordinates() -> None:
 
 
 def test_a_mesh_that_xatlas_loses_is_unwrapped_in_parts(monkeypatch: pytest.MonkeyPatch, globe: str) -> None:
-    asked: list[int] = []
+    requests: list[int] = []
 
     def once_lost(items: Any, **options: Any) -> list[Any]:
-        asked.append(len(np.unique(items[0].arguments[2])))
-        return [Failure("texture coordinates", "its process crashed")] if len(asked) == 1 else run(items, **options)
+        requests.append(len(np.unique(items[0].arguments[2])))
+        return [Failure("texture coordinates", "its process crashed")] if len(requests) == 1 else run(items, **options)
 
     monkeypatch.setattr(unwrap, "run", once_lost)
     mesh = Mesh(path=globe).triangles
     uv = unwrap.unwrapped(mesh)
-    assert asked == [1, 6] and uv.shape == (len(mesh.corners), 3, 2) and uv.min() >= 0.0 and uv.max() <= 1.0
+    assert requests == [1, 6] and uv.shape == (len(mesh.corners), 3, 2) and uv.min() >= 0.0 and uv.max() <= 1.0
     assert atlas(mesh, uv, (256, 256), globe).shared < 0.05
     monkeypatch.setattr(unwrap, "run", lambda *_, **__: [Failure("texture coordinates", "its process crashed")])
     with pytest.raises(SssgenError, match="finds no texture coordinates"):
@@ -425,5 +425,5 @@ def test_a_mesh_that_xatlas_loses_is_unwrapped_in_parts(monkeypatch: pytest.Monk
 def test_a_ball_that_xatlas_crashes_on() -> None:
     trimesh = pytest.importorskip("trimesh", reason="trimesh is missing: pip install 'sssgen[bake]'")
     trimesh.creation.icosphere(subdivisions=6).export("ball.ply")
-    made = thickness_map("ball.ply", (64, 64), Request(mode="chord"))
-    assert made.facts["mean"] == pytest.approx(2.0, rel=1e-2) and made.facts["mesh"]["new_uv"]
+    result = thickness_map("ball.ply", (64, 64), Request(mode="chord"))
+    assert result.facts["mean"] == pytest.approx(2.0, rel=1e-2) and result.facts["mesh"]["new_uv"]

@@ -135,8 +135,8 @@ def test_a_sheet_follows_its_layout(size: tuple[int, int, int], dtype: str) -> N
     texels = volume(size, dtype)
     Path("sheet.exr").write_bytes(file_of(texels, "exr-slices"))
     picture = images.read("sheet.exr")
-    told = layout(texels, "exr-slices")
-    columns, rows = told["columns"], told["rows"]
+    description = layout(texels, "exr-slices")
+    columns, rows = description["columns"], description["rows"]
     depth, height, width = size
     assert picture.shape == (rows * height, columns * width, 1) and columns * rows == depth
     for (z, y, x), texel in np.ndenumerate(texels):
@@ -158,11 +158,11 @@ def test_a_sheet_is_nearly_square_and_full() -> None:
 @pytest.mark.parametrize("dtype", TYPES)
 def test_raw_data_follows_its_layout(dtype: str) -> None:
     texels = volume((3, 5, 7), dtype)
-    told = layout(texels, "raw+json")
-    assert told["axes"] == ["z", "y", "x"] and told["byte_order"] == "little"
-    stored = np.frombuffer(file_of(texels, "raw+json"), np.dtype(told["dtype"]).newbyteorder("<"))
-    assert np.array_equal(stored.reshape([told["size"][axis] for axis in told["axes"]]), texels)
-    assert told["one"] == ONE[dtype]
+    description = layout(texels, "raw+json")
+    assert description["axes"] == ["z", "y", "x"] and description["byte_order"] == "little"
+    stored = np.frombuffer(file_of(texels, "raw+json"), np.dtype(description["dtype"]).newbyteorder("<"))
+    assert np.array_equal(stored.reshape([description["size"][axis] for axis in description["axes"]]), texels)
+    assert description["one"] == ONE[dtype]
 
 
 @pytest.mark.parametrize("dtype", TYPES)

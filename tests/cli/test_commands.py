@@ -92,9 +92,9 @@ def test_wrong_arguments(name: str, arguments: list[str], run: Run, compiler: Fa
     check_snapshot(f"cli/arguments/{name}.txt", ran.err)
     as_json = run(*arguments, "--json")
     assert (as_json.status, as_json.err) == (2, "")
-    said = json.loads(as_json.out)
-    assert said["ok"] is False
-    assert all(found["message"] in ran.err for found in said["diagnostics"])
+    report = json.loads(as_json.out)
+    assert report["ok"] is False
+    assert all(result["message"] in ran.err for result in report["diagnostics"])
     assert not Path("out").exists()
 
 
@@ -222,13 +222,13 @@ def test_emit_all_as_json(run: Run, compiler: FakeCompiler) -> None:
     compiler.warnings = [Diagnostic("warning", "beware", Span("wax.toml", 1, 1, 1, 2))]
     Path("tpl").mkdir()
     ran = run("emit", "wax.toml", "-t", "all", "-o", "out", "--form", "functions", "--templates", "tpl", "--json")
-    said = json.loads(ran.out)
-    assert (ran.status, ran.err, said["ok"], said["form"]) == (0, "", True, "functions")
-    assert [(row["file"], row["target"]) for row in said["files"]][::2] == [
+    report = json.loads(ran.out)
+    assert (ran.status, ran.err, report["ok"], report["form"]) == (0, "", True, "functions")
+    assert [(row["file"], row["target"]) for row in report["files"]][::2] == [
         ("out/wax.glsl-330.txt", "glsl-330"),
         ("out/wax.wgsl.txt", "wgsl"),
     ]
-    assert [found["message"] for found in said["diagnostics"]] == ["beware"]
+    assert [result["message"] for result in report["diagnostics"]] == ["beware"]
     assert compiler.asked[0] == ("wax", "glsl-330", "functions", "tpl")
 
 

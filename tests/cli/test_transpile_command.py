@@ -19,8 +19,8 @@ def test_transpile(run: Run, compiler: FakeCompiler) -> None:
         "twice.wgsl": "// file_2_twice: twice\n",
         "twice.wgsl.reflection.json": "{}\n",
     }
-    said = json.loads(run("transpile", "2 twice.glsl", "-t", "wgsl", "--json").out)
-    assert said["texts"]["file_2_twice.wgsl.txt"] == "// file_2_twice: twice\n"
+    report = json.loads(run("transpile", "2 twice.glsl", "-t", "wgsl", "--json").out)
+    assert report["texts"]["file_2_twice.wgsl.txt"] == "// file_2_twice: twice\n"
 
 
 BAD_GLSL = {
@@ -59,9 +59,9 @@ def test_the_starter_emits_for_every_target(run: Run) -> None:
 
     assert run("new", "wood").status == 0
     ran = run("emit", "wood.toml", "--target", "all", "-o", "out", "--json")
-    said = json.loads(ran.out)
-    assert (ran.status, said["diagnostics"]) == (0, [])
-    assert {row["target"] for row in said["files"]} == set(all_targets())
+    report = json.loads(ran.out)
+    assert (ran.status, report["diagnostics"]) == (0, [])
+    assert {row["target"] for row in report["files"]} == set(all_targets())
     names = set(folder_content())
     assert {f"wood.{target}.reflection.json" for target in all_targets()} <= names
 

@@ -83,19 +83,19 @@ class Oracle:
 
     def differences(self, backend: Backend) -> list[str]:
         """Where a back end computes something else, with the arguments."""
-        found = run(self.subject, arguments(), backend)
-        wrong = []
+        result = run(self.subject, arguments(), backend)
+        failures = []
         for name, right in self.right.items():
-            apart = np.where(self.steady[name], _apart(found[name], right), 0.0)
+            apart = np.where(self.steady[name], _apart(result[name], right), 0.0)
             if (apart > TOLERANCE).any():
                 lane = int(np.argmax(apart))
-                given = {key: value[..., lane].tolist() for key, value in arguments().values.items()}
-                got, wanted = np.broadcast_to(found[name].T, right.T.shape).T[lane], right[lane]
-                wrong.append(f"{backend.name}: {name}{given} is {got}, and in float64 {wanted}")
-        return wrong
+                values = {key: value[..., lane].tolist() for key, value in arguments().values.items()}
+                got, wanted = np.broadcast_to(result[name].T, right.T.shape).T[lane], right[lane]
+                failures.append(f"{backend.name}: {name}{values} is {got}, and in float64 {wanted}")
+        return failures
 
 
-def _apart(got: Array, wanted: Array) -> Array:
+def _apart(actual: Array, expected: Array) -> Array:
     """The deviation of each lane; results that are the same for all are spread out."""
-    shape = (LANES, *np.shape(wanted)[1:])
-    return errors(np.broadcast_to(got, shape), np.broadcast_to(wanted, shape))
+    shape = (LANES, *np.shape(expected)[1:])
+    return errors(np.broadcast_to(actual, shape), np.broadcast_to(expected, shape))

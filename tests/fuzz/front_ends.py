@@ -104,9 +104,9 @@ def _subject() -> probes.Subject:
 
 
 def _inputs(path: Path) -> None:
-    given = inputs.read(str(path), _subject())
+    values = inputs.read(str(path), _subject())
     with contextlib.suppress(SssgenError):  # which names the input, and knows of no file
-        fitted(_subject(), given)
+        fitted(_subject(), values)
 
 
 def _ci(path: Path) -> None:
@@ -121,8 +121,8 @@ def _ci_folder(path: Path) -> None:
 
 
 def _examples(pattern: str, but: str = "") -> list[bytes]:
-    found = sorted(data.folder("examples").glob(pattern))
-    return [path.read_bytes() for path in found if path.parent.name != but]
+    result = sorted(data.folder("examples").glob(pattern))
+    return [path.read_bytes() for path in result if path.parent.name != but]
 
 
 def _sources() -> list[bytes]:
@@ -155,8 +155,8 @@ def _reflections() -> list[bytes]:
 
 
 def _numbers() -> list[bytes]:
-    given = {"V": [0, 0, 1], "N": [[0, 0, 1], [0, 0.6, 0.8]], "L": [0, 0, -1], "through": 0.5, "distortion": 0.2}
-    return [json.dumps(given).encode()]
+    values = {"V": [0, 0, 1], "N": [[0, 0, 1], [0, 0.6, 0.8]], "L": [0, 0, -1], "through": 0.5, "distortion": 0.2}
+    return [json.dumps(values).encode()]
 
 
 def _tables() -> list[bytes]:
@@ -175,12 +175,12 @@ def _pngs() -> list[bytes]:
 
 
 def _arrays() -> list[bytes]:
-    found = []
+    results = []
     for array in (np.zeros((2, 3)), np.ones((2, 2, 3), np.uint8), np.zeros((2, 2, 2, 4), np.float32)):
         file = BytesIO()
         np.save(file, array)
-        found.append(file.getvalue())
-    return found
+        results.append(file.getvalue())
+    return results
 
 
 @cache
@@ -278,10 +278,10 @@ def taken(front_end: FrontEnd, path: Path) -> bool:
             front_end.read(path)
     except SssgenError as error:
         assert error.diagnostics
-        for found in error.diagnostics:
-            assert found.span.file, f"an error without a file: {found}"
-            assert found.span.line or not front_end.is_text or WHOLE.match(found.message), f"without a line: {found}"
-            found.render().encode("utf-8", "replace")
+        for result in error.diagnostics:
+            assert result.span.file, f"an error without a file: {result}"
+            assert result.span.line or not front_end.is_text or WHOLE.match(result.message), f"without a line: {result}"
+            result.render().encode("utf-8", "replace")
         assert len(str(error)) < 200_000
         return False
     return True

@@ -43,8 +43,8 @@ def main() -> int:
         print("atheris is not installed: pip install atheris")
     for name in ATHERIS if atheris and not status else ():
         status = status or hunt(work, name, max(5, int(seconds * SHARE / len(ATHERIS))))
-    told = ", ".join(f"{count} × {what}" for what, count in sorted(counted.items()))
-    print(f"{rounds} rounds: {told}{'; it FAILED' if status else ''}")
+    message = ", ".join(f"{count} × {what}" for what, count in sorted(counted.items()))
+    print(f"{rounds} rounds: {message}{'; it FAILED' if status else ''}")
     return status
 
 

@@ -248,8 +248,8 @@ class ShaderPrograms:
         pad = "    " * indent
         simple = [self.store, self.store, self.store, self.declaration, self.changed, self.call, self.jump]
         nested = [self.branch, self.branch, self.counting_for, self.counting_while, self.scope]
-        made = self.random.choice(simple + (nested if size > 1 else []))
-        return str(made(pad, indent, size))
+        result = self.random.choice(simple + (nested if size > 1 else []))
+        return str(result(pad, indent, size))
 
     def store(self, pad: str, indent: int, size: int) -> str:
         type_, place = self.random.choice(self.places)

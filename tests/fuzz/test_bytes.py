@@ -21,12 +21,12 @@ TEXTS = [name for name, front_end in FRONT_ENDS.items() if front_end.is_text]
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with the files that the examples name."""
-    made = tmp_path_factory.mktemp("fuzz")
+    result = tmp_path_factory.mktemp("fuzz")
     for example in sorted(data.folder("examples").iterdir()):
         for beside in (*example.glob("*.sss"), *example.glob("textures")):
             copy = shutil.copytree if beside.is_dir() else shutil.copy
-            copy(beside, made / beside.name, **({"dirs_exist_ok": True} if beside.is_dir() else {}))
-    return made
+            copy(beside, result / beside.name, **({"dirs_exist_ok": True} if beside.is_dir() else {}))
+    return result
 
 
 @pytest.mark.filterwarnings("ignore")  # what Pillow, trimesh and OpenEXR warn of is not what is tested

@@ -102,8 +102,8 @@ ARRAYS = {
 def exr(width: int, height: int) -> bytes:
     """A picture whose head says that it is of another size."""
     good = FRONT_ENDS["exr"].seeds()[0]
-    at = good.index(b"\0\x10\0\0\0", good.index(b"dataWindow")) + 5
-    return good[:at] + struct.pack("<4i", 0, 0, width, height) + good[at + 16 :]
+    index = good.index(b"\0\x10\0\0\0", good.index(b"dataWindow")) + 5
+    return good[:index] + struct.pack("<4i", 0, 0, width, height) + good[index + 16 :]
 
 
 def glb(tree: dict[str, object]) -> bytes:

@@ -25,9 +25,9 @@ def refused(text: str) -> SssgenError | None:
             load_glsl_text(text, "fuzzed.glsl")
         return None
     except SssgenError as error:
-        for found in error.diagnostics:
-            assert found.span.file == "fuzzed.glsl"
-            assert 1 <= found.span.line <= text.count("\n") + 1
+        for result in error.diagnostics:
+            assert result.span.file == "fuzzed.glsl"
+            assert 1 <= result.span.line <= text.count("\n") + 1
         assert len(str(error)) < 200_000
         return error
 

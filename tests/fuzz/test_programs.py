@@ -38,8 +38,8 @@ def test_programs_agree(backend: Callable[[str], Backend], name: str, seed: int)
     text = source(Random(seed), BATCH)
     with bounded(SECONDS, f"running programs of the seed {seed}"):
         oracle = Oracle(text)
-        wrong = oracle.differences(gpu)
-    assert not wrong, "\n\n".join([f"seed {seed}", *wrong, text])
+        failures = oracle.differences(gpu)
+    assert not failures, "\n\n".join([f"seed {seed}", *failures, text])
     COUNTED["programs run"] += BATCH
     COUNTED["lanes excused, of a thousand"] += round(1000 * oracle.excused())
 

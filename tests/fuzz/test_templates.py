@@ -82,9 +82,9 @@ def test_hostile_templates(name: str, tmp_path: Path) -> None:
     (tmp_path / "templates").mkdir()
     with pytest.raises(SssgenError) as raised:
         rendered(tmp_path / "templates", f"\n{HOSTILE[name]}")
-    (found,) = raised.value.diagnostics
-    assert found.span.line > 0
-    in_header = found.span.file.endswith("common/header.j2") and found.span.line >= 2
+    (result,) = raised.value.diagnostics
+    assert result.span.line > 0
+    in_header = result.span.file.endswith("common/header.j2") and result.span.line >= 2
     assert in_header or name in NO_LINE
 
 

@@ -46,9 +46,9 @@ struct Across { @builtin(position) place: vec4f, @location(0) uv: vec2f, @locati
 
 @pytest.fixture
 def browser(backend: Callable[[str], Backend]) -> Browser:
-    found = backend("browser")
-    assert isinstance(found, Browser)
-    return found
+    result = backend("browser")
+    assert isinstance(result, Browser)
+    return result
 
 
 def drawing(text: str, size: tuple[int, int] = (65, 3), **more: Any) -> Drawing:
@@ -62,9 +62,9 @@ def assert_draws(browser: Browser) -> None:
     assert np.array_equal(picture, np.stack([x, y, 0.0 * x, 0.0 * x + 1.0], axis=-1))
 
 
-def refusal(browser: Browser, todo: Drawing) -> str:
+def refusal(browser: Browser, job: Drawing) -> str:
     with pytest.raises(SssgenError) as error:
-        browser.draw(todo)
+        browser.draw(job)
     return str(error.value)
 
 
@@ -116,9 +116,9 @@ def test_integer_textures_keep_their_bits(browser: Browser) -> None:
         "return vec4f(x, place.y, 0.0, 1.0)", "return textureLoad(words, vec2i(place.xy), 0)"
     )
     words = np.random.default_rng(1).integers(0, 2**32, (5, 7, 4), np.uint32)
-    todo = drawing(f"@group(0) @binding(3) var words: texture_2d<u32>;{text}", (7, 5))
+    job = drawing(f"@group(0) @binding(3) var words: texture_2d<u32>;{text}", (7, 5))
     bound = {"words": Bound(words, Place(0, 3))}
-    assert np.array_equal(browser.draw(todo._replace(floats=False, textures=bound)), words)
+    assert np.array_equal(browser.draw(job._replace(floats=False, textures=bound)), words)
 
 
 def test_large_picture(browser: Browser) -> None:
@@ -130,12 +130,12 @@ def test_large_picture(browser: Browser) -> None:
 def test_errors_name_the_line_and_its_origin(browser: Browser) -> None:
     broken = PICTURE.replace("place.y, 0.0,", "place.y, missing,")
     line = 1 + next(i for i, text in enumerate(broken.splitlines()) if "missing" in text)
-    todo = drawing(broken)
+    job = drawing(broken)
     placed = Stage(Text(broken, {line: "my/bark.sss:12:5"}), "pixel")
-    said = refusal(browser, todo._replace(fragment=placed))
-    assert "unresolved value 'missing'" in said
-    assert "my/bark.sss:12:5" in said
-    assert f"line {line} of what was emitted: return vec4f(x, place.y, missing, 1.0);" in said
+    message = refusal(browser, job._replace(fragment=placed))
+    assert "unresolved value 'missing'" in message
+    assert "my/bark.sss:12:5" in message
+    assert f"line {line} of what was emitted: return vec4f(x, place.y, missing, 1.0);" in message
     assert_draws(browser)
 
 
@@ -157,8 +157,8 @@ def test_a_browser_that_is_lost_is_started_again(browser: Browser, monkeypatch: 
     assert_draws(browser)
     with monkeypatch.context() as patch:
         patch.setattr(browser, "seconds", 0.5)
-        said = refusal(browser, drawing(ENDLESS))
-    assert "the browser did not answer within 0.5" in said
+        message = refusal(browser, drawing(ENDLESS))
+    assert "the browser did not answer within 0.5" in message
     assert_draws(browser)
 
 

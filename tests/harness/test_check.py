@@ -43,8 +43,8 @@ class Ran(NamedTuple):
 
     @property
     def data(self) -> dict[str, Any]:
-        found: dict[str, Any] = json.loads(self.out)
-        return found
+        report: dict[str, Any] = json.loads(self.out)
+        return report
 
 
 Run = Callable[..., Ran]
@@ -116,8 +116,8 @@ def test_a_material_in_both_forms(run: Run, compiler: Callable[[str], Compiler])
 
 
 def test_a_material_means_every_target_that_a_compiler_reads() -> None:
-    found = {source.language for shader in of_material("ice", ()) for source in shader.sources}
-    assert found == {language for record in COMPILERS.values() for language in record.languages}
+    results = {source.language for shader in of_material("ice", ()) for source in shader.sources}
+    assert results == {language for record in COMPILERS.values() for language in record.languages}
 
 
 def test_a_folder_selects_its_shaders(run: Run) -> None:
@@ -240,9 +240,9 @@ def test_an_error_outside_of_the_file_has_no_line_of_it(compiler: Callable[[str]
     unity = compiler("unity")
     text = (UNITY_SAMPLES / "surface.shader").read_text(encoding="utf-8")
     assert not unity.check(Source(text, "unity-builtin", name='a "quoted": name.shader'))
-    found = unity.check(Source(text.replace("LightingBacklit_GI", "LightingOther_GI"), "unity-builtin"))
-    assert any("surface entries:" in message.text for message in found), found
-    assert all(not message.line for message in found)
+    result = unity.check(Source(text.replace("LightingBacklit_GI", "LightingOther_GI"), "unity-builtin"))
+    assert any("surface entries:" in message.text for message in result), result
+    assert all(not message.line for message in result)
 
 
 # Compilers that are missing or misbehave
@@ -303,7 +303,7 @@ def test_a_text_too_deep_for_a_compiler(run: Run, compiler: Callable[[str], Comp
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         (["no.frag"], "no such file\n  --> no.frag"),
         (["no/such"], "no such file\n  --> no/such"),
@@ -324,7 +324,7 @@ def test_a_text_too_deep_for_a_compiler(run: Run, compiler: Callable[[str], Comp
         (["no.frag", "empty.frag", "icee"], "3 errors"),
     ],
 )
-def test_wrong_input(arguments: list[str], said: str, run: Run) -> None:
+def test_wrong_input(arguments: list[str], message: str, run: Run) -> None:
     write({"ok.frag": FRAGMENT, "empty.frag": " \n", "what.txt": "x\n", "x.glsl-330.frag": FRAGMENT})
     write({"map.wgsl": WGSL, "map.wgsl.reflection.json": "[]\n"})
     Path("zero.frag").write_bytes(b"void\0")
@@ -332,7 +332,7 @@ def test_wrong_input(arguments: list[str], said: str, run: Run) -> None:
     Path("bare").mkdir()
     ran = run(*arguments)
     assert (ran.status, ran.out) == (2, "")
-    assert said in ran.err
+    assert message in ran.err
     as_json = run(*arguments, "--json")
     assert (as_json.status, as_json.err) == (2, "")
     assert as_json.data["ok"] is False

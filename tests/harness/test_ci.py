@@ -54,10 +54,10 @@ def test_cases_are_collected_from_folders() -> None:
             "env/lib/lamp.toml": MATERIAL,
         },
     )
-    found = {
+    results = {
         (case.kind, Path(case.path).as_posix(), case.backends, case.first) for case in cases(".", ["webgpu", "gl"])
     }
-    assert found == {
+    assert results == {
         ("compile", "a/lamp.toml", (), True),
         ("render", "a/scene.toml", ("webgpu",), True),
         ("render", "a/scene.toml", ("gl",), False),
@@ -76,12 +76,12 @@ def test_cases_are_collected_from_folders() -> None:
 
 def test_folders_with_nothing_to_check() -> None:
     write_files(".", {"empty/readme.txt": "nothing"})
-    for folder, told in (
+    for folder, message in (
         ("empty", "nothing to check"),
         ("none", "no such folder"),
         ("empty/readme.txt", "not a folder"),
     ):
-        with pytest.raises(SssgenError, match=told):
+        with pytest.raises(SssgenError, match=message):
             cases(folder)
         assert cli.main(["ci", folder]) == cli.WRONG_INPUT
 
@@ -89,15 +89,15 @@ def test_folders_with_nothing_to_check() -> None:
 def test_faulty_files_fail_and_the_others_still_run(capsys: pytest.CaptureFixture[str]) -> None:
     write_files(".", {"all/broken.toml": "[material]\nname = \n", "all/half.eval.json": json.dumps(HALF)})
     status = cli.main(["ci", "all", "--backend", "numpy-f32", "--json", "--junit", "report.xml"])
-    found = json.loads(capsys.readouterr().out)
-    assert status == CHECK_FAILED and found["ok"] is False
-    assert [(case["kind"], case["outcome"]) for case in found["cases"]] == [("compile", "failed"), ("eval", "passed")]
-    assert "all/broken.toml:2" in found["cases"][0]["detail"]
+    report = json.loads(capsys.readouterr().out)
+    assert status == CHECK_FAILED and report["ok"] is False
+    assert [(case["kind"], case["outcome"]) for case in report["cases"]] == [("compile", "failed"), ("eval", "passed")]
+    assert "all/broken.toml:2" in report["cases"][0]["detail"]
     assert [len(ET.parse("report.xml").findall(f".//{name}")) for name in ("testcase", "failure")] == [2, 1]
 
 
 @pytest.mark.parametrize(
-    ("change", "state", "told"),
+    ("change", "state", "message"),
     [
         ({}, "passed", "as in float64 on numpy-f32"),
         ({"outputs": {"result": [1.0, 0.36787944]}}, "passed", "as in float64"),
@@ -118,18 +118,18 @@ def test_faulty_files_fail_and_the_others_still_run(capsys: pytest.CaptureFixtur
         ({"bind": {"x": "y"}}, "failed", "has no slot 'x'"),
     ],
 )
-def test_numbers(change: dict[str, Any], state: str, told: str) -> None:
+def test_numbers(change: dict[str, Any], state: str, message: str) -> None:
     own = (
         "/** Half.\n * role: conversion */\ntransmittance own(thickness d)\n{\n    return transmittance(d / 3.0);\n}\n"
     )
-    given = {**HALF, **change}
-    if "own" in given["technique"]:
-        given["inputs"] = {"d": 0.7}
+    values = {**HALF, **change}
+    if "own" in values["technique"]:
+        values["inputs"] = {"d": 0.7}
     numbers = json.dumps(HALF["inputs"])
-    write_files("in", {"own.sss": own, "numbers.json": numbers, "half.eval.json": json.dumps(given)})
+    write_files("in", {"own.sss": own, "numbers.json": numbers, "half.eval.json": json.dumps(values)})
     with Run() as run:
         outcome = run(Case("eval", "in/half.eval.json", ("numpy-f32",))).outcome
-    assert (outcome.state, told in outcome.message) == (state, True), outcome
+    assert (outcome.state, message in outcome.message) == (state, True), outcome
 
 
 @pytest.mark.parametrize("text", ["", "{", "[]", "{}", "[" * 100000, '"a"'])
@@ -153,9 +153,9 @@ def test_a_back_end_that_dies_fails_one_case(backend: Callable[[str], Backend]) 
 
 
 def test_the_report_is_valid_xml_for_any_message() -> None:
-    said = "a\x00b\x1b[31m <&> ]]> \ud800 \ufffe\nsecond line"
+    message = "a\x00b\x1b[31m <&> ]]> \ud800 \ufffe\nsecond line"
     results = [
-        Ran(Case("compile", "odd \x01 <name>.toml"), Outcome("failed", said, said), 0.25),
+        Ran(Case("compile", "odd \x01 <name>.toml"), Outcome("failed", message, message), 0.25),
         Ran(Case("render", "scene.toml", ("gl",)), Outcome("skipped", "gl is missing"), 0.5),
         Ran(Case("eval", "half.eval.json"), Outcome("passed", "good", "more"), 1.0),
     ]
@@ -175,7 +175,7 @@ def test_an_empty_report() -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("options", "message"),
     [
         (["--backend", "gll"], "did you mean 'gl'"),
         (["--flip", "2"], "not a threshold for FLIP"),
@@ -183,7 +183,7 @@ def test_an_empty_report() -> None:
         (["--junit", "lamp.toml/report.xml"], "cannot write"),
     ],
 )
-def test_wrong_options(options: list[str], told: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_wrong_options(options: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
     write_files(".", {"lamp.toml": MATERIAL})
     assert cli.main(["ci", ".", *options]) == cli.WRONG_INPUT
-    assert told in capsys.readouterr().err
+    assert message in capsys.readouterr().err

@@ -73,11 +73,11 @@ def report(path: str = "report.xml") -> tuple[dict[str, str], dict[str, ET.Eleme
 def test_with_pytest() -> None:
     assert run_pytest()[0] == 0
     brighten()
-    status, told = run_pytest("-k", "looks")
+    status, message = run_pytest("-k", "looks")
     assert status == 1
-    assert "FLIP 0.0" in told and "is more than 0.005" in told and "max" in told
-    assert 'sssgen_golden(SCENE, "lamp")' in told
-    assert "pytest_plugin.py" not in told.replace("-p sssgen.harness.testing.pytest_plugin", "")
+    assert "FLIP 0.0" in message and "is more than 0.005" in message and "max" in message
+    assert 'sssgen_golden(SCENE, "lamp")' in message
+    assert "pytest_plugin.py" not in message.replace("-p sssgen.harness.testing.pytest_plugin", "")
     assert failures() == ["lamp.actual.png", "lamp.difference.png"]
     assert images.read("scenes/sssgen-failures/lamp.difference.png").shape == (72, 96, 3)
     assert run_pytest("-k", "looks", "--sssgen-flip", "0.2")[0] == 0
@@ -87,61 +87,61 @@ def test_with_pytest() -> None:
 
 
 def test_with_the_command() -> None:
-    status, told = run_ci(".", *GL, "--junit", "report.xml")
-    assert status == 0, told
+    status, message = run_ci(".", *GL, "--junit", "report.xml")
+    assert status == 0, message
     suite, cases = report()
     assert (suite["tests"], suite["failures"], suite["skipped"], suite["errors"]) == ("3", "0", "0", "0")
     assert set(cases) == {"compile", "render", "eval"}
     assert all(float(case.attrib["time"]) > 0.0 for case in cases.values())
     brighten()
-    status, told = run_ci("scenes", "--junit", "report.xml")
+    status, message = run_ci("scenes", "--junit", "report.xml")
     assert status == 1
-    assert "FAIL render  scenes/lamp.toml [gl]" in told and "1 failed" in told
+    assert "FAIL render  scenes/lamp.toml [gl]" in message and "1 failed" in message
     failure = report()[1]["render"].find("failure")
     assert failure is not None and failure.text is not None
     assert "FLIP 0.0" in failure.attrib["message"] and "lamp.difference.png" in failure.text
     assert failures() == ["lamp.actual.png", "lamp.difference.png"]
     assert run_ci("scenes", "--flip", "0.2")[0] == 0
     assert run_ci("scenes", "--update")[0] == 0
-    status, told = run_ci("scenes", "--backend", "gl,numpy")
-    assert (status, failures()) == (0, []), told
+    status, message = run_ci("scenes", "--backend", "gl,numpy")
+    assert (status, failures()) == (0, []), message
 
 
 def test_a_missing_back_end_is_skipped_and_fails_in_ci() -> None:
-    status, told = run_ci("scenes", "--junit", "report.xml", **NO_DRIVER)
-    assert status == 1 and "nothing was checked" in told and "libgl1-mesa-dri" in told
+    status, message = run_ci("scenes", "--junit", "report.xml", **NO_DRIVER)
+    assert status == 1 and "nothing was checked" in message and "libgl1-mesa-dri" in message
     skipped = report()[1]["render"].find("skipped")
     assert skipped is not None and "the back end gl is missing" in skipped.attrib["message"]
     assert run_ci("scenes", "--junit", "report.xml", **NO_DRIVER, CI="true")[0] == 1
     assert report()[0]["failures"] == "1"
-    status, told = run_pytest("-rs", "-k", "looks", **NO_DRIVER)
-    assert status == 0 and "1 skipped" in told and "libgl1-mesa-dri" in told
-    status, told = run_pytest("-k", "looks", **NO_DRIVER, CI="true")
-    assert status == 1 and "the back end gl is missing" in told
+    status, message = run_pytest("-rs", "-k", "looks", **NO_DRIVER)
+    assert status == 0 and "1 skipped" in message and "libgl1-mesa-dri" in message
+    status, message = run_pytest("-k", "looks", **NO_DRIVER, CI="true")
+    assert status == 1 and "the back end gl is missing" in message
 
 
 def test_another_size_and_no_golden_picture() -> None:
     images.write_png("scenes/golden/lamp.png", np.zeros((36, 48, 3)))
-    status, told = run_ci("scenes")
-    assert status == 1 and "has 96 × 72 pixels" in told and "has 48 × 36" in told
+    status, message = run_ci("scenes")
+    assert status == 1 and "has 96 × 72 pixels" in message and "has 48 × 36" in message
     assert failures() == ["lamp.actual.png"]
     Path("scenes/golden/lamp.png").unlink()
-    status, told = run_ci("scenes")
-    assert status == 1 and "no golden picture scenes/golden/lamp.png: --update writes it" in told
+    status, message = run_ci("scenes")
+    assert status == 1 and "no golden picture scenes/golden/lamp.png: --update writes it" in message
 
 
 def test_folders_that_cannot_be_written() -> None:
     brighten()
     Path("scenes/sssgen-failures").write_text("a file", encoding="utf-8")
-    status, told = run_ci("scenes")
-    assert status == 1 and "is more than 0.005" in told and "cannot write" in told
+    status, message = run_ci("scenes")
+    assert status == 1 and "is more than 0.005" in message and "cannot write" in message
     shutil.rmtree("scenes/golden")
     Path("scenes/golden").write_text("a file", encoding="utf-8")
-    status, told = run_ci("scenes", "--update")
-    assert status == 1 and "cannot write" in told and "Traceback" not in told
+    status, message = run_ci("scenes", "--update")
+    assert status == 1 and "cannot write" in message and "Traceback" not in message
     assert Path("scenes/golden").read_text(encoding="utf-8") == "a file"
-    status, told = run_ci("scenes", "--junit", "scenes/golden/report.xml")
-    assert status == 2 and "cannot write" in told and "render" not in told
+    status, message = run_ci("scenes", "--junit", "scenes/golden/report.xml")
+    assert status == 2 and "cannot write" in message and "render" not in message
 
 
 def test_the_workflow_runs_the_commands_of_the_example() -> None:

@@ -121,8 +121,8 @@ def test_tint_survives_a_shader_that_is_wrong(compiler: Callable[[str], Compiler
 
 
 def test_every_version_names_a_number() -> None:
-    for found in compilers.available():
-        assert any(character.isdigit() for character in found.version()), found.name
+    for result in compilers.available():
+        assert any(character.isdigit() for character in result.version()), result.name
 
 
 def test_calls_pass_every_kind_of_parameter() -> None:
@@ -150,7 +150,7 @@ def test_unity_accepts_the_samples(file: str, language: str, assert_compiles: Ca
 
 
 @pytest.mark.parametrize(
-    ("file", "right", "wrong", "said"),
+    ("file", "right", "wrong", "reported"),
     [
         ("surface.shader", "base.a;", "base.missing;", "missing"),
         ("surface.shader", "void shade(", "void other(", "no function void shade"),
@@ -170,13 +170,13 @@ def test_unity_accepts_the_samples(file: str, language: str, assert_compiles: Ca
     ],
 )  # fmt: skip
 def test_unity_refuses_wrong_samples(
-    file: str, right: str, wrong: str, said: str, compiler: Callable[[str], Compiler]
+    file: str, right: str, wrong: str, reported: str, compiler: Callable[[str], Compiler]
 ) -> None:
     text = (SAMPLES / file).read_text(encoding="utf-8")
     assert right in text
     language = {"surface.shader": "unity-builtin", "urp.shader": "unity-urp"}.get(file, "unity-shadergraph")
-    found = errors(compiler("unity").check(Source(text.replace(right, wrong), language, name=file)))
-    assert any(said in message.text for message in found), found
+    errors_found = errors(compiler("unity").check(Source(text.replace(right, wrong), language, name=file)))
+    assert any(reported in message.text for message in errors_found), errors_found
 
 
 def test_unity_points_at_the_line_of_the_file(compiler: Callable[[str], Compiler]) -> None:
@@ -220,11 +220,11 @@ def test_sources_know_languages_stages_and_companions() -> None:
         "ice.functions.hlsl": "l", "ice.unity-urp.shader": "u", "ice.unity-urp.hlsl": "p",
         "ice.glsl-330.reflection.json": "{}",
     }  # fmt: skip
-    found = {(s.name, s.language, s.stage): s for s in sources(files)}
-    assert found["sub/ice.glsl-330.frag", "glsl-330", "fragment"].companion == "v"
-    assert found["sub/ice.glsl-330.vert", "glsl-330", "vertex"].companion == "f"
-    assert {stage for name, _, stage in found if name == "ice.hlsl"} == {"vertex", "fragment"}
-    assert ("ice.functions.hlsl", "hlsl", "library") in found
-    assert sum(name == "ice.unity-urp.shader" for name, _, _ in found) == 1
-    assert ("ice.unity-urp.hlsl", "unity-urp", "library") in found
-    assert not any("json" in name for name, _, _ in found)
+    results = {(s.name, s.language, s.stage): s for s in sources(files)}
+    assert results["sub/ice.glsl-330.frag", "glsl-330", "fragment"].companion == "v"
+    assert results["sub/ice.glsl-330.vert", "glsl-330", "vertex"].companion == "f"
+    assert {stage for name, _, stage in results if name == "ice.hlsl"} == {"vertex", "fragment"}
+    assert ("ice.functions.hlsl", "hlsl", "library") in results
+    assert sum(name == "ice.unity-urp.shader" for name, _, _ in results) == 1
+    assert ("ice.unity-urp.hlsl", "unity-urp", "library") in results
+    assert not any("json" in name for name, _, _ in results)

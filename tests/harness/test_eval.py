@@ -59,16 +59,16 @@ def complaint(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
 def test_outputs_of_the_oracle(capsys: pytest.CaptureFixture[str], given: Callable[..., str]) -> None:
     """GDC 2011: pow(dot(V, −(L + N distortion)), power) scale, and ambient, times what comes through."""
     values = {**LOBE, "distortion": 0.2, "power": 2.0, "scale": 3.0, "ambient": 0.1, "attenuation": 1.0}
-    found = answer(capsys, "lobe_gdc2011", "-i", given(values | {"subsurface_color": [1.0, 0.5, 0.25]}))
+    report = answer(capsys, "lobe_gdc2011", "-i", given(values | {"subsurface_color": [1.0, 0.5, 0.25]}))
     lobe = [(light[2] + 0.2) ** 2 * 3.0 for light in LOBE["L"]]
-    wanted = [[(each + 0.1) * 0.5 * part for part in (1.0, 0.5, 0.25)] for each in lobe]
-    np.testing.assert_allclose(found["outputs"]["result"], wanted, rtol=1e-6)
-    assert found["lanes"] == 2 and found["backend"] == "numpy"
+    expected = [[(each + 0.1) * 0.5 * part for part in (1.0, 0.5, 0.25)] for each in lobe]
+    np.testing.assert_allclose(report["outputs"]["result"], expected, rtol=1e-6)
+    assert report["lanes"] == 2 and report["backend"] == "numpy"
 
 
 def test_all_back_ends_agree(capsys: pytest.CaptureFixture[str], given: Callable[..., str]) -> None:
-    found = answer(capsys, "lobe_gdc2011", "-i", given(LOBE), "--backend", "all")
-    rows = {row["name"]: row for row in found["backends"]}
+    report = answer(capsys, "lobe_gdc2011", "-i", given(LOBE), "--backend", "all")
+    rows = {row["name"]: row for row in report["backends"]}
     assert list(rows) == list(backends.BACKENDS)
     for name, row in rows.items():
         assert row.get("missing") or row["deviation"] <= (1e-3 if name.endswith("f16") else 1e-6), row
@@ -84,9 +84,9 @@ def test_precisions(capsys: pytest.CaptureFixture[str], given: Callable[..., str
 
 
 def test_out_parameters_are_outputs(capsys: pytest.CaptureFixture[str], given: Callable[..., str]) -> None:
-    found = answer(capsys, "camera_orbit", "-i", given({"uv": [[0.5, 0.5], [0.25, 1.0]], "time": 0.0}))
-    assert list(found["outputs"]) == ["ray_origin", "ray_direction"]
-    assert found["outputs"]["ray_origin"][0] == pytest.approx([3.0, 2.5, 0.0])
+    report = answer(capsys, "camera_orbit", "-i", given({"uv": [[0.5, 0.5], [0.25, 1.0]], "time": 0.0}))
+    assert list(report["outputs"]) == ["ray_origin", "ray_direction"]
+    assert report["outputs"]["ray_origin"][0] == pytest.approx([3.0, 2.5, 0.0])
 
 
 def test_a_function_of_a_file_for_a_slot(
@@ -99,11 +99,11 @@ def test_a_function_of_a_file_for_a_slot(
         encoding="utf-8",
     )
     file = given({"P": [[0.0, 0.0, 0.0]], "N": [0.0, 1.0, 0.0]})
-    told = complaint(capsys, "thinness_uniform", "-i", file, "--bind", "nowhere=sphere")
-    assert "has no slot 'nowhere'" in told and "body_distance" in told
+    output = complaint(capsys, "thinness_uniform", "-i", file, "--bind", "nowhere=sphere")
+    assert "has no slot 'nowhere'" in output and "body_distance" in output
     for name, wanted in (("full", 0.0), ("empty", 1.0)):
-        found = answer(capsys, "thinness_uniform", "-i", file, "--bind", f"body_distance={own}:{name}", "-b", "numpy")
-        assert found["outputs"]["result"] == [wanted]
+        report = answer(capsys, "thinness_uniform", "-i", file, "--bind", f"body_distance={own}:{name}", "-b", "numpy")
+        assert report["outputs"]["result"] == [wanted]
     assert evaluate(subject(f"{own}:empty"), {"p": [1.0, 2.0, 3.0]}, backends.get("numpy"))["result"] == [12.0]
 
 
@@ -119,8 +119,8 @@ def test_textures_of_all_kinds_of_files(name: str, backend: Callable[[str], Back
     assert technique.uniforms["base_color_texture"].hints
     for file in ("a.png", "a.exr", "a.npy"):
         texture = inputs.texture(str(tmp_path / file), filter="nearest")
-        found = evaluate(technique, {"uv": centres, "base_color_texture": texture}, backend(name))["albedo"]
-        np.testing.assert_allclose(found, rows[::-1].reshape(4, 3), atol=1 / 500)
+        result = evaluate(technique, {"uv": centres, "base_color_texture": texture}, backend(name))["albedo"]
+        np.testing.assert_allclose(result, rows[::-1].reshape(4, 3), atol=1 / 500)
     whole = json.dumps({"uv": centres, "base_color_texture": {"file": "a.png", "filter": "nearest", "wrap": "clamp"}})
     (tmp_path / "in.json").write_text(whole, encoding="utf-8")
     read = inputs.read(str(tmp_path / "in.json"), technique)
@@ -137,20 +137,20 @@ def test_ten_thousand_lanes_are_one_draw(backend: Callable[[str], Backend], monk
     many = {name: rng.normal(size=(10_000, 3)) for name in "VNL"}
     many = {name: v / np.linalg.norm(v, axis=1, keepdims=True) for name, v in many.items()} | {"through": 0.5}
     technique = subject("lobe_gdc2011")
-    found, wanted = (evaluate(technique, many, one) for one in (gpu, backends.get("numpy")))
+    result, wanted = (evaluate(technique, many, one) for one in (gpu, backends.get("numpy")))
     assert len(draws) == 1
-    assert deviation(found, wanted).largest < 1e-5
+    assert deviation(result, wanted).largest < 1e-5
 
 
 # How far apart
 
 
 def test_deviation_is_relative_above_one_and_absolute_below() -> None:
-    wanted = np.array([[100.0, 0.0], [0.5, 0.0], [np.nan, 0.0], [np.inf, 0.0]])
-    got = np.array([[100.1, 0.05], [0.5, 0.001], [np.nan, 0.0], [np.inf, 0.0]])
-    assert errors(got, wanted) == pytest.approx([0.001, 0.001, 0.0, 0.0])
-    assert np.isinf(errors(np.array([[0.0, 0.0]]), wanted[2:3])) and np.isinf(errors(wanted[2:3], wanted[1:2]))
-    worst = deviation({"a": got[:2], "b": np.array([1.0, 9.0])}, {"a": wanted[:2], "b": np.array([1.0, 3.0])})
+    expected = np.array([[100.0, 0.0], [0.5, 0.0], [np.nan, 0.0], [np.inf, 0.0]])
+    actual = np.array([[100.1, 0.05], [0.5, 0.001], [np.nan, 0.0], [np.inf, 0.0]])
+    assert errors(actual, expected) == pytest.approx([0.001, 0.001, 0.0, 0.0])
+    assert np.isinf(errors(np.array([[0.0, 0.0]]), expected[2:3])) and np.isinf(errors(expected[2:3], expected[1:2]))
+    worst = deviation({"a": actual[:2], "b": np.array([1.0, 9.0])}, {"a": expected[:2], "b": np.array([1.0, 3.0])})
     assert (worst.output, worst.lane, worst.largest) == ("b", 1, 2.0)
 
 
@@ -158,7 +158,7 @@ def test_deviation_is_relative_above_one_and_absolute_below() -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "message"),
     [
         ({"V": None}, "needs more inputs: V (vec3)"),
         ({"M": 1.0}, "has no input 'M'"),
@@ -178,14 +178,14 @@ def test_deviation_is_relative_above_one_and_absolute_below() -> None:
     ],
 )
 def test_wrong_inputs(
-    capsys: pytest.CaptureFixture[str], given: Callable[..., str], change: dict[str, Any], said: str
+    capsys: pytest.CaptureFixture[str], given: Callable[..., str], change: dict[str, Any], message: str
 ) -> None:
     values = {name: value for name, value in {**LOBE, **change}.items() if value is not None}
-    assert said in complaint(capsys, "lobe_gdc2011", "-i", given(values))
+    assert message in complaint(capsys, "lobe_gdc2011", "-i", given(values))
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("{", "this is not JSON"),
         ("[1, 2]", "the inputs are no object"),
@@ -193,8 +193,8 @@ def test_wrong_inputs(
         ('{"V": [0, 0, 1],\n "N": [0, 0, 1,]}', ":2:"),
     ],
 )
-def test_wrong_json(capsys: pytest.CaptureFixture[str], given: Callable[..., str], text: str, said: str) -> None:
-    assert said in complaint(capsys, "lobe_gdc2011", "-i", given(text))
+def test_wrong_json(capsys: pytest.CaptureFixture[str], given: Callable[..., str], text: str, message: str) -> None:
+    assert message in complaint(capsys, "lobe_gdc2011", "-i", given(text))
 
 
 def test_wrong_files(capsys: pytest.CaptureFixture[str], given: Callable[..., str], tmp_path: Path) -> None:
@@ -260,14 +260,14 @@ def test_a_refusal_names_the_techniques_line(backend: Callable[[str], Backend]) 
 def test_a_crashed_back_end_is_restarted(backend: Callable[[str], Backend]) -> None:
     backend("gl")
     gpu = isolated("gl")
-    technique, wanted = subject("lobe_gdc2011"), None
+    technique, expected = subject("lobe_gdc2011"), None
     try:
-        wanted = evaluate(technique, LOBE, gpu)["result"]
+        expected = evaluate(technique, LOBE, gpu)["result"]
         assert gpu.process.process is not None
         os.kill(gpu.process.process.pid, signal.SIGSEGV)
         with pytest.raises(SssgenError, match=r"gl: the back end crashed \(SIGSEGV\)"):
             evaluate(technique, LOBE, gpu)
-        assert np.array_equal(evaluate(technique, LOBE, gpu)["result"], wanted)
+        assert np.array_equal(evaluate(technique, LOBE, gpu)["result"], expected)
     finally:
         gpu.close()
 

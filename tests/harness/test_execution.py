@@ -50,8 +50,8 @@ def test_pitfalls(gpu: Backend) -> None:
         textured = any(isinstance(type_, Sampler) for type_ in params)
         args = arguments(function, drawn_beside_textures if textured else drawn_freely, LANES)
         calls.append((case.source, Call(function.name, params, function.result, args)))
-    wrong = differences(gpu, module, calls, textures())
-    assert not wrong, "\n\n".join(wrong)
+    failures = differences(gpu, module, calls, textures())
+    assert not failures, "\n\n".join(failures)
 
 
 # Uniforms
@@ -98,10 +98,10 @@ def uniforms_of(reflection: dict[str, Any]) -> tuple[bytes, dict[str, tuple[floa
         type_ = BY_NAME[base]
         count = components(type_) * int(length or 1)
         kind = kind_of(type_)
-        given = np.arange(1, count + 1) + 10 * number if kind != "bool" else np.arange(1, count + 1) % 2
-        values[uniform["name"]] = tuple(given.tolist())
+        inputs = np.arange(1, count + 1) + 10 * number if kind != "bool" else np.arange(1, count + 1) % 2
+        values[uniform["name"]] = tuple(inputs.tolist())
         if "offset" in uniform:  # std140: a row of 16 bytes for each column and each element
-            rows = given.astype(DTYPES[kind]).astype(np.float32 if kind == "float" else np.int32)
+            rows = inputs.astype(DTYPES[kind]).astype(np.float32 if kind == "float" else np.int32)
             size = type_.size if isinstance(type_, Matrix | Vector) else 1
             for place, row in enumerate(rows.reshape(-1, size)):
                 start = uniform["offset"] // 4 + 4 * place
@@ -113,25 +113,25 @@ def uniforms_of(reflection: dict[str, Any]) -> tuple[bytes, dict[str, tuple[floa
 def test_uniforms_have_the_offsets_of_the_reflection(gpu: Backend, tmp_path: Path) -> None:
     (tmp_path / "layout_probe.sss").write_text(PROBE, encoding="utf-8")
     (tmp_path / "layout.toml").write_text(MATERIAL, encoding="utf-8")
-    made = sssgen.compile(tmp_path / "layout.toml", gpu.target.name)
-    text = next(text for name, text in made.files.items() if not name.endswith((".json", ".vert")))
+    compiled = sssgen.compile(tmp_path / "layout.toml", gpu.target.name)
+    text = next(text for name, text in compiled.files.items() if not name.endswith((".json", ".vert")))
     text = re.sub(r"(?m)^(#version|precision|in|out) .*\n", "", text.partition("void main()")[0])
     uv = np.array(np.meshgrid(np.arange(15), np.arange(2))).reshape(2, -1) + 0.5
-    call = Call(made.reflection["entries"]["color"]["function"], (VEC2,), VEC4, (uv,))
-    block, values = uniforms_of(made.reflection)
+    call = Call(compiled.reflection["entries"]["color"]["function"], (VEC2,), VEC4, (uv,))
+    block, values = uniforms_of(compiled.reflection)
     assert isinstance(gpu, DrawingBackend)
     bare, layout = drawing(gpu.target, Text(text), [call], {})
     blocks = {"Material": Block(block, Place(gpu.target.material_group, 0))} if block else {}
     filled = bare._replace(blocks=blocks, values={name: np.array(value) for name, value in values.items()})
-    (got,) = results([call], layout, gpu.draw(filled))
+    (actual,) = results([call], layout, gpu.draw(filled))
 
     names: dict[str, Any] = {}
     exec(transpiled(load_file(tmp_path / "layout_probe.sss", "probe"), "numpy"), names)
-    wanted = names["layout_probe"](uv, **{
+    expected = names["layout_probe"](uv, **{
         name: in_layout(BY_NAME[type_.partition("[")[0]], "[" in type_, values[name])
-        for name, type_ in ((uniform["name"], uniform["type"]) for uniform in made.reflection["uniforms"])
+        for name, type_ in ((uniform["name"], uniform["type"]) for uniform in compiled.reflection["uniforms"])
     })  # fmt: skip
-    np.testing.assert_allclose(got[:3], np.broadcast_to(wanted, (3, 30)), rtol=1e-6)
+    np.testing.assert_allclose(actual[:3], np.broadcast_to(expected, (3, 30)), rtol=1e-6)
 
 
 def in_layout(type_: Type, is_array: bool, numbers: tuple[float, ...]) -> Array:

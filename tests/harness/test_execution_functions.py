@@ -53,8 +53,8 @@ def random_module() -> tuple[Module, tuple[Function, ...]]:
         functions.append(source[source.index("float f(") :].replace("float f(", f"float random_{seed}(", 1))
     module = load_text("\n".join([HELPERS, *functions]), "random")
     random = [function for function in module.functions if function.name.startswith("random_")]
-    made = [probe for function in random for _, probe in probes_of(function)]
-    return module._replace(functions=(*module.functions, *made)), tuple(made)
+    result = [probe for function in random for _, probe in probes_of(function)]
+    return module._replace(functions=(*module.functions, *result)), tuple(result)
 
 
 def drawn_exactly(param: Param, rng: np.random.Generator, lanes: int) -> Array:
@@ -68,5 +68,5 @@ def test_random_programs(gpu: Backend) -> None:
     """Control flow that differs from lane to lane, out parameters, choices, loops."""
     module, made = random_module()
     calls = [called(function.name, function, drawn_exactly, LANES) for function in made]
-    wrong = differences(gpu, module, calls, {}, "float32", 1e-4)
-    assert not wrong, "\n\n".join([f"{len(wrong)} of {len(calls)}", *wrong])
+    failures = differences(gpu, module, calls, {}, "float32", 1e-4)
+    assert not failures, "\n\n".join([f"{len(failures)} of {len(calls)}", *failures])

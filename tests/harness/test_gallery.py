@@ -67,15 +67,15 @@ def test_light_comes_through() -> None:
 
 def test_the_textures_equal_the_output_of_their_script(tmp_path: Path) -> None:
     script = runpy.run_path(str(ROOT / "examples" / "textures.py"))
-    kept = set((ROOT / "examples").glob("*/textures/*"))
+    cached = set((ROOT / "examples").glob("*/textures/*"))
     for example in script["EXAMPLES"]:
         for name, picture in example().items():
             file = ROOT / "examples" / example.__name__ / "textures" / f"{name}.png"
-            kept.remove(file)
+            cached.remove(file)
             stored = _picture(file)[::-1]
-            wanted = np.clip(picture, 0.0, 1.0).reshape(stored.shape)
-            assert np.abs(stored - wanted).max() < 1.5 / 255.0, file  # another NumPy rounds another way
-    assert not kept
+            expected = np.clip(picture, 0.0, 1.0).reshape(stored.shape)
+            assert np.abs(stored - expected).max() < 1.5 / 255.0, file  # another NumPy rounds another way
+    assert not cached
     script["write"](tmp_path / "new" / "step.png", np.array([[0.0, 0.0], [1.0, 1.0]]))
     assert _picture(tmp_path / "new" / "step.png")[:, 0, 0].tolist() == [1.0, 0.0]  # row 0 is the lowest
 
@@ -115,8 +115,8 @@ def test_the_gallery_is_current(backend: Callable[[str], Backend]) -> None:
     """A scene that was changed is drawn again: its small picture is the gallery's, made small."""
     backend("gl")
     for name in examples():
-        kept = images.decode_srgb(_picture(ROOT / "docs" / "gallery" / f"{name}.png"))
-        small = kept.reshape(48, 10, 64, 10, 3).mean(axis=(1, 3))
+        stored = images.decode_srgb(_picture(ROOT / "docs" / "gallery" / f"{name}.png"))
+        small = stored.reshape(48, 10, 64, 10, 3).mean(axis=(1, 3))
         # of other samples, so that edges may be off, and the mean may not
         far = np.abs(images.encode_srgb(small) - drawn(name, "gl", 4).encoded)
         assert far.mean() < 0.006, name

@@ -44,13 +44,13 @@ def hazards(tmp_path: Path) -> str:
 
 def test_plain_functions_have_no_guard(hazards: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["lint", hazards]) == 1
-    told = capsys.readouterr().out
-    assert "warning: /: a division by 0\n" in told
-    assert f"{hazards}:6:12" in told
-    assert " 6 |     return a / b;\n   |            ^^^^^" in told
-    assert "found: a in -1e+06..1e+06, b in -1e+06..1e+06" in told
-    assert "write: max(abs(b), 1e-20)" in told
-    assert told.endswith("4 operations with a domain: 2 proven safe, 2 may fail, 0 unknown\n")
+    output = capsys.readouterr().out
+    assert "warning: /: a division by 0\n" in output
+    assert f"{hazards}:6:12" in output
+    assert " 6 |     return a / b;\n   |            ^^^^^" in output
+    assert "found: a in -1e+06..1e+06, b in -1e+06..1e+06" in output
+    assert "write: max(abs(b), 1e-20)" in output
+    assert output.endswith("4 operations with a domain: 2 proven safe, 2 may fail, 0 unknown\n")
 
 
 def test_proven_functions_pass(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -78,19 +78,19 @@ def test_json_for_editors(hazards: str, capsys: pytest.CaptureFixture[str]) -> N
     assert main(["lint", "--json", hazards]) == 1
     data = json.loads(capsys.readouterr().out)
     assert not data["ok"]
-    found = {one["operation"]: one for one in data["results"][0]["findings"] if one["verdict"] == MAY_FAIL}
-    assert found["/"]["line"] == 6
-    assert found["/"]["severity"] == "warning"
-    assert found["normalize"]["example"].startswith("echo")
-    assert "inversesqrt" in found["normalize"]["help"]
+    results = {one["operation"]: one for one in data["results"][0]["findings"] if one["verdict"] == MAY_FAIL}
+    assert results["/"]["line"] == 6
+    assert results["/"]["severity"] == "warning"
+    assert results["normalize"]["example"].startswith("echo")
+    assert "inversesqrt" in results["normalize"]["help"]
 
 
 def test_examples_are_optional(hazards: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["lint", "--no-examples", hazards]) == 1
-    told = capsys.readouterr().out
-    assert "a division by 0 (not proven)" in told
-    assert "example:" not in told
-    assert "2 proven safe, 0 may fail, 2 not proven" in told
+    output = capsys.readouterr().out
+    assert "a division by 0 (not proven)" in output
+    assert "example:" not in output
+    assert "2 proven safe, 0 may fail, 2 not proven" in output
 
 
 def test_a_material_is_analysed_as_a_whole() -> None:
@@ -125,7 +125,7 @@ technique = "lobe_normalized"
 
 
 @pytest.mark.parametrize(
-    ("name", "said"),
+    ("name", "message"),
     [
         ("lobe_normalised", "did you mean 'lobe_normalized'?"),
         ("nothing.glsl", "no such file"),
@@ -133,8 +133,8 @@ technique = "lobe_normalized"
         ("nothing.toml", "no such file"),
     ],
 )
-def test_wrong_names(name: str, said: str) -> None:
-    with pytest.raises(SssgenError, match=re.escape(said)):
+def test_wrong_names(name: str, message: str) -> None:
+    with pytest.raises(SssgenError, match=re.escape(message)):
         lint(name)
 
 

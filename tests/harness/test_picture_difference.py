@@ -14,28 +14,28 @@ GRAY = np.full((20, 30, 3), 0.5)
 
 
 def test_equal_pictures_have_no_difference() -> None:
-    found = compare(GRAY, GRAY)
-    assert found[:4] == (0.0, 0.0, 0.0, 0.0)
-    assert found.picture.shape == GRAY.shape
-    assert found.picture.max() < 0.02  # magma begins almost black
+    difference = compare(GRAY, GRAY)
+    assert difference[:4] == (0.0, 0.0, 0.0, 0.0)
+    assert difference.picture.shape == GRAY.shape
+    assert difference.picture.max() < 0.02  # magma begins almost black
 
 
 def test_black_and_white_differ_most() -> None:
-    found = compare(np.ones((20, 30, 3)), np.zeros((20, 30, 3)))
-    assert found.flip == pytest.approx(0.97, abs=0.01)
-    assert found.relmse == pytest.approx(100.0)
-    assert found.p99 == found.max == pytest.approx(255.0)
-    assert found.picture.min() > 0.5  # and ends almost white
+    difference = compare(np.ones((20, 30, 3)), np.zeros((20, 30, 3)))
+    assert difference.flip == pytest.approx(0.97, abs=0.01)
+    assert difference.relmse == pytest.approx(100.0)
+    assert difference.p99 == difference.max == pytest.approx(255.0)
+    assert difference.picture.min() > 0.5  # and ends almost white
 
 
 def test_one_pixel_is_the_largest_difference_but_not_the_99th_part() -> None:
     other = GRAY.copy()
     other[3, 4, 1] += 10 / 255
-    found = compare(other, GRAY)
-    assert found.max == pytest.approx(10.0)
-    assert found.p99 == 0.0
-    assert found.relmse == pytest.approx((10 / 255) ** 2 / 0.26 / GRAY.size)
-    assert 0.0 < found.flip < 0.05
+    difference = compare(other, GRAY)
+    assert difference.max == pytest.approx(10.0)
+    assert difference.p99 == 0.0
+    assert difference.relmse == pytest.approx((10 / 255) ** 2 / 0.26 / GRAY.size)
+    assert 0.0 < difference.flip < 0.05
 
 
 def test_the_second_picture_is_the_reference() -> None:

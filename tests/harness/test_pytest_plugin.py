@@ -79,7 +79,7 @@ def test_it(sssgen_compile, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("call", "told"),
+    ("call", "message"),
     [
         ("sssgen_compile('lamp.toml', 'wgls')", "*did you mean 'wgsl'*"),
         ("sssgen_compile('none.toml')", "*none.toml*"),
@@ -93,11 +93,11 @@ def test_it(sssgen_compile, monkeypatch):
         ("sssgen_golden('scene.toml', 'lamp', flip=2.0)", "*2.0 is not a threshold*"),
     ],
 )
-def test_wrong_input_is_reported_at_the_test_s_line(run: Run, call: str, told: str) -> None:
+def test_wrong_input_is_reported_at_the_test_s_line(run: Run, call: str, message: str) -> None:
     fixture = call.partition("(")[0]
     done = run(f"def test_it({fixture}):\n    {call}\n")
     done.assert_outcomes(failed=1)
-    done.stdout.fnmatch_lines([f">*{call.replace('[', '[[]')}", told])
+    done.stdout.fnmatch_lines([f">*{call.replace('[', '[[]')}", message])
     done.stdout.no_fnmatch_line("*harness*.py:*")
 
 
@@ -175,22 +175,22 @@ def test_each_back_end(run: Run, pytester: pytest.Pytester) -> None:
     done.stdout.fnmatch_lines_random(["*test_looks[[]gl]*", "*test_looks[[]numpy]*", "*test_none PASSED*"])
     (pytester.path / "golden" / "lamp.png").unlink()
     run(test, *options).assert_outcomes(passed=3, failed=2)
-    kept = sorted(path.name for path in (pytester.path / "sssgen-failures").iterdir())
-    assert kept == ["lamp.gl.actual.png", "lamp.numpy.actual.png"]
+    stored = sorted(path.name for path in (pytester.path / "sssgen-failures").iterdir())
+    assert stored == ["lamp.gl.actual.png", "lamp.numpy.actual.png"]
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("options", "message"),
     [
         (("--sssgen-backend", "gll"), "did you mean 'gl'"),
         (("--sssgen-flip", "2"), "from 0"),
         (("--sssgen-flip", "nan"), "from 0"),
     ],
 )
-def test_wrong_options(run: Run, options: tuple[str, ...], told: str) -> None:
+def test_wrong_options(run: Run, options: tuple[str, ...], message: str) -> None:
     done = run("def test_none():\n    pass\n", *options)
     assert done.ret == pytest.ExitCode.USAGE_ERROR
-    assert told in "\n".join(done.errlines)
+    assert message in "\n".join(done.errlines)
 
 
 def test_the_fixtures_are_documented(run: Run) -> None:

@@ -107,10 +107,10 @@ def test_the_ball_is_where_the_camera_sees_it(backend: Callable[[str], Backend],
     light = "[[light]]\ndirection = [0.0, 1.0, 0.0]\ncolor = [1.0, 1.0, 1.0]\n"
     path = scene(f'material = "resin_inlay"\nambient = [0.1, 0.1, 0.1]\n{where}{light}')
     for name in ("gl", "webgpu", "numpy"):
-        found = render(load(path), backend(name), (64, 48))
-        rows, columns = np.nonzero(found.covered > 0.5)
+        result = render(load(path), backend(name), (64, 48))
+        rows, columns = np.nonzero(result.covered > 0.5)
         assert columns.mean() > 40 and rows.mean() < 18  # row 0 is at the top
-        light_at = found.linear.sum(axis=-1) * (found.covered > 0.99)
+        light_at = result.linear.sum(axis=-1) * (result.covered > 0.99)
         top, bottom = light_at[rows.min() + 2, int(columns.mean())], light_at[rows.max() - 2, int(columns.mean())]
         assert top > 2.0 * bottom
 
@@ -140,10 +140,10 @@ def test_transmitted_light_is_a_factor_on_each_lights_color(
 def test_background_exposure_and_averaging(scene: Callable[..., str]) -> None:
     far = '[geometry]\nkind = "ball"\nradius = 0.01\nposition = [9.0, 0.0, 0.0]\n'
     path = scene(f'material = "resin_inlay"\nbackground = [[0.0, 0.0, 0.0], [1.0, 0.5, 0.0]]\nexposure = 4.0\n{far}')
-    found = render(load(path), backends.get("numpy"), (4, 4))
-    np.testing.assert_allclose(found.linear[:, 0, 0], [0.875, 0.625, 0.375, 0.125])
-    np.testing.assert_allclose(found.linear[..., 1], 0.5 * found.linear[..., 0])
-    assert found.covered.max() == 0.0
+    result = render(load(path), backends.get("numpy"), (4, 4))
+    np.testing.assert_allclose(result.linear[:, 0, 0], [0.875, 0.625, 0.375, 0.125])
+    np.testing.assert_allclose(result.linear[..., 1], 0.5 * result.linear[..., 0])
+    assert result.covered.max() == 0.0
 
 
 def test_dicing_places_a_vertex_at_each_pixels_centre() -> None:
@@ -173,15 +173,15 @@ def test_render_and_compare(
     path = scene(f'material = "paper_lantern"\n{BALL}{LAMP}')
     a, b, c, exr = (str(tmp_path / name) for name in ("a.png", "b.png", "c.png", "d.exr"))
     assert main(["render", path, "-o", a, "--size", "64x48", "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["size"] == [64, 48] and told["backend"] == "gl" and "OpenGL" in told["device"]
+    report = json.loads(capsys.readouterr().out)
+    assert report["size"] == [64, 48] and report["backend"] == "gl" and "OpenGL" in report["device"]
     assert main(["render", path, "-o", b, "--size", "64x48", "--backend", "webgpu"]) == 0
     assert main(["render", path, "-o", exr, "--size", "64x48"]) == 0
     assert images.read(a).shape == (48, 64, 3) and images.read(exr).dtype == np.float64
     capsys.readouterr()
     assert main(["render", "--compare", a, b, "-o", c, "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert found["flip"] < 1e-3 and found["max"] <= 1.0 and images.read(c).shape == (48, 64, 3)
+    result = json.loads(capsys.readouterr().out)
+    assert result["flip"] < 1e-3 and result["max"] <= 1.0 and images.read(c).shape == (48, 64, 3)
     assert main(["render", "--compare", a, exr]) == 0
     assert "FLIP   0.00" in capsys.readouterr().out
 
@@ -197,7 +197,7 @@ def test_time_changes_an_animated_picture(scene: Callable[..., str], tmp_path: P
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "message"),
     [
         ("[parameters]\npower = 'x'\n", "'power' takes"),
         ("[parameters]\npower = [1, 2]\n", "'power' takes"),
@@ -209,18 +209,18 @@ def test_time_changes_an_animated_picture(scene: Callable[..., str], tmp_path: P
     ],
 )
 def test_a_scene_that_does_not_fit_its_material(
-    capsys: pytest.CaptureFixture[str], scene: Callable[..., str], tmp_path: Path, change: str, said: str
+    capsys: pytest.CaptureFixture[str], scene: Callable[..., str], tmp_path: Path, change: str, message: str
 ) -> None:
     np.save(tmp_path / "volume.npy", np.ones((2, 2, 2, 1)))
     images.write_png(tmp_path / "b.png", np.ones((2, 2, 3)))
     path = scene(f'material = "paper_lantern"\n{BALL}{LAMP}{change}')
     assert main(["render", path, "-o", str(tmp_path / "x.png"), "--backend", "numpy"]) == 2
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
     assert not (tmp_path / "x.png").exists()
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         (["SCENE", "--size", "640"], "is no size"),
         (["SCENE", "--size", "0x10"], "is no size"),
@@ -239,11 +239,11 @@ def test_a_scene_that_does_not_fit_its_material(
     ],
 )
 def test_wrong_arguments(
-    capsys: pytest.CaptureFixture[str], scene: Callable[..., str], arguments: list[str], said: str
+    capsys: pytest.CaptureFixture[str], scene: Callable[..., str], arguments: list[str], message: str
 ) -> None:
     path = scene(f'material = "paper_lantern"\n{BALL}')
     assert main(["render", *[path if one == "SCENE" else one for one in arguments]]) == 2
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 def test_outputs_that_cannot_be_written(

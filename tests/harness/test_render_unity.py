@@ -70,9 +70,9 @@ LIT_FROM_BEHIND = {
 
 @pytest.fixture(params=UNITY)
 def unity(request: pytest.FixtureRequest, backend: Callable[[str], Backend]) -> UnityHLSL:
-    found = backend(request.param)
-    assert isinstance(found, UnityHLSL)
-    return found
+    result = backend(request.param)
+    assert isinstance(result, UnityHLSL)
+    return result
 
 
 @pytest.fixture
@@ -101,9 +101,9 @@ def test_a_raymarched_scene(unity: UnityHLSL) -> None:
     """The same picture as in GLSL, which encodes it with a gamma of 2.2; in Unity the engine encodes."""
     shown = scene('material = "jelly_cubes"\nsamples = 1\ntime = 1.0\n[parameters]\nglow_strength = 2.0\n')
     encoded = drawn(shown, backends.get("gl")).encoded
-    found = images.encode_srgb(encoded**2.2)
-    assert 255.0 * np.abs(drawn(shown, unity).encoded - found).max() < 0.5
-    assert found.std() > 0.1
+    result = images.encode_srgb(encoded**2.2)
+    assert 255.0 * np.abs(drawn(shown, unity).encoded - result).max() < 0.5
+    assert result.std() > 0.1
 
 
 @pytest.mark.parametrize("alpha_mode", ["opaque", "mask", "blend"])
@@ -117,9 +117,9 @@ def test_every_input_of_the_engine(unity: UnityHLSL, alpha_mode: str, tmp_path: 
     ambient, lights = ("[0, 0, 0]", "") if unity.unity.real else ("[0.2, 0.3, 0.4]", LAMP)
     text = f'material = "probe.toml"\nsamples = 2\ntime = 3.0\nambient = {ambient}\n{BALL}{lights}{values}'
     shown = scene(text + '[textures]\nmarks = "marks.png"\n', tmp_path)
-    found, oracle = drawn(shown, unity), drawn(shown, backends.get("numpy"))
-    assert apart(found, oracle) < 0.3
-    np.testing.assert_allclose(found.covered, oracle.covered)
+    result, oracle = drawn(shown, unity), drawn(shown, backends.get("numpy"))
+    assert apart(result, oracle) < 0.3
+    np.testing.assert_allclose(result.covered, oracle.covered)
 
 
 @pytest.mark.parametrize("name", ["paper_lantern", "ice", "resin_inlay"])
@@ -154,19 +154,19 @@ def test_transmitted_light_is_equal_in_glsl(unity: UnityHLSL, lights: str) -> No
 def test_ambient_light(unity: UnityHLSL) -> None:
     """Unity takes the 4 percent away that a surface mirrors."""
     shown = scene(f'material = "paper_lantern"\nsamples = 1\nambient = [0.2, 0.4, 0.6]\n{BALL}')
-    found, gl = drawn(shown, unity), drawn(shown, backends.get("gl"))
+    result, gl = drawn(shown, unity), drawn(shown, backends.get("gl"))
     on = gl.covered > 0.99
     expected = 0.96 if unity.unity.real else 1.0
-    np.testing.assert_allclose(found.linear[on], expected * gl.linear[on], rtol=2e-3)
+    np.testing.assert_allclose(result.linear[on], expected * gl.linear[on], rtol=2e-3)
     assert gl.linear[on].min() > 0.1
 
 
 def test_a_lantern_looks_like_itself(unity: UnityHLSL) -> None:
     """With Unity's own lighting too: two lights, ambient, normal map, thickness map."""
     shown = example("paper_lantern")
-    found, gl = drawn(shown, unity).encoded, drawn(shown, backends.get("gl")).encoded
-    assert np.corrcoef(found.ravel(), gl.ravel())[0, 1] > 0.99
-    assert found.mean() == pytest.approx(gl.mean(), rel=0.02)
+    result, gl = drawn(shown, unity).encoded, drawn(shown, backends.get("gl")).encoded
+    assert np.corrcoef(result.ravel(), gl.ravel())[0, 1] > 0.99
+    assert result.mean() == pytest.approx(gl.mean(), rel=0.02)
 
 
 @pytest.mark.parametrize("name", UNITY)
@@ -198,9 +198,9 @@ def test_in_a_process_of_its_own(unity: UnityHLSL, backend: Callable[[str], Back
     scene = parse_scene(path.read_text(encoding="utf-8"), str(path))
     other = isolated(unity.name)
     try:
-        there = render(scene, other, SIZE)
+        moved = render(scene, other, SIZE)
     finally:
         other.close()
     here = render(scene, unity, SIZE)
-    assert np.array_equal(there.linear, here.linear)
+    assert np.array_equal(moved.linear, here.linear)
     assert apart(here, render(scene, backends.get("gl"), SIZE)) < (10.0 if unity.unity.real else 0.3)

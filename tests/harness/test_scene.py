@@ -113,11 +113,11 @@ def test_the_kinds_of_geometry(lines: str, expected: object) -> None:
 
 def test_a_distance_texture_has_the_technique_s_convention() -> None:
     text = '[geometry]\nkind = "ball"\nposition = [9, 9, 9]\n[textures]\n'
-    made = read(HEAD + text + "d = { distance_of_geometry = [8, 6, 4], box_max = [1, 1, 2], range = 0.7 }\n")
-    texture = made.textures["d"]
+    result = read(HEAD + text + "d = { distance_of_geometry = [8, 6, 4], box_max = [1, 1, 2], range = 0.7 }\n")
+    texture = result.textures["d"]
     assert isinstance(texture, DistanceTexture)
-    assert made.geometry is not None
-    values = texture.values(made.geometry)
+    assert result.geometry is not None
+    values = texture.values(result.geometry)
     assert values.shape == (4, 6, 8, 1)
     z, y, x = np.array([1.5, 2.5, 3.5]) / [4, 6, 8] * [3.0, 2.0, 2.0] - 1.0
     expected = np.clip(0.5 + (np.sqrt(x * x + y * y + z * z) - 1.0) / 1.4, 0.0, 1.0)
@@ -180,8 +180,8 @@ def test_a_distance_texture_has_the_technique_s_convention() -> None:
 def test_errors_are_reported_at_their_place(text: str, message: str, line: int) -> None:
     error = wrong(text)
     assert message in str(error)
-    said = next(one for one in error.diagnostics if message in f"{one.message} {one.hint}")
-    assert (said.span.file, said.span.line) == ("scene.toml", line)
+    reported = next(one for one in error.diagnostics if message in f"{one.message} {one.hint}")
+    assert (reported.span.file, reported.span.line) == ("scene.toml", line)
 
 
 def test_many_errors_at_once() -> None:

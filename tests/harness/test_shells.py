@@ -222,8 +222,8 @@ def test_hostile_ports_of_a_graph(backend: Callable[[str], Backend], made: Calla
     call = f"float4 color; Unlit_float({', '.join('v' for _ in ports)}, color); return color.rgb;"
     text += f"\nfloat3 called(float3 v) {{ {call} }}\n"
     lanes = np.array([[0.0, 0.0, 0.3], [0.0, 1e-25, 0.4], [0.0, 0.0, 0.5]])
-    (found,) = machine.run(Text(text), [Call("called", (VEC3,), VEC3, (lanes,))])
-    assert_numbers(found)
+    (result,) = machine.run(Text(text), [Call("called", (VEC3,), VEC3, (lanes,))])
+    assert_numbers(result)
 
 
 NORMALISING = re.compile(

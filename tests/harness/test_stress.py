@@ -48,16 +48,16 @@ transmittance planted(float a, vec3 b, thickness d)
 @pytest.fixture(scope="module")
 def machines(backend: Callable[[str], Backend]) -> Iterator[Callable[[str], Machines]]:
     """`machines("gl")`: that back end, kept for the module; a skip (in CI: a failure) where it is missing."""
-    made: dict[str, Machines] = {}
+    result: dict[str, Machines] = {}
 
     def get(name: str) -> Machines:
         backend(name)
-        if name not in made:
-            made[name] = Machines([name])
-        return made[name]
+        if name not in result:
+            result[name] = Machines([name])
+        return result[name]
 
     yield get
-    for one in made.values():
+    for one in result.values():
         one.__exit__(None, None, None)
 
 
@@ -73,9 +73,9 @@ def planted(tmp_path: Path) -> Callable[..., str]:
     return write
 
 
-def told(specimen: Specimen, found: Machines, settings: Settings) -> list[Fault]:
+def told(specimen: Specimen, result: Machines, settings: Settings) -> list[Fault]:
     """The faults that count."""
-    (column,) = stress(specimen, found, settings).columns
+    (column,) = stress(specimen, result, settings).columns
     assert not column.error
     return [fault for fault in column.faults if fault.counts]
 
@@ -87,13 +87,14 @@ def told(specimen: Specimen, found: Machines, settings: Settings) -> list[Fault]
 @pytest.mark.parametrize("row", ROWS)
 def test_dangerous_row(row: str, name: str, machines: Callable[[str], Machines]) -> None:
     """Every technique of the library that the row concerns."""
-    found = machines(name)
+    result = machines(name)
     faults, concerned = [], 0
     for specimen in specimens([]):
         if any(True for _ in dangerous.trials(specimen, (row,))):
             concerned += 1
             faults += [
-                (specimen.title, *fault[:3], fault.command) for fault in told(specimen, found, Settings(1, rows=(row,)))
+                (specimen.title, *fault[:3], fault.command)
+                for fault in told(specimen, result, Settings(1, rows=(row,)))
             ]
     assert concerned
     assert not faults
@@ -163,8 +164,8 @@ def test_the_printed_line_shows_the_fault(
     text = (
         "/**\n * Light below 0.\n * role: translucency\n */\nvec3 planted(float a) { return vec3(-1.5 - 0.0 * a); }\n"
     )
-    found = told(technique(planted(text)), machines("numpy-f32"), Settings(100))
-    fault = next(fault for fault in found if fault.kind == "out of range")
+    result = told(technique(planted(text)), machines("numpy-f32"), Settings(100))
+    fault = next(fault for fault in result if fault.kind == "out of range")
     before, _, command = fault.command.partition(" | sssgen ")
     (tmp_path / "in.json").write_text(shlex.split(before)[1], encoding="utf-8")
     assert main([str(tmp_path / "in.json") if one == "-" else one for one in shlex.split(command)]) == 0
@@ -189,9 +190,9 @@ def test_other_planted_faults(
 def test_a_jump_of_the_formula_is_reported(planted: Callable[..., str]) -> None:
     head, _, _ = PLANTED.partition("    return")
     jumping = technique(planted(f"{head}    return transmittance(0.25 + 0.5 * step(0.7, a) + 0.0 * d * b.x);\n}}\n"))
-    (found,) = jumps.of_model(jumping, exact(jumping, Settings(1)))
-    assert found.input == "a" and found.size == pytest.approx(0.5, rel=1e-3)
-    assert float(found.inputs.values["a"].item()) == pytest.approx(0.7, abs=1e-3)
+    (result,) = jumps.of_model(jumping, exact(jumping, Settings(1)))
+    assert result.input == "a" and result.size == pytest.approx(0.5, rel=1e-3)
+    assert float(result.inputs.values["a"].item()) == pytest.approx(0.7, abs=1e-3)
     steep = technique(planted(f"{head}    return transmittance(clamp(a * 5.0 + 0.0 * d * b.x, 0.0, 1.0));\n}}\n"))
     assert not jumps.of_model(steep, exact(steep, Settings(1)))
 
@@ -214,10 +215,10 @@ def test_a_back_end_with_wrong_results(monkeypatch: pytest.MonkeyPatch) -> None:
     off = Machines(["numpy-f32"])
     right = off.here["numpy-f32"]
     off.here["numpy-f32"] = wrong = copy.copy(right)
-    monkeypatch.setattr(wrong, "run", lambda *given: [value + 1e-3 for value in right.run(*given)])
+    monkeypatch.setattr(wrong, "run", lambda *inputs: [value + 1e-3 for value in right.run(*inputs)])
     (column,) = stress(technique("beer_lambert"), off, Settings(100)).columns
-    found = {(fault.trial, fault.counts) for fault in column.faults if fault.kind == "disagreement"}
-    assert {("thick-matter", True), (RANDOM, False)} <= found and column.deviation == pytest.approx(1e-3, rel=0.01)
+    results = {(fault.trial, fault.counts) for fault in column.faults if fault.kind == "disagreement"}
+    assert {("thick-matter", True), (RANDOM, False)} <= results and column.deviation == pytest.approx(1e-3, rel=0.01)
 
 
 def test_a_back_end_may_not_jump_on_a_path() -> None:
@@ -276,9 +277,9 @@ def test_techniques_that_are_checked_for_energy() -> None:
 
 
 def test_materials_are_stressed_stage_by_stage() -> None:
-    found = {one.title: one for one in specimens(["jelly_cubes"])}
-    assert found["jelly_cubes: thinness_traced"].bind == {"body_distance": "jelly_cubes"}
-    fixed = found["jelly_cubes: gamma"]
+    results = {one.title: one for one in specimens(["jelly_cubes"])}
+    assert results["jelly_cubes: thinness_traced"].bind == {"body_distance": "jelly_cubes"}
+    fixed = results["jelly_cubes: gamma"]
     assert fixed.settings["display_gamma"] == pytest.approx((2.2,))
     trial = next(boundaries.trials(fixed, 0))
     assert trial.inputs.values["display_gamma"] == pytest.approx(2.2)
@@ -309,7 +310,7 @@ def answer(capsys: pytest.CaptureFixture[str], *arguments: str, status: int) -> 
 def test_the_report_in_json(capsys: pytest.CaptureFixture[str], planted: Callable[..., str], tmp_path: Path) -> None:
     file = planted(PLANTED.replace("1.0e-4", "2.0"))
     written = tmp_path / "report.json"
-    found = answer(
+    report = answer(
         capsys,
         file,
         "-b",
@@ -324,12 +325,12 @@ def test_the_report_in_json(capsys: pytest.CaptureFixture[str], planted: Callabl
         str(written),
         status=1,
     )
-    assert json.loads(written.read_text(encoding="utf-8")) == found
-    assert {key: found[key] for key in ("ok", "samples", "seed", "precision")} == {
+    assert json.loads(written.read_text(encoding="utf-8")) == report
+    assert {key: report[key] for key in ("ok", "samples", "seed", "precision")} == {
         "ok": False, "samples": 1000, "seed": 3, "precision": "f32",
     }  # fmt: skip
-    assert [row["name"] for row in found["rows"]] == [row.name for row in dangerous.ROWS]
-    (one,) = found["techniques"]
+    assert [row["name"] for row in report["rows"]] == [row.name for row in dangerous.ROWS]
+    (one,) = report["techniques"]
     assert (one["name"], one["role"], one["baseline"], one["ok"]) == (file, "conversion", False, False)
     (column,) = one["backends"]
     assert column["name"] == "numpy-f32" and column["evaluations"] > 1000 and column["error"] == ""
@@ -355,7 +356,7 @@ def test_the_library_without_baselines() -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         (["lobe_normalised"], "did you mean 'lobe_normalized'"),
         (["beer_lambert", "--row", "pow"], "unknown row 'pow'"),
@@ -369,9 +370,9 @@ def test_the_library_without_baselines() -> None:
         (["beer_lambert", "-o", f"{__file__}/report.md"], "cannot write"),
     ],
 )
-def test_wrong_arguments(arguments: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_wrong_arguments(arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["stress", *arguments]) == 2
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 def test_a_missing_back_end_is_reported() -> None:
@@ -394,16 +395,16 @@ def test_an_interrupted_run_leaves_no_report(tmp_path: Path) -> None:
     try:
         wait_until_busy(process, 4.0)
         process.send_signal(signal.SIGINT)
-        _, said = process.communicate(timeout=HANG)
+        _, message = process.communicate(timeout=HANG)
     finally:
         process.kill()
-    assert process.returncode == 130 and b"interrupted" in said
+    assert process.returncode == 130 and b"interrupted" in message
     assert not list(tmp_path.iterdir())
 
 
 def test_half_precision_has_its_own_limits(capsys: pytest.CaptureFixture[str]) -> None:
-    found = answer(capsys, "beer_lambert", "--precision", "f16", "-b", "numpy", "--samples", "1000", status=0)
-    assert found["precision"] == "f16" and found["backends"][0]["name"] == "numpy-f16"
+    report = answer(capsys, "beer_lambert", "--precision", "f16", "-b", "numpy", "--samples", "1000", status=0)
+    assert report["precision"] == "f16" and report["backends"][0]["name"] == "numpy-f16"
 
 
 @pytest.mark.slow

@@ -61,13 +61,13 @@ def misread(*mistakes: tuple[str, str]) -> Callable[[str, str], Module]:
 
 
 def test_every_function_runs_in_every_text() -> None:
-    found = rows(FUNCTIONS)
-    assert list(found) == [
+    results = rows(FUNCTIONS)
+    assert list(results) == [
         "lit(Lamp,vec3)", "twice(vec2)", "twice(float)", "split(float,float,vec2)", "turned(mat3,vec3)",
         "seen(sampler2D,vec2)", "weighted(float[3])", "both(bvec2)", "sum_below(int)", "slope(vec2)",
         "shown_where(float)",
     ]  # fmt: skip
-    for row in found.values():
+    for row in results.values():
         assert row.ok, row
         assert row.comparisons.keys() == BACKENDS.keys()
         assert (row.lanes, row.undefined) == (SAMPLES, 0)
@@ -90,9 +90,9 @@ MISTAKES = [
 
 
 def test_errors_of_the_front_end_are_found_in_every_text() -> None:
-    found = rows(FUNCTIONS, misread(*MISTAKES))
-    assert len(found) == len(MISTAKES)
-    for row in found.values():
+    results = rows(FUNCTIONS, misread(*MISTAKES))
+    assert len(results) == len(MISTAKES)
+    for row in results.values():
         assert row.comparisons.keys() == BACKENDS.keys()
         for name, one in row.comparisons.items():
             assert one.deviation is not None and one.deviation > GOAL, (row.function, name)
@@ -129,10 +129,10 @@ def test_lanes_without_a_result_are_counted() -> None:
 def test_an_unsupported_function_fails_only_its_own_row() -> None:
     long = ", ".join(f"float x{i}" for i in range(70))
     text = f"float many({long}) {{ return x0; }}\nvoid nothing(float x) {{ }}\nfloat same(float x) {{ return x; }}"
-    found = rows(text)
-    assert "takes 70 numbers" in next(row.reason for name, row in found.items() if name.startswith("many"))
-    assert found["nothing(float)"].reason == "it has no outputs"
-    assert found["same(float)"].ok
+    results = rows(text)
+    assert "takes 70 numbers" in next(row.reason for name, row in results.items() if name.startswith("many"))
+    assert results["nothing(float)"].reason == "it has no outputs"
+    assert results["same(float)"].ok
 
 
 @pytest.mark.slow
@@ -164,9 +164,9 @@ void main() {
 
 @pytest.mark.slow
 def test_a_shader_is_run_function_by_function() -> None:
-    found = rows(SHADER)
-    assert list(found) == ["ring(vec2)", "keep(vec3)", "kept()", "main()"]
-    for row in found.values():
+    results = rows(SHADER)
+    assert list(results) == ["ring(vec2)", "keep(vec3)", "kept()", "main()"]
+    for row in results.values():
         assert row.ok, row
     wrong = misread(
         ("(p) - level", "(p) + level"),
@@ -226,9 +226,9 @@ def test_a_scene_of_shadertoy_has_its_uniforms() -> None:
 def test_refusals_of_the_driver_are_reported() -> None:
     text = "float f(sampler2DShadow map, vec3 p) { return texture(map, p); }"
     text += "\nfloat g(float x) { return later(x); }\nfloat later(float x) { return x; }"
-    found = rows(text, misread(("later(x); }\nfloat", "x; }\nfloat")))
-    assert found["f(sampler2DShadow,vec3)"].reason == "it takes a sampler2DShadow, which is not supported here"
-    assert found["g(float)"].reason.startswith("the driver refuses it as written: gl: ")
+    results = rows(text, misread(("later(x); }\nfloat", "x; }\nfloat")))
+    assert results["f(sampler2DShadow,vec3)"].reason == "it takes a sampler2DShadow, which is not supported here"
+    assert results["g(float)"].reason.startswith("the driver refuses it as written: gl: ")
 
 
 @pytest.mark.slow
@@ -270,10 +270,10 @@ def test_the_report_lists_every_row() -> None:
         "    hlsl does not run: no such thing",
         "webgpu is missing: pip install wgpu",
     ]
-    told = json.loads(json.dumps(report.as_json(), allow_nan=False))
-    assert [row["ok"] for row in told["functions"]] == [False, False, True, False] and not report.ok
-    assert told["functions"][1]["not_run"] == "it has no outputs"
-    assert told["functions"][0]["texts"]["hlsl"]["deviation"] is None
+    result = json.loads(json.dumps(report.as_json(), allow_nan=False))
+    assert [row["ok"] for row in result["functions"]] == [False, False, True, False] and not report.ok
+    assert result["functions"][1]["not_run"] == "it has no outputs"
+    assert result["functions"][0]["texts"]["hlsl"]["deviation"] is None
 
 
 def test_the_interface_of_a_stage_becomes_variables() -> None:
@@ -291,9 +291,9 @@ out vec4 color;
 float f(in float x, out float y) { y = x; return x; }
 void main() { color = vec4(gl_FragCoord.x); }
 """
-    found = plain(text)
-    assert found.version == "330 core" and not found.is_es
-    assert found.text.split("\n") == [
+    result = plain(text)
+    assert result.version == "330 core" and not result.is_es
+    assert result.text.split("\n") == [
         "vec4 sssgen_coordinates;", "#define gl_FragCoord sssgen_coordinates", "#define main sssgen_written_main", "",
         "#extension GL_ARB_gpu_shader5 : enable", "   vec2 uv; // in", "   mat4 view; vec3 eye; ",
         " struct Fog { float near; } fog;", "uniform highp float time;", " vec3 points[4];", " Lamp lamps[2];",
@@ -301,16 +301,16 @@ void main() { color = vec4(gl_FragCoord.x); }
         "float f(in float x, out float y) { y = x; return x; }",
         "void main() { color = vec4(gl_FragCoord.x); }", "", "#undef gl_FragCoord", "#undef main", "",
     ]  # fmt: skip
-    assert found.for_driver("450 core").split("\n")[:2] == [
+    assert result.for_driver("450 core").split("\n")[:2] == [
         "#version 450 core",
         "#extension GL_ARB_gpu_shader5 : enable",
     ]
 
 
 def test_old_names_are_renamed_for_the_driver_alone() -> None:
-    found = plain("varying vec2 uv;\nvec4 f(sampler2D s) { return texture2D(s, uv); }")
-    assert "#define texture2D texture\n" in found.for_driver("450 core")
-    assert "#define texture2D" not in found.text
+    result = plain("varying vec2 uv;\nvec4 f(sampler2D s) { return texture2D(s, uv); }")
+    assert "#define texture2D texture\n" in result.for_driver("450 core")
+    assert "#define texture2D" not in result.text
     assert "#define texture2D texture\n" not in plain("#define texture2D tex\nvec4 v = texture2D(a);").for_driver("330")
 
 

@@ -91,6 +91,6 @@ def test_both_draw_the_same_picture() -> None:
     width, height = SIZE
     x, y = np.meshgrid((np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height)
     # the depth is 0.75, 1 / w a half; the slope is 1 / height, times a step that was doubled by then
-    wanted = np.stack([x, y, np.full_like(x, 0.5 + height * 0.25), 0.375 + 0.75 * y], axis=-1)
-    np.testing.assert_allclose(by_opengl(), wanted, atol=1e-5)
-    np.testing.assert_allclose(by_webgpu()[::-1], wanted, atol=1e-5)
+    expected = np.stack([x, y, np.full_like(x, 0.5 + height * 0.25), 0.375 + 0.75 * y], axis=-1)
+    np.testing.assert_allclose(by_opengl(), expected, atol=1e-5)
+    np.testing.assert_allclose(by_webgpu()[::-1], expected, atol=1e-5)

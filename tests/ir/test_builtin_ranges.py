@@ -93,16 +93,16 @@ def analysed(row: Builtin, params: tuple[Type, ...], result: Type, boxes: list[l
     return analysis.builtin(node, tuple(values), False), list(analysis.sites.values())
 
 
-def assert_inside(found: Value, result: Type, made: Array, said: object) -> None:
-    flat = np.broadcast_to(made, (*made.shape[:-1], LANES)).reshape(-1, LANES).astype(np.float64)
-    assert len(flat) == len(found.parts), said
-    for part, lanes in zip(found.parts, flat, strict=True):
+def assert_inside(results: Value, result: Type, built: Array, message: object) -> None:
+    flat = np.broadcast_to(built, (*built.shape[:-1], LANES)).reshape(-1, LANES).astype(np.float64)
+    assert len(flat) == len(results.parts), message
+    for part, lanes in zip(results.parts, flat, strict=True):
         inside = (lanes >= part.low) & (lanes <= part.high) & (np.abs(lanes) >= part.gap)
-        assert inside.all(), (said, part, lanes[~inside][:3])
+        assert inside.all(), (message, part, lanes[~inside][:3])
     if isinstance(result, Vector) and result.kind == "float":
         lengths = np.sqrt((flat**2).sum(axis=0))
-        assert (lengths <= found.length.high * (1.0 + 1e-12)).all(), (said, found.length, lengths.max())
-        assert (lengths >= found.length.low * (1.0 - 1e-12)).all(), (said, found.length, lengths.min())
+        assert (lengths <= results.length.high * (1.0 + 1e-12)).all(), (message, results.length, lengths.max())
+        assert (lengths >= results.length.low * (1.0 - 1e-12)).all(), (message, results.length, lengths.min())
 
 
 @pytest.mark.parametrize("row", [row for row in COMPUTED if not row.unbounded], ids=lambda row: row.name)
@@ -123,20 +123,20 @@ def test_results_are_in_the_computed_range(row: Builtin) -> None:
                 boxes = [_hull(arg) if index in row.samples.unit else box
                          for index, (arg, box) in enumerate(zip(args, boxes, strict=True))]  # fmt: skip
             found, sites = analysed(row, params, result, boxes, same)
-            made = called(row.name, args)
+            built = called(row.name, args)
             if row.guards and row.guards[0].safe is None:  # the guard is always there
-                made = np.nan_to_num(made, nan=0.0)
+                built = np.nan_to_num(built, nan=0.0)
             elif not all(site.proven for site in sites):
                 continue
-            assert_inside(found, result, made, (row.name, boxes))
+            assert_inside(found, result, built, (row.name, boxes))
             checked += 1
     assert checked > BOXES / 4, "too few boxes are within the domain"
 
 
 def _unit(arg: Array) -> Array:
     length = np.linalg.norm(arg.astype(np.float64), axis=0)
-    found: Array = np.where(length > 1e-6, arg / np.maximum(length, 1e-6), np.eye(len(arg))[:, :1]).astype(np.float32)
-    return found
+    result: Array = np.where(length > 1e-6, arg / np.maximum(length, 1e-6), np.eye(len(arg))[:, :1]).astype(np.float32)
+    return result
 
 
 def _hull(arg: Array) -> list[Range]:
@@ -194,14 +194,14 @@ BITS = [0, 1, 0x7F800000, 0x7FC00000, 0x7F800001, 0x3F800000, 0x7F7FFFFF, 0x7C00
 
 @cache
 def guarded_cases() -> tuple[Guarded, ...]:
-    found = []
+    results = []
     for row in COMPUTED:
         for params, result in overloads(row) if row.guards else ():
             if kind_of(result) == "float":
                 rng = np.random.default_rng(zlib.crc32(row.name.encode()))
                 args = tuple(_hostile(rng, type_) for type_ in params)
-                found.append(Guarded(row, params, result, args))
-    return tuple(found)
+                results.append(Guarded(row, params, result, args))
+    return tuple(results)
 
 
 def _hostile(rng: np.random.Generator, type_: Type) -> Array:
@@ -226,9 +226,9 @@ def run(backend: Backend, mode: str, chosen: tuple[Guarded, ...]) -> list[Array]
         params = ", ".join(f"{spell(type_)} {name}" for type_, name in zip(case.params, "abc", strict=False))
         names = ", ".join("abc"[: len(case.params)])
         lines.append(f"{spell(case.result)} case_{number}({params}) {{ return {case.row.name}({names}); }}")
-    made = transpile(module_of("\n".join(lines)), backend.target.name, "cases", guards=mode)
-    text = next(text for name, text in made.files.items() if not name.endswith(".json"))
-    names = made.reflection["renames"]
+    compiled = transpile(module_of("\n".join(lines)), backend.target.name, "cases", guards=mode)
+    text = next(text for name, text in compiled.files.items() if not name.endswith(".json"))
+    names = compiled.reflection["renames"]
     calls = [
         Call(names.get(f"case_{number}", f"case_{number}"), case.params, case.result, case.args)
         for number, case in enumerate(chosen)
@@ -258,24 +258,24 @@ def _point(numbers: Array) -> Range:
     return rounded(Range(size, size), FLOAT32)
 
 
-def assert_safe(case: Guarded, got: Array) -> int:
+def assert_safe(case: Guarded, actual: Array) -> int:
     """All lanes are finite, those in the domain as the builtin has them; how many of these there are."""
-    finite = np.isfinite(got).reshape(-1, got.shape[-1]).all(axis=0)
-    told = [[arg[..., lane].tolist() for arg in case.args] for lane in np.flatnonzero(~finite)[:3]]
-    assert finite.all(), f"{case.title} at {told}: {got[..., ~finite][..., :3].tolist()}"
+    finite = np.isfinite(actual).reshape(-1, actual.shape[-1]).all(axis=0)
+    messages = [[arg[..., lane].tolist() for arg in case.args] for lane in np.flatnonzero(~finite)[:3]]
+    assert finite.all(), f"{case.title} at {messages}: {actual[..., ~finite][..., :3].tolist()}"
     good = safe_lanes(case)
     with np.errstate(all="ignore"), runtime.precision("float64"):
-        wanted = np.asarray(getattr(runtime, case.row.name)(*widened(case.args)))[..., good]
-        size = np.abs(wanted)
+        expected = np.asarray(getattr(runtime, case.row.name)(*widened(case.args)))[..., good]
+        size = np.abs(expected)
         if case.row.size:
             size = np.maximum(size, evaluated(case.row.size, widened(case.args))[good])
-    inner = tuple(range(wanted.ndim - 1))
-    size = np.broadcast_to(size.max(axis=inner) if inner else size, wanted.shape)
+    inner = tuple(range(expected.ndim - 1))
+    size = np.broadcast_to(size.max(axis=inner) if inner else size, expected.shape)
     allowed = np.maximum(2.0 * max(case.row.ulp, 4.0) * 2.0**-23 * size, max(case.row.absolute, 1e-30))
-    off = np.abs(got[..., good] - wanted) - allowed
+    off = np.abs(actual[..., good] - expected) - allowed
     worst = int(np.argmax(off.reshape(-1, off.shape[-1]).max(axis=0))) if off.size else 0
     at = [arg[..., good][..., worst].tolist() for arg in case.args] if off.size else []
-    assert not (off > 0.0).any(), f"{case.title} at {at}: {got[..., good][..., worst]} is not {wanted[..., worst]}"
+    assert not (off > 0.0).any(), f"{case.title} at {at}: {actual[..., good][..., worst]} is not {expected[..., worst]}"
     return int(good.sum())
 
 
@@ -318,14 +318,14 @@ def test_guarded_builtins_of_huge_numbers(name: str, backend: Callable[[str], Ba
             if set(params) != {Scalar("float")} or result != Scalar("float"):
                 continue
             letters = "abc"[: len(params)]
-            given = ", ".join(f"thickness {letter}" for letter in letters)
+            inputs = ", ".join(f"thickness {letter}" for letter in letters)
             passed = ", ".join(f"float({letter})" for letter in letters)
-            lines.append(f"float case_{len(calls)}({given}) {{ return {row.name}({passed}); }}")
+            lines.append(f"float case_{len(calls)}({inputs}) {{ return {row.name}({passed}); }}")
             calls.append(Call(f"case_{len(calls)}", params, result, tuple(rng.choice(HUGE, 600) for _ in params)))
             chosen.append(row.name)
     gpu = backend(name)
-    made = transpile(module_of("\n".join(lines)), gpu.target.name, "cases", guards="auto")
-    text = next(text for file, text in made.files.items() if not file.endswith(".json"))
+    compiled = transpile(module_of("\n".join(lines)), gpu.target.name, "cases", guards="auto")
+    text = next(text for file, text in compiled.files.items() if not file.endswith(".json"))
     for title, call, got in zip(chosen, calls, gpu.run(Text(text), calls), strict=True):
         wrong = np.flatnonzero(~np.isfinite(got))
         assert not len(wrong), (title, [arg[wrong[0]] for arg in call.args], got[wrong[0]])

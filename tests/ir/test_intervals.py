@@ -35,16 +35,16 @@ def members(rng: np.random.Generator, x: Range) -> Any:
     """Numbers of float32 in a range: its ends, the edges of its gap, 0, and others."""
     drawn = [x.low, x.high, x.gap, -x.gap, 0.0, 1.0, -1.0, *(x.low + (x.high - x.low) * rng.random(MEMBERS))]
     drawn += list(np.sign(rng.normal(size=8)) * 10.0 ** rng.uniform(-30.0, 5.0, 8))
-    found = np.array(drawn, np.float32)
-    return found[(found >= x.low) & (found <= x.high) & (np.abs(found) >= x.gap)]
+    result = np.array(drawn, np.float32)
+    return result[(result >= x.low) & (result <= x.high) & (np.abs(result) >= x.gap)]
 
 
-def assert_holds(result: Range, values: Any, said: object) -> None:
+def assert_holds(result: Range, values: Any, message: object) -> None:
     """Every value lies in the range, which is a range."""
-    assert result.low <= result.high and result.gap >= 0.0, (said, result)
+    assert result.low <= result.high and result.gap >= 0.0, (message, result)
     values = np.asarray(values, np.float64)
     inside = (values >= result.low) & (values <= result.high) & (np.abs(values) >= result.gap)
-    assert inside.all(), (said, result, values[~inside][:3])
+    assert inside.all(), (message, result, values[~inside][:3])
 
 
 F32 = np.float32
@@ -69,8 +69,8 @@ TWO: dict[str, tuple[Callable[[Range, Range], Range], Callable[[Any, Any], Any]]
 }
 
 
-def rounded(found: Range, format: Format = FLOAT32) -> Range:
-    return intervals.rounded(found, format)
+def rounded(result: Range, format: Format = FLOAT32) -> Range:
+    return intervals.rounded(result, format)
 
 
 @pytest.mark.parametrize("name", ONE)
@@ -168,8 +168,8 @@ def test_joined_and_met() -> None:
 def test_a_range_is_never_inside_out() -> None:
     """Not even one without members, as behind a condition that cannot hold."""
     for low, high, gap in ((0.0, 0.0, 1.0), (-0.5, 0.25, 1.0), (-2.0, 0.5, 1.0), (-0.5, 2.0, 1.0), (-0.5, 0.0, 1.0)):
-        found = Range(low, high, gap)
-        assert found.low <= found.high and not found.has_zero()
+        result = Range(low, high, gap)
+        assert result.low <= result.high and not result.has_zero()
     assert Range(3.0, 4.0).met(Range(0.0, 1.0)).low <= 4.0
 
 
@@ -181,8 +181,8 @@ def test_rounding(format: Format) -> None:
     for _ in range(ROUNDS):
         low, high = sorted(float(end) for end in rng.normal(size=2) * 10.0 ** rng.uniform(-3.0, 3.0))
         drawn = low + (high - low) * rng.random(MEMBERS)
-        found = intervals.rounded(Range(low, high), format)
-        assert_holds(found, np.concatenate([drawn, drawn.astype(dtype)]), (low, high))
+        result = intervals.rounded(Range(low, high), format)
+        assert_holds(result, np.concatenate([drawn, drawn.astype(dtype)]), (low, high))
     assert intervals.rounded(Range(format.tiny * 0.5, 1.0), format).has_zero()
     assert not intervals.rounded(Range(format.tiny, 1.0), format).has_zero()
     assert intervals.rounded(Range(1.0, 2.0 * format.largest), format).high == INF

@@ -178,19 +178,19 @@ def test_vector(row: Builtin, arguments: tuple[object, ...], expected: object, f
             ):
                 pytest.skip("an argument beyond float16")
             values.append(value[..., None])
-        wanted = np.asarray(expected, dtype_of(result_type, "float64"))
-        if floating == "float16" and wanted.dtype.kind == "f" and np.abs(wanted).max() > 65504:
+        reference = np.asarray(expected, dtype_of(result_type, "float64"))
+        if floating == "float16" and reference.dtype.kind == "f" and np.abs(reference).max() > 65504:
             pytest.skip("a result beyond float16")
     with rt.precision(floating), warnings.catch_warnings():
         warnings.simplefilter("error")
-        got = function(row.name)(*values)
-    assert got.dtype == dtype_of(result_type, floating)
-    assert got.shape == (*wanted.shape, 1)
-    if wanted.dtype.kind == "f":
-        size = np.abs(wanted).max() * float(np.finfo(floating).eps)
-        np.testing.assert_allclose(got[..., 0], wanted, rtol=0, atol=2.0 * size)
+        actual = function(row.name)(*values)
+    assert actual.dtype == dtype_of(result_type, floating)
+    assert actual.shape == (*reference.shape, 1)
+    if reference.dtype.kind == "f":
+        size = np.abs(reference).max() * float(np.finfo(floating).eps)
+        np.testing.assert_allclose(actual[..., 0], reference, rtol=0, atol=2.0 * size)
     else:
-        np.testing.assert_array_equal(got[..., 0], wanted)
+        np.testing.assert_array_equal(actual[..., 0], reference)
 
 
 @pytest.mark.parametrize("row", [row for row in BUILTINS.values() if row.vectors], ids=lambda row: row.name)
@@ -229,7 +229,7 @@ def test_resolve() -> None:
 def test_text() -> None:
     for row in BUILTINS.values():
         for signature in row.signatures:
-            assert any(found.params == ",".join(parse(signature)[1:]) for found in expanded(row.name))
+            assert any(result.params == ",".join(parse(signature)[1:]) for result in expanded(row.name))
     assert text("atan", "hlsl", [VEC2, VEC2]) == "atan2"
     assert text("atan", "hlsl-dx9", [VEC2]) == "atan"
     assert text("mix", "wgsl", [FLOAT, FLOAT, BOOL]) == "select"

@@ -35,11 +35,11 @@ def program(name: str, size: int) -> tuple[str, list[Type]]:
     outs = 2 if name.endswith("Extended") else 1
     source = out_builtin(name, types)
     assert source is not None
-    given = types[:-outs]
-    results = types[-outs:] if outs == 2 else [given[0], types[-1]]
-    params = ", ".join(f"{spell(type_)} {letter}" for type_, letter in zip(given, "xy", strict=False))
+    inputs = types[:-outs]
+    results = types[-outs:] if outs == 2 else [inputs[0], types[-1]]
+    params = ", ".join(f"{spell(type_)} {letter}" for type_, letter in zip(inputs, "xy", strict=False))
     locals_ = "".join(f"{spell(type_)} out_{index}; " for index, type_ in enumerate(types[-outs:]))
-    call = f"{name}({', '.join(['xy'[at] for at in range(len(given))] + [f'out_{at}' for at in range(outs)])})"
+    call = f"{name}({', '.join(['xy'[at] for at in range(len(inputs))] + [f'out_{at}' for at in range(outs)])})"
     first = f"{spell(results[0])} first({params}) {{ {locals_}"
     first += f"return {call}; }}" if outs == 1 else f"{call}; return out_0; }}"
     second = f"{spell(results[1])} second({params}) {{ {locals_}"
@@ -48,9 +48,9 @@ def program(name: str, size: int) -> tuple[str, list[Type]]:
 
 
 def run(backend: Backend, text: str, calls: Sequence[tuple[str, list[Type], Type, tuple[Any, ...]]]) -> list[Array]:
-    made = transpile(load_text(text, "case"), backend.target.name, "case")
-    emitted = next(text for name, text in made.files.items() if not name.endswith(".json"))
-    renames = made.reflection["renames"]
+    compiled = transpile(load_text(text, "case"), backend.target.name, "case")
+    emitted = next(text for name, text in compiled.files.items() if not name.endswith(".json"))
+    renames = compiled.reflection["renames"]
     prepared = [Call(renames.get(name, name), tuple(types), result, args) for name, types, result, args in calls]
     return backend.run(Text(emitted), prepared, textures())
 
@@ -58,7 +58,7 @@ def run(backend: Backend, text: str, calls: Sequence[tuple[str, list[Type], Type
 def drawn(name: str, types: Sequence[Type]) -> tuple[Array, ...]:
     """Edges, small numbers and numbers of all sizes."""
     rng = np.random.default_rng(3)
-    found = []
+    results = []
     for type_ in types:
         size = getattr(type_, "size", 1)
         if kind_of(type_) == "float":
@@ -69,9 +69,9 @@ def drawn(name: str, types: Sequence[Type]) -> tuple[Array, ...]:
             info = np.iinfo(DTYPES[kind_of(type_)])
             values = rng.integers(info.min, info.max, (size, LANES), endpoint=True)
             edges = [info.min, info.max, 0, 1, 65535, 65536]
-            values[:, :36] = np.repeat(edges, 6) if not found else np.tile(edges, 6)
-        found.append((values if size > 1 else values[0]).astype(DTYPES[kind_of(type_)]))
-    return tuple(found)
+            values[:, :36] = np.repeat(edges, 6) if not results else np.tile(edges, 6)
+        results.append((values if size > 1 else values[0]).astype(DTYPES[kind_of(type_)]))
+    return tuple(results)
 
 
 def expected(name: str, args: tuple[Array, ...]) -> tuple[Array, Array]:
@@ -100,11 +100,11 @@ def test_both_results_on_every_back_end(builtin: str, name: str, backend: Callab
         types = typed(builtin, size)[: -2 if builtin.endswith("Extended") else -1]
         args = drawn(builtin, types)
         calls = [(function, types, result, args) for function, result in zip(("first", "second"), results, strict=True)]
-        for got, wanted in zip(run(backend(name), text, calls), expected(builtin, args), strict=True):
-            if got.dtype.kind in "iu":
-                np.testing.assert_array_equal(got, wanted.astype(got.dtype), builtin)
+        for actual, wanted in zip(run(backend(name), text, calls), expected(builtin, args), strict=True):
+            if actual.dtype.kind in "iu":
+                np.testing.assert_array_equal(actual, wanted.astype(actual.dtype), builtin)
             else:
-                np.testing.assert_array_equal(got.astype(np.float64), wanted, builtin)
+                np.testing.assert_array_equal(actual.astype(np.float64), wanted, builtin)
 
 
 # Projective reads
@@ -164,11 +164,11 @@ def test_reads_that_compare(name: str, backend: Callable[[str], Backend]) -> Non
         if place == VEC4:
             coord *= 2.0
         calls.append((f"of_{builtin}", [shadow, place], result, ("shade", coord)))
-    wanted = np.arange(12) % 2
-    for got in run(backend(name), "".join(texts), calls):
-        np.testing.assert_allclose(got if got.ndim == 1 else got[0], wanted, atol=2.0**-7)
-        if got.ndim == 2:
-            np.testing.assert_allclose(got[3], 1.0)
+    reference = np.arange(12) % 2
+    for actual in run(backend(name), "".join(texts), calls):
+        np.testing.assert_allclose(actual if actual.ndim == 1 else actual[0], reference, atol=2.0**-7)
+        if actual.ndim == 2:
+            np.testing.assert_allclose(actual[3], 1.0)
 
 
 # What there is

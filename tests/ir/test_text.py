@@ -179,7 +179,7 @@ def test_library_is_valid() -> None:
 
 
 def test_polyfills_are_valid() -> None:
-    found = 0
+    result = 0
     for name, row in BUILTINS.items():
         for signature in row.signatures if row.polyfill else ():
             for size in (1, 2, 3, 4):
@@ -189,5 +189,5 @@ def test_polyfills_are_valid() -> None:
                 except KeyError:
                     continue
                 assert verify(module, linked=True) == [], name
-                found += 1
-    assert found > 50
+                result += 1
+    assert result > 50

@@ -54,8 +54,8 @@ def test_verifier_accepts_well_typed_modules_and_sees_a_wrong_type(module: ir.Mo
     if not nodes:
         return
     chosen = data.draw(st.sampled_from(nodes))
-    others = [type_ for type_ in (FLOAT, INT, UINT, BOOL, VEC3, Matrix(2)) if type_ != chosen.type]
-    other = data.draw(st.sampled_from(others))
+    remaining = [type_ for type_ in (FLOAT, INT, UINT, BOOL, VEC3, Matrix(2)) if type_ != chosen.type]
+    other = data.draw(st.sampled_from(remaining))
     changed = rewrite_module(module, lambda node: node._replace(type=other) if node is chosen else node)
     assert verify(changed), f"{chosen} as {spell(other)}"
 

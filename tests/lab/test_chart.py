@@ -56,7 +56,7 @@ def few(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(measured_scene, "SIDE", 8)
     lengths, lights, whole = candidates.thickness, candidates.translucency, candidates.materials
     some = ("constant_thickness", "march_light, 4 steps", "march_light, 6 steps")
-    kept = (
+    stored = (
         "none",
         "Unity ice",
         "wrap_lighting",
@@ -64,8 +64,8 @@ def few(monkeypatch: pytest.MonkeyPatch) -> None:
         "constant_thickness → absorption_tint",
     )
     monkeypatch.setattr(candidates, "thickness", lambda: [one for one in lengths() if one.label in some])
-    monkeypatch.setattr(candidates, "translucency", lambda: [one for one in lights() if one.name in kept])
-    monkeypatch.setattr(candidates, "materials", lambda given: [one for one in whole(given) if one.name in kept])
+    monkeypatch.setattr(candidates, "translucency", lambda: [one for one in lights() if one.name in stored])
+    monkeypatch.setattr(candidates, "materials", lambda inputs: [one for one in whole(inputs) if one.name in stored])
 
 
 def settings(**more: Any) -> Settings:
@@ -98,16 +98,16 @@ def test_measurements_are_cached(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     assert to_json(chart.charted([one], settings())) == to_json(first)
     assert not ran
     # without the scene's file the items' results make it again
-    (kept,) = (tmp_path / "cache").glob("chart-*.json")
-    kept.unlink()
+    (stored,) = (tmp_path / "cache").glob("chart-*.json")
+    stored.unlink()
     assert to_json(chart.charted([one], settings())) == to_json(first)
     assert not ran
     # and a damaged one is no harm
-    kept.write_bytes(b"{")
+    stored.write_bytes(b"{")
     assert to_json(chart.charted([one], settings())) == to_json(first)
     assert not ran
     # an interrupted run goes on where it stood
-    kept.unlink()
+    stored.unlink()
     lost = sorted((tmp_path / "cache" / "lab" / "results").glob("*/*"))[::5]
     for path in lost:
         path.unlink()
@@ -173,8 +173,8 @@ def test_a_record_is_valid_and_complete() -> None:
     assert error["thickness", "march_light, 6 steps"] < error["thickness", "constant_thickness"]
     assert error["coordinates", "parallax_refracted"] < 1e-6
     assert error["coordinates", "parallax_straight"] > 0.01
-    said = summary(record)
-    assert "cube, material:" in said and "inlay_plate, coordinates:" in said
+    message = summary(record)
+    assert "cube, material:" in message and "inlay_plate, coordinates:" in message
 
 
 def test_hypervolumes_are_of_ours_and_of_the_baselines() -> None:
@@ -188,11 +188,11 @@ def test_hypervolumes_are_of_ours_and_of_the_baselines() -> None:
         point(1.0, 0.9, False, "none"),
         point(100.0, 0.05, False),
     ]
-    (found,) = chart.hypervolumes(points)
-    assert found["reference_point"] == pytest.approx([110.0, 1.0])
-    assert found["ours"] == pytest.approx(hypervolume(points[1:], [110.0, 1.0]))
-    assert found["baselines"] == pytest.approx(hypervolume([points[0], points[2]], [110.0, 1.0]))
-    assert found["ours"] > found["baselines"] > 0.0
+    (result,) = chart.hypervolumes(points)
+    assert result["reference_point"] == pytest.approx([110.0, 1.0])
+    assert result["ours"] == pytest.approx(hypervolume(points[1:], [110.0, 1.0]))
+    assert result["baselines"] == pytest.approx(hypervolume([points[0], points[2]], [110.0, 1.0]))
+    assert result["ours"] > result["baselines"] > 0.0
 
 
 def test_costlier_settings_are_tried_while_the_error_falls(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -216,9 +216,9 @@ def test_failures_are_named() -> None:
     again = [executor.Item("executor_items:fail", ("said",), name) for name in names]
     with pytest.raises(SssgenError) as caught:
         chart._results([*again, executor.Item("executor_items:fail", ("x",), "that")], settings())
-    told = [one.message for one in caught.value.diagnostics]
-    assert len(told) == 2 and told[0].startswith("one and 2 more: the scene has no light")
-    assert told[1].startswith("that: ValueError: no such thing")
+    messages = [one.message for one in caught.value.diagnostics]
+    assert len(messages) == 2 and messages[0].startswith("one and 2 more: the scene has no light")
+    assert messages[1].startswith("that: ValueError: no such thing")
     assert isinstance(executor.run([executor.Item("executor_items:fail", ("x",), "that")], processes=0)[0], Failure)
 
 
@@ -236,22 +236,22 @@ def test_every_technique_that_has_a_reference_is_charted(monkeypatch: pytest.Mon
     monkeypatch.undo()
     lengths = candidates.thickness()
     whole = candidates.materials([one for one in lengths if not one.settings or one.settings[0][1] == 4])
-    for role, found in (("thickness", lengths), ("translucency", candidates.translucency()),
+    for role, result in (("thickness", lengths), ("translucency", candidates.translucency()),
                         ("coordinates", candidates.coordinates())):  # fmt: skip
-        assert {one.name for one in found} - {"none"} == {technique.name for technique in candidates.of_role(role)}
-        assert len({(one.techniques, one.settings) for one in found}) == len(found)
-        assert len({one.label for one in found}) == len(found)
-        for one in found:
+        assert {one.name for one in result} - {"none"} == {technique.name for technique in candidates.of_role(role)}
+        assert len({(one.techniques, one.settings) for one in result}) == len(result)
+        assert len({one.label for one in result}) == len(result)
+        for one in result:
             assert one.baseline == any(candidates.load(name).baseline for name in one.techniques)
     assert {one.name for one in whole if one.baseline} == set(candidates.published())
     assert len({one.label for one in whole}) == len(whole)
     for one in whole:
         # each stage takes what the one before gives
-        given = ""
+        inputs = ""
         for name in one.techniques:
             technique = candidates.load(name)
-            assert candidates.quantity_taken(technique) in ("", given), one.label
-            given = technique.function.quantity or given
+            assert candidates.quantity_taken(technique) in ("", inputs), one.label
+            inputs = technique.function.quantity or inputs
 
 
 # --- costs on a GPU, from times that are given ---
@@ -270,18 +270,18 @@ def test_ranks_and_their_correlation() -> None:
 
 def test_by_gpu_times_are_the_costs() -> None:
     points = [{"cost": {"value": 10.0, "gpu_ms": 0.5}}, {"cost": {"value": 20.0, "gpu_ms": None}}]
-    found = chart_gpu.by_gpu({"points": points, "record": {"software": False}})
-    assert found["points"] == [{"cost": {"value": 0.5, "gpu_ms": 0.5, "static": 10.0}}]
-    assert (found["cost"], found["cost_unit"]) == ("gpu", "ms at 1080p")
+    result = chart_gpu.by_gpu({"points": points, "record": {"software": False}})
+    assert result["points"] == [{"cost": {"value": 0.5, "gpu_ms": 0.5, "static": 10.0}}]
+    assert (result["cost"], result["cost_unit"]) == ("gpu", "ms at 1080p")
 
 
 def test_a_users_scene_is_timed(tmp_path: Path, backend: Callable[[str], Backend]) -> None:
     backend("gl")
     text = '[inlay]\ndepth = 0.1\n[geometry]\nkind = "box"\n[camera]\nposition = [0.5, 1.0, 3.0]\n'
     (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
-    one = measured_scene.load(str(tmp_path / "mine.toml"))
-    record = chart.charted([one], settings())
-    timed = chart_gpu.with_gpu_cost(record, [one], (32, 32), 2)
+    scene = measured_scene.load(str(tmp_path / "mine.toml"))
+    record = chart.charted([scene], settings())
+    timed = chart_gpu.with_gpu_cost(record, [scene], (32, 32), 2)
     assert timed["record"]["device"] and timed["record"]["size"] == [32, 32]
     for before, after in zip(record["points"], timed["points"], strict=True):
         cost = after["cost"]
@@ -297,26 +297,26 @@ def test_a_users_scene_is_timed(tmp_path: Path, backend: Callable[[str], Backend
 
 def test_the_chart_command_writes_and_lists_its_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("matplotlib")
-    wanted = ["chart", "inlay_plate", "--samples", "8", "--processes", "1", "-o", str(tmp_path / "out")]
-    assert main([*wanted, "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["ok"] and {point["scene"] for point in told["points"]} == {"inlay_plate"}
-    files = {Path(file).name for file in told["files"]}
+    expected = ["chart", "inlay_plate", "--samples", "8", "--processes", "1", "-o", str(tmp_path / "out")]
+    assert main([*expected, "--json"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert report["ok"] and {point["scene"] for point in report["points"]} == {"inlay_plate"}
+    files = {Path(file).name for file in report["files"]}
     assert files == {path.name for path in (tmp_path / "out").iterdir()} and len(files) > 3
-    assert main(wanted) == 0
+    assert main(expected) == 0
     assert all(f"{name}" in capsys.readouterr().out for name in ["inlay_plate, coordinates"])
 
 
 def test_the_fit_command_shows_parameters(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["fit", "cube", "wrap_lighting", "--samples", "8", "--processes", "1"]) == 0
-    said = capsys.readouterr().out
-    assert "Marble cube, lit from behind: fitted" in said
-    (line,) = (line for line in said.splitlines() if "wrap_lighting" in line)
+    output = capsys.readouterr().out
+    assert "Marble cube, lit from behind: fitted" in output
+    (line,) = (line for line in output.splitlines() if "wrap_lighting" in line)
     assert "wrap 0." in line or "wrap 1" in line
-    assert "subsurface_color ×" in line and "none" not in said
+    assert "subsurface_color ×" in line and "none" not in output
     assert main(["fit", "cube", "wrap_lighting", "--samples", "8", "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert [point["name"] for point in told["points"]] == ["wrap_lighting"]
+    report = json.loads(capsys.readouterr().out)
+    assert [point["name"] for point in report["points"]] == ["wrap_lighting"]
 
 
 @pytest.mark.parametrize(
@@ -347,21 +347,21 @@ def test_errors_have_readable_messages(
     Path("ice.toml").write_text('material = "ice"\n[geometry]\nkind = "ball"\n', encoding="utf-8")
     monkeypatch.setattr(chart, "run", lambda *_, **__: pytest.fail("it measures"))
     assert main(arguments) == 2
-    said = capsys.readouterr().err
-    assert message in said and "Traceback" not in said
+    output = capsys.readouterr().err
+    assert message in output and "Traceback" not in output
 
 
 def test_materials_select_their_thickness_technique(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked: list[Settings] = []
+    requests: list[Settings] = []
 
-    def charted(_: Any, given: Settings) -> dict[str, Any]:
-        asked.append(given)
+    def charted(_: Any, inputs: Settings) -> dict[str, Any]:
+        requests.append(inputs)
         return {"points": [], "hypervolume": []}
 
     monkeypatch.setattr(chart, "charted", charted)
     for role in ("material", "coordinates,material", "translucency"):
         assert main(["chart", "cube", "--role", role]) == 0
-    assert [given.roles for given in asked] == [
+    assert [inputs.roles for inputs in requests] == [
         ("thickness", "material"), ("thickness", "coordinates", "material"), ("translucency",),
     ]  # fmt: skip
-    assert [given.samples for given in asked] == [512] * 3
+    assert [inputs.samples for inputs in requests] == [512] * 3

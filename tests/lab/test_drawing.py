@@ -33,8 +33,8 @@ BASELINES = ("depth_map_absorption", "gltf_volume", "cheap_sss_thinness", "dista
 
 
 def point(cost: float, error: float | None, **more: Any) -> dict[str, Any]:
-    made = {"scene": "slab", "role": "thickness", "name": "some", "label": "some", "baseline": False, "failed": ""}
-    return {**made, "cost": {"value": cost}, "error": {"value": error}, "front": False, **more}
+    result = {"scene": "slab", "role": "thickness", "name": "some", "label": "some", "baseline": False, "failed": ""}
+    return {**result, "cost": {"value": cost}, "error": {"value": error}, "front": False, **more}
 
 
 def record(roles: tuple[str, ...] = ("thickness",), scenes: tuple[str, ...] = tuple(SCENES)) -> dict[str, Any]:
@@ -49,16 +49,16 @@ def record(roles: tuple[str, ...] = ("thickness",), scenes: tuple[str, ...] = tu
             error *= 10.0 ** random.Random(f"{scene} {name}").uniform(-0.3, 0.3)
             for taps in (4, 8, 16, 32) if name.startswith(("march", "thin", "distance_field_march")) else (0,):
                 failed = "12 of 4096 points are NaN" if (scene, name) == ("ball", "distance_field_march") else ""
-                found = 0.0 if (scene, name) == ("slab", "constant_thickness") else error / (1.0 + taps)
-                made = point(cost * (1.0 + taps), None if failed else found, failed=failed)
-                made |= {"scene": scene, "role": role, "name": name, "baseline": name in BASELINES}
-                made |= {"label": f"{name}, {taps} taps" if taps else name, "settings": {"steps": taps}}
-                made |= {"parameters": {"scale": 0.1 + taps}, "chain": [name, "beer_lambert"]}
-                made |= {"implementation": {"gl": 1e-6}}
-                made["cost"] |= {"operations": round(cost), "gpu_ms": None}
+                result = 0.0 if (scene, name) == ("slab", "constant_thickness") else error / (1.0 + taps)
+                built = point(cost * (1.0 + taps), None if failed else result, failed=failed)
+                built |= {"scene": scene, "role": role, "name": name, "baseline": name in BASELINES}
+                built |= {"label": f"{name}, {taps} taps" if taps else name, "settings": {"steps": taps}}
+                built |= {"parameters": {"scale": 0.1 + taps}, "chain": [name, "beer_lambert"]}
+                built |= {"implementation": {"gl": 1e-6}}
+                built["cost"] |= {"operations": round(cost), "gpu_ms": None}
                 if not failed:
-                    made["error"] |= {"low": 0.8 * found, "high": 1.3 * found, "bias": -found / 3.0}
-                here.append(made)
+                    built["error"] |= {"low": 0.8 * result, "high": 1.3 * result, "bias": -result / 3.0}
+                here.append(built)
         best = {id(one) for one in front(here)}
         for one in here:
             one["front"] = id(one) in best
@@ -87,13 +87,13 @@ def test_the_front_has_the_points_that_none_dominates(given_points: list[tuple[f
 
     def beaten(one: dict[str, Any]) -> bool:
         x, y = measures(one)
-        others = [measures(other) for other in points if not other["failed"]]
-        return any(cost <= x and error <= y and (cost, error) != (x, y) for cost, error in others)
+        remaining = [measures(other) for other in points if not other["failed"]]
+        return any(cost <= x and error <= y and (cost, error) != (x, y) for cost, error in remaining)
 
-    wanted = [id(one) for one in points if not one["failed"] and not beaten(one)]
-    found = front(points)
-    assert sorted(id(one) for one in found) == sorted(wanted)
-    assert [measures(one)[0] for one in found] == sorted(measures(one)[0] for one in found)
+    expected = [id(one) for one in points if not one["failed"] and not beaten(one)]
+    result = front(points)
+    assert sorted(id(one) for one in result) == sorted(expected)
+    assert [measures(one)[0] for one in result] == sorted(measures(one)[0] for one in result)
 
 
 def test_hypervolume_in_closed_form() -> None:
@@ -129,7 +129,7 @@ def test_checks() -> None:
     wrong["hypervolume"][0]["ours"] = None
     with pytest.raises(SssgenError) as raised:
         checked(wrong)
-    said = str(raised.value)
+    message = str(raised.value)
     for part in (
         "its format is 2",
         "'cost' is missing",
@@ -141,16 +141,16 @@ def test_checks() -> None:
         "point 2: error.value is below 0",
         "hypervolume 0: 'ours'",
     ):
-        assert part in said
+        assert part in message
     with pytest.raises(SssgenError, match="no JSON object"):
         checked([])
 
 
 def test_csv_has_every_number() -> None:
-    made = record()
-    rows = list(csv.DictReader(io.StringIO(to_csv(made))))
-    assert len(rows) == len(made["points"])
-    for row, one in zip(rows, made["points"], strict=True):
+    result = record()
+    rows = list(csv.DictReader(io.StringIO(to_csv(result))))
+    assert len(rows) == len(result["points"])
+    for row, one in zip(rows, result["points"], strict=True):
         assert row["label"] == one["label"] and float(row["cost_value"]) == one["cost"]["value"]
         error = one["error"]["value"]
         assert row["error_value"] == ("" if error is None else repr(error)) and row["failed"] == one["failed"]
@@ -158,9 +158,9 @@ def test_csv_has_every_number() -> None:
 
 
 def test_json_does_not_depend_on_the_order_of_entries() -> None:
-    made = record()
-    turned = {**dict(reversed(made.items())), "points": [dict(reversed(one.items())) for one in made["points"]]}
-    assert to_json(made) == to_json(turned) and json.loads(to_json(made)) == made
+    result = record()
+    turned = {**dict(reversed(result.items())), "points": [dict(reversed(one.items())) for one in result["points"]]}
+    assert to_json(result) == to_json(turned) and json.loads(to_json(result)) == result
 
 
 def test_medians() -> None:
@@ -181,10 +181,10 @@ def test_numbers_are_formatted() -> None:
 
 def gpu_record() -> dict[str, Any]:
     """A record with long notes and units."""
-    made = record(scenes=("slab", "ball"))
-    made |= {"cost": "gpu", "cost_unit": "ms at 1920 × 1080, the median of 50 runs of 20 frames each"}
-    made["record"] |= {"device": "A GPU with a name that is quite long", "driver": "1.2.3" * 12, "software": True}
-    return made
+    result = record(scenes=("slab", "ball"))
+    result |= {"cost": "gpu", "cost_unit": "ms at 1920 × 1080, the median of 50 runs of 20 frames each"}
+    result["record"] |= {"device": "A GPU with a name that is quite long", "driver": "1.2.3" * 12, "software": True}
+    return result
 
 
 DOCS = Path(__file__).parents[len(Path(__file__).parts) - Path(__file__).parts.index("tests") - 1] / "docs"
@@ -272,10 +272,10 @@ def test_techniques_look_different() -> None:
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A drawn record of two roles."""
     pytest.importorskip("textalloc")
-    made = tmp_path_factory.mktemp("drawn")
-    paths = drawing.write(record(("thickness", "translucency")), made)
-    assert sorted(paths) == sorted(map(str, made.iterdir()))
-    return made
+    result = tmp_path_factory.mktemp("drawn")
+    paths = drawing.write(record(("thickness", "translucency")), result)
+    assert sorted(paths) == sorted(map(str, result.iterdir()))
+    return result
 
 
 def test_drawing_again_gives_the_same_files(folder: Path, tmp_path: Path) -> None:
@@ -352,13 +352,13 @@ def test_page_in_a_browser(folder: Path, tmp_path: Path) -> None:
     page.write_text((folder / "chart.html").read_text(encoding="utf-8") + DRIVE, encoding="utf-8")
     command = [chromium, "--headless", "--no-sandbox", "--dump-dom", page.as_uri()]
     dom = subprocess.run(command, capture_output=True, text=True, timeout=HANG, check=True).stdout
-    found = re.search("<title>({.*?)</title>", dom, re.S)
-    assert found
-    said = json.loads(html.unescape(found[1]))
-    assert said["title"].startswith("All 3 scenes\n") and "cost " in said["title"] and said["focused"]
-    assert said["target"].split("\t")[2].removesuffix(" (baseline)") in said["title"]
-    assert said["rows"] == 4 == len(said["up"]) and said["output"].startswith("4 of ") and said["shown"] > 4
-    assert said["up"] == sorted(said["up"]) == said["down"][::-1] and len(set(said["up"])) == 4
+    result = re.search("<title>({.*?)</title>", dom, re.S)
+    assert result
+    report = json.loads(html.unescape(result[1]))
+    assert report["title"].startswith("All 3 scenes\n") and "cost " in report["title"] and report["focused"]
+    assert report["target"].split("\t")[2].removesuffix(" (baseline)") in report["title"]
+    assert report["rows"] == 4 == len(report["up"]) and report["output"].startswith("4 of ") and report["shown"] > 4
+    assert report["up"] == sorted(report["up"]) == report["down"][::-1] and len(set(report["up"])) == 4
 
 
 def test_without_points_or_matplotlib(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -371,7 +371,7 @@ def test_without_points_or_matplotlib(tmp_path: Path, monkeypatch: pytest.Monkey
 
 
 def test_a_long_device_and_unit_are_shown() -> None:
-    made = gpu_record()
-    (chart,) = charts_of(checked(made))
-    assert chart.cost_unit == made["cost_unit"] and made["record"]["driver"] in chart.note
+    result = gpu_record()
+    (chart,) = charts_of(checked(result))
+    assert chart.cost_unit == result["cost_unit"] and result["record"]["driver"] in chart.note
     assert "a software driver" in chart.note

@@ -53,10 +53,10 @@ def as_bytes(results: list[Any]) -> list[bytes]:
 
 
 def test_results_do_not_depend_on_processes(tmp_path: Path) -> None:
-    todo = items(tmp_path, 6)
-    here = run(todo, processes=0, store=Store(""))
+    jobs = items(tmp_path, 6)
+    here = run(jobs, processes=0, store=Store(""))
     assert [result.name for result in here] == [f"item {number}" for number in range(6)]
-    assert as_bytes(run(todo, processes=2, store=Store(""))) == as_bytes(here)
+    assert as_bytes(run(jobs, processes=2, store=Store(""))) == as_bytes(here)
     assert runs(tmp_path) == sorted([*range(6)] * 2)
 
 
@@ -78,37 +78,37 @@ def test_bytes_depend_on_values_alone() -> None:
 def test_keys() -> None:
     one = Item("executor_items:echo", (1,), "one")
     assert task(one).key == task(one._replace(name="another name")).key
-    others = [one._replace(arguments=(2,)), one._replace(function="executor_items:fail")]
-    others += [one._replace(function="sssgen.support.progress:ProgressBar")]
-    assert len({task(other).key for other in [one, *others]}) == 4
+    remaining = [one._replace(arguments=(2,)), one._replace(function="executor_items:fail")]
+    remaining += [one._replace(function="sssgen.support.progress:ProgressBar")]
+    assert len({task(other).key for other in [one, *remaining]}) == 4
 
 
 def test_duplicates_run_once(tmp_path: Path) -> None:
-    todo = items(tmp_path, 3)
-    results = run([*todo, *todo], processes=2, store=Store(""))
+    jobs = items(tmp_path, 3)
+    results = run([*jobs, *jobs], processes=2, store=Store(""))
     assert runs(tmp_path) == [0, 1, 2]
     assert as_bytes(results[:3]) == as_bytes(results[3:])
 
 
 def test_stored_results_are_not_recomputed(tmp_path: Path) -> None:
-    store, noted = Store(str(tmp_path / "store")), tmp_path / "runs"
-    noted.mkdir()
-    first = run(items(noted, 3), processes=0, store=store)
-    told: list[tuple[int, int, str]] = []
-    again = run(items(noted, 4), processes=0, store=store, progress=lambda *what: told.append(what))
-    assert runs(noted) == [0, 1, 2, 3]
+    store, notes = Store(str(tmp_path / "store")), tmp_path / "runs"
+    notes.mkdir()
+    first = run(items(notes, 3), processes=0, store=store)
+    messages: list[tuple[int, int, str]] = []
+    again = run(items(notes, 4), processes=0, store=store, progress=lambda *what: messages.append(what))
+    assert runs(notes) == [0, 1, 2, 3]
     assert as_bytes(again[:3]) == as_bytes(first)
-    assert told == [(number + 1, 4, f"item {number}") for number in range(4)]
+    assert messages == [(number + 1, 4, f"item {number}") for number in range(4)]
 
 
 def test_damaged_entries_are_recomputed(tmp_path: Path) -> None:
-    store, noted = Store(str(tmp_path / "store")), tmp_path / "runs"
-    noted.mkdir()
-    first = run(items(noted, 2), processes=0, store=store)
+    store, notes = Store(str(tmp_path / "store")), tmp_path / "runs"
+    notes.mkdir()
+    first = run(items(notes, 2), processes=0, store=store)
     path = next(path for path in (tmp_path / "store").rglob("*") if path.is_file())
     path.write_bytes(path.read_bytes()[:-1])
-    assert as_bytes(run(items(noted, 2), processes=0, store=store)) == as_bytes(first)
-    assert len(runs(noted)) == 3
+    assert as_bytes(run(items(notes, 2), processes=0, store=store)) == as_bytes(first)
+    assert len(runs(notes)) == 3
 
 
 def test_no_cache_folder_is_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -120,11 +120,11 @@ def test_no_cache_folder_is_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize("processes", [0, 2])
 def test_a_failure_concerns_its_item_alone(processes: int) -> None:
-    todo = [Item("executor_items:fail", (how,), how) for how in ("said", "raised", "exit")]
-    todo += [Item("executor_items:missing", (), "missing"), Item("no_such_module:name", (), "module")]
-    todo += [Item("executor_items:echo", (1,), "good")]
+    jobs = [Item("executor_items:fail", (how,), how) for how in ("said", "raised", "exit")]
+    jobs += [Item("executor_items:missing", (), "missing"), Item("no_such_module:name", (), "module")]
+    jobs += [Item("executor_items:echo", (1,), "good")]
     store = Store("")
-    *failed, good = run(todo, processes=processes, store=store)
+    *failed, good = run(jobs, processes=processes, store=store)
     assert good == (1, 1)
     assert [one.name for one in failed] == ["said", "raised", "exit", "missing", "module"]
     assert failed[0].message == "the scene has no light"
@@ -134,8 +134,8 @@ def test_a_failure_concerns_its_item_alone(processes: int) -> None:
 
 
 def test_a_killed_process_costs_nothing(tmp_path: Path) -> None:
-    todo = [*items(tmp_path, 3, name="die_first"), *items(tmp_path, 6)[3:]]
-    results = run(todo, processes=2, store=Store(""))
+    jobs = [*items(tmp_path, 3, name="die_first"), *items(tmp_path, 6)[3:]]
+    results = run(jobs, processes=2, store=Store(""))
     assert results[:3] == [0, 1, 2] and not failures(results)
     assert runs(tmp_path) == [0, 0, 1, 1, 2, 2, 3, 4, 5]
 
@@ -158,11 +158,11 @@ def test_an_interrupt_without_processes_keeps_finished_items() -> None:
 
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
 def test_an_interrupted_run_continues(tmp_path: Path, how: int) -> None:
-    noted, folder = tmp_path / "runs", tmp_path / "store"
-    noted.mkdir()
+    notes, folder = tmp_path / "runs", tmp_path / "store"
+    notes.mkdir()
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(TESTS / "tools"), *filter(None, sys.path)])}
     code = "import sys, executor_items; executor_items.run_behind_gate(*sys.argv[1:])"
-    command = [sys.executable, "-c", code, str(noted), str(folder)]
+    command = [sys.executable, "-c", code, str(notes), str(folder)]
     process = subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL, preexec_fn=heed_interrupts)
 
     def kept() -> list[Path]:
@@ -171,14 +171,14 @@ def test_an_interrupted_run_continues(tmp_path: Path, how: int) -> None:
     wait_until(lambda: len(kept()) == GATE or process.poll() is not None, "the items before the gate")
     assert process.poll() is None
     process.send_signal(how)
-    open_gate(noted)
+    open_gate(notes)
     assert process.wait(timeout=HANG) != 0
-    started, done = len(runs(noted)), len(kept())
+    started, done = len(runs(notes)), len(kept())
     assert GATE <= done < 12 and started <= done + 4  # its two workers had items in hand, or had just finished them
-    todo = items(noted, 12, "measure_behind_gate")
-    results = run(todo, processes=2, store=Store(str(folder)))
-    assert len(runs(noted)) == started + 12 - done  # no worker went on alone
-    assert as_bytes(results) == as_bytes(run(todo, processes=0, store=Store(str(folder))))
+    jobs = items(notes, 12, "measure_behind_gate")
+    results = run(jobs, processes=2, store=Store(str(folder)))
+    assert len(runs(notes)) == started + 12 - done  # no worker went on alone
+    assert as_bytes(results) == as_bytes(run(jobs, processes=0, store=Store(str(folder))))
 
 
 def test_the_bar_is_silent_without_a_terminal(capfd: pytest.CaptureFixture[str]) -> None:
@@ -226,14 +226,14 @@ def test_results_on_dask_survive_a_dead_worker(tmp_path: Path, dask: Any) -> Non
     local, remote = tmp_path / "local", tmp_path / "remote"
     for folder in (local, remote):
         folder.mkdir()
-    wanted = as_bytes(run(items(local, 4), processes=0, store=Store("")))
+    expected = as_bytes(run(items(local, 4), processes=0, store=Store("")))
     assert as_bytes(run([*items(local, 4), *items(local, 2)], dask.scheduler_address, store=Store(""))) == [
-        *wanted,
-        *wanted[:2],
+        *expected,
+        *expected[:2],
     ]
     assert runs(local) == sorted([*range(4)] * 2)
 
-    todo = [*items(remote, 12, name="measure_behind_gate"), Item("executor_items:fail", ("said",), "said")]
+    jobs = [*items(remote, 12, name="measure_behind_gate"), Item("executor_items:fail", ("said",), "said")]
     store, killed = Store(str(tmp_path / "store")), []
 
     def kill(done: int, total: int, name: str) -> None:
@@ -242,11 +242,11 @@ def test_results_on_dask_survive_a_dead_worker(tmp_path: Path, dask: Any) -> Non
             os.kill(killed[0], signal.SIGKILL)
             open_gate(remote)
 
-    *results, failed = run(todo, dask.scheduler_address, store=store, progress=kill)
+    *results, failed = run(jobs, dask.scheduler_address, store=store, progress=kill)
     assert killed and failed == Failure("said", "the scene has no light")
     assert [result.name for result in results] == [f"item {number}" for number in range(12)]
     assert set(runs(remote)) == set(range(12))
-    assert as_bytes(results) == as_bytes(run(todo[:-1], processes=0, store=Store("")))
+    assert as_bytes(results) == as_bytes(run(jobs[:-1], processes=0, store=Store("")))
     assert len([path for path in (tmp_path / "store").rglob("*") if path.is_file()]) == 12
 
 
@@ -304,7 +304,7 @@ def test_the_command_shares_out(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_distributed_rendering_gives_the_same_differences() -> None:
-    todo = [Item("sssgen.lab.jobs.render_items:apart", ("resin_inlay", ("numpy-f32", "numpy"), (32, 24), 1))]
-    [[single, same]] = here = run(todo, processes=0, store=Store(""))
+    jobs = [Item("sssgen.lab.jobs.render_items:apart", ("resin_inlay", ("numpy-f32", "numpy"), (32, 24), 1))]
+    [[single, same]] = here = run(jobs, processes=0, store=Store(""))
     assert 0.0 < single.worst < 1.0 and single.beyond == 0 and same == (0.0, 0)
-    assert as_bytes(run(todo, processes=1, store=Store(""))) == as_bytes(here)
+    assert as_bytes(run(jobs, processes=1, store=Store(""))) == as_bytes(here)

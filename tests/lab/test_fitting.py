@@ -46,15 +46,17 @@ pytestmark = pytest.mark.usefixtures("no_cache")
 # --- the fit ---
 
 
-def synthetic(view: View, made: Chain, given: Mapping[str, Any], scale: Array) -> Problem:
+def synthetic(view: View, result: Chain, inputs: Mapping[str, Any], scale: Array) -> Problem:
     """The light that a chain gives itself with these parameters."""
-    asked = measure.problem_of("translucency", view, summed=False)
-    assert asked is not None
-    return replace(asked, target=scale[:, None] * asked.values(made, given), noise=np.zeros_like(asked.target))
+    fit_problem = measure.problem_of("translucency", view, summed=False)
+    assert fit_problem is not None
+    return replace(
+        fit_problem, target=scale[:, None] * fit_problem.values(result, inputs), noise=np.zeros_like(fit_problem.target)
+    )
 
 
 @pytest.mark.parametrize(
-    ("names", "given", "scale"),
+    ("names", "values", "scale"),
     [
         (("lobe_gdc2011",), {"distortion": 0.35, "power": 3.0, "scale": 4.0, "ambient": 0.2}, [0.8, 0.5, 0.3]),
         (("lobe_exp2",), {"distortion": 0.1, "power": 9.0}, [2.0, 1.0, 0.5]),
@@ -62,45 +64,47 @@ def synthetic(view: View, made: Chain, given: Mapping[str, Any], scale: Array) -
     ],
 )
 def test_the_fit_recovers_the_parameters_of_synthetic_light(
-    names: tuple[str, ...], given: dict[str, float], scale: list[float], training: tuple[View, ...], tmp_path: Path
+    names: tuple[str, ...], values: dict[str, float], scale: list[float], training: tuple[View, ...], tmp_path: Path
 ) -> None:
-    one = candidate("exact_thickness", "beer_lambert", *names, role="translucency")
-    given = {**given, "attenuation_distance": 0.6}
-    chains = [chain(one, view, tmp_path) for view in training[:2]]
-    asked = [synthetic(view, made, given, np.array(scale)) for view, made in zip(training, chains, strict=False)]
-    found = fit.fit(chains, asked)
-    assert found.error < 1e-4
-    assert found.factor == "subsurface_color"
-    for name in {"distortion", "power", "anisotropy", "attenuation_distance"} & set(given):
-        assert found.parameters[name] == pytest.approx((given[name],), rel=2e-3)
-    if "scale" in given:  # strength and ambient light share the colour's factor: their ratio is what shows
-        ratio = found.parameters["ambient"][0] / found.parameters["scale"][0]
-        assert ratio == pytest.approx(given["ambient"] / given["scale"], rel=2e-3)
-    channels = np.array(found.scale)
+    chosen = candidate("exact_thickness", "beer_lambert", *names, role="translucency")
+    values = {**values, "attenuation_distance": 0.6}
+    chains = [chain(chosen, view, tmp_path) for view in training[:2]]
+    requests = [synthetic(view, made, values, np.array(scale)) for view, made in zip(training, chains, strict=False)]
+    result = fit.fit(chains, requests)
+    assert result.error < 1e-4
+    assert result.factor == "subsurface_color"
+    for name in {"distortion", "power", "anisotropy", "attenuation_distance"} & set(values):
+        assert result.parameters[name] == pytest.approx((values[name],), rel=2e-3)
+    if "scale" in values:  # strength and ambient light share the colour's factor: their ratio is what shows
+        ratio = result.parameters["ambient"][0] / result.parameters["scale"][0]
+        assert ratio == pytest.approx(values["ambient"] / values["scale"], rel=2e-3)
+    channels = np.array(result.scale)
     assert channels / channels[0] == pytest.approx(np.array(scale) / scale[0], rel=2e-3)
 
 
 def test_the_fit_is_deterministic(training: tuple[View, ...]) -> None:
-    one = candidate("exact_thickness", "beer_lambert", "lobe_normalized", role="translucency")
-    assert measure.fitted(one, training) == measure.fitted(one, training)
+    chosen = candidate("exact_thickness", "beer_lambert", "lobe_normalized", role="translucency")
+    assert measure.fitted(chosen, training) == measure.fitted(chosen, training)
 
 
 def test_scale_and_matte_are_not_negative(training: tuple[View, ...], tmp_path: Path) -> None:
     # light that the lobe would have to take away: the best there is, is none of it
     view = training[0]
-    one = candidate("exact_thickness", "beer_lambert", "lobe_gdc2011")
-    made = chain(one, view, tmp_path)
-    asked = measure.problem_of("material", view, summed=False)
-    assert asked is not None
-    lambert = np.maximum(asked.lambert, 1e-3)
+    chosen = candidate("exact_thickness", "beer_lambert", "lobe_gdc2011")
+    built = chain(chosen, view, tmp_path)
+    fit_problem = measure.problem_of("material", view, summed=False)
+    assert fit_problem is not None
+    lambert = np.maximum(fit_problem.lambert, 1e-3)
     both = [
-        replace(asked, target=np.maximum(0.8 * lambert - 0.2 * asked.values(made, {}), 0.0), lambert=lambert),
-        replace(asked, target=0.3 * asked.values(made, {"scale": 3.0}) - 0.01 * lambert, lambert=lambert),
+        replace(
+            fit_problem, target=np.maximum(0.8 * lambert - 0.2 * fit_problem.values(built, {}), 0.0), lambert=lambert
+        ),
+        replace(fit_problem, target=0.3 * fit_problem.values(built, {"scale": 3.0}) - 0.01 * lambert, lambert=lambert),
     ]
-    less_lobe, less_matte = (fit.fit([made], [wanted]) for wanted in both)
-    for found in (less_lobe, less_matte):
-        assert min(*found.scale, *found.matte) >= 0.0
-        assert np.isfinite(found.error)
+    less_lobe, less_matte = (fit.fit([built], [wanted]) for wanted in both)
+    for result in (less_lobe, less_matte):
+        assert min(*result.scale, *result.matte) >= 0.0
+        assert np.isfinite(result.error)
     assert max(less_matte.matte) == 0.0 and min(less_matte.scale) > 0.0
     assert min(less_lobe.matte) > 0.3
 
@@ -108,42 +112,42 @@ def test_scale_and_matte_are_not_negative(training: tuple[View, ...], tmp_path: 
 def test_scale_and_matte_are_least_squares(training: tuple[View, ...], tmp_path: Path) -> None:
     # without a colour to set, all channels have one scale; wrap lighting has none of its own
     view = training[1]
-    made = chain(candidate("exact_thickness", "absorption_tint"), view, tmp_path)
-    asked = measure.problem_of("material", view, summed=False)
-    assert asked is not None
-    asked = asked.thinned(300)  # fewer than are left out of a fit
-    found = fit.fit([made], [asked])
-    values = asked.values(made, fit.exact(found.parameters))
+    built = chain(candidate("exact_thickness", "absorption_tint"), view, tmp_path)
+    fit_problem = measure.problem_of("material", view, summed=False)
+    assert fit_problem is not None
+    fit_problem = fit_problem.thinned(300)  # fewer than are left out of a fit
+    result = fit.fit([built], [fit_problem])
+    values = fit_problem.values(built, fit.exact(result.parameters))
 
     def error(scale: Array, matte: Array) -> float:
-        apart = found._replace(scale=tuple(scale), matte=tuple(matte)).apply(values, asked) - asked.target
-        return float(np.sqrt((apart**2 / (asked.target**2 + fit.EPSILON)).mean()))
+        apart = result._replace(scale=tuple(scale), matte=tuple(matte)).apply(values, fit_problem) - fit_problem.target
+        return float(np.sqrt((apart**2 / (fit_problem.target**2 + fit.EPSILON)).mean()))
 
-    scale, matte = np.array(found.scale), np.array(found.matte)
+    scale, matte = np.array(result.scale), np.array(result.matte)
     assert np.ptp(scale) == 0.0
-    assert error(scale, matte) == pytest.approx(found.error, rel=1e-6)
+    assert error(scale, matte) == pytest.approx(result.error, rel=1e-6)
     for more in (0.97, 1.03):
         if more < 1.0 or scale[0] * more <= 1.0 / 0.5:  # `weight` takes the scale, and goes to 1
-            assert error(more * scale, matte) > found.error
+            assert error(more * scale, matte) > result.error
         for channel in range(3):
-            assert error(scale, matte * np.where(np.arange(3) == channel, more, 1.0)) >= found.error
+            assert error(scale, matte * np.where(np.arange(3) == channel, more, 1.0)) >= result.error
 
 
 def test_the_scale_is_no_more_than_its_parameter_can_be(training: tuple[View, ...], tmp_path: Path) -> None:
     # `weight` is 0.5 by default and goes to 1: light that is brighter cannot be reached
-    made = chain(candidate("exact_thickness", "absorption_tint"), training[0], tmp_path)
-    asked = measure.problem_of("translucency", training[0], summed=False)
-    assert asked is not None
-    bright = replace(asked, target=np.full_like(asked.target, 20.0 * asked.gain))
-    found = fit.fit([made], [bright])
-    assert found.factor == "weight"
-    assert found.scale == pytest.approx((2.0, 2.0, 2.0))
+    built = chain(candidate("exact_thickness", "absorption_tint"), training[0], tmp_path)
+    fit_problem = measure.problem_of("translucency", training[0], summed=False)
+    assert fit_problem is not None
+    bright = replace(fit_problem, target=np.full_like(fit_problem.target, 20.0 * fit_problem.gain))
+    result = fit.fit([built], [bright])
+    assert result.factor == "weight"
+    assert result.scale == pytest.approx((2.0, 2.0, 2.0))
 
 
 def test_an_empty_chain_is_fitted_by_front_reflection(training: tuple[View, ...]) -> None:
-    found = measure.fitted(Candidate("material", "none", "none", (), ()), training)
-    assert found.parameters == {} and found.scale == (0.0, 0.0, 0.0)
-    assert [round(matte, 1) for matte in found.matte] != [0.0, 0.0, 0.0]
+    result = measure.fitted(Candidate("material", "none", "none", (), ()), training)
+    assert result.parameters == {} and result.scale == (0.0, 0.0, 0.0)
+    assert [round(matte, 1) for matte in result.matte] != [0.0, 0.0, 0.0]
 
 
 # --- the emitted material is the point that was measured ---
@@ -170,31 +174,31 @@ def test_the_emitted_material_gives_the_measured_light(
     settings = (("steps", 3),) if names[0] == "march_light" else ()
     if names[0] == "march_distance_texture":
         settings = candidates.settings(candidates.load(names[0]))[1]
-    one = candidate(*names, settings=settings)
-    found = measure.fitted(one, training[:2])
-    assert found.factor and max(found.scale) > 0.0
-    point = measure.measured(one, found, [cube])
-    asked = measure.problem_of("material", cube)
-    assert asked is not None
-    shown = found.apply(asked.values(chain(one, cube, tmp_path), fit.exact(found.parameters)), asked)
+    chosen = candidate(*names, settings=settings)
+    result = measure.fitted(chosen, training[:2])
+    assert result.factor and max(result.scale) > 0.0
+    point = measure.measured(chosen, result, [cube])
+    fit_problem = measure.problem_of("material", cube)
+    assert fit_problem is not None
+    shown = result.apply(fit_problem.values(chain(chosen, cube, tmp_path), fit.exact(result.parameters)), fit_problem)
 
     files = material_files(cube.scene, picked(cube.scene, point), "mine")
     for name, text in files.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     emitted = Chain(parse_material(files["mine.toml"], str(tmp_path / "mine.toml")))
-    albedo = emitted.surface(asked.parts[0].inputs, "albedo")
+    albedo = emitted.surface(fit_problem.parts[0].inputs, "albedo")
     # its parameters are in its text; only what the scene's body gives is set
-    light = asked.values(emitted, {}) + albedo * asked.lambert
+    light = fit_problem.values(emitted, {}) + albedo * fit_problem.lambert
     assert light == pytest.approx(shown, rel=1e-4, abs=1e-6)
-    assert albedo[:, 0] == pytest.approx(found.matte, rel=1e-5)
+    assert albedo[:, 0] == pytest.approx(result.matte, rel=1e-5)
 
 
 @pytest.mark.parametrize("names", [CHAINS["a march"], CHAINS["a map"]])
 def test_the_emitted_material_compiles_for_every_target(
     names: tuple[str, ...], cube: View, training: tuple[View, ...], tmp_path: Path
 ) -> None:
-    one = candidate(*names)
-    point = measure.measured(one, measure.fitted(one, training[:1]), [cube])
+    chosen = candidate(*names)
+    point = measure.measured(chosen, measure.fitted(chosen, training[:1]), [cube])
     files = material_files(cube.scene, picked(cube.scene, point), "mine")
     assert ("body.sss" in files) == (names[0] == "march_light")
     for name, text in files.items():
@@ -210,20 +214,20 @@ def test_every_translucency_technique_has_a_scale_parameter(training: tuple[View
     # else what is emitted could not be as bright as what was measured
     for one in candidates.translucency():
         if one.techniques and not candidates.is_published(candidates.load(one.name)):
-            asked = measure.problem_of("translucency", training[0], summed=False)
-            assert asked is not None
-            made = chain(one, training[0], tmp_path)
-            names = {name for part in asked.parts for name in part.values}
-            assert fit.free_parameters(made, names, asked)[1] is not None, one.label
+            fit_problem = measure.problem_of("translucency", training[0], summed=False)
+            assert fit_problem is not None
+            built = chain(one, training[0], tmp_path)
+            names = {name for part in fit_problem.parts for name in part.values}
+            assert fit.free_parameters(built, names, fit_problem)[1] is not None, one.label
 
 
 def test_the_parallax_of_an_inlay_has_the_scenes_parameters(tmp_path: Path) -> None:
-    one = small("inlay_plate")
-    asked = [each for each in candidates.coordinates() if each.name == "parallax_refracted"]
-    plate = View("plate", replace(references.plate(one), size=SIZE))
-    point = measure.measured(asked[0], measure.fitted(asked[0], [plate]), [View("own", one)])
-    files = material_files(one, Pick(one.name, None, point, (), None, None, True), "mine")
-    made = Chain(parse_material(files["mine.toml"], str(tmp_path / "mine.toml")))
-    values = {uniform["technique_name"]: uniform["default"] for uniform in made.uniforms}
+    scene = small("inlay_plate")
+    requests = [each for each in candidates.coordinates() if each.name == "parallax_refracted"]
+    plate = View("plate", replace(references.plate(scene), size=SIZE))
+    point = measure.measured(requests[0], measure.fitted(requests[0], [plate]), [View("own", scene)])
+    files = material_files(scene, Pick(scene.name, None, point, (), None, None, True), "mine")
+    built = Chain(parse_material(files["mine.toml"], str(tmp_path / "mine.toml")))
+    values = {uniform["technique_name"]: uniform["default"] for uniform in built.uniforms}
     assert (values["depth"], values["ior"]) == ([0.1], [1.5])
-    assert [stage.section for stage in stages_of(point, body(one.geometry))] == ["coordinates", "surface"]
+    assert [stage.section for stage in stages_of(point, body(scene.geometry))] == ["coordinates", "surface"]

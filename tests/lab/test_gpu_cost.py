@@ -55,10 +55,10 @@ def opengl(backend: Callable[[str], Backend]) -> Backend:
 @pytest.fixture(scope="module")
 def benchmark() -> ModuleType:
     """benchmarks/gpu.py, which is no module of the package."""
-    found = importlib.util.spec_from_file_location("gpu", ROOT / "benchmarks" / "gpu.py")
-    assert found is not None and found.loader is not None
-    module = importlib.util.module_from_spec(found)
-    found.loader.exec_module(module)
+    result = importlib.util.spec_from_file_location("gpu", ROOT / "benchmarks" / "gpu.py")
+    assert result is not None and result.loader is not None
+    module = importlib.util.module_from_spec(result)
+    result.loader.exec_module(module)
     return module
 
 
@@ -73,26 +73,26 @@ def measured(*programs: Program) -> Measured:
 
 
 def test_a_ratio_is_that_of_the_times(counted: None) -> None:
-    found = measured(Program("few", LOOP, {"count": 20}), Program("many", LOOP, {"count": 2000}))
-    assert found.ratio("many", "few") == (100.0, 100.0, 100.0)
-    assert found.ratio("few", "many").median == 0.01
+    timing = measured(Program("few", LOOP, {"count": 20}), Program("many", LOOP, {"count": 2000}))
+    assert timing.ratio("many", "few") == (100.0, 100.0, 100.0)
+    assert timing.ratio("few", "many").median == 0.01
 
 
 def test_the_floor_is_subtracted(counted: None) -> None:
     floored = Program("floored", LOOP, {"count": 500}, floor=LOOP.replace("sin", "cos"))
-    found = measured(floored, Program("bare", LOOP, {"count": 500}))
-    assert found.raw("floored").median == 500.0 and found.net("floored").median == 0.0
-    assert found.net("bare") == found.raw("bare") == (500.0, 500.0, 500.0)
+    timing = measured(floored, Program("bare", LOOP, {"count": 500}))
+    assert timing.raw("floored").median == 500.0 and timing.net("floored").median == 0.0
+    assert timing.net("bare") == timing.raw("bare") == (500.0, 500.0, 500.0)
 
 
 def test_the_net_time_is_per_evaluation(counted: None) -> None:
-    found = measured(Program("ten", LOOP, {"count": 1000}, evaluations=10))
-    assert found.net("ten").median == 100.0 and found.raw("ten").median == 1000.0
+    timing = measured(Program("ten", LOOP, {"count": 1000}, evaluations=10))
+    assert timing.net("ten").median == 100.0 and timing.raw("ten").median == 1000.0
 
 
 def test_the_record_names_the_device(opengl: Backend) -> None:
-    found = measured(Program("one", LOOP, {"count": 10}, floor=FLOOR))
-    record = found.record()
+    timing = measured(Program("one", LOOP, {"count": 10}, floor=FLOOR))
+    record = timing.record()
     assert record["device"] in opengl.device() and record["size"] == [128, 72] and record["rounds"] == 5
     assert record["software"] == ("llvmpipe" in record["device"] or "softpipe" in record["device"])
     frame = record["programs"]["one"]["frame_ms"]
@@ -119,10 +119,10 @@ def test_a_technique_is_computed() -> None:
     place, normal = points.position[..., :3].reshape(-1, 3), points.normal[..., :3].reshape(-1, 3)
     uv = np.stack([points.position[..., 3], points.normal[..., 3]], axis=-1).reshape(-1, 2)
     view, light = (np.array(at) - place for at in (gpu_programs.EYE, gpu_programs.LIGHT))
-    given = {"V": view, "L": light, "N": normal}
-    given = {name: value / np.linalg.norm(value, axis=1, keepdims=True) for name, value in given.items()}
+    values = {"V": view, "L": light, "N": normal}
+    values = {name: value / np.linalg.norm(value, axis=1, keepdims=True) for name, value in values.items()}
     expected = evaluate.evaluate(
-        subject("lobe_normalized"), {**given, "through": (uv @ [3.0, 5.0]) % 1.0}, backends.get("numpy")
+        subject("lobe_normalized"), {**values, "through": (uv @ [3.0, 5.0]) % 1.0}, backends.get("numpy")
     )
     np.testing.assert_allclose(shown, expected["result"][:, 0], atol=2e-4)
 
@@ -150,26 +150,26 @@ def test_a_material_has_its_scene_s_colours(opengl: Backend) -> None:
     """The pass over points stretches what the camera sees, so that only the mean is that of the picture."""
     shown = render.with_samples(scene_loading.load("paper_lantern"), 1)
     points = gpu_programs.surface_points(shown, SIZE)
-    made = gpu_cost.picture(gpu_programs.of_material("lantern", shown.material, shown, points), SIZE)[..., :3]
+    result = gpu_cost.picture(gpu_programs.of_material("lantern", shown.material, shown, points), SIZE)[..., :3]
     picture = render.render(shown, opengl, size=SIZE)
     mean = picture.linear[picture.covered == 1.0].mean(axis=0) / shown.exposure
-    np.testing.assert_allclose(made.mean(axis=(0, 1)), mean, rtol=0.25)
+    np.testing.assert_allclose(result.mean(axis=(0, 1)), mean, rtol=0.25)
 
 
 def test_a_material_with_its_own_camera_is_rendered(opengl: Backend) -> None:
     shown = dataclasses.replace(render.with_samples(scene_loading.load("jelly_cubes"), 1), size=SIZE)
     points = gpu_programs.surface_points(shown, SIZE)
-    made = gpu_cost.picture(gpu_programs.of_material("cubes", shown.material, shown, points), SIZE)[::-1, :, :3]
+    result = gpu_cost.picture(gpu_programs.of_material("cubes", shown.material, shown, points), SIZE)[::-1, :, :3]
     picture = render.render(shown, opengl)
-    np.testing.assert_allclose(decode_srgb(made) * shown.exposure, picture.linear, atol=0.01)
+    np.testing.assert_allclose(decode_srgb(result) * shown.exposure, picture.linear, atol=0.01)
 
 
 def test_costs_of_materials() -> None:
     names = ("resin_inlay", "wax_mouse")
     scenes = [scene_loading.load(name) for name in names]
     points = [gpu_programs.TimedMaterial(scene.material, scene.material, scene) for scene in scenes]
-    found = gpu_programs.costs(points, size=SIZE, rounds=3)
-    assert all(found.raw(name).low > 0.0 for name in names)
+    timing = gpu_programs.costs(points, size=SIZE, rounds=3)
+    assert all(timing.raw(name).low > 0.0 for name in names)
 
 
 def test_a_camera_that_sees_nothing() -> None:

@@ -163,9 +163,9 @@ def test_merged_intervals_are_disjoint_sorted_and_cover_the_same() -> None:
     generator = np.random.default_rng(7)
     ends = np.sort(generator.uniform(0.0, 1.0, (300, 5, 2)), axis=2)
     ends[:, 2] = 0.0  # an empty one
-    found = merged(ends)
+    result = merged(ends)
     at = np.linspace(0.0, 1.0, 3001)
-    for before, after in zip(ends, found, strict=True):
+    for before, after in zip(ends, result, strict=True):
         inside = ((before[:, :1] <= at) & (at < before[:, 1:])).any(axis=0)
         again = ((after[:, :1] <= at) & (at < after[:, 1:])).sum(axis=0)
         assert (again == inside).all()
@@ -179,10 +179,10 @@ def test_thickness_follows_rotation_scale_and_translation(shape: Geometry) -> No
     origins, ways = rays(400, 1.0)
     placed = replace(shape, **ASKEW)
     matrix = placed.to_world()
-    there = thickness(placed, origins @ matrix[:3, :3].T + matrix[:3, 3], ways @ matrix[:3, :3].T / 1.7)
+    moved = thickness(placed, origins @ matrix[:3, :3].T + matrix[:3, 3], ways @ matrix[:3, :3].T / 1.7)
     here = thickness(shape, origins, ways)
     assert (here > 0.05).sum() > 20
-    assert there == pytest.approx(1.7 * here, abs=1e-6)
+    assert moved == pytest.approx(1.7 * here, abs=1e-6)
 
 
 @pytest.mark.parametrize("shape", [*BODIES, *(replace(body, **ASKEW) for body in BODIES)], ids=repr)
@@ -228,13 +228,13 @@ def test_a_distance_function_has_the_thickness_of_the_solid(function: Distance, 
         function, solid = replace(function, **ASKEW), replace(solid, **ASKEW)
     origins, ways = through(solid, 400)
     exact = thickness(solid, origins, ways)
-    found = thickness(function, origins, ways)
+    result = thickness(function, origins, ways)
     # what is shorter than the shortest step may be missed
-    missed = (found == 0.0) & (exact > 0.0)
+    missed = (result == 0.0) & (exact > 0.0)
     assert exact[missed].max(initial=0.0) < 0.05
-    assert found[~missed] == pytest.approx(exact[~missed], abs=1e-3)
-    assert np.median(np.abs(found - exact)) < 1e-9
-    assert (np.abs(found - exact) < 1e-6).mean() > 0.98
+    assert result[~missed] == pytest.approx(exact[~missed], abs=1e-3)
+    assert np.median(np.abs(result - exact)) < 1e-9
+    assert (np.abs(result - exact) < 1e-6).mean() > 0.98
     # from the surface on, into the body
     at = origins + intervals_of(solid, origins, ways)[:, None] * ways
     hit = exact > 0.1
@@ -244,16 +244,16 @@ def test_a_distance_function_has_the_thickness_of_the_solid(function: Distance, 
 def intervals_of(shape: Geometry, origins: Array, ways: Array) -> Array:
     """The way to the first surface in front, world units; 0 where there is none."""
     inwards = shape.to_object()
-    found = intervals(shape, origins @ inwards[:3, :3].T + inwards[:3, 3], ways @ inwards[:3, :3].T * shape.scale)
-    first: Array = np.where(found[..., 1] > found[..., 0], found[..., 0], np.inf).min(axis=1) * shape.scale
+    result = intervals(shape, origins @ inwards[:3, :3].T + inwards[:3, 3], ways @ inwards[:3, :3].T * shape.scale)
+    first: Array = np.where(result[..., 1] > result[..., 0], result[..., 0], np.inf).min(axis=1) * shape.scale
     return np.where(np.isfinite(first), first, 0.0)
 
 
 # --- meshes ---
 
 
-def mesh(path: Path, made: object) -> Mesh:
-    made.export(path)  # type: ignore[attr-defined]
+def mesh(path: Path, result: object) -> Mesh:
+    result.export(path)  # type: ignore[attr-defined]
     return Mesh(path=str(path))
 
 
@@ -292,10 +292,10 @@ def test_nested_parts_of_a_mesh_count_once(tmp_path: Path) -> None:
     pytest.importorskip("embreex")
     whole, part = trimesh.creation.box((2.0, 2.0, 2.0)), trimesh.creation.box((2.0, 0.5, 0.5))
     part.apply_translation((1.5, 0.1, 0.2))  # half in, half out
-    made = mesh(tmp_path / "two.ply", trimesh.util.concatenate([whole, part]))
+    result = mesh(tmp_path / "two.ply", trimesh.util.concatenate([whole, part]))
     same = Union((Box(size=(2.0, 2.0, 2.0)), Box(size=(2.0, 0.5, 0.5), position=(1.5, 0.1, 0.2))))
     origins, ways = through(same, 2000)
-    assert thickness(made, origins, ways) == pytest.approx(thickness(same, origins, ways), abs=2e-4)
+    assert thickness(result, origins, ways) == pytest.approx(thickness(same, origins, ways), abs=2e-4)
 
 
 @pytest.mark.skipif(not SPOT.is_file(), reason="the meshes of shared/data/meshes are not part of the project")

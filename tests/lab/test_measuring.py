@@ -53,41 +53,41 @@ pytestmark = pytest.mark.usefixtures("no_cache")
 
 def test_a_chain_computes_its_formula(tmp_path: Path) -> None:
     names = (("thickness", "constant_thickness"), ("thickness", "beer_lambert"), ("translucency", "lobe_gdc2011"))
-    made = Chain(material_of([Stage(*one) for one in names], str(tmp_path)))
-    at = points(small("torus"))
-    light = at.light((0.6, 0.0, -0.8))
+    built = Chain(material_of([Stage(*one) for one in names], str(tmp_path)))
+    surface = points(small("torus"))
+    light = surface.light((0.6, 0.0, -0.8))
     color = np.array([0.9, 0.5, 0.2])
-    made.set(
+    built.set(
         {
             "thickness_factor": 0.3, "attenuation_distance": 0.7, "distortion": 0.25, "power": 3.0,
             "scale 1": 1.5, "scale": 99.0, "ambient": 0.1, "subsurface_color": color, "unknown": 1.0,
         },
         {},
     )  # fmt: skip
-    (found,) = made.run(at.inputs, [light])
-    bent = light["L"] + 0.25 * at.inputs["N"]
-    lobe = np.clip(-(at.inputs["V"] * bent).sum(axis=0), 0.0, 1.0) ** 3.0
-    assert found == pytest.approx(color[:, None] * (1.5 * lobe + 0.1) * np.exp(-0.3 / 0.7), rel=1e-9)
+    (result,) = built.run(surface.inputs, [light])
+    bent = light["L"] + 0.25 * surface.inputs["N"]
+    lobe = np.clip(-(surface.inputs["V"] * bent).sum(axis=0), 0.0, 1.0) ** 3.0
+    assert result == pytest.approx(color[:, None] * (1.5 * lobe + 0.1) * np.exp(-0.3 / 0.7), rel=1e-9)
     # a parameter may have a value for each point, and what is not given stays
-    lengths = np.linspace(0.1, 1.0, at.count)
-    made.set({"thickness_factor": lengths}, {})
-    (found,) = made.run(at.inputs, [light])
-    assert found == pytest.approx(color[:, None] * (1.5 * lobe + 0.1) * np.exp(-lengths / 0.7), rel=1e-9)
+    lengths = np.linspace(0.1, 1.0, surface.count)
+    built.set({"thickness_factor": lengths}, {})
+    (result,) = built.run(surface.inputs, [light])
+    assert result == pytest.approx(color[:, None] * (1.5 * lobe + 0.1) * np.exp(-lengths / 0.7), rel=1e-9)
 
 
 def test_separate_lights_sum_and_emission_counts_once(tmp_path: Path) -> None:
     text = "/** Shines.\nrole: surface\n*/\nvoid lamp(out vec3 emission)\n{\n    emission = vec3(0.25, 0.0, 0.0);\n}\n"
     (tmp_path / "lamp.sss").write_text(text, encoding="utf-8")
-    made = Chain(material_of([Stage("surface", "lamp.sss"), Stage("translucency", "wrap_lighting")], str(tmp_path)))
-    at = points(small("torus"))
-    lights = [at.light((0.0, 0.0, 1.0)), at.light((0.0, 0.6, -0.8))]
-    first, second = made.run(at.inputs, lights)
-    assert made.run(at.inputs, lights[:1])[0] == pytest.approx(first)
-    assert made.run(at.inputs, lights[1:])[0] == pytest.approx(second + np.array([[0.25], [0.0], [0.0]]))
-    for light, found, more in ((lights[0], first, 0.25), (lights[1], second, 0.0)):
-        facing = (at.inputs["N"] * light["L"]).sum(axis=0)
+    built = Chain(material_of([Stage("surface", "lamp.sss"), Stage("translucency", "wrap_lighting")], str(tmp_path)))
+    surface = points(small("torus"))
+    lights = [surface.light((0.0, 0.0, 1.0)), surface.light((0.0, 0.6, -0.8))]
+    first, second = built.run(surface.inputs, lights)
+    assert built.run(surface.inputs, lights[:1])[0] == pytest.approx(first)
+    assert built.run(surface.inputs, lights[1:])[0] == pytest.approx(second + np.array([[0.25], [0.0], [0.0]]))
+    for light, result, more in ((lights[0], first, 0.25), (lights[1], second, 0.0)):
+        facing = (surface.inputs["N"] * light["L"]).sum(axis=0)
         wrapped = np.maximum(np.maximum((facing + 0.5) / 1.5, 0.0) - np.maximum(facing, 0.0), 0.0)
-        assert found[0] == pytest.approx(wrapped + more, abs=1e-12)
+        assert result[0] == pytest.approx(wrapped + more, abs=1e-12)
 
 
 def test_the_text_of_a_chain_lists_its_stages() -> None:
@@ -119,13 +119,13 @@ def test_the_text_of_a_chain_lists_its_stages() -> None:
 
 
 def test_the_mean_chord_of_a_ball_is_four_thirds_of_its_radius() -> None:
-    one = replace(small("cube"), geometry=Ball(0.6, scale=1.5))
-    assert scene_inputs.mean_chord(one) == pytest.approx(np.full(points(one).count, 4.0 / 3.0 * 0.9), rel=2e-3)
+    scene = replace(small("cube"), geometry=Ball(0.6, scale=1.5))
+    assert scene_inputs.mean_chord(scene) == pytest.approx(np.full(points(scene).count, 4.0 / 3.0 * 0.9), rel=2e-3)
 
 
 def test_each_point_reads_its_own_texel() -> None:
-    one = small("bracket")
-    given, chord = scene_inputs.of_scene(one), scene_inputs.mean_chord(one)
+    scene = small("bracket")
+    given, chord = scene_inputs.of_scene(scene), scene_inputs.mean_chord(scene)
     uv = given.inputs["uv"]
     read = {name: given.textures[name].sample(uv)[0] for name in given.textures if name.endswith("_texture")}
     assert read["thickness_texture"] == pytest.approx(chord / chord.max())
@@ -135,8 +135,8 @@ def test_each_point_reads_its_own_texel() -> None:
 
 def thickness_error(one: MeasuredScene, *names: str, **settings: int) -> float:
     """The error of a thickness technique on a scene, with its own parameters as they are."""
-    asked = candidate(*names, "shown_thickness", role="thickness", settings=tuple(settings.items()))
-    point = measure.measured(asked, Fitted({}, (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), 0.0), [View("own", one)])
+    requests = candidate(*names, "shown_thickness", role="thickness", settings=tuple(settings.items()))
+    point = measure.measured(requests, Fitted({}, (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), 0.0), [View("own", one)])
     return float(point["error"]["value"])
 
 
@@ -152,37 +152,37 @@ def test_a_depth_map_counts_gaps_as_matter() -> None:
 
 
 def test_light_that_meets_no_matter_asks_for_no_thickness() -> None:
-    one = small("inlay_plate")
-    lit = replace(one, medium=Medium("m", (1.0,) * 3, (1.0,) * 3), lights=(Light(None, (0.0, 0.0, 1.0), (1.0,) * 3),))
+    scene = small("inlay_plate")
+    lit = replace(scene, medium=Medium("m", (1.0,) * 3, (1.0,) * 3), lights=(Light(None, (0.0, 0.0, 1.0), (1.0,) * 3),))
     with pytest.raises(SssgenError, match="no light passes through the body of 'inlay_plate'"):
         problem.of_thickness(lit)
 
 
 def test_lights_in_one_call_equal_separate_calls(cube: View, tmp_path: Path) -> None:
-    one = small("capsule")
-    asked = problem.of_light(one, made_up(one).seen)
-    assert asked is not None and len(asked.parts) == 2
-    made = chain(candidate("exact_thickness", "beer_lambert", "lobe_gdc2011"), View("own", one), tmp_path)
-    together = asked.values(made, {"power": 2.0})
+    scene = small("capsule")
+    fit_problem = problem.of_light(scene, made_up(scene).seen)
+    assert fit_problem is not None and len(fit_problem.parts) == 2
+    built = chain(candidate("exact_thickness", "beer_lambert", "lobe_gdc2011"), View("own", scene), tmp_path)
+    together = fit_problem.values(built, {"power": 2.0})
     alone = []
-    for part in asked.parts:
-        made.set({**part.values, "power": 2.0}, part.textures)
-        alone.append(made.run(part.inputs, [part.light])[0])
-    assert together == pytest.approx(np.concatenate(alone, axis=1)[:, asked.keep] * asked.gain)
+    for part in fit_problem.parts:
+        built.set({**part.values, "power": 2.0}, part.textures)
+        alone.append(built.run(part.inputs, [part.light])[0])
+    assert together == pytest.approx(np.concatenate(alone, axis=1)[:, fit_problem.keep] * fit_problem.gain)
     # thinned: the same lanes' values, fewer of them
-    few = asked.thinned(10)
+    few = fit_problem.thinned(10)
     assert few.target.shape == (3, 10)
-    chosen = [int(np.flatnonzero((asked.target == lane[:, None]).all(axis=0))[0]) for lane in few.target.T]
-    assert few.values(made, {"power": 2.0}) == pytest.approx(together[:, chosen])
+    chosen = [int(np.flatnonzero((fit_problem.target == lane[:, None]).all(axis=0))[0]) for lane in few.target.T]
+    assert few.values(built, {"power": 2.0}) == pytest.approx(together[:, chosen])
 
 
 def test_colours_of_all_lights_are_added() -> None:
-    one = small("capsule")
-    view = made_up(one)
-    each, whole = (problem.of_material(one, view.seen, summed) for summed in (False, True))
-    count = points(one).count
+    scene = small("capsule")
+    view = made_up(scene)
+    each, whole = (problem.of_material(scene, view.seen, summed) for summed in (False, True))
+    count = points(scene).count
     by_light = (each.target / each.gain).reshape(3, 2, count)
-    colors = np.array([light.color for light in one.lights]).T[..., None]
+    colors = np.array([light.color for light in scene.lights]).T[..., None]
     assert whole.target / whole.gain == pytest.approx((by_light * colors).sum(axis=1))
     assert np.percentile(whole.target.max(axis=0), 99.0) == pytest.approx(problem.WHITE)
     assert whole.noise / whole.gain == pytest.approx(1e-3 * np.sqrt((colors**2).sum(axis=1)) * np.ones((3, count)))
@@ -190,18 +190,20 @@ def test_colours_of_all_lights_are_added() -> None:
 
 def test_shadowed_points_get_no_light_from_the_front() -> None:
     body_of = Union((Box(size=(2.0, 0.2, 2.0)), Ball(0.4, position=(0.0, 0.9, 0.0))))  # a ball over a board
-    one = replace(small("bracket"), geometry=body_of, lights=(Light(None, (0.0, 1.0, 0.0), (1.0, 1.0, 1.0)),))
-    one = replace(one, camera=Camera((0.0, 2.5, 3.0), (0.0, 0.0, 0.0), 40.0), size=(24, 24))
-    seen = made_up(one).seen
-    asked = problem.of_material(one, seen, False)
-    at = points(one)
-    direction = np.array(one.lights[0].direction)
-    facing = at.inputs["N"].T @ direction > 0.05
-    shaded = asked.lambert[0] == 0.0
-    beyond = thickness(one.geometry, (at.inputs["P"] + 1e-3 * at.inputs["N"]).T, np.tile(direction, (at.count, 1)))
+    scene = replace(small("bracket"), geometry=body_of, lights=(Light(None, (0.0, 1.0, 0.0), (1.0, 1.0, 1.0)),))
+    scene = replace(scene, camera=Camera((0.0, 2.5, 3.0), (0.0, 0.0, 0.0), 40.0), size=(24, 24))
+    seen = made_up(scene).seen
+    fit_problem = problem.of_material(scene, seen, False)
+    surface = points(scene)
+    direction = np.array(scene.lights[0].direction)
+    facing = surface.inputs["N"].T @ direction > 0.05
+    shaded = fit_problem.lambert[0] == 0.0
+    beyond = thickness(
+        scene.geometry, (surface.inputs["P"] + 1e-3 * surface.inputs["N"]).T, np.tile(direction, (surface.count, 1))
+    )
     assert (facing & shaded).any() and (facing & ~shaded).any()
     assert (beyond[facing & shaded] > 1e-3).all() and (beyond[facing & ~shaded] < 1e-3).all()
-    x, y, z = at.inputs["P"]
+    x, y, z = surface.inputs["P"]
     board = np.isclose(y, 0.1)
     assert (shaded[board] == (np.hypot(x, z)[board] < 0.4)).all()
 
@@ -210,16 +212,16 @@ def test_shadowed_points_get_no_light_from_the_front() -> None:
 
 
 def test_a_chain_with_nan_has_failed(cube: View, monkeypatch: pytest.MonkeyPatch) -> None:
-    one = candidate("wrap_lighting")
+    chosen = candidate("wrap_lighting")
     values = Problem.values
 
-    def broken(self: Problem, made: Chain, given: Mapping[str, Any]) -> Array:
-        found = values(self, made, given)
-        found[1, :4] = np.nan
-        return found
+    def broken(self: Problem, built: Chain, inputs: Mapping[str, Any]) -> Array:
+        result = values(self, built, inputs)
+        result[1, :4] = np.nan
+        return result
 
     monkeypatch.setattr(Problem, "values", broken)
-    point = measure.measured(one, Fitted({}, (1.0,) * 3, (0.0,) * 3, 0.0), [cube])
+    point = measure.measured(chosen, Fitted({}, (1.0,) * 3, (0.0,) * 3, 0.0), [cube])
     assert point["failed"] == f"4 of {points(cube.scene).count} points are not finite"
 
 
@@ -227,24 +229,24 @@ def test_the_published_seed_3_is_ambient_light_times_transmittance(
     cube: View, training: tuple[View, ...], tmp_path: Path
 ) -> None:
     (one,) = (each for each in candidates.materials([]) if each.name == "Unity ice")
-    made = chain(one, cube, tmp_path)
-    asked = measure.problem_of("material", cube)
-    assert asked is not None
-    given = {"distortion": 0.3, "power": 2.0, "ambient": 0.2, "attenuation": 0.7}
-    loud, silent = (asked.values(made, {**given, "scale": scale}) for scale in (20.0, 0.0))
+    built = chain(one, cube, tmp_path)
+    fit_problem = measure.problem_of("material", cube)
+    assert fit_problem is not None
+    values = {"distortion": 0.3, "power": 2.0, "ambient": 0.2, "attenuation": 0.7}
+    loud, silent = (fit_problem.values(built, {**values, "scale": scale}) for scale in (20.0, 0.0))
     assert (loud == silent).all() and (silent > 0.0).any()
-    part = asked.parts[0]
+    part = fit_problem.parts[0]
     through = part.textures["transmittance_texture"].sample(part.inputs["uv"])[0]
     # each light's colour, added up: there is one
-    assert silent == pytest.approx(asked.gain * part.color * (0.2 * 0.7 * through), rel=1e-6)
+    assert silent == pytest.approx(fit_problem.gain * part.color * (0.2 * 0.7 * through), rel=1e-6)
     # and so is its point on the chart
-    found = measure.fitted(one, training)
-    mute = found._replace(parameters={**found.parameters, "scale": (0.0,)})
-    with_lobe, without = (measure.measured(one, each, [cube]) for each in (found, mute))
+    result = measure.fitted(one, training)
+    mute = result._replace(parameters={**result.parameters, "scale": (0.0,)})
+    with_lobe, without = (measure.measured(one, each, [cube]) for each in (result, mute))
     assert with_lobe["error"] == without["error"]
     # the source that it follows has a lobe there
     other = chain(candidate("transmittance_map", "lobe_gdc2011"), cube, tmp_path)
-    assert np.abs(asked.values(other, {**given, "scale": 20.0}) - silent).max() > 0.1
+    assert np.abs(fit_problem.values(other, {**values, "scale": 20.0}) - silent).max() > 0.1
 
 
 def test_seed_0_mistakes_a_cube_and_a_march_to_the_light_does_not() -> None:
@@ -254,21 +256,21 @@ def test_seed_0_mistakes_a_cube_and_a_march_to_the_light_does_not() -> None:
     error: dict[str, float] = {}
     for one in candidates.thickness():
         if one.name == "cheap_sss_thinness" or one.label == "march_light, 16 steps":
-            found = measure.measured(one, measure.fitted(one, fitted_to), [View("own", cube)])["error"]["value"]
-            error[one.name] = min(error.get(one.name, np.inf), found)
+            result = measure.measured(one, measure.fitted(one, fitted_to), [View("own", cube)])["error"]["value"]
+            error[one.name] = min(error.get(one.name, np.inf), result)
     assert error["march_light"] < 0.2
     assert error["cheap_sss_thinness"] > 0.6
 
 
 def slides(name: str) -> dict[str, float]:
     """The errors on a scene with an inlay, by technique, in depths."""
-    one = small(name)
-    plate = View("plate", replace(references.plate(one), size=SIZE))
-    found = {}
+    scene = small(name)
+    plate = View("plate", replace(references.plate(scene), size=SIZE))
+    results = {}
     for each in candidates.coordinates():
-        point = measure.measured(each, measure.fitted(each, [plate]), [View("own", one)])
-        found[each.name] = point["error"]["max"]
-    return found
+        point = measure.measured(each, measure.fitted(each, [plate]), [View("own", scene)])
+        results[each.name] = point["error"]["max"]
+    return results
 
 
 def test_seed_4_corrected_is_exact_on_a_plane_and_nearly_on_a_ball() -> None:
@@ -286,29 +288,33 @@ def test_light_transport_ranks_the_techniques() -> None:
     pytest.importorskip("mitsuba")
     cube = small("cube")
 
-    def view(one: MeasuredScene) -> View:
-        one = replace(one, size=SIZE)
-        return View(one.name, one, tuple(references.transport(one, n, 64, 0) for n in range(len(one.lights))), "64 0")
+    def view(scene: MeasuredScene) -> View:
+        scene = replace(scene, size=SIZE)
+        return View(
+            scene.name, scene, tuple(references.transport(scene, n, 64, 0) for n in range(len(scene.lights))), "64 0"
+        )
 
-    fitted_to, own = [view(one) for one in references.training(cube)], [view(cube)]
+    fitted_to, own = [view(scene) for scene in references.training(cube)], [view(cube)]
     listed = [each for each in candidates.materials([]) if each.name in ("none", "Unity ice")]
     listed.append(candidate("exact_thickness", "absorption_tint"))
-    error = {one.name: measure.measured(one, measure.fitted(one, fitted_to), own)["error"]["value"] for one in listed}
+    error = {
+        scene.name: measure.measured(scene, measure.fitted(scene, fitted_to), own)["error"]["value"] for scene in listed
+    }
     assert error["absorption_tint"] < 0.8 * min(error["none"], error["Unity ice"])
 
 
 def test_a_view_keeps_the_size_and_the_lanes_of_its_pixels() -> None:
-    one = replace(small("torus"), size=(20, 10), camera=Camera((0.0, 0.0, 3.4), (0.0, 0.0, 0.0), 26.0))
-    at = points(one)
-    picture = at.picture(at.inputs["P"], -9.0)
+    scene = replace(small("torus"), size=(20, 10), camera=Camera((0.0, 0.0, 3.4), (0.0, 0.0, 0.0), 26.0))
+    surface = points(scene)
+    picture = surface.picture(surface.inputs["P"], -9.0)
     assert picture.shape == (10, 20, 3)
-    assert (picture != -9.0).all(axis=2).sum() == at.count
-    shown = picture[::-1][at.valid].T
-    assert (shown == at.inputs["P"]).all()
+    assert (picture != -9.0).all(axis=2).sum() == surface.count
+    shown = picture[::-1][surface.valid].T
+    assert (shown == surface.inputs["P"]).all()
     heights = [row[row[:, 1] != -9.0, 1].mean() for row in picture if (row[:, 1] != -9.0).any()]
     assert len(heights) > 4 and heights == sorted(heights, reverse=True)  # row 0 is on top
-    away = np.array([[0.0], [0.0], [3.4]]) - at.inputs["P"]
-    assert at.inputs["V"] == pytest.approx(away / np.linalg.norm(away, axis=0))
+    away = np.array([[0.0], [0.0], [3.4]]) - surface.inputs["P"]
+    assert surface.inputs["V"] == pytest.approx(away / np.linalg.norm(away, axis=0))
 
 
 # --- what cannot be measured is said ---
@@ -334,30 +340,30 @@ def test_scenes_without_visible_light_are_refused() -> None:
 def test_fitting_in_two_steps_equals_fitting_the_chain(training: tuple[View, ...]) -> None:
     whole = candidate("march_light", "beer_lambert", "lobe_exp2", settings=(("steps", 4),))
     before = {"reach": (0.8,)}
-    found = measure.fitted(whole, training[:2], before)
-    assert found.parameters["reach"] == (0.8,) and set(found.parameters) > {"attenuation_distance", "power"}
+    result = measure.fitted(whole, training[:2], before)
+    assert result.parameters["reach"] == (0.8,) and set(result.parameters) > {"attenuation_distance", "power"}
     squares = []
     for view in training[:2]:
-        asked = measure.problem_of("material", view, summed=False)
-        assert asked is not None
-        asked = asked.thinned(fit.LANES)
+        fit_problem = measure.problem_of("material", view, summed=False)
+        assert fit_problem is not None
+        fit_problem = fit_problem.thinned(fit.LANES)
         with tempfile.TemporaryDirectory() as folder:
-            values = asked.values(chain(whole, view, Path(folder)), fit.exact(found.parameters))
-        apart = found.apply(values, asked) - asked.target
-        squares.append((apart**2 / (asked.target**2 + fit.EPSILON)).mean())
-    assert np.sqrt(np.mean(squares)) == pytest.approx(found.error, rel=1e-6)
+            values = fit_problem.values(chain(whole, view, Path(folder)), fit.exact(result.parameters))
+        apart = result.apply(values, fit_problem) - fit_problem.target
+        squares.append((apart**2 / (fit_problem.target**2 + fit.EPSILON)).mean())
+    assert np.sqrt(np.mean(squares)) == pytest.approx(result.error, rel=1e-6)
 
 
 def test_cost_counts_steps_and_no_output(tmp_path: Path) -> None:
-    one = View("own", small("cube"))
+    view = View("own", small("cube"))
 
     def cost(*names: str, **counts: int) -> float:
-        made = chain(candidate(*names, role="thickness", settings=tuple(counts.items())), one, tmp_path)
-        return float(measure.static_cost(made).weight)
+        built = chain(candidate(*names, role="thickness", settings=tuple(counts.items())), view, tmp_path)
+        return float(measure.static_cost(built).weight)
 
     few, some, more = (cost("march_light", "shown_thickness", steps=steps) for steps in (4, 8, 12))
     assert 0.0 <= cost("exact_thickness", "shown_thickness") < 0.2 * few
     assert more - some == some - few > 0.0
     assert measure.static_cost(None).weight == 0.0
-    given = chain(candidate("march_light", "shown_thickness", settings=(("steps", 8),)), one, tmp_path)
-    assert 8 <= measure.static_cost(given).distance_evaluations <= 12
+    march = chain(candidate("march_light", "shown_thickness", settings=(("steps", 8),)), view, tmp_path)
+    assert 8 <= measure.static_cost(march).distance_evaluations <= 12

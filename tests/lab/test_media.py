@@ -40,16 +40,16 @@ def diffuse_reflectance(albedo: float, ior: float) -> float:
 @pytest.mark.parametrize("name", JENSEN)
 def test_coefficients_give_the_published_reflectance(name: str) -> None:
     medium = preset(name)
-    got = [diffuse_reflectance(albedo, medium.ior) for albedo in medium.albedo]
+    actual = [diffuse_reflectance(albedo, medium.ior) for albedo in medium.albedo]
     # the coefficients are rounded to two figures or so, the reflectances to two places
-    assert np.allclose(got, REFLECTANCES[name], atol=0.03), (got, REFLECTANCES[name])
+    assert np.allclose(actual, REFLECTANCES[name], atol=0.03), (actual, REFLECTANCES[name])
 
 
 def test_every_medium_has_a_source() -> None:
-    for name, found in media().items():
-        assert len(found.source) > 20, name
-        assert found.measured == (name in JENSEN), name
-        assert found.measured or "chosen by us" in found.source.lower() or "No published" in found.source, name
+    for name, result in media().items():
+        assert len(result.source) > 20, name
+        assert result.measured == (name in JENSEN), name
+        assert result.measured or "chosen by us" in result.source.lower() or "No published" in result.source, name
 
 
 def test_absorption_of_ice_follows_from_its_refractive_index() -> None:
@@ -83,7 +83,7 @@ def test_a_medium_without_interaction_has_albedo_0() -> None:
 
 
 @pytest.mark.parametrize(
-    ("make", "said"),
+    ("make", "message"),
     [
         (lambda: preset("marbel"), "did you mean 'marble'?"),
         (lambda: preset("granite"), "media: apple, "),
@@ -95,10 +95,10 @@ def test_a_medium_without_interaction_has_albedo_0() -> None:
         (lambda: Medium("x", (0.0,) * 3, (0.0,) * 3, ior=0.5), "from 1 to 10"),
     ],
 )
-def test_wrong_media_are_refused(make: Callable[[], Medium], said: str) -> None:
+def test_wrong_media_are_refused(make: Callable[[], Medium], message: str) -> None:
     with pytest.raises(SssgenError) as caught:
         make()
-    assert said in str(caught.value)
+    assert message in str(caught.value)
 
 
 def test_every_error_of_a_file_has_its_place(tmp_path: Path) -> None:

@@ -13,26 +13,26 @@ from sssgen.lab.measure.error_metric import EPSILON, compare, flip
 def test_metrics_of_known_values() -> None:
     reference = np.array([[1.0, 0.5], [0.0, 0.1]])
     values = np.array([[1.1, 0.5], [0.05, 0.0]])
-    told = compare(values, reference)
+    error = compare(values, reference)
     relmse = (0.1**2 / (1.0 + EPSILON) + 0.05**2 / EPSILON + 0.1**2 / (0.01 + EPSILON)) / 4.0
-    assert told["relmse"] == pytest.approx(relmse)
-    assert told["value"] == told["low"] == told["high"] == pytest.approx(sqrt(relmse))
-    assert told["bias"] == pytest.approx((0.1 + 0.05 - 0.1) / 4.0 / 0.4)
-    assert told["max"] == pytest.approx(0.1 / 0.4)
-    assert told["p99"] == pytest.approx(np.percentile([0.1, 0.0, 0.05, 0.1], 99.0) / 0.4)
+    assert error["relmse"] == pytest.approx(relmse)
+    assert error["value"] == error["low"] == error["high"] == pytest.approx(sqrt(relmse))
+    assert error["bias"] == pytest.approx((0.1 + 0.05 - 0.1) / 4.0 / 0.4)
+    assert error["max"] == pytest.approx(0.1 / 0.4)
+    assert error["p99"] == pytest.approx(np.percentile([0.1, 0.0, 0.05, 0.1], 99.0) / 0.4)
 
 
 def test_equal_values_have_no_error() -> None:
     reference = np.random.default_rng(1).random((3, 50))
-    told = compare(reference, reference)
-    assert set(told.values()) == {0.0}
+    error = compare(reference, reference)
+    assert set(error.values()) == {0.0}
 
 
 def test_percentile_is_not_the_maximum() -> None:
     values = np.ones((1, 1000))
     values[0, 0] = 11.0
-    told = compare(values, np.ones((1, 1000)))
-    assert (told["max"], told["p99"], told["bias"]) == (10.0, 0.0, pytest.approx(0.01))
+    error = compare(values, np.ones((1, 1000)))
+    assert (error["max"], error["p99"], error["bias"]) == (10.0, 0.0, pytest.approx(0.01))
 
 
 def trials(apart: float, noise: float, count: int = 1500, lanes: int = 400) -> tuple[float, np.ndarray]:
@@ -42,17 +42,17 @@ def trials(apart: float, noise: float, count: int = 1500, lanes: int = 400) -> t
     values = truth * (1.0 + apart * generator.normal(size=truth.shape))
     sigma = noise * generator.uniform(0.5, 1.5, truth.shape)
     right = compare(values, truth)["relmse"]
-    found = []
+    results = []
     for _ in range(count):
         noisy = truth + sigma * generator.normal(size=truth.shape)
-        found.append({**compare(values, noisy, sigma), "plain": compare(values, noisy)["relmse"]})
-    return right, np.array([[one[name] for name in ("relmse", "low", "high", "value", "plain")] for one in found])
+        results.append({**compare(values, noisy, sigma), "plain": compare(values, noisy)["relmse"]})
+    return right, np.array([[one[name] for name in ("relmse", "low", "high", "value", "plain")] for one in results])
 
 
 @pytest.mark.parametrize(("apart", "noise"), [(0.1, 0.02), (0.1, 0.05), (0.3, 0.02), (0.03, 0.02)])
 def test_noise_is_unbiased_and_the_bars_contain_the_truth(apart: float, noise: float) -> None:
-    right, found = trials(apart, noise)
-    relmse, low, high, value, plain = found.T
+    right, result = trials(apart, noise)
+    relmse, low, high, value, plain = result.T
     # the weight has the noisy reference in it: a bias of second order is left, a quarter of what is corrected at most
     assert plain.mean() > 1.005 * right
     assert abs(relmse.mean() - right) < 0.25 * (plain.mean() - right)
@@ -65,8 +65,8 @@ def test_noise_is_unbiased_and_the_bars_contain_the_truth(apart: float, noise: f
 
 
 def test_an_error_below_the_noise_is_not_negative() -> None:
-    _, found = trials(0.0, 0.05, 200)
-    relmse, low, high, value, _ = found.T
+    _, result = trials(0.0, 0.05, 200)
+    relmse, low, high, value, _ = result.T
     assert (relmse == 0.0).any() and (relmse >= 0.0).all()
     assert ((low == 0.0) & (value >= 0.0)).mean() > 0.9
     assert (high > 0.0).mean() > 0.9
@@ -76,9 +76,9 @@ def test_an_error_below_the_noise_is_not_negative() -> None:
 def test_non_finite_values_give_nan_errors(bad: float) -> None:
     values = np.ones((3, 20))
     values[1, 7] = bad
-    told = compare(values, np.ones((3, 20)), np.full((3, 20), 0.01))
-    assert isnan(told["value"]) and isnan(told["low"]) and isnan(told["high"])
-    assert not np.isfinite(told["relmse"])
+    error = compare(values, np.ones((3, 20)), np.full((3, 20), 0.01))
+    assert isnan(error["value"]) and isnan(error["low"]) and isnan(error["high"])
+    assert not np.isfinite(error["relmse"])
 
 
 def test_flip_is_0_for_equal_pictures_and_grows() -> None:

@@ -28,11 +28,11 @@ def point(chain: Sequence[str], cost: float, error: float, role: str = "material
     name = " → ".join(chain) or "none"
     views = {"own": {"value": error, "low": 0.9 * error, "high": 1.1 * error},
              "held out": {"value": error, "low": 0.9 * error, "high": 1.2 * error}}  # fmt: skip
-    found = {
+    results = {
         "scene": "cube", "role": role, "name": name, "label": name, "chain": list(chain), "failed": "",
         "cost": {"value": cost}, "error": views["own"], "views": views,
     }  # fmt: skip
-    return found | more
+    return results | more
 
 
 NONE = point((), 1.0, 0.9)
@@ -56,8 +56,8 @@ def picked(max_error: float | None = None, max_cost: float | None = None) -> Pic
     [(2.0, NONE), (0.9, WRAP), (0.85, WRAP), (0.8, PLAIN), (0.61, PLAIN), (0.5, MAP), (0.35, MARCH), (0.13, MARCH)],
 )
 def test_the_cheapest_within_an_error_at_its_worst_view_s_upper_end(max_error: float, expected: Any) -> None:
-    found = picked(max_error)
-    assert found.chain is expected and found.met
+    result = picked(max_error)
+    assert result.chain is expected and result.met
     assert limit_of(expected) == pytest.approx(1.2 * expected["error"]["value"])
 
 
@@ -65,8 +65,8 @@ def test_the_cheapest_within_an_error_at_its_worst_view_s_upper_end(max_error: f
     ("max_cost", "expected"), [(1.0, NONE), (49.9, WRAP), (50.0, PLAIN), (399.0, MAP), (400.0, MARCH), (1e6, MARCH)]
 )
 def test_the_most_accurate_within_a_cost(max_cost: float, expected: Any) -> None:
-    found = picked(None, max_cost)
-    assert found.chain is expected and found.met
+    result = picked(None, max_cost)
+    assert result.chain is expected and result.met
 
 
 def test_without_a_chain_within_the_limit_the_nearest_is_picked() -> None:
@@ -75,8 +75,8 @@ def test_without_a_chain_within_the_limit_the_nearest_is_picked() -> None:
 
 
 def test_the_next_cheaper_and_better_chains() -> None:
-    found = picked(0.5)
-    assert (found.chain, found.cheaper, found.better) == (MAP, PLAIN, MARCH)  # DEAR is on no front
+    result = picked(0.5)
+    assert (result.chain, result.cheaper, result.better) == (MAP, PLAIN, MARCH)  # DEAR is on no front
     assert (picked(2.0).cheaper, picked(2.0).better) == (None, WRAP)
     assert (picked(0.2).cheaper, picked(0.2).better) == (MAP, None)
 
@@ -84,11 +84,16 @@ def test_the_next_cheaper_and_better_chains() -> None:
 def test_published_forms_and_failed_points_are_never_picked() -> None:
     assert [one for one in RECORD["points"] if not allowed(one)] == [PUBLISHED, BROKEN]
     for limit in (0.001, 0.02, 0.3, 0.7, 2.0):
-        for found in (picked(limit), picked(None, 100.0 * limit)):
-            assert PUBLISHED not in found and BROKEN not in found and ELSEWHERE not in found
+        for result in (picked(limit), picked(None, 100.0 * limit)):
+            assert PUBLISHED not in result and BROKEN not in result and ELSEWHERE not in result
     # which of the library's are
-    kept = {technique.name for technique in candidates.of_role("translucency") if candidates.is_published(technique)}
-    assert {"alisavakis_lobe", "ice_shader_lobe", "gltf_volume", "three_js_port"} <= kept and "lobe_gdc2011" not in kept
+    stored = {technique.name for technique in candidates.of_role("translucency") if candidates.is_published(technique)}
+    assert {
+        "alisavakis_lobe",
+        "ice_shader_lobe",
+        "gltf_volume",
+        "three_js_port",
+    } <= stored and "lobe_gdc2011" not in stored
 
 
 def test_ties_are_broken_by_cost_then_error() -> None:
@@ -98,25 +103,25 @@ def test_ties_are_broken_by_cost_then_error() -> None:
     assert chosen([], 0.5, None) == (None, True)
 
 
-def why(found: Pick) -> dict[str, tuple[str, str]]:
-    return {role.role: (role.technique, role.why) for role in found.roles}
+def why(result: Pick) -> dict[str, tuple[str, str]]:
+    return {role.role: (role.technique, role.why) for role in result.roles}
 
 
 def test_roles_are_left_out_by_numbers() -> None:
-    said = why(picked(2.0))
-    assert said["translucency"][0] == said["thickness"][0] == ""
-    assert "the error without it is 1.08" in said["translucency"][1]
-    assert "nothing lies below" in said["coordinates"][1]
-    said = why(picked(0.85))
-    assert said["translucency"] == ("wrap_lighting", "without light that comes through the error is 1.08")
-    assert said["thickness"][0] == "" and "the best chain that has one errs by 0.12" in said["thickness"][1]
-    said = why(picked(0.61))
-    assert said["thickness"][0] == "constant_thickness" and "the error would be 0.12" in said["thickness"][1]
-    said = why(picked(0.5))
-    assert said["thickness"][0] == "thickness_map"
-    assert "with the same thickness everywhere the error is 0.6;" in said["thickness"][1]
-    assert "needs a baked thickness map" in said["thickness"][1]
-    assert said["translucency"][0] == "lobe_exp2"
+    message = why(picked(2.0))
+    assert message["translucency"][0] == message["thickness"][0] == ""
+    assert "the error without it is 1.08" in message["translucency"][1]
+    assert "nothing lies below" in message["coordinates"][1]
+    message = why(picked(0.85))
+    assert message["translucency"] == ("wrap_lighting", "without light that comes through the error is 1.08")
+    assert message["thickness"][0] == "" and "the best chain that has one errs by 0.12" in message["thickness"][1]
+    message = why(picked(0.61))
+    assert message["thickness"][0] == "constant_thickness" and "the error would be 0.12" in message["thickness"][1]
+    message = why(picked(0.5))
+    assert message["thickness"][0] == "thickness_map"
+    assert "with the same thickness everywhere the error is 0.6;" in message["thickness"][1]
+    assert "needs a baked thickness map" in message["thickness"][1]
+    assert message["translucency"][0] == "lobe_exp2"
 
 
 def test_coordinates_have_the_same_limit() -> None:
@@ -125,9 +130,9 @@ def test_coordinates_have_the_same_limit() -> None:
         point(("parallax_refracted", "shown_uv"), 40.0, 0.01, "coordinates"),
     )
     slide["name"] = "parallax_refracted"
-    found = pick({"points": [slide, none]}, "cube", 0.1, None)
-    assert (found.chain, found.coordinates, found.better, found.cheaper) == (None, slide, None, none)
-    assert why(found)["coordinates"] == (
+    result = pick({"points": [slide, none]}, "cube", 0.1, None)
+    assert (result.chain, result.coordinates, result.better, result.cheaper) == (None, slide, None, none)
+    assert why(result)["coordinates"] == (
         "parallax_refracted",
         "the picture is off by 0.012 of the way; without it by 1.08",
     )
@@ -174,13 +179,13 @@ def test_a_cached_chart_is_not_measured_again(
 ) -> None:
     monkeypatch.setattr(chart, "run", lambda *_, **__: pytest.fail("it measures"))
     assert run("--max-error", "0.01", "--json") == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["ok"] and told["coordinates"]["name"].startswith("parallax") and told["chain"] is None
-    assert told["cheaper"]["name"] == "none"
-    assert [role["role"] for role in told["roles"]] == ["coordinates"]
+    report = json.loads(capsys.readouterr().out)
+    assert report["ok"] and report["coordinates"]["name"].startswith("parallax") and report["chain"] is None
+    assert report["cheaper"]["name"] == "none"
+    assert [role["role"] for role in report["roles"]] == ["coordinates"]
     assert run("--max-cost", "5") == 0
-    said = capsys.readouterr().out
-    assert "next better" in said and "a cost of at most 5" in said
+    output = capsys.readouterr().out
+    assert "next better" in output and "a cost of at most 5" in output
     # no chain keeps this: the nearest is shown, and the exit status says so
     assert run("--max-error", "1e-30") == 1
     assert "which nothing keeps; this is the nearest" in capsys.readouterr().out
@@ -205,8 +210,8 @@ def test_the_picked_chain_is_emitted(charted: str, tmp_path: Path, capsys: pytes
     assert (
         "inlay_plate.toml" in names and any("wgsl" in name for name in names) and any("330" in name for name in names)
     )
-    said = capsys.readouterr().out
-    assert all(f"wrote {out / name}" in said for name in names)
+    output = capsys.readouterr().out
+    assert all(f"wrote {out / name}" in output for name in names)
     assert main(["emit", str(out / "inlay_plate.toml"), "--target", "glsl-330", "-o", str(tmp_path / "again")]) == 0
     again = next((tmp_path / "again").glob("*330*.frag")).read_text(encoding="utf-8")
     assert again == next(out.glob("*330*.frag")).read_text(encoding="utf-8")
@@ -240,14 +245,14 @@ def test_another_process_uses_the_cache(charted: str) -> None:
         "from sssgen.cli.main import main; from sssgen.lab.scene import measured_scene; measured_scene.SIDE = 12; "
         "raise SystemExit(main())"
     )
-    wanted = ["pick", "inlay_plate", "--samples", "8", "--max-error", "0.01"]
+    arguments = ["pick", "inlay_plate", "--samples", "8", "--max-error", "0.01"]
     environment = {**os.environ, "SSSGEN_CACHE": charted}
-    made = subprocess.run(
-        [sys.executable, "-X", "importtime", "-c", code, *wanted],
+    result = subprocess.run(
+        [sys.executable, "-X", "importtime", "-c", code, *arguments],
         capture_output=True, text=True, check=False, timeout=HANG, env=environment,
     )  # fmt: skip
-    assert made.returncode == 0, made.stderr
+    assert result.returncode == 0, result.stderr
     # what measures is not even loaded
-    assert "sssgen.lab.chart.picking" in made.stderr
+    assert "sssgen.lab.chart.picking" in result.stderr
     for heavy in ("scipy", "mitsuba", "embreex", "flip_evaluator"):
-        assert f" {heavy}\n" not in made.stderr, heavy
+        assert f" {heavy}\n" not in result.stderr, heavy

@@ -60,22 +60,22 @@ def test_on_a_plane_it_is_the_closed_form(n: float, placed: bool) -> None:
     normal = plate.to_world()[:3, 2] / plate.scale
     eye = np.array(plate.position) + 3.0 * plate.scale * normal + plate.to_world()[:3, 0] * 4.0
     inlay = Inlay(0.2, 1.2 * n, 1.2)  # only the two media's ratio counts
-    one = looking_at(plate, tuple(map(float, eye)), inlay, 40.0)
-    at = points(one)
-    found = seen(one, at)
-    N, V = at.inputs["N"], at.inputs["V"]
+    camera = looking_at(plate, tuple(map(float, eye)), inlay, 40.0)
+    surface = points(camera)
+    result = seen(camera, surface)
+    N, V = surface.inputs["N"], surface.inputs["V"]
     top = N.T @ normal > 0.999
     assert top.sum() > 300
-    assert found.hit[top].all()
+    assert result.hit[top].all()
     cosine = (N * V).sum(axis=0)
     sine = np.sqrt(1.0 - cosine**2)
     assert np.ptp(sine[top]) > 0.1
-    length = np.linalg.norm(found.offset, axis=0)
+    length = np.linalg.norm(result.offset, axis=0)
     assert length[top] == pytest.approx(plane_offset(sine[top], 0.2, n), abs=1e-8)
     # away from the eye: against V along the surface
     away = (N * cosine - V) / sine
-    along = np.stack([(away * at.inputs["T"]).sum(axis=0), (away * at.inputs["B"]).sum(axis=0)])
-    assert found.offset[:, top] == pytest.approx((along * length)[:, top], abs=1e-8)
+    along = np.stack([(away * surface.inputs["T"]).sum(axis=0), (away * surface.inputs["B"]).sum(axis=0)])
+    assert result.offset[:, top] == pytest.approx((along * length)[:, top], abs=1e-8)
 
 
 def arc_on_a_ball(sine: np.ndarray, radius: float, depth: float, n: float) -> np.ndarray:
@@ -96,33 +96,35 @@ def arc_on_a_ball(sine: np.ndarray, radius: float, depth: float, n: float) -> np
 @pytest.mark.parametrize("scale", [1.0, 2.5])
 def test_on_a_ball_it_is_the_construction_in_two_dimensions(depth: float, n: float, scale: float) -> None:
     ball = Ball(0.6, position=(0.3, -0.2, 0.1), rotation=(10.0, 50.0, 20.0), scale=scale)
-    one = looking_at(ball, (0.6, 1.0 * scale, 4.0 * scale), Inlay(depth * scale, n))
-    at = points(one)
-    found = seen(one, at)
-    cosine = (at.inputs["N"] * at.inputs["V"]).sum(axis=0)
+    camera = looking_at(ball, (0.6, 1.0 * scale, 4.0 * scale), Inlay(depth * scale, n))
+    surface = points(camera)
+    result = seen(camera, surface)
+    cosine = (surface.inputs["N"] * surface.inputs["V"]).sum(axis=0)
     expected = arc_on_a_ball(np.sqrt(np.maximum(1.0 - cosine**2, 0.0)), 0.6 * scale, depth * scale, n)
-    assert (found.hit == np.isfinite(expected)).all()
-    assert found.hit.sum() > 25
-    length = np.linalg.norm(found.offset, axis=0)
-    assert length[found.hit] == pytest.approx(expected[found.hit], rel=1e-5, abs=1e-6)
-    assert np.isfinite(found.offset).all()
+    assert (result.hit == np.isfinite(expected)).all()
+    assert result.hit.sum() > 25
+    length = np.linalg.norm(result.offset, axis=0)
+    assert length[result.hit] == pytest.approx(expected[result.hit], rel=1e-5, abs=1e-6)
+    assert np.isfinite(result.offset).all()
     # the eye sees what lies away from it: along the frame, against V
-    towards = np.stack([(at.inputs["V"] * at.inputs[name]).sum(axis=0) for name in ("T", "B")])
-    same = (found.offset * towards).sum(axis=0) / np.maximum(length * np.linalg.norm(towards, axis=0), 1e-12)
-    assert same[found.hit & (length > 1e-3)] == pytest.approx(-1.0, abs=1e-6)
+    towards = np.stack([(surface.inputs["V"] * surface.inputs[name]).sum(axis=0) for name in ("T", "B")])
+    same = (result.offset * towards).sum(axis=0) / np.maximum(length * np.linalg.norm(towards, axis=0), 1e-12)
+    assert same[result.hit & (length > 1e-3)] == pytest.approx(-1.0, abs=1e-6)
 
 
 def test_a_ray_may_pass_the_layer_at_a_curved_edge() -> None:
     # without refraction and a deep layer: past the inner circle nothing is seen
-    one = looking_at(Ball(0.6), (0.0, 0.0, 4.0), Inlay(0.3, 1.0))
-    at = points(one)
-    aside = np.linalg.norm(np.cross(at.inputs["P"].T, at.inputs["V"].T), axis=1)  # the ray's distance to the centre
-    assert (seen(one, at).hit == (aside < 0.3)).all()
+    camera = looking_at(Ball(0.6), (0.0, 0.0, 4.0), Inlay(0.3, 1.0))
+    surface = points(camera)
+    aside = np.linalg.norm(
+        np.cross(surface.inputs["P"].T, surface.inputs["V"].T), axis=1
+    )  # the ray's distance to the centre
+    assert (seen(camera, surface).hit == (aside < 0.3)).all()
     assert (aside > 0.3).any()
 
 
 def test_seen_from_above_nothing_moves() -> None:
-    one = looking_at(Box(size=(1.0, 1.0, 1.0)), (0.0, 0.0, 300.0), Inlay(0.1, 1.5), 0.15)
-    at = points(one)
-    assert at.count > 100
-    assert np.abs(seen(one, at).offset).max() < 2e-4
+    camera = looking_at(Box(size=(1.0, 1.0, 1.0)), (0.0, 0.0, 300.0), Inlay(0.1, 1.5), 0.15)
+    surface = points(camera)
+    assert surface.count > 100
+    assert np.abs(seen(camera, surface).offset).max() < 2e-4

@@ -51,22 +51,22 @@ def test_a_capsule_and_a_union_arrive() -> None:
 
 def test_every_scene_of_the_library_loads() -> None:
     for name in measured_scene.names():
-        one = measured_scene.load(name)
-        assert one.name == name and one.title
-        assert (one.medium is None) == name.startswith("inlay") == (one.inlay is not None)
-        assert points(replace(one, size=(12, 12))).count > 10
+        scene = measured_scene.load(name)
+        assert scene.name == name and scene.title
+        assert (scene.medium is None) == name.startswith("inlay") == (scene.inlay is not None)
+        assert points(replace(scene, size=(12, 12))).count > 10
 
 
 def test_a_situation_describes_its_scene() -> None:
-    one = measured('title = "Mine"\nsize = [200, 100]\n[medium]\npreset = "marble"\nunit_mm = 4\n' + BALL + LIT)
-    assert (one.name, one.title, one.size) == ("my_scene", "Mine", (64, 32))
-    assert one.medium == media.preset("marble", 4.0).matched()
-    assert one.lights[0].direction == (0.0, 0.0, -1.0)
+    scene = measured('title = "Mine"\nsize = [200, 100]\n[medium]\npreset = "marble"\nunit_mm = 4\n' + BALL + LIT)
+    assert (scene.name, scene.title, scene.size) == ("my_scene", "Mine", (64, 32))
+    assert scene.medium == media.preset("marble", 4.0).matched()
+    assert scene.lights[0].direction == (0.0, 0.0, -1.0)
     assert measured("[inlay]\n" + BALL).title == "My scene"
-    given = measured("[medium]\nabsorption = [0, 1, 2]\nscattering = [3, 4, 5]\nanisotropy = 0.5\n" + BALL + LIT)
-    assert given.medium is not None
-    assert (given.medium.absorption, given.medium.scattering) == ((0.0, 1.0, 2.0), (3.0, 4.0, 5.0))
-    assert (given.medium.anisotropy, given.medium.ior) == (0.5, 1.0)
+    inputs = measured("[medium]\nabsorption = [0, 1, 2]\nscattering = [3, 4, 5]\nanisotropy = 0.5\n" + BALL + LIT)
+    assert inputs.medium is not None
+    assert (inputs.medium.absorption, inputs.medium.scattering) == ((0.0, 1.0, 2.0), (3.0, 4.0, 5.0))
+    assert (inputs.medium.anisotropy, inputs.medium.ior) == (0.5, 1.0)
     assert measured("[inlay]\ndepth = 0.2\nior = 1.33\noutside_ior = 1.1\n" + BALL).inlay == Inlay(0.2, 1.33, 1.1)
 
 
@@ -79,22 +79,22 @@ def test_situations_are_compared_by_value(tmp_path: Path) -> None:
     # of a file the content counts
     file = tmp_path / "figure.sss"
     scene = '[inlay]\n[geometry]\nkind = "distance"\ntechnique = "figure.sss"\n'
-    found = []
+    results = []
     for radius in ("0.5", "0.6"):
         file.write_text(f"float figure(vec3 p)\n{{\n    return length(p) - {radius};\n}}\n", encoding="utf-8")
-        found.append(measured_scene.of_scene(parse_scene(scene, tmp_path / "s.toml"), "s.toml"))
-    assert found[0] != found[1] and found[0].geometry == found[1].geometry
+        results.append(measured_scene.of_scene(parse_scene(scene, tmp_path / "s.toml"), "s.toml"))
+    assert results[0] != results[1] and results[0].geometry == results[1].geometry
 
 
 def test_the_held_out_view_is_turned_about_the_vertical_through_the_target() -> None:
-    one = measured_scene.load("bracket")
-    aside = one.held_out()
-    before, after = (np.subtract(each.camera.position, one.camera.target) for each in (one, aside))
+    scene = measured_scene.load("bracket")
+    aside = scene.held_out()
+    before, after = (np.subtract(each.camera.position, scene.camera.target) for each in (scene, aside))
     assert after[1] == pytest.approx(before[1])
     assert np.linalg.norm(after) == pytest.approx(np.linalg.norm(before))
     turned = np.degrees(np.arctan2(after[0], after[2]) - np.arctan2(before[0], before[2]))
     assert turned == pytest.approx(measured_scene.HELD_OUT)
-    above = replace(one, camera=replace(one.camera, position=(0.0, 4.0, 0.0)))
+    above = replace(scene, camera=replace(scene.camera, position=(0.0, 4.0, 0.0)))
     assert above.held_out().camera.position[0] != 0.0  # not the same view again
 
 
@@ -134,10 +134,10 @@ def test_the_held_out_view_is_turned_about_the_vertical_through_the_target() -> 
 def test_errors_are_reported_at_their_place(text: str, message: str, line: int) -> None:
     with pytest.raises(SssgenError) as caught:
         measured(text)
-    found = [one for one in caught.value.diagnostics if message in f"{one.message} {one.hint}"]
-    assert found, caught.value
+    results = [one for one in caught.value.diagnostics if message in f"{one.message} {one.hint}"]
+    assert results, caught.value
     if line:
-        assert (found[0].span.file, found[0].span.line) == ("my_scene.toml", line)
+        assert (results[0].span.file, results[0].span.line) == ("my_scene.toml", line)
 
 
 def test_an_unknown_scene_gets_a_suggestion() -> None:
@@ -150,8 +150,8 @@ def test_a_scene_without_a_material_is_not_drawn(tmp_path: Path, capsys: pytest.
     scene = tmp_path / "scene.toml"
     scene.write_text('[medium]\npreset = "cream"\n' + BALL + LIT, encoding="utf-8")
     assert main(["render", str(scene), "-o", str(tmp_path / "a.png"), "--backend", "numpy"]) == 2
-    said = capsys.readouterr().err
-    assert "the scene names no material" in said and 'add: material = "…"' in said
+    output = capsys.readouterr().err
+    assert "the scene names no material" in output and 'add: material = "…"' in output
     assert not (tmp_path / "a.png").exists()
 
 
@@ -181,10 +181,10 @@ def test_the_text_of_a_body_computes_its_distance(shape: Geometry, tmp_path: Pat
     inwards = shape.to_object()
     exact = shape.scale * shape.distance(at @ inwards[:3, :3].T + inwards[:3, 3])
     assert (exact < 0.0).any() and (exact > 0.0).any()
-    made = body.body(shape)
-    assert made.function == f"{body.FILE}:body"
+    result = body.body(shape)
+    assert result.function == f"{body.FILE}:body"
     # its numbers are float32's
-    assert evaluated(made.files[body.FILE], tmp_path)(at) == pytest.approx(exact, abs=3e-6)
+    assert evaluated(result.files[body.FILE], tmp_path)(at) == pytest.approx(exact, abs=3e-6)
 
 
 def test_bodies_without_a_transform_are_bound_directly(tmp_path: Path) -> None:
@@ -209,9 +209,9 @@ def test_bounds_hold_the_body_and_its_texture_reads_the_distance(shape: Geometry
     assert inside.sum() > 20
     cell = 0.05 if isinstance(shape, Distance) else 1e-9  # a distance function is looked for on a grid
     assert ((low - cell <= at[inside]) & (at[inside] <= high + cell)).all()
-    made = body.distance_texture(shape)
-    texture, reach = half(Texture(made.values(shape), wrap="clamp")), made.range
-    box_min, box_max = np.array(made.box_min), np.array(made.box_max)
+    result = body.distance_texture(shape)
+    texture, reach = half(Texture(result.values(shape), wrap="clamp")), result.range
+    box_min, box_max = np.array(result.box_min), np.array(result.box_max)
     within = ((box_min < at) & (at < box_max)).all(axis=1)
     read = texture.sample(((at[within] - box_min) / (box_max - box_min)).T)[0]
     exact = np.clip(shape.distance(at[within]), -reach, reach)
@@ -233,14 +233,14 @@ def test_placed_corners_hold_the_body() -> None:
 
 
 def test_training_sizes_are_powers_of_two() -> None:
-    one = replace(measured('[medium]\npreset = "cream"\n' + BALL + LIT))
-    sizes = [references.training(replace(one, geometry=Ball(radius)))[0].geometry for radius in (0.9, 1.0, 1.1, 2.0)]
+    scene = replace(measured('[medium]\npreset = "cream"\n' + BALL + LIT))
+    sizes = [references.training(replace(scene, geometry=Ball(radius)))[0].geometry for radius in (0.9, 1.0, 1.1, 2.0)]
     assert sizes == [Ball(1.0), Ball(1.0), Ball(1.0), Ball(2.0)]
-    trained = references.training(one)
+    trained = references.training(scene)
     assert [each.name for each in trained] == ["ball", "slab", "ball", "slab"]
     for each in trained:
-        assert each.medium == one.medium
-        at = points(replace(each, size=(16, 16)))
+        assert each.medium == scene.medium
+        surface = points(replace(each, size=(16, 16)))
         # each is lit from behind and from the front of what is seen
-        facing = [float((at.inputs["V"].mean(axis=1) * light.direction).sum()) for light in each.lights]
+        facing = [float((surface.inputs["V"].mean(axis=1) * light.direction).sum()) for light in each.lights]
         assert min(facing) < -0.4 and max(facing) > 0.4

@@ -60,13 +60,13 @@ def looking(cosines: Array, azimuth: float = 1.0) -> tuple[Array, Array]:
     return 5.0 * out / np.abs(out[:, 2:]), -out
 
 
-def assert_agrees(found: Transport, expected: npt.ArrayLike, tightest: float) -> None:
+def assert_agrees(result: Transport, expected: npt.ArrayLike, tightest: float) -> None:
     """Every value within three standard errors, or one in a hundred beyond; no error above `tightest` of its value."""
-    want = np.broadcast_to(np.asarray(expected, np.float64)[:, None], found.mean.shape)[:, 0]
-    got, error = found.mean[:, 0], found.error[:, 0]
+    want = np.broadcast_to(np.asarray(expected, np.float64)[:, None], result.mean.shape)[:, 0]
+    actual, error = result.mean[:, 0], result.error[:, 0]
     assert (error <= tightest * want).all(), (error / want).max()
-    off = np.abs(got - want) / error
-    assert (off > 3.0).sum() <= 0.01 * len(off), f"{off.max():.2f} standard errors\n{got}\n{want}"
+    off = np.abs(actual - want) / error
+    assert (off > 3.0).sum() <= 0.01 * len(off), f"{off.max():.2f} standard errors\n{actual}\n{want}"
 
 
 # --- closed forms ---
@@ -110,8 +110,8 @@ def test_a_ball_lit_along_the_ray_has_a_closed_form() -> None:
 
 def half_space_agrees(albedo: float, cosine_in: float, samples: int, tightest: float) -> None:
     cosines = np.array([1.0, 0.8, 0.5, 0.2])
-    found = radiance_along(wide_slab(80.0), grey(albedo), Light(towards(cosine_in)), *looking(cosines), samples)
-    assert_agrees(found, half_space(albedo, cosine_in, cosines), tightest)
+    estimate = radiance_along(wide_slab(80.0), grey(albedo), Light(towards(cosine_in)), *looking(cosines), samples)
+    assert_agrees(estimate, half_space(albedo, cosine_in, cosines), tightest)
 
 
 @pytest.mark.parametrize(("albedo", "cosine_in"), [(0.5, 1.0), (0.9, 1.0), (0.9, 0.3), (0.99, 0.7)])
@@ -136,9 +136,9 @@ def slab_agrees(depth: float, albedo: float, anisotropy: float, samples: int, ti
         origins, directions = looking(side * cosines)
         if side < 0.0:
             origins[:, 2] -= depth
-        found = radiance_along(geometry, medium, Light((0.0, 0.0, 1.0)), origins, directions, samples)
+        estimate = radiance_along(geometry, medium, Light((0.0, 0.0, 1.0)), origins, directions, samples)
         share = 2.0 * weights * cosines
-        fluxes.append((share @ found.mean[:, 0], np.sqrt(share**2 @ found.error[:, 0] ** 2)))
+        fluxes.append((share @ estimate.mean[:, 0], np.sqrt(share**2 @ estimate.error[:, 0] ** 2)))
     # more quadrature points than 16 lose energy in this version of iadpython
     conserving = iadpython.Sample(a=1.0, b=depth, g=anisotropy, n=1.0, quad_pts=16).rt()
     assert conserving[0] + conserving[1] == pytest.approx(1.0, abs=1e-4)
@@ -165,8 +165,8 @@ def test_slabs_by_adding_and_doubling_closely(depth: float, albedo: float, aniso
 
 def test_without_scattering_beer_and_lambert_hold() -> None:
     cosines = np.array([1.0, 0.7, 0.4])
-    found = radiance_along(wide_slab(0.8), grey(0.0), SKY, *looking(cosines), 8192)
-    assert_agrees(found, unscattered(0.8, cosines), 0.03)
+    estimate = radiance_along(wide_slab(0.8), grey(0.0), SKY, *looking(cosines), 8192)
+    assert_agrees(estimate, unscattered(0.8, cosines), 0.03)
 
 
 @pytest.mark.parametrize(("anisotropy", "back"), [(0.0, True), (0.7, True), (0.7, False), (-0.4, False)])
@@ -176,12 +176,12 @@ def test_once_scattered_in_a_slab(anisotropy: float, back: bool) -> None:
     if not back:
         origins[:, 2] -= depth
     sun = np.array(towards(cosine_in))
-    found = radiance_along(
+    estimate = radiance_along(
         wide_slab(depth), grey(0.8, 1.0, anisotropy), Light(towards(cosine_in)), origins, directions, 20_000,
         scatterings=1,
     )  # fmt: skip
     phase = float(henyey_greenstein(anisotropy, directions[0] @ sun))
-    assert_agrees(found, [slab_once(depth, 0.8, phase, cosine_in, cosine_out, back)], 0.02)
+    assert_agrees(estimate, [slab_once(depth, 0.8, phase, cosine_in, cosine_out, back)], 0.02)
 
 
 def test_once_scattered_in_a_ball() -> None:
@@ -190,20 +190,20 @@ def test_once_scattered_in_a_ball() -> None:
     ball = Ball(radius=0.9)
     hit = ball.hits(origin, directions).hit
     origins = np.broadcast_to(origin, (int(hit.sum()), 3))
-    found = radiance_along(
+    estimate = radiance_along(
         ball, grey(0.7, 1.5, 0.3), Light((0.6, 0.48, -0.64)), origins, directions[hit], 16_384, scatterings=1
     )
     assert hit.sum() > 8
-    assert_agrees(found, ball_once(0.9, 0.45, 1.05, 0.3, sun, origin, directions[hit]), 0.05)
+    assert_agrees(estimate, ball_once(0.9, 0.45, 1.05, 0.3, sun, origin, directions[hit]), 0.05)
 
 
 def test_little_scattering_is_nearly_once() -> None:
     origins, directions = np.array([[0.0, 0.0, 4.0]]), np.array([[0.0, 0.0, -1.0]])
-    found = radiance_along(Ball(radius=0.1), grey(0.05), Light((1.0, 0.0, 0.0)), origins, directions, 100_000)
+    estimate = radiance_along(Ball(radius=0.1), grey(0.05), Light((1.0, 0.0, 0.0)), origins, directions, 100_000)
     once = ball_once(0.1, 0.95, 0.05, 0.0, (1.0, 0.0, 0.0), origins[0], directions)
     # twice scattered light is at most the albedo times the optical diameter of it
-    assert once[0] - 3.0 * found.error[0, 0] < found.mean[0, 0] < 1.01 * once[0] + 3.0 * found.error[0, 0]
-    assert found.error[0, 0] < 0.05 * once[0]
+    assert once[0] - 3.0 * estimate.error[0, 0] < estimate.mean[0, 0] < 1.01 * once[0] + 3.0 * estimate.error[0, 0]
+    assert estimate.error[0, 0] < 0.05 * once[0]
 
 
 SHAPES = [
@@ -217,11 +217,11 @@ SHAPES = [
 
 @pytest.mark.parametrize("geometry", SHAPES, ids=lambda shape: type(shape).__name__)
 def test_a_medium_without_absorption_vanishes_in_an_even_sky(geometry: Geometry) -> None:
-    found = radiance(geometry, grey(1.0, 3.0), SKY, CAMERA, (24, 18), 512, resolution=32)
+    estimate = radiance(geometry, grey(1.0, 3.0), SKY, CAMERA, (24, 18), 512, resolution=32)
     hit = geometry.hits(*CAMERA.rays(24, 18)).hit.reshape(18, 24)
     assert hit.any() and not hit.all()
-    assert (found.mean[~hit] == 0.0).all()
-    mean, error = found.mean[hit, 0].mean(), np.sqrt((found.error[hit, 0] ** 2).sum()) / hit.sum()
+    assert (estimate.mean[~hit] == 0.0).all()
+    mean, error = estimate.mean[hit, 0].mean(), np.sqrt((estimate.error[hit, 0] ** 2).sum()) / hit.sum()
     assert error < 0.01
     assert abs(mean - 1.0) < 3.0 * error
 
@@ -234,10 +234,13 @@ def test_each_pixel_looks_along_its_own_ray(geometry: Geometry) -> None:
     far = origin + 20.0 * directions
     last = np.stack([geometry.hits(point, -way[None]).position[0] for point, way in zip(far, directions, strict=True)])
     chord = np.where(first.hit, np.linalg.norm(last - first.position, axis=1), 0.0)
-    found = radiance(geometry, grey(0.0, 1.5), SKY, CAMERA, (24, 18), 1024)
+    estimate = radiance(geometry, grey(0.0, 1.5), SKY, CAMERA, (24, 18), 1024)
     expected = np.where(first.hit, unscattered(1.5, 1.0 / np.maximum(chord, 1e-9)), 0.0).reshape(18, 24)
-    difference = found.mean[..., 0] - expected
-    assert np.abs(difference[found.error[..., 0] > 0.0] / found.error[found.error[..., 0] > 0.0][:, 0]).max() < 5.0
+    difference = estimate.mean[..., 0] - expected
+    assert (
+        np.abs(difference[estimate.error[..., 0] > 0.0] / estimate.error[estimate.error[..., 0] > 0.0][:, 0]).max()
+        < 5.0
+    )
     assert np.abs(difference).max() < 0.08
     assert np.sqrt((difference**2).mean()) < 0.02
 
@@ -264,34 +267,34 @@ def test_the_error_is_that_of_equal_rays() -> None:
     # 400 equal rays, in 8 and in 64 batches: their means spread as each one's own error says
     origins, directions = (np.repeat(part, 400, axis=0) for part in looking(np.array([0.8])))
     for samples in (128, 1024):
-        found = radiance_along(wide_slab(40.0), grey(0.9), Light((0.0, 0.0, 1.0)), origins, directions, samples)
-        spread = found.mean[:, 0].std(ddof=1)
-        assert spread == pytest.approx(np.sqrt((found.error[:, 0] ** 2).mean()), rel=0.15)
+        estimate = radiance_along(wide_slab(40.0), grey(0.9), Light((0.0, 0.0, 1.0)), origins, directions, samples)
+        spread = estimate.mean[:, 0].std(ddof=1)
+        assert spread == pytest.approx(np.sqrt((estimate.error[:, 0] ** 2).mean()), rel=0.15)
         want = half_space(0.9, 1.0, 0.8)
-        assert abs(found.mean[:, 0].mean() - want) < 3.0 * spread / np.sqrt(400)
+        assert abs(estimate.mean[:, 0].mean() - want) < 3.0 * spread / np.sqrt(400)
 
 
 def test_channels_have_their_own_coefficients() -> None:
     medium = Medium("skin", (0.1, 0.5, 0.1), (0.9, 0.5, 0.9))
-    found = radiance_along(wide_slab(60.0), medium, Light((0.0, 0.0, 1.0)), *looking(np.array([1.0])), 8192)
-    assert (found.mean[:, 0] == found.mean[:, 2]).all()
+    estimate = radiance_along(wide_slab(60.0), medium, Light((0.0, 0.0, 1.0)), *looking(np.array([1.0])), 8192)
+    assert (estimate.mean[:, 0] == estimate.mean[:, 2]).all()
     for at, albedo in enumerate(medium.albedo):
-        assert abs(found.mean[0, at] - half_space(albedo, 1.0, 1.0)) < 3.0 * found.error[0, at]
+        assert abs(estimate.mean[0, at] - half_space(albedo, 1.0, 1.0)) < 3.0 * estimate.error[0, at]
 
 
 def test_numbers_do_not_depend_on_threads() -> None:
     drjit = pytest.importorskip("drjit")
     threads = drjit.thread_count()
-    found = []
+    results = []
     try:
         for count in (1, 2, 5):
             drjit.set_thread_count(count)
-            found.append(radiance(SHAPES[0], grey(0.9, 3.0), (0.0, 0.6, -0.8), CAMERA, (20, 15), 128))
+            results.append(radiance(SHAPES[0], grey(0.9, 3.0), (0.0, 0.6, -0.8), CAMERA, (20, 15), 128))
     finally:
         drjit.set_thread_count(threads)
-    assert all((one.mean == found[0].mean).all() and (one.error == found[0].error).all() for one in found)
+    assert all((one.mean == results[0].mean).all() and (one.error == results[0].error).all() for one in results)
     other = radiance(SHAPES[0], grey(0.9, 3.0), (0.0, 0.6, -0.8), CAMERA, (20, 15), 128, seed=1)
-    assert (other.mean != found[0].mean).any()
+    assert (other.mean != results[0].mean).any()
 
 
 # --- boundaries, meshes, errors ---
@@ -299,25 +302,25 @@ def test_numbers_do_not_depend_on_threads() -> None:
 
 def test_a_refracting_boundary_conserves_energy() -> None:
     medium = Medium("glassy", (0.0,) * 3, (2.0,) * 3, ior=1.4)
-    found = radiance(SHAPES[0], medium, SKY, CAMERA, (20, 15), 512)
+    estimate = radiance(SHAPES[0], medium, SKY, CAMERA, (20, 15), 512)
     hit = SHAPES[0].hits(*CAMERA.rays(20, 15)).hit.reshape(15, 20)
     # every path ends in the same sky with its whole weight: there is no noise, but that of single precision
-    assert hit.any() and found.mean[hit] == pytest.approx(1.0, abs=1e-5)
+    assert hit.any() and estimate.mean[hit] == pytest.approx(1.0, abs=1e-5)
 
 
 def test_a_slab_that_bends_by_adding_and_doubling() -> None:
     # by reciprocity: what an even sky shows of a slab, looked at straight down, is R + T of a beam along the ray
     medium = Medium("resin", (0.1,) * 3, (0.9,) * 3, ior=1.5)
-    found = radiance_along(wide_slab(2.0), medium, SKY, *looking(np.array([1.0])), 40_000)
+    estimate = radiance_along(wide_slab(2.0), medium, SKY, *looking(np.array([1.0])), 40_000)
     reflected, through, _, _ = iadpython.Sample(a=0.9, b=2.0, g=0.0, n=1.5, quad_pts=16).rt()
-    assert_agrees(found, [reflected + through], 0.01)
+    assert_agrees(estimate, [reflected + through], 0.01)
 
 
 def test_a_light_of_small_width_is_nearly_a_point() -> None:
     cosines = np.array([0.9, 0.4])
     narrow = half_space(0.8, 0.7, cosines)
-    found = radiance_along(wide_slab(60.0), grey(0.8), Light(towards(0.7), radius=5.0), *looking(cosines), 8192)
-    assert_agrees(found, narrow, 0.02)
+    estimate = radiance_along(wide_slab(60.0), grey(0.8), Light(towards(0.7), radius=5.0), *looking(cosines), 8192)
+    assert_agrees(estimate, narrow, 0.02)
 
 
 @pytest.mark.parametrize("geometry", SHAPES, ids=lambda shape: type(shape).__name__)
@@ -343,7 +346,7 @@ def test_volumes_are_those_of_the_shapes() -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "message"),
     [
         ({"medium": preset("marble")}, "medium.matched()"),
         ({"light_direction": (0.0, 0.0, 2.0)}, "divide it by its length"),
@@ -352,14 +355,14 @@ def test_volumes_are_those_of_the_shapes() -> None:
         ({"camera": Camera(position=(0.2, 0.1, 0.3))}, "move the camera out"),
     ],
 )
-def test_invalid_scenes_are_refused(change: dict[str, object], said: str) -> None:
-    given: dict[str, object] = {
+def test_invalid_scenes_are_refused(change: dict[str, object], message: str) -> None:
+    values: dict[str, object] = {
         "geometry": SHAPES[0], "medium": grey(0.9), "light_direction": (0.0, 0.0, 1.0), "camera": CAMERA,
         "size": (8, 6), "samples": 128,
     }  # fmt: skip
     with pytest.raises(SssgenError) as caught:
-        radiance(**{**given, **change})  # type: ignore[arg-type]
-    assert said in str(caught.value)
+        radiance(**{**values, **change})  # type: ignore[arg-type]
+    assert message in str(caught.value)
 
 
 # --- what is kept ---

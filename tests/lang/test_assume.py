@@ -58,7 +58,7 @@ def test_an_assumption_is_a_statement() -> None:
 
 
 @pytest.mark.parametrize(
-    ("statement", "said", "at"),
+    ("statement", "message", "at"),
     [
         ("assume(x > 0.0, x);", "assume takes one condition", 1),
         ("assume();", "assume takes one condition", 1),
@@ -67,12 +67,12 @@ def test_an_assumption_is_a_statement() -> None:
         ("assume(unknown > 0.0);", "unknown", 8),
     ],
 )  # fmt: skip
-def test_errors(statement: str, said: str, at: int) -> None:
+def test_errors(statement: str, message: str, at: int) -> None:
     source = f"float g(float x) {{ return x; }}\nfloat f(float x) {{\n{statement}\nreturn x;\n}}"
     with pytest.raises(SssgenError) as wrong:
         check(parse(source, "test.sss"), source)
-    (found,) = wrong.value.diagnostics
-    assert said in found.message and found.span.line == 3 and found.span.column == at, found
+    (result,) = wrong.value.diagnostics
+    assert message in result.message and result.span.line == 3 and result.span.column == at, result
 
 
 def test_a_function_of_that_name_is_a_function() -> None:
@@ -121,18 +121,18 @@ def test_conversions_hoist_and_names_keep_it() -> None:
     source = "float g(float x) { assume(x > 0.0); float r = sqrt(x); return r; }\n"
     source += "float f(float v) { float a = v; return g(a); }"
     module = module_of(source)
-    for made in (
+    for result in (
         drop_conversions(module), hoist(module, [key(module, "f")])[0],
         rename(module, {"x", "v", "a"}, str, True)[0],
     ):  # fmt: skip
-        assert verify(made) == [] and assumptions(made), print_module(made, spans=False)
+        assert verify(result) == [] and assumptions(result), print_module(result, spans=False)
 
 
 @pytest.mark.parametrize("target", registry.names())
 def test_no_target_prints_assumptions(target: str) -> None:
     for mode in GUARDS:
-        made = transpile(module_of(SOURCE), target, "case", guards=mode)
-        shown = "".join(text for name, text in made.files.items() if not name.endswith(".json"))
+        compiled = transpile(module_of(SOURCE), target, "case", guards=mode)
+        shown = "".join(text for name, text in compiled.files.items() if not name.endswith(".json"))
         assert "assume" not in shown and "abs" in shown
 
 
@@ -175,23 +175,23 @@ def broken(name: str, count: int, seed: int) -> int:
     """How many of that many random inputs, and of degenerate ones, break an assumption."""
     chosen = checked(subject(name))
     assert chosen.count
-    given = samples(chosen.subject, count, seed)
+    inputs = samples(chosen.subject, count, seed)
     for param in chosen.subject.params.values():
         if param.quantity.endswith("_direction") or param.name in ("N", "V", "L"):
-            given[param.name][:20] = 0.0
-            given[param.name][20:40] *= 1e-20
+            inputs[param.name][:20] = 0.0
+            inputs[param.name][20:40] *= 1e-20
         elif not isinstance(param.type, Sampler | Matrix) and param.name not in chosen.subject.uniforms:
-            given[param.name][40:60] = 0
-    return int(dropped(chosen.subject, fitted(chosen.subject, given)).sum())
+            inputs[param.name][40:60] = 0
+    return int(dropped(chosen.subject, fitted(chosen.subject, inputs)).sum())
 
 
 def dropped(chosen: Subject, inputs: Inputs) -> Array:
     """The lanes that some probe drops, in float32."""
-    made = transpile(chosen.module, "numpy", "case", "auto", chosen.called)
-    functions = namespace(next(text for name, text in made.files.items() if not name.endswith(".json")))
-    names, shape = made.reflection["renames"], calls.grid(inputs.lanes)
+    compiled = transpile(chosen.module, "numpy", "case", "auto", chosen.called)
+    functions = namespace(next(text for name, text in compiled.files.items() if not name.endswith(".json")))
+    names, shape = compiled.reflection["renames"], calls.grid(inputs.lanes)
     filled = shape.rows * shape.width
-    found = np.zeros(filled, bool)
+    result = np.zeros(filled, bool)
     for probe in chosen.probes:
         args = [
             inputs.textures[param.name]
@@ -201,8 +201,8 @@ def dropped(chosen: Subject, inputs: Inputs) -> Array:
         ]
         with precision("float32"), grid(shape.rows, shape.width):
             _, gone = functions[names.get(probe.function, probe.function)](*args)
-        found |= gone
-    return found[: inputs.lanes]
+        result |= gone
+    return result[: inputs.lanes]
 
 
 def _filled(value: Array, lanes: int) -> Array:

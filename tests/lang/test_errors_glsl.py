@@ -18,10 +18,10 @@ def test_error_text(name: str) -> None:
         assert 1 <= diagnostic.span.line <= CASES[name].count("\n") + 1
 
 
-@pytest.mark.parametrize("said", LONG)
-def test_too_long_programs_are_refused(said: str) -> None:
-    error = errors_of(LONG[said])
-    assert said in error.diagnostics[0].message
+@pytest.mark.parametrize("message", LONG)
+def test_too_long_programs_are_refused(message: str) -> None:
+    error = errors_of(LONG[message])
+    assert message in error.diagnostics[0].message
     assert error.diagnostics[0].span.file == FILE
 
 

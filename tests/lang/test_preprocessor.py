@@ -32,16 +32,16 @@ RESCANNED = """
 
 
 @pytest.mark.parametrize(
-    ("use", "made"),
+    ("use", "result"),
     [
         ("f(y+1) + f(f(z)) % t(t(g)(0) + t)(1);", "f(X * (y+1)) + f(X * (f(X * (z[0])))) % f(X * (0)) + t(1);"),
         ("g(x+(3,4)-w) | h 5) & m\n(f)^m(m);", "f(X * (X+(3,4)-0,1)) | f(X * ( ~ 5)) & f(X * (0,1))^m(0,1);"),
         ("p() i[q()] = { q(1), r(2,3), r(4,), r(,5), r(,) };", "int i[] = { 1, 23, 4, 5, };"),
     ],
 )
-def test_the_rescan_examples_of_the_standard(use: str, made: str) -> None:
+def test_the_rescan_examples_of_the_standard(use: str, result: str) -> None:
     text = "void before() {" + RESCANNED + use
-    assert words(text) == spaced("void before() {" + made.replace("X", "int(2)"))
+    assert words(text) == spaced("void before() {" + result.replace("X", "int(2)"))
 
 
 def test_the_paste_examples_of_the_standard() -> None:
@@ -51,7 +51,7 @@ def test_the_paste_examples_of_the_standard() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "made"),
+    ("text", "result"),
     [
         ("#define f(x) f(x+1)\nf(f(2))", "f(f(2+1)+1)"),
         ("#define a b\n#define b a\na b", "a b"),
@@ -83,11 +83,11 @@ def test_the_paste_examples_of_the_standard() -> None:
         ("#define f(x) x +\nf\n#undef f\n(3)", "f(3)"),
     ],
 )
-def test_macros(text: str, made: str | None) -> None:
-    if made is None:
+def test_macros(text: str, result: str | None) -> None:
+    if result is None:
         assert faults(text)[0][0] == "the arguments of 'f' are not closed"
     else:
-        assert words(text) == spaced(made)
+        assert words(text) == spaced(result)
 
 
 def test_places_go_through_macros() -> None:
@@ -213,17 +213,17 @@ def test_versions() -> None:
         ("460 compatibility", "compatibility", "GL_compatibility_profile && !defined GL_core_profile"),
     ]:
         head = f"# version {version} // one\n" if version else ""
-        made = run(f"{head}#if {holds}\nyes\n#endif")
-        assert [token.text for token in made.tokens] == ["yes"], version
-        assert (made.version, made.profile) == (int(version.split()[0]) if version else 0, profile)
+        result = run(f"{head}#if {holds}\nyes\n#endif")
+        assert [token.text for token in result.tokens] == ["yes"], version
+        assert (result.version, result.profile) == (int(version.split()[0]) if version else 0, profile)
     assert faults("#version 300 fs") == [("'300 fs' is not a version", "main", 1, 1)]
     assert faults("#version 330\n#version 300 es") == [("the version is already 330", "main", 2, 1)]
 
 
 def test_extensions_pragmas_and_lines() -> None:
-    made = run("#extension GL_A:enable\n#extension  all : /* */ disable\n#pragma optimize(on) // x\n#line 7 2\n#\na")
-    assert (made.extensions, made.pragmas) == (["GL_A:enable", "all : disable"], ["optimize(on)"])
-    assert [token.span[1:3] for token in made.tokens] == [(6, 1)]
+    result = run("#extension GL_A:enable\n#extension  all : /* */ disable\n#pragma optimize(on) // x\n#line 7 2\n#\na")
+    assert (result.extensions, result.pragmas) == (["GL_A:enable", "all : disable"], ["optimize(on)"])
+    assert [token.span[1:3] for token in result.tokens] == [(6, 1)]
 
 
 def test_error_directives_and_malformed_directives() -> None:
@@ -332,9 +332,9 @@ PIECES = [
 
 @given(st.lists(st.sampled_from(PIECES), max_size=40).map("".join))
 def test_a_text_without_directives_is_only_split(text: str) -> None:
-    made = run(text)
+    result = run(text)
     tokens, comments = scan(text, "main")
-    assert (made.tokens, made.comments.get("main", []), made.texts) == (tokens, comments, {"main": text})
+    assert (result.tokens, result.comments.get("main", []), result.texts) == (tokens, comments, {"main": text})
 
 
 @given(st.lists(st.sampled_from(PIECES), max_size=40).map("".join))
@@ -354,9 +354,9 @@ def test_windows_line_ends() -> None:
 
 def test_comments_of_active_text() -> None:
     files = {"a": "// a1\n#if 0\n// a2\n#endif\n#define B 1 /* a3 */\n"}
-    made = run('// m1\n#include "a"\n#include "a"\n/* m2 */ #if 1 // m3\n// m4\n#else\n// m5\n#endif', files)
-    assert {file: [comment.text.strip() for comment in found] for file, found in made.comments.items()} == {
+    result = run('// m1\n#include "a"\n#include "a"\n/* m2 */ #if 1 // m3\n// m4\n#else\n// m5\n#endif', files)
+    assert {file: [comment.text.strip() for comment in found] for file, found in result.comments.items()} == {
         "main": ["// m1", "/* m2 */", "// m3", "// m4"],
         "a": ["// a1", "/* a3 */"],
     }
-    assert [comment.first for comment in made.comments["main"]] == [1, 4, 4, 5]
+    assert [comment.first for comment in result.comments["main"]] == [1, 4, 4, 5]

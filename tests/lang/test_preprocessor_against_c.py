@@ -22,21 +22,21 @@ USES = ["x = A;", "y = B + A;", "f(B) + A;", "z(C) = A;", "int A;", "q = f(A, B)
 
 
 def cpp() -> str:
-    found = shutil.which("cpp")
-    if found is None:
+    result = shutil.which("cpp")
+    if result is None:
         raise CompilerMissing("install gcc")
-    return found
+    return result
 
 
 def program(chance: random.Random) -> str:
     """Definitions, conditions and uses of a few names, at random."""
 
     def body(params: tuple[str, ...]) -> str:
-        made: list[str] = []
+        result: list[str] = []
         for _ in range(chance.randint(0, 5)):
-            after = "##" if params and made and made[-1] != "##" else "y"
-            made.append(chance.choice([*MACROS, *FUNCTIONS, *params * 2, "1", "+", "x", "(", ")", ",", after]))
-        return " ".join(made).removesuffix("##")
+            after = "##" if params and result and result[-1] != "##" else "y"
+            result.append(chance.choice([*MACROS, *FUNCTIONS, *params * 2, "1", "+", "x", "(", ")", ",", after]))
+        return " ".join(result).removesuffix("##")
 
     def line() -> str:
         name, function = chance.choice(MACROS), chance.choice(FUNCTIONS)
@@ -62,7 +62,7 @@ def program(chance: random.Random) -> str:
 def spelled(tokens: list[Token]) -> list[str]:
     """The words with kept constants written out."""
     values: dict[str, list[str]] = {}
-    made: list[str] = []
+    result: list[str] = []
     rest = [token.text for token in tokens]
     while rest:
         if rest[:2] == ["const", "auto"]:
@@ -70,16 +70,16 @@ def spelled(tokens: list[Token]) -> list[str]:
             values[rest[2]] = [word for named in rest[4:end] for word in values.get(named, [named])]
             rest = rest[end:]
         else:
-            made += values.get(rest[0], [rest[0]])
+            result += values.get(rest[0], [rest[0]])
         rest = rest[1:]
-    return made
+    return result
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_random_macros_expand_as_in_c(seed: int) -> None:
     command = [or_skip(lambda _: cpp(), "cpp"), "-P", "-undef", "-w", "-std=c99"]
     chance = random.Random(seed)
-    compared = kept = 0
+    compared = stored = 0
     for _ in range(80):
         text = program(chance)
         theirs = subprocess.run(command, input=text, capture_output=True, text=True, timeout=HANG, check=False)
@@ -88,8 +88,8 @@ def test_random_macros_expand_as_in_c(seed: int) -> None:
         except SssgenError:  # C has words that GLSL has not (1B), and we refuse directives between arguments
             continue
         if theirs.returncode == 0:
-            wanted = [token.text for token in scan(theirs.stdout, "cpp")[0]]
-            assert spelled(ours.tokens) == wanted, text
+            expected = [token.text for token in scan(theirs.stdout, "cpp")[0]]
+            assert spelled(ours.tokens) == expected, text
             compared += 1
-            kept += len(ours.macros)
-    assert compared > 30 and kept > 10
+            stored += len(ours.macros)
+    assert compared > 30 and stored > 10

@@ -21,9 +21,9 @@ KEPT = {
 
 @pytest.mark.parametrize("value", KEPT)
 def test_macros_of_numbers_become_constants(value: str) -> None:
-    made = run(f"#define B 2\n#define UNUSED 7\n#define A {value} // its name\nfloat x = A;")
-    assert " ".join(token.text for token in made.tokens) == spaced(KEPT[value] + " float x = A;")
-    assert made.macros == (["B", "A"] if "B" in value else ["A"])
+    result = run(f"#define B 2\n#define UNUSED 7\n#define A {value} // its name\nfloat x = A;")
+    assert " ".join(token.text for token in result.tokens) == spaced(KEPT[value] + " float x = A;")
+    assert result.macros == (["B", "A"] if "B" in value else ["A"])
 
 
 @pytest.mark.parametrize(
@@ -56,27 +56,27 @@ def test_macros_of_numbers_become_constants(value: str) -> None:
     ],
 )
 def test_other_macros_are_expanded(value: str) -> None:
-    made = run(f"#define C 1 +\n#define A {value}\nq = A;")
-    assert made.macros == []
-    assert " ".join(token.text for token in made.tokens) == spaced(f"q = {value.replace('C', '1 +')};")
+    result = run(f"#define C 1 +\n#define A {value}\nq = A;")
+    assert result.macros == []
+    assert " ".join(token.text for token in result.tokens) == spaced(f"q = {value.replace('C', '1 +')};")
 
 
 def test_places_of_constants() -> None:
-    made = run("float a;\n  #define HIGH (2.0 * 1.5)\nfloat b = HIGH;\nfloat c = HIGH;")
+    result = run("float a;\n  #define HIGH (2.0 * 1.5)\nfloat b = HIGH;\nfloat c = HIGH;")
     head = (2, 11, 2, 15)
-    assert [(token.type, token.text, token.span[1:]) for token in made.tokens[3:13]] == [
+    assert [(token.type, token.text, token.span[1:]) for token in result.tokens[3:13]] == [
         ("CONST", "const", head), ("TYPE", "auto", head), ("NAME", "HIGH", head), ("ASSIGN", "=", head),
         ("LPAR", "(", (2, 16, 2, 17)), ("FLOAT", "2.0", (2, 17, 2, 20)), ("OPERATOR", "*", (2, 21, 2, 22)),
         ("FLOAT", "1.5", (2, 23, 2, 26)), ("RPAR", ")", (2, 26, 2, 27)), ("SEMICOLON", ";", (2, 27, 2, 27)),
     ]  # fmt: skip
-    assert [(t.type, t.span[1:3]) for t in made.tokens[13:] if t.text == "HIGH"] == [
+    assert [(t.type, t.span[1:3]) for t in result.tokens[13:] if t.text == "HIGH"] == [
         ("NAME", (3, 11)),
         ("NAME", (4, 11)),
     ]
 
 
 @pytest.mark.parametrize(
-    ("text", "made"),
+    ("text", "result"),
     [
         ("#define A 1\n#if A\nb;\n#endif", "b;"),
         ("#define A 1\n#define A 1\na = A;\n#define A 1\nb = A;", "const auto A = 1; a = A; b = A;"),
@@ -103,8 +103,8 @@ def test_places_of_constants() -> None:
         ("#define A 1\n#define f(x) 2\na = f(A);", "a = 2;"),
     ],
 )  # fmt: skip
-def test_constants_are_used_only_where_valid(text: str, made: str) -> None:
-    assert words(text) == spaced(made)
+def test_constants_are_used_only_where_valid(text: str, result: str) -> None:
+    assert words(text) == spaced(result)
 
 
 def test_constants_of_includes() -> None:

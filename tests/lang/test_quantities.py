@@ -35,9 +35,9 @@ def fits(expression: str, quantity: str, type_: Type = FLOAT) -> bool:
 def measures(expression: str, plain: Type) -> str:
     """The quantity of an expression: which one it may be returned as."""
     assert fits(expression, "", plain), expression
-    found = [name for name, type_ in QUANTITIES.items() if type_ == plain and fits(expression, name)]
-    assert len(found) <= 1
-    return found[0] if found else ""
+    results = [name for name, type_ in QUANTITIES.items() if type_ == plain and fits(expression, name)]
+    assert len(results) <= 1
+    return results[0] if results else ""
 
 
 @pytest.mark.parametrize("name", QUANTITIES)

@@ -270,11 +270,11 @@ def test_error(case: str) -> None:
     Path("breaks_role.sss").write_text(BREAKS_ROLE, encoding="utf-8")
     error = errors_of(BAD[case])
     check_snapshot(f"cli/material/{case}.txt", f"{error}\n")
-    for found in error.diagnostics:
-        assert found.span.line >= 1
-        lines = BAD[case].split("\n") if found.span.file == "wax.toml" else None
-        assert lines is None or found.span.column <= len(lines[found.span.line - 1]) + 1
-        assert "\x1b" not in found.render()
+    for result in error.diagnostics:
+        assert result.span.line >= 1
+        lines = BAD[case].split("\n") if result.span.file == "wax.toml" else None
+        assert lines is None or result.span.column <= len(lines[result.span.line - 1]) + 1
+        assert "\x1b" not in result.render()
 
 
 def test_a_file_that_is_missing_or_no_text(tmp_path: Path) -> None:
@@ -325,9 +325,13 @@ def test_the_number_of_errors_is_limited() -> None:
 def test_random_faults_give_readable_errors(data: st.DataObject) -> None:
     text = (HEAD + BOUND + CHAIN.split("[translucency]")[1] + 'tint = ["#ff8000", { value = 1 }]\n').replace("\n", "\n")
     for _ in range(data.draw(st.integers(1, 3))):
-        at = data.draw(st.integers(0, len(text)))
-        gone = data.draw(st.integers(0, 6))
-        text = text[:at] + data.draw(st.sampled_from([*"[]{}=\"'.,#\n\\ a1", '"""', "[[", "'''"])) + text[at + gone :]
+        index = data.draw(st.integers(0, len(text)))
+        removed = data.draw(st.integers(0, 6))
+        text = (
+            text[:index]
+            + data.draw(st.sampled_from([*"[]{}=\"'.,#\n\\ a1", '"""', "[[", "'''"]))
+            + text[index + removed :]
+        )
     try:
         read(text)
     except SssgenError as error:
@@ -364,10 +368,10 @@ def leaves(value: object, path: tuple[str | int, ...] = ()) -> list[tuple[tuple[
         items = list(value.items())
     elif isinstance(value, list):
         items = list(enumerate(value))
-    found: list[tuple[tuple[str | int, ...], object]] = [(path, value)] if path and not items else []
+    results: list[tuple[tuple[str | int, ...], object]] = [(path, value)] if path and not items else []
     for key, inner in items:
-        found += leaves(inner, (*path, key))
-    return found
+        results += leaves(inner, (*path, key))
+    return results
 
 
 def check_places(text: str) -> None:

@@ -12,8 +12,8 @@ from sssgen.material.values import WrongValue, linear, read_value
 
 
 def uniform(type_: str, *hints: tuple[str, tuple[float | str, ...]], length: int = 0) -> Uniform:
-    made = BY_NAME[type_]
-    return Uniform("u", Array(made, length) if length else made, (0.0,), hints, "", "", NOWHERE)
+    result = BY_NAME[type_]
+    return Uniform("u", Array(result, length) if length else result, (0.0,), hints, "", "", NOWHERE)
 
 
 @pytest.mark.parametrize(

@@ -28,16 +28,16 @@ NAMES = sorted(library.index())
 def guarded(source: str, mode: str = "auto") -> Guarded:
     """The module of a source; its last function is what is called from outside."""
     module = module_of(source)
-    found = guard(module, [module.functions[-1].key], mode, guard_source, polyfill)
-    assert verify(found.module) == []
-    return found
+    result = guard(module, [module.functions[-1].key], mode, guard_source, polyfill)
+    assert verify(result.module) == []
+    return result
 
 
 def lines(source: str, mode: str = "auto", target: str = "glsl-330") -> list[str]:
     """The emitted lines, without what stands before the first function."""
     module = module_of(source)
-    made = transpile(module, target, "case", guards=mode, called=[module.functions[-1].key])
-    shown = next(iter(made.files.values())).splitlines()
+    compiled = transpile(module, target, "case", guards=mode, called=[module.functions[-1].key])
+    shown = next(iter(compiled.files.values())).splitlines()
     return [line.strip() for line in shown if line.strip() and not line.startswith("//")]
 
 
@@ -80,8 +80,8 @@ def test_lines(source: str, auto: str, everywhere: str | None) -> None:
 def test_mode_none_adds_no_guards_and_removes_assumptions() -> None:
     source = "float f(float x) { assume(x > 0.0); return sqrt(x) / x + normalize(vec2(x, 1.0)).x; }"
     assert body(source, "none") == "return sqrt(x) / x + normalize(vec2(x, 1.0)).x;"
-    found = guarded(source, "none")
-    assert not found.guarded and len(found.module.functions) == 1
+    result = guarded(source, "none")
+    assert not result.guarded and len(result.module.functions) == 1
 
 
 @pytest.mark.parametrize("mode", GUARDS)
@@ -147,13 +147,13 @@ def test_atan_of_one_argument_has_no_guard() -> None:
 
 def test_every_guard_leads_to_the_source() -> None:
     source = "float f(float x,\n float y) {\n float a = sqrt(x);\n return normalize(vec2(a, y)).x\n / y;\n}"
-    found = guarded(source)
-    function = found.module.functions[-1]
+    result = guarded(source)
+    function = result.module.functions[-1]
     spans = {expr.span for expr in all_expressions(function.body or ())}
     assert spans and all(span.file == "test.sss" and span.line >= 1 for span in spans), spans
-    made = transpile(module_of(source), "glsl-330", "case", guards="auto")
-    shown = next(iter(made.files.values())).splitlines()
-    (places,) = made.reflection["source_map"].values()
+    compiled = transpile(module_of(source), "glsl-330", "case", guards="auto")
+    shown = next(iter(compiled.files.values())).splitlines()
+    (places,) = compiled.reflection["source_map"].values()
     at = {
         line.strip(): places[str(number)].rsplit(":", 1)[0]
         for number, line in enumerate(shown, 1)
@@ -174,18 +174,18 @@ def test_at_drops_and_poisons_single_guards(backend: Callable[[str], Backend]) -
     source = "float f(float x, float y) { return sqrt(x) + sqrt(y); }"
     module = module_of(source)
     first = guarded(source).guarded[0].place
-    made = transpile(
+    compiled = transpile(
         module, "glsl-330", "case", guards="auto", at=lambda site: "drop" if site.place == first else "keep"
     )
-    assert "return sqrt(x) + sqrt(max(y, 0.0));" in next(iter(made.files.values()))
+    assert "return sqrt(x) + sqrt(max(y, 0.0));" in next(iter(compiled.files.values()))
     poisoned = transpile(module, "numpy", "case", guards="auto", at=lambda site: "poison")
     shown = next(name for name in poisoned.files if not name.endswith(".json"))
     x = np.array([1.0, -1.0, 4.0], np.float32)
     types = tuple(param.type for param in module.functions[-1].params)
-    (found,) = backend("numpy-f32").run(
+    (result,) = backend("numpy-f32").run(
         Text(poisoned.files[shown]), [Call("f", types, module.functions[-1].result, (x, abs(x)))]
     )
-    assert np.isnan(found).tolist() == [False, True, False], "NaN where the guard would have changed anything"
+    assert np.isnan(result).tolist() == [False, True, False], "NaN where the guard would have changed anything"
 
 
 # The library
@@ -200,10 +200,10 @@ def library_module(name: str) -> tuple[Module, list[str]]:
 def test_every_technique_is_valid_with_guards(mode: str) -> None:
     for name in NAMES:
         module, called = library_module(name)
-        found = guard(module, called, mode, guard_source, polyfill)
-        assert verify(found.module, linked=True) == [], name
-        assert mode != "none" or not found.guarded
-        assert mode != "all" or len(found.guarded) == len(found.sites)
+        result = guard(module, called, mode, guard_source, polyfill)
+        assert verify(result.module, linked=True) == [], name
+        assert mode != "none" or not result.guarded
+        assert mode != "all" or len(result.guarded) == len(result.sites)
 
 
 @pytest.mark.slow

@@ -133,9 +133,9 @@ PASSES: dict[str, Callable[[Module], Module]] = {
 def test_a_pass_keeps_the_order_of_reads_and_writes(name: str, random: Random, a: float, b: float) -> None:
     module = read_module(Programs(random).module())
     check_module(module)
-    made = PASSES[name](module)
-    check_module(made)
-    assert outcome(made, a, b) == outcome(module, a, b), print_module(made)
+    result = PASSES[name](module)
+    check_module(result)
+    assert outcome(result, a, b) == outcome(module, a, b), print_module(result)
 
 
 @settings(max_examples=60)
@@ -153,10 +153,10 @@ def test_numpy_results_are_equal_without_module_variables(random: Random, keep: 
     written = [param.name for param in added if param.direction == "inout"]
     values = result if written else (result,)
     for lane in range(4):
-        wanted = dict(zip(("f", *VARIABLES), outcome(module, float(a[lane]), float(b[lane])), strict=True))
+        expected = dict(zip(("f", *VARIABLES), outcome(module, float(a[lane]), float(b[lane])), strict=True))
         for name, value in zip(("f", *written), values, strict=True):
-            found = np.broadcast_to(value, (*np.shape(VARIABLES.get(name, 0.0)), 4))[..., lane]
-            np.testing.assert_array_equal(found, wanted[name])
+            results = np.broadcast_to(value, (*np.shape(VARIABLES.get(name, 0.0)), 4))[..., lane]
+            np.testing.assert_array_equal(results, expected[name])
 
 
 def test_the_verifier_knows_variables() -> None:

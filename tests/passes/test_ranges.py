@@ -23,13 +23,13 @@ PROGRAMS, RUNS = 250, 3
 
 
 def programs(first: int, count: int) -> list[tuple[int, ir.Module]]:
-    found = []
+    results = []
     for seed in range(first, first + count):
         try:
-            found.append((seed, module_of(RangePrograms(Random(seed), size=3).program())))
+            results.append((seed, module_of(RangePrograms(Random(seed), size=3).program())))
         except SssgenError:  # an index that is outside its array
             continue
-    return found
+    return results
 
 
 def test_values_of_random_programs_are_in_their_ranges() -> None:
@@ -69,10 +69,10 @@ def test_random_programs_have_all_that_the_pass_knows() -> None:
                 seen |= {type(expr), type(expr.type)}
                 if isinstance(expr, ir.Index) and not isinstance(expr.index, ir.Literal):
                     seen.add("dynamic index")
-    wanted = {ir.For, ir.While, ir.Break, ir.Continue, ir.Return, ir.If, ir.Select, ir.Call, ir.Intrinsic, ir.Index,
+    expected = {ir.For, ir.While, ir.Break, ir.Continue, ir.Return, ir.If, ir.Select, ir.Call, ir.Intrinsic, ir.Index,
               ir.Swizzle, ir.Member, ("inner", ir.For), ("inner", ir.Break), ("inner", ir.Return), Matrix, Array,
               Struct, "dynamic index"}  # fmt: skip
-    assert wanted <= seen, wanted - seen
+    assert expected <= seen, expected - seen
 
 
 # What was unsound once, small
@@ -84,16 +84,16 @@ def range_of(body: str, params: str = "float x, float y", head: str = "") -> Ran
     analysis = recorded(module, "f")
     function = module.functions[-1]
     returns = [stmt.value for stmt in statements(function.body or ()) if isinstance(stmt, ir.Return)]
-    found = [analysis.found[id(value)][0] for value in returns if id(value) in analysis.found]
-    whole = found[0]
-    for one in found[1:]:
+    results = [analysis.found[id(value)][0] for value in returns if id(value) in analysis.found]
+    whole = results[0]
+    for one in results[1:]:
         whole = whole.joined(one)
     return whole
 
 
-def has(found: Range, *numbers: float) -> None:
+def has(result: Range, *numbers: float) -> None:
     for number in numbers:
-        assert found.low <= number <= found.high and abs(number) >= found.gap, (number, found)
+        assert result.low <= number <= result.high and abs(number) >= result.gap, (number, result)
 
 
 NESTED = """
@@ -160,10 +160,10 @@ def test_a_long_sum_is_fast() -> None:
 def verdicts(body: str, params: str = "float x, float y", head: str = "") -> dict[str, bool]:
     """Of each operation with a domain whether it is proven safe everywhere."""
     module = module_of(f"{head}\nfloat f({params}) {{ {body} }}")
-    found: dict[str, bool] = {}
+    results: dict[str, bool] = {}
     for site in analyse(module, [module.functions[-1].key]).sites:
-        found[site.what] = found.get(site.what, True) and site.proven
-    return found
+        results[site.what] = results.get(site.what, True) and site.proven
+    return results
 
 
 STEPS = "uniform int n : hint_range(1, 64) = 8;"
@@ -215,8 +215,8 @@ SIZE = "uniform float size : hint_range(0.5, 2.0) = 1.0; uniform float none : hi
 )  # fmt: skip
 def test_proven(what: str, body: str, params: str, head: str) -> None:
     inner = "float inner(float v) { return 1.0 / v; }\n" if "inner(" in head else ""
-    found = verdicts(body, params, inner + head)
-    assert found[what], found
+    verdict_of = verdicts(body, params, inner + head)
+    assert verdict_of[what], verdict_of
 
 
 @pytest.mark.parametrize(
@@ -252,8 +252,8 @@ def test_proven(what: str, body: str, params: str, head: str) -> None:
     ],
 )  # fmt: skip
 def test_not_proven(what: str, body: str, params: str, head: str) -> None:
-    found = verdicts(body, params, head)
-    assert found[what] is False, found
+    verdict_of = verdicts(body, params, head)
+    assert verdict_of[what] is False, verdict_of
 
 
 @pytest.mark.parametrize(
@@ -272,8 +272,8 @@ def test_not_proven(what: str, body: str, params: str, head: str) -> None:
     ],
 )  # fmt: skip
 def test_these_sites_are_not_proven(body: str, params: str) -> None:
-    found = verdicts(body, params, "")
-    assert not found.get("/", found.get("sqrt")), found
+    verdict_of = verdicts(body, params, "")
+    assert not verdict_of.get("/", verdict_of.get("sqrt")), verdict_of
 
 
 def test_ranges_of_results() -> None:
@@ -290,8 +290,8 @@ def test_ranges_of_results() -> None:
 
 def test_loop_counters_are_below_the_count() -> None:
     body = "float t = 0.5; for (int i = 0; i < n; i++) { t = (float(i) + 0.5) / float(n); } return t;"
-    found = range_of(body, "float x", STEPS)
-    assert found.low > 0.0 and found.high < 1.0
+    result = range_of(body, "float x", STEPS)
+    assert result.low > 0.0 and result.high < 1.0
 
 
 def test_only_entry_points_have_unknown_arguments() -> None:

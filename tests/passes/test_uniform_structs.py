@@ -41,10 +41,10 @@ function void main() {
 
 def values(numbers: tuple[float, ...], shape: Any) -> Any:
     """Numbers as a value of the interpreter's: `shape` counts scalars, or lists the shapes of the parts."""
-    given = iter(numbers)
+    inputs = iter(numbers)
 
     def built(part: Any) -> Any:
-        return tuple(map(built, part)) if isinstance(part, tuple) else next(given)
+        return tuple(map(built, part)) if isinstance(part, tuple) else next(inputs)
 
     return built(shape)
 
@@ -58,15 +58,15 @@ def test_a_split_struct_of_uniforms_reads_the_same(i: int, j: int) -> None:
     check_module(split, linked=True)
     light = ((0, 0, 0), (0, (0, 0)))
     lights, sun = module.uniforms
-    known = {"lights": values(lights.default, (light,) * 3), "sun": values(sun.default, light)}
+    table = {"lights": values(lights.default, (light,) * 3), "sun": values(sun.default, light)}
     apart: dict[str, Any] = {}
     for uniform in split.uniforms:
         shape: Any = {"color": (0, 0, 0), "near": 0, "steps": (0, 0)}[uniform.name.rsplit("_", 1)[1]]
         if uniform.name.startswith("lights"):
             shape = (0,) * 6 if shape == (0, 0) else (shape,) * 3
         apart[uniform.name] = values(uniform.default, shape)
-    wanted = Interpreter(module, known).call("f(int,int)", i, j)
-    assert Interpreter(split, apart).call("f(int,int)", i, j) == wanted
+    expected = Interpreter(module, table).call("f(int,int)", i, j)
+    assert Interpreter(split, apart).call("f(int,int)", i, j) == expected
 
 
 @pytest.mark.parametrize("target", TARGETS)

@@ -32,5 +32,5 @@ def test_no_snapshot_is_left_over() -> None:
 
 
 def test_the_page_of_builtins_is_current() -> None:
-    made = runpy.run_path(str(DOCS / "intrinsics.py"))
-    assert made["page"]() == (DOCS / "intrinsics.md").read_text(encoding="utf-8"), "run python docs/intrinsics.py"
+    result = runpy.run_path(str(DOCS / "intrinsics.py"))
+    assert result["page"]() == (DOCS / "intrinsics.md").read_text(encoding="utf-8"), "run python docs/intrinsics.py"

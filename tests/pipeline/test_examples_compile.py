@@ -29,9 +29,9 @@ def emitted(name: str, form: str) -> dict[str, str]:
 
 @pytest.mark.parametrize(("name", "form"), CASES)
 def test_every_target_compiles(name: str, form: str, assert_compiles: object) -> None:
-    found: list[Source] = sources(emitted(name, form))
-    assert {source.language for source in found} == set(sssgen.all_targets())
-    for source in found:
+    result: list[Source] = sources(emitted(name, form))
+    assert {source.language for source in result} == set(sssgen.all_targets())
+    for source in result:
         assert_compiles(source)  # type: ignore[operator]  # the fixture is a function
 
 
@@ -65,12 +65,12 @@ print(digest.hexdigest())
 
 
 def test_results_do_not_depend_on_the_process(tmp_path: Path) -> None:
-    said = []
+    messages = []
     for seed in ("1", "2"):
         environment = os.environ | {"PYTHONHASHSEED": seed, "SSSGEN_CACHE": str(tmp_path / seed)}
         ran = subprocess.run(
             [sys.executable, "-c", SCRIPT], env=environment, capture_output=True, text=True, check=True
         )
-        said.append(ran.stdout)
-    assert len(said[0]) == 2 * hashlib.sha256().digest_size + 1
-    assert said[0] == said[1]
+        messages.append(ran.stdout)
+    assert len(messages[0]) == 2 * hashlib.sha256().digest_size + 1
+    assert messages[0] == messages[1]

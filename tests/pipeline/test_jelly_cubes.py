@@ -48,11 +48,11 @@ def uniforms(reflection: dict[str, Any], view: View) -> dict[str, Any]:
 
 def in_numpy(view: View) -> Array:
     """The emitted function on all pixels, in float64."""
-    made = sssgen.compile("jelly_cubes", "numpy", "functions")
+    compiled = sssgen.compile("jelly_cubes", "numpy", "functions")
     functions: dict[str, Any] = {}
-    exec(made.files["jelly_cubes_functions.py"], functions)
+    exec(compiled.files["jelly_cubes_functions.py"], functions)
     v, u = (np.mgrid[0:HEIGHT, 0:WIDTH] + 0.5) / np.array([HEIGHT, WIDTH])[:, None, None]
-    values = [np.reshape(value, (-1, 1)) for value in uniforms(made.reflection, view).values()]
+    values = [np.reshape(value, (-1, 1)) for value in uniforms(compiled.reflection, view).values()]
     values = [value if len(value) > 1 else value[0, 0] for value in values]
     with precision(np.float64):
         color = functions["evaluate_color"](np.stack([u.ravel(), v.ravel()]), view.time, *values)
@@ -62,11 +62,11 @@ def in_numpy(view: View) -> Array:
 
 def in_opengl(view: View, context: Any) -> Array:
     """The emitted shader, in float32; OpenGL reads the lowest row first."""
-    made = sssgen.compile("jelly_cubes", "glsl-330")
-    vertex, fragment = (made.files[f"jelly_cubes.glsl-330.{stage}"] for stage in ("vert", "frag"))
+    compiled = sssgen.compile("jelly_cubes", "glsl-330")
+    vertex, fragment = (compiled.files[f"jelly_cubes.glsl-330.{stage}"] for stage in ("vert", "frag"))
     with context:
         program = context.program(vertex_shader=vertex, fragment_shader=fragment)
-        for name, value in {**uniforms(made.reflection, view), "time": [view.time]}.items():
+        for name, value in {**uniforms(compiled.reflection, view), "time": [view.time]}.items():
             if name in program:  # a driver drops what it finds unused
                 program[name].write(np.array(value, np.float32).tobytes())
         frame = context.framebuffer([context.texture((WIDTH, HEIGHT), 4, dtype="f4")])

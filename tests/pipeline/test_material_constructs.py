@@ -39,14 +39,14 @@ def test_construct(path: Path, tmp_path: Path) -> None:
     head, *sections = re.split(r"^--- (.+)\n", path.read_text(encoding="utf-8"), flags=re.MULTILINE)
     rule, before, after = re.split(r"^=== (?:before|after)\n", head, flags=re.MULTILINE)
     assert rule.strip().endswith(".")
-    found = {
+    results = {
         f"{target} {form}": differences(before, after, tmp_path, target, form)
         for target in sssgen.all_targets()
         for form in FORMS
     }
     if os.environ.get("UPDATE_SNAPSHOTS"):
-        text = head.rstrip() + "\n" + "".join(f"--- {name}\n{lines}\n" for name, lines in found.items())
+        text = head.rstrip() + "\n" + "".join(f"--- {name}\n{lines}\n" for name, lines in results.items())
         path.write_text(text, encoding="utf-8", newline="\n")
         return
     expected = dict(zip(sections[::2], (section.removesuffix("\n") for section in sections[1::2]), strict=True))
-    assert found == expected, "UPDATE_SNAPSHOTS=1 takes the new texts over"
+    assert results == expected, "UPDATE_SNAPSHOTS=1 takes the new texts over"

@@ -48,10 +48,10 @@ def fresh(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
 # What is loaded
 
 
-def loaded(code: str, kept: Path, *names: str) -> set[str]:
+def loaded(code: str, stored: Path, *names: str) -> set[str]:
     """Which of these modules a new process has loaded after this code."""
     script = f"import sys\n{code}\nprint('loaded', *[name for name in {names!r} if name in sys.modules])"
-    environment = {**os.environ, "SSSGEN_CACHE": str(kept)}
+    environment = {**os.environ, "SSSGEN_CACHE": str(stored)}
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True, env=environment)
     return set(done.stdout.splitlines()[-1].split()[1:])
 
@@ -62,7 +62,7 @@ def test_the_command_line_loads_nothing_heavy(tmp_path: Path) -> None:
 
 
 def test_an_emit_with_warm_caches_imports_little(tmp_path: Path) -> None:
-    source, kept = tmp_path / "lantern.toml", tmp_path / "cache"
+    source, stored = tmp_path / "lantern.toml", tmp_path / "cache"
     heavy = (
         "numpy",
         "lark",
@@ -78,13 +78,13 @@ def test_an_emit_with_warm_caches_imports_little(tmp_path: Path) -> None:
     )
     source.write_text(LANTERN, encoding="utf-8")
     compiled = {"jinja2", "sssgen.pipeline.programs", "sssgen.lang.check.module_checker"}
-    first = loaded(emit_all, kept, *heavy)
+    first = loaded(emit_all, stored, *heavy)
     assert compiled <= first
     assert not {"numpy", "lark"} & first
-    assert loaded(emit_all, kept, *heavy) == set()
+    assert loaded(emit_all, stored, *heavy) == set()
     source.write_text(LANTERN.replace(*EDITED), encoding="utf-8")
     assert not {"numpy", "lark", "sssgen.pipeline.programs", "sssgen.lang.check.module_checker"} & loaded(
-        emit_all, kept, *heavy
+        emit_all, stored, *heavy
     )
 
 
@@ -93,11 +93,11 @@ def test_an_emit_with_warm_caches_imports_little(tmp_path: Path) -> None:
 
 def test_the_same_input_gives_the_same_result() -> None:
     material, path = load_material("ice"), examples()["ice"]
-    made, again, by_path = (compiler.compile(one, "wgsl").files for one in (material, material, path))
-    assert made.keys() == by_path.keys()
-    assert all(text is again[name] for name, text in made.items())  # the same text, not one like it
+    result, again, by_path = (compiler.compile(one, "wgsl").files for one in (material, material, path))
+    assert result.keys() == by_path.keys()
+    assert all(text is again[name] for name, text in result.items())  # the same text, not one like it
     assert all(text is compiler.compile(path, "wgsl").files[name] for name, text in by_path.items())
-    made["ice.wgsl"] = "the caller's own"
+    result["ice.wgsl"] = "the caller's own"
     assert compiler.compile(material, "wgsl").files == again
     assert again.keys() != compiler.compile(material, "wgsl", "functions").files.keys()
 
@@ -148,16 +148,16 @@ def _edited(stage: Stage, number: int) -> Stage:
 @pytest.mark.parametrize("name", examples())
 def test_a_variant_equals_a_compilation_from_source(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     original, variant = load_material(name), edited(load_material(name), 0)
-    kept = {}
+    stored = {}
     for target in TARGETS:
         for form in compiler.FORMS:
             compiler.compile(original, target, form)
-            kept[target, form] = compiler.compile(variant, target, form).files
+            stored[target, form] = compiler.compile(variant, target, form).files
     compiler._programs.clear()
     compiler._compiled.clear()
     monkeypatch.setattr(cache, "folder", lambda: "")
     monkeypatch.setattr(compiler, "_bare", lambda stage, fixed: stage)
-    for (target, form), files in kept.items():
+    for (target, form), files in stored.items():
         assert compiler.compile(variant, target, form).files == files, (target, form)
 
 
@@ -205,9 +205,9 @@ def test_a_command_is_recalled_until_something_changes(tmp_path: Path, monkeypat
     command = (["plain.toml"], "wgsl", "shader", "auto")
     assert emitted_cache.load(*command) is None
     assert cli.main(["emit", "plain.toml", "-t", "wgsl", "-o", "out"]) == 0
-    made = emitted_cache.load(*command)
-    assert made is not None
-    assert made.files == {path.name: path.read_text(encoding="utf-8") for path in Path("out").iterdir()}
+    result = emitted_cache.load(*command)
+    assert result is not None
+    assert result.files == {path.name: path.read_text(encoding="utf-8") for path in Path("out").iterdir()}
     assert emitted_cache.load(["plain.toml"], "wgsl", "functions", "auto") is None
     assert emitted_cache.load(["plain.toml"], "all", "shader", "auto") is None
     assert emitted_cache.load(["plain.toml"], "wgsl", "shader", "none") is None
@@ -235,7 +235,7 @@ def test_a_damaged_entry_is_recomputed(tmp_path: Path) -> None:
 
 
 def test_the_reflection_is_the_files_and_the_callers_to_change() -> None:
-    made = compiler.compile("ice", "wgsl")
-    assert made.reflection == json.loads(made.files["ice.wgsl.reflection.json"])
-    made.reflection["uniforms"].clear()
-    assert made.reflection["uniforms"]
+    compiled = compiler.compile("ice", "wgsl")
+    assert compiled.reflection == json.loads(compiled.files["ice.wgsl.reflection.json"])
+    compiled.reflection["uniforms"].clear()
+    assert compiled.reflection["uniforms"]

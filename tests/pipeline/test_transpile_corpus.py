@@ -75,18 +75,18 @@ def test_the_text_is_unchanged(name: str, target: str) -> None:
 
 
 def test_no_snapshot_is_left_over() -> None:
-    kept = {path.name for path in (SNAPSHOTS / "transpile").iterdir()}
-    assert kept == {f"{name}.{SUFFIXES[target]}" for name, target in CASES}
+    stored = {path.name for path in (SNAPSHOTS / "transpile").iterdir()}
+    assert stored == {f"{name}.{SUFFIXES[target]}" for name, target in CASES}
 
 
 @pytest.mark.parametrize("compiler", COMPILERS)
 def test_other_compilers_accept_it(compiler: str) -> None:
-    found = compiler_or_skip(compiler)
-    wrong = []
+    result = compiler_or_skip(compiler)
+    failures = []
     for name, target in CASES:
         if compiler in readers(target) and (name, target) not in REFUSED:
-            wrong += [f"{name} as {target}: {said}" for said in errors(found.check(source(name, target)))]
-    assert wrong == []
+            failures += [f"{name} as {target}: {said}" for said in errors(result.check(source(name, target)))]
+    assert failures == []
 
 
 @pytest.mark.parametrize("name", FILES)
@@ -105,13 +105,13 @@ def computed(name: str, samples: int) -> None:
     """Fails where a function gives another number than the author's text does in OpenGL's driver."""
     text = expanded((CORPUS / name).read_text("utf-8"), CORPUS / name)
     report = transpiled.verify(text, name, samples, 0, entry(name))
-    wrong = [
-        f"{row.function} as {target}: {found.error or found.at}"
+    failures = [
+        f"{row.function} as {target}: {result.error or result.at}"
         for row in report.rows
-        for target, found in row.comparisons.items()
-        if not found.ok and (name, target) not in REFUSED
+        for target, result in row.comparisons.items()
+        if not result.ok and (name, target) not in REFUSED
     ]
-    assert wrong == []
+    assert failures == []
     assert all(row.comparisons or row.reason in NOTHING_TO_COMPARE for row in report.rows), "\n".join(report.lines())
 
 

@@ -133,7 +133,7 @@ def test_a_plugin_can_add_a_target(plugin: Callable[[str, str], None]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("entry", "module", "said"),
+    ("entry", "module", "message"),
     [
         ("toy = toy_target:toy", "import no_such_module", "No module named 'no_such_module'"),
         ("toy = toy_target:tow", "toy = 1", "no attribute 'tow'"),
@@ -143,12 +143,12 @@ def test_a_plugin_can_add_a_target(plugin: Callable[[str, str], None]) -> None:
         ("toy = toy_target:toy", TOY.format("other"), "gives a target called 'other'"),
     ],
 )
-def test_a_faulty_plugin_is_named(plugin: Callable[[str, str], None], entry: str, module: str, said: str) -> None:
+def test_a_faulty_plugin_is_named(plugin: Callable[[str, str], None], entry: str, module: str, message: str) -> None:
     plugin(entry, module)
     with pytest.raises(SssgenError) as error:
         registry.load("toy")
-    (found,) = error.value.diagnostics
-    assert said in found.render()
+    (result,) = error.value.diagnostics
+    assert message in result.render()
 
 
 def test_a_faulty_descriptor_is_named(tmp_path: Path) -> None:
@@ -187,9 +187,9 @@ def changed(old: str, new: str, tmp_path: Path) -> str:
     ],
 )
 def test_a_misspelt_key_is_named(tmp_path: Path, old: str, new: str, section: str, nearest: str) -> None:
-    told = changed(old, new, tmp_path)
-    assert "the target descriptor has an unknown key '" in told and f"'{section}\n" in told
-    assert f"did you mean '{nearest}'?" in told
+    message = changed(old, new, tmp_path)
+    assert "the target descriptor has an unknown key '" in message and f"'{section}\n" in message
+    assert f"did you mean '{nearest}'?" in message
 
 
 @pytest.mark.parametrize(

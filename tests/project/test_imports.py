@@ -66,6 +66,6 @@ def modules_with_lazy_imports() -> Iterator[str]:
 
 
 def test_imports_inside_functions_are_listed() -> None:
-    found = set(modules_with_lazy_imports())
-    assert found - LAZY_IMPORTS.keys() == set(), "import at the top of the module, or list the reason"
-    assert LAZY_IMPORTS.keys() - found == set(), "these have no import inside a function: delete them from the table"
+    result = set(modules_with_lazy_imports())
+    assert result - LAZY_IMPORTS.keys() == set(), "import at the top of the module, or list the reason"
+    assert LAZY_IMPORTS.keys() - result == set(), "these have no import inside a function: delete them from the table"

@@ -22,8 +22,8 @@ from sssgen.version import VERSION
 
 def run(*command: str | Path, cwd: Path, **variables: str) -> str:
     """The output of a command that has to succeed, run without this environment's Python settings."""
-    kept = [name for name in os.environ if not name.startswith(("PYTHON", "SSSGEN"))]
-    environment = {name: os.environ[name] for name in kept}
+    stored = [name for name in os.environ if not name.startswith(("PYTHON", "SSSGEN"))]
+    environment = {name: os.environ[name] for name in stored}
     done = subprocess.run(
         [str(part) for part in command],
         cwd=cwd,
@@ -136,7 +136,7 @@ def test_the_version_is_in_the_changelog_or_unreleased() -> None:
 def test_every_import_is_a_dependency() -> None:
     """Every module from outside that src/ imports is a dependency, or one of an extra."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    asked = str([project["dependencies"], project["optional-dependencies"]])
+    requests = str([project["dependencies"], project["optional-dependencies"]])
     outside: set[str] = set()
     for path in (ROOT / "src").rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
@@ -145,4 +145,4 @@ def test_every_import_is_a_dependency() -> None:
             elif isinstance(node, ast.ImportFrom) and node.level == 0:
                 outside.add(str(node.module).split(".")[0])
     outside -= {*sys.stdlib_module_names, "sssgen"}
-    assert {name for name in outside if name not in asked} == set()
+    assert {name for name in outside if name not in requests} == set()

@@ -36,8 +36,8 @@ PUBLISHED_FIGURES = {
 """Known from elsewhere: worked out by hand from the sources' formulas."""
 
 
-def told(erratum: Erratum, found: tuple[float, ...]) -> str:
-    return f"{erratum.source}, {erratum.name}: {found}"
+def told(erratum: Erratum, result: tuple[float, ...]) -> str:
+    return f"{erratum.source}, {erratum.name}: {result}"
 
 
 @pytest.mark.parametrize("name", BACKENDS)
@@ -45,18 +45,18 @@ def test_the_published_techniques_have_the_predicted_errors(backend: Get, name: 
     machine = backend(name)
     for erratum in ERRATA:
         if erratum.everywhere:
-            found = as_published(erratum, machine)
-            assert shows(erratum, found), told(erratum, found)
-            assert not holds(erratum, found), told(erratum, found)
+            result = as_published(erratum, machine)
+            assert shows(erratum, result), told(erratum, result)
+            assert not holds(erratum, result), told(erratum, result)
 
 
 @pytest.mark.parametrize("name", BACKENDS)
 def test_the_corrected_techniques_hold(backend: Get, name: str) -> None:
     machine = backend(name)
     for erratum in ERRATA:
-        found = as_mended(erratum, machine)
-        assert holds(erratum, found), told(erratum, found)
-        assert not erratum.everywhere or not shows(erratum, found), told(erratum, found)
+        result = as_mended(erratum, machine)
+        assert holds(erratum, result), told(erratum, result)
+        assert not erratum.everywhere or not shows(erratum, result), told(erratum, result)
 
 
 def test_undefined_results_are_wrong_somewhere(backend: Get) -> None:
@@ -64,8 +64,8 @@ def test_undefined_results_are_wrong_somewhere(backend: Get) -> None:
     undefined = [erratum for erratum in ERRATA if not erratum.everywhere and erratum.name != "pow(0, 0)"]
     assert len(undefined) >= 4
     for erratum in undefined:
-        found = as_published(erratum, backend("numpy-f32"))
-        assert not holds(erratum, found), told(erratum, found)
+        result = as_published(erratum, backend("numpy-f32"))
+        assert not holds(erratum, result), told(erratum, result)
 
 
 def test_predicted_errors_equal_the_published_figures() -> None:
@@ -87,8 +87,8 @@ def test_every_published_source_has_errata() -> None:
 def test_open_errata_are_not_fixed(backend: Get) -> None:
     for erratum in OPEN:
         assert shows(erratum, as_published(erratum, backend("numpy-f32")))
-        found = as_mended(erratum, backend("numpy-f32"))
-        assert not holds(erratum, found), f"{told(erratum, found)} is mended: move it to its chapter"
+        result = as_mended(erratum, backend("numpy-f32"))
+        assert not holds(erratum, result), f"{told(erratum, result)} is mended: move it to its chapter"
 
 
 def test_errata_are_compared_with_tolerances() -> None:

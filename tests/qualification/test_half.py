@@ -113,21 +113,23 @@ def test_whole_shaders_are_refused(capsys: pytest.CaptureFixture[str], backend: 
 @pytest.mark.parametrize("name", ["numpy-f16", "webgpu-f16"])
 def test_every_builtin(name: str, backend: Get) -> None:
     gpu = backend(name)
-    known = [case for case in half_cases() if supported(case, gpu)]
-    assert len(known) > 250
-    wrong = [said for case, got in zip(known, run_cases(gpu, known), strict=True) if (said := wrong_lanes(case, got))]
-    assert not wrong, "\n".join(wrong)
+    table = [case for case in half_cases() if supported(case, gpu)]
+    assert len(table) > 250
+    failures = [
+        said for case, got in zip(table, run_cases(gpu, table), strict=True) if (said := wrong_lanes(case, got))
+    ]
+    assert not failures, "\n".join(failures)
 
 
 @pytest.mark.parametrize(("target", "dtype"), [(TARGET, np.float16), ("wgsl", np.float32)])
 def test_arguments_are_rounded_before_they_are_sent(target: str, dtype: type) -> None:
     """WGSL lets a conversion round either way."""
-    given = np.array([0.1, 2049.5, 1e6, -1.0 / 3.0])
-    program, _ = drawing(registry.load(target), Text(""), [Call("f", (FLOAT,), FLOAT, (given,))], {})
+    inputs = np.array([0.1, 2049.5, 1e6, -1.0 / 3.0])
+    program, _ = drawing(registry.load(target), Text(""), [Call("f", (FLOAT,), FLOAT, (inputs,))], {})
     sent = program.textures["sssgen_data"].data
     assert isinstance(sent, np.ndarray)
     with np.errstate(over="ignore"):
-        assert sent[..., 0].view(np.float32).ravel()[:4].tolist() == given.astype(dtype).tolist()
+        assert sent[..., 0].view(np.float32).ravel()[:4].tolist() == inputs.astype(dtype).tolist()
 
 
 def test_every_operation_rounds_to_half(backend: Get) -> None:
@@ -140,8 +142,8 @@ def test_every_operation_rounds_to_half(backend: Get) -> None:
     for _ in range(20):
         each = each * (y * np.float16(0.1)) + z
         once = once * (args[1] * 0.1) + args[2]
-    found = call(backend("webgpu-f16"), source, FLOAT, *args)
-    assert (found == each).mean() > 0.9 > 0.8 > (found == once.astype(np.float16)).mean()
+    result = call(backend("webgpu-f16"), source, FLOAT, *args)
+    assert (result == each).mean() > 0.9 > 0.8 > (result == once.astype(np.float16)).mean()
 
 
 def test_literals_are_exact(backend: Get) -> None:
@@ -154,9 +156,9 @@ def test_literals_are_exact(backend: Get) -> None:
 
 def test_infinity_and_nan_are_returned(backend: Get) -> None:
     gpu = backend("webgpu-f16")
-    given = np.array([np.inf, -np.inf, np.nan, 65504.0, 1e6])
+    inputs = np.array([np.inf, -np.inf, np.nan, 65504.0, 1e6])
     np.testing.assert_array_equal(
-        call(gpu, "float f(float x) { return x; }", FLOAT, given), [np.inf, -np.inf, np.nan, 65504.0, np.inf]
+        call(gpu, "float f(float x) { return x; }", FLOAT, inputs), [np.inf, -np.inf, np.nan, 65504.0, np.inf]
     )
     product = call(
         gpu, "float f(float x, float y) { return x * y; }", FLOAT, np.full(2, 300.0), np.array([300.0, -300])
@@ -171,19 +173,19 @@ def technique(name: str, lanes: int) -> tuple[Subject, dict[str, object]]:
 
 def test_every_technique_compiles_and_runs(backend: Get, compiler: Callable[[str], Compiler]) -> None:
     gpu, readers = backend("webgpu-f16"), [compiler("naga"), compiler("tint")]
-    wrong = []
+    failures = []
     for name in sorted(library.index()):
-        chosen, given = technique(name, 20)
+        chosen, inputs = technique(name, 20)
         try:
-            made = transpile(chosen.module, TARGET, name).files
-            text = next(text for file, text in made.items() if not file.endswith(".json"))
-            said = [(one.name, errors(one.check(Source(text, "wgsl", "library")))) for one in readers]
-            wrong += [f"{name}: {reader}: {found}" for reader, found in said if found]
-            outputs = run(chosen, fitted(chosen, given), gpu)
-            wrong += [f"{name}: {key}" for key, value in outputs.items() if len(value) != 20]
+            compiled = transpile(chosen.module, TARGET, name).files
+            text = next(text for file, text in compiled.items() if not file.endswith(".json"))
+            messages = [(one.name, errors(one.check(Source(text, "wgsl", "library")))) for one in readers]
+            failures += [f"{name}: {reader}: {result}" for reader, result in messages if result]
+            outputs = run(chosen, fitted(chosen, inputs), gpu)
+            failures += [f"{name}: {key}" for key, value in outputs.items() if len(value) != 20]
         except SssgenError as error:
-            wrong.append(f"{name}: {error}")
-    assert not wrong, "\n".join(wrong)
+            failures.append(f"{name}: {error}")
+    assert not failures, "\n".join(failures)
 
 
 @pytest.mark.parametrize("name", SIMPLE)
@@ -191,11 +193,11 @@ def test_a_simple_technique_equals_numpy(name: str, backend: Get) -> None:
     gpu = backend("webgpu-f16")
     chosen, given = technique(name, 1000)
     fit = fitted(chosen, given)
-    wanted = run(chosen, fit, backends.get("numpy-f16"))
-    for key, got in run(chosen, fit, gpu).items():
-        right = wanted[key].astype(np.float64)
-        assert np.isfinite(right).all() and np.isfinite(got).all()
-        assert (np.abs(got - right) / np.maximum(np.abs(right), 1.0)).max() <= SIMPLE[name] * ULP, key
+    expected = run(chosen, fit, backends.get("numpy-f16"))
+    for key, actual in run(chosen, fit, gpu).items():
+        right = expected[key].astype(np.float64)
+        assert np.isfinite(right).all() and np.isfinite(actual).all()
+        assert (np.abs(actual - right) / np.maximum(np.abs(right), 1.0)).max() <= SIMPLE[name] * ULP, key
 
 
 # sssgen eval --precision f16
@@ -203,11 +205,11 @@ def test_a_simple_technique_equals_numpy(name: str, backend: Get) -> None:
 
 def test_eval_in_half(capsys: pytest.CaptureFixture[str], backend: Get) -> None:
     backend("webgpu-f16")
-    asked = ["eval", "wrap_lighting", "--samples", "50", "--precision", "f16", "--json", "--backend"]
-    assert cli.main([*asked, "webgpu"]) == 0
+    arguments = ["eval", "wrap_lighting", "--samples", "50", "--precision", "f16", "--json", "--backend"]
+    assert cli.main([*arguments, "webgpu"]) == 0
     assert json.loads(capsys.readouterr().out)["backend"] == "webgpu-f16"
     for named in ("numpy,webgpu", "all", "webgpu-f16,numpy,webgpu"):
-        assert cli.main([*asked, named]) == 0
+        assert cli.main([*arguments, named]) == 0
         rows = json.loads(capsys.readouterr().out)["backends"]
         assert {row["name"] for row in rows} == {"numpy-f16", "webgpu-f16"} and len(rows) == 2
         assert all(1e-5 < row["deviation"] < 1e-2 for row in rows)
@@ -216,12 +218,12 @@ def test_eval_in_half(capsys: pytest.CaptureFixture[str], backend: Get) -> None:
 @pytest.mark.parametrize(("named", "precision"), [("gl", "f16"), ("numpy,browser", "f16"), ("webgpu-f16", "f32")])
 def test_eval_refuses(named: str, precision: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["eval", "box", "--samples", "5", "--backend", named, "--precision", precision]) == 2
-    told = capsys.readouterr().err
+    output = capsys.readouterr().err
     if precision == "f16":
-        assert f"{named.split(',')[-1]} does not compute in half precision" in told
-        assert "--backend numpy or webgpu" in told
+        assert f"{named.split(',')[-1]} does not compute in half precision" in output
+        assert "--backend numpy or webgpu" in output
     else:
-        assert "webgpu-f16 computes in its own precision, not in f32" in told
+        assert "webgpu-f16 computes in its own precision, not in f32" in output
 
 
 def test_an_adapter_without_halves_is_reported(backend: Get, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -40,13 +40,13 @@ def test_every_builtin_is_within_its_limits_on_many_arguments(name: str, backend
 
 
 def test_the_cases_cover_all_overloads_and_are_deterministic() -> None:
-    found = cases(LANES)
-    titles = {case.title for case in found}
-    assert len(titles) == len(found)
-    assert {case.name for case in found} == set(BUILTINS)
+    result = cases(LANES)
+    titles = {case.title for case in result}
+    assert len(titles) == len(result)
+    assert {case.name for case in result} == set(BUILTINS)
     assert {"mix(vec3, vec3, bvec3)", "mod(vec4, float)", "clamp(uvec2, uint, uint)", "inverse(mat4)"} <= titles
     cases.cache_clear()
-    for one, other in zip(found, cases(LANES), strict=True):
+    for one, other in zip(result, cases(LANES), strict=True):
         for arg, same in zip(one.args, other.args, strict=True):
             np.testing.assert_array_equal(arg, same)
 
@@ -89,11 +89,11 @@ def test_a_broken_rule_is_caught(
     chosen = [case for case in cases(LANES) if case.result == FLOAT and set(case.params) == {FLOAT}]
     with mod_as_fmod(monkeypatch, native):
         figures = measure(gpu, chosen)
-    assert {found for found, figure in figures.items() if not figure.right} == {"mod"}
+    assert {result for result, figure in figures.items() if not figure.right} == {"mod"}
     title, _, rest = figures["mod"].at.partition(" at ")
-    given = [float(number) for number in rest.partition(":")[0].split(", ")]
+    arguments = [float(number) for number in rest.partition(":")[0].split(", ")]
     assert title == "mod(float, float)"
-    assert min(given) < 0.0 < max(given)
+    assert min(arguments) < 0.0 < max(arguments)
     assert measure(gpu, chosen)["mod"].right
 
 

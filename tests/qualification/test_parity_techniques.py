@@ -31,21 +31,21 @@ Get = Callable[[str], Backend]
 @pytest.mark.parametrize("name", ["gl", "webgpu", "browser", "hlsl"])
 def test_techniques(backend: Get, name: str) -> None:
     gpu = backend(name)
-    found = [excess(case, name, measure(case, gpu, FEW), FEW) for case in cases() if not case.bind]
-    wrong = [one for one in found if one]
-    assert len(found) == len(library.index())
-    assert not wrong, "\n".join([f"{len(wrong)} of {len(found)}", *wrong])
+    results = [excess(case, name, measure(case, gpu, FEW), FEW) for case in cases() if not case.bind]
+    failures = [one for one in results if one]
+    assert len(results) == len(library.index())
+    assert not failures, "\n".join([f"{len(failures)} of {len(results)}", *failures])
 
 
 @pytest.mark.slow
 def test_techniques_on_many_inputs(backend: Get) -> None:
     """All back ends on the inputs of docs/parity_techniques.md, with each function that fits a slot."""
     gpus = [backend(name) for name in BACKENDS]
-    wrong = []
+    failures = []
     for case in cases():
         lanes = BOUND_LANES if case.bind else LANES
-        wrong += [one for gpu in gpus if (one := excess(case, gpu.name, measure(case, gpu, lanes), lanes))]
-    assert not wrong, "\n".join([f"{len(wrong)}", *wrong])
+        failures += [one for gpu in gpus if (one := excess(case, gpu.name, measure(case, gpu, lanes), lanes))]
+    assert not failures, "\n".join([f"{len(failures)}", *failures])
 
 
 def test_the_page_lists_every_technique() -> None:
@@ -87,18 +87,18 @@ def test_a_lane_at_a_step_is_excluded_and_a_wrong_one_is_not(tmp_path: Path) -> 
         and row.as_json()["excluded"] == row.deviation.excluded
     )
 
-    found = rounding_deviation(chosen, inputs, oracle)
-    assert found["result"][:999].max() > GOAL and found["result"][999:].max() < GOAL / MARGIN
+    result = rounding_deviation(chosen, inputs, oracle)
+    assert result["result"][:999].max() > GOAL and result["result"][999:].max() < GOAL / MARGIN
     off = {"result": oracle["result"] + 1.0}
-    wrong = deviation(off, oracle, lambda: found)
+    wrong = deviation(off, oracle, lambda: result)
     assert wrong.largest > GOAL and wrong.lane >= 999
     assert deviation(off, oracle).excluded == 0
 
 
 def test_nan_is_not_an_excluded_lane() -> None:
     right = {"result": np.ones(4)}
-    got = {"result": np.array([1.0, np.nan, 1.0, 1.0])}
-    worst = deviation(got, right, lambda: {"result": np.full(4, 0.1)})
+    actual = {"result": np.array([1.0, np.nan, 1.0, 1.0])}
+    worst = deviation(actual, right, lambda: {"result": np.full(4, 0.1)})
     assert worst.largest == np.inf and worst.lane == 1 and worst.excluded == 0
 
 
@@ -110,29 +110,29 @@ def drawn(name: str, count: int = 2000, seed: int = 3) -> dict[str, Any]:
 
 
 def test_samples_keep_to_the_meaning_of_a_parameter() -> None:
-    found = drawn("lobe_normalized")
+    result = drawn("lobe_normalized")
     for name in "VNL":
-        assert np.linalg.norm(found[name], axis=1) == pytest.approx(np.ones(2000))
-    cosine = np.abs((found["V"] * found["L"]).sum(axis=1))
+        assert np.linalg.norm(result[name], axis=1) == pytest.approx(np.ones(2000))
+    cosine = np.abs((result["V"] * result["L"]).sum(axis=1))
     assert 0.05 < (cosine > 0.99).mean() < 0.3, "some lie along or against one another"
     for name, low, high in (("through", 0.0, 1.0), ("power", 1.0, 32.0), ("scale", 0.0, 20.0), ("ambient", 0.0, 1.0)):
-        assert found[name].min() == low and found[name].max() == high, name
-        assert 0.005 < (found[name] == low).mean() < 0.1, name
-    assert found["distortion"].max() == 0.99, "the technique's limits: below 1"
+        assert result[name].min() == low and result[name].max() == high, name
+        assert 0.005 < (result[name] == low).mean() < 0.1, name
+    assert result["distortion"].max() == 0.99, "the technique's limits: below 1"
 
 
 def test_samples_of_frames_and_normals() -> None:
-    found = drawn("parallax_refracted")
-    volume = np.abs((found["T"] * np.cross(found["B"], found["N"])).sum(axis=1))
+    result = drawn("parallax_refracted")
+    volume = np.abs((result["T"] * np.cross(result["B"], result["N"])).sum(axis=1))
     assert volume.min() > 0.3
-    handed = (found["T"] * np.cross(found["B"], found["N"])).sum(axis=1) < 0.0
+    handed = (result["T"] * np.cross(result["B"], result["N"])).sum(axis=1) < 0.0
     assert 0.2 < handed.mean() < 0.8
     assert drawn("normal_map")["normal"][:, 2].min() >= 0.0
 
 
 def test_samples_of_textures_and_numbers() -> None:
-    found = drawn("distance_texture")
-    field = found["distance_map"]
+    result = drawn("distance_texture")
+    field = result["distance_map"]
     assert isinstance(field, Texture) and field.dim == "3D" and field.levels[0].dtype == np.float16
     stored = field.levels[0][..., 0].astype(np.float64)
     steps = [np.abs(np.diff(stored, axis=axis)).max() for axis in range(3)]
@@ -164,24 +164,24 @@ def test_samples_give_finite_results_for_every_technique() -> None:
 
 
 def test_eval_compares_on_samples(capsys: pytest.CaptureFixture[str]) -> None:
-    asked = ["eval", "voronoi_thickness", "--samples", "3000", "--seed", "5", "--backend", "numpy,numpy-f32"]
-    assert cli.main(asked) == 0
-    told = capsys.readouterr().out
-    assert "3000 lanes" in told and "ill-conditioned lanes excluded" in told and "result:" not in told
-    assert cli.main([*asked, "--json"]) == 0
+    arguments = ["eval", "voronoi_thickness", "--samples", "3000", "--seed", "5", "--backend", "numpy,numpy-f32"]
+    assert cli.main(arguments) == 0
+    output = capsys.readouterr().out
+    assert "3000 lanes" in output and "ill-conditioned lanes excluded" in output and "result:" not in output
+    assert cli.main([*arguments, "--json"]) == 0
     data = json.loads(capsys.readouterr().out)
     assert data["lanes"] == 3000 and data["outputs"] == {} and data["backends"][1]["excluded"] > 0
 
 
 def test_given_inputs_of_eval_replace_samples(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "in.json").write_text('{"through": 0.0}', encoding="utf-8")
-    asked = ["eval", "lobe_gdc2011", "--samples", "20", "--inputs", str(tmp_path / "in.json"), "--json"]
-    assert cli.main(asked) == 0
+    arguments = ["eval", "lobe_gdc2011", "--samples", "20", "--inputs", str(tmp_path / "in.json"), "--json"]
+    assert cli.main(arguments) == 0
     assert not np.any(json.loads(capsys.readouterr().out)["outputs"]["result"])
 
 
 @pytest.mark.parametrize(
-    ("given", "said"),
+    ("inputs", "message"),
     [
         (["--samples", "0"], "--samples 0 is not a number of samples"),
         (["--samples", "2000000"], "from 1 to 1000000"),
@@ -189,6 +189,6 @@ def test_given_inputs_of_eval_replace_samples(tmp_path: Path, capsys: pytest.Cap
         (["--samples", "5", "--seed", "-1"], "--seed -1 is below 0"),
     ],
 )
-def test_eval_refuses(given: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert cli.main(["eval", "box", *given]) == 2
-    assert said in capsys.readouterr().err
+def test_eval_refuses(inputs: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["eval", "box", *inputs]) == 2
+    assert message in capsys.readouterr().err

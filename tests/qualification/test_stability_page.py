@@ -40,9 +40,9 @@ def rows() -> dict[str, list[str]]:
 
 def panels(name: str) -> list[npt.NDArray[np.float64]]:
     """The pictures of a row, as they are kept."""
-    kept = images.read(FOLDER / f"{name}.png")
+    stored = images.read(FOLDER / f"{name}.png")
     step = WIDTH + script()["GAP"]
-    return [kept[:, start : start + WIDTH] for start in range(0, kept.shape[1], step)]
+    return [stored[:, start : start + WIDTH] for start in range(0, stored.shape[1], step)]
 
 
 def figures(cell: str, backend: str) -> list[float]:
@@ -98,11 +98,11 @@ def test_the_pictures_are_current(backend: Get) -> None:
     """Scenes drawn at a quarter of their size, and the maps as they are."""
     backend("gl"), backend("browser")
     for name, picture in script()["PICTURES"].items():
-        for panel, kept in zip(picture.panels, panels(name), strict=True):
+        for panel, stored in zip(picture.panels, panels(name), strict=True):
             if not hasattr(panel, "scene"):
-                assert np.abs(kept - panel()).max(axis=2).mean() < 0.002, name
+                assert np.abs(stored - panel()).max(axis=2).mean() < 0.002, name
                 continue
-            small = images.decode_srgb(kept).reshape(HEIGHT // 4, 4, WIDTH // 4, 4, 3).mean(axis=(1, 3))
+            small = images.decode_srgb(stored).reshape(HEIGHT // 4, 4, WIDTH // 4, 4, 3).mean(axis=(1, 3))
             far = np.abs(images.encode_srgb(small) - panel((WIDTH // 4, HEIGHT // 4)))
             assert far.mean() < 0.006, f"{name} {panel.material}: run make stability"
 

@@ -19,11 +19,11 @@ from validate import TARGETS, module_of, validate_all
 
 @pytest.mark.parametrize("source", ALL)
 def test_builtin(source: str) -> None:
-    told = ALL[source]
-    hlsl = told.get("hlsl", source)
+    message = ALL[source]
+    hlsl = message.get("hlsl", source)
     numpy = re.sub(r"\bnot\(", "not_(", re.sub(r"\bmap\b", "map_", source))
-    defaults = {"glsl-es": told["glsl"], "hlsl": hlsl, "dx9": hlsl, "urp": hlsl, "wgsl": source, "numpy": numpy}
-    validate_all(source, {**defaults, **told})
+    defaults = {"glsl-es": message["glsl"], "hlsl": hlsl, "dx9": hlsl, "urp": hlsl, "wgsl": source, "numpy": numpy}
+    validate_all(source, {**defaults, **message})
 
 
 def test_every_signature_has_a_case() -> None:
@@ -33,9 +33,9 @@ def test_every_signature_has_a_case() -> None:
         assert function.body is not None
         (stmt,) = function.body
         assert isinstance(stmt, ir.Return) and isinstance(stmt.value, ir.Intrinsic)
-        found = overload(stmt.value.name, [arg.type for arg in stmt.value.args])
-        assert found is not None
-        shown.add((stmt.value.name, found.params))
+        result = overload(stmt.value.name, [arg.type for arg in stmt.value.args])
+        assert result is not None
+        shown.add((stmt.value.name, result.params))
     table = {(row.name, ",".join(parse(text)[1:])) for row in BUILTINS.values() for text in row.signatures}
     assert table - shown == {("outerProduct", "vec2,vec2"), ("outerProduct", "vec4,vec4")}  # as for vec3
 

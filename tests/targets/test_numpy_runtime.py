@@ -286,9 +286,9 @@ def test_layers_are_chosen_by_the_last_component() -> None:
 def test_texels_of_integers_keep_all_their_bits() -> None:
     numbers = np.array([[[-(2**31)], [2**31 - 1]]])
     ints = Texture(numbers, kind="int")
-    got = rt.texelFetch(ints, np.array([[0, 1], [0, 0]]), 0)
-    assert got.dtype == np.int32
-    np.testing.assert_array_equal(got, [[-(2**31), 2**31 - 1], [0, 0], [0, 0], [1, 1]])
+    actual = rt.texelFetch(ints, np.array([[0, 1], [0, 0]]), 0)
+    assert actual.dtype == np.int32
+    np.testing.assert_array_equal(actual, [[-(2**31), 2**31 - 1], [0, 0], [0, 0], [1, 1]])
     uints = Texture(np.array([[[2**32 - 1]]]), kind="uint")
     assert rt.texelFetch(uints, np.array([[0], [0]]), 0)[0, 0] == 2**32 - 1
 

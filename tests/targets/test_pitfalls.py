@@ -59,7 +59,7 @@ def test_conventions_are_reported(target: str) -> None:
 
 
 def test_precision_is_declared_where_there_is_no_default() -> None:
-    made = sssgen.compile("wax_mouse", "glsl-es-300").files["wax_mouse.glsl-es-300.frag"]
-    code = [line for line in made.splitlines() if line and not line.startswith("//")]
+    compiled = sssgen.compile("wax_mouse", "glsl-es-300").files["wax_mouse.glsl-es-300.frag"]
+    code = [line for line in compiled.splitlines() if line and not line.startswith("//")]
     assert code[0] == "#version 300 es"
     assert {"precision highp float;", "precision highp int;", "precision highp sampler3D;"} <= set(code[1:5])

@@ -82,18 +82,18 @@ def test_a_vertex_shader_reads_textures_at_level_0() -> None:
     text = "uniform sampler2D map\n" + VERTEX.removesuffix("}\n") + read
     assert "texture(map, uv)" in whole(text, "glsl-330")
     for target, level in (("wgsl", "textureSampleLevel(map, map_sampler, uv, 0.0)"), ("hlsl", "SampleLevel")):
-        made = whole(text, target)
-        assert level in made
-        assert wrong(made, target, "vertex") == []
+        result = whole(text, target)
+        assert level in result
+        assert wrong(result, target, "vertex") == []
 
 
 def test_an_unsupported_interpolation_is_reported() -> None:
     text = 'variable in vec2 uv [interpolation("noperspective")]\n' + OLD
     assert "noperspective in vec2 uv;" in whole(text, "glsl-330")
     assert "@interpolate(linear)" in whole(text, "wgsl")
-    made = transpile(read_module(text), "glsl-es-300", "x", keep=True)
-    assert "\nin vec2 uv;" in next(iter(made.files.values()))
-    assert "with perspective" in made.warnings[0].message
+    compiled = transpile(read_module(text), "glsl-es-300", "x", keep=True)
+    assert "\nin vec2 uv;" in next(iter(compiled.files.values()))
+    assert "with perspective" in compiled.warnings[0].message
 
 
 def test_functions_called_in_uniform_flow_may_sample_in_a_loop() -> None:
@@ -112,9 +112,9 @@ function void main() {
     set $color = $blurred(4);
 }
 """
-    made = transpile(read_module(text), "wgsl", "x", keep=True)
-    assert made.warnings == []
-    shown = next(iter(made.files.values()))
+    compiled = transpile(read_module(text), "wgsl", "x", keep=True)
+    assert compiled.warnings == []
+    shown = next(iter(compiled.files.values()))
     assert wrong(shown, "wgsl") == [], shown
 
 

@@ -19,24 +19,24 @@ def to_box(p: Array, half: Array) -> Array:
     """Outside: the way to the nearest point of the box; inside: the nearest of the six faces."""
     nearest = np.clip(p, -half, half)
     faces = np.minimum(half - p, half + p).min(axis=-1)
-    found: Array = np.where((nearest == p).all(axis=-1), -faces, np.linalg.norm(p - nearest, axis=-1))
-    return found
+    result: Array = np.where((nearest == p).all(axis=-1), -faces, np.linalg.norm(p - nearest, axis=-1))
+    return result
 
 
 def to_cubes(p: Array) -> Array:
     """Two unit cubes, their corners on the axes' diagonals."""
-    found = []
+    results = []
     for x in (0.0, 1.45):
         q = p - [x, 0.48, 0.0]
         x_axis, z_axis = np.array([1.0, 0.0, -1.0]) / np.sqrt(2.0), np.array([1.0, 0.0, 1.0]) / np.sqrt(2.0)
-        found.append(to_box(np.stack([q @ x_axis, q[:, 1], q @ z_axis], axis=1), np.full(3, 0.5)))
-    return np.minimum(*found)
+        results.append(to_box(np.stack([q @ x_axis, q[:, 1], q @ z_axis], axis=1), np.full(3, 0.5)))
+    return np.minimum(*results)
 
 
 def to_points(p: Array, points: Array) -> Array:
     """The least distance to any of many points."""
-    found: Array = np.sqrt(((p[:, None] - points[None]) ** 2).sum(axis=2).min(axis=1))
-    return found
+    result: Array = np.sqrt(((p[:, None] - points[None]) ** 2).sum(axis=2).min(axis=1))
+    return result
 
 
 def ring(radius: float) -> Array:
@@ -131,8 +131,8 @@ def test_distance_texture_in_world_space() -> None:
     matrix[:3, :3], matrix[:3, 3] = turn / scale, MIDDLE - turn @ np.array([3.0, -1.0, 0.5]) / scale
 
     def to_world(p: Array) -> Array:
-        found: Array = (p - matrix[:3, 3]) @ np.linalg.inv(matrix[:3, :3]).T
-        return found
+        results: Array = (p - matrix[:3, 3]) @ np.linalg.inv(matrix[:3, :3]).T
+        return results
 
     values = {"distance_map": baked(lambda p: np.linalg.norm(p - MIDDLE, axis=-1) - 0.8), **BOX}
     read = technique("distance_texture_world")
@@ -145,8 +145,8 @@ def test_distance_texture_in_world_space() -> None:
     assert (result <= true + 0.05).all() and (result > 0.5 * true).all()
     # how that bound is made: |(way to the box, what is stored at the nearest place there)|
     nearest = np.clip(outside, LOW, HIGH)
-    there = technique("distance_texture")(p=nearest, **values)
-    close(result, scale * np.hypot(np.linalg.norm(outside - nearest, axis=1), there), atol=1e-9)
+    moved = technique("distance_texture")(p=nearest, **values)
+    close(result, scale * np.hypot(np.linalg.norm(outside - nearest, axis=1), moved), atol=1e-9)
 
 
 # Cameras
@@ -185,22 +185,22 @@ def ray_to_sphere(o: Array, d: Array) -> Array:
     """Where a ray meets the unit sphere; NaN where it does not."""
     b, c = (o * d).sum(axis=1), (o * o).sum(axis=1) - 1.0
     with np.errstate(invalid="ignore"):
-        found: Array = -b - np.sqrt(b * b - c)
-    return np.where(found > 0.0, found, np.nan)
+        result: Array = -b - np.sqrt(b * b - c)
+    return np.where(result > 0.0, result, np.nan)
 
 
 def ray_to_box(o: Array, d: Array) -> Array:
     """By slabs, to a box of half size 1/2."""
     near, far = np.sort([(-0.5 - o) / d, (0.5 - o) / d], axis=0)
     first, last = near.max(axis=1), far.min(axis=1)
-    found: Array = np.where((first < last) & (first > 0.0), first, np.nan)
-    return found
+    result: Array = np.where((first < last) & (first > 0.0), first, np.nan)
+    return result
 
 
 def box_normal(p: Array) -> Array:
     axis = np.abs(p).argmax(axis=1)
-    found: Array = np.eye(3)[axis] * np.sign(p)
-    return found
+    result: Array = np.eye(3)[axis] * np.sign(p)
+    return result
 
 
 @pytest.mark.parametrize("march", ["raymarch", "cheap_sss_raymarch"])

@@ -70,15 +70,15 @@ def points(name: str, count: int = 150) -> Points:
     return Points(p, n, light)
 
 
-def off(found: Array, right: Array) -> float:
+def off(result: Array, right: Array) -> float:
     """The error, relative to the size of what is right."""
-    return float(np.sqrt(((found - right) ** 2).mean() / (right**2).mean()))
+    return float(np.sqrt(((result - right) ** 2).mean() / (right**2).mean()))
 
 
 def thinness(name: str, method: str, taps: int) -> Array:
     shape, (p, n, _) = SHAPES[name], points(name)
-    found: Array = technique(method, body_distance=shape.function)(P=p, N=n, reach=REACH, taps=taps, **shape.values)
-    return found
+    function: Array = technique(method, body_distance=shape.function)(P=p, N=n, reach=REACH, taps=taps, **shape.values)
+    return function
 
 
 @cache
@@ -86,14 +86,16 @@ def integral(name: str) -> Array:
     """Of what the taps are clamped to, over the reach, by 4000 midpoints; 1 where nothing is."""
     body, (p, n, _) = SHAPES[name].body, points(name)
     depths = REACH * (np.arange(4000) + 0.5) / 4000
-    found: Array = sum(np.clip(d + body.distance(p - n * d), 0.0, 2.0 * d) for d in depths) / 4000 / REACH
-    return found
+    result: Array = sum(np.clip(d + body.distance(p - n * d), 0.0, 2.0 * d) for d in depths) / 4000 / REACH
+    return result
 
 
 def marched(name: str, method: str, steps: int) -> Array:
     shape, (p, _, light) = SHAPES[name], points(name)
-    found: Array = technique(method, body_distance=shape.function)(P=p, L=light, reach=WAY, steps=steps, **shape.values)
-    return found
+    function: Array = technique(method, body_distance=shape.function)(
+        P=p, L=light, reach=WAY, steps=steps, **shape.values
+    )
+    return function
 
 
 class Counting(Interpreter):
@@ -114,8 +116,8 @@ class Counting(Interpreter):
 @cache
 def linked(method: str, function: str) -> tuple[Module, str, tuple[str, ...]]:
     """The technique with its slot bound, without assumptions; its key; the names of its parameters."""
-    made = subject(method, {"body_distance": function})
-    bare = rewrite_module(made.module, lambda expr: expr, lambda stmt: () if isinstance(stmt, ir.Assume) else None)
+    result = subject(method, {"body_distance": function})
+    bare = rewrite_module(result.module, lambda expr: expr, lambda stmt: () if isinstance(stmt, ir.Assume) else None)
     (found,) = [one for one in bare.functions if one.name == method]
     return bare, found.key, tuple(param.name for param in found.params)
 
@@ -156,17 +158,17 @@ def test_a_wide_slab_needs_one_tap(taps: int, width: float) -> None:
     """(1 - D / (2 reach))^2, from where the slope is 2 all the way; also with the last tap on the surface itself."""
     across = {"center": (0.0, -width / 2, 0.0), "half_size": (50.0, width / 2, 50.0)}
     up = np.array([0.0, 1.0, 0.0])
-    found = technique("thinness_traced", body_distance="box")(P=np.zeros(3), N=up, reach=REACH, taps=taps, **across)
-    assert found == pytest.approx(max(1.0 - width / (2.0 * REACH), 0.0) ** 2, abs=1e-12)
+    function = technique("thinness_traced", body_distance="box")(P=np.zeros(3), N=up, reach=REACH, taps=taps, **across)
+    assert function == pytest.approx(max(1.0 - width / (2.0 * REACH), 0.0) ** 2, abs=1e-12)
 
 
 @pytest.mark.parametrize("outside", [-9e-4, 5e-4, 1e-3])
 def test_hits_off_the_surface_add_no_noise(outside: float) -> None:
     """A raymarched hit is as far off as its tolerance."""
     p, n, _ = points("cube")
-    made = technique("thinness_traced", body_distance="box")
-    found = made(P=p + outside * n, N=n, reach=REACH, **SHAPES["cube"].values)
-    assert np.abs(found - integral("cube")).max() < 0.01
+    function = technique("thinness_traced", body_distance="box")
+    result = function(P=p + outside * n, N=n, reach=REACH, **SHAPES["cube"].values)
+    assert np.abs(result - integral("cube")).max() < 0.01
 
 
 def test_bent_normals_converge() -> None:
@@ -176,8 +178,10 @@ def test_bent_normals_converge() -> None:
     body = SHAPES["torus"].body
     depths = REACH * (np.arange(4000) + 0.5) / 4000
     right = sum(np.clip(d + body.distance(p - bent * d), 0.0, 2.0 * d) for d in depths) / 4000 / REACH
-    made = technique("thinness_traced", body_distance="torus")
-    errors = [off(made(P=p, N=bent, reach=REACH, taps=taps, **SHAPES["torus"].values), right) for taps in (2, 4, 8, 16)]
+    function = technique("thinness_traced", body_distance="torus")
+    errors = [
+        off(function(P=p, N=bent, reach=REACH, taps=taps, **SHAPES["torus"].values), right) for taps in (2, 4, 8, 16)
+    ]
     assert errors[0] > errors[1] > errors[2] > errors[3] and errors[1] < 0.02 and errors[3] < 0.005, errors
 
 
@@ -203,7 +207,7 @@ def test_the_front_moves() -> None:
 
     traced = [both("march_light_traced", steps) for steps in (4, 6, 8, 12, 16)]
     for count, error in [both("march_light", steps) for steps in (8, 12, 16, 24, 32)]:
-        assert min(found for evaluated, found in traced if evaluated <= count) < 0.6 * error
+        assert min(result for evaluated, result in traced if evaluated <= count) < 0.6 * error
 
 
 def test_a_body_of_several_parts() -> None:
@@ -220,10 +224,10 @@ def test_a_body_of_several_parts() -> None:
 @pytest.mark.parametrize("steps", [1, 16])
 def test_a_march_ends_where_nothing_can_follow(method: str, steps: int) -> None:
     """Away from the body the first distance that is longer than what is left of the way is the last one."""
-    made = technique(method, body_distance="ground_plane")
+    function = technique(method, body_distance="ground_plane")
     up = np.array([0.0, 1.0, 0.0])
-    assert made(P=up * 0.0, L=up, steps=steps) == 0.0
-    assert made(P=up * 0.0, L=-up, steps=steps) == pytest.approx(WAY, rel=1e-12)
+    assert function(P=up * 0.0, L=up, steps=steps) == 0.0
+    assert function(P=up * 0.0, L=-up, steps=steps) == pytest.approx(WAY, rel=1e-12)
     assert evaluations(method, "ball", reach=0.01, steps=steps) <= steps + 2
 
 

@@ -83,8 +83,8 @@ def test_attributes_are_checked(attributes: str, tmp_path: Path) -> None:
     (tmp_path / "f.sss").write_text(f"{lines}float f(float x) {{ return x; }}\n", encoding="utf-8")
     with pytest.raises(SssgenError) as caught:
         library.load(str(tmp_path / "f.sss"))
-    (found,) = caught.value.diagnostics
-    assert (found.message, found.hint) == WRONG_ATTRIBUTES[attributes]
+    (result,) = caught.value.diagnostics
+    assert (result.message, result.hint) == WRONG_ATTRIBUTES[attributes]
 
 
 UNBOUNDED = {
@@ -98,31 +98,31 @@ UNBOUNDED = {
 
 def uniforms() -> dict[str, Uniform]:
     """Every uniform of the library, by FILE:NAME."""
-    found = {}
+    results = {}
     for path in sorted(Path(library.TECHNIQUES).glob("*/*.sss")):
         shown = path.relative_to(library.TECHNIQUES).as_posix()
         for uniform in load_file(path, shown, (library.TECHNIQUES,)).uniforms:
-            found[f"{uniform.span.file}:{uniform.name}"] = uniform
-    return found
+            results[f"{uniform.span.file}:{uniform.name}"] = uniform
+    return results
 
 
 def test_uniforms_are_documented() -> None:
     """A sentence, and a range and unit, or a reason why not."""
-    wrong = []
+    failures = []
     for name, uniform in uniforms().items():
         hints = dict(uniform.hints)
         if not (uniform.doc and not uniform.doc[0].islower() and uniform.doc.rstrip().endswith(".")):
-            wrong.append(f"{name}: no sentence: {uniform.doc!r}")
+            failures.append(f"{name}: no sentence: {uniform.doc!r}")
         if isinstance(uniform.type, Sampler):
             if not any(hint.startswith("default_") for hint in hints):
-                wrong.append(f"{name}: nothing is said of what is read where no texture is bound")
+                failures.append(f"{name}: nothing is said of what is read where no texture is bound")
         elif isinstance(uniform.type, Scalar):
             whole = uniform.type.kind == "int"
             if "hint_range" not in hints or ("unit" not in hints and not whole):
-                wrong.append(f"{name}: no range or no unit")
+                failures.append(f"{name}: no range or no unit")
         elif not isinstance(uniform.type, Matrix) and "source_color" not in hints and uniform.name not in UNBOUNDED:
-            wrong.append(f"{name}: neither a colour nor among the uniforms without a range")
-    assert not wrong, "\n".join(wrong)
+            failures.append(f"{name}: neither a colour nor among the uniforms without a range")
+    assert not failures, "\n".join(failures)
     named = {name.partition(":")[2] for name in uniforms()}
     assert named >= UNBOUNDED.keys()
 
@@ -175,11 +175,11 @@ def chain(technique: Technique) -> tuple[str, list[str]]:
                     return "lit", [*stages, stage("translucency", TAKERS[user.function.quantity])]
         raise AssertionError(f"nothing takes {name}")
     own = stage("thickness" if role == "conversion" else role, name)
-    taken = [param.quantity for param in function.params if param.quantity in GIVERS]
-    before = [stage("thickness", GIVERS[quantity]) for quantity in taken]
+    accepted = [param.quantity for param in function.params if param.quantity in GIVERS]
+    before = [stage("thickness", GIVERS[quantity]) for quantity in accepted]
     written = function.quantity if function.quantity in TAKERS else ""
-    if role == "surface" and taken:
-        written = taken[0]
+    if role == "surface" and accepted:
+        written = accepted[0]
     after = [stage("translucency", TAKERS[written])] if written else []
     if role == "lighting" or role == "geometry":
         if name == "standard":
@@ -225,14 +225,14 @@ def test_every_technique_makes_a_material(name: str) -> None:
 @pytest.mark.parametrize("target", registry.names())
 def test_every_technique_compiles(target: str, form: str, compiler: Callable[[str], Compiler]) -> None:
     """On every target, by every compiler for it; all that is wrong is reported together."""
-    wrong = []
+    failures = []
     readers = [compiler(reader) for reader in compilers.readers(target)]
     count = 0
     for name in NAMES:
         for source in sources(compiled(name, target, form).files):
             count += 1
             for reader in readers:
-                said = errors(reader.check(source))
-                wrong += [f"{source.name} ({source.stage}), {reader.name}: {message}" for message in said]
+                reported = errors(reader.check(source))
+                failures += [f"{source.name} ({source.stage}), {reader.name}: {message}" for message in reported]
     assert count >= len(NAMES) and readers
-    assert not wrong, "\n".join(wrong)
+    assert not failures, "\n".join(failures)

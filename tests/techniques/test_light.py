@@ -247,10 +247,10 @@ def test_soft_shadow_of_a_ball() -> None:
     at = np.stack([np.linspace(0.0, 3.0, 40), np.full(40, -3.0), np.zeros(40)], axis=1)
     shadow = technique("lighting/studio.sss:soft_shadow", scene_distance="sphere")
     hard, soft = (shadow(p=at, L=UP, shadow_sharpness=sharpness) for sharpness in (20.0, 4.0))
-    for sharpness, found in ((20.0, hard), (4.0, soft)):
+    for sharpness, result in ((20.0, hard), (4.0, soft)):
         expected = [own_shadow(p, UP, sharpness, to_ball) for p in at]
-        close(found, expected, atol=1e-12)
-        assert not found[at[:, 0] < 0.99].any() and (np.diff(found) >= -0.02).all() and found[-1] == 1.0
+        close(result, expected, atol=1e-12)
+        assert not result[at[:, 0] < 0.99].any() and (np.diff(result) >= -0.02).all() and result[-1] == 1.0
     assert (soft <= hard).all()
     assert ((soft > 0.0) & (soft < 1.0)).sum() > ((hard > 0.0) & (hard < 1.0)).sum() > 0
 
@@ -283,8 +283,8 @@ def test_studio() -> None:
 def test_srgb_curve() -> None:
     """IEC 61966-2-1: known values, no step where the straight part ends, and the standard's own inverse."""
     encode = technique("srgb")
-    known = [(0.0, 0.0), (-1.0, 0.0), (1.0, 1.0), (0.0031308, 0.04044994), (0.21404114, 0.5), (0.001, 0.01292)]
-    given, expected = np.array(known).T
+    table = [(0.0, 0.0), (-1.0, 0.0), (1.0, 1.0), (0.0031308, 0.04044994), (0.21404114, 0.5), (0.001, 0.01292)]
+    given, expected = np.array(table).T
     close(encode(color=np.stack([given] * 3, axis=1))[:, 1], expected, atol=1e-7)
     joint = encode(color=np.array([0.0031308, 0.0031308 + 1e-9, 0.0]))
     close(joint[1], joint[0], atol=1e-6)

@@ -44,9 +44,9 @@ def test_refracted_parallax_has_the_offsets_of_the_table(ior: float) -> None:
 def test_in_an_orthonormal_frame_the_cheap_form_is_the_refracted_one(ior: float, side: float) -> None:
     views = unit(rng().normal((0.0, 0.0, side), 1.0, (200, 3)))
     views = views[views[:, 2] * side > 0.2]  # nearer to grazing the other one fades
-    given = {"uv": (0.3, 0.4), "V": views, "depth": 0.1, "uv_per_unit": (2.0, 0.5)}
-    ours = technique("parallax_orthonormal")(relative_ior=ior, T=X, B=Y, **given)
-    close(ours, technique("parallax_refracted")(ior=ior, **FLAT, **given), atol=1e-12)
+    values = {"uv": (0.3, 0.4), "V": views, "depth": 0.1, "uv_per_unit": (2.0, 0.5)}
+    ours = technique("parallax_orthonormal")(relative_ior=ior, T=X, B=Y, **values)
+    close(ours, technique("parallax_refracted")(ior=ior, **FLAT, **values), atol=1e-12)
 
 
 def test_the_cheap_form_slides_no_further_than_five_depths() -> None:
@@ -105,8 +105,8 @@ def test_parallax_without_a_frame_slides_nothing(name: str) -> None:
 
 def slides(name: str, degrees: Array, **values: float) -> Array:
     """How far the image slides, over the depth."""
-    found: Array = -technique(name)(uv=(0.0, 0.0), V=slanted(degrees), depth=1.0, **values, **FLAT)[:, 0]
-    return found
+    result: Array = -technique(name)(uv=(0.0, 0.0), V=slanted(degrees), depth=1.0, **values, **FLAT)[:, 0]
+    return result
 
 
 def test_grazing_parallax_fades() -> None:
@@ -151,9 +151,9 @@ def test_frames_invert_each_other() -> None:
 def test_object_space_and_back() -> None:
     matrix = rng().normal(size=(3, 3))
     v = units(10)
-    there = technique("common/frames.sss:object_from_world")(v=v, world_to_object=matrix)
-    close(there, v @ matrix.T)
-    back = technique("common/frames.sss:world_from_object")(v=there, object_to_world=np.linalg.inv(matrix))
+    moved = technique("common/frames.sss:object_from_world")(v=v, world_to_object=matrix)
+    close(moved, v @ matrix.T)
+    back = technique("common/frames.sss:world_from_object")(v=moved, object_to_world=np.linalg.inv(matrix))
     close(back, v, atol=1e-12)
 
 
@@ -205,10 +205,10 @@ def test_voronoi_normal_is_the_slope_of_voronoi_thickness() -> None:
     def slope(axis: int, step: float) -> Array:
         height = technique("voronoi_thickness")
         shift = step * np.eye(2)[axis]
-        found: Array = (
+        result: Array = (
             height(uv=uv + shift, thickness_factor=0.03, **cell) - height(uv=uv - shift, thickness_factor=0.03, **cell)
         ) / (2 * step)
-        return found
+        return result
 
     per_unit = np.array([2.0, 0.5])
     slopes = np.stack([slope(0, e), slope(1, e)], axis=1)

@@ -374,10 +374,10 @@ def test_conversions(case: tuple[str, dict[str, float], Any, Any]) -> None:
     close(convert(name, given, **values), expected, rtol=1e-6, atol=1e-30)
 
 
-def convert(name: str, given: Any, **values: float) -> Array:
+def convert(name: str, inputs: Any, **values: float) -> Array:
     """A conversion's one argument is named differently in each."""
-    made = technique(name)
-    result: Array = made(**{next(iter(made.types)): given}, **values)
+    function = technique(name)
+    result: Array = function(**{next(iter(function.types)): inputs}, **values)
     return result
 
 
@@ -398,12 +398,12 @@ def test_conversions_invert_each_other(there: str, back: str) -> None:
 
 def test_a_slab_comes_back_from_its_thinness() -> None:
     """Within 7 % of reach at 29 taps, as its notes say; the more taps, the nearer."""
-    given = np.linspace(0.0, 0.8, 1001)
-    half = np.stack([0 * given, given / 2, 0 * given], axis=1)
+    inputs = np.linspace(0.0, 0.8, 1001)
+    half = np.stack([0 * inputs, inputs / 2, 0 * inputs], axis=1)
     read = technique("thinness_uniform", body_distance="box")
     errors = []
     for taps in (29, 64):
         th = read(P=ORIGIN, N=UP, taps=taps, center=-half, half_size=half + np.array([50.0, 0.0, 50.0]))
-        errors.append(np.abs(convert("slab_from_thinness", th, reach=0.4) - given).max() / 0.4)
+        errors.append(np.abs(convert("slab_from_thinness", th, reach=0.4) - inputs).max() / 0.4)
     assert errors[1] < errors[0] < 0.07
     assert errors[0] > 0.06  # the notes' number is not too pessimistic either

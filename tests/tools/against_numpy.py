@@ -113,15 +113,15 @@ def differences(
     lanes = next(arg.shape[-1] for _, call in calls for arg in call.args if not isinstance(arg, str))
     oracle, wrong = transpiled(module, "numpy"), []
     results = gpu.run(Text(code(module, gpu.target.name)), [call for _, call in calls], bound)
-    for (title, call), got in zip(calls, results, strict=True):
-        wanted = np.broadcast_to(with_numpy(oracle, call, bound, lanes, floating), got.shape)
-        if wanted.dtype.kind != "f":
-            good = got == wanted
+    for (title, call), actual in zip(calls, results, strict=True):
+        expected = np.broadcast_to(with_numpy(oracle, call, bound, lanes, floating), actual.shape)
+        if expected.dtype.kind != "f":
+            good = actual == expected
         else:
             limit = 2.0**-6 if any(isinstance(arg, str) for arg in call.args) else loose.get(title, tolerance)
-            good = np.isclose(got, wanted, limit, limit, equal_nan=True)
+            good = np.isclose(actual, expected, limit, limit, equal_nan=True)
         bad = np.flatnonzero(~good.reshape(-1, lanes).all(axis=0))
         for lane in bad[:1]:
             at = [arg if isinstance(arg, str) else arg[..., lane].tolist() for arg in call.args]
-            wrong.append(f"{title}\n{len(bad)} of {lanes}: {at}: {got[..., lane]} is not {wanted[..., lane]}")
+            wrong.append(f"{title}\n{len(bad)} of {lanes}: {at}: {actual[..., lane]} is not {expected[..., lane]}")
     return wrong

@@ -32,8 +32,8 @@ class Made(NamedTuple):
     @property
     def triangles(self) -> Array:
         """(f, 3, 3)"""
-        found: Array = self.vertices[self.faces]
-        return found
+        result: Array = self.vertices[self.faces]
+        return result
 
     def moved(self, by: npt.ArrayLike) -> Made:
         return self._replace(vertices=self.vertices + np.asarray(by, float))
@@ -124,22 +124,22 @@ def torus(major: float, minor: float, around: int, about: int) -> Made:
     return Made(vertices, faces)
 
 
-def write(path: Path, made: Made) -> str:
+def write(path: Path, result: Made) -> str:
     """The mesh as a file: an .obj, or without its uv a binary .ply; the path as text."""
     if path.suffix == ".ply":
-        head = ["ply", "format binary_little_endian 1.0", f"element vertex {len(made.vertices)}"]
+        head = ["ply", "format binary_little_endian 1.0", f"element vertex {len(result.vertices)}"]
         head += [f"property double {axis}" for axis in "xyz"]
-        head += [f"element face {len(made.faces)}", "property list uchar int vertex_indices", "end_header", ""]
-        rows: npt.NDArray[Any] = np.zeros(len(made.faces), [("count", "u1"), ("corners", "<i4", 3)])
-        rows["count"], rows["corners"] = 3, made.faces
-        path.write_bytes("\n".join(head).encode() + made.vertices.astype("<f8").tobytes() + rows.tobytes())
+        head += [f"element face {len(result.faces)}", "property list uchar int vertex_indices", "end_header", ""]
+        rows: npt.NDArray[Any] = np.zeros(len(result.faces), [("count", "u1"), ("corners", "<i4", 3)])
+        rows["count"], rows["corners"] = 3, result.faces
+        path.write_bytes("\n".join(head).encode() + result.vertices.astype("<f8").tobytes() + rows.tobytes())
         return str(path)
-    lines = ["v {!r} {!r} {!r}".format(*place) for place in made.vertices.tolist()]
-    if made.uv is None:
-        lines += ["f {} {} {}".format(*face) for face in (made.faces + 1).tolist()]
+    lines = ["v {!r} {!r} {!r}".format(*place) for place in result.vertices.tolist()]
+    if result.uv is None:
+        lines += ["f {} {} {}".format(*face) for face in (result.faces + 1).tolist()]
     else:
-        lines += ["vt {!r} {!r}".format(*place) for place in made.uv.reshape(-1, 2).tolist()]
-        for at, (a, b, c) in enumerate((made.faces + 1).tolist()):
+        lines += ["vt {!r} {!r}".format(*place) for place in result.uv.reshape(-1, 2).tolist()]
+        for at, (a, b, c) in enumerate((result.faces + 1).tolist()):
             lines.append(f"f {a}/{3 * at + 1} {b}/{3 * at + 2} {c}/{3 * at + 3}")
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
     return str(path)

@@ -59,7 +59,7 @@ class FakeCompiler(types.ModuleType):
         files = {name: f"{self.text}\n", f"{material.name}.{target}.reflection.json": "{}\n"}
         return Compiled(files, self.warnings)
 
-    def transpile(self, module: Module, target: str, name: str, guards: str, **kept: object) -> Compiled:
+    def transpile(self, module: Module, target: str, name: str, guards: str, **stored: object) -> Compiled:
         text = f"// {name}: {', '.join(function.name for function in module.functions)}\n"
         return Compiled({f"{name}.{target}.txt": text, f"{name}.{target}.reflection.json": "{}\n"}, [])
 

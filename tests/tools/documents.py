@@ -57,11 +57,11 @@ def blocks(document: Path, under: str = "") -> list[Block]:
     if under:
         start = text.index(f"\n## {under}\n")
         end = text.find("\n## ", start + 1) % (len(text) + 1)
-    found = []
+    results = []
     for match in _BLOCK.finditer(text, start, end):
         line = text.count("\n", 0, match.start()) + 1
-        found.append(Block(document, line, match["verb"], match["argument"] or "", match["text"]))
-    return found
+        results.append(Block(document, line, match["verb"], match["argument"] or "", match["text"]))
+    return results
 
 
 def uncommented(document: Path) -> list[int]:
@@ -78,8 +78,8 @@ class Reader:
     def __init__(self, folder: Path, programs: Path, environment: dict[str, str]) -> None:
         self.folder = folder
         path = os.pathsep.join([str(programs), os.environ.get("PATH", "")])
-        kept = {name: value for name, value in os.environ.items() if not name.startswith(("SSSGEN", "PYTHON"))}
-        self.environment = {**kept, "PATH": path, "PYTHONDONTWRITEBYTECODE": "1", "PYTHONUTF8": "1", **environment}
+        stored = {name: value for name, value in os.environ.items() if not name.startswith(("SSSGEN", "PYTHON"))}
+        self.environment = {**stored, "PATH": path, "PYTHONDONTWRITEBYTECODE": "1", "PYTHONUTF8": "1", **environment}
 
     def run(self, command: str, status: int = 0) -> tuple[str, str]:
         """What a command prints to its output and to its errors."""
@@ -132,17 +132,17 @@ def programs(folder: Path, python: str = sys.executable) -> Path:
     return folder
 
 
-def check(block: Block, wanted: str) -> None:
+def check(block: Block, expected: str) -> None:
     """Fails where the block is not that text; UPDATE_SNAPSHOTS=1 puts it in."""
-    wanted = "".join(f"{line.rstrip()}\n" for line in wanted.rstrip().splitlines())
-    if os.environ.get("UPDATE_SNAPSHOTS") and block.text != wanted:
+    expected = "".join(f"{line.rstrip()}\n" for line in expected.rstrip().splitlines())
+    if os.environ.get("UPDATE_SNAPSHOTS") and block.text != expected:
         text = read(block.document)
         head = f"<!-- {block.verb}: {block.argument} -->\n```"
         start = text.index("\n", text.index(head) + len(head)) + 1
         assert text[start:].startswith(f"{block.text}```")
-        block.document.write_text(text[:start] + wanted + text[start + len(block.text) :], encoding="utf-8")
+        block.document.write_text(text[:start] + expected + text[start + len(block.text) :], encoding="utf-8")
         return
-    assert block.text == wanted, f"{block} is not so any more; UPDATE_SNAPSHOTS=1 puts it right"
+    assert block.text == expected, f"{block} is not so any more; UPDATE_SNAPSHOTS=1 puts it right"
 
 
 def _change(path: Path, block: Block) -> None:
@@ -155,9 +155,9 @@ def _change(path: Path, block: Block) -> None:
 
 def _session(block: Block) -> None:
     test = doctest.DocTestParser().get_doctest(block.text, {}, str(block), block.document.name, block.line)
-    said: list[str] = []
-    doctest.DocTestRunner(verbose=False, optionflags=doctest.ELLIPSIS).run(test, out=said.append)
-    assert not said, "".join(said)
+    messages: list[str] = []
+    doctest.DocTestRunner(verbose=False, optionflags=doctest.ELLIPSIS).run(test, out=messages.append)
+    assert not messages, "".join(messages)
 
 
 def _part(block: Block) -> None:

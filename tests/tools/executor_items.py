@@ -104,6 +104,6 @@ def items(folder: Path, count: int, name: str = "measure") -> list[Item]:
     return [Item(f"executor_items:{name}", (str(folder), number), f"item {number}") for number in range(count)]
 
 
-def run_behind_gate(noted: str, store: str) -> None:
+def run_behind_gate(notes: str, store: str) -> None:
     """Twelve items, of which those from number GATE on wait, in two processes."""
-    run(items(Path(noted), 12, "measure_behind_gate"), processes=2, store=Store(store))
+    run(items(Path(notes), 12, "measure_behind_gate"), processes=2, store=Store(store))

@@ -58,29 +58,29 @@ def half_cases() -> tuple[Case, ...]:
     return tuple(case._replace(args=_args(case)) for case in cases(FEW) if _has_floats((*case.params, case.result)))
 
 
-def wrong_lanes(case: Case, got: Array) -> str:
+def wrong_lanes(case: Case, actual: Array) -> str:
     """The lane that is furthest outside of the limits, in words; '' where all are within them."""
-    wanted = np.broadcast_to(oracle(case), got.shape)
+    expected = np.broadcast_to(oracle(case), actual.shape)
     if kind_of(case.result) != "float":
-        error = np.where(got == wanted, 0.0, np.inf).reshape(-1, case.lanes).max(axis=0)
-        return _told(case, got, wanted, error, np.zeros(case.lanes))
-    each = np.abs(wanted).reshape(-1, case.lanes).max(axis=0)
+        error = np.where(actual == expected, 0.0, np.inf).reshape(-1, case.lanes).max(axis=0)
+        return _told(case, actual, expected, error, np.zeros(case.lanes))
+    each = np.abs(expected).reshape(-1, case.lanes).max(axis=0)
     size = evaluated(case.row.size, widened(case.args)) if case.row.size else each
     ulp, absolute = LIMITS.get(case.name, (case.row.ulp, case.row.absolute))
     with np.errstate(all="ignore"):
-        error = np.abs(got - wanted).reshape(-1, case.lanes).max(axis=0)
+        error = np.abs(actual - expected).reshape(-1, case.lanes).max(axis=0)
         limit = np.maximum(ulp * np.spacing(size.astype(np.float16)).astype(np.float64), absolute)
     error = np.where(each < 65504.0, error, 0.0)  # of bits that are no half
-    return _told(case, got, wanted, np.nan_to_num(error, nan=np.inf), limit)
+    return _told(case, actual, expected, np.nan_to_num(error, nan=np.inf), limit)
 
 
-def _told(case: Case, got: Array, wanted: Array, error: Array, limit: Array) -> str:
+def _told(case: Case, actual: Array, expected: Array, error: Array, limit: Array) -> str:
     beyond = np.where(error > limit, error, -1.0)
     lane = int(np.argmax(beyond))
     if beyond[lane] < 0.0:
         return ""
     args = [arg if isinstance(arg, str) else arg[..., lane].tolist() for arg in case.args]
-    return f"{case.title} at {args}: {got[..., lane].tolist()} is not {wanted[..., lane].tolist()}"
+    return f"{case.title} at {args}: {actual[..., lane].tolist()} is not {expected[..., lane].tolist()}"
 
 
 def _has_floats(types: tuple[Type, ...]) -> bool:

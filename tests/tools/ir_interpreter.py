@@ -52,10 +52,10 @@ class Interpreter:
     def call(self, key: str, *args: Value) -> tuple[Value, ...]:
         """Calls a function with its in and inout arguments; gives its result (if it has one), then its outs."""
         function = self.functions[key]
-        given = iter(args)
+        inputs = iter(args)
         outer, self.frame = self.frame, {}
         for param in function.params:
-            self.frame[param.name] = zero(param.type) if param.direction == "out" else next(given)
+            self.frame[param.name] = zero(param.type) if param.direction == "out" else next(inputs)
         result: tuple[Value, ...] = ()
         try:
             self.block(function.body or ())
@@ -168,9 +168,9 @@ class Interpreter:
     def called(self, call: ir.Call) -> Value:
         function = self.functions[call.function]
         pairs = list(zip(call.args, function.params, strict=True))
-        given = [self.value(arg) for arg, param in pairs if param.direction != "out"]
+        arguments = [self.value(arg) for arg, param in pairs if param.direction != "out"]
         outs = [self.pinned(arg) for arg, param in pairs if param.direction != "in"]
-        results = self.call(call.function, *given)
+        results = self.call(call.function, *arguments)
         for place, value in zip(outs, results[len(results) - len(outs) :], strict=True):
             self.store(place, value)
         return results[0] if len(results) > len(outs) else None
@@ -312,7 +312,7 @@ def arithmetic(op: str, kind: str, x: Value, y: Value) -> Value:
         return 0 if y == 0 else int(math.copysign(1, x)) * (abs(x) % abs(y))
     if op in ("<<", ">>"):
         return wrapped(kind, x << (y & 31) if op == "<<" else x >> (y & 31))
-    known = {
+    table = {
         "+": operator.add,
         "-": operator.sub,
         "*": operator.mul,
@@ -320,7 +320,7 @@ def arithmetic(op: str, kind: str, x: Value, y: Value) -> Value:
         "|": operator.or_,
         "^": operator.xor,
     }
-    return wrapped(kind, known[op](x, y))
+    return wrapped(kind, table[op](x, y))
 
 
 def divided(x: float, y: float) -> float:

@@ -74,8 +74,8 @@ def each_cube(p: Array) -> Array:
 
 def scene(p: Array) -> Array:
     """The distance to the cubes or to the floor, y = 0."""
-    found: Array = np.minimum(each_cube(p).min(axis=-1), p[..., 1])
-    return found
+    result: Array = np.minimum(each_cube(p).min(axis=-1), p[..., 1])
+    return result
 
 
 def rays(
@@ -94,8 +94,8 @@ def rays(
 
 
 def unit(v: Array) -> Array:
-    found: Array = v / np.linalg.norm(v, axis=-1, keepdims=True)
-    return found
+    result: Array = v / np.linalg.norm(v, axis=-1, keepdims=True)
+    return result
 
 
 def trace(eye: Array, directions: Array, tolerance: float) -> Hits:
@@ -139,8 +139,8 @@ def thinness(p: Array, n: Array) -> Array:
     """
 
     def taken(depth: Array) -> Array:
-        found: Array = np.clip(depth + each_cube(p - depth[:, None] * n).min(axis=-1), 0.0, 2.0 * depth)
-        return found
+        result: Array = np.clip(depth + each_cube(p - depth[:, None] * n).min(axis=-1), 0.0, 2.0 * depth)
+        return result
 
     depths = [np.full(len(p), REACH)]
     values = [taken(depths[0])]
@@ -163,8 +163,8 @@ def thinness(p: Array, n: Array) -> Array:
 def sky(height: Array) -> Array:
     """The sky in a direction whose y is `height`: white from 0.2 up."""
     white = np.clip(5.0 * height, 0.0, 1.0)[:, None]
-    found: Array = (1.0 - white) * SKY + white
-    return found
+    result: Array = (1.0 - white) * SKY + white
+    return result
 
 
 def kinds(p: Array) -> Array:
@@ -184,8 +184,8 @@ def radiance(p: Array, directions: Array) -> Array:
     colors = [[0.2, 0.2, 0.2], [0.82, 0.8, 0.82], [0.26, 0.32, 0.334], [0.3, 0.21, 0.23], [0.2, 0.21, 0.23]]
     glow = np.where(kind < 2, GLOW * thinness(p, n), 0.0)[:, None] * sky(-directions[:, 1])
     albedo = np.array([JELLY, JELLY, np.full(3, 0.9), np.ones(3)])[kind]
-    found: Array = albedo * (light.T @ np.array(colors) + glow)
-    return found
+    result: Array = albedo * (light.T @ np.array(colors) + glow)
+    return result
 
 
 def draw(eye: Array, directions: Array, tolerance: float) -> Array:

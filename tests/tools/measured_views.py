@@ -29,13 +29,13 @@ def small(name: str) -> MeasuredScene:
 
 def made_up(one: MeasuredScene, name: str = "own") -> View:
     """A view with a made-up reference: light that falls off with the thickness, more from the front, and noise."""
-    at = points(one)
+    surface = points(one)
     seen: list[Seen] = []
     for light in one.lights:
         assert light.direction is not None
-        towards = np.tile(light.direction, (at.count, 1))
-        length = thickness(one.geometry, np.ascontiguousarray(at.inputs["P"].T), towards)
-        front = np.maximum(at.inputs["N"].T @ light.direction, 0.0)
+        towards = np.tile(light.direction, (surface.count, 1))
+        length = thickness(one.geometry, np.ascontiguousarray(surface.inputs["P"].T), towards)
+        front = np.maximum(surface.inputs["N"].T @ light.direction, 0.0)
         colors = np.array([0.9, 0.5, 0.3])[:, None]
         mean = colors * (0.4 * np.exp(-length / colors) + 0.5 * front)
         seen.append((mean, np.full_like(mean, 1e-3)))
@@ -47,6 +47,6 @@ def candidate(*chain: str, role: str = "material", settings: tuple[tuple[str, in
 
 
 def chain(one: Candidate, view: View, folder: Path) -> Chain:
-    found = measure.chain_of(one, body(view.scene.geometry), str(folder))
-    assert found is not None
-    return found
+    result = measure.chain_of(one, body(view.scene.geometry), str(folder))
+    assert result is not None
+    return result

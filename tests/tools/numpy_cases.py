@@ -104,11 +104,11 @@ def _outs(function: Function) -> int:
 
 
 def _printed(function: Function, text: str, lanes: list[tuple[Any, ...]], uniforms: dict[str, Any]) -> tuple[Any, ...]:
-    given = [param for param in function.params if param.direction != "out"]
+    arguments = [param for param in function.params if param.direction != "out"]
     namespace: dict[str, Any] = {}
     exec(compile(text, "<printed>", "exec"), namespace)
     namespace.update(uniforms)
-    args = [lanes_of(param.type, [lane[i] for lane in lanes]) for i, param in enumerate(given)]
+    args = [lanes_of(param.type, [lane[i] for lane in lanes]) for i, param in enumerate(arguments)]
     before = [np.array(arg) for arg in args if isinstance(arg, np.ndarray)]
     with precision(np.float64):
         result = namespace[function.name](*args)

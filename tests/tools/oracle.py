@@ -47,8 +47,8 @@ def rng(seed: int = 7) -> np.random.Generator:
 
 def unit(v: Any) -> Array:
     """Vectors, brought to length 1."""
-    found: Array = np.asarray(v, np.float64) / np.linalg.norm(v, axis=-1, keepdims=True)
-    return found
+    result: Array = np.asarray(v, np.float64) / np.linalg.norm(v, axis=-1, keepdims=True)
+    return result
 
 
 def units(count: int, seed: int = 7) -> Array:
@@ -77,7 +77,7 @@ class Technique(NamedTuple):
         missing = self.types.keys() - self.defaults.keys() - values.keys()
         if unknown or missing:
             raise TypeError(f"unknown {sorted(unknown)}, missing {sorted(missing)}; it takes {list(self.types)}")
-        given = {**self.defaults, **values}
+        inputs = {**self.defaults, **values}
         counts = {
             np.shape(value)[0]
             for name, value in values.items()
@@ -85,8 +85,8 @@ class Technique(NamedTuple):
         }
         assert len(counts) < 2, f"lanes: {counts}"
         with precision(np.float64):
-            found = self.function(*[_inwards(type_, given[name]) for name, type_ in self.types.items()])
-        parts = found if isinstance(found, tuple) else (found,)
+            result = self.function(*[_inwards(type_, inputs[name]) for name, type_ in self.types.items()])
+        parts = result if isinstance(result, tuple) else (result,)
         results = [_outwards(type_, part, counts) for type_, part in zip(self.results, parts, strict=True)]
         return tuple(results) if len(results) > 1 else results[0]
 
@@ -105,17 +105,17 @@ def _technique(name: str, slots: tuple[tuple[str, str], ...]) -> Technique:
     compiled = transpile(linked.module, "numpy", function.name)
     namespace: dict[str, Any] = {}
     exec(compiled.files[f"{function.name}_functions.py"], namespace)
-    made = namespace[compiled.reflection["renames"].get(function.name, function.name)]
+    result = namespace[compiled.reflection["renames"].get(function.name, function.name)]
     own = {param.name: param.type for param in function.params if param.direction != "out"}
     declared_uniforms = {uniform.name: uniform for uniform in linked.module.uniforms}
-    renamed = list(signature(made).parameters)[len(own) :]
+    renamed = list(signature(result).parameters)[len(own) :]
     # a name that some language reserves (HLSL's `center`) has got a suffix
     rest = [name if name in declared_uniforms else re.sub(r"_\d*$", "", name) for name in renamed]
     uniforms = {name: declared_uniforms[name] for name in rest}
     results = [function.result] if function.result != VOID else []
     results += [param.type for param in function.params if param.direction != "in"]
     return Technique(
-        made,
+        result,
         own | {name: uniform.type for name, uniform in uniforms.items()},
         {name: _default(uniform.type, uniform.default) for name, uniform in uniforms.items() if uniform.default},
         tuple(results),

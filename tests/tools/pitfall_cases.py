@@ -42,8 +42,8 @@ def read(path: Path) -> tuple[str, list[Case]]:
     cases = []
     for part in parts:
         source, *texts = re.split(r"^--- (\S+)\n", part, flags=re.MULTILINE)
-        found = dict(zip(texts[::2], (text.strip() for text in texts[1::2]), strict=True))
-        cases.append(Case(path.stem, source.strip(), found))
+        result = dict(zip(texts[::2], (text.strip() for text in texts[1::2]), strict=True))
+        cases.append(Case(path.stem, source.strip(), result))
     return rule.strip(), cases
 
 
@@ -53,10 +53,10 @@ def renewed(path: Path) -> str:
     lines = [rule, ""]
     for case in cases:
         lines += ["=== source", case.source]
-        made = {target: printed(case.source, target) for target in SHOWN}
+        result = {target: printed(case.source, target) for target in SHOWN}
         for target, beside in SHOWN.items():
-            same = beside and plain(made[target]) == plain(made[beside])
-            lines += [] if same else [f"--- {target}", made[target]]
+            same = beside and plain(result[target]) == plain(result[beside])
+            lines += [] if same else [f"--- {target}", result[target]]
         lines.append("")
     return "\n".join(lines)
 

@@ -70,10 +70,10 @@ def recorded(module: ir.Module, *names: str) -> Recorder:
 def single(value: float) -> float:
     """A number of float32; beyond the largest, the largest, as the guard of sums and products has it."""
     try:
-        found: float = struct.unpack("f", struct.pack("f", value))[0]
+        result: float = struct.unpack("f", struct.pack("f", value))[0]
     except OverflowError:
         return math.copysign(LARGEST, value)
-    return min(max(found, -LARGEST), LARGEST)
+    return min(max(result, -LARGEST), LARGEST)
 
 
 def rounded_up(value: float) -> float:
@@ -108,14 +108,14 @@ class Checker(Interpreter):
         if site is not None and not site.proven:  # a float as an integer
             low, high = site.limits
             assert isinstance(expr, ir.Construct)
-            found = _each(lambda x: int(min(max(x, low), high)), self.value(expr.args[0]))
+            result = _each(lambda x: int(min(max(x, low), high)), self.value(expr.args[0]))
         elif isinstance(expr, ir.Intrinsic):
-            found = rounded(self.intrinsic(expr, [self.value(arg) for arg in expr.args]))
+            result = rounded(self.intrinsic(expr, [self.value(arg) for arg in expr.args]))
         else:
-            found = rounded(super().value(expr))
+            result = rounded(super().value(expr))
         if not isinstance(expr, ir.Literal) and not self.quiet:
-            self.check(expr, found)
-        return found
+            self.check(expr, result)
+        return result
 
     def check(self, expr: ir.Expr, value: Value) -> None:
         ranges = self.analysis.found.get(id(expr))
@@ -130,9 +130,9 @@ class Checker(Interpreter):
 
     def call(self, key: str, *args: Value) -> tuple[Value, ...]:
         self.quantities.append(self.functions[key].quantity)
-        found = super().call(key, *args)
+        result = super().call(key, *args)
         self.quantities.pop()
-        return found
+        return result
 
     def store(self, target: ir.Expr, value: Value) -> None:
         self.quiet, before = True, self.quiet
@@ -141,9 +141,9 @@ class Checker(Interpreter):
 
     def pinned(self, place: ir.Expr) -> ir.Expr:
         self.quiet, before = True, self.quiet
-        found = super().pinned(place)
+        result = super().pinned(place)
         self.quiet = before
-        return found
+        return result
 
     def statement(self, stmt: ir.Stmt) -> None:
         if isinstance(stmt, ir.Return) and stmt.value is not None:
@@ -156,9 +156,9 @@ class Checker(Interpreter):
         elif isinstance(stmt, ir.Assign) and stmt.op:
             value, old = self.value(stmt.value), self.value(stmt.target)
             node = self.analysis.compounds[id(stmt)]
-            found = self.operated(node, old, value)
-            self.check(node, found)
-            self.store(stmt.target, found)
+            result = self.operated(node, old, value)
+            self.check(node, result)
+            self.store(stmt.target, result)
         else:
             super().statement(stmt)
 
@@ -201,11 +201,11 @@ class Checker(Interpreter):
         if expr.name == "normalize" and not site:
             return self.direction(args[0])
         with runtime.precision("float32"), np.errstate(all="ignore"):
-            given = (SAFE[expr.name] if site is False else lambda *args: args)(*[_lane(arg) for arg in args])
-            made = getattr(runtime, expr.name + "_" * (expr.name == "not"))(*given)
-        made = np.asarray(made)
+            values = (SAFE[expr.name] if site is False else lambda *args: args)(*[_lane(arg) for arg in args])
+            result = getattr(runtime, expr.name + "_" * (expr.name == "not"))(*values)
+        result = np.asarray(result)
         over = self.analysis.sites.get((id(expr), "overflow"))
-        return _back(np.nan_to_num(made, nan=0.0) if over and over.guard is SUMS else made, expr.type)
+        return _back(np.nan_to_num(result, nan=0.0) if over and over.guard is SUMS else result, expr.type)
 
 
 def _holds(part: Range, number: float) -> bool:
@@ -245,10 +245,10 @@ def _back(array: Any, type_: Any) -> Value:
         raise NotImplementedError  # the drawn programs hand no matrix and no array to a function of the runtime
     kind: Callable[[Any], Value] = {"float": float, "bool": bool}.get(kind_of(type_), int)
     numbers = np.asarray(array).reshape(-1)
-    found = [kind(number) for number in numbers]
+    results = [kind(number) for number in numbers]
     if isinstance(type_, Scalar):
-        return found[0]
-    return tuple(found * type_.size if len(found) == 1 else found)
+        return results[0]
+    return tuple(results * type_.size if len(results) == 1 else results)
 
 
 def _at_least(bound: float) -> Callable[..., Any]:
@@ -392,7 +392,7 @@ def inputs(random: Random) -> tuple[list[Value], dict[str, Value]]:
     long = math.sqrt(sum(part * part for part in direction))
     unit = tuple(single(part / long) for part in direction)
     normal = random.choice([unit, unit, (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)])
-    given = [number(), number(), random.randint(-2, 9), number(), normal, (number(), number(), number())]
+    arguments = [number(), number(), random.randint(-2, 9), number(), normal, (number(), number(), number())]
     tint = tuple(single(random.random()) for _ in range(3))
-    return given, {"reach": single(random.choice([0.0, 4.0, 4.0 * random.random()])), "tint": tint,
+    return arguments, {"reach": single(random.choice([0.0, 4.0, 4.0 * random.random()])), "tint": tint,
                    "taps": random.randint(1, 9)}  # fmt: skip

@@ -29,8 +29,8 @@ class ShadedPrograms(Programs):
 
     def program(self) -> str:
         text = super().program()
-        at = text.index("float f(")
-        return UNIFORMS + text[:at] + HELPERS + text[at:]
+        index = text.index("float f(")
+        return UNIFORMS + text[:index] + HELPERS + text[index:]
 
     def number(self, depth: int = 2) -> str:
         if depth and self.chance(30):

@@ -60,7 +60,7 @@ class Overload(NamedTuple):
 
 def _overloads() -> dict[Type, list[Overload]]:
     """The builtins by their result; those that want constants are left out."""
-    found: dict[Type, dict[Overload, None]] = {}
+    results: dict[Type, dict[Overload, None]] = {}
     for name, row in BUILTINS.items():
         if row.constant:
             continue
@@ -70,20 +70,20 @@ def _overloads() -> dict[Type, list[Overload]]:
                 types = tuple(param for param in params if param is not None)
                 result = resolve(name, types)
                 if result is not None and len(types) == len(params):
-                    found.setdefault(result, {})[Overload(name, types)] = None
-    return {result: list(overloads) for result, overloads in found.items()}
+                    results.setdefault(result, {})[Overload(name, types)] = None
+    return {result: list(overloads) for result, overloads in results.items()}
 
 
 def _operations() -> dict[Type, list[tuple[str, Type, Type]]]:
     """The binary operators by their result."""
-    found: dict[Type, list[tuple[str, Type, Type]]] = {}
+    results: dict[Type, list[tuple[str, Type, Type]]] = {}
     for left in PLAIN:
         for right in PLAIN:
             for op in BINARY:
                 result = operator_type(op, left, right)
                 if result is not None:
-                    found.setdefault(result, []).append((op, left, right))
-    return found
+                    results.setdefault(result, []).append((op, left, right))
+    return results
 
 
 OVERLOADS, OPERATIONS = _overloads(), _operations()
@@ -304,21 +304,21 @@ class _Maker:
 
     def targets(self, type_: Type | None = None) -> list[ir.Expr]:
         """What may be assigned to: variables, and parts of them."""
-        found: list[ir.Expr] = []
+        results: list[ir.Expr] = []
         for local in self.locals():
             if local.name in self.kept:
                 continue
-            found.append(local)
+            results.append(local)
             if isinstance(local.type, Vector):
-                found.append(ir.Swizzle(vector_of(local.type.kind, 2), local, "yx", NOWHERE))
+                results.append(ir.Swizzle(vector_of(local.type.kind, 2), local, "yx", NOWHERE))
             if isinstance(local.type, Struct):
                 plain = [field for field in local.type.fields if not field.quantity]
-                found += [ir.Member(field.type, local, field.name, NOWHERE) for field in plain]
+                results += [ir.Member(field.type, local, field.name, NOWHERE) for field in plain]
             element = element_type(local.type)
             if element is not None:
                 index = ir.Literal(INT, element[1] - 1, NOWHERE)
-                found.append(ir.Index(element[0], local, index, NOWHERE))
-        return [target for target in found if type_ in (None, target.type)]
+                results.append(ir.Index(element[0], local, index, NOWHERE))
+        return [target for target in results if type_ in (None, target.type)]
 
     def assign(self, depth: int) -> ir.Block:
         targets = self.targets()
@@ -338,13 +338,13 @@ class _Maker:
 
     def expr(self, type_: Type, depth: int) -> ir.Expr:
         """An expression of a type, at most `depth` operators deep where the type allows."""
-        known: list[ir.Expr] = [*self.locals(), *self.globals]
-        named = [one for one in known if one.type == type_]
+        table: list[ir.Expr] = [*self.locals(), *self.globals]
+        named = [one for one in table if one.type == type_]
         if named and self.chance(2):
             return self.pick(named)
         makers = [self.operation, self.builtin, self.select, self.part, self.prefix, self.called]
-        made = self.pick(makers)(type_, depth - 1) if depth > 0 and self.chance(2) else None
-        return made if made is not None else self.made(type_, depth)
+        result = self.pick(makers)(type_, depth - 1) if depth > 0 and self.chance(2) else None
+        return result if result is not None else self.made(type_, depth)
 
     def made(self, type_: Type, depth: int) -> ir.Expr:
         """A literal or a constructor."""

@@ -48,11 +48,11 @@ _VARIABLE = re.compile(rf"(?<![.\w])(?:[xyztijkuvwpq][234]?|[mn][234]|{'|'.join(
 
 def validate_all(source: str, expected: Mapping[str, str]) -> None:
     """Fails with all targets' texts where one is not what is expected."""
-    found = {target: printed(source, target) for target in expected}
-    wanted = {target: dedent(text).strip() for target, text in expected.items()}
-    texts = "\n".join(f"{target}:\n{text}" for target, text in found.items())
-    wrong = [target for target in expected if found[target] != wanted[target]]
-    assert not wrong, f"{', '.join(wrong)} of {source}\n{texts}"
+    results = {target: printed(source, target) for target in expected}
+    reference = {target: dedent(text).strip() for target, text in expected.items()}
+    texts = "\n".join(f"{target}:\n{text}" for target, text in results.items())
+    failures = [target for target in expected if results[target] != reference[target]]
+    assert not failures, f"{', '.join(failures)} of {source}\n{texts}"
 
 
 def printed(source: str, target: str) -> str:
@@ -60,7 +60,7 @@ def printed(source: str, target: str) -> str:
     try:
         text = code(module_of(source), TARGETS.get(target, target))
     except SssgenError as error:
-        return "\n".join(f"error: {found.message}" for found in error.diagnostics)
+        return "\n".join(f"error: {result.message}" for result in error.diagnostics)
     if "{" in source:
         return text
     before, _, function = text.rpartition("\n\n")

@@ -105,5 +105,5 @@ def whole(text: str, target: str, keep: bool = True) -> str:
 def wrong(text: str, target: str, stage: Stage = "fragment") -> list[str]:
     """What compilers that are not ours find wrong in a whole shader."""
     entry = "main" if target.startswith("glsl") else f"{stage}_main"
-    found = check(Source(text, target, stage, entry))
-    return [str(one) for messages in found.values() for one in errors(messages)]
+    result = check(Source(text, target, stage, entry))
+    return [str(one) for messages in result.values() for one in errors(messages)]
