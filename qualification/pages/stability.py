@@ -1,7 +1,7 @@
 """Draws docs/stability/ and writes docs/stability.md: python -m qualification.pages.stability
 
-The published techniques fail in the ways that docs/errata.md says, ours hold: in pictures drawn by what `sssgen` emits,
-and in the figures of `qualification.errata`. A section of the page is a function in `SECTIONS`.
+The page shows the errata of docs/errata.md: pictures drawn by the emitted shaders, and the figures of
+`qualification.errata`, of the published techniques and of those of the library. `SECTIONS` has a function per section.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ PAGE = DOCS / "stability.md"
 FOLDER = DOCS / "stability"
 
 GAP = 8
-"""Pixels between the pictures that stand side by side."""
+"""Pixels between two pictures of a row."""
 
 Panel = Callable[[], npt.NDArray[np.float64]]
 """Draws an encoded picture, (height, width, 3), row 0 at the top."""
@@ -44,7 +44,7 @@ class Shot:
     material: str = "published"
 
     def __call__(self, size: tuple[int, int] | None = None) -> npt.NDArray[np.float64]:
-        """The picture, of the scene's size where none is given."""
+        """The picture; by default in the scene's size."""
         folder = FOLDER / self.scene
         scene = dataclasses.replace(load(folder / "scene.toml"), material=str(folder / f"{self.material}.toml"))
         guards = "none" if self.material == "published" else "auto"
@@ -56,17 +56,17 @@ class Picture(NamedTuple):
 
     panels: tuple[Panel, ...]
     shown: str
-    """What they show, for those who do not see them."""
+    """The alternative text."""
     caption: str
 
 
 class Chapter(NamedTuple):
-    """One source: what goes wrong, what it looks like, what to use."""
+    """One source: what goes wrong, what it looks like, what to use instead."""
 
     title: str
     text: str
     pictures: tuple[str, ...]
-    """Their files' names."""
+    """The names of their files."""
 
 
 PICTURES = {
@@ -82,9 +82,10 @@ PICTURES = {
             lambda: maps.ball("alisavakis_lobe", 0.0, backends.get("browser")),
             lambda: maps.ball("lobe_normalized", 1.0, backends.get("gl")),
         ),
-        "Three balls: one with a dark disc and a hard rim, one bright all over, one with a glow that fades smoothly",
-        "Alisavakis with its own `concentration`, 0: one shader text, in OpenGL and in a browser. Where the lobe ends "
-        "it computes pow(0, 0), which is 0 here and 1 there. Right: `lobe_normalized` at `power` 1.",
+        "Three balls: one with a dark disc and a hard rim, one bright everywhere, one with a glow that fades smoothly",
+        "Alisavakis with its default `concentration`, 0: the same shader text in OpenGL and in a browser. Where the "
+        "lobe ends it computes pow(0, 0), which is 0 in OpenGL and 1 in the browser. Right: `lobe_normalized` at "
+        "`power` 1.",
     ),
     "half_vector": Picture(
         (
@@ -92,11 +93,11 @@ PICTURES = {
             lambda: maps.half_vector("alisavakis_lobe", 1.0, backends.get("gl")),
             lambda: maps.half_vector("lobe_normalized", 0.9, backends.get("gl")),
         ),
-        "Three gray maps: two are cut in the middle from bright to black, the first with a magenta square there; the "
-        "third is smooth",
-        "A map of the lobe over the light's direction, a tenth of a radian wide, the light straight behind in the "
-        "middle. Alisavakis with `distortion` 1, in NumPy's float32 (magenta: NaN) and in OpenGL, where clamp() "
-        "swallows the NaN and the tear remains; `lobe_normalized` with `distortion` .9.",
+        "Three gray maps: two change abruptly from bright to black in the middle, the first with a magenta square "
+        "there; the third is smooth",
+        "The lobe as a function of the light's direction, over a tenth of a radian; in the middle the light is "
+        "directly behind. Alisavakis with `distortion` 1, in NumPy's float32 (magenta: NaN) and in OpenGL, where "
+        "clamp() hides the NaN but the discontinuity remains; `lobe_normalized` with `distortion` .9.",
     ),
     "wedge": Picture(
         (Shot("wedge"), Shot("wedge", "mended")),
@@ -121,7 +122,8 @@ PICTURES = {
             lambda: maps.floor("subsurface_parallax", {"eta": 1.5}, backends.get("gl")),
             lambda: maps.floor("parallax_refracted", {"ior": 1.5}, backends.get("gl")),
         ),
-        "Two floors of wood with brass rings: one is magenta but for a bent piece at the viewer's feet, one is whole",
+        "Two floors of wood with brass rings: one is magenta except for a distorted piece near the viewer, one is "
+        "complete",
         "A floor with an inlay under resin of index 1.5. Subsurface Parallax with `eta` = 1.5 (magenta: NaN), and "
         "`parallax_refracted` with `ior` = 1.5.",
     ),
@@ -130,7 +132,7 @@ PICTURES = {
             lambda: maps.mirrored("subsurface_parallax", False, {"eta": 1.0 / 1.5}, backends.get("gl")),
             lambda: maps.mirrored("parallax_refracted", True, {"ior": 1.5}, backends.get("gl")),
         ),
-        "Two panels of wood with brass rings: in one the rings are broken along the middle, in one they are whole",
+        "Two panels of wood with brass rings: in one the rings are broken along the middle, in one they are unbroken",
         "The left half of the panel has mirrored texture coordinates, as many models have. Subsurface Parallax with B "
         "= cross(N, T), and `parallax_refracted` with the sign in the tangent's w.",
     ),
@@ -139,47 +141,49 @@ PICTURES = {
 CHAPTER_TEXTS = {
     "Cheap SSS": Chapter(
         "Thinness from a distance field (Cheap SSS, XT95)",
-        "The taps go straight inwards and see the nearest wall, not the way of the light: every face of a box shows a "
-        "dark X with a black square in it, whatever the light does, and edges glow where nothing is behind them. The "
-        "published cure weakens the X by making all parts alike. For light through a body use `march_light`, which "
-        "measures the matter towards the light. Where a cheap glow at the rims is all that is wanted, "
-        "`thinness_uniform` and `thinness_attenuated` have the published look with the range and the weights put "
-        "right; the X stays.",
+        "The taps go straight inwards and measure the distance to the nearest face instead of the light's path: every "
+        "face of a box shows a dark X with a black square in it, whatever the light does, and edges glow although "
+        "nothing is behind them. The published remedy weakens the X by making all parts alike. For light through a "
+        "body use `march_light`, which measures the matter towards the light. If a cheap glow at the rims is "
+        "sufficient, `thinness_uniform` and `thinness_attenuated` have the published look with correct range and "
+        "weights; the X remains.",
         ("cube",),
     ),
     "Alisavakis": Chapter(
         "The lobe with a thickness map (Alisavakis)",
-        "With the parameters as they come the glow is undefined: black on one GPU, white on another. With `distortion` "
-        "at 1 the lobe tears just where the light is behind. Use `lobe_normalized` with `distortion` below 1 (at 1 it "
-        "stays a number, but tears as well), or `lobe_gdc2011`, which does not normalise and takes every `distortion`.",
+        "With the default parameters the glow is undefined: black on one GPU, white on another. With `distortion` at 1 "
+        "the lobe is discontinuous where the light is directly behind. Use `lobe_normalized` with `distortion` below 1 "
+        "(at 1 it stays finite, but is discontinuous too), or `lobe_gdc2011`, which does not normalise and accepts "
+        "every `distortion`.",
         ("wax", "half_vector"),
     ),
     "3D Distance Fields": Chapter(
         "Thickness through a distance texture (3D Distance Fields)",
-        "What it adds up is no length: thick and thin parts look alike, the look changes with the number of steps and "
-        "with the model's scale, and a model that stands above the origin is read beside itself. Use "
-        "`march_distance_texture`: it gives metres, from a box anywhere.",
+        "Its sum is not a length: thick and thin parts look alike, the look changes with the number of steps and with "
+        "the model's scale, and for a model above the origin the texture is read at the wrong place. Use "
+        "`march_distance_texture`: it returns metres, from a box at any position.",
         ("wedge", "ring"),
     ),
     "Unity ice": Chapter(
-        "Ice after Zucconi, and its relatives (Unity ice)",
-        "One letter is wrong, L for V, and the lobe is gone: what is left is an even light that no lamp changes. Use "
-        "`lobe_normalized`. The others are small: `lobe_gdc2011` is duller where the surface faces the eye, "
-        "`lobe_exp2` never gets quite dark, and three.js has a unit half vector unlike the talk that it names.",
+        "Ice after Zucconi, and related lobes (Unity ice)",
+        "One letter is wrong, L instead of V, and the lobe vanishes: only an even light remains that no lamp changes. "
+        "Use `lobe_normalized`. The other errata are small: `lobe_gdc2011` is weaker where the surface faces the eye, "
+        "`lobe_exp2` never becomes completely dark, and three.js normalises the half vector, unlike the talk that it "
+        "cites.",
         ("ball",),
     ),
     "Subsurface Parallax": Chapter(
         "Parallax below the surface (Subsurface Parallax)",
-        "The index is to be given the other way round, which the source does not say; with 1.5 the picture breaks off "
-        "beyond 41.81 degrees into NaN, which bloom makes into bright blots. Mirrored, sheared and scaled texture "
-        "coordinates slide the wrong way or too far. Use `parallax_refracted` (or `parallax_straight`) with `ior`, a "
-        "`depth` in metres, and `uv_per_unit`.",
+        "The index must be given as its reciprocal, which the source does not state; with 1.5 the picture is NaN "
+        "beyond 41.81 degrees, which bloom spreads into bright spots. Mirrored, sheared and scaled texture coordinates "
+        "shift the picture in the wrong direction or too far. Use `parallax_refracted` (or `parallax_straight`) with "
+        "`ior`, a `depth` in metres, and `uv_per_unit`.",
         ("floor", "mirror"),
     ),
     "absorption": Chapter(
         "Absorption (glTF, GPU Gems 16)",
-        "Glass of a pure colour is black where it has no thickness, on some GPUs; a coarse depth map makes lit places "
-        "brighter than their lamp. Use `absorption_tint` or `beer_lambert`, and `depth_map_thickness`.",
+        "Glass of a saturated colour is black where its thickness is 0, on some GPUs; a coarse depth map makes lit "
+        "places brighter than their lamp. Use `absorption_tint` or `beer_lambert`, and `depth_map_thickness`.",
         (),
     ),
 }
@@ -194,23 +198,23 @@ def present() -> tuple[Backend, ...]:
 def introduction() -> list[str]:
     """The head of the page."""
     return [
-        "# What fails, and what holds",
+        "# Published shaders: errata, measured",
         "",
         *_paragraph(
-            "Published shaders for translucency and parallax, as their sources have them, beside the techniques that "
-            "`sssgen` has in their place: first what goes wrong, what it looks like and what to use, then the figures. "
-            "In each row of pictures the published technique is at the left and ours at the right."
+            "Published shaders for translucency and parallax, exactly as in their sources, next to the techniques that "
+            "`sssgen` offers in their place: what goes wrong, what it looks like, what to use, and the measured "
+            "figures. In each row of pictures the published technique is on the left and the one of `sssgen` on the "
+            "right."
         ),
         *_paragraph(
-            "Made by `make stability` (`qualification/pages/stability.py`). The pictures are drawn by the emitted GLSL "
-            "in OpenGL where nothing else is said; scenes and materials are in `docs/stability/`. The figures are "
-            "those of `qualification.errata`, on "
+            "`make stability` writes this page (`qualification/pages/stability.py`). The emitted GLSL draws the "
+            "pictures in OpenGL, unless stated otherwise; scenes and materials are in `docs/stability/`. The figures are "
+            "those of `qualification.errata` on "
             + ", ".join(f"`{name}`" for name in BACKENDS)
-            + "; where these differ, each is named. `tests/qualification/test_errata_shown.py` checks them: the "
-            "published ones are off as theory says, ours are within their bounds on every back end. "
-            "The published ones are measured without the guards that `sssgen` adds where an operation may go wrong, "
-            "ours with them. "
-            "[errata.md](errata.md) has the same errata in words."
+            + "; if these differ, each is named. `tests/qualification/test_errata_shown.py` checks that the published "
+            "techniques deviate as the theory predicts, and that those of `sssgen` are within their bounds on every "
+            "back end. The published techniques are measured without the guards that `sssgen` adds to operations that "
+            "can fail, those of `sssgen` with them. [errata.md](errata.md) describes the same errata in words."
         ),
     ]  # fmt: skip
 
@@ -228,51 +232,51 @@ def errata() -> list[str]:
 
 
 def unshown() -> list[str]:
-    """What no number shows."""
+    """The errata that cannot be measured."""
     rows = (f"| {one.source} | {one.said} | {one.reason} |" for one in UNSHOWN)
-    return ["## Errata that no number shows", "", "| Source | Erratum | Why not |", "|---|---|---|", *rows, ""]
+    return ["## Errata without figures", "", "| Source | Erratum | Reason |", "|---|---|---|", *rows, ""]
 
 
 def still_open() -> list[str]:
-    """Where ours is not right either."""
-    text = "Here ours does not keep the bound that it should."
+    """The errata that the library's techniques have, too."""
+    text = "Here the technique of `sssgen` is not within its bound either."
     return ["## Still open", "", *_paragraph(text), *table(OPEN)]
 
 
 def machines() -> list[str]:
-    """Where it was measured."""
+    """The back ends and their devices."""
     items = (_item(f"`{one.name}`: {one.device()}") for one in present())
     return ["## Measured on", "", *(line for item in items for line in item), ""]
 
 
 SECTIONS: tuple[Callable[[], list[str]], ...] = (introduction, errata, unshown, still_open, machines)
-"""The page's sections, in their order."""
+"""The page's sections, in order."""
 
 
 def table(chapter: tuple[Erratum, ...]) -> list[str]:
     """The errata of a chapter with their figures."""
     head = [
-        "| Erratum | What is measured | By theory | As published | Ours | It must be |",
+        "| Erratum | Measurement | In theory | As published | In `sssgen` | Required |",
         "|---|---|---|---|---|---|",
     ]
     return [*head, *(row(one) for one in chapter), ""]
 
 
 def row(erratum: Erratum) -> str:
-    """One erratum with its figures on every back end that is here."""
+    """One erratum with its figures on every back end of this machine."""
     cells = [
         f"{erratum.source}: {erratum.name}",
         erratum.shown,
-        told(erratum.theory) if erratum.theory else "undefined",
-        _everywhere({one.name: told(as_published(erratum, one)) for one in present()}),
-        _everywhere({one.name: told(as_mended(erratum, one)) for one in present()}),
+        figures_text(erratum.theory) if erratum.theory else "undefined",
+        _by_backend({one.name: figures_text(as_published(erratum, one)) for one in present()}),
+        _by_backend({one.name: figures_text(as_mended(erratum, one)) for one in present()}),
         _bounds(erratum.right),
     ]
     return f"| {' | '.join(cells)} |"
 
 
-def told(figures: tuple[float, ...]) -> str:
-    """Figures, to five digits."""
+def figures_text(figures: tuple[float, ...]) -> str:
+    """Figures with five digits."""
     return " · ".join(
         "NaN" if np.isnan(figure) else "∞" if np.isinf(figure) else _number(0.0 if abs(figure) < 1e-6 else figure)
         for figure in figures
@@ -283,22 +287,22 @@ def _number(value: float) -> str:
     return f"{value:.5g}".replace("e-0", "e-")
 
 
-def _everywhere(figures: dict[str, str]) -> str:
-    """The figures once where all back ends have the same, else with those that have them."""
+def _by_backend(figures: dict[str, str]) -> str:
+    """The figures, once if all back ends agree, otherwise with the names of the back ends."""
     groups: dict[str, list[str]] = {}
-    for name, one in figures.items():
-        groups.setdefault(one, []).append(f"`{name}`")
+    for name, text in figures.items():
+        groups.setdefault(text, []).append(f"`{name}`")
     if len(groups) == 1:
         return next(iter(groups))
-    return "<br>".join(f"{', '.join(names)}: {one}" for one, names in groups.items())
+    return "<br>".join(f"{', '.join(names)}: {text}" for text, names in groups.items())
 
 
 def _bounds(right: tuple[Right, ...]) -> str:
-    """Where the figures must lie: values with a tolerance, or ranges."""
+    """The required figures: values with a tolerance, or ranges."""
     if any(one.high - one.low > 0.1 for one in right):
         return " · ".join(f"{_number(one.low)} to {_number(one.high)}" for one in right)
     tolerance = max(0.5 * (one.high - one.low) for one in right)
-    values = told(tuple(0.5 * (one.low + one.high) for one in right))
+    values = figures_text(tuple(0.5 * (one.low + one.high) for one in right))
     return f"{values} (± {_number(tolerance)})" if tolerance else values
 
 
@@ -336,7 +340,7 @@ def draw() -> dict[str, bytes]:
 
 
 def main() -> None:
-    """Draws, measures and writes."""
+    """Draws the pictures, measures the errata, and writes the page."""
     files = draw()
     write_files(str(FOLDER), files)
     PAGE.write_text(page(), encoding="utf-8")

@@ -60,7 +60,7 @@ def test_the_figures_are_current(backend: Get, name: str) -> None:
     for erratum in (*ERRATA, *OPEN):
         cells = rows()[f"{erratum.source}: {erratum.name}"]
         assert cells[1] == erratum.shown, "run make stability"
-        assert cells[2] == (script()["told"](erratum.theory) if erratum.theory else "undefined")
+        assert cells[2] == (script()["figures_text"](erratum.theory) if erratum.theory else "undefined")
         assert cells[5] == script()["_bounds"](erratum.right)
         close = {"rel": 1e-3, "abs": 2e-6, "nan_ok": True}
         assert figures(cells[4], name) == pytest.approx(as_mended(erratum, machine), **close), erratum.name
