@@ -19,7 +19,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "parity_techniques.md"
 
 
 class Row(NamedTuple):
-    """A technique on the back ends, whatever is bound to its slots."""
+    """A technique on the back ends, over all functions bound to its slots."""
 
     largest: dict[str, float]
     share: float
@@ -27,7 +27,7 @@ class Row(NamedTuple):
 
 
 def rows(present: list[Backend]) -> dict[str, Row]:
-    """What was measured, by technique."""
+    """The measured deviations by technique."""
     rows_by_name: dict[str, Row] = {}
     for case in cases():
         lanes = BOUND_LANES if case.bind else LANES
@@ -49,11 +49,11 @@ def page(present: list[Backend], rows_by_name: dict[str, Row]) -> str:
     texts = [
         "Measured by `python -m qualification.pages.parity_techniques`; "
         "`tests/qualification/test_parity_techniques.py` checks it. "
-        f"Each technique has {LANES:,} random inputs (seed {SEED}), in the declared meaning of each parameter "
-        f"(`src/sssgen/harness/evaluate/random_inputs.py`), and again {BOUND_LANES:,} for each other function of "
-        "the library that fits one of its slots. The oracle is what the `numpy` target emits, in float64.",
-        "A deviation is |got − wanted| over the larger of |wanted| and 1, both over a value's components. The goal is "
-        f"{_number(GOAL)}; what is beyond it is in bold.",
+        f"Each technique gets {LANES:,} random inputs (random seed {SEED}) in the declared range of each parameter "
+        f"(`src/sssgen/harness/evaluate/random_inputs.py`), and {BOUND_LANES:,} more for each other function of "
+        "the library that fits one of its slots. The oracle is the output of the `numpy` target, in float64.",
+        "A deviation is |result − oracle| divided by the larger of |oracle| and 1; for a vector, each of the two "
+        f"sizes is the largest over its components. The goal is {_number(GOAL)}; larger deviations are in bold.",
         "*Excluded* lanes are beyond the goal because the formula is ill-conditioned there in float32: it makes a "
         "decision, or subtracts nearly equal numbers. The table has the largest share of such lanes and their largest "
         f"deviation. A lane is excluded while its deviation is at most {MARGIN:g} times what rounding causes without "
@@ -90,10 +90,10 @@ def _reasons(name: str, row: Row) -> str:
     if not row.share and max(row.largest.values()) <= GOAL:
         return ""
     reason = library.load(name).attributes.deviation
-    return reason or "Single lanes just where a decision turns, or nearly equal numbers are subtracted."
+    return reason or "Single lanes at the threshold of a decision, or where nearly equal numbers are subtracted."
 
 
 if __name__ == "__main__":
-    present = [found for found in backends.available() if found.name in BACKENDS]
+    present = [backend for backend in backends.available() if backend.name in BACKENDS]
     PAGE.write_text(page(present, rows(present)), encoding="utf-8")
     print(f"wrote {PAGE.name}")

@@ -1,7 +1,7 @@
 """Writes docs/safety.md: python -m qualification.pages.safety
 
-What the range pass proves of the library, what is guarded and why, what that costs, and the table of dangerous inputs
-on every back end.
+For each technique: the operations proven safe, the guarded ones with reason and cost, and the results of the table of
+dangerous inputs on every back end.
 """
 
 from __future__ import annotations
@@ -25,28 +25,29 @@ BACKENDS = ("numpy-f32", "gl", "webgpu", "hlsl", "browser")
 def introduction() -> list[str]:
     """The head of the page."""
     return [
-        "# What is proven, and what is guarded",
+        "# Proven and guarded operations",
         "",
         *_paragraph(
-            "`sssgen` finds the range of every value in a program and says of each operation that may go wrong (a "
-            "division, a root, `pow`, `normalize`…) whether it can. What is proven carries no guard; the rest gets the "
-            "cheapest one that its range asks for. `sssgen lint` shows both, for your files too."
+            "`sssgen` computes the range of every value in a program, and decides for each operation with a domain (a "
+            "division, a root, `pow`, `normalize`…) whether it can fail. An operation that is proven safe has no "
+            "guard; every other one gets the cheapest guard that its range requires ([guards.md](guards.md)). `sssgen "
+            "lint` shows both, for your own files too."
         ),
         *_paragraph(
-            "Made by `make stability` (`qualification/pages/safety.py`); "
-            "the tests are `tests/qualification/test_safety.py`."
+            "`make stability` writes this page (`qualification/pages/safety.py`); `tests/qualification/test_safety.py` "
+            "checks it."
         ),
     ]
 
 
 def counts(rows: list[Safety]) -> list[str]:
-    """How many operations are proven, how many guarded, and what that costs."""
+    """The numbers of proven and of guarded operations, and the cost of the guards."""
     lines = [
         "## The library",
         "",
         *_paragraph(
-            "Each technique for all its inputs, as a function that is called from outside; operations by the static "
-            "cost. `auto` guards what is not proven, `all` everything."
+            "Each technique as a function that other code calls, for all inputs that its contract allows. Operations "
+            "are those of the static cost; `auto` and `all` add operations in these modes of `--guards`."
         ),
         "| Technique | Proven | Guarded | Operations | `auto` adds | `all` adds |",
         "|---|---|---|---|---|---|",
@@ -60,9 +61,9 @@ def counts(rows: list[Safety]) -> list[str]:
     proven, guarded = sum(row.proven for row in rows), sum(row.guarded for row in rows)
     cost = sum(row.costs["none"].operations for row in rows)
     lines += [
-        f"| **together** | **{proven}** | **{guarded}** | **{cost}** | **{auto}** | **{everywhere}** |",
+        f"| **total** | **{proven}** | **{guarded}** | **{cost}** | **{auto}** | **{everywhere}** |",
         "",
-        *_paragraph(f"Guards add {auto / everywhere:.0%} of what guards everywhere would add."),
+        *_paragraph(f"`auto` adds {auto / everywhere:.0%} of the operations that `all` adds."),
         "| Example, as a shader | Proven | Guarded |",
         "|---|---|---|",
     ]
@@ -74,28 +75,28 @@ def counts(rows: list[Safety]) -> list[str]:
 
 
 def guards(removed: list[Mutant]) -> list[str]:
-    """Each guard, the input that needs it, and the fault when it is removed."""
+    """Each guard, the input that needs it, and the failure without it."""
     seen = sum(any(mutant.seen.values()) for mutant in removed)
     needed = sum(mutant.witness is not None for mutant in removed)
     letter = [mutant for mutant in removed if mutant.witness and not any(mutant.seen.values())]
     lines = [
-        "## Every guard, removed",
+        "## Each guard removed",
         "",
         *_paragraph(
-            f"Of {len(removed)} guards {needed} have an input that needs them: "
-            "with NaN for what the language leaves undefined there, the result is NaN. Without the guard the drivers "
-            f"here show it for {seen}" + (f"; for {len(letter)} it is the language's letter alone." if letter else ".")
+            f"Of {len(removed)} guards {needed} have an input that needs them: if an undefined result is taken as "
+            f"NaN, the technique returns NaN. On the devices below, {seen} fail without the guard"
+            + (f"; {len(letter)} are undefined only by the language's specification." if letter else ".")
         ),
-        f"| Operation | In | Because | Input | {' | '.join(BACKENDS)} |",
+        f"| Operation | Technique | Problem | Input | {' | '.join(BACKENDS)} |",
         "|---" * (4 + len(BACKENDS)) + "|",
     ]
     for mutant in removed:
         cells = [mutant.seen.get(name, "").replace("another value", "other") or "–" for name in BACKENDS]
         trial = mutant.witness.trial if mutant.witness else "none found"
         place = f"{mutant.site.place.rsplit(':', 1)[0]}"
-        says = mutant.site.guard.problem
+        problem = mutant.site.guard.problem
         lines.append(
-            f"| {mutant.site.what} | {mutant.specimen.title} ({place}) | {says} | {trial} | {' | '.join(cells)} |"
+            f"| {mutant.site.what} | {mutant.specimen.title} ({place}) | {problem} | {trial} | {' | '.join(cells)} |"
         )
     return [*lines, ""]
 
@@ -115,17 +116,20 @@ def dangers(chosen: list[Specimen], machines: Machines) -> list[str]:
     lines = [
         "## Dangerous inputs",
         "",
-        *_paragraph("Failures of the techniques that each row concerns (`sssgen stress --row NAME` runs one)."),
-        f"| Row | Input | It must be | Techniques | Inputs | {' | '.join(BACKENDS)} |",
+        *_paragraph(
+            "The number of failures, over the techniques that each row applies to. `sssgen stress --row NAME` runs "
+            "one row."
+        ),
+        f"| Row | Input | Required | Techniques | Inputs | {' | '.join(BACKENDS)} |",
         "|---" * (5 + len(BACKENDS)) + "|",
     ]
     for row in dangerous.ROWS:
-        told = f"| {row.name} | {row.inputs} | {row.requires} |".replace("|L|", "length of L")
+        start = f"| {row.name} | {row.inputs} | {row.requires} |".replace("|L|", "length of L")
         if row.trials is None:
-            lines.append(f"{told} {row.elsewhere} |{' |' * (1 + len(BACKENDS))}")
+            lines.append(f"{start} {row.elsewhere} |{' |' * (1 + len(BACKENDS))}")
             continue
         cells = " | ".join(str(failed[row.name, name]) for name in BACKENDS)
-        lines.append(f"{told} {tried[row.name]} | {lanes[row.name]:,} | {cells} |")
+        lines.append(f"{start} {tried[row.name]} | {lanes[row.name]:,} | {cells} |")
     return [*lines, ""]
 
 
@@ -134,15 +138,15 @@ def _paragraph(text: str) -> list[str]:
 
 
 def main() -> None:
-    """Measures and writes."""
+    """Measures, and writes the page."""
     chosen = specimens(())
     with Machines(BACKENDS) as machines:
-        found = [one for specimen in chosen for one in mutants(specimen, machines)]
-        rows = [safety(one.subject) for one in chosen]
-        lines = [*introduction(), *counts(rows), *guards(found), *dangers(chosen, machines)]
-        lines += ["## Measured on", "", *(f"- `{name}`: {one.device()}" for name, one in machines.here.items())]
+        removed = [mutant for specimen in chosen for mutant in mutants(specimen, machines)]
+        rows = [safety(specimen.subject) for specimen in chosen]
+        lines = [*introduction(), *counts(rows), *guards(removed), *dangers(chosen, machines)]
+        lines += ["## Measured on", "", *(f"- `{name}`: {backend.device()}" for name, backend in machines.here.items())]
     PAGE.write_text("\n".join(lines).rstrip("\n") + "\n", encoding="utf-8")
-    print(f"wrote {PAGE.name}: {len(found)} guards, {len(dangerous.ROWS)} rows")
+    print(f"wrote {PAGE.name}: {len(removed)} guards, {len(dangerous.ROWS)} rows")
 
 
 if __name__ == "__main__":

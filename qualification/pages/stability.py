@@ -208,8 +208,8 @@ def introduction() -> list[str]:
         ),
         *_paragraph(
             "`make stability` writes this page (`qualification/pages/stability.py`). The emitted GLSL draws the "
-            "pictures in OpenGL, unless stated otherwise; scenes and materials are in `docs/stability/`. The figures are "
-            "those of `qualification.errata` on "
+            "pictures in OpenGL, unless stated otherwise; scenes and materials are in `docs/stability/`. The figures "
+            "are those of `qualification.errata` on "
             + ", ".join(f"`{name}`" for name in BACKENDS)
             + "; if these differ, each is named. `tests/qualification/test_errata_shown.py` checks that the published "
             "techniques deviate as the theory predicts, and that those of `sssgen` are within their bounds on every "
