@@ -8,12 +8,14 @@ import pytest
 
 from pass_cases import key, module_of
 from range_programs import Checker as CheckedRun
-from range_programs import RangePrograms, inputs, recorded
+from range_programs import RangePrograms, Recorder, inputs, recorded
 from sssgen.ir import nodes as ir
+from sssgen.ir.formats import FLOAT32
 from sssgen.ir.intervals import Range
 from sssgen.ir.types import Array, Matrix, Struct
 from sssgen.ir.walk import all_expressions, statements
-from sssgen.passes.ranges.range_pass import analyse
+from sssgen.passes.ranges import summaries
+from sssgen.passes.ranges.range_pass import RangeAnalysis, analyse
 from sssgen.support.diagnostics import SssgenError
 
 PROGRAMS, RUNS = 250, 3
@@ -22,39 +24,70 @@ PROGRAMS, RUNS = 250, 3
 # Sound
 
 
-def programs(first: int, count: int) -> list[tuple[int, ir.Module]]:
+def programs(first: int, count: int, more: str = "") -> list[tuple[int, ir.Module]]:
+    """Random programs with their seeds; `more` is added to each."""
     results = []
     for seed in range(first, first + count):
         try:
-            results.append((seed, module_of(RangePrograms(Random(seed), size=3).program())))
+            results.append((seed, module_of(RangePrograms(Random(seed), size=3).program() + more)))
         except SssgenError:  # an index that is outside its array
             continue
     return results
 
 
+def assert_values_lie_in_ranges(name: str, seed: int, module: ir.Module) -> tuple[Recorder, int]:
+    """Runs a function; its analysis, and how many values were checked."""
+    analysis, random, values = recorded(module, name), Random(seed), 0
+    for _ in range(RUNS):
+        arguments, uniforms = inputs(random)
+        run = CheckedRun(module, analysis, uniforms)
+        try:
+            run.call(key(module, name), *arguments)
+        except AssertionError as wrong:
+            raise AssertionError(f"seed {seed}, arguments {arguments}, {uniforms}: {wrong}") from None
+        values += run.checked
+    return analysis, values
+
+
 def test_values_of_random_programs_are_in_their_ranges() -> None:
     chosen = programs(0, PROGRAMS)
-    values = 0
-    for seed, module in chosen:
-        analysis, random = recorded(module, "f"), Random(seed)
-        for _ in range(RUNS):
-            arguments, uniforms = inputs(random)
-            run = CheckedRun(module, analysis, uniforms)
-            try:
-                run.call(key(module, "f"), *arguments)
-            except AssertionError as wrong:
-                raise AssertionError(f"seed {seed}, arguments {arguments}, {uniforms}: {wrong}") from None
-            values += run.checked
+    values = sum(assert_values_lie_in_ranges("f", seed, module)[1] for seed, module in chosen)
     assert len(chosen) > 0.9 * PROGRAMS and values > 200 * PROGRAMS
+
+
+CALLER = """
+float caller(float a, float b, int n, inout float c, out float d, vec3 N, vec3 P) {
+    float total = 0.5;
+    d = 0.0;
+    for (int i = 0; i < taps; i++) {
+        total = f(total, b, i, c, d, N, P) * 0.5;
+        if (d > 1.0) { total += f(b, a * total, n, total, d, N * 0.5, P.zyx + c); }
+    }
+    return total + f(a, total, n, d, c, P, N);
+}
+"""
+
+
+@pytest.mark.parametrize(("own", "widenings"), [(0, 8), (0, 1), (1, 8)])
+def test_values_are_in_their_ranges_where_functions_have_summaries(
+    own: int, widenings: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(summaries, "OWN_INTERPRETATIONS", own)
+    monkeypatch.setattr(summaries, "SHARED_INTERPRETATIONS", own)
+    monkeypatch.setattr(summaries, "WIDENINGS", widenings)
+    chosen = programs(300 + 100 * own + 10 * widenings, 40, CALLER)
+    most, widened = own + own + widenings + 2, 0
+    for seed, module in chosen:
+        analysis, _ = assert_values_lie_in_ranges("caller", seed, module)
+        assert max(analysis.interpretations.values()) <= most, seed
+        widened += any(summary.widenings for summary in analysis.summaries.values())
+    assert widened > 0.8 * len(chosen) > 30
 
 
 @pytest.mark.slow
 def test_values_of_many_random_programs_are_in_their_ranges() -> None:
     for seed, module in programs(1000, 4000):
-        analysis, random = recorded(module, "f"), Random(seed)
-        for _ in range(RUNS):
-            arguments, uniforms = inputs(random)
-            CheckedRun(module, analysis, uniforms).call(key(module, "f"), *arguments)
+        assert_values_lie_in_ranges("f", seed, module)
 
 
 def test_random_programs_have_all_that_the_pass_knows() -> None:
@@ -73,6 +106,34 @@ def test_random_programs_have_all_that_the_pass_knows() -> None:
               ir.Swizzle, ir.Member, ("inner", ir.For), ("inner", ir.Break), ("inner", ir.Return), Matrix, Array,
               Struct, "dynamic index"}  # fmt: skip
     assert expected <= seen, expected - seen
+
+
+# Linear
+
+
+def chain_of_calls(levels: int) -> str:
+    """Functions of which each calls the one before twice, with different arguments."""
+    functions = ["float f0(float x) { return sqrt(abs(x)) + x * 0.5; }"] + [
+        f"float f{level}(float x) {{ float a = f{level - 1}(x * 0.5); float b = f{level - 1}(a + {level}.0);"
+        " return x > 0.0 ? a - b : b / (1.0 + a * a); }"
+        for level in range(1, levels + 1)
+    ]
+    return "\n".join(functions)
+
+
+def interpretations(levels: int) -> int:
+    module = module_of(chain_of_calls(levels))
+    analysis = RangeAnalysis(module, FLOAT32)
+    analysis.root(key(module, f"f{levels}"))
+    assert set(analysis.interpretations) == set(analysis.functions)
+    assert any(summary.widenings for summary in analysis.summaries.values())
+    return sum(analysis.interpretations.values())
+
+
+def test_the_number_of_interpretations_is_linear_in_the_levels_of_calls() -> None:
+    each = summaries.OWN_INTERPRETATIONS + summaries.WIDENINGS + 2
+    for levels in (15, 30, 60):
+        assert interpretations(levels) <= summaries.SHARED_INTERPRETATIONS + each * (levels + 1)
 
 
 # What was unsound once, small

@@ -2,7 +2,8 @@
 
 The analysis is sound under the rounding of the format: every value of a run lies in its range if the inputs are within
 their contracts (`ir.contracts`), and if each unsafe operation is guarded or does not occur; after such an operation the
-analysis continues with the range behind its guard. Functions are interpreted at each call, with the ranges there.
+analysis continues with the range behind its guard. Functions are interpreted at each call, with the ranges there, or
+by a summary in large programs (`summaries`).
 Place: after `hoist`, when the program is the one that every target gets; before `parameters`, which removes the
 uniforms' hints.
 """
@@ -20,10 +21,10 @@ from sssgen.ir.types import VOID, Array, Struct, kind_of
 from sssgen.ir.vector_ranges import Contract, Value
 from sssgen.ir.walk import root
 from sssgen.passes.ranges.facts import Facts
-from sssgen.passes.ranges.loop_ranges import LoopRanges
 from sssgen.passes.ranges.range_state import Frame, State
 from sssgen.passes.ranges.scalar_parts import field_at, hull_of, innermost, scalars
 from sssgen.passes.ranges.sites import BOUNDS, Site
+from sssgen.passes.ranges.summaries import CallSummaries, Result
 
 
 class Findings(NamedTuple):
@@ -43,7 +44,7 @@ def analyse(module: ir.Module, roots: Iterable[str], format: Format = FLOAT32, c
     return Findings(list(analysis.sites.values()), analysis.compounds)
 
 
-class RangeAnalysis(LoopRanges):
+class RangeAnalysis(CallSummaries):
     """The complete analysis: adds functions and statements."""
 
     # Functions
@@ -70,8 +71,8 @@ class RangeAnalysis(LoopRanges):
         parts = tuple([part for field in fields for part in field.parts])
         return self.value(parts, tuple([number for field in fields for number in field.numbers]))
 
-    def enter(self, function: ir.Function, args: Sequence[Value]) -> tuple[Value | None, list[Value]]:
-        """Interprets a function's body; its result, and the parameters' values at its end."""
+    def interpret(self, function: ir.Function, args: Sequence[Value]) -> Result:
+        self.interpretations[function.key] += 1
         outer, loops, self.loops = self.state, self.loops, []
         env = {param.name: arg for param, arg in zip(function.params, args, strict=True)}
         frame = Frame(function, [])
