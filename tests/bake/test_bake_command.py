@@ -86,11 +86,11 @@ FILES: dict[str, tuple[str, Callable[[], str | bytes], str]] = {
     "empty.ply": ("a.ply", lambda: b"", "a.ply"),
     "empty.glb": ("a.glb", lambda: b"", "a.glb"),
     "points": ("a.obj", lambda: "v 0 0 0\nv 1 0 0\nv 0 1 0\n", "no triangles"),
-    "no area": ("a.obj", lambda: "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "without area"),
+    "no area": ("a.obj", lambda: "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "no triangle has an area"),
     "a vertex that is not": ("a.obj", lambda: "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "a.obj"),
-    "nan": ("a.obj", lambda: with_vertex("nan"), "no number"),
-    "inf": ("a.obj", lambda: with_vertex("inf"), "no number"),
-    "other": ("a.fbx", lambda: NOISE, "no mesh file's ending"),
+    "nan": ("a.obj", lambda: with_vertex("nan"), "not a number"),
+    "inf": ("a.obj", lambda: with_vertex("inf"), "not a number"),
+    "other": ("a.fbx", lambda: NOISE, "not a mesh file's suffix"),
 }
 
 
@@ -106,7 +106,7 @@ def test_files_that_are_not_meshes_are_refused(
     assert message in refused(capsys, what, file, "-o", "o.npy", *more)
 
 
-@pytest.mark.parametrize(("size", "message"), [(1e-30, "is only 1e-30 units large"), (1e30, "no number, or beyond")])
+@pytest.mark.parametrize(("size", "message"), [(1e-30, "is only 1e-30 units large"), (1e30, "not a number, or beyond")])
 def test_sizes_that_numbers_do_not_reach(
     capsys: pytest.CaptureFixture[str], idle: None, size: float, message: str
 ) -> None:
@@ -129,7 +129,7 @@ def test_sizes_that_they_reach(size: float) -> None:
 
 WRONG: list[tuple[list[str], str]] = [
     (["sdf", "no.obj", "-o", "o.npy"], "cannot find the mesh"),
-    (["sdf", ".", "-o", "o.npy"], "no mesh file's ending"),
+    (["sdf", ".", "-o", "o.npy"], "not a mesh file's suffix"),
     (["sdf", "box.obj", "-o", "o.tga"], "'.tga' is no volume file's ending"),
     (["sdf", "box.obj", "-o", "o"], "no volume file's ending"),
     (["sdf", "box.obj", "-o", "o.npy", "--format", "dss"], "did you mean 'dds'?"),
@@ -223,8 +223,8 @@ LIGHTS = {
     '{"direction": [0, 0, 0]}': "no length",
     '{"direction": [NaN, 0, 0]}': "",
     '{"position": [0, 1e30, 0]}': "three numbers",
-    '{"position": [0, 0, 0]}': "stands in the body",
-    '{"position": [0.1, 0.1, 0]}': "stands in the body",
+    '{"position": [0, 0, 0]}': "inside the body",
+    '{"position": [0.1, 0.1, 0]}': "inside the body",
 }
 
 
@@ -282,7 +282,7 @@ def test_inconsistent_winding_is_reported(capsys: pytest.CaptureFixture[str]) ->
             == 0
         ):
             assert facts(name)["mesh"]["mixed_sides"]
-            assert "face opposite ways" in capsys.readouterr().out
+            assert "face opposite directions" in capsys.readouterr().out
     bake("sdf", "box.obj", "-o", "right.npy", "--resolution", "12")
     assert not facts("right.npy")["mesh"]["mixed_sides"]
 

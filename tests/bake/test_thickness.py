@@ -376,7 +376,7 @@ def test_the_depth_map_of_a_ball_is_its_chord(globe: str, light: BakeLight) -> N
 
 def test_a_light_in_the_body_is_refused(globe: str) -> None:
     for place in ((0.0, 0.0, 0.0), (0.0, 0.1, 0.2), (0.5, 0.5, 0.2)):
-        with pytest.raises(SssgenError, match="stands in the body"):
+        with pytest.raises(SssgenError, match="inside the body"):
             depth_map(globe, BakeLight(np.array(place), False), (8, 8))
 
 

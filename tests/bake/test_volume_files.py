@@ -202,20 +202,20 @@ FAULTS: list[tuple[str, int, bytes, str]] = [
     ("dds", 0, b"DDX ", "not a DDS file"),
     ("dds", 4, struct.pack("<I", 100), "header is faulty"),
     ("dds", 84, b"DXT1", "no DX10 header"),
-    ("dds", 128, struct.pack("<I", 80), "DXGI format 80 cannot be read"),  # BC4
-    ("dds", 132, struct.pack("<I", 3), "no volume"),
+    ("dds", 128, struct.pack("<I", 80), "DXGI format 80 is not supported"),  # BC4
+    ("dds", 132, struct.pack("<I", 3), "not a volume"),
     ("dds", 140, struct.pack("<I", 2), "array"),
     ("dds", 24, struct.pack("<I", 0), "empty"),
-    ("dds", 24, struct.pack("<I", 4), "cut off"),
+    ("dds", 24, struct.pack("<I", 4), "truncated"),
     ("ktx2", 5, b"11", "not a KTX 2"),
-    ("ktx2", 12, struct.pack("<I", 139), "VkFormat 139 cannot be read"),  # BC4
-    ("ktx2", 28, struct.pack("<I", 0), "no volume"),
+    ("ktx2", 12, struct.pack("<I", 139), "VkFormat 139 is not supported"),  # BC4
+    ("ktx2", 28, struct.pack("<I", 0), "not a volume"),
     ("ktx2", 32, struct.pack("<I", 2), "array"),
-    ("ktx2", 36, struct.pack("<I", 6), "no volume"),
+    ("ktx2", 36, struct.pack("<I", 6), "not a volume"),
     ("ktx2", 44, struct.pack("<I", 2), "supercompressed"),
     ("ktx2", 28, struct.pack("<I", 4), "level index"),
     ("ktx2", 80, struct.pack("<Q", 0), "level index"),
-    ("ktx2", 80, struct.pack("<Q", 2**64 - 1), "cut off"),
+    ("ktx2", 80, struct.pack("<Q", 2**64 - 1), "truncated"),
 ]
 
 
@@ -296,7 +296,7 @@ def test_files_that_are_not_volumes_are_refused() -> None:
     with pytest.raises(SssgenError, match="cannot find the volume"):
         read("nothing.dds", "nothing.dds")
     Path("body.vdb").write_bytes(b"")
-    with pytest.raises(SssgenError, match="no volume file's ending"):
+    with pytest.raises(SssgenError, match="not a volume file's suffix"):
         read("body.vdb", "body.vdb")
     with pytest.raises(SssgenError, match="not a KTX 2"):
         read_bytes(b"", "ktx2")

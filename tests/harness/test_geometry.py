@@ -278,14 +278,14 @@ def test_faulty_meshes(tmp_path: Path) -> None:
 
     triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
     assert "cannot find the mesh" in wrong("none.obj")
-    assert "no mesh file's ending" in wrong("ball.fbx", "")
+    assert "not a mesh file's suffix" in wrong("ball.fbx", "")
     assert "no triangles" in wrong("empty.obj", "")
     assert "no triangles" in wrong("text.stl", "hello")
     assert "cannot be read" in wrong("text.ply", "hello")
     assert "cannot be read" in wrong("text.glb", "hello")
     assert "cannot be read" in wrong("index.obj", triangle + "f 1 2 9\n")
-    assert "no number" in wrong("nan.obj", triangle.replace("1", "nan", 1) + "f 1 2 3\n")
-    assert "without area" in wrong("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
+    assert "not a number" in wrong("nan.obj", triangle.replace("1", "nan", 1) + "f 1 2 3\n")
+    assert "no triangle has an area" in wrong("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
 
 
 # Distance functions

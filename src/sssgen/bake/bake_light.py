@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sssgen.bake.voxel_grid import Array
-from sssgen.harness.scenes.light_view import LightView, from_afar, from_place
+from sssgen.harness.scenes.light_view import LightView, directional_view, point_view
 from sssgen.support import json_source
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import posix
@@ -34,7 +34,7 @@ class BakeLight(NamedTuple):
 
     def view(self, corners: Array, size: tuple[int, int]) -> LightView:
         """Its view of the box of corners (n, 3); `size` is (width, height)."""
-        return from_afar(corners, self.place, size) if self.afar else from_place(corners, self.place, size)
+        return directional_view(corners, self.place, size) if self.afar else point_view(corners, self.place, size)
 
     def facts(self) -> dict[str, Any]:
         """As in its JSON file."""

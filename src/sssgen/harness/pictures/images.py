@@ -1,4 +1,4 @@
-"""Pictures from files and into files, as arrays with row 0 at the top, as the files have them."""
+"""Reads and writes picture files, as arrays with row 0 at the top, as in the files."""
 
 from __future__ import annotations
 
@@ -20,24 +20,24 @@ from sssgen.support.paths import posix
 Array: TypeAlias = npt.NDArray[np.float64]
 
 SUFFIXES = (".png", ".exr", ".npy")
-"""Of pictures; an .npy may be a volume, too."""
+"""The suffixes of pictures; an .npy may also be a volume."""
 LARGEST_SIDE = 16384
-"""Texels along a side of the largest picture that engines take."""
+"""The largest width and height that engines support, in texels."""
 TEXTURES = (*SUFFIXES, *volumes.SUFFIXES)
-"""Of all that a texture may be."""
+"""The suffixes of textures."""
 
-_WHOLE = {np.dtype(np.uint8): 255.0, np.dtype(np.uint16): 65535.0}
-"""What stands for 1 in the integers that a file may hold."""
+_ONE_AS_INTEGER = {np.dtype(np.uint8): 255.0, np.dtype(np.uint16): 65535.0}
+"""The integer that means 1.0, by the type of the stored numbers."""
 
 
 def read(path: str | os.PathLike[str]) -> Array:
     """The picture in a file, (height, width, channels), row 0 at the top; channels are 1 to 4.
 
-    .png: one frame, up to 16 bits a channel; values 0..1 as they are stored, no colour conversion. .exr: as stored,
+    .png: one frame, up to 16 bits a channel; values 0..1 as stored, without colour conversion. .exr: as stored,
     which is linear light; R, G, B, A, or Y alone. .npy: an array of 2 to 4 axes, (height, width),
-    (height, width, channels) or, for 3-D textures, (depth, height, width, channels); floats as they are, uint8
+    (height, width, channels) or, for 3-D textures, (depth, height, width, channels); floats unchanged, uint8
     and uint16 as in a PNG. .dds and .ktx2: volumes, see `volumes.read`. Raises SssgenError for a file that is missing,
-    faulty, or none of these.
+    faulty, or of another kind.
     """
     shown = posix(path)
     suffix = check_suffix(path, TEXTURES)
@@ -52,8 +52,9 @@ def read(path: str | os.PathLike[str]) -> Array:
 
 
 def upright(path: str | os.PathLike[str]) -> Array:
-    """The picture in a file, (height, width, channels), row 0 at the top, whichever way the file has it: an .npy has
-    row 0 at v = 0. Raises SssgenError for a volume, and as `read` does.
+    """The picture in a file, (height, width, channels), row 0 at the top: an .npy, whose row 0 is at v = 0, is flipped.
+
+    Raises SssgenError for a volume, and as `read` does.
     """
     picture = read(path)
     if picture.ndim != 3:
@@ -61,12 +62,12 @@ def upright(path: str | os.PathLike[str]) -> Array:
     return np.flipud(picture) if check_suffix(path, TEXTURES) == ".npy" else picture
 
 
-def check_suffix(path: str | os.PathLike[str], known: tuple[str, ...] = SUFFIXES) -> str:
-    """A picture file's suffix. Raises SssgenError where it is none of those known."""
+def check_suffix(path: str | os.PathLike[str], suffixes: tuple[str, ...] = SUFFIXES) -> str:
+    """A picture file's suffix. Raises SssgenError for any that is not in `suffixes`."""
     suffix = os.path.splitext(os.fspath(path))[1].lower()
-    if suffix not in known:
-        hint = did_you_mean(suffix, known) or f"pictures end in {', '.join(known)}"
-        raise failure(f"'{suffix}' is no picture file's ending", hint, posix(path))
+    if suffix not in suffixes:
+        hint = did_you_mean(suffix, suffixes) or f"pictures end in {', '.join(suffixes)}"
+        raise failure(f"'{suffix}' is not a picture file's suffix", hint, posix(path))
     return suffix
 
 
@@ -78,26 +79,26 @@ def encoded(path: str | os.PathLike[str]) -> Array:
 
 
 def encode_srgb(linear: npt.ArrayLike) -> Array:
-    """Linear light, cut to 0..1, as encoded sRGB 0..1 (IEC 61966-2-1)."""
+    """Linear light, clamped to 0..1, as encoded sRGB 0..1 (IEC 61966-2-1)."""
     light = np.clip(np.asarray(linear, np.float64), 0.0, 1.0)
     encoded: Array = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
     return encoded
 
 
 def decode_srgb(encoded: npt.ArrayLike) -> Array:
-    """Encoded sRGB as linear light (IEC 61966-2-1); values outside 0..1 are cut."""
+    """Encoded sRGB as linear light (IEC 61966-2-1); values outside 0..1 are clamped."""
     stored = np.clip(np.asarray(encoded, np.float64), 0.0, 1.0)
     linear: Array = np.where(stored <= 0.04045, stored / 12.92, ((stored + 0.055) / 1.055) ** 2.4)
     return linear
 
 
 def png_bytes(color: npt.ArrayLike, bits: int = 8) -> bytes:
-    """An encoded picture, (height, width) or (height, width, 1 to 4), as a PNG file of 8 or 16 bits a channel.
+    """An encoded picture, (height, width) or (height, width, 1 to 4), as a PNG file of 8 or 16 bits per channel.
 
-    Values are 0..1; they are cut to that and rounded, and NaN becomes 0. Raises SssgenError for another shape or depth.
+    Values are clamped to 0..1 and rounded, and NaN becomes 0. Raises SssgenError for another shape or depth.
     """
     if bits not in (8, 16):
-        raise failure(f"a PNG of {bits} bits a channel cannot be written", "8 or 16")
+        raise failure(f"a PNG cannot have {bits} bits per channel", "8 or 16")
     unit = np.clip(np.nan_to_num(_picture(color), nan=0.0), 0.0, 1.0)
     if bits == 16:
         return png16.encode(np.rint(unit * 65535.0).astype(np.uint16))
@@ -116,9 +117,9 @@ def exr_bytes(linear: npt.ArrayLike) -> bytes:
     array = _picture(linear)
     exr = need("OpenEXR")
     names = {1: "Y", 2: "YA", 3: "RGB", 4: "RGBA"}[array.shape[-1]]
-    channels = {name: np.ascontiguousarray(array[..., at], np.float32) for at, name in enumerate(names)}
+    channels = {name: np.ascontiguousarray(array[..., index], np.float32) for index, name in enumerate(names)}
     header = {"compression": exr.ZIP_COMPRESSION, "type": exr.scanlineimage}
-    with tempfile.TemporaryDirectory() as folder:  # the package writes files only
+    with tempfile.TemporaryDirectory() as folder:  # the package can only write files
         temporary = os.path.join(folder, "picture.exr")
         exr.File(header, channels).write(temporary)
         with open(temporary, "rb") as file:
@@ -126,34 +127,34 @@ def exr_bytes(linear: npt.ArrayLike) -> bytes:
 
 
 def write_png(path: str | os.PathLike[str], color: npt.ArrayLike, bits: int = 8) -> None:
-    """Writes what png_bytes gives, whole or not at all.
+    """Writes the bytes of `png_bytes` atomically.
 
-    Raises SssgenError for another ending than .png, where the system refuses, and as png_bytes does.
+    Raises SssgenError for another suffix than .png, if the system refuses, and as `png_bytes` does.
     """
-    _check_ending(path, ".png")
+    _require_suffix(path, ".png")
     _write(path, png_bytes(color, bits))
 
 
 def write_exr(path: str | os.PathLike[str], linear: npt.ArrayLike) -> None:
-    """Writes what exr_bytes gives, whole or not at all.
+    """Writes the bytes of `exr_bytes` atomically.
 
-    Raises SssgenError for another ending than .exr, where the system refuses, and as exr_bytes does.
+    Raises SssgenError for another suffix than .exr, if the system refuses, and as `exr_bytes` does.
     """
-    _check_ending(path, ".exr")
+    _require_suffix(path, ".exr")
     _write(path, exr_bytes(linear))
 
 
-def _check_ending(path: str | os.PathLike[str], suffix: str) -> None:
+def _require_suffix(path: str | os.PathLike[str], suffix: str) -> None:
     if check_suffix(path) != suffix:
         raise failure(f"the file's name must end in {suffix}", "", posix(path))
 
 
 def _picture(values: npt.ArrayLike) -> Array:
-    """What is to be written, as (height, width, channels)."""
+    """The values to write, as (height, width, channels)."""
     array = np.asarray(values, np.float64)
     array = array[..., None] if array.ndim == 2 else array
     if array.ndim != 3 or 0 in array.shape or array.shape[-1] > 4:
-        raise failure(f"an array of shape {array.shape} is no picture", "(height, width, 1 to 4)")
+        raise failure(f"an array of shape {array.shape} is not a picture", "(height, width, 1 to 4)")
     return array
 
 
@@ -168,27 +169,27 @@ def _read_png(path: str, shown: str) -> Array:
         with warnings.catch_warnings():
             warnings.simplefilter("error", pillow.DecompressionBombWarning)
             with pillow.open(path, formats=["PNG"]) as image:
-                image.verify()  # sums that are wrong, and an end that is cut off, which loading passes over
+                image.verify()  # finds wrong checksums and truncation, which loading ignores
             with pillow.open(path, formats=["PNG"]) as image:
                 frames = getattr(image, "n_frames", 1)
                 deep = image.mode in ("RGB", "RGBA", "LA") and _depth(path) == 16
-                if not deep:  # the package would halve the bits in silence
+                if not deep:  # Pillow would silently halve the bits
                     image.load()
     except (pillow.DecompressionBombError, pillow.DecompressionBombWarning, MemoryError):
-        raise failure("the picture is too large to be read", "make it smaller", shown) from None
+        raise failure("the picture is too large to read", "make it smaller", shown) from None
     except pillow.UnidentifiedImageError:
-        raise failure("this is not a PNG picture", "write it as PNG anew; a new name alone does not", shown) from None
+        raise failure("this is not a PNG picture", "convert it to PNG; a new name is not enough", shown) from None
     except (OSError, SyntaxError, ValueError) as error:
-        raise failure(f"the picture is faulty: {error}", "write it anew", shown) from None
+        raise failure(f"the picture is faulty: {error}", "export it again", shown) from None
     if frames > 1:
-        raise failure("this picture moves: it has several frames", "save one of them", shown)
+        raise failure("this picture is animated: it has several frames", "save one of them", shown)
     if deep:
         return _read_deep_png(path, shown)
-    see_through = "A" in image.mode or "transparency" in image.info
+    has_alpha = "A" in image.mode or "transparency" in image.info
     if image.mode in ("P", "PA", "RGB"):
-        image = image.convert("RGBA" if see_through else "RGB")
+        image = image.convert("RGBA" if has_alpha else "RGB")
     elif image.mode in ("1", "L"):
-        image = image.convert("LA" if see_through else "L")
+        image = image.convert("LA" if has_alpha else "L")
     return _as_unit(np.asarray(image), shown)
 
 
@@ -197,11 +198,11 @@ def _read_deep_png(path: str, shown: str) -> Array:
         with open(path, "rb") as file:
             return _as_unit(png16.decode(file.read()), shown)
     except ValueError as error:
-        raise failure(f"the picture is faulty: {error}", "write it anew, not interlaced", shown) from None
+        raise failure(f"the picture is faulty: {error}", "export it again, without interlacing", shown) from None
 
 
 def _depth(path: str) -> int:
-    """The bits a channel of a PNG: byte 24, in its IHDR chunk."""
+    """The bits per channel of a PNG: byte 24, in its IHDR chunk."""
     with open(path, "rb") as file:
         return file.read(25)[24]
 
@@ -211,8 +212,8 @@ def _read_exr(path: str, shown: str) -> Array:
     try:
         with exr.File(path, separate_channels=True) as file:
             channels = {name: np.asarray(channel.pixels) for name, channel in file.channels().items()}
-    except (RuntimeError, ValueError, TypeError, MemoryError):  # its texts name the file, and say no more
-        raise failure("this is not an OpenEXR picture, or a faulty one", "write it anew", shown) from None
+    except (RuntimeError, ValueError, TypeError, MemoryError):  # the messages state only the file
+        raise failure("this is not an OpenEXR picture, or a faulty one", "export it again", shown) from None
     for names in ("RGBA", "RGB", "YA", "Y"):
         if set(names) <= channels.keys():
             parts = [channels[name] for name in names]
@@ -220,7 +221,7 @@ def _read_exr(path: str, shown: str) -> Array:
     else:
         if len(channels) != 1:
             hint = "write R, G, B (and A), or one channel"
-            raise failure(f"cannot tell what the channels {', '.join(sorted(channels))} are", hint, shown)
+            raise failure(f"the meaning of the channels {', '.join(sorted(channels))} is unknown", hint, shown)
         parts = list(channels.values())
     if len({part.shape for part in parts}) > 1 or parts[0].ndim != 2:
         raise failure("the channels have different sizes", "write them without subsampling", shown)
@@ -231,14 +232,14 @@ def _read_npy(path: str, shown: str) -> Array:
     try:
         with open(path, "rb") as file:
             array = np.load(file, allow_pickle=False)
-    except Exception as error:  # its header is read by Python's own tokenizer, which raises what it likes
+    except Exception as error:  # NumPy reads the header with Python's tokenizer, which raises exceptions of many types
         raise failure(f"this is not a NumPy array: {error}", "write it with numpy.save", shown) from None
-    if not isinstance(array, np.ndarray):  # an .npz under another name
-        raise failure("this holds several arrays", "write one, with numpy.save", shown)
+    if not isinstance(array, np.ndarray):  # a renamed .npz
+        raise failure("this file holds several arrays", "write one, with numpy.save", shown)
     array = array[..., None] if array.ndim == 2 else array
     if array.ndim not in (3, 4) or array.shape[-1] > 4:
         hint = "(height, width), (height, width, 1 to 4) or (depth, height, width, 1 to 4)"
-        raise failure(f"an array of shape {array.shape} is no texture", hint, shown)
+        raise failure(f"an array of shape {array.shape} is not a texture", hint, shown)
     return _as_unit(array, shown)
 
 
@@ -247,6 +248,6 @@ def _as_unit(array: npt.NDArray[Any], shown: str) -> Array:
     array = array[..., None] if array.ndim == 2 else array
     if array.dtype == np.bool_ or np.issubdtype(array.dtype, np.floating):
         return array.astype(np.float64)
-    if array.dtype not in _WHOLE:
-        raise failure(f"numbers of type {array.dtype} are no texture's", "use float32, uint8 or uint16", shown)
-    return array / _WHOLE[array.dtype]
+    if array.dtype not in _ONE_AS_INTEGER:
+        raise failure(f"a texture cannot hold numbers of type {array.dtype}", "use float32, uint8 or uint16", shown)
+    return array / _ONE_AS_INTEGER[array.dtype]

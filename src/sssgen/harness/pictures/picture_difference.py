@@ -13,7 +13,7 @@ from sssgen.support.extras import need
 Array: TypeAlias = npt.NDArray[np.float64]
 
 EPSILON = 1e-2
-"""What relMSE adds to the reference's square, so that black counts no more than dark."""
+"""Added to the reference's square in relMSE, so that black does not count more than dark."""
 
 
 class Difference(NamedTuple):
@@ -32,25 +32,25 @@ class Difference(NamedTuple):
 
 
 def compare(a: npt.ArrayLike, b: npt.ArrayLike) -> Difference:
-    """How the picture `a` differs from the reference `b`: both (height, width, 3), encoded sRGB, cut to 0..1.
+    """How the picture `a` differs from the reference `b`: both (height, width, 3), encoded sRGB, clamped to 0..1.
 
     FLIP (Andersson et al. 2020, the LDR one) has its default viewing conditions: a display of 3840 pixels and 0.7 m
-    across, seen from 0.7 m, which is 67 pixels a degree. Raises SssgenError for pictures of different sizes, for
-    arrays that are no pictures, and for NaN.
+    across, seen from 0.7 m, which is 67 pixels per degree. Raises SssgenError for pictures of different sizes, for
+    arrays that are not pictures, and for NaN.
     """
     picture, reference = _picture(a, "picture"), _picture(b, "reference")
     if picture.shape != reference.shape:
-        sizes = [f"{one.shape[1]} × {one.shape[0]}" for one in (picture, reference)]
+        sizes = [f"{image.shape[1]} × {image.shape[0]}" for image in (picture, reference)]
         raise failure(f"the pictures have different sizes: {sizes[0]} and {sizes[1]} pixels", "render both in one size")
     flip = need("flip_evaluator", "flip-evaluator")
     error, mean, _ = flip.evaluate(reference.astype(np.float32), picture.astype(np.float32), "LDR")
-    far = np.abs(picture - reference)
+    differences = np.abs(picture - reference)
     relative = (picture - reference) ** 2 / (reference**2 + EPSILON)
     return Difference(
         float(mean),
         float(relative.mean()),
-        255.0 * float(np.percentile(far.max(axis=2), 99.0)),
-        255.0 * float(far.max()),
+        255.0 * float(np.percentile(differences.max(axis=2), 99.0)),
+        255.0 * float(differences.max()),
         np.asarray(error, np.float64),
     )
 
@@ -60,5 +60,5 @@ def _picture(values: npt.ArrayLike, name: str) -> Array:
     if array.ndim != 3 or array.shape[2] != 3 or 0 in array.shape:
         raise failure(f"the {name} has the shape {array.shape}", "compare pictures of (height, width, 3)")
     if np.isnan(array).any():
-        raise failure(f"the {name} holds NaN", "see where it comes from before comparing")
+        raise failure(f"the {name} holds NaN", "find its source before comparing")
     return np.clip(array, 0.0, 1.0)

@@ -47,67 +47,68 @@ def shell_of(scene: Scene, material: Material, reflection: Mapping[str, Any]) ->
 
 def _parameters(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> dict[str, tuple[float, ...]]:
     """The scene's values for the material's uniforms, with the same checks as in a material."""
-    known = {uniform["source_name"]: uniform for uniform in reflection["uniforms"]}
-    document, found = scene.document, _of_baked(scene, material, reflection)
+    uniforms = {uniform["source_name"]: uniform for uniform in reflection["uniforms"]}
+    document, values = scene.document, _baked_parameters(scene, material, reflection)
     for name, raw in scene.parameters.items():
         place = document.place("parameters", name)
-        if name not in known:
-            hint = did_you_mean(name, known) or f"it has: {', '.join(known) or 'none'}"
+        if name not in uniforms:
+            hint = did_you_mean(name, uniforms) or f"it has: {', '.join(uniforms) or 'none'}"
             document.error(place.key, f"{material.name} has no parameter '{name}'", hint)
             continue
         try:
-            found[name] = read_value(_uniform(material, known[name]), raw)
+            values[name] = read_value(_uniform(material, uniforms[name]), raw)
         except WrongValue as wrong:
             document.error(place.value, wrong.message, wrong.hint)
     document.reporter.check()
-    return found
+    return values
 
 
-def _of_baked(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> dict[str, tuple[float, ...]]:
-    """The parameters that come with baked textures, where the scene's body stands."""
-    found: dict[str, tuple[float, ...]] = {}
+def _baked_parameters(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> dict[str, tuple[float, ...]]:
+    """The parameters of baked textures, for the transform of the scene's geometry."""
+    parameters: dict[str, tuple[float, ...]] = {}
     for texture in reflection["textures"]:
         file = _file(scene, material, texture)
         try:
-            made = baked.read(file) if file else None
-            if made is None:
+            sidecar = baked.read(file) if file else None
+            if sidecar is None:
                 continue
-            baked.check(made, _uniform(material, texture), os.path.basename(file))
-            values = _placed(made, scene.geometry)
-        except SssgenError as wrong:
+            baked.check(sidecar, _uniform(material, texture), os.path.basename(file))
+            values = _in_world_space(sidecar, scene.geometry)
+        except SssgenError as error:
             if (name := texture["source_name"]) not in scene.textures:
                 raise
-            for one in wrong.diagnostics:
-                scene.document.error(scene.document.place("textures", name).value, one.message, one.hint)
+            for diagnostic in error.diagnostics:
+                place = scene.document.place("textures", name).value
+                scene.document.error(place, diagnostic.message, diagnostic.hint)
             continue
         for entry in reflection["uniforms"]:
             if entry["technique"] == texture["technique"] and entry["technique_name"] in values:
                 raw = values[entry["technique_name"]]
                 try:
-                    found[entry["source_name"]] = read_value(_uniform(material, entry), raw)
+                    parameters[entry["source_name"]] = read_value(_uniform(material, entry), raw)
                 except WrongValue as wrong:
                     hint = "; ".join(filter(None, (wrong.hint, baked.UNITS)))
                     raise failure(f"the baked parameters do not fit: {wrong.message}", hint, posix(file)) from None
-    return found
+    return parameters
 
 
-def _placed(made: Baked, geometry: Geometry | None) -> dict[str, Any]:
-    """The parameters as the JSON has them, in the body's own space, brought to the world's where techniques want that.
+def _in_world_space(sidecar: Baked, geometry: Geometry | None) -> dict[str, Any]:
+    """The parameters of a JSON file, transformed from object space to world space where techniques need that.
 
-    Raises SssgenError for a depth map of a body that the scene scales: its lengths are those of the bake.
+    Raises SssgenError for a depth map of a body that the scene scales: its lengths are in the units of the bake.
     """
-    values = dict(made.parameters)
+    values = dict(sidecar.parameters)
     if geometry is None:
         return values
-    inwards = geometry.to_object()
-    if made.kind == "distance":
+    to_object = geometry.to_object()
+    if sidecar.kind == "distance":
         values |= placement(geometry)
-    if isinstance(factor := values.get("thickness_factor"), int | float) and made.kind == "thickness":
+    if isinstance(factor := values.get("thickness_factor"), int | float) and sidecar.kind == "thickness":
         values["thickness_factor"] = factor * geometry.scale
-    if isinstance(matrix := values.get("light_matrix"), list) and made.kind == "depth" and len(matrix) == 16:
+    if isinstance(matrix := values.get("light_matrix"), list) and sidecar.kind == "depth" and len(matrix) == 16:
         if geometry.scale != 1.0:
-            raise failure("the depth map is of the body's own size, and the scene scales it", "scale the mesh itself")
-        values["light_matrix"] = [*(np.array(matrix).reshape(4, 4).T @ inwards).T.ravel()]
+            raise failure("the depth map is for the unscaled body, but the scene scales it", "scale the mesh itself")
+        values["light_matrix"] = [*(np.array(matrix).reshape(4, 4).T @ to_object).T.ravel()]
     return values
 
 
@@ -118,36 +119,36 @@ def _uniform(material: Material, entry: Mapping[str, Any]) -> Uniform:
         for uniform in (uniform for module in modules for uniform in module.uniforms):
             if uniform.name == entry["technique_name"] and stage.technique.name == entry["technique"]:
                 return uniform
-    every = (uniform for stage in material.stages for uniform in stage.technique.module.uniforms)
-    return next(uniform for uniform in every if uniform.name == entry["technique_name"])
+    own = (uniform for stage in material.stages for uniform in stage.technique.module.uniforms)
+    return next(uniform for uniform in own if uniform.name == entry["technique_name"])
 
 
 def _textures(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> dict[str, Texture]:
-    """The scene's textures, and where it has none those that the material suggests."""
-    known = {texture["source_name"]: texture for texture in reflection["textures"]}
-    document, found = scene.document, {}
+    """The scene's textures; for the others those that the material suggests."""
+    entries = {texture["source_name"]: texture for texture in reflection["textures"]}
+    document, textures = scene.document, {}
     for name in scene.textures:
-        if name not in known:
-            hint = did_you_mean(name, known) or f"it has: {', '.join(known) or 'none'}"
+        if name not in entries:
+            hint = did_you_mean(name, entries) or f"it has: {', '.join(entries) or 'none'}"
             document.error(document.place("textures", name).key, f"{material.name} has no texture '{name}'", hint)
     document.reporter.check()
-    for name, texture in known.items():
-        given = scene.textures.get(name)
-        if isinstance(given, DistanceTexture):
+    for name, texture in entries.items():
+        chosen = scene.textures.get(name)
+        if isinstance(chosen, DistanceTexture):
             if scene.geometry is None:
-                raise failure(f"texture '{name}' is the distance to the scene's geometry, and it has none")
-            found[name] = half(Texture(given.values(scene.geometry), wrap="clamp"))
+                raise failure(f"texture '{name}' is the distance to the scene's geometry, but the scene has none")
+            textures[name] = half(Texture(chosen.values(scene.geometry), wrap="clamp"))
         elif file := _file(scene, material, texture):
-            wrap = getattr(given, "wrap", "") or str(texture["import"]["wrap"])
-            found[name] = _picture(file, wrap, texture)
-    return found
+            wrap = getattr(chosen, "wrap", "") or str(texture["import"]["wrap"])
+            textures[name] = _picture(file, wrap, texture)
+    return textures
 
 
 def _file(scene: Scene, material: Material, texture: Mapping[str, Any]) -> str:
-    """The file of a texture: the scene's, or where it has none that which the material suggests."""
-    given = scene.textures.get(texture["source_name"])
-    if given is not None:
-        return given.file if isinstance(given, Picture) else ""
+    """The file of a texture: the scene's, or else the one that the material suggests; '' if there is none."""
+    chosen = scene.textures.get(texture["source_name"])
+    if chosen is not None:
+        return chosen.file if isinstance(chosen, Picture) else ""
     return _suggested(material, texture)
 
 
@@ -159,8 +160,8 @@ def _suggested(material: Material, texture: Mapping[str, Any]) -> str:
 
 
 def _picture(file: str, wrap: str, texture: Mapping[str, Any]) -> Texture:
-    made = inputs.texture(file, wrap, srgb=texture["color_space"] == "sRGB")
-    if made.dim != texture["type"].removeprefix("sampler"):
+    picture = inputs.texture(file, wrap, srgb=texture["color_space"] == "sRGB")
+    if picture.dim != texture["type"].removeprefix("sampler"):
         type_ = with_article(texture["type"])
-        raise failure(f"this is a {made.dim} texture, and '{texture['source_name']}' is {type_}", file=file)
-    return half(made)
+        raise failure(f"this is a {picture.dim} texture, and '{texture['source_name']}' is {type_}", file=file)
+    return half(picture)

@@ -1,4 +1,4 @@
-"""A whole emitted program, shaded on any back end: each kind has its own shell around it."""
+"""Shades an emitted program on any back end: chooses the shell for the kind of back end."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def shade(backend: Backend, compiled: Compiled, shell: Shell, size: tuple[int, i
     """The picture, (height, width, 4), row 0 at the bottom.
 
     `points` are the vertices of `pixel_mesh`; None means the screen.
-    Raises SssgenError where the back end refuses or gives up.
+    Raises SssgenError if the back end refuses or fails.
     """
     if isinstance(backend, Isolated):
         picture: Array = backend.apply(shade, compiled, shell, size, points)

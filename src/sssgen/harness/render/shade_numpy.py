@@ -1,6 +1,6 @@
-"""Our shells once more, in NumPy: what an emitted shader's entry points do with a material's functions.
+"""The shell in NumPy: does what an emitted shader's entry points do with a material's functions.
 
-The numpy target emits the functions; a picture of the oracle needs the loop over the lights around them.
+The numpy target emits only the functions; a picture also needs the vertex stage and the loop over the lights.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from sssgen.pipeline.compiler import Compiled
 from sssgen.targets.runtime.numpy_values import grid, precision
 
 BAND = 1 << 16
-"""About how many pixels are shaded at once."""
+"""The approximate number of pixels that are shaded at once."""
 
 _DTYPES: dict[str, Any] = {"float": np.float64, "int": np.int32, "uint": np.uint32, "bool": np.bool_}
 
@@ -38,25 +38,19 @@ def shade(compiled: Compiled, shell: Shell, size: tuple[int, int], points: Array
 
 
 def _namespace(compiled: Compiled, shell: Shell, dtype: str) -> dict[str, Any]:
-    """What the emitted text defines, with the material's values in the place of the defaults."""
+    """The names that the emitted text defines; parameters and textures of the shell replace the defaults."""
     (text,) = [text for name, text in compiled.files.items() if name.endswith(".py")]
     names: dict[str, Any] = {}
     with precision(dtype):
         exec(compile(text, f"<{compiled.reflection['material']}>", "exec"), names)
     for uniform in compiled.reflection["uniforms"]:
-        given = shell.parameters.get(uniform["source_name"])
-        if given is not None:
+        parameter = shell.parameters.get(uniform["source_name"])
+        if parameter is not None:
             base, _, length = uniform["type"].partition("[")
             type_ = BY_NAME[base]
-            size = (
-                (type_.size, type_.size)
-                if isinstance(type_, Matrix)
-                else (type_.size,)
-                if isinstance(type_, Vector)
-                else ()
-            )
+            size = (type_.size,) * (2 if isinstance(type_, Matrix) else 1) if isinstance(type_, Matrix | Vector) else ()
             kind = dtype if kind_of(type_) == "float" else _DTYPES[kind_of(type_)]
-            value = np.asarray(given).reshape(*([-1] if length else []), *size, 1).astype(kind)
+            value = np.asarray(parameter).reshape(*([-1] if length else []), *size, 1).astype(kind)
             names[uniform["name"]] = value if size or length else value[0]
     for texture in compiled.reflection["textures"]:
         bound = shell.textures.get(texture["source_name"])
@@ -68,38 +62,38 @@ def _inputs(shell: Shell, size: tuple[int, int], points: Array | None, rows: sli
     """The chain's inputs that do not depend on a light, components first."""
     width, height = size
     eye = np.array(shell.camera_position)[:, None]
-    found: dict[str, Any] = {"time": np.array(shell.time)}
+    inputs: dict[str, Any] = {"time": np.array(shell.time)}
     if points is None:
         x, y = np.meshgrid(np.arange(width), np.arange(rows.start, rows.stop))
         uv = np.stack([(x.ravel() + 0.5) / width, (y.ravel() + 0.5) / height])
         far = inverse(shell.view_projection) @ np.stack([*(2.0 * uv - 1.0), np.ones(x.size), np.ones(x.size)])
-        found |= {"uv": uv, "ray_origin": np.broadcast_to(eye, (3, x.size)), "P": np.broadcast_to(eye, (3, x.size))}
-        found |= {"ray_direction": _unit(far[:3] - eye * far[3])}
+        inputs |= {"uv": uv, "ray_origin": np.broadcast_to(eye, (3, x.size)), "P": np.broadcast_to(eye, (3, x.size))}
+        inputs |= {"ray_direction": _unit(far[:3] - eye * far[3])}
     else:
         data = points.reshape(height, width, 12)[rows].reshape(-1, 12).T.astype(np.float64)
         model, world_to_object = shell.model, inverse(shell.model)
-        place = model[:3, :3] @ data[0:3] + model[:3, 3:]
+        position = model[:3, :3] @ data[0:3] + model[:3, 3:]
         normal, tangent = _unit(world_to_object[:3, :3].T @ data[3:6]), _unit(model[:3, :3] @ data[6:9])
-        hand = data[9] * np.sign(np.linalg.det(model[:3, :3]))
-        found |= {"uv": data[10:12], "P": place, "V": _unit(eye - place), "N": normal, "T": tangent}
-        found |= {"B": np.cross(normal, tangent, axis=0) * hand}
-        found |= {"P_object": data[0:3], "V_object": _unit(world_to_object[:3, :3] @ found["V"])}
-        found |= {"N_object": _unit(model[:3, :3].T @ normal)}
-    return {name: value.astype(dtype) for name, value in found.items()}
+        handedness = data[9] * np.sign(np.linalg.det(model[:3, :3]))
+        inputs |= {"uv": data[10:12], "P": position, "V": _unit(eye - position), "N": normal, "T": tangent}
+        inputs |= {"B": np.cross(normal, tangent, axis=0) * handedness}
+        inputs |= {"P_object": data[0:3], "V_object": _unit(world_to_object[:3, :3] @ inputs["V"])}
+        inputs |= {"N_object": _unit(model[:3, :3].T @ normal)}
+    return {name: value.astype(dtype) for name, value in inputs.items()}
 
 
 def _unit(v: Array) -> Array:
-    """The shells' unit_vector, in float64: half precision has no square so small."""
+    """The shells' `unit_vector`, in float64, because small squares underflow in half precision."""
     wide = v.astype(np.float64)
     square = (wide * wide).sum(axis=0)
-    found: Array = np.where(square > 1e-30, wide / np.sqrt(np.maximum(square, 1e-30)), 0.0)
-    return found.astype(v.dtype)
+    result: Array = np.where(square > 1e-30, wide / np.sqrt(np.maximum(square, 1e-30)), 0.0)
+    return result.astype(v.dtype)
 
 
-def _light(shell: Shell, number: int, place: Array, dtype: str) -> dict[str, Any]:
+def _light(shell: Shell, number: int, surface_position: Array, dtype: str) -> dict[str, Any]:
     """The inputs of one light."""
     position, color = shell.light_positions[number].astype(dtype), shell.light_colors[number].astype(dtype)
-    to_light = position[:3, None] - place * position[3]
+    to_light = position[:3, None] - surface_position * position[3]
     squared = np.maximum((to_light * to_light).sum(axis=0), np.asarray(1e-4, dtype))
     towards = to_light / np.sqrt(squared)
     falloff = 1.0 + (1.0 / squared - 1.0) * position[3]

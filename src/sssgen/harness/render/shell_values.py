@@ -1,4 +1,4 @@
-"""The values that our shells need (docs/templates.md), in the form of each language: uniforms by name, or blocks.
+"""The values that the shells need (docs/templates.md), in the form of each language: uniforms by name, or blocks.
 
 An emitted shader is drawn unchanged; the reflection describes what differs between materials.
 """

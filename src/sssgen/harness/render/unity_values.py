@@ -26,7 +26,7 @@ _ADD = {0.0: ("UNITY_PASS_FORWARDADD=1", "DIRECTIONAL=1"), 1.0: ("UNITY_PASS_FOR
 _FALLOFF = 8192
 """Texels of the table of a point light's falloff."""
 _NEAREST = 0.01
-"""The shortest reach of a light, equal to that of the falloff in our other shells."""
+"""The shortest reach of a light, equal to that of the falloff in the other shells."""
 _LARGEST = 6e4
 """Below the largest float16."""
 _MOST_LIGHTS = 8
@@ -65,23 +65,23 @@ def _passes(
     """The draws, whose pictures are added."""
     reflection = compiled.reflection
     (name,) = (file["name"] for file in reflection["files"])
-    shader, own = emitted(compiled, reflection, name), textures(reflection, shell)
+    shader, bound_textures = emitted(compiled, reflection, name), textures(reflection, shell)
     values = _engine(shell, size) | _properties(reflection, shell)
 
     def drawing(keywords: tuple[str, ...], light: dict[str, Array], falloff: Texture | None = None) -> Drawing:
         vertex, fragment = (backend.forward(shader, stage, keywords) for stage in ("vertex", "fragment"))
-        bound = own | ({"_LightTexture0": Bound(falloff, Place(0, 0))} if falloff else {})
+        bound = bound_textures | ({"_LightTexture0": Bound(falloff, Place(0, 0))} if falloff else {})
         return Drawing(size, fragment, vertex, floats=True, textures=bound, values=values | light)
 
     lights = list(zip(shell.light_positions, shell.light_colors, strict=True))
     main = next((light for light in lights if light[0][3] == 0.0), (np.array([0.0, 1.0, 0.0, 0.0]), np.zeros(3)))
-    others = [light for light in lights if light is not main]
+    additional = [light for light in lights if light is not main]
     if backend.target.name == "unity-urp":
-        return [drawing(("_ADDITIONAL_LIGHTS=1",) if others else (), _urp_lights(main, others))]
+        return [drawing(("_ADDITIONAL_LIGHTS=1",) if additional else (), _urp_lights(main, additional))]
     if reflection["shading"] != "lit":
         return [drawing((), _builtin_light(*main))]
     passes = [drawing(_BASE, _builtin_light(*main))]
-    for position, color in others:
+    for position, color in additional:
         reach = _reach(shell, position, points)
         light = _builtin_light(position, color if position[3] == 0.0 else color / reach**2, reach)
         passes.append(drawing(_ADD[float(position[3])], light, _falloff()))
@@ -90,12 +90,12 @@ def _passes(
 
 def _engine(shell: Shell, size: tuple[int, int]) -> dict[str, Array]:
     """The variables that the engine sets for every pass; a matrix as its columns."""
-    one, (width, height) = np.ones(4), size
+    width, height = size
     screen = np.array([width, height, 1.0 + 1.0 / width, 1.0 + 1.0 / height])
     values = {
         "unity_ObjectToWorld": shell.model.T,
         "unity_WorldToObject": inverse(shell.model).T,
-        "unity_WorldTransformParams": one * np.sign(np.linalg.det(shell.model[:3, :3])),
+        "unity_WorldTransformParams": np.ones(4) * np.sign(np.linalg.det(shell.model[:3, :3])),
         "unity_MatrixVP": shell.view_projection.T,
         "unity_MatrixInvVP": inverse(shell.view_projection).T,
         "_WorldSpaceCameraPos": np.array(shell.camera_position),
@@ -115,8 +115,8 @@ def _properties(reflection: Mapping[str, Any], shell: Shell) -> dict[str, Array]
     for uniform in reflection["uniforms"]:
         type_ = BY_NAME[uniform["type"].partition("[")[0]]
         size = type_.size if isinstance(type_, Matrix | Vector) else 1
-        given = shell.parameters.get(uniform["source_name"], uniform["default"])
-        properties[uniform["name"]] = np.asarray(given).reshape(-1, size)
+        value = shell.parameters.get(uniform["source_name"], uniform["default"])
+        properties[uniform["name"]] = np.asarray(value).reshape(-1, size)
     return properties
 
 
@@ -139,21 +139,21 @@ def _reach(shell: Shell, position: Array, points: Array) -> float:
 
 
 def _falloff() -> Texture:
-    """1/x over x = (distance / reach)², the falloff of our other shells instead of the engine's own table."""
+    """1/x over x = (distance / reach)², the falloff of the other shells instead of the engine's own table."""
     x = (np.arange(_FALLOFF) + 0.5) / _FALLOFF
     return Texture(np.repeat(np.minimum(1.0 / x, _LARGEST)[None, :, None], 4, axis=2), wrap="clamp")
 
 
-def _urp_lights(main: tuple[Array, Array], others: list[tuple[Array, Array]]) -> dict[str, Array]:
+def _urp_lights(main: tuple[Array, Array], additional: list[tuple[Array, Array]]) -> dict[str, Array]:
     """The main light and the additional lights, without the engine's fade-out at their range."""
-    shown = others[:_MOST_LIGHTS]
+    shown = additional[:_MOST_LIGHTS]
     count = float(len(shown))
     return {
         "_MainLightPosition": main[0],
         "_MainLightColor": np.append(main[1], 1.0),
         "_AdditionalLightsCount": np.array([count, 0.0, 0.0, 0.0]),
-        "_AdditionalLightsPosition": np.array([where for where, _ in shown]).reshape(-1, 4),
-        "_AdditionalLightsColor": np.array([np.append(shade, 1.0) for _, shade in shown]).reshape(-1, 4),
+        "_AdditionalLightsPosition": np.array([position for position, _ in shown]).reshape(-1, 4),
+        "_AdditionalLightsColor": np.array([np.append(color, 1.0) for _, color in shown]).reshape(-1, 4),
         "_AdditionalLightsAttenuation": np.tile([0.0, 1.0, 0.0, 1.0], (len(shown), 1)),
         "unity_LightData": np.array([0.0, count, 1.0, 0.0]),
         "unity_LightIndices": np.arange(8.0).reshape(2, 4),

@@ -16,17 +16,17 @@ Vector: TypeAlias = tuple[float, float, float]
 class Camera:
     """A pinhole camera in world space, right-handed, y up.
 
-    Looking straight up or down, the picture's top is what it would be after tilting a camera that faces −z.
+    A camera that looks straight up or down has the orientation of one that faces −z and is then tilted.
     """
 
     position: Vector = (0.0, 0.0, 4.0)
     target: Vector = (0.0, 0.0, 0.0)
-    """What stands in the middle of the picture; not the position."""
+    """The point in the middle of the picture; must differ from `position`."""
     field_of_view: float = 40.0
     """From the picture's lower to its upper edge, in degrees; above 0, below 180."""
     near: float = 0.1
     far: float = 100.0
-    """The distances, along the view, that the matrix takes to the ends of the depth range."""
+    """The distances along the view direction that the matrix maps to the ends of the depth range."""
 
     def axes(self) -> tuple[Array, Array, Array]:
         """The unit directions to the picture's right, to its top, and into it."""

@@ -1,4 +1,4 @@
-"""Solids made of others: a capsule, and the union of several shapes."""
+"""Compound solids: a capsule, and the union of several shapes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from sssgen.harness.scenes.placed import Array, Geometry, Hits, planar, spherica
 
 @dataclass(frozen=True)
 class Capsule(Geometry):
-    """All that is within `radius` of a piece of the y axis, `length` long, about the origin; uv as on a ball."""
+    """The points within `radius` of a segment of the y axis, `length` long, centred at the origin; uv as on a ball."""
 
     radius: float = 0.25
     length: float = 1.0
@@ -34,7 +34,7 @@ class Capsule(Geometry):
         return distance
 
     def interval(self, origins: Array, directions: Array) -> tuple[Array, Array]:
-        """Where lines enter and leave, (n,) each, from origins (n, 3) along unit directions; inf, −inf: they miss.
+        """Where lines enter and leave, (n,) each, from origins (n, 3) along unit directions; inf and −inf for a miss.
 
         A capsule is convex and the union of two balls and a cylinder: the first entry and the last exit of these.
         """
@@ -55,7 +55,7 @@ class Capsule(Geometry):
             closest = flat + middle[:, None] * across
             root = np.sqrt((self.radius**2 - np.einsum("nc,nc->n", closest, closest)) / size)
             for t, first in ((middle - root, True), (middle + root, False)):
-                on = np.abs(origins[:, 1] + t * directions[:, 1]) <= half  # false of NaN: past, or along the axis
+                on = np.abs(origins[:, 1] + t * directions[:, 1]) <= half  # false for NaN: a ray along the axis
                 enters = np.where(on & first, np.minimum(enters, t), enters)
                 leaves = np.where(on & (not first), np.maximum(leaves, t), leaves)
         return enters, leaves
@@ -63,10 +63,10 @@ class Capsule(Geometry):
 
 @dataclass(frozen=True)
 class Union(Geometry):
-    """Several shapes as one body, each at its own place in this one's object space; they may overlap.
+    """Several shapes as one body, each with its own transform in the union's object space; they may overlap.
 
-    Rays come from outside of all parts. The distance is the least of the parts': right outside, and inside, where
-    parts overlap, no more than the depth.
+    Rays must start outside all parts. The distance is the smallest of the parts': exact outside, and a lower bound of
+    the depth inside.
     """
 
     parts: tuple[Geometry, ...] = ()
@@ -74,11 +74,14 @@ class Union(Geometry):
     """uv: each part's own (`parts`), or x and y of the whole (`planar`)"""
 
     def cast(self, origin: Array, directions: Array) -> Hits:
-        found = [part.hits(origin, directions) for part in self.parts]
-        way = [np.where(one.hit, np.einsum("nc,nc->n", one.position - origin, directions), np.inf) for one in found]
-        nearest = np.argmin(way, axis=0)
+        hits_of_parts = [part.hits(origin, directions) for part in self.parts]
+        distances = [
+            np.where(hits.hit, np.einsum("nc,nc->n", hits.position - origin, directions), np.inf)
+            for hits in hits_of_parts
+        ]
+        nearest = np.argmin(distances, axis=0)
         rows = np.arange(len(directions))
-        chosen = Hits(*(np.stack(parts)[nearest, rows] for parts in zip(*found, strict=True)))
+        chosen = Hits(*(np.stack(parts)[nearest, rows] for parts in zip(*hits_of_parts, strict=True)))
         if self.projection == "parts":
             return chosen
         uv, grows_u, grows_v = planar(chosen.position)
@@ -93,6 +96,6 @@ class Union(Geometry):
 
 
 def _distance(part: Geometry, points: Array) -> Array:
-    """The distance to a part at its place, from points in the union's object space."""
-    inwards = part.to_object()
-    return part.scale * part.distance(points @ inwards[:3, :3].T + inwards[:3, 3])
+    """The distance to a transformed part, from points in the union's object space."""
+    to_object = part.to_object()
+    return part.scale * part.distance(points @ to_object[:3, :3].T + to_object[:3, 3])

@@ -1,6 +1,6 @@
-"""Geometry from a distance function of the library, or of a file in our language: sphere tracing on the CPU.
+"""Geometry from a distance function of the library, or of a technique file: sphere tracing on the CPU.
 
-The numpy target makes Python of the function, with the parameters folded in; it runs in float64.
+The numpy target compiles the function to Python, with the parameters folded in; it runs in float64.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ PROJECTIONS = {"spherical": spherical, "planar": planar}
 
 _STEPS = 1000
 _SHORTEST = 1e-4
-"""The shortest step, in parts of `reach`: what is thinner may be missed."""
+"""The shortest step, relative to `reach`: thinner parts may be missed."""
 
 
 @dataclass(frozen=True)
 class Distance(Geometry):
-    """Where a distance function is 0, within a ball about the origin; beyond it there is nothing.
+    """The zero set of a distance function, within a ball about the origin.
 
     The function is `NAME`, `NAME:FUNCTION`, `FILE` or `FILE:FUNCTION`, as in a material's `bind`: it takes one
     position, in this geometry's object space, and must not grow faster than the distance does. uv are longitude and
@@ -45,9 +45,9 @@ class Distance(Geometry):
 
     technique: str = "sphere"
     folder: str = ""
-    """Where files are looked for, before the library."""
+    """The folder where files are searched for before the library."""
     parameters: Mapping[str, object] = field(default_factory=dict)
-    """The function's uniforms → values as a material writes them; the rest have their defaults."""
+    """The function's uniforms → TOML values as in a material; the others have their defaults."""
     reach: float = 4.0
     """The ball's radius, in units of object space."""
     projection: str = "spherical"
@@ -60,11 +60,11 @@ class Distance(Geometry):
         return spread(hit, position, normal, tangent_of(normal, grows_u, grows_v), uv)
 
     def distance(self, points: Array) -> Array:
-        """Raises SssgenError for a function that is missing, faulty, or none of a position's distance."""
-        if not len(points):  # the emitted functions take a point or more
+        """Raises SssgenError for a function that is missing, faulty, or not a distance function."""
+        if not len(points):  # the emitted functions need at least one point
             return np.zeros(0)
-        found: Array = np.broadcast_to(np.asarray(self.function(points.T), np.float64), len(points))
-        return found
+        distance: Array = np.broadcast_to(np.asarray(self.function(points.T), np.float64), len(points))
+        return distance
 
     @cached_property
     def function(self) -> Callable[[Array], Any]:
@@ -72,10 +72,10 @@ class Distance(Geometry):
         module, function = find_function(self.technique, self.folder)
         values = _values(self.technique, uniforms_of(module, function), self.parameters)
         linked = link([LinkStage(function.name, "", module, function, {}, values, frozenset(values))])
-        made = transpile(fold(linked.module, linked.fixed), "numpy", function.name)
+        compiled = transpile(fold(linked.module, linked.fixed), "numpy", function.name)
         namespace: dict[str, Any] = {}
-        exec(made.files[f"{function.name}_functions.py"], namespace)
-        code = namespace[made.reflection["renames"].get(function.name, function.name)]
+        exec(compiled.files[f"{function.name}_functions.py"], namespace)
+        code = namespace[compiled.reflection["renames"].get(function.name, function.name)]
 
         def run(points: Array) -> Any:
             with precision(np.float64):
@@ -84,28 +84,28 @@ class Distance(Geometry):
         return run
 
     def _march(self, origin: Array, directions: Array) -> tuple[Array, Bools]:
-        """The way to the nearest change of sign, (n,), and whether there is one, (n,)."""
+        """The distance along each ray to the first change of sign, (n,), and whether there is one, (n,)."""
         nearest = -directions @ origin
         closest = origin + nearest[:, None] * directions
         half = self.reach**2 - np.einsum("nc,nc->n", closest, closest)
-        last = nearest + np.sqrt(np.maximum(half, 0.0))
-        before = np.maximum(nearest - np.sqrt(np.maximum(half, 0.0)), 0.0)
+        end = nearest + np.sqrt(np.maximum(half, 0.0))
+        previous = np.maximum(nearest - np.sqrt(np.maximum(half, 0.0)), 0.0)
         hit = np.zeros(len(directions), np.bool_)
-        going = np.flatnonzero((half > 0.0) & (last > 0.0))
-        t = before.copy()
+        active = np.flatnonzero((half > 0.0) & (end > 0.0))
+        t = previous.copy()
         inside = np.zeros(len(directions), np.bool_)
-        inside[going] = self._at(origin, directions, t, going) < 0.0
+        inside[active] = self._at(origin, directions, t, active) < 0.0
         for _ in range(_STEPS):
-            if not len(going):
+            if not len(active):
                 break
-            value = self._at(origin, directions, t, going)
-            crossed = (value < 0.0) != inside[going]
-            hit[going[crossed]] = True
-            on = ~crossed & (t[going] < last[going]) & np.isfinite(value)
-            going, value = going[on], value[on]
-            before[going] = t[going]
-            t[going] = np.minimum(t[going] + np.maximum(np.abs(value), _SHORTEST * self.reach), last[going])
-        return self._bisected(origin, directions, before, t, inside, np.flatnonzero(hit)), hit
+            value = self._at(origin, directions, t, active)
+            crossed = (value < 0.0) != inside[active]
+            hit[active[crossed]] = True
+            continues = ~crossed & (t[active] < end[active]) & np.isfinite(value)
+            active, value = active[continues], value[continues]
+            previous[active] = t[active]
+            t[active] = np.minimum(t[active] + np.maximum(np.abs(value), _SHORTEST * self.reach), end[active])
+        return self._bisected(origin, directions, previous, t, inside, np.flatnonzero(hit)), hit
 
     def _bisected(self, origin: Array, directions: Array, low: Array, high: Array, inside: Bools, rays: Any) -> Array:
         for _ in range(60):
@@ -121,7 +121,7 @@ class Distance(Geometry):
     def _gradient(self, points: Array) -> Array:
         """Unit normals by central differences; +z where there is no gradient."""
         step = 1e-5 * self.reach
-        slopes = [self.distance(points + step * way) - self.distance(points - step * way) for way in np.eye(3)]
+        slopes = [self.distance(points + step * axis) - self.distance(points - step * axis) for axis in np.eye(3)]
         normal = unit(np.nan_to_num(np.stack(slopes, axis=1)))
         return np.where((normal == 0.0).all(axis=1, keepdims=True), [0.0, 0.0, 1.0], normal)
 
@@ -132,7 +132,7 @@ def find_function(technique: str, folder: str) -> tuple[Module, Function]:
     if file.endswith((".sss", ".glsl")):
         roots = (folder, library.TECHNIQUES)
         if not any(os.path.isfile(os.path.join(root, file)) for root in roots):
-            raise failure(f"cannot find the file '{file}'", "it is looked for beside the scene, and in the library")
+            raise failure(f"cannot find the file '{file}'", "it is searched for next to the scene and in the library")
     try:
         module, function = slots.find(technique, _slot("world_position"), folder)
     except SssgenError as error:
@@ -143,7 +143,7 @@ def find_function(technique: str, folder: str) -> tuple[Module, Function]:
     unbound = slots.needs(module, function)[1]
     if unbound:
         message = f"'{technique}' has the slot '{unbound[0].name}', which a scene cannot bind"
-        raise failure(message, "write a function in a file that calls the one wanted")
+        raise failure(message, "write a function in a file that calls it")
     textures = [name for name, uniform in uniforms_of(module, function).items() if isinstance(uniform.type, Sampler)]
     if textures:
         raise failure(f"'{technique}' reads the texture '{textures[0]}', which a scene's geometry cannot have")
@@ -162,11 +162,11 @@ def _slot(quantity: str) -> Function:
 
 
 def _values(
-    technique: str, uniforms: Mapping[str, Uniform], given: Mapping[str, object]
+    technique: str, uniforms: Mapping[str, Uniform], overrides: Mapping[str, object]
 ) -> dict[str, tuple[float, ...]]:
-    """Each parameter's value: the one given, or its default."""
+    """Each parameter's value: its override, or its default."""
     values = {name: uniform.default for name, uniform in uniforms.items()}
-    for name, raw in given.items():
+    for name, raw in overrides.items():
         if name not in uniforms:
             hint = did_you_mean(name, uniforms) or f"parameters: {', '.join(uniforms) or 'none'}"
             raise failure(f"unknown parameter '{name}' of '{technique}'", hint)

@@ -1,4 +1,4 @@
-"""A light's view of a body: where each texel of its depth map looks, and the matrix that finds a place on it."""
+"""A light's view of a body: the ray of each texel of its depth map, and the matrix from positions to texels."""
 
 from __future__ import annotations
 
@@ -10,33 +10,33 @@ from sssgen.harness.scenes.placed import Array
 from sssgen.support.diagnostics import failure
 
 MARGIN = 1.1
-"""How much wider the map is than the body."""
+"""The width of the map relative to the body."""
 FAR = 2.0
-"""What stands where the light meets nothing, in widths of the map: behind all of the body."""
+"""The depth of a texel whose ray hits nothing, in widths of the map: behind the whole body."""
 
 
 class LightView(NamedTuple):
-    """A light's depth map, before it is measured; its rows go from v = 0 up."""
+    """A light's depth map, before it is measured; row 0 is at v = 0."""
 
     matrix: Array
-    """(4, 4): a place to (u w, v w, distance from the light's plane, w)"""
+    """(4, 4): position → (u w, v w, distance from the light's plane, w)"""
     origins: Array
-    """(h * w, 3): where the texels' rays start: on the light's plane, or at the light"""
+    """(h * w, 3): the origins of the texels' rays: on the light's plane, or at the light"""
     directions: Array
     """(h * w, 3), unit"""
     slopes: Array
-    """(h * w,): the distance from the plane for one unit along a ray"""
+    """(h * w,): the distance from the plane per unit of length along a ray"""
     far: float
-    """The distance that stands for nothing"""
+    """The depth of a texel whose ray hits nothing"""
 
 
-def from_afar(corners: Array, towards: Array, size: tuple[int, int]) -> LightView:
+def directional_view(corners: Array, towards: Array, size: tuple[int, int]) -> LightView:
     """The view along −`towards` (unit) on a body within `corners` (n, 3); `size` is (width, height) in texels."""
     side, up = _frame(-towards)
     spans = [corners @ axis for axis in (side, up)]
     right, high = (0.5 * float(span.min() + span.max()) for span in spans)
     wide = MARGIN * max(float(np.ptp(span)) for span in spans)
-    start = float((corners @ towards).max()) + 0.1 * wide  # where the light's plane stands
+    start = float((corners @ towards).max()) + 0.1 * wide  # the light's plane
     across, along = (((np.arange(count) + 0.5) / count - 0.5) * wide for count in size)
     x, y = np.meshgrid(across + right, along + high)
     origins = x.reshape(-1, 1) * side + y.reshape(-1, 1) * up + start * towards
@@ -49,17 +49,17 @@ def from_afar(corners: Array, towards: Array, size: tuple[int, int]) -> LightVie
     return LightView(matrix, origins, directions, np.ones(len(origins)), FAR * wide)
 
 
-def from_place(corners: Array, position: Array, size: tuple[int, int]) -> LightView:
-    """The view from `position` on a body within `corners`. Raises SssgenError where that is not before all of it."""
+def point_view(corners: Array, position: Array, size: tuple[int, int]) -> LightView:
+    """The view from `position` on a body within `corners`. Raises SssgenError unless all of it is in front."""
     ahead = corners.mean(axis=0) - position
     distance = float(np.linalg.norm(ahead))
     ahead = ahead / max(distance, 1e-300)
     local = corners - position
     depth = local @ ahead
     if distance == 0.0 or depth.min() <= 0.01 * distance:
-        raise failure("the light stands in the body, or beside it", "take its direction instead: light from afar")
+        raise failure("the light is inside the body or next to it", "use a direction instead: a distant light")
     side, up = _frame(ahead)
-    wide = MARGIN * 2.0 * max(float(np.abs(local @ axis / depth).max()) for axis in (side, up))  # at one unit ahead
+    wide = MARGIN * 2.0 * max(float(np.abs(local @ axis / depth).max()) for axis in (side, up))  # at distance 1
     across, along = (((np.arange(count) + 0.5) / count - 0.5) * wide for count in size)
     x, y = np.meshgrid(across, along)
     ways = x.reshape(-1, 1) * side + y.reshape(-1, 1) * up + ahead

@@ -20,14 +20,14 @@ from sssgen.support.paths import posix
 Indices: TypeAlias = npt.NDArray[np.int64]
 
 FARTHEST = ANY[1]
-"""The largest coordinate: of a scene's numbers, so that no product of a few of them overflows."""
+"""The largest coordinate, as for a scene's numbers: products of a few of them do not overflow."""
 
 SMALLEST = 1e-6
-"""The least that the largest side of a mesh may be: of a scene's numbers, too."""
+"""The smallest size of a mesh's longest side, as for a scene's numbers."""
 
 
 class Triangles(NamedTuple):
-    """A mesh as it is needed here; vertices at the same place are one."""
+    """A mesh for intersections; vertices at the same position are merged."""
 
     places: Array
     """(v, 3)"""
@@ -40,18 +40,18 @@ class Triangles(NamedTuple):
     uv: Array | None
     """(f, 3, 2), or None where the file has none"""
     tangents: Array | None
-    """(f, 3, 3): of each corner, the direction in which u grows; of any length, 0 where there is none"""
+    """(f, 3, 3): the direction in which u grows at each corner; not unit, 0 where undefined"""
     handedness: Array
     """(f,): -1 where uv is mirrored, else 1"""
 
 
 @dataclass(frozen=True)
 class Mesh(Geometry):
-    """The triangles of an .obj, .ply, .stl, .glb or .gltf file; open ones, too. A file's parts become one mesh.
+    """The triangles of an .obj, .ply, .stl, .glb or .gltf file, open or closed. A file's parts become one mesh.
 
-    Normals are smooth: the faces' at a vertex, weighted by area, interpolated; a file's own are not read. uv, v up,
-    are the file's; without, longitude and latitude about the box's centre (see `spherical`). Tangents are Lengyel's
-    (Foundations of Game Engine Development 2, 7.5), where uv is mirrored with w = -1.
+    Normals are smooth: the faces' normals, averaged at each vertex by area and interpolated; normals in the file are
+    ignored. uv, v up, are the file's, or else longitude and latitude about the bounding box's centre (see `spherical`).
+    Tangents follow Lengyel (Foundations of Game Engine Development 2, 7.5), with w = -1 where uv is mirrored.
     """
 
     path: str = ""
@@ -59,9 +59,9 @@ class Mesh(Geometry):
     def cast(self, origin: Array, directions: Array) -> Hits:
         mesh = self.triangles
         low, high = self.bounds()
-        # Embree counts in 32 bits: near the mesh there are more of them to spare
-        way = np.linalg.norm(0.5 * (low + high) - origin) - 0.5 * np.linalg.norm(high - low)
-        starts = origin + max(0.0, float(way)) * directions
+        # Embree computes in float32, which is more precise near the mesh
+        ahead = np.linalg.norm(0.5 * (low + high) - origin) - 0.5 * np.linalg.norm(high - low)
+        starts = origin + max(0.0, float(ahead)) * directions
         face = self.rays.first(starts, directions)
         rays = np.flatnonzero(face >= 0)
         face = face[rays]
@@ -74,19 +74,21 @@ class Mesh(Geometry):
         weights = barycentric(position, mesh.places[mesh.corners[face]])
         hit = np.zeros(len(directions), np.bool_)
         hit[rays] = True
-        normal = _mixed(weights, mesh.normals[mesh.corners[face]])
+        normal = _interpolated(weights, mesh.normals[mesh.corners[face]])
         normal = np.where((np.abs(normal) > 0.0).any(axis=1, keepdims=True), unit(normal), mesh.flat[face])
         if mesh.uv is None or mesh.tangents is None:
             uv, grows_u, grows_v = spherical(position - 0.5 * (low + high))
             return spread(hit, position, normal, tangent_of(normal, grows_u, grows_v), uv)
-        along = unit(_mixed(weights, mesh.tangents[face]))
+        along = unit(_interpolated(weights, mesh.tangents[face]))
         along -= np.einsum("nc,nc->n", along, normal)[:, None] * normal
-        lost = np.linalg.norm(along, axis=1, keepdims=True) < 1e-6
-        tangent = np.where(lost, any_tangent(normal), unit(along))
-        return spread(hit, position, normal, np.c_[tangent, mesh.handedness[face]], _mixed(weights, mesh.uv[face]))
+        undefined = np.linalg.norm(along, axis=1, keepdims=True) < 1e-6
+        tangent = np.where(undefined, any_tangent(normal), unit(along))
+        return spread(
+            hit, position, normal, np.c_[tangent, mesh.handedness[face]], _interpolated(weights, mesh.uv[face])
+        )
 
     def distance(self, points: Array) -> Array:
-        """Its sign is that of the winding number, which open meshes have too. Raises SssgenError without libigl."""
+        """The sign is by the winding number, which open meshes also have. Raises SssgenError without libigl."""
         return self.solid.signed(points)
 
     def bounds(self) -> tuple[Array, Array]:
@@ -100,42 +102,42 @@ class Mesh(Geometry):
 
     @cached_property
     def solid(self) -> MeshDistance:
-        """What knows the distance to the triangles, and which points are inside."""
+        """The distance to the triangles, and which points are inside."""
         return MeshDistance(self.triangles.places, self.triangles.corners)
 
     @cached_property
     def inside_out(self) -> bool:
-        """Whether the triangles' normals look inwards, on the whole."""
+        """Whether most of the triangles' normals point inwards (by volume)."""
         return is_inside_out(self.triangles.places, self.triangles.corners)
 
     @cached_property
     def rays(self) -> MeshRays:
-        """What casts rays at the triangles."""
+        """The ray caster for the triangles."""
         return MeshRays(self.triangles.places, self.triangles.corners)
 
 
-def _prepare(read: mesh_files.Read, shown: str) -> Triangles:
-    vertices, faces, uv = read
+def _prepare(content: mesh_files.FileContent, shown: str) -> Triangles:
+    vertices, faces, uv = content
     if not len(faces):
         raise failure("the file holds no triangles", "", shown)
     if faces.min() < 0 or faces.max() >= len(vertices):
-        raise failure("a triangle names a vertex that there is not", "write it anew", shown)
+        raise failure("a triangle refers to a missing vertex", "export it again", shown)
     if not (np.abs(vertices) <= FARTHEST).all():
-        raise failure(f"a vertex is no number, or beyond {FARTHEST:g}", "scale the mesh, or write it anew", shown)
+        raise failure(f"a vertex is not a number, or beyond {FARTHEST:g}", "scale the mesh, or export it again", shown)
     if uv is not None and (uv.shape != (len(vertices), 2) or not (np.abs(uv) <= FARTHEST).all()):
         uv = None
-    named, at = np.unique(faces, return_inverse=True)  # a file may have vertices that belong to no triangle
-    places, place_of = np.unique(vertices[named], axis=0, return_inverse=True)
+    used, index_of = np.unique(faces, return_inverse=True)  # a file may have vertices that belong to no triangle
+    places, place_of = np.unique(vertices[used], axis=0, return_inverse=True)
     if (size := float(np.ptp(places, axis=0).max())) < SMALLEST:
         raise failure(f"the mesh is only {size:.1g} units large", f"scale it: at least {SMALLEST:g}", shown)
-    corners = place_of.reshape(-1)[at.reshape(faces.shape)]
+    corners = place_of.reshape(-1)[index_of.reshape(faces.shape)]
     first, second, third = np.moveaxis(places[corners], 1, 0)
     across = np.cross(second - first, third - first)
     area = np.linalg.norm(across, axis=1)
     if not area.any():
-        raise failure("all triangles are without area", "", shown)
-    full = area > 0.0
-    faces, corners, across = faces[full], corners[full], across[full]
+        raise failure("no triangle has an area", "", shown)
+    valid = area > 0.0
+    faces, corners, across = faces[valid], corners[valid], across[valid]
     normals = np.zeros_like(places)
     np.add.at(normals, corners, across[:, None, :])
     mesh = Triangles(places, corners, unit(across), unit(normals), None, None, np.ones(len(faces)))
@@ -143,15 +145,15 @@ def _prepare(read: mesh_files.Read, shown: str) -> Triangles:
 
 
 def _with_tangents(mesh: Triangles, uv: Array) -> Triangles:
-    """The mesh with its uv, (f, 3, 2), and the tangents that follow from them."""
+    """The mesh with its uv, (f, 3, 2), and the tangents of these."""
     corners = mesh.places[mesh.corners]
-    edges, turns = corners[:, 1:] - corners[:, :1], uv[:, 1:] - uv[:, :1]
-    area = turns[:, 0, 0] * turns[:, 1, 1] - turns[:, 0, 1] * turns[:, 1, 0]
-    along = edges[:, 0] * turns[:, 1, 1, None] - edges[:, 1] * turns[:, 0, 1, None]
+    edges, uv_edges = corners[:, 1:] - corners[:, :1], uv[:, 1:] - uv[:, :1]
+    area = uv_edges[:, 0, 0] * uv_edges[:, 1, 1] - uv_edges[:, 0, 1] * uv_edges[:, 1, 0]
+    along = edges[:, 0] * uv_edges[:, 1, 1, None] - edges[:, 1] * uv_edges[:, 0, 1, None]
     size = np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1)
     along = unit(along * np.sign(area)[:, None]) * size[:, None]
     handedness = np.where(area < 0.0, -1.0, 1.0)
-    # corners share a tangent where place, uv and handedness agree: else mirrored halves would cancel at their seam
+    # corners share a tangent if position, uv and handedness agree; otherwise mirrored halves would cancel at their seam
     mirrored = np.repeat(handedness, 3)
     keys = np.c_[mesh.corners.reshape(-1), uv.reshape(-1, 2), mirrored]
     groups, group_of = np.unique(keys, axis=0, return_inverse=True)
@@ -162,18 +164,18 @@ def _with_tangents(mesh: Triangles, uv: Array) -> Triangles:
 
 
 def barycentric(points: Array, triangles: Array) -> Array:
-    """The weights (n, 3) of the corners of triangles (n, 3, 3) at points in their planes, cut to the triangles."""
+    """The weights (n, 3) of the corners of triangles (n, 3, 3) at points in their planes, clamped to the triangles."""
     first, second, third = np.moveaxis(triangles, 1, 0)
     across = np.cross(second - first, third - first)
     square = np.einsum("nc,nc->n", across, across)
     b = np.einsum("nc,nc->n", np.cross(points - first, third - first), across) / square
     c = np.einsum("nc,nc->n", np.cross(second - first, points - first), across) / square
     weights = np.maximum(np.stack([1.0 - b - c, b, c], axis=1), 0.0)
-    whole: Array = weights / weights.sum(axis=1, keepdims=True)
-    return whole
+    normalized: Array = weights / weights.sum(axis=1, keepdims=True)
+    return normalized
 
 
-def _mixed(weights: Array, values: Array) -> Array:
-    """The values (n, 3, k) of corners, mixed by their weights (n, 3)."""
-    mixed: Array = np.einsum("nv,nvk->nk", weights, values)
-    return mixed
+def _interpolated(weights: Array, values: Array) -> Array:
+    """The values (n, 3, k) of corners, interpolated with weights (n, 3)."""
+    values_at_points: Array = np.einsum("nv,nvk->nk", weights, values)
+    return values_at_points

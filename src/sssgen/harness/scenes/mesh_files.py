@@ -1,4 +1,4 @@
-"""Triangles from the files of other programs, by trimesh."""
+"""Reads triangles from mesh files, with trimesh."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ Indices: TypeAlias = npt.NDArray[np.int64]
 SUFFIXES = (".obj", ".ply", ".stl", ".glb", ".gltf")
 
 
-class Read(NamedTuple):
-    """What a file holds, as it is: nothing of it is checked yet."""
+class FileContent(NamedTuple):
+    """The content of a file, unchecked."""
 
     vertices: Array
     """(v, 3)"""
@@ -30,41 +30,41 @@ class Read(NamedTuple):
 
 
 def check_suffix(path: str) -> None:
-    """Raises SssgenError where a file's name does not end as a mesh's does."""
+    """Raises SssgenError for a path without the suffix of a mesh file."""
     suffix = os.path.splitext(path)[1].lower()
     if suffix not in SUFFIXES:
         hint = did_you_mean(suffix, SUFFIXES) or f"meshes end in {', '.join(SUFFIXES)}"
-        raise failure(f"'{suffix}' is no mesh file's ending", hint, posix(path))
+        raise failure(f"'{suffix}' is not a mesh file's suffix", hint, posix(path))
 
 
-def read(path: str) -> Read:
-    """All triangles of a file, its parts where they stand in it. Raises SssgenError for a missing or faulty file."""
+def read(path: str) -> FileContent:
+    """All triangles of a file, with the transforms of its parts. Raises SssgenError for a missing or faulty file."""
     check_suffix(path)
     if not os.path.isfile(path):
         raise failure("cannot find the mesh", "", posix(path))
     trimesh = need("trimesh")
     kind = os.path.splitext(path)[1].lower()
     try:
-        if kind in (".glb", ".gltf"):  # their texture coordinates come with their materials
+        if kind in (".glb", ".gltf"):  # texture coordinates are loaded with the materials
             return _joined(trimesh.load_scene(path, process=False))
         loaded = trimesh.load_mesh(path, process=False, skip_materials=True)
         return _read(loaded.vertices, loaded.faces, getattr(loaded.visual, "uv", None))
-    except Exception as error:  # its readers raise whatever a faulty file leads them to
-        # bytes that are no text make it look for a package that guesses encodings
-        hint = "" if isinstance(error, ImportError) else f"the reader says: {type(error).__name__}: {error}"
-        raise failure(f"the mesh cannot be read: it is no faultless {kind} file", hint, posix(path)) from None
+    except Exception as error:  # its readers raise exceptions of any type for a faulty file
+        # for bytes that are not text it tries to import a package that guesses encodings
+        hint = "" if isinstance(error, ImportError) else f"the reader reports: {type(error).__name__}: {error}"
+        raise failure(f"the mesh cannot be read: it is not a valid {kind} file", hint, posix(path)) from None
 
 
-def _read(vertices: Any, faces: Any, uv: Any) -> Read:
-    return Read(
+def _read(vertices: Any, faces: Any, uv: Any) -> FileContent:
+    return FileContent(
         np.asarray(vertices, np.float64).reshape(-1, 3),
         np.asarray(faces, np.int64).reshape(-1, 3),
         None if uv is None else np.asarray(uv, np.float64),
     )
 
 
-def _joined(scene: Any) -> Read:
-    """The meshes of a scene, placed by its nodes. (trimesh would change texture coordinates to join their pictures.)"""
+def _joined(scene: Any) -> FileContent:
+    """The meshes of a scene, transformed by its nodes. (trimesh itself would merge their pictures and change uv.)"""
     parts = []
     for node in scene.graph.nodes_geometry:
         matrix, name = scene.graph[node]
@@ -73,12 +73,12 @@ def _joined(scene: Any) -> Read:
             continue
         part = _read(mesh.vertices, mesh.faces, getattr(mesh.visual, "uv", None))
         faces = part.faces[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0.0 else part.faces
-        parts.append(Read(part.vertices @ matrix[:3, :3].T + matrix[:3, 3], faces, part.uv))
+        parts.append(FileContent(part.vertices @ matrix[:3, :3].T + matrix[:3, 3], faces, part.uv))
     if not parts:
         return _read((), (), None)
     starts = np.cumsum([0] + [len(part.vertices) for part in parts])
     uv = [part.uv for part in parts if part.uv is not None]
-    return Read(
+    return FileContent(
         np.concatenate([part.vertices for part in parts]),
         np.concatenate([part.faces + start for part, start in zip(parts, starts, strict=False)]),
         np.concatenate(uv) if len(uv) == len(parts) else None,

@@ -35,38 +35,37 @@ class Geometry(ABC):
 
     position: Vector = field(default=(0.0, 0.0, 0.0), kw_only=True)
     rotation: Vector = field(default=(0.0, 0.0, 0.0), kw_only=True)
-    """Degrees about the world's x, then its y, then its z; counter-clockwise for who looks against the axis."""
+    """Degrees about the world's x, then its y, then its z; counter-clockwise when the axis points at the viewer."""
     scale: float = field(default=1.0, kw_only=True)
     """World units in one unit of object space; above 0."""
 
     def __getstate__(self) -> dict[str, Any]:
         """The fields only, without cached values: a mesh's tree and a function's code are not pickled."""
-        return {one.name: getattr(self, one.name) for one in fields(self)}
+        return {attribute.name: getattr(self, attribute.name) for attribute in fields(self)}
 
     def to_world(self) -> Array:
         """Object space to world space, (4, 4), for column vectors."""
         matrix = np.eye(4)
-        matrix[:3, :3] = self.scale * self._turn()
+        matrix[:3, :3] = self.scale * self._rotation_matrix()
         matrix[:3, 3] = self.position
         return matrix
 
     def to_object(self) -> Array:
         """World space to object space, (4, 4), for column vectors."""
         matrix = np.eye(4)
-        matrix[:3, :3] = self._turn().T / self.scale
+        matrix[:3, :3] = self._rotation_matrix().T / self.scale
         matrix[:3, 3] = -matrix[:3, :3] @ self.position
         return matrix
 
     def hits(self, origin: npt.ArrayLike, directions: npt.ArrayLike) -> Hits:
         """The intersections of rays in world space: from one origin (3,), along unit directions (n, 3)."""
-        turn = self._turn()
-        start = turn.T @ (np.asarray(origin, np.float64) - self.position) / self.scale
-        along = np.asarray(directions, np.float64) @ turn
-        found = self.cast(start, along)
-        hit = found.hit
-        tangent = np.c_[found.tangent[:, :3] @ turn.T, found.tangent[:, 3]]
-        place = self.scale * found.position @ turn.T + self.position
-        return Hits(hit, np.where(hit[:, None], place, 0.0), found.normal @ turn.T, tangent, found.uv)
+        rotation = self._rotation_matrix()
+        object_origin = rotation.T @ (np.asarray(origin, np.float64) - self.position) / self.scale
+        object_directions = np.asarray(directions, np.float64) @ rotation
+        hits = self.cast(object_origin, object_directions)
+        tangent = np.c_[hits.tangent[:, :3] @ rotation.T, hits.tangent[:, 3]]
+        position = self.scale * hits.position @ rotation.T + self.position
+        return Hits(hits.hit, np.where(hits.hit[:, None], position, 0.0), hits.normal @ rotation.T, tangent, hits.uv)
 
     @abstractmethod
     def cast(self, origin: Array, directions: Array) -> Hits:
@@ -76,51 +75,51 @@ class Geometry(ABC):
     def distance(self, points: Array) -> Array:
         """The signed distance, (n,), negative inside, from points (n, 3); all in object space."""
 
-    def _turn(self) -> Array:
+    def _rotation_matrix(self) -> Array:
         x, y, z = np.radians(self.rotation)
         about_x = [[1.0, 0.0, 0.0], [0.0, np.cos(x), -np.sin(x)], [0.0, np.sin(x), np.cos(x)]]
         about_y = [[np.cos(y), 0.0, np.sin(y)], [0.0, 1.0, 0.0], [-np.sin(y), 0.0, np.cos(y)]]
         about_z = [[np.cos(z), -np.sin(z), 0.0], [np.sin(z), np.cos(z), 0.0], [0.0, 0.0, 1.0]]
-        turn: Array = np.array(about_z) @ np.array(about_y) @ np.array(about_x)
-        return turn
+        matrix: Array = np.array(about_z) @ np.array(about_y) @ np.array(about_x)
+        return matrix
 
 
 def spread(hit: Bools, position: Array, normal: Array, tangent: Array, uv: Array) -> Hits:
-    """Hits from the values of those rays alone that hit."""
+    """The hits of all rays, from the values of the rays that hit."""
 
-    def whole(part: Array) -> Array:
-        values = np.zeros((len(hit), part.shape[1]))
-        values[hit] = part
-        return values
+    def with_zeros(values: Array) -> Array:
+        all_rays = np.zeros((len(hit), values.shape[1]))
+        all_rays[hit] = values
+        return all_rays
 
-    return Hits(hit, whole(position), whole(normal), whole(tangent), whole(uv))
+    return Hits(hit, with_zeros(position), with_zeros(normal), with_zeros(tangent), with_zeros(uv))
 
 
 def unit(vectors: Array) -> Array:
-    """Vectors (n, 3) brought to length 1; those of length 0 stay."""
+    """The unit vectors of vectors (n, 3); those of length 0 stay."""
     length = np.linalg.norm(vectors, axis=1, keepdims=True)
-    brought: Array = vectors / np.where(length > 0.0, length, 1.0)
-    return brought
+    result: Array = vectors / np.where(length > 0.0, length, 1.0)
+    return result
 
 
 def any_tangent(normals: Array) -> Array:
-    """Some unit tangent (n, 3) for each unit normal."""
+    """An arbitrary unit tangent (n, 3) for each unit normal."""
     axes = np.eye(3)[np.argmin(np.abs(normals), axis=1)]
     return unit(np.cross(axes, normals))
 
 
 def tangent_of(normals: Array, grows_u: Array, grows_v: Array) -> Array:
-    """The tangent (n, 4) of a surface whose u and v come from the space around it, by their gradients (n, 3).
+    """The tangents (n, 4) of a surface whose u and v are functions of space, from their gradients (n, 3).
 
-    Along T v stays, so T stands on both the gradient of v and the normal. Where u or v has no gradient along the
-    surface any tangent serves.
+    v is constant along T, so T is perpendicular to the gradient of v and to the normal. Where u or v has no gradient
+    along the surface, the tangent is arbitrary.
     """
     along = np.cross(grows_v, normals)
     side = np.sign(np.einsum("nc,nc->n", along, grows_u))
-    lost = (np.linalg.norm(along, axis=1) < 1e-9 * np.linalg.norm(grows_v, axis=1)) | (side == 0.0)
-    tangent = np.where(lost[:, None], any_tangent(normals), unit(along) * side[:, None])
-    framed: Array = np.c_[tangent, np.where(lost, 1.0, side)]
-    return framed
+    undefined = (np.linalg.norm(along, axis=1) < 1e-9 * np.linalg.norm(grows_v, axis=1)) | (side == 0.0)
+    tangent = np.where(undefined[:, None], any_tangent(normals), unit(along) * side[:, None])
+    result: Array = np.c_[tangent, np.where(undefined, 1.0, side)]
+    return result
 
 
 def spherical(points: Array) -> tuple[Array, Array, Array]:

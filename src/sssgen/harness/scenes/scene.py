@@ -20,14 +20,14 @@ Vector: TypeAlias = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Light:
-    """A point light, or one from afar. Just one of `position` and `direction` is given."""
+    """A point light or a distant light: either `position` or `direction` is set."""
 
     position: Vector | None
-    """World space; its light falls off with the square of the distance"""
+    """World space; the light falls off with the square of the distance"""
     direction: Vector | None
     """World space, unit, towards the light"""
     color: Vector
-    """Linear; of a point light at distance 1"""
+    """Linear; for a point light, at distance 1"""
 
 
 @dataclass(frozen=True)
@@ -35,9 +35,9 @@ class Picture:
     """A texture from a file."""
 
     file: str
-    """Its path; the scene's folder is in it"""
+    """Its path, including the scene's folder"""
     wrap: str = ""
-    """repeat or clamp; "": as the technique has it"""
+    """repeat or clamp; "": the technique's"""
 
     def values(self) -> npt.NDArray[np.float64]:
         """(height, width, channels), row 0 at the top, or (depth, height, width, channels). Raises SssgenError."""
@@ -45,13 +45,13 @@ class Picture:
 
 
 def stored(distance: npt.NDArray[np.float64], reach: float) -> npt.NDArray[np.float64]:
-    """Signed distances as the technique distance_texture reads them: 0.5 + distance / (2 reach), cut to 0..1."""
+    """Signed distances encoded for the technique distance_texture: 0.5 + distance / (2 reach), clamped to 0..1."""
     value: npt.NDArray[np.float64] = np.clip(0.5 + distance / (2.0 * reach), 0.0, 1.0)
     return value
 
 
 def placement(geometry: Geometry) -> dict[str, Any]:
-    """Where a body with a distance texture stands, by the names of techniques, as TOML has them."""
+    """The transform of a body with a distance texture, as parameters of techniques, in TOML values."""
     return {"world_to_object": [*geometry.to_object().T.ravel()], "object_scale": geometry.scale}
 
 
@@ -59,8 +59,8 @@ def placement(geometry: Geometry) -> dict[str, Any]:
 class DistanceTexture:
     """A 3-D texture of the signed distance to the scene's geometry, in the geometry's object space.
 
-    The convention is that of the technique distance_texture: 0.5 + distance / (2 range), cut to 0..1, positive
-    outside, over the box from `box_min` to `box_max`, a flat one padded as there.
+    The convention is that of the technique distance_texture: 0.5 + distance / (2 range), clamped to 0..1, positive
+    outside, over the box from `box_min` to `box_max`; a flat box is padded, as there.
     """
 
     texels: tuple[int, int, int]
@@ -74,28 +74,28 @@ class DistanceTexture:
         low, high = np.array(self.box_min), np.array(self.box_max)
         size = np.maximum(high - low, 0.001 * np.linalg.norm(high - low))
         start = 0.5 * (low + high) - 0.5 * size
-        x, y, z = (start[at] + size[at] * (np.arange(n) + 0.5) / n for at, n in enumerate(self.texels))
-        places = np.stack(np.meshgrid(z, y, x, indexing="ij")[::-1], axis=-1)
-        distance = geometry.distance(places.reshape(-1, 3)).reshape(*places.shape[:3], 1)
+        x, y, z = (start[axis] + size[axis] * (np.arange(n) + 0.5) / n for axis, n in enumerate(self.texels))
+        positions = np.stack(np.meshgrid(z, y, x, indexing="ij")[::-1], axis=-1)
+        distance = geometry.distance(positions.reshape(-1, 3)).reshape(*positions.shape[:3], 1)
         return stored(distance, self.range)
 
 
 @dataclass(frozen=True)
 class Scene:
-    """A scene, checked in itself; whether the material has these parameters and textures is not known here."""
+    """A scene; whether the material has these parameters and textures is not checked here."""
 
     material: str
-    """An example's name, or the path of a material file; "" where the scene only says what is measured"""
+    """An example's name, or the path of a material file; "" for a scene that only describes what is measured"""
     size: tuple[int, int]
     """Width and height in pixels"""
     samples: int
-    """n of n × n samples a pixel"""
+    """n, for n × n samples per pixel"""
     time: float
     background: tuple[Vector, Vector]
     """Linear colour at the picture's bottom and top"""
     ambient: Vector
     exposure: float
-    """What the linear picture is multiplied by before it is encoded"""
+    """The factor of the linear picture before it is encoded"""
     geometry: Geometry | None
     """None where the material marches rays itself"""
     camera: Camera
@@ -104,17 +104,17 @@ class Scene:
     """The material's uniforms → TOML values, all numbers finite"""
     textures: Mapping[str, Picture | DistanceTexture]
     document: Document
-    """The text with its places, for the errors of who knows the material: note them with `document.error`, at
+    """The text with its positions, for later errors: report them with `document.error`, at
     `document.place("parameters", "power").value`, then raise them with `document.reporter.check()`"""
     title: str = ""
     measured: Mapping[str, Any] = field(default_factory=dict)
-    """What is physically there, as the tables stand in the file: `medium` and `inlay`; the lab reads them"""
+    """The physical description, as the tables of the file: `medium` and `inlay`; the lab reads them"""
 
     @property
     def places(self) -> dict[str, Span]:
-        """Where the keys of [parameters] and [textures] stand, as `parameters.power`; and `material`."""
-        found = {"material": self.document.place("material").value}
+        """The positions of `material`, and of the keys of [parameters] and [textures], as `parameters.power`."""
+        places = {"material": self.document.place("material").value}
         for section in ("parameters", "textures"):
             for key in getattr(self, section):
-                found[f"{section}.{key}"] = self.document.place(section, key).key
-        return found
+                places[f"{section}.{key}"] = self.document.place(section, key).key
+        return places

@@ -14,17 +14,17 @@ from sssgen.support.toml_source import parse
 
 
 def load(path: str | os.PathLike[str]) -> Scene:
-    """The scene of a TOML file, or of an example by its name. Raises SssgenError with all that is wrong with it."""
+    """The scene of a TOML file, or of an example by its name. Raises SssgenError with all errors."""
     text = os.fspath(path)
     if not text.endswith(".toml") and "/" not in text and "\\" not in text and not os.path.isfile(text):
-        known = examples()
-        if text not in known:
-            hint = did_you_mean(text, known) or f"give a path that ends in .toml, or one of: {', '.join(known)}"
+        names = examples()
+        if text not in names:
+            hint = did_you_mean(text, names) or f"give a path that ends in .toml, or one of: {', '.join(names)}"
             raise failure(f"unknown scene '{text}'", hint)
-        path = os.path.join(os.path.dirname(known[text]), "scene.toml")
+        path = os.path.join(os.path.dirname(names[text]), "scene.toml")
     return parse_scene(read_text(os.fspath(path), posix(path)), path)
 
 
 def parse_scene(text: str, path: str | os.PathLike[str]) -> Scene:
-    """The scene that a TOML text describes; files that it names are looked for beside `path`. Raises SssgenError."""
+    """The scene that a TOML text describes; files that it names are searched for next to `path`. Raises SssgenError."""
     return read_scene(parse(text, posix(path)), os.path.dirname(os.fspath(path)))

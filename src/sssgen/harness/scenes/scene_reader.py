@@ -63,7 +63,7 @@ class _Reader:
         samples = top.whole("samples", 2, (1, MAX_SAMPLES))
         if size[0] * size[1] * samples**2 > MAX_COUNT:
             count = f"{size[0]} × {size[1]} pixels of {samples} × {samples} samples are too many"
-            top.error("size", count, f"at most {MAX_COUNT / 1e6:.0f} million samples in all: take fewer")
+            top.error("size", count, f"at most {MAX_COUNT / 1e6:.0f} million samples in total")
         geometry = self.geometry(top.content.get("geometry"))
         return Scene(
             self.material(top),
@@ -112,12 +112,12 @@ class _Reader:
         return tuple(ends)
 
     def camera(self, content: Any) -> Camera:
-        usual = Camera()
+        default = Camera()
         table = Table(self.document, ("camera",), content, ("position", "target", "field_of_view"))
         camera = Camera(
-            table.vector("position", usual.position),
-            table.vector("target", usual.target),
-            table.number("field_of_view", usual.field_of_view, (1.0, 170.0)),
+            table.vector("position", default.position),
+            table.vector("target", default.target),
+            table.number("field_of_view", default.field_of_view, (1.0, 170.0)),
         )
         if math.dist(camera.position, camera.target) < 1e-6:
             table.error("target", "the camera stands at its target", "move one of the two")
@@ -126,28 +126,28 @@ class _Reader:
     def lights(self, top: Table) -> tuple[Light, ...]:
         content = top.content.get("light", [])
         if not isinstance(content, list):
-            top.error("light", "lights are a list of tables", "write [[light]], once for each")
+            top.error("light", "lights are a list of tables", "write [[light]] for each")
             return ()
         if len(content) > MAX_LIGHTS:
-            hint = f"at most {MAX_LIGHTS} are lit"
+            hint = f"at most {MAX_LIGHTS} are supported"
             self.document.error(
                 self.document.place("light", MAX_LIGHTS).value, f"the scene has {len(content)} lights", hint
             )
-        return tuple(self.light(("light", at), one) for at, one in enumerate(content[:MAX_LIGHTS]))
+        return tuple(self.light(("light", index), light) for index, light in enumerate(content[:MAX_LIGHTS]))
 
     def light(self, path: Path, content: Any) -> Light:
         table = Table(self.document, path, content, ("position", "direction", "color"))
         color = table.vector("color", (1.0, 1.0, 1.0), NOT_NEGATIVE)
         if ("position" in table.content) == ("direction" in table.content):
-            hint = "position: a point light; direction: towards a light from afar"
+            hint = "position: a point light; direction: towards a distant light"
             span = self.document.place(*path).value
-            self.document.error(span, "a light has a position or a direction, just one of them", hint)
+            self.document.error(span, "a light has either a position or a direction", hint)
         if "direction" not in table.content:
             return Light(table.vector("position", (0.0, 1.0, 0.0)), None, color)
         x, y, z = table.vector("direction", (0.0, 1.0, 0.0))
         length = math.hypot(x, y, z)
         if length < 1e-6:
-            table.error("direction", "this direction has no length", "it leads towards the light")
+            table.error("direction", "the direction has length 0", "it must point towards the light")
             length = 1.0
         return Light(None, (x / length, y / length, z / length), color)
 
@@ -158,8 +158,8 @@ class _Reader:
             return None
         kind = content.get("kind") if isinstance(content, dict) else None
         own = _SHAPES.get(kind, ()) if isinstance(kind, str) else ()
-        known = ("kind", *_PLACE, *(own or {key for keys in _SHAPES.values() for key in keys}))
-        table = Table(self.document, path, content, known)
+        keys = ("kind", *_PLACE, *(own or {key for keys in _SHAPES.values() for key in keys}))
+        table = Table(self.document, path, content, keys)
         if not isinstance(content, dict):
             return None
         if kind is None:
@@ -197,9 +197,9 @@ class _Reader:
     def union(self, table: Table, place: dict[str, Any]) -> Union | None:
         content = table.content.get("part")
         if not isinstance(content, list) or not 1 <= len(content) <= MAX_PARTS:
-            table.error("part", f"a union has from 1 to {MAX_PARTS} parts", "write [[geometry.part]], once for each")
+            table.error("part", f"a union has from 1 to {MAX_PARTS} parts", "write [[geometry.part]] for each")
             return None
-        parts = [self.geometry(one, (*table.path, "part", at)) for at, one in enumerate(content)]
+        parts = [self.geometry(part, (*table.path, "part", index)) for index, part in enumerate(content)]
         projection = table.text("projection", "parts", ("parts", "planar"))
         return Union(tuple(part for part in parts if part is not None), projection, **place)
 
@@ -207,13 +207,13 @@ class _Reader:
         name = table.text("file", "")
         if not name:
             table.error(
-                "file", "the mesh has no file", f"write file = one that ends in {', '.join(mesh_files.SUFFIXES)}"
+                "file", "the mesh has no file", f"write file = a path that ends in {', '.join(mesh_files.SUFFIXES)}"
             )
             return None
         try:
             mesh_files.check_suffix(name)
-        except SssgenError as wrong:
-            self.pass_on(wrong, (*table.path, "file"))
+        except SssgenError as error:
+            self.add_errors(error, (*table.path, "file"))
             return None
         return Mesh(path=self.file((*table.path, "file"), name), **place)
 
@@ -233,10 +233,10 @@ class _Reader:
         if "technique" not in table.content:
             table.error("technique", "the geometry has no technique", 'write technique = "sphere", or FILE:FUNCTION')
         try:
-            _ = shape.function  # it is compiled here, so that its errors come with the scene's
-        except SssgenError as wrong:
-            named = next((key for key in parameters if f"'{key}'" in wrong.diagnostics[0].message), "")
-            self.pass_on(wrong, (*table.path, "parameters", named) if named else (*table.path, "technique"))
+            _ = shape.function  # compile it here, so that its errors are reported with those of the scene
+        except SssgenError as error:
+            named = next((key for key in parameters if f"'{key}'" in error.diagnostics[0].message), "")
+            self.add_errors(error, (*table.path, "parameters", named) if named else (*table.path, "technique"))
         return shape
 
     # Parameters and textures of the material
@@ -249,34 +249,34 @@ class _Reader:
             if not _is_value(raw):
                 hint = "numbers, true or false, a colour as text, or a list of these"
                 span = self.document.place("parameters", key).value
-                self.document.error(span, f"'{key}' is no parameter's value", hint)
+                self.document.error(span, f"'{key}' is not a parameter's value", hint)
         return dict(content)
 
     def textures(self, content: Any, has_geometry: bool) -> dict[str, Picture | DistanceTexture]:
         if not isinstance(content, dict):
             self.document.error(self.document.place("textures").value, "'textures' is a table", "write [textures]")
             return {}
-        found: dict[str, Picture | DistanceTexture] = {}
+        textures: dict[str, Picture | DistanceTexture] = {}
         for key, raw in content.items():
             path = ("textures", key)
             if isinstance(raw, dict) and "distance_of_geometry" in raw:
-                found[key] = self.distance_texture(path, raw, has_geometry)
+                textures[key] = self.distance_texture(path, raw, has_geometry)
             elif isinstance(raw, dict):
                 table = Table(self.document, path, raw, ("file", "wrap"))
                 place = (*path, "file") if "file" in raw else path
-                found[key] = Picture(
+                textures[key] = Picture(
                     self.picture(place, table.text("file", "")), table.text("wrap", "", ("repeat", "clamp"))
                 )
             elif isinstance(raw, str):
-                found[key] = Picture(self.picture(path, raw))
+                textures[key] = Picture(self.picture(path, raw))
             else:
                 span = self.document.place(*path).value
                 self.document.error(span, f"'{key}' takes a picture file", 'write "x.png" or { file = "x.png" }')
-        return found
+        return textures
 
     def distance_texture(self, path: Path, raw: dict[str, Any], has_geometry: bool) -> DistanceTexture:
         table = Table(self.document, path, raw, ("distance_of_geometry", "box_min", "box_max", "range"))
-        made = DistanceTexture(
+        texture = DistanceTexture(
             table.wholes("distance_of_geometry", (64, 64, 64), (1, MAX_TEXELS)),
             table.vector("box_min", (-1.0, -1.0, -1.0)),
             table.vector("box_max", (1.0, 1.0, 1.0)),
@@ -284,10 +284,10 @@ class _Reader:
         )
         if not has_geometry:
             table.error("distance_of_geometry", "the scene has no geometry to measure", "add [geometry]")
-        sides = [high - low for low, high in zip(made.box_min, made.box_max, strict=True)]
+        sides = [high - low for low, high in zip(texture.box_min, texture.box_max, strict=True)]
         if min(sides) < 0.0 or max(sides) == 0.0:
-            table.error("box_max", "the box has no inside", "no number of box_max is below that of box_min")
-        return made
+            table.error("box_max", "the box is empty", "no number of box_max may be less than that of box_min")
+        return texture
 
     # Files
 
@@ -297,32 +297,32 @@ class _Reader:
             return name
         try:
             images.check_suffix(name, images.TEXTURES)
-        except SssgenError as wrong:
-            self.pass_on(wrong, path)
+        except SssgenError as error:
+            self.add_errors(error, path)
             return name
         return self.file(path, name)
 
     def file(self, path: Path, name: str) -> str:
         """The path of a file that the scene names."""
-        found = os.path.join(self.folder, name)
-        if "\0" in found or not os.path.isfile(found):
+        full_path = os.path.join(self.folder, name)
+        if "\0" in full_path or not os.path.isfile(full_path):
             span = self.document.place(*path).value
             hint = f"it is searched for next to the scene, in {posix(self.folder or '.')}"
             self.document.error(span, f"cannot find the file '{name}'", hint)
-        return found
+        return full_path
 
-    def pass_on(self, wrong: SssgenError, path: Path) -> None:
-        """Notes errors that were found elsewhere: those of another file keep their places."""
+    def add_errors(self, error: SssgenError, path: Path) -> None:
+        """Reports the errors of a file that the scene names: at their own positions, else at the path in the scene."""
         span = self.document.place(*path).value
-        for one in wrong.diagnostics:
-            if one.span.line:
-                self.document.reporter.diagnostics.append(one)
+        for diagnostic in error.diagnostics:
+            if diagnostic.span.line:
+                self.document.reporter.diagnostics.append(diagnostic)
             else:
-                self.document.error(span, one.message, one.hint)
+                self.document.error(span, diagnostic.message, diagnostic.hint)
 
 
 class _Element(Table):
-    """One list of a list, read as a table's value is."""
+    """One list in a list, read like a table's value."""
 
     def __init__(self, document: Document, path: Path, index: int, content: Any) -> None:
         super().__init__(document, path, {str(path[-1]): content}, (str(path[-1]),))

@@ -1,4 +1,4 @@
-"""Solids that rays meet by a formula: ball, box, slab, torus."""
+"""Solids with closed-form ray intersections: ball, box, slab, torus."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ from sssgen.harness.scenes.placed import (
 class Ball(Geometry):
     """A ball about the origin.
 
-    u goes once around the y axis, to the right of who looks at it, with its seam at the back (−z); v goes from the
-    south pole (−y) up. u = 0.5 faces +z.
+    u goes once around the y axis, to the viewer's right, with its seam at the back (−z); v goes up from the south pole
+    (−y). u = 0.5 faces +z.
     """
 
     radius: float = 1.0
 
     def cast(self, origin: Array, directions: Array) -> Hits:
         nearest = -directions @ origin
-        # the point of the ray nearest to the centre: so the root does not suffer from a far origin
+        # the point of the ray nearest to the centre, so that the root is precise for a distant origin
         closest = origin + nearest[:, None] * directions
         half = self.radius**2 - np.einsum("nc,nc->n", closest, closest)
         half = np.sqrt(half, out=np.full_like(half, np.nan), where=half >= 0.0)
@@ -47,7 +47,7 @@ class Ball(Geometry):
         return distance
 
 
-# Of the faces +x, −x, +y, −y, +z, −z: the directions in which u and v grow.
+# The directions in which u and v grow, of the faces +x, −x, +y, −y, +z, −z
 _RIGHT = np.array([[0, 0, -1], [0, 0, 1], [1, 0, 0], [1, 0, 0], [1, 0, 0], [-1, 0, 0]], np.float64)
 _UP = np.array([[0, 1, 0], [0, 1, 0], [0, 0, -1], [0, 0, 1], [0, 1, 0], [0, 1, 0]], np.float64)
 
@@ -56,8 +56,8 @@ _UP = np.array([[0, 1, 0], [0, 1, 0], [0, 0, -1], [0, 0, 1], [0, 1, 0], [0, 1, 0
 class Box(Geometry):
     """A box about the origin, along the axes.
 
-    Each face has uv 0 to 1, u to the right of who looks at it from outside, v up; on the top v goes to the back (−z),
-    on the bottom to the front, as if the face were tilted up from the front one.
+    Each face has uv 0 to 1, seen from outside u to the right and v up; on the top v goes to the back (−z), on the
+    bottom to the front.
     """
 
     size: Vector = (1.0, 1.0, 1.0)
@@ -71,7 +71,7 @@ class Box(Geometry):
 
 @dataclass(frozen=True)
 class Slab(Geometry):
-    """A flat box about the origin that faces +z, as thick along z as `thickness` says; uv as the box has them."""
+    """A flat box about the origin that faces +z, `thickness` thick along z; uv as on a box."""
 
     width: float = 2.0
     height: float = 2.0
@@ -89,7 +89,7 @@ def _cast_box(size: Array, origin: Array, directions: Array) -> Hits:
     sign = np.where(directions < 0.0, -1.0, 1.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         enters, leaves = (-sign * half - origin) / directions, (sign * half - origin) / directions
-    # a ray along a pair of faces is between them always, or never
+    # a ray parallel to a pair of faces is always or never between them
     between = np.where(np.abs(origin) <= half, np.inf, -np.inf)
     enters = np.where(directions == 0.0, -between, enters)
     leaves = np.where(directions == 0.0, between, leaves)
@@ -106,7 +106,7 @@ def _cast_box(size: Array, origin: Array, directions: Array) -> Hits:
     normal = np.zeros_like(position)
     normal[rows, axis] = side
     face = 2 * axis + (side < 0.0)
-    uv = np.stack([0.5 + (position / size * way[face]).sum(axis=1) for way in (_RIGHT, _UP)], axis=1)
+    uv = np.stack([0.5 + (position / size * axes[face]).sum(axis=1) for axes in (_RIGHT, _UP)], axis=1)
     return spread(hit, position, normal, np.c_[_RIGHT[face], np.ones(len(face))], uv)
 
 
@@ -121,7 +121,7 @@ def _box_distance(size: Array, points: Array) -> Array:
 class Torus(Geometry):
     """A ring about the y axis, `major` from the axis to the tube's middle, `minor` < `major` the tube's radius.
 
-    u goes once around the axis as the ball's does; v once around the tube, upwards on its outside: 0.5 at the outer
+    u goes once around the axis, as on a ball; v once around the tube, upwards on its outside: 0.5 at the outer
     equator, 0.75 on top, the seam at the inner equator.
     """
 
@@ -131,14 +131,14 @@ class Torus(Geometry):
     def cast(self, origin: Array, directions: Array) -> Hits:
         nearest = -directions @ origin
         closest = origin + nearest[:, None] * directions
-        # wider than the torus, so that both ends of the search are surely outside it
+        # wider than the torus, so that both ends of the search are outside it
         reach = (1.001 * (self.major + self.minor)) ** 2 - np.einsum("nc,nc->n", closest, closest)
         near = np.flatnonzero(reach > 0.0)
-        t, found = self._first_root(closest[near], directions[near], np.sqrt(reach[near]), -nearest[near])
+        t, has_root = self._first_root(closest[near], directions[near], np.sqrt(reach[near]), -nearest[near])
         hit = np.zeros(len(directions), np.bool_)
-        hit[near[found]] = True
-        position = closest[hit] + t[found, None] * directions[hit]
-        # onto the surface: what the root lacks, where the ray only grazes, lies along the ray
+        hit[near[has_root]] = True
+        position = closest[hit] + t[has_root, None] * directions[hit]
+        # project onto the surface: for a grazing ray the error of the root is along the ray
         ring = position * [1.0, 0.0, 1.0]
         centre = self.major * unit(ring)
         normal = unit(position - centre)
@@ -146,8 +146,8 @@ class Torus(Geometry):
         angle = np.arctan2(position[:, 1], np.hypot(x, z) - self.major)
         uv = 0.5 + np.stack([np.arctan2(x, z), angle], axis=1) / (2.0 * np.pi)
         along = unit(np.stack([z, np.zeros_like(x), -x], axis=1))
-        lost = np.linalg.norm(along, axis=1) < 0.5
-        tangent = np.where(lost[:, None], any_tangent(normal), along)
+        undefined = np.linalg.norm(along, axis=1) < 0.5
+        tangent = np.where(undefined[:, None], any_tangent(normal), along)
         return spread(hit, centre + self.minor * normal, normal, np.c_[tangent, np.ones(len(x))], uv)
 
     def distance(self, points: Array) -> Array:
@@ -156,10 +156,10 @@ class Torus(Geometry):
         return distance
 
     def _first_root(self, closest: Array, directions: Array, reach: Array, start: Array) -> tuple[Array, Bools]:
-        """The first t after `start`, within ± `reach`, at which rays meet the torus, and which rays do.
+        """The first t after `start`, within ± `reach`, at which rays hit the torus, and which rays do.
 
         t counts from the point nearest to the centre, so the quartic t⁴ + a t² + b t + c has no cubic term and its
-        turning points have a closed form. Between two of them is one root at most, which is bracketed.
+        turning points have a closed form. Between two of them there is at most one root.
         """
         y, slope = closest[:, 1], directions[:, 1]
         square = np.einsum("nc,nc->n", closest, closest)
@@ -172,16 +172,16 @@ class Torus(Geometry):
         ends = np.clip(ends, low[:, None], np.maximum(reach, low)[:, None])
         values = ((ends * ends + a[:, None]) * ends + b[:, None]) * ends + c[:, None]
         change = (values[:, :-1] > 0.0) != (values[:, 1:] > 0.0)
-        found = change.any(axis=1) & (low < reach)
-        rows = np.flatnonzero(found)
+        has_root = change.any(axis=1) & (low < reach)
+        rows = np.flatnonzero(has_root)
         piece = change[rows].argmax(axis=1)
         t = np.zeros(len(a))
         t[rows] = _bracketed_root(a[rows], b[rows], c[rows], ends[rows, piece], ends[rows, piece + 1])
-        return t, found
+        return t, has_root
 
 
 def _turning_points(a: Array, b: Array) -> Array:
-    """The roots of 4 t³ + 2 a t + b in order, (n, 3); where there is one, three times that."""
+    """The roots of 4 t³ + 2 a t + b in order, (n, 3); where there is one, three times the same."""
     p, q = 0.5 * a, 0.25 * b  # t³ + p t + q
     roots = np.empty((len(a), 3))
     three = 4.0 * p**3 + 27.0 * q**2 < 0.0
@@ -190,7 +190,7 @@ def _turning_points(a: Array, b: Array) -> Array:
     turns = (np.arccos(cosine)[:, None] - 2.0 * np.pi * np.arange(3)) / 3.0
     roots[three] = np.sort(radius[:, None] * np.cos(turns), axis=1)
     p, q = p[~three], q[~three]
-    # Cardano, with the cube root that does not cancel
+    # Cardano, with the cube root without cancellation
     inner = np.sqrt(np.maximum(0.25 * q * q + p**3 / 27.0, 0.0))
     large = np.cbrt(-0.5 * q - np.where(q < 0.0, -inner, inner))
     roots[~three] = (large - p / np.where(large == 0.0, 1.0, 3.0 * large))[:, None]
@@ -198,7 +198,7 @@ def _turning_points(a: Array, b: Array) -> Array:
 
 
 def _bracketed_root(a: Array, b: Array, c: Array, low: Array, high: Array) -> Array:
-    """The root of t⁴ + a t² + b t + c between two points of different sign: Newton's steps, kept in the bracket."""
+    """The root of t⁴ + a t² + b t + c between two points of different sign: Newton's method, limited to the bracket."""
     rises = ((high * high + a) * high + b) * high + c > 0.0
     t = 0.5 * (low + high)
     for _ in range(80):

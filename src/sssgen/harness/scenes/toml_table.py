@@ -1,4 +1,4 @@
-"""Reading the tables of a scene: each value checked, each error noted with its place."""
+"""Reads the tables of a scene: checks each value and reports each error with its position."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ NOT_NEGATIVE: Range = (0.0, 1e9)
 
 
 class Table:
-    """One table of a document. A wrong value is noted, and the default is read instead."""
+    """One table of a document. A wrong value is reported, and replaced by the default."""
 
     def __init__(self, document: Document, path: Path, content: Any, keys: Collection[str]) -> None:
         self.document, self.path = document, path
@@ -31,7 +31,7 @@ class Table:
                 document.error(document.place(*path, key).key, f"unknown key '{key}'{where}", hint)
 
     def error(self, key: str, message: str, hint: str = "", index: int | None = None) -> None:
-        """Notes an error at a key's value, at one element of it, or where there is none at the table."""
+        """Reports an error at a key's value, at one element of it, or at the table if the key is missing."""
         path = (*self.path, key) if index is None else (*self.path, key, index)
         self.document.error(self.document.place(*path).value, message, hint)
 
@@ -44,27 +44,27 @@ class Table:
         return int(raw) if self._is_whole(key, raw, within) else default
 
     def vector(self, key: str, default: tuple[float, ...], within: Range = ANY) -> Any:
-        """As many finite numbers as the default has."""
+        """A vector of as many finite numbers as `default`."""
         raw = self.content.get(key, list(default))
         if not isinstance(raw, list) or len(raw) != len(default):
             example = ", ".join(f"{value:g}" for value in default)
             self.error(key, f"'{key}' takes {len(default)} numbers", f"write {key} = [{example}]")
             return default
-        good = [self._is_number(key, element, within, index) for index, element in enumerate(raw)]
-        return tuple(map(float, raw)) if all(good) else default
+        valid = [self._is_number(key, element, within, index) for index, element in enumerate(raw)]
+        return tuple(map(float, raw)) if all(valid) else default
 
     def wholes(self, key: str, default: tuple[int, ...], within: tuple[int, int]) -> Any:
         raw = self.content.get(key, list(default))
         if not isinstance(raw, list) or len(raw) != len(default):
             self.error(key, f"'{key}' takes {len(default)} whole numbers", f"write {key} = {list(default)}")
             return default
-        good = [self._is_whole(key, element, within, index) for index, element in enumerate(raw)]
-        return tuple(raw) if all(good) else default
+        valid = [self._is_whole(key, element, within, index) for index, element in enumerate(raw)]
+        return tuple(raw) if all(valid) else default
 
     def text(self, key: str, default: str, choices: Collection[str] = ()) -> str:
         raw = self.content.get(key, default)
         if not isinstance(raw, str) or any(ord(character) < 32 for character in raw):
-            self.error(key, f"'{key}' takes a text of one line", f'write {key} = "…"')
+            self.error(key, f"'{key}' takes one line of text", f'write {key} = "…"')
             return default
         if choices and raw != default and raw not in choices:
             hint = did_you_mean(raw, choices) or f"one of: {', '.join(choices)}"
@@ -85,8 +85,8 @@ class Table:
         return self._is_within(key, raw, within, index)
 
     def _is_within(self, key: str, raw: float, within: Range, index: int | None) -> bool:
-        if within[0] <= raw <= within[1]:  # false of nan, too
+        if within[0] <= raw <= within[1]:  # also false for nan
             return True
         shown = f"{raw:g}" if abs(raw) < 1e300 or not math.isfinite(raw) else "so large"
-        self.error(key, f"'{key}' cannot be {shown}", f"it goes from {within[0]:g} to {within[1]:g}", index)
+        self.error(key, f"'{key}' cannot be {shown}", f"it must be from {within[0]:g} to {within[1]:g}", index)
         return False

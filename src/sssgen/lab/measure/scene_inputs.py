@@ -13,7 +13,7 @@ import numpy as np
 
 from sssgen.harness.backends import Array
 from sssgen.harness.evaluate.evaluation import half
-from sssgen.harness.scenes.light_view import from_afar
+from sssgen.harness.scenes.light_view import directional_view
 from sssgen.lab.reference.inside_lengths import intervals, thickness
 from sssgen.lab.scene import scene_body as body
 from sssgen.lab.scene.measured_scene import MeasuredScene
@@ -90,7 +90,7 @@ def mean_chord(scene: MeasuredScene) -> Array:
 def _depth_map(scene: MeasuredScene, towards: Array) -> tuple[dict[str, Any], dict[str, Texture]]:
     """The light's orthographic view: matrices for the techniques, and the depth of the first surface."""
     geometry = scene.geometry
-    view = from_afar(body.placed_corners(geometry), towards, (DEPTH_MAP, DEPTH_MAP))
+    view = directional_view(body.placed_corners(geometry), towards, (DEPTH_MAP, DEPTH_MAP))
     to_object = geometry.to_object()
     origins = view.origins @ to_object[:3, :3].T + to_object[:3, 3]
     directions = view.directions @ to_object[:3, :3].T * geometry.scale
