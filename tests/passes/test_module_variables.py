@@ -163,6 +163,6 @@ def test_the_verifier_knows_variables() -> None:
     assert verify(read_module(FRAGMENT)) == []
     assert "cannot be assigned" in verify(read_module(FRAGMENT.replace("set $glow", "set $gl_FragCoord")))[0]
     assert "has a value" in verify(read_module("variable in float x = 1.0\n"))[0]
-    assert "no storage" in verify(read_module("variable inout float x\n"))[0]
+    assert "not a storage" in verify(read_module("variable inout float x\n"))[0]
     for text in (FRAGMENT, VERTEX, OLD, SEVERAL):
         assert print_module(read_module(text)) == text

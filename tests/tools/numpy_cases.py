@@ -27,7 +27,7 @@ def module_of(source: str) -> Module:
 
 def python_of(module: Module) -> str:
     """The Python text of a checked module."""
-    renamed, _ = rename(predicate(module), load("numpy").reserved, lambda name: name, True)
+    renamed, _ = rename(predicate(module), load("numpy").names.exact, lambda name: name, True)
     return print_functions(renamed)
 
 

@@ -92,6 +92,8 @@ HALF = tuple(record.name for record in _RECORDS if record.bits == 16)
 DRIVERS = tuple(name for name in SINGLE if BACKENDS[name].driver)
 """Those that compute in float32 in a driver."""
 DEFAULT = tuple(record.name for record in _RECORDS if record.default)
+PREFERRED = "gl"
+"""The one where a single back end is needed and none is named."""
 
 
 def chosen(text: str) -> list[str]:

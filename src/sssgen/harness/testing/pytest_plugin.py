@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import pytest
 
+from sssgen.harness.backend_registry import PREFERRED
+
 if TYPE_CHECKING:
     from sssgen.harness.backends import Array, Backend
     from sssgen.harness.render.scene_render import Rendered
@@ -25,15 +27,13 @@ if TYPE_CHECKING:
 
 Result = TypeVar("Result")
 
-DEFAULT = "gl"
-
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Adds the options, and the ini setting for the folder of golden pictures."""
     group = parser.getgroup("sssgen", "shaders of sssgen")
     group.addoption(
         "--sssgen-backend", metavar="NAME", action="append", default=[],
-        help="the back end that runs and draws; several, with commas, run each test on each (default: gl)",
+        help=f"the back end that runs and draws; several, with commas, run each test on each (default: {PREFERRED})",
     )  # fmt: skip
     group.addoption("--sssgen-update", action="store_true", help="write golden pictures instead of comparing")
     group.addoption(
@@ -222,7 +222,7 @@ def _run(
 
 def _names(config: pytest.Config) -> list[str]:
     """The back ends of the options without duplicates; the pictures of the first are the golden ones."""
-    listed = ",".join(config.getoption("sssgen_backend") or [DEFAULT])
+    listed = ",".join(config.getoption("sssgen_backend") or [PREFERRED])
     return list(dict.fromkeys(name.strip() for name in listed.split(",")))
 
 

@@ -174,7 +174,7 @@ vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
             **{f"hlsl/gen{k},gen{k},genB": "" for k in "FIUB"}, **{f"wgsl/gen{k},gen{k},genB": "select" for k in "FIUB"},
         },
         polyfill="\n".join(map(_choice, ("float", "int", "uint", "bool"), ("vec", "ivec", "uvec", "bvec"))),
-        splat=(), cost=2,
+        splat=(), explicit_type=("wgsl",), cost=2,
         vectors=(
             ((0.0, 10.0, 0.25), 2.5), ((1.0, 3.0, 0.0), 1.0), (((0.0, 2.0), (4.0, 4.0), 0.5), (2.0, 3.0)),
             (((1.0, 2.0), (3.0, 4.0), (True, False)), (3.0, 2.0)), ((INF, 4.0, True), 4.0),
@@ -191,7 +191,7 @@ vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
         guards=(Guard(lambda F, x, y, z: (y - x).low > 0.0 and (y - x).high <= F.largest, "edges in the wrong order, or equal", "{ genF t = clamp((z - x) / clamp(y - x, DIVISOR, LARGEST), 0.0, 1.0); return t * t * (3.0 - 2.0 * t); }",
             doc="smoothstep; a step if the edges are equal or in the wrong order."),),
         inside=lambda rt, x, y, z: (x < y) & (y - x < 1e30),
-        domain="x < y", cost=8, ulp=16.0,
+        domain="x < y", explicit_type=("wgsl",), cost=8, ulp=16.0,
         clause="WGSL, Vulkan: that of the formula, with 2.5 ulp for the division",
         vectors=(((0.0, 2.0, 0.5), 0.15625), ((0.0, 1.0, 0.0), 0.0), ((0.0, 1.0, (0.5, 3.0)), (0.5, 1.0))),
     ),

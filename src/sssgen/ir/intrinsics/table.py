@@ -128,6 +128,8 @@ class Builtin(NamedTuple):
     """The positions of arguments that must be constant expressions."""
     splat: tuple[str, ...] = ("wgsl",)
     """Languages in which a scalar among vectors must be widened to a vector first."""
+    explicit_type: tuple[str, ...] = ()
+    """Languages in which a call of literals alone is constant only if one of them has an explicit type."""
     float32_bits: bool = False
     """It converts from or to the bits of a number, which WGSL has for float32 only."""
     # What it costs

@@ -17,8 +17,8 @@ from sssgen.ir.walk import subexpressions
 from sssgen.passes import uniform_blocks as blocks
 from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.legal.integer_operators import counts_up, with_result
-from sssgen.passes.legal.matrices import by_whole_columns, matrix_from, needs_columns
-from sssgen.passes.legal.operators import is_integer_division, legal_operator, widened
+from sssgen.passes.legal.legal_operators import is_integer_division, legal_operator, widened
+from sssgen.passes.legal.matrix_columns import by_whole_columns, matrix_from, needs_columns
 from sssgen.passes.legal.part_stores import is_dynamic_store, is_swizzle_store, parts_of, whole_store
 from sssgen.passes.lift_calls import Calls, awkward, lift
 from sssgen.passes.scopes import assigned, declared, fresh, outs_of

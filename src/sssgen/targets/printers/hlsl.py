@@ -63,7 +63,7 @@ class HlslPrinter(Printer):
 
     def print_function(self, function: ir.Function) -> list[Line]:
         """A function, after those that return the sizes of its textures."""
-        wanted = [texture for texture in hlsl_sizes.asked(function) if texture not in self.sized]
+        wanted = [texture for texture in hlsl_sizes.texture_types(function) if texture not in self.sized]
         self.sized.update(wanted)
         before = [line for texture in wanted for line in hlsl_sizes.definition(texture)]
         return [*before, *super().print_function(function)]

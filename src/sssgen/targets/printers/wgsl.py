@@ -6,6 +6,7 @@ Out parameters are pointers; a variable that is assigned only once is a `let`; u
 from __future__ import annotations
 
 from sssgen.ir import nodes as ir
+from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import VOID, Array, Sampler, Struct, Type
 from sssgen.ir.walk import subexpressions
 from sssgen.passes.scopes import assigned, outs_of
@@ -53,9 +54,9 @@ class WgslPrinter(Printer):
         return f"material.{value.name}" if in_block else value.name
 
     def intrinsic(self, call: ir.Intrinsic) -> tuple[str, int]:
-        """A builtin; naga evaluates these two with only literals as arguments if one has an explicit type."""
         text, binding = super().intrinsic(call)
-        if call.name in ("mix", "smoothstep") and not any(isinstance(part, _TYPED) for part in subexpressions(call)):
+        typed = any(isinstance(part, _TYPED) for part in subexpressions(call))
+        if "wgsl" in BUILTINS[call.name].explicit_type and not typed:
             first = self.expr(call.args[0])
             text = text.replace(first, f"f32({first})", 1)
         return text, binding

@@ -7,29 +7,6 @@ import numpy.typing as npt
 
 from sssgen.targets.runtime.numpy_values import Value, silent, to_int, to_uint, working
 
-__all__ = [
-    "bitCount",
-    "bitfieldExtract",
-    "bitfieldInsert",
-    "bitfieldReverse",
-    "findLSB",
-    "findMSB",
-    "floatBitsToInt",
-    "floatBitsToUint",
-    "intBitsToFloat",
-    "packHalf2x16",
-    "packSnorm2x16",
-    "packSnorm4x8",
-    "packUnorm2x16",
-    "packUnorm4x8",
-    "uintBitsToFloat",
-    "unpackHalf2x16",
-    "unpackSnorm2x16",
-    "unpackSnorm4x8",
-    "unpackUnorm2x16",
-    "unpackUnorm4x8",
-]
-
 # Bits of floats
 
 

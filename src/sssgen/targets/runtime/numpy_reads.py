@@ -7,37 +7,6 @@ import numpy as np
 from sssgen.targets.runtime.numpy_textures import Texture
 from sssgen.targets.runtime.numpy_values import Value, arrays, image_shape, working
 
-__all__ = [
-    "dFdx",
-    "dFdxCoarse",
-    "dFdxFine",
-    "dFdy",
-    "dFdyCoarse",
-    "dFdyFine",
-    "fwidth",
-    "fwidthCoarse",
-    "fwidthFine",
-    "texelFetch",
-    "texelFetchLayer",
-    "texelFetchOffset",
-    "texture",
-    "textureCompare",
-    "textureCompareLod",
-    "textureGather",
-    "textureGatherOffset",
-    "textureGrad",
-    "textureGradOffset",
-    "textureLayer",
-    "textureLayerGrad",
-    "textureLayerLod",
-    "textureLod",
-    "textureLodOffset",
-    "textureOffset",
-    "textureQueryLevels",
-    "textureQueryLod",
-    "textureSize",
-]
-
 # Texture reads; see `Texture`
 
 

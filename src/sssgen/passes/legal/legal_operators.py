@@ -18,7 +18,7 @@ from sssgen.ir.types import (
     vector_of,
 )
 from sssgen.passes.capabilities import Capabilities
-from sssgen.passes.legal.matrices import by_columns
+from sssgen.passes.legal.matrix_columns import by_columns
 from sssgen.passes.legal.part_stores import Keep
 
 _EVERYWHERE = frozenset(("+", "-", "*", "<", ">", "<=", ">=", "&&", "||"))
