@@ -1,7 +1,7 @@
 """Draws the example scenes into docs/gallery/ and writes docs/gallery.md: python docs/gallery.py [--processes N]
 
-The pictures are drawn by the GLSL that `sssgen` emits. The page says of each what it shows, which techniques make it,
-and what they cost; and, from smaller pictures, how far the back ends are apart.
+The emitted GLSL draws the pictures. The page has the description, the techniques and the cost of each, and the
+differences between the back ends.
 """
 
 from __future__ import annotations
@@ -32,24 +32,21 @@ SMALL = (160, 120)
 """The size in pixels of the pictures that are compared."""
 
 CAPTIONS = {
-    "jelly_cubes": "42yeah's raymarched scene, drawn by the shader alone: rays are marched through distance "
-    "functions. Where a cube is thin, at its edges and corners, the evening sky comes through.",
-    "paper_lantern": "Alisavakis's simple subsurface scattering, on paper and wood. The lamp is inside, so "
-    "that every side is lit from behind; a map says how thick the paper is, fibre by fibre, and the hoops let nothing "
-    "through.",
-    "wax_mouse": "Subsurface scattering with 3-D distance fields, on a candle. The way of the light through "
-    "the wax is marched through a 3-D distance texture, which is measured on the geometry: the ears glow, the body "
-    "stays deep. For those who have Blender's monkey: `scene_mesh.toml`, in the same folder.",
-    "ice": "Ice after Zucconi's fast subsurface scattering. Voronoi facets give thickness and normals, the sun "
-    "stands behind them, light moves in the veins below; snow has drifted against the foot, and the edges and some "
-    "holes melt.",
-    "resin_inlay": "Subsurface parallax: marquetry below clear resin. Refraction says where the inlay is seen: "
-    "flat below the flat top, bent below the round edges.",
-    "ice_inlay": "Subsurface parallax and the lobe of GDC 2011 in one material: leaves lie below the surface of the "
-    "ice, by refracted parallax, and the low sun shines through around them.",
+    "jelly_cubes": "42yeah's raymarched scene, drawn by the shader alone: it marches rays through distance functions. "
+    "Where a cube is thin, at its edges and corners, the light of the evening sky passes through.",
+    "paper_lantern": "Alisavakis's simple subsurface scattering, on paper and wood. The lamp is inside, so every side "
+    "is lit from behind. A map holds the thickness of the paper fibres; the hoops are opaque.",
+    "wax_mouse": "Subsurface scattering with 3-D distance fields, on a candle. The shader marches the light's path "
+    "through the wax in a 3-D distance texture, which is computed from the geometry: the ears glow, the body stays "
+    "dark. `scene_mesh.toml` in the same folder draws Blender's monkey, if you have its mesh.",
+    "ice": "Ice after Zucconi's fast subsurface scattering. Voronoi facets give thickness and normals, the sun is "
+    "behind them, light moves in the veins below; snow lies at the foot, and the edges and some holes melt.",
+    "resin_inlay": "Subsurface parallax: marquetry below clear resin. Refraction determines where the inlay appears: "
+    "flat below the flat top, distorted below the round edges.",
+    "ice_inlay": "Subsurface parallax and the lobe of GDC 2011 in one material: refracted parallax places the leaves "
+    "below the surface of the ice, and the light of the low sun passes through around them.",
 }
-"""What each example's picture shows, in the order of the page."""
-
+"""A caption for the picture of each example, in the order of the page."""
 
 SHOWN = {
     "jelly_cubes": "Two red cubes of jelly on a checkered floor, their edges lit by the evening sky behind them",
@@ -59,18 +56,19 @@ SHOWN = {
     "resin_inlay": "A square tile of walnut with an inlaid compass rose, under glossy resin with round edges",
     "ice_inlay": "Autumn leaves in a round disc of ice, with the sun behind it",
 }
-"""The same for those who do not see it."""
+"""The alternative text of each picture."""
 
 
 def items() -> list[Item]:
-    """Of each scene its picture; then the differences of its small pictures; then of large ones, one sample a pixel."""
-    drawn = [Item("sssgen.lab.jobs.render_items:picture", (name,), name) for name in CAPTIONS]
-    for what, size, samples in (("small", SMALL, None), ("one sample", None, 1)):
-        drawn += [
-            Item("sssgen.lab.jobs.render_items:apart", (name, BACKENDS, size, samples), f"{name}, {what}")
+    """For each scene: its picture, the differences of small pictures, and those of large ones with one sample per "
+    "pixel."""
+    jobs = [Item("sssgen.lab.jobs.render_items:picture", (name,), name) for name in CAPTIONS]
+    for title, size, samples in (("small", SMALL, None), ("one sample", None, 1)):
+        jobs += [
+            Item("sssgen.lab.jobs.render_items:apart", (name, BACKENDS, size, samples), f"{name}, {title}")
             for name in CAPTIONS
         ]
-    return drawn
+    return jobs
 
 
 def page(present: list[Backend], small: dict[str, list[Apart]], large: dict[str, list[Apart]]) -> str:
@@ -79,9 +77,9 @@ def page(present: list[Backend], small: dict[str, list[Apart]], large: dict[str,
         "# Gallery",
         "",
         *_paragraph(
-            "One scene for each example material, drawn by the emitted GLSL. Made by `make gallery` "
-            "(`docs/gallery.py`); the scenes' textures are made by `examples/textures.py`. Costs are static: what one "
-            "evaluation does at most, for each fragment and again for each light, as the reflection has them."
+            "One scene for each example material, drawn by the emitted GLSL. `make gallery` (`docs/gallery.py`) writes "
+            "this page; `examples/textures.py` draws the textures of the scenes. Costs are static, as in the "
+            "reflection: the maximum for one evaluation, for each fragment and in addition for each light."
         ),
     ]
     for name, caption in CAPTIONS.items():
@@ -91,8 +89,8 @@ def page(present: list[Backend], small: dict[str, list[Apart]], large: dict[str,
         "",
         *_paragraph(
             f"Each scene at {SMALL[0]} × {SMALL[1]} on every back end: the largest difference of any channel of any "
-            "pixel from what NumPy draws in float64, in 1/255 of the encoded sRGB value, before rounding to 8 bits. "
-            "At 64 × 48, with one sample a pixel, `tests/harness/test_gallery.py` holds it below 1."
+            "pixel from NumPy's picture in float64, in 1/255 of the encoded sRGB value, before rounding to 8 bits. "
+            "`tests/harness/test_gallery.py` checks that it is below 1 at 64 × 48 with one sample per pixel."
         ),
         f"| Scene | {' | '.join(f'`{backend.name}`' for backend in present)} |",
         f"|---|{'---|' * len(present)}",
@@ -101,9 +99,9 @@ def page(present: list[Backend], small: dict[str, list[Apart]], large: dict[str,
     lines += [
         "",
         *_paragraph(
-            "Of the 307,200 pixels of the full size, with one sample each, so many are more than 1/255 off. There "
-            "float32 decides otherwise than float64: `jelly_cubes` finds its own surface, and a ray on the edge of a "
-            "cube, a tile or a shadow falls to either side."
+            "The number of pixels that differ by more than 1/255, out of 307,200 in the full size with one sample "
+            "each. There float32 and float64 decide differently: `jelly_cubes` finds its surface itself, and a ray at "
+            "the edge of a cube, a tile or a shadow can fall on either side."
         ),
         f"| Scene | {' | '.join(f'`{backend.name}`' for backend in present)} |",
         f"|---|{'---|' * len(present)}",
@@ -140,7 +138,7 @@ def _techniques(material: Material) -> Iterator[str]:
 
 
 def _cost(name: str) -> str:
-    """What a fragment does, and what each light adds to that."""
+    """The cost of a fragment, and of each light in addition."""
     entries = sssgen.compile(name, "glsl-330").reflection["entries"].values()
     lights = {"L", "L_object", "light_color"}
     parts = {
@@ -171,18 +169,18 @@ def _item(text: str) -> list[str]:
 
 
 def main() -> None:
-    """Draws, measures and writes."""
+    """Draws the pictures, measures the differences, and writes the page."""
     parser = argparse.ArgumentParser(description="draws the gallery")
     add_workers(parser)
-    where = parser.parse_args()
-    processes = where.processes if where.scheduler or where.processes else 0
-    with ProgressBar() as told:
-        results = run(items(), where.scheduler, processes, Store(""), told)
+    arguments = parser.parse_args()
+    processes = arguments.processes if arguments.scheduler or arguments.processes else 0
+    with ProgressBar() as progress:
+        results = run(items(), arguments.scheduler, processes, Store(""), progress)
     if failed := failures(results):
         raise SystemExit("\n".join(f"{one.name}: {one.message}" for one in failed))
     count = len(CAPTIONS)
     pictures, small, large = (
-        dict(zip(CAPTIONS, results[at : at + count], strict=True)) for at in range(0, 3 * count, count)
+        dict(zip(CAPTIONS, results[start : start + count], strict=True)) for start in range(0, 3 * count, count)
     )
     files = {f"{name}.png": data for name, data in pictures.items()}
     write_files(str(PICTURES), files)

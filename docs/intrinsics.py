@@ -17,16 +17,17 @@ def page() -> str:
     lines = [
         "# The builtins",
         "",
-        "Made from the intrinsic table (`src/sssgen/ir/intrinsics/`) by `python docs/intrinsics.py`.",
+        "`python docs/intrinsics.py` writes this page from the intrinsic table (`src/sssgen/ir/intrinsics/`).",
         "",
-        "`genF` stands for float, vec2, vec3 and vec4 alike, `vecF` for the vectors; likewise I, U, B. A language that",
-        "has the builtin under its own name shows it; *polyfill* means that a definition in our own language takes its",
-        "place, written out where it is short; `op <` means the operator. Dialects are shown where they differ:",
-        "`glsl-330` lacks some of what GLSL ES 3.00 has, `hlsl-dx9` is Unity's built-in pipeline, `hlsl-macros` its",
-        "URP and Shader Graph. NumPy has a function of each name.",
+        "`genF` stands for float, vec2, vec3 and vec4, `vecF` for the vectors; likewise I, U, B for int, uint, bool.",
+        "The columns show the text in each language; *polyfill* means that a function in sssgen's own language",
+        "replaces the builtin, inlined if it is one expression; `op <` means the operator. A dialect is listed if it",
+        "differs: `glsl-330` lacks some builtins of GLSL ES 3.00, `hlsl-dx9` is Unity's built-in pipeline, `hlsl-",
+        "macros` is Unity's URP and Shader Graph. NumPy has a function with each name.",
         "",
-        "Domain: where the result is defined, with x, y, z for the arguments in their order. Limit: the float32 error",
-        "allowed against float64, in units in the last place, where it is more than 4. The [guards](#guards) follow.",
+        "Domain: the arguments (x, y, z in their order) for which the result is defined. Limit: the error of float32",
+        "that is allowed relative to float64, in units in the last place, if it is more than 4. The [guards](#guards)",
+        "follow.",
         "",
         "| Builtin | GLSL | HLSL | WGSL | Domain | Limit |",
         "|---|---|---|---|---|---|",
@@ -52,17 +53,17 @@ def _guards() -> list[str]:
         "",
         "## Guards",
         "",
-        "What replaces a call or one of its arguments where the range pass cannot prove that nothing goes wrong",
+        "A guard replaces a call or one of its arguments if the range pass cannot prove that the call is safe",
         f"([guards.md](guards.md)). In float32: {', '.join(named)}.",
         "",
-        "| Builtin | Goes wrong | In place of | Guard |",
+        "| Builtin | Problem | Replaces | Guard |",
         "|---|---|---|---|",
     ]
     for row in BUILTINS.values():
         for guard in row.guards:
             problem = guard.problem if guard.safe is not None else f"{guard.problem} (always guarded)"
             place = {"": "the call", "result": "the result, x"}.get(guard.replaces, guard.replaces)
-            text = f"`{_escaped(guard.text)}`" if guard.text else "its polyfill, whose divisions are guarded"
+            text = f"`{_escaped(guard.text)}`" if guard.text else "its polyfill, with guarded divisions"
             lines.append(f"| `{row.name}` | {problem} | {place} | {text} |")
     return lines
 
@@ -77,21 +78,21 @@ def _signatures(row: Builtin) -> str:
 
 
 def _has(row: Builtin, dialect: str) -> bool:
-    """Whether a dialect has a text of its own."""
+    """Whether a dialect has its own text."""
     return any(key.partition("/")[0] == dialect for key in row.texts)
 
 
 def _text(row: Builtin, language: str) -> str:
-    """How a language writes the builtin, with what differs for some of its signatures."""
-    found = {"": row.texts[language]} if language in row.texts else {"": row.name} if language in LANGUAGES else {}
-    found |= {key.partition("/")[2]: text for key, text in row.texts.items() if key.startswith(f"{language}/")}
+    """The text of the builtin in a language, with the signatures that have another text."""
+    texts = {"": row.texts[language]} if language in row.texts else {"": row.name} if language in LANGUAGES else {}
+    texts |= {key.partition("/")[2]: text for key, text in row.texts.items() if key.startswith(f"{language}/")}
     shown = []
-    for params, text in found.items():
+    for params, text in texts.items():
         if text.startswith("op:"):
-            word = f"`op {_escaped(text[3:])}`"
+            cell = f"`op {_escaped(text[3:])}`"
         else:
-            word = f"`{_escaped(text)}`" if text else ("*polyfill*" if row.polyfill else "*refused*")
-        shown.append(f"({params}) {word}" if params else word)
+            cell = f"`{_escaped(text)}`" if text else ("*polyfill*" if row.polyfill else "*refused*")
+        shown.append(f"({params}) {cell}" if params else cell)
     return "<br>".join(shown)
 
 
