@@ -1,7 +1,7 @@
 """Bakes both meshes, draws docs/bake/ and writes docs/bake.md: python docs/bake.py [FOLDER OF THE MESHES]
 
-What it runs are the commands of examples/bake, in a copy of that folder. The meshes do not come with the project: Spot
-(Keenan Crane, CC0) and Suzanne (Blender), as spot.obj and suzanne.obj.
+It runs the commands in the scenes of examples/bake, in a copy of that folder. The meshes are not part of the project:
+Spot (Keenan Crane, CC0) and Suzanne (Blender's monkey), as spot.obj and suzanne.obj.
 """
 
 from __future__ import annotations
@@ -32,17 +32,17 @@ WORK = HERE.parent / "build" / "bake" / "page"
 MESHES = HERE.parent.parent / "shared" / "data" / "meshes"
 NAMES = {"spot": "Spot", "suzanne": "Suzanne"}
 WAYS = {
-    "distance": ("the distance texture, marched", "deep"),
-    "map": ("the thickness map", "light"),
-    "depth": ("the depth map", "light"),
+    "distance": ("distance texture, marched", "deep"),
+    "map": ("thickness map", "light"),
+    "depth": ("depth map", "light"),
 }
-"""The techniques' scenes, and the exact reference of each."""
+"""The scenes of the techniques: title, and the name of the exact reference."""
 FINE = 360
-"""Points along a slice's height."""
+"""The number of points along the height of a slice."""
 
 
 def main() -> int:
-    """Bakes, draws and writes."""
+    """Bakes the textures, draws the pictures, and writes the page."""
     meshes = Path(sys.argv[1]) if len(sys.argv) > 1 else MESHES
     missing = [name for name in NAMES if not (meshes / f"{name}.obj").is_file()]
     if missing:
@@ -69,7 +69,7 @@ def main() -> int:
 
 
 def copy(meshes: Path) -> None:
-    """The examples and the meshes, where they may be baked."""
+    """Copies the examples and the meshes into the work folder."""
     shutil.rmtree(WORK.parent, ignore_errors=True)
     shutil.copytree(HERE.parent / "examples" / "bake", WORK)
     shutil.copytree(HERE.parent / "examples" / "ice", WORK.parent / "ice")
@@ -79,58 +79,58 @@ def copy(meshes: Path) -> None:
 
 
 def commands_of(scene: Path) -> list[str]:
-    """The commands that a scene's first lines give for what it needs."""
+    """The commands in a scene's first lines, which bake its textures."""
     return re.findall(r"^# (sssgen bake [^;\n]*)", scene.read_text(encoding="utf-8"), re.MULTILINE)
 
 
 def in_folder(words: list[str]) -> list[str]:
-    """A command's words with its files in the folder of the copy."""
+    """The words of a command, with paths in the work folder."""
     return [str(WORK / word) if re.search(r"\.(obj|npy|png|exr|json)$", word) else word for word in words]
 
 
-def told(name: str) -> dict[str, Any]:
-    """What the JSON beside a baked file says."""
-    found: dict[str, Any] = json.loads((WORK / f"{name}.json").read_text(encoding="utf-8"))
-    return found
+def facts_of(name: str) -> dict[str, Any]:
+    """The JSON file of a baked texture."""
+    loaded: dict[str, Any] = json.loads((WORK / f"{name}.json").read_text(encoding="utf-8"))
+    return loaded
 
 
 def facts() -> str:
-    """What was baked, and its errors."""
-    rows = ["| | texels | range | error as told in the JSON |", "|---|---|---|---|"]
+    """The table of the baked textures and their errors."""
+    rows = ["| | texels | range | error, as in the JSON file |", "|---|---|---|---|"]
     for name, shown in NAMES.items():
-        volume, chord, depth = told(f"{name}.npy"), told(f"{name}_thickness.png"), told(f"{name}_depth.exr")
+        volume, chord, depth = facts_of(f"{name}.npy"), facts_of(f"{name}_thickness.png"), facts_of(f"{name}_depth.exr")
         x, y, z = volume["texels"]
         fine, spread, size = volume["error"], chord["error"], depth["file"]["size"]
         rows += [
             f"| {shown}, distance texture | {x} × {y} × {z} | ±{volume['range']:.3g} | {fine['at_texels']:.1e} at "
             f"texels, ≤ {fine['between_texels']:.2g} between (a texel is {volume['voxel'][0]:.2g}) |",
-            f"| {shown}, thickness map | {chord['texels']} | 0 to {chord['range'][1]:.3g} | standard error "
-            f"{spread['mean_standard_error']:.1e} in the mean, ≤ {spread['largest_standard_error']:.1e}; "
-            f"{chord['rays']} rays a texel, {chord['lost_rays']:.2%} of them lost in holes |",
+            f"| {shown}, thickness map | {chord['texels']} | 0 to {chord['range'][1]:.3g} | mean standard error "
+            f"{spread['mean_standard_error']:.1e}, ≤ {spread['largest_standard_error']:.1e}; "
+            f"{chord['rays']} rays per texel, {chord['lost_rays']:.2%} lost in holes |",
             f"| {shown}, depth map | {size['x']} × {size['y']} | {depth['range'][0]:.3g} to {depth['range'][1]:.3g} | "
-            "none but float32's |",
+            "only the rounding to float32 |",
         ]
     return "\n".join(rows)
 
 
 def sidecar() -> str:
-    """The JSON beside Spot's distance texture."""
+    """The JSON file of Spot's distance texture."""
     return f"```json\n{(WORK / 'spot.npy.json').read_text(encoding='utf-8')}```"
 
 
 def slices() -> bytes:
-    """Each volume, interpolated as a shader reads it, beside the exact distance and their difference."""
+    """Slices of each volume, interpolated as in a shader, with the exact distance and the difference."""
     plots = need("matplotlib.pyplot", "matplotlib", "chart")
     plots.switch_backend("agg")
     figure, axes = plots.subplots(len(NAMES), 3, figsize=(11, 7.4), layout="constrained")
     for row, (name, shown) in zip(axes, NAMES.items(), strict=True):
-        said = told(f"{name}.npy")
-        low, high, voxel = np.array(said["box_min"]), np.array(said["box_max"]), said["voxel"][0]
+        baked_facts = facts_of(f"{name}.npy")
+        low, high, voxel = np.array(baked_facts["box_min"]), np.array(baked_facts["box_max"]), baked_facts["voxel"][0]
         texture = Texture(images.read(WORK / f"{name}.npy"), wrap="clamp")
         y, z = np.meshgrid(*(np.linspace(low[at], high[at], FINE) for at in (1, 2)), indexing="ij")
         places = np.stack([np.full(y.size, 0.5 * (low[0] + high[0]) + 0.07), y.ravel(), z.ravel()], axis=1)
         uvw = ((places - low) / (high - low)).T
-        baked = ((2.0 * texture.sample(uvw)[0] - 1.0) * said["range"]).reshape(y.shape)
+        baked = ((2.0 * texture.sample(uvw)[0] - 1.0) * baked_facts["range"]).reshape(y.shape)
         exact = Mesh(path=str(WORK / f"{name}.obj")).distance(places).reshape(y.shape)
         window = {"origin": "lower", "extent": (low[2], high[2], low[1], high[1])}
         limit = float(np.abs(exact).max())
@@ -157,7 +157,7 @@ def maps() -> bytes:
     for name in NAMES:
         chord = images.upright(WORK / f"{name}_thickness.png")[..., 0]
         depth = images.upright(WORK / f"{name}_depth.exr")[..., 0]
-        low, nothing = depth.min(), told(f"{name}_depth.exr")["nothing"]
+        low, nothing = depth.min(), facts_of(f"{name}_depth.exr")["nothing"]
         high = depth[depth < nothing].max()
         shown += [colored(chord), colored(np.where(depth < nothing, 1.0 - (depth - low) / (high - low), 0.0))]
     return joined([shown])
@@ -184,24 +184,26 @@ def cells() -> bytes:
 
 
 def renders() -> tuple[str, bytes]:
-    """Each mesh by each technique, above it the exact reference; how far they are apart."""
-    rows, pictures = ["| | against exact thickness, FLIP (mean) |", "|---|---:|"], []
+    """A table of the differences from the exact references, and the pictures of each mesh with each technique."""
+    rows, pictures = ["| | mean FLIP relative to exact thickness |", "|---|---:|"], []
     for name, shown in NAMES.items():
         exact = {}
         for way in dict.fromkeys(reference for _, reference in WAYS.values()):
             base = WORK / f"{name}_{'distance' if way == 'deep' else 'depth'}.toml"
             exact[way] = rendered(bake_reference.write(base, f"{name}_exact_{way}", way == "deep"))
-        made = {way: rendered(WORK / f"{name}_{way}.toml") for way in WAYS}
-        pictures.append([exact["deep"], made["distance"], made["depth"], exact["light"], made["map"]])
+        pictures_of = {way: rendered(WORK / f"{name}_{way}.toml") for way in WAYS}
+        pictures.append(
+            [exact["deep"], pictures_of["distance"], pictures_of["depth"], exact["light"], pictures_of["map"]]
+        )
         for way, (title, reference) in WAYS.items():
-            rows.append(f"| {shown}, {title} | {compare(made[way], exact[reference]).flip:.3f} |")
+            rows.append(f"| {shown}, {title} | {compare(pictures_of[way], exact[reference]).flip:.3f} |")
     return "\n".join(rows), joined([[picture[:, 50:450] for picture in row] for row in pictures], 0.75)
 
 
 def ice_row() -> tuple[str, bytes]:
-    """Ice with baked cells, beside the same with cells computed in the shader."""
-    made, exact = rendered(WORK / "ice_baked_scene.toml"), rendered(WORK.parent / "ice" / "scene.toml")
-    return f"FLIP {compare(made, exact).flip:.3f}", joined([[made, exact]], 0.75)
+    """Ice with baked cells, next to ice with cells computed in the shader."""
+    baked, exact = rendered(WORK / "ice_baked_scene.toml"), rendered(WORK.parent / "ice" / "scene.toml")
+    return f"FLIP {compare(baked, exact).flip:.3f}", joined([[baked, exact]], 0.75)
 
 
 def rendered(scene: Path) -> Any:
@@ -212,7 +214,7 @@ def rendered(scene: Path) -> Any:
 
 
 def joined(rows: list[list[Any]], scale: float = 1.0) -> bytes:
-    """Pictures side by side, in rows; all of a size."""
+    """Pictures of one size side by side, in rows."""
     picture = np.concatenate([np.concatenate(row, axis=1) for row in rows], axis=0)
     pillow = need("PIL.Image", "pillow")
     image = pillow.fromarray(np.rint(255.0 * picture).astype(np.uint8))

@@ -1,4 +1,4 @@
-"""Exact thickness as a scene's camera sees it, for the pictures that docs/bake.py compares with."""
+"""The exact thickness at the points that a scene's camera sees: the reference of the pictures in docs/bake.py."""
 
 from __future__ import annotations
 
@@ -19,14 +19,15 @@ from sssgen.targets.texture_import import import_settings
 SIZE = 1024
 """Texels along a side of the map."""
 STEPS = 24
-"""Points along the inside of a view, from which the light's way is measured."""
+"""The number of points on a view ray inside the body at which the path of the light is measured."""
 
 
 def write(scene_file: Path, name: str, deep: bool) -> Path:
-    """A scene like this one with the exact thickness in place of the technique's: the file's path.
+    """Writes a copy of a scene with the exact thickness in place of the technique's; returns its path.
 
-    Of the first light: the length inside the body from what is seen; or, where `deep`, the mean over the inside of the
-    view of the ways in from the light and out to the eye, which is what march_distance_texture marches.
+    The thickness is the length inside the body from the visible point towards the first light. With `deep` it is the
+    mean, over the points of the view ray inside the body, of the path from the light to the point and on to the eye, as
+    in march_distance_texture.
     """
     scene, folder = load(scene_file), scene_file.parent
     mesh, towards = scene.geometry, scene.lights[0].direction
@@ -39,18 +40,18 @@ def write(scene_file: Path, name: str, deep: bool) -> Path:
     hit = met >= 0
     places = view.origins[hit] + t[hit, None] * view.directions[hit]
     light = np.broadcast_to(np.array(towards), places.shape).copy()
-    found = _deep(mesh, places, view.directions[hit], light) if deep else thickness(mesh, places, light)
+    lengths = _deep(mesh, places, view.directions[hit], light) if deep else thickness(mesh, places, light)
     values = np.zeros(len(met))
-    values[hit] = found / found.max()
+    values[hit] = lengths / lengths.max()
     facts: dict[str, Any] = {
         "kind": "exact", "holds": "thickness",
         "parameters": {
-            "exact_factor": float(found.max()), "camera_matrix": [float(one) for one in view.matrix.T.ravel()]
+            "exact_factor": float(lengths.max()), "camera_matrix": [float(number) for number in view.matrix.T.ravel()]
         },
         "import": import_settings(wrap="clamp", mipmaps=False),
     }  # fmt: skip
-    # what lies beside the body is filled from it, so that its edge is not darkened
-    rows = np.arange(SIZE * SIZE).reshape(SIZE, SIZE)[::-1].ravel()  # the view's rows go up, a picture's down
+    # texels outside of the body are filled from inside, so that filters do not darken its edge
+    rows = np.arange(SIZE * SIZE).reshape(SIZE, SIZE)[::-1].ravel()  # rows of the view go up, those of a picture down
     texels = np.flatnonzero(hit[rows])
     picture = filled(values[rows][texels], texels, (SIZE, SIZE))
     write_picture(str(folder / f"{name}.exr"), picture, facts)
@@ -58,7 +59,7 @@ def write(scene_file: Path, name: str, deep: bool) -> Path:
 
 
 def _deep(mesh: Mesh, places: Any, ways: Any, light: Any) -> Any:
-    """The mean way through the body, in along the light and out along the view."""
+    """The mean path through the body: in from the light, out along the view."""
     inwards = mesh.to_object()
     local, along = places @ inwards[:3, :3].T + inwards[:3, 3], ways @ inwards[:3, :3].T * mesh.scale
     parts = intervals(mesh, local, along) * mesh.scale
@@ -77,7 +78,7 @@ def _deep(mesh: Mesh, places: Any, ways: Any, light: Any) -> Any:
 
 
 def _scene_file(scene: Scene, scene_file: Path, name: str) -> Path:
-    """The scene and its material as files, with the exact technique."""
+    """Writes the scene and its material with the exact technique."""
     folder = scene_file.parent
     material = (folder / Path(scene.material).name).read_text(encoding="utf-8")
     head, _, rest = material.partition("[thickness]")
