@@ -74,7 +74,7 @@ def test_add_a_target(tmp_path: Path, compiler: Callable[[str], Any]) -> None:
     """In a fresh environment that has sssgen and what it needs, and no plug-in yet."""
     compiler("glslang")
     environment = tmp_path / "environment"
-    venv.create(environment, with_pip=True)
+    venv.create(environment)
     (environment / "bin" / "sssgen").symlink_to(
         programs(tmp_path / "programs", str(environment / "bin" / "python")) / "sssgen"
     )

@@ -36,6 +36,11 @@ def run(*command: str | Path, cwd: Path, **variables: str) -> str:
     return done.stdout
 
 
+def pip(programs: Path) -> tuple[str | Path, ...]:
+    """This environment's pip, for the environment that has these programs."""
+    return (sys.executable, "-m", "pip", "--python", programs / "python")
+
+
 @pytest.fixture(scope="session")
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The wheel of this checkout."""
@@ -49,9 +54,9 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The programs of an environment that has the wheel, what it asks for, and nothing else."""
     path = tmp_path_factory.mktemp("environment")
-    venv.create(path, with_pip=True)
+    venv.create(path)
     programs = path / ("Scripts" if sys.platform == "win32" else "bin")
-    run(programs / "python", "-m", "pip", "install", "--quiet", wheel, cwd=path)
+    run(*pip(programs), "install", "--quiet", wheel, cwd=path)
     return programs
 
 
@@ -122,7 +127,7 @@ def test_the_wheel_checks_and_runs_unitys_text(
 def test_the_installed_program(installed: Path, tmp_path: Path) -> None:
     assert run(installed / "sssgen", "--version", cwd=tmp_path) == f"sssgen {VERSION}\n"
     assert run(installed / "python", "-m", "sssgen", "--version", cwd=tmp_path) == f"sssgen {VERSION}\n"
-    packages = run(installed / "python", "-m", "pip", "list", "--format", "freeze", cwd=tmp_path).lower()
+    packages = run(*pip(installed), "list", "--format", "freeze", cwd=tmp_path).lower()
     assert "numpy" not in packages
     listed = run(installed / "sssgen", "list", "targets", cwd=tmp_path)
     assert {line.split()[0] for line in listed.splitlines()} == {path.stem for path in folder("targets").glob("*.toml")}
@@ -136,7 +141,7 @@ def test_the_version_is_in_the_changelog_or_unreleased() -> None:
 def test_every_import_is_a_dependency() -> None:
     """Every module from outside that src/ imports is a dependency, or one of an extra."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    requests = str([project["dependencies"], project["optional-dependencies"]])
+    declared = str([project["dependencies"], project["optional-dependencies"]])
     outside: set[str] = set()
     for path in (ROOT / "src").rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
@@ -145,4 +150,4 @@ def test_every_import_is_a_dependency() -> None:
             elif isinstance(node, ast.ImportFrom) and node.level == 0:
                 outside.add(str(node.module).split(".")[0])
     outside -= {*sys.stdlib_module_names, "sssgen"}
-    assert {name for name in outside if name not in requests} == set()
+    assert {name for name in outside if name not in declared} == set()
