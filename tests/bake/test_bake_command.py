@@ -135,14 +135,14 @@ WRONG: list[tuple[list[str], str]] = [
     (["sdf", "box.obj", "-o", "o.npy", "--format", "dss"], "did you mean 'dds'?"),
     (["sdf", "box.obj", "-o", "o.npy", "--format", "dds"], "ends in .dds"),
     (["sdf", "box.obj", "-o", "o.npy", "--encode", "r12"], "unknown encoding 'r12'"),
-    (["sdf", "box.obj", "-o", "o.npy", "--resolution", "0"], "'0' is no resolution"),
-    (["sdf", "box.obj", "-o", "o.npy", "--resolution=-8"], "'-8' is no resolution"),
-    (["sdf", "box.obj", "-o", "o.npy", "--resolution", "8,8"], "is no resolution"),
-    (["sdf", "box.obj", "-o", "o.npy", "--resolution", "8,8,8,8"], "is no resolution"),
-    (["sdf", "box.obj", "-o", "o.npy", "--resolution", "many"], "'many' is no resolution"),
-    (["sdf", "box.obj", "-o", "o.npy", "--resolution", "8.5"], "'8.5' is no resolution"),
-    (["sdf", "box.obj", "-o", "o.npy", "--resolution", ""], "'' is no resolution"),
-    (["sdf", "box.obj", "-o", "o.npy", "--resolution", "99999"], "is no resolution"),
+    (["sdf", "box.obj", "-o", "o.npy", "--resolution", "0"], "'0' is not a resolution"),
+    (["sdf", "box.obj", "-o", "o.npy", "--resolution=-8"], "'-8' is not a resolution"),
+    (["sdf", "box.obj", "-o", "o.npy", "--resolution", "8,8"], "is not a resolution"),
+    (["sdf", "box.obj", "-o", "o.npy", "--resolution", "8,8,8,8"], "is not a resolution"),
+    (["sdf", "box.obj", "-o", "o.npy", "--resolution", "many"], "'many' is not a resolution"),
+    (["sdf", "box.obj", "-o", "o.npy", "--resolution", "8.5"], "'8.5' is not a resolution"),
+    (["sdf", "box.obj", "-o", "o.npy", "--resolution", ""], "'' is not a resolution"),
+    (["sdf", "box.obj", "-o", "o.npy", "--resolution", "99999"], "is not a resolution"),
     (["sdf", "box.obj", "-o", "o.npy", "--resolution", "2048,2048,2048"], "GiB are free"),
     (["sdf", "box.obj", "-o", "o.npy", "--padding", "-1"], "is no padding"),
     (["sdf", "box.obj", "-o", "o.npy", "--padding", "nan"], "is no padding"),
@@ -161,9 +161,9 @@ WRONG: list[tuple[list[str], str]] = [
     (["thickness", "box.obj", "-o", "o.png", "--rays", "0"], "0 is no number of rays"),
     (["thickness", "box.obj", "-o", "o.png", "--rays", "1000000"], "is no number of rays"),
     (["thickness", "box.obj", "-o", "o.png", "--seed", "-1"], "-1 is no seed"),
-    (["thickness", "box.obj", "-o", "o.png", "--size", "0"], "'0' is no size"),
-    (["thickness", "box.obj", "-o", "o.png", "--size", "20000"], "'20000' is no size"),
-    (["thickness", "box.obj", "-o", "o.png", "--size", "8x8x8"], "is no size"),
+    (["thickness", "box.obj", "-o", "o.png", "--size", "0"], "'0' is not a size"),
+    (["thickness", "box.obj", "-o", "o.png", "--size", "20000"], "'20000' is not a size"),
+    (["thickness", "box.obj", "-o", "o.png", "--size", "8x8x8"], "is not a size"),
     (["thickness", "box.obj", "-o", "o.png", "--mode", "transmittance"], "--attenuation"),
     (["thickness", "box.obj", "-o", "o.png", "--mode", "transmittance", "--attenuation", "0"], "--attenuation"),
     (["thickness", "box.obj", "-o", "o.png", "--mode", "transmittance", "--attenuation", "nan"], "--attenuation"),
@@ -188,7 +188,7 @@ WRONG: list[tuple[list[str], str]] = [
     (["normal", "no.png", "-o", "o.png"], "cannot find the picture"),
     (["normal", "a.png", "-o", "folder.png"], "a folder has its name"),
     (["voronoi", "-o", "o.png", "--cells", "0"], ""),
-    (["voronoi", "-o", "o.png", "--size", "-4"], "is no size"),
+    (["voronoi", "-o", "o.png", "--size", "-4"], "is not a size"),
     (["voronoi", "-o", "folder.png"], "a folder has its name"),
 ]
 
@@ -290,7 +290,7 @@ def test_inconsistent_winding_is_reported(capsys: pytest.CaptureFixture[str]) ->
 def test_a_light_that_hits_nothing_is_reported(capsys: pytest.CaptureFixture[str]) -> None:
     write(Path("sheet.obj"), SHEET)
     bake("depth", "sheet.obj", "-o", "d.exr", "--direction", "1,0,0", "--size", "16")
-    assert "the light meets nothing" in capsys.readouterr().out
+    assert "no ray of the light hits the mesh" in capsys.readouterr().out
 
 
 def test_missing_folders_are_created() -> None:

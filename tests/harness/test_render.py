@@ -222,13 +222,13 @@ def test_a_scene_that_does_not_fit_its_material(
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["SCENE", "--size", "640"], "is no size"),
-        (["SCENE", "--size", "0x10"], "is no size"),
+        (["SCENE", "--size", "640"], "is not a size"),
+        (["SCENE", "--size", "0x10"], "is not a size"),
         (["SCENE", "--size", "8192x8192"], "samples are too many"),
         (["SCENE", "--backend", "opengl"], "unknown back end"),
         (["SCENE", "--backend", "gl,webgpu"], "are several back ends"),
-        (["SCENE", "--time", "nan"], "is no time"),
-        (["SCENE", "--time", "1e39"], "is no time"),
+        (["SCENE", "--time", "nan"], "is not a time"),
+        (["SCENE", "--time", "1e39"], "is not a time"),
         (["SCENE", "-o", "x.jpg"], "'.jpg'"),
         (["SCENE", "-o", "x.npy"], "written as .png or .exr"),
         (["nothing.toml"], "nothing.toml"),

@@ -364,9 +364,9 @@ def test_the_library_without_baselines() -> None:
         (["beer_lambert", "-b", "gl", "--precision", "f16"], "gl does not compute in half precision"),
         (["beer_lambert", "-b", "numpy-f16"], "numpy-f16 computes in half precision"),
         (["beer_lambert", "--samples", "0"], "not a number of samples"),
-        (["beer_lambert", "--seed", "-1"], "below 0"),
-        (["beer_lambert", "-o", "report.html"], "a report is no '.html' file"),
-        (["beer_lambert", "-o", "."], "a report is no '' file"),
+        (["beer_lambert", "--seed", "-1"], "is negative"),
+        (["beer_lambert", "-o", "report.html"], "a report cannot be a '.html' file"),
+        (["beer_lambert", "-o", "."], "a report cannot be a '' file"),
         (["beer_lambert", "-o", f"{__file__}/report.md"], "cannot write"),
     ],
 )

@@ -327,7 +327,7 @@ def test_the_fit_command_shows_parameters(tmp_path: Path, capsys: pytest.Capture
         (["chart", "cube", "--samples", "1"], "--samples 1 is not a number of samples"),
         (["chart", "cube", "--samples", "1000000"], "is not a number of samples"),
         (["chart", "cube", "--samples", "many"], "many"),
-        (["chart", "cube", "--seed", "-1"], "--seed -1 is below 0"),
+        (["chart", "cube", "--seed", "-1"], "--seed -1 is negative"),
         (["chart", "cube", "--role", "thicknes"], "did you mean 'thickness'"),
         (["chart", "cube", "--role", "colour"], "roles: coordinates, thickness, translucency, material"),
         (["chart", "cube", "cube"], "two scenes are called 'cube'"),

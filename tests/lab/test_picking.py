@@ -188,7 +188,7 @@ def test_a_cached_chart_is_not_measured_again(
     assert "next better" in output and "a cost of at most 5" in output
     # no chain keeps this: the nearest is shown, and the exit status says so
     assert run("--max-error", "1e-30") == 1
-    assert "which nothing keeps; this is the nearest" in capsys.readouterr().out
+    assert "which no chain reaches; this is the nearest" in capsys.readouterr().out
     assert run("--max-error", "1e-30", "--json") == 1
     assert json.loads(capsys.readouterr().out)["ok"] is False
 
@@ -220,10 +220,10 @@ def test_the_picked_chain_is_emitted(charted: str, tmp_path: Path, capsys: pytes
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["--max-error", "0"], "--max-error 0 is no limit"),
-        (["--max-error", "nan"], "--max-error nan is no limit"),
-        (["--max-cost", "-3"], "--max-cost -3 is no limit"),
-        (["--max-cost", "inf"], "--max-cost inf is no limit"),
+        (["--max-error", "0"], "--max-error 0 is not a limit"),
+        (["--max-error", "nan"], "--max-error nan is not a limit"),
+        (["--max-cost", "-3"], "--max-cost -3 is not a limit"),
+        (["--max-cost", "inf"], "--max-cost inf is not a limit"),
         ([], "required"),
         (["--max-cost", "3", "--max-error", "1"], "not allowed"),
         (["--max-cost", "3", "--samples", "1"], "--samples 1 is not a number of samples"),

@@ -38,6 +38,7 @@ LAZY_IMPORTS = {
     "sssgen.lab.jobs.result_store": EXTRA,
     "sssgen.lang.loader": EMIT,
     "sssgen.lang.syntax.grammar_tables": "only building the tables needs lark",
+    "sssgen.material.baked": EMIT,
     "sssgen.material.model": EMIT,
     "sssgen.pipeline.compiler": EMIT,
     "sssgen.pipeline.emitted_cache": EMIT,

@@ -185,7 +185,7 @@ def test_given_inputs_of_eval_replace_samples(tmp_path: Path, capsys: pytest.Cap
         (["--samples", "0"], "--samples 0 is not a number of samples"),
         (["--samples", "2000000"], "from 1 to 1000000"),
         (["--samples", "many"], "invalid int value"),
-        (["--samples", "5", "--seed", "-1"], "--seed -1 is below 0"),
+        (["--samples", "5", "--seed", "-1"], "--seed -1 is negative"),
     ],
 )
 def test_eval_refuses(arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -68,7 +68,7 @@ def around(low: Array, high: Array, resolution: Sequence[int], padding: float) -
     """
     if len(resolution) not in (1, 3) or not all(LEAST <= count <= MOST for count in resolution):
         text = ",".join(map(str, resolution))
-        raise failure(f"'{text}' is no resolution", f"N or X,Y,Z, each from {LEAST} to {MOST}")
+        raise failure(f"'{text}' is not a resolution", f"N or X,Y,Z, each from {LEAST} to {MOST}")
     if not 0.0 <= padding <= 10.0:
         raise failure(f"{padding:g} is no padding", "a part of the longest side, from 0 to 10, as 0.05")
     size, middle = high - low, 0.5 * (low + high)

@@ -1,4 +1,4 @@
-"""`sssgen bake`: textures that techniques sample, from meshes and from nothing."""
+"""`sssgen bake`: textures for techniques, from meshes, from pictures or computed."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from sssgen.targets.texture_import import import_settings
 CHANNELS = ("red", "green", "blue", "alpha")
 GREEN = {"opengl": "OpenGL (up)", "directx": "DirectX (down)"}
 
-Done = tuple[list[str], dict[str, Any], list[str]]
-"""The files that were written, what their JSON says, and what people are told."""
+Result = tuple[list[str], dict[str, Any], list[str]]
+"""The files that were written, the content of their JSON, and the lines to print."""
 
 
 class Kind(NamedTuple):
@@ -27,7 +27,7 @@ class Kind(NamedTuple):
     help: str
     epilog: str
     add_options: Callable[[ArgumentParser], None]
-    bake: Callable[[Namespace], Done]
+    bake: Callable[[Namespace], Result]
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -85,7 +85,7 @@ def _sdf_options(parser: ArgumentParser) -> None:
     add("--thin", type=float, metavar="T", help="treat the mesh as a sheet of thickness T, without an inside")
 
 
-def _sdf(arguments: Namespace) -> Done:
+def _sdf(arguments: Namespace) -> Result:
     from sssgen.bake import baked_files as output
     from sssgen.bake.distance_texture import sdf
     from sssgen.harness.scenes.mesh_distance import MIXED
@@ -93,7 +93,7 @@ def _sdf(arguments: Namespace) -> Done:
     format = output.volume_format(arguments.output, arguments.format)
     output.check_apart(arguments.output, [arguments.MESH])
     with ProgressBar() as bar:
-        made = sdf(
+        baked = sdf(
             arguments.MESH,
             _wholes(arguments.resolution, "resolution"),
             arguments.padding,
@@ -102,19 +102,19 @@ def _sdf(arguments: Namespace) -> Done:
             arguments.thin,
             bar,
         )
-    paths = output.write_volume(arguments.output, made.texels, format, made.facts)
-    x, y, z = made.grid.counts
-    error = made.facts["error"]
-    mesh = made.facts["mesh"]
-    told = [
-        f"{x} × {y} × {z} texels of {made.grid.voxel.max():.4g} units; {made.facts['inside']:.1%} are inside",
-        f"a distance is right to {error['at_texels']:.2g} at texels, and to {error['between_texels']:.2g} between them"
+    paths = output.write_volume(arguments.output, baked.texels, format, baked.facts)
+    x, y, z = baked.grid.counts
+    error = baked.facts["error"]
+    mesh = baked.facts["mesh"]
+    lines = [
+        f"{x} × {y} × {z} texels of {baked.grid.voxel.max():.4g} units; {baked.facts['inside']:.1%} are inside",
+        f"the largest error is {error['at_texels']:.2g} at texels, and {error['between_texels']:.2g} between them"
         + (f", but {error['but']}" if "but" in error else ""),
         f"the mesh is {'closed' if mesh['closed'] else 'open'}"
-        + (", and inside out: taken the other way round" if mesh["inside_out"] else ""),
+        + (", and inside out: it was reversed" if mesh["inside_out"] else ""),
         *([f"warning: {MIXED}"] if mesh["mixed_sides"] else []),
     ]
-    return paths, made.facts, told
+    return paths, baked.facts, lines
 
 
 def _thickness_options(parser: ArgumentParser) -> None:
@@ -135,37 +135,36 @@ def _thickness_options(parser: ArgumentParser) -> None:
     add_workers(parser)
 
 
-def _thickness(arguments: Namespace) -> Done:
-    from sssgen.bake import bake_light as light
-    from sssgen.bake import baked_files as output
+def _thickness(arguments: Namespace) -> Result:
+    from sssgen.bake import bake_light, baked_files
     from sssgen.bake.thickness_map import Request, thickness_map, warnings
 
-    output.picture_suffix(arguments.output)
-    output.check_apart(arguments.output, [arguments.MESH, arguments.direction or ""])
-    wanted = Request(
+    baked_files.picture_suffix(arguments.output)
+    baked_files.check_apart(arguments.output, [arguments.MESH, arguments.direction or ""])
+    request = Request(
         arguments.mode,
-        light.read(arguments.direction) if arguments.direction else None,
+        bake_light.read(arguments.direction) if arguments.direction else None,
         arguments.rays,
         arguments.attenuation or 0.0,
         arguments.seed,
     )
     size = _size(arguments.size)
     with ProgressBar() as bar:
-        made = thickness_map(
-            arguments.MESH, size, wanted, arguments.unwrap, arguments.processes, arguments.scheduler, bar
+        baked = thickness_map(
+            arguments.MESH, size, request, arguments.unwrap, arguments.processes, arguments.scheduler, bar
         )
-    mesh = output.mesh_beside(arguments.output)
-    beside = {os.path.basename(mesh): made.mesh} if made.mesh else {}
-    paths = output.write_picture(arguments.output, made.values, made.facts, beside=beside)
-    errors, top = made.facts["error"], made.facts["range"][1]
-    told = [
-        f"{made.facts['holds']} from 0 to {top:.4g}, in the mean {made.facts['mean']:.4g}",
-        f"standard error {errors['mean_standard_error']:.2g} in the mean, at most "
-        f"{errors['largest_standard_error']:.2g}, of {made.facts['rays']} rays a texel",
-        *([f"{posix(mesh)} is the mesh with its new texture coordinates: use that"] if made.mesh else []),
-        *(f"warning: {one}" for one in warnings(made.facts)),
+    mesh = baked_files.mesh_beside(arguments.output)
+    mesh_file = {os.path.basename(mesh): baked.mesh} if baked.mesh else {}
+    paths = baked_files.write_picture(arguments.output, baked.values, baked.facts, beside=mesh_file)
+    errors, top = baked.facts["error"], baked.facts["range"][1]
+    lines = [
+        f"{baked.facts['holds']} from 0 to {top:.4g}, mean {baked.facts['mean']:.4g}",
+        f"standard error {errors['mean_standard_error']:.2g} on average, at most "
+        f"{errors['largest_standard_error']:.2g}, of {baked.facts['rays']} rays per texel",
+        *([f"{posix(mesh)} is the mesh with its new texture coordinates: use it"] if baked.mesh else []),
+        *(f"warning: {warning}" for warning in warnings(baked.facts)),
     ]
-    return paths, made.facts, told
+    return paths, baked.facts, lines
 
 
 def _depth_options(parser: ArgumentParser) -> None:
@@ -176,20 +175,20 @@ def _depth_options(parser: ArgumentParser) -> None:
     _add_size(parser)
 
 
-def _depth(arguments: Namespace) -> Done:
-    from sssgen.bake import bake_light as light
+def _depth(arguments: Namespace) -> Result:
+    from sssgen.bake import bake_light
     from sssgen.bake import baked_files as output
     from sssgen.bake.depth_map import depth_map
 
     output.picture_suffix(arguments.output, (".exr", ".npy"))
     output.check_apart(arguments.output, [arguments.MESH, arguments.direction])
-    towards, size = light.read(arguments.direction), _size(arguments.size)
+    light, size = bake_light.read(arguments.direction), _size(arguments.size)
     with ProgressBar() as bar:
-        values, facts = depth_map(arguments.MESH, towards, size, bar)
+        values, facts = depth_map(arguments.MESH, light, size, bar)
     paths = output.write_picture(arguments.output, values, facts)
     low, high = facts["range"]
-    told = [f"depths from {low:.4g} to {high:.4g}; the mesh is in {facts['covered']:.0%} of the texels"]
-    return paths, facts, told if facts["covered"] else ["warning: the light meets nothing"]
+    lines = [f"depths from {low:.4g} to {high:.4g}; the mesh is in {facts['covered']:.0%} of the texels"]
+    return paths, facts, lines if facts["covered"] else ["warning: no ray of the light hits the mesh"]
 
 
 def _voronoi_options(parser: ArgumentParser) -> None:
@@ -214,13 +213,13 @@ def _voronoi_options(parser: ArgumentParser) -> None:
     add("--no-tile", action="store_true", help="the map need not tile")
 
 
-def _voronoi(arguments: Namespace) -> Done:
+def _voronoi(arguments: Namespace) -> Result:
     from sssgen.bake import baked_files as output
     from sssgen.bake import cells
 
     output.picture_suffix(arguments.output)
     size, count, tiles = _size(arguments.size), _pair(arguments.cells, "number of cells"), not arguments.no_tile
-    made = cells.voronoi(
+    texels = cells.voronoi(
         size, count, arguments.jitter, arguments.seed, tiles, arguments.feature, arguments.bevel, arguments.variation
     )
     facts = {
@@ -230,7 +229,7 @@ def _voronoi(arguments: Namespace) -> Done:
         "one_stands_for": cells.scale(arguments.feature, arguments.jitter), "parameters": {},
         "import": import_settings(wrap="repeat" if tiles else "clamp"),
     }  # fmt: skip
-    paths = output.write_picture(arguments.output, made, facts)
+    paths = output.write_picture(arguments.output, texels, facts)
     return paths, facts, [f"{count[0]} × {count[1]} cells, {arguments.feature}{', tileable' if tiles else ''}"]
 
 
@@ -247,7 +246,7 @@ def _normal_options(parser: ArgumentParser) -> None:
     add("--no-tile", action="store_true", help="the picture does not tile")
 
 
-def _normal(arguments: Namespace) -> Done:
+def _normal(arguments: Namespace) -> Result:
     from sssgen.bake import baked_files as output
     from sssgen.bake import normal_map as normals
     from sssgen.harness.pictures import images
@@ -256,13 +255,13 @@ def _normal(arguments: Namespace) -> Done:
     output.check_apart(arguments.output, [arguments.HEIGHT])
     height = images.upright(arguments.HEIGHT)
     tiles = not arguments.no_tile
-    made = normals.from_height(height[..., 0], arguments.strength, tiles, arguments.green)
+    texels = normals.from_height(height[..., 0], arguments.strength, tiles, arguments.green)
     facts = {
         "kind": "normal", "holds": None, "strength": arguments.strength,
         "green": arguments.green, "tiles": tiles, "parameters": {},
         "import": import_settings(wrap="repeat" if tiles else "clamp", normal_map=True),
     }  # fmt: skip
-    paths = output.write_picture(arguments.output, made, facts, arguments.bits)
+    paths = output.write_picture(arguments.output, texels, facts, arguments.bits)
     return paths, facts, [f"tangent-space normals, green as in {GREEN[arguments.green]}"]
 
 
@@ -273,23 +272,23 @@ def _pack_options(parser: ArgumentParser) -> None:
     _add_bits(parser)
 
 
-def _pack(arguments: Namespace) -> Done:
+def _pack(arguments: Namespace) -> Result:
     from sssgen.bake import baked_files as output
     from sssgen.bake import channel_packing as packing
 
     output.picture_suffix(arguments.output)
-    given = {name: getattr(arguments, name) for name in CHANNELS}
-    if not any(given.values()):
+    sources_by_channel = {name: getattr(arguments, name) for name in CHANNELS}
+    if not any(sources_by_channel.values()):
         raise failure("there is nothing to pack", "--red a.png --green b.png --blue 1-c.png")
-    sources = [packing.parse(text) if text else None for text in given.values()]
+    sources = [packing.parse(text) if text else None for text in sources_by_channel.values()]
     output.check_apart(arguments.output, [source.file for source in sources if source and source.file])
-    made = packing.pack(packing.load(sources))
+    texels = packing.pack(packing.load(sources))
     facts = {
-        "kind": "packed", "holds": None, "channels": given, "parameters": {},
+        "kind": "packed", "holds": None, "channels": sources_by_channel, "parameters": {},
         "import": import_settings(),
     }  # fmt: skip
-    paths = output.write_picture(arguments.output, made, facts, arguments.bits)
-    return paths, facts, [f"{name}: {text}" for name, text in given.items() if text]
+    paths = output.write_picture(arguments.output, texels, facts, arguments.bits)
+    return paths, facts, [f"{name}: {text}" for name, text in sources_by_channel.items() if text]
 
 
 KINDS = {
@@ -307,7 +306,7 @@ KINDS = {
         _thickness,
     ),
     "depth": Kind(
-        "the distance to the first surface that a light meets, as a map from the light's view",
+        "the distance to the first surface that a light hits, as a map from the light's view",
         "Bind it to light_depth_map of the technique depth_map_thickness.",
         _depth_options,
         _depth,
@@ -321,29 +320,29 @@ KINDS = {
         _pack,
     ),
 }
-"""What can be baked."""
+"""The kinds of textures, by the name of the subcommand."""
 
 
 def _size(text: str) -> tuple[int, int]:
     """A picture's width and height. Raises SssgenError."""
     from sssgen.harness.pictures.images import LARGEST_SIDE
 
-    found = _pair(text, "size")
-    if not all(1 <= side <= LARGEST_SIDE for side in found):
-        raise failure(f"'{text}' is no size", f"N or WIDTHxHEIGHT in texels, each from 1 to {LARGEST_SIDE}")
-    return found
+    size = _pair(text, "size")
+    if not all(1 <= side <= LARGEST_SIDE for side in size):
+        raise failure(f"'{text}' is not a size", f"N or WIDTHxHEIGHT in texels, each from 1 to {LARGEST_SIDE}")
+    return size
 
 
 def _pair(text: str, name: str) -> tuple[int, int]:
-    found = _wholes(text, name)
-    if len(found) > 2:
-        raise failure(f"'{text}' is no {name}", "one whole number, or two")
-    return found[0], found[-1]
+    numbers = _wholes(text, name)
+    if len(numbers) > 2:
+        raise failure(f"'{text}' is not a {name}", "one or two whole numbers")
+    return numbers[0], numbers[-1]
 
 
 def _wholes(text: str, name: str) -> list[int]:
-    """Whole numbers with commas or crosses between them. Raises SssgenError."""
+    """Whole numbers, separated by commas or crosses. Raises SssgenError."""
     parts = text.replace("x", ",").replace("×", ",").split(",")
     if not all(part.isdecimal() and len(part) < 10 for part in parts):
-        raise failure(f"'{text}' is no {name}", "whole numbers, with a comma or x between them where there are several")
+        raise failure(f"'{text}' is not a {name}", "whole numbers, separated by commas or x")
     return [int(part) for part in parts]

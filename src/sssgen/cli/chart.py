@@ -14,7 +14,7 @@ from sssgen.support.progress import ProgressBar
 if TYPE_CHECKING:
     from sssgen.lab.chart.charting import Settings
 
-MOST_SAMPLES = 1 << 16
+MAX_SAMPLES = 1 << 16
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -74,10 +74,10 @@ def settings_of(arguments: Namespace) -> Settings:
     from sssgen.lab.chart.charting import Settings
     from sssgen.lab.measure import candidates
 
-    if not 2 <= arguments.samples <= MOST_SAMPLES:
-        raise failure(f"--samples {arguments.samples} is not a number of samples", f"from 2 to {MOST_SAMPLES}")
+    if not 2 <= arguments.samples <= MAX_SAMPLES:
+        raise failure(f"--samples {arguments.samples} is not a number of samples", f"from 2 to {MAX_SAMPLES}")
     if arguments.seed < 0:
-        raise failure(f"--seed {arguments.seed} is below 0")
+        raise failure(f"--seed {arguments.seed} is negative")
     roles = tuple(arguments.role.split(",")) if getattr(arguments, "role", None) else candidates.ROLES
     for role in roles:
         if role not in candidates.ROLES:

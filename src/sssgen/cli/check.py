@@ -51,12 +51,12 @@ def run(arguments: Namespace) -> int:
 
 
 def _compilers(names: list[str], wrong: list[Diagnostic]) -> list[str]:
-    found = [name.strip() for text in names for name in text.split(",")]
-    for name in found:
+    compilers = [name.strip() for text in names for name in text.split(",")]
+    for name in compilers:
         if name not in COMPILERS:
             hint = did_you_mean(name, COMPILERS) or f"compilers: {', '.join(COMPILERS)}"
             wrong += failure(f"unknown compiler '{name}'", hint).diagnostics
-    return found
+    return compilers
 
 
 def _passed(report: Report, shaders: list[Shader]) -> bool:
@@ -91,7 +91,7 @@ def _print(report: Report, shaders: list[Shader]) -> None:
 def _why_not(language: str, report: Report) -> str:
     names = readers(language)
     if not names:
-        return f"no compiler here is known to read {language}"
+        return f"no compiler reads {language}"
     return f"{' and '.join(names)} not found" if report.missing.keys() & set(names) else "not by these compilers"
 
 
@@ -99,7 +99,7 @@ def _print_messages(results: list[Result]) -> None:
     """One compiler's messages for one file, without duplicates: each with its line, and the technique's line."""
     result = results[0]
     lines = result.shader.text.split("\n")
-    messages = list(dict.fromkeys(message for one in results for message in one.messages))
+    messages = list(dict.fromkeys(message for result in results for message in result.messages))
     for message in messages[:SHOWN]:
         print(f"  {message.severity}: {visible(' '.join(message.text.split()))}")
         if message.line:

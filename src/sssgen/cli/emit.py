@@ -44,40 +44,40 @@ def run(arguments: Namespace) -> int:
     """Compiles everything, then writes everything: if one text fails, none is written."""
     traces: list[Trace] = []
     try:
-        made = _cached_or_compiled(arguments, traces)
+        emitted = _cached_or_compiled(arguments, traces)
     finally:
         for trace in traces:
             trace.write(arguments.output)
-    written = write_files(arguments.output, made.files)
+    written = write_files(arguments.output, emitted.files)
     if arguments.json:
         rows = [
-            {"file": posix(one.path), "material": material, "target": target, "changed": one.changed}
-            for one, (material, target) in zip(written, made.sources.values(), strict=True)
+            {"file": posix(file.path), "material": material, "target": target, "changed": file.changed}
+            for file, (material, target) in zip(written, emitted.sources.values(), strict=True)
         ]
-        diagnostics = [one.as_json() for one in made.warnings]
+        diagnostics = [warning.as_json() for warning in emitted.warnings]
         print_json({"ok": True, "form": arguments.form, "files": rows, "diagnostics": diagnostics})
         return OK
-    print_warnings(made.warnings)
-    for one in written:
-        print(f"{'wrote' if one.changed else 'kept '} {posix(one.path)}")
+    print_warnings(emitted.warnings)
+    for file in written:
+        print(f"{'wrote' if file.changed else 'kept '} {posix(file.path)}")
     return OK
 
 
 def _cached_or_compiled(arguments: Namespace, traces: list[Trace]) -> EmittedFiles:
-    """The cached result of the same command; with templates of one's own or a trace it is compiled again."""
+    """The cached result of the same command; with own templates or a trace it is compiled again."""
     if arguments.templates is not None or arguments.trace:
         return _compile_all(arguments, traces)
     command = (arguments.MATERIAL, arguments.target, arguments.form, arguments.guards)
-    known = emitted_cache.load(*command)
-    if known is not None:
-        return known
-    made, files = watch.watched(lambda: _compile_all(arguments, traces))
-    emitted_cache.store(*command, made, files)
-    return made
+    cached = emitted_cache.load(*command)
+    if cached is not None:
+        return cached
+    emitted, files = watch.watched(lambda: _compile_all(arguments, traces))
+    emitted_cache.store(*command, emitted, files)
+    return emitted
 
 
 def _compile_all(arguments: Namespace, traces: list[Trace]) -> EmittedFiles:
-    """Compiles every material for every target, and adds to `traces`. Raises SssgenError with all that is wrong."""
+    """Compiles every material for every target, and adds to `traces`. Raises SssgenError with all errors."""
     from sssgen.pipeline.compiler import compile
     from sssgen.pipeline.trace import Trace
 
@@ -108,15 +108,15 @@ def chosen_targets(text: str, wrong: list[Diagnostic]) -> list[str]:
     """The targets that `T,T` or `all` names, each once; unknown ones are added to `wrong`."""
     from sssgen.pipeline.compiler import all_targets
 
-    known = list(all_targets())
+    targets = list(all_targets())
     names = [name.strip() for name in text.split(",") if name.strip()]
     if not names:
-        wrong += failure("no target is named", f"targets: {', '.join(known)}, or all").diagnostics
+        wrong += failure("no target is named", f"targets: {', '.join(targets)}, or all").diagnostics
     for name in names:
-        if name not in (*known, "all"):
-            hint = did_you_mean(name, [*known, "all"]) or f"targets: {', '.join(known)}, or all"
+        if name not in (*targets, "all"):
+            hint = did_you_mean(name, [*targets, "all"]) or f"targets: {', '.join(targets)}, or all"
             wrong += failure(f"unknown target '{name}'", hint).diagnostics
-    return known if "all" in names else [name for name in dict.fromkeys(names) if name in known]
+    return targets if "all" in names else [name for name in dict.fromkeys(names) if name in targets]
 
 
 def _templates(folder: str | None, wrong: list[Diagnostic]) -> str | None:
@@ -132,18 +132,18 @@ def _templates(folder: str | None, wrong: list[Diagnostic]) -> str | None:
 def _materials(arguments: list[str], wrong: list[Diagnostic]) -> list[Material]:
     from sssgen.material.material_loading import load_material
 
-    found: dict[str, Material] = {}
+    materials: dict[str, Material] = {}
     for argument in arguments:
         try:
             material = load_material(argument)
         except SssgenError as error:
             wrong += error.diagnostics
             continue
-        other = found.setdefault(material.name, material)
+        other = materials.setdefault(material.name, material)
         if other is not material:
             message = f"two materials are called '{material.name}': their files would have the same names"
             wrong += failure(message, f"the other one is {posix(other.file)}", posix(material.file)).diagnostics
-    return list(found.values())
+    return list(materials.values())
 
 
 def _collect(

@@ -14,7 +14,7 @@ from sssgen.support.diagnostics import failure
 
 SHOWN = 12
 """The number of lanes that are printed."""
-MOST_SAMPLES = 1_000_000
+MAX_SAMPLES = 1_000_000
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -61,10 +61,10 @@ def run(arguments: Namespace) -> int:
 
 def _sampled(chosen: Any, count: int, seed: int) -> dict[str, Any]:
     """Random values for the inputs that the file does not set."""
-    if not 1 <= count <= MOST_SAMPLES:
-        raise failure(f"--samples {count} is not a number of samples", f"from 1 to {MOST_SAMPLES}")
+    if not 1 <= count <= MAX_SAMPLES:
+        raise failure(f"--samples {count} is not a number of samples", f"from 1 to {MAX_SAMPLES}")
     if seed < 0:
-        raise failure(f"--seed {seed} is below 0")
+        raise failure(f"--seed {seed} is negative")
     from sssgen.harness.evaluate.random_inputs import samples
 
     return samples(chosen, count, seed)

@@ -25,18 +25,18 @@ def run(arguments: Namespace) -> int:
     from sssgen.lab.measure import candidates
     from sssgen.lab.scene import measured_scene
 
-    one = measured_scene.load(arguments.SCENE)
+    scene = measured_scene.load(arguments.SCENE)
     wanted = set(arguments.TECHNIQUE)
-    known = {technique.name for role in settings.roles for technique in candidates.of_role(role)}
-    for name in sorted(wanted - known):
-        hint = did_you_mean(name, known) or f"techniques: {', '.join(sorted(known))}"
-        raise failure(f"no technique of light that comes through is called '{name}'", hint)
-    points = chart.charted([one], settings)["points"]
+    techniques = {technique.name for role in settings.roles for technique in candidates.of_role(role)}
+    for name in sorted(wanted - techniques):
+        hint = did_you_mean(name, techniques) or f"techniques: {', '.join(sorted(techniques))}"
+        raise failure(f"no translucency technique is called '{name}'", hint)
+    points = chart.charted([scene], settings)["points"]
     points = [point for point in points if point["name"] != "none" and (not wanted or point["name"] in wanted)]
     if arguments.json:
-        print_json({"ok": True, "scene": one.name, "points": points})
+        print_json({"ok": True, "scene": scene.name, "points": points})
         return OK
-    print(f"{one.title}: fitted after the exact thickness, on balls and slabs of the same medium")
+    print(f"{scene.title}: fitted with the exact thickness, on balls and slabs of the same medium")
     print("  fit: relative error on these; scene: on this scene, and from the side")
     for point in sorted(points, key=lambda point: float(point["error"]["value"])):
         print(_shown(point))
@@ -44,10 +44,10 @@ def run(arguments: Namespace) -> int:
 
 
 def _shown(point: Mapping[str, Any]) -> str:
-    given = dict(point["parameters"])
+    parameters = dict(point["parameters"])
     if point["factor"]:
-        given[f"{point['factor']} ×"] = point["scale"]
-    told = ", ".join(f"{name} {' '.join(f'{one:.3g}' for one in value)}" for name, value in given.items())
+        parameters[f"{point['factor']} ×"] = point["scale"]
+    values = ", ".join(f"{name} {' '.join(f'{number:.3g}' for number in value)}" for name, value in parameters.items())
     views = " ".join(f"{view['value']:.3f}" for view in point["views"].values())
     failed = f"  {point['failed']}" if point["failed"] else ""
-    return f"  {point['label']:28} fit {point['training_error']:.3f}  scene {views}  {told}{failed}"
+    return f"  {point['label']:28} fit {point['training_error']:.3f}  scene {views}  {values}{failed}"

@@ -46,16 +46,19 @@ def run(arguments: Namespace) -> int:
 
 
 def _techniques() -> list[dict[str, Any]]:
-    found = sorted(library.load_all(), key=lambda one: (library.ROLES.index(one.role), one.baseline, one.name))
+    techniques = sorted(
+        library.load_all(),
+        key=lambda technique: (library.ROLES.index(technique.role), technique.baseline, technique.name),
+    )
     return [
         {
-            "name": one.name,
-            "role": one.role,
-            "summary": one.doc.get("summary", ""),
-            "baseline": one.baseline,
-            "file": library.shown_name(one.path),
+            "name": technique.name,
+            "role": technique.role,
+            "summary": technique.doc.get("summary", ""),
+            "baseline": technique.baseline,
+            "file": library.shown_name(technique.path),
         }
-        for one in found
+        for technique in techniques
     ]
 
 
@@ -64,14 +67,14 @@ def _targets() -> list[dict[str, Any]]:
 
 
 def _materials() -> list[dict[str, Any]]:
-    loaded = [load_material(name) for name in examples()]
+    materials = [load_material(name) for name in examples()]
     return [
         {
-            "name": one.name,
-            "title": one.title,
-            "summary": one.doc,
-            "shading": one.shading,
-            "file": posix(one.file),
+            "name": material.name,
+            "title": material.title,
+            "summary": material.doc,
+            "shading": material.shading,
+            "file": posix(material.file),
         }
-        for one in loaded
+        for material in materials
     ]

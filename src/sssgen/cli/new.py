@@ -1,4 +1,4 @@
-"""`sssgen new`: a material to start from."""
+"""`sssgen new`: writes a commented material to start from."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from sssgen.support.diagnostics import failure
 STARTER = """\
 # A material for sssgen. Write its shaders with:
 #     sssgen emit {file} --target all -o out
-# What there is to choose from: sssgen list techniques
-# What a technique does and takes: sssgen show beer_lambert
+# All techniques: sssgen list techniques
+# What a technique does, and its parameters: sssgen show beer_lambert
 
 [material]
 name = "{name}"
@@ -21,24 +21,24 @@ title = "{title}"
 doc = "What it is, in one or two sentences."
 shading = "lit"  # lit: the engine lights it; unlit: a [lighting] stage gives the color
 
-# Where the textures lie: here as if cast in, below a surface that refracts.
+# The position of the textures: here below a refracting surface, as if embedded.
 # [coordinates]
 # technique = "parallax_refracted"
 # depth = 0.02
 # ior = 1.5
 
-# How much matter the light has to pass: from a map, from a distance function, from a constant.
+# The thickness that the light has to pass: from a map, from a distance function, or a constant.
 [[thickness]]
 technique = "thickness_map"
 thickness_factor = 0.3  # a parameter: a uniform of the shader, and this is its default
 # thickness_texture = "thickness.png"  # the picture for previews
 
-# What of the light is left behind it. The stage below takes a transmittance, so the thickness is converted.
+# The share of the light that is transmitted. The translucency stage needs it, so the thickness is converted.
 [[thickness]]
 technique = "beer_lambert"
 attenuation_distance = 0.2
 
-# What the surface looks like. A section with several stages has double brackets; they run in order.
+# The appearance of the surface. A section with several stages has double brackets; they run in order.
 [[surface]]
 technique = "base_color"
 
@@ -47,7 +47,7 @@ technique = "pbr_constants"
 surface_roughness = 0.4
 metalness = {{ value = 0.0, fixed = true }}  # folded into the text: no uniform
 
-# The light that comes through, per light.
+# The transmitted light, for each light.
 [translucency]
 technique = "lobe_normalized"
 distortion = 0.2
@@ -66,14 +66,14 @@ def run(arguments: Namespace) -> int:
     if path.suffix != ".toml":
         path = path.with_name(f"{path.name}.toml") if path.name else path / "material.toml"
     name, shown = path.stem, path.as_posix()
-    if wrong := wrong_name(name):
-        raise failure(*wrong)
+    if problem := wrong_name(name):
+        raise failure(*problem)
     text = STARTER.format(file=shown, name=name, title=name.replace("_", " ").capitalize())
     try:
         with path.open("x", encoding="utf-8", newline="\n") as file:
             file.write(text)
     except FileExistsError:
-        raise failure("the file is there already", "choose another name, or remove it first", shown) from None
+        raise failure("the file already exists", "choose another name, or remove it first", shown) from None
     except OSError as error:
         hint = "make the folder first" if isinstance(error, FileNotFoundError) else "choose another folder"
         raise failure(f"cannot write: {error.strerror or error}", hint, shown) from None

@@ -1,4 +1,4 @@
-"""What commands share when they end: the exit statuses, and the result as JSON."""
+"""The output of commands: exit statuses, JSON, warnings."""
 
 from __future__ import annotations
 
@@ -19,6 +19,6 @@ def print_json(data: object) -> None:
 
 
 def print_warnings(warnings: Iterable[Diagnostic]) -> None:
-    """Prints warnings to the standard error stream, so that they are no part of the result."""
+    """Prints warnings to the standard error stream, so that they are not part of the result."""
     for warning in warnings:
         print(f"{warning.render()}\n", file=sys.stderr)

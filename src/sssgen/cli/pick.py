@@ -42,33 +42,33 @@ def run(arguments: Namespace) -> int:
     for name in ("max_error", "max_cost"):
         value = getattr(arguments, name)
         if value is not None and not 0.0 < value < float("inf"):
-            raise failure(f"--{name.replace('_', '-')} {value:g} is no limit", "a number above 0")
+            raise failure(f"--{name.replace('_', '-')} {value:g} is not a limit", "a number above 0")
     settings = settings_of(arguments)
     from sssgen.lab.chart import charting as chart
     from sssgen.lab.chart.picking import pick
     from sssgen.lab.scene import measured_scene
 
-    one = measured_scene.load(arguments.SCENE)
-    record = chart.charted([one], settings)
-    picked = pick(record, one.name, arguments.max_error, arguments.max_cost)
-    files = _emitted(one, picked, arguments.emit, arguments.target) if arguments.emit else []
+    scene = measured_scene.load(arguments.SCENE)
+    record = chart.charted([scene], settings)
+    picked = pick(record, scene.name, arguments.max_error, arguments.max_cost)
+    files = _emitted(scene, picked, arguments.emit, arguments.target) if arguments.emit else []
     if arguments.json:
-        told = {**picked._asdict(), "roles": [role._asdict() for role in picked.roles]}
-        print_json({"ok": picked.met, "files": files, **told})
+        fields = {**picked._asdict(), "roles": [role._asdict() for role in picked.roles]}
+        print_json({"ok": picked.met, "files": files, **fields})
     else:
-        print(shown(one, picked, arguments.max_error, arguments.max_cost))
+        print(shown(scene, picked, arguments.max_error, arguments.max_cost))
         for file in files:
             print(f"wrote {file}")
     return OK if picked.met else CHECK_FAILED
 
 
-def _emitted(one: MeasuredScene, picked: Pick, folder: str, targets: str) -> list[str]:
+def _emitted(scene: MeasuredScene, picked: Pick, folder: str, targets: str) -> list[str]:
     """Writes the material and its shaders. Raises SssgenError."""
     from sssgen.lab.chart.picked_material import material_files
 
-    name = "".join(character if character.isalnum() and character.isascii() else "_" for character in one.name)
+    name = "".join(character if character.isalnum() and character.isascii() else "_" for character in scene.name)
     name = name if name[:1].isalpha() else f"m_{name}"
-    files = material_files(one, picked, name)
+    files = material_files(scene, picked, name)
     wrong: list[Diagnostic] = []
     chosen = chosen_targets(targets, wrong)
     if wrong:
@@ -81,16 +81,16 @@ def _emitted(one: MeasuredScene, picked: Pick, folder: str, targets: str) -> lis
     return [os.path.join(folder, file) for file in files]
 
 
-def shown(one: MeasuredScene, picked: Pick, max_error: float | None, max_cost: float | None) -> str:
+def shown(scene: MeasuredScene, picked: Pick, max_error: float | None, max_cost: float | None) -> str:
     """The choice, as text."""
     limit = f"an error of at most {max_error:g}" if max_error is not None else f"a cost of at most {max_cost:g}"
-    lines = [f"{one.title}: {limit}" + ("" if picked.met else ", which nothing keeps; this is the nearest")]
+    lines = [f"{scene.title}: {limit}" + ("" if picked.met else ", which no chain reaches; this is the nearest")]
     lines += [f"  {role.role:13} {role.technique:24} {role.why}".rstrip() for role in picked.roles]
     main = picked.chain or picked.coordinates
     assert main is not None
     lines.append(f"  picked        {_point(main)}")
-    for what, other in (("next cheaper", picked.cheaper), ("next better", picked.better)):
-        lines.append(f"  {what:13} {_point(other) if other is not None else 'there is none'}")
+    for title, point in (("next cheaper", picked.cheaper), ("next better", picked.better)):
+        lines.append(f"  {title:13} {_point(point) if point is not None else 'none'}")
     return "\n".join(lines)
 
 
@@ -101,5 +101,5 @@ def _point(point: Mapping[str, Any]) -> str:
     low, high = error["low"], error["high"]
     return (
         f"{point['label']}: error {error['value']:.3g} ({low:.3g} to {high:.3g}), within {limit_of(point):.3g} "
-        f"on any view measured; cost {cost_of(point):.0f}"
+        f"on every measured view; cost {cost_of(point):.0f}"
     )

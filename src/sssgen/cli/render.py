@@ -35,7 +35,7 @@ def add_options(parser: ArgumentParser) -> None:
 
 
 def run(arguments: Namespace) -> int:
-    """Renders, or compares."""
+    """Renders a scene, or compares two pictures."""
     if arguments.compare:
         return _compare(arguments)
     if not arguments.SCENE:
@@ -52,23 +52,23 @@ def _render(arguments: Namespace) -> int:
     size = _size(arguments.size) if arguments.size else None
     name, *more = backends.chosen(arguments.backend)
     if more:
-        raise failure(f"{arguments.backend} are several back ends", "a picture is drawn on one")
+        raise failure(f"{arguments.backend} are several back ends", "name one")
     if arguments.time is not None and not abs(arguments.time) < 1e9:
-        raise failure(f"--time {arguments.time:g} is no time", "seconds, less than 1e9")
+        raise failure(f"--time {arguments.time:g} is not a time", "seconds, less than 1e9")
     scene = load(arguments.SCENE)
     output = arguments.output or f"{os.path.splitext(os.path.basename(arguments.SCENE))[0]}.png"
     if images.check_suffix(output) == ".npy":
         raise failure("a picture is written as .png or .exr", "", output)
     backend = backends.needed(name)
     start = perf_counter()
-    made = render(scene, backend, size, arguments.time, arguments.guards)
+    picture = render(scene, backend, size, arguments.time, arguments.guards)
     seconds = perf_counter() - start
     write = {
-        ".png": lambda: images.write_png(output, made.encoded),
-        ".exr": lambda: images.write_exr(output, made.linear),
+        ".png": lambda: images.write_png(output, picture.encoded),
+        ".exr": lambda: images.write_exr(output, picture.linear),
     }
     write[images.check_suffix(output)]()
-    height, width = made.linear.shape[:2]
+    height, width = picture.linear.shape[:2]
     if arguments.json:
         facts = {"file": output, "size": [width, height], "backend": backend.name, "device": backend.device()}
         print_json({"ok": True, **facts, "seconds": round(seconds, 3)})
@@ -78,10 +78,10 @@ def _render(arguments: Namespace) -> int:
 
 
 def _size(text: str) -> tuple[int, int]:
-    found = re.fullmatch(r"(\d{1,5})[x×](\d{1,5})", text)
-    if not found or not all(1 <= int(side) <= 8192 for side in found.groups()):
-        raise failure(f"'{text}' is no size", "WIDTHxHEIGHT in pixels, as in 640x480, each from 1 to 8192")
-    return int(found[1]), int(found[2])
+    match = re.fullmatch(r"(\d{1,5})[x×](\d{1,5})", text)
+    if not match or not all(1 <= int(side) <= 8192 for side in match.groups()):
+        raise failure(f"'{text}' is not a size", "WIDTHxHEIGHT in pixels, as in 640x480, each from 1 to 8192")
+    return int(match[1]), int(match[2])
 
 
 def _compare(arguments: Namespace) -> int:
@@ -93,17 +93,17 @@ def _compare(arguments: Namespace) -> int:
             "--compare takes two pictures and no scene", "sssgen render --compare a.png b.png -o difference.png"
         )
     a, b = map(images.encoded, arguments.compare)
-    found = compare(a, b)
+    difference = compare(a, b)
     if arguments.output:
-        images.write_png(arguments.output, found.picture)
-    facts = {"flip": found.flip, "relmse": found.relmse, "p99": found.p99, "max": found.max}
+        images.write_png(arguments.output, difference.picture)
+    facts = {"flip": difference.flip, "relmse": difference.relmse, "p99": difference.p99, "max": difference.max}
     if arguments.json:
         print_json({"ok": True, **facts})
     else:
-        print(f"FLIP   {found.flip:.6f}  (mean; 0 is the same)")
-        print(f"relMSE {found.relmse:.3e}")
-        print(f"p99    {found.p99:.3f}/255")
-        print(f"max    {found.max:.3f}/255")
+        print(f"FLIP   {difference.flip:.6f}  (mean; 0 is the same)")
+        print(f"relMSE {difference.relmse:.3e}")
+        print(f"p99    {difference.p99:.3f}/255")
+        print(f"max    {difference.max:.3f}/255")
         if arguments.output:
             print(f"wrote {arguments.output}: FLIP's map")
     return OK

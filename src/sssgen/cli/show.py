@@ -32,7 +32,7 @@ def run(arguments: Namespace) -> int:
 
 
 def describe(technique: Technique) -> dict[str, Any]:
-    """Everything about a technique, as JSON has it."""
+    """Everything about a technique, for JSON."""
     doc = dict(technique.doc)
     names, called = slots.needs(technique.module, technique.function)
     read = [uniform for uniform in technique.uniforms if uniform.name in names]
@@ -67,9 +67,9 @@ def _uniform(uniform: Uniform) -> dict[str, Any]:
         facts["range"] = list(hints["hint_range"])
     if "unit" in hints:
         facts["unit"] = hints["unit"][0]
-    others = [name for name in hints if name not in _OTHERWISE_SHOWN]
-    if others:
-        facts["hints"] = others
+    remaining_hints = [name for name in hints if name not in _OTHERWISE_SHOWN]
+    if remaining_hints:
+        facts["hints"] = remaining_hints
     if uniform.quantity:
         facts["holds"] = uniform.quantity
     return {**facts, "aliases": list(hints.get("alias", ())), "doc": uniform.doc}

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from sssgen.harness.stress.stress_run import Settings
     from sssgen.harness.stress.subject import Specimen
 
-MOST_SAMPLES = 10**9
+MAX_SAMPLES = 10**9
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -28,13 +28,13 @@ def add_options(parser: ArgumentParser) -> None:
         "examples:\n"
         "  sssgen stress lobe_normalized\n"
         "  sssgen stress wax.toml --backend gl,webgpu --samples 1000000 -o stress.md\n"
-        "Without a name: every technique of the library but its published baselines."
+        "Without a name: every technique of the library except the published baselines."
     )
     add = parser.add_argument
     add("NAME", nargs="*", help="a technique, a .sss file, a material's .toml file, or an example")
     add("--backend", "-b", metavar="NAME", help=f"default: {','.join(DEFAULT)}; one, several, or all")
     add("--samples", type=int, default=10_000, metavar="N", help="the number of random inputs (default: 10000)")
-    add_seed(parser, "their seed")
+    add_seed(parser, "the seed of the random inputs")
     add(
         "--row",
         action="append",
@@ -55,54 +55,56 @@ def run(arguments: Namespace) -> int:
     from sssgen.harness.stress.stress_run import Settings
     from sssgen.harness.stress.subject import specimens
 
-    if not 1 <= arguments.samples <= MOST_SAMPLES:
-        raise failure(f"--samples {arguments.samples} is not a number of samples", f"from 1 to {MOST_SAMPLES}")
+    if not 1 <= arguments.samples <= MAX_SAMPLES:
+        raise failure(f"--samples {arguments.samples} is not a number of samples", f"from 1 to {MAX_SAMPLES}")
     if arguments.seed < 0:
-        raise failure(f"--seed {arguments.seed} is below 0")
+        raise failure(f"--seed {arguments.seed} is negative")
     suffix = _suffix(arguments.output, report.SUFFIXES) if arguments.output else ""
     half = arguments.precision == "f16"
     rows = dangerous.chosen(arguments.row)
     settings = Settings(arguments.samples, arguments.seed, arguments.guards, half, rows)
     names = _backends(arguments.backend or ("all" if half else ",".join(DEFAULT)), half)
-    named = specimens(arguments.NAME)
-    _check_rows(rows, named)
+    subjects = specimens(arguments.NAME)
+    _check_rows(rows, subjects)
     if arguments.scheduler or arguments.processes is not None:
         from sssgen.lab.jobs.stress_items import spread
 
-        made = spread(named, names, settings, arguments.scheduler, arguments.processes)
+        results = spread(subjects, names, settings, arguments.scheduler, arguments.processes)
     else:
-        made = _stressed(named, names, settings)
+        results = _stressed(subjects, names, settings)
     if arguments.output:
-        _write(arguments.output, suffix, made)
+        _write(arguments.output, suffix, results)
     if arguments.json:
-        print_json(report.as_json(made))
+        print_json(report.as_json(results))
     else:
-        _print(made, arguments.output)
-    return OK if made.ok and not (in_ci() and made.missing) else CHECK_FAILED
+        _print(results, arguments.output)
+    return OK if results.ok and not (in_ci() and results.missing) else CHECK_FAILED
 
 
-def _check_rows(rows: Sequence[str], named: Sequence[Specimen]) -> None:
+def _check_rows(rows: Sequence[str], subjects: Sequence[Specimen]) -> None:
     """Raises SssgenError for a row without a trial for any of the subjects: it would silently pass."""
     from sssgen.harness.stress import dangerous_inputs as dangerous
 
-    told = {row.name: row.elsewhere for row in dangerous.ROWS}
+    hints = {row.name: row.elsewhere for row in dangerous.ROWS}
     for row in rows:
-        if not any(True for one in named for _ in dangerous.trials(one, (row,))):
-            raise failure(f"the row '{row}' concerns none of these", told[row] or "leave --row out for all that do")
+        if not any(True for subject in subjects for _ in dangerous.trials(subject, (row,))):
+            raise failure(
+                f"the row '{row}' applies to none of these", hints[row] or "omit --row to run all rows that apply"
+            )
 
 
-def _backends(given: str, half: bool) -> list[str]:
-    """The back ends that are meant. Raises SssgenError for unknown ones, and ones of the other precision."""
-    names = list(SINGLE) if given == "all" else chosen(given)
+def _backends(names_text: str, half: bool) -> list[str]:
+    """The named back ends. Raises SssgenError for unknown ones, and for those of the other precision."""
+    names = list(SINGLE) if names_text == "all" else chosen(names_text)
     if not half:
         wrong = [name for name in names if name in HALF]
         if wrong:
             raise failure(f"{wrong[0]} computes in half precision", "--precision f16 --backend numpy,webgpu")
         return names
-    return list(HALF) if given == "all" else in_half(names)
+    return list(HALF) if names_text == "all" else in_half(names)
 
 
-def _stressed(chosen: list[Specimen], names: list[str], settings: Settings) -> Report:
+def _stressed(subjects: list[Specimen], names: list[str], settings: Settings) -> Report:
     """Stresses one technique after the other, each on all back ends, with a progress bar."""
     from sssgen.harness.stress.stress_report import Report
     from sssgen.harness.stress.stress_run import Machines, stress
@@ -110,53 +112,53 @@ def _stressed(chosen: list[Specimen], names: list[str], settings: Settings) -> R
 
     with Machines(names) as machines, ProgressBar() as progress:
         rows = []
-        for index, specimen in enumerate(chosen):
+        for index, specimen in enumerate(subjects):
 
             def report(what: str, done: int, index: int = index, title: str = specimen.title) -> None:
-                progress(index + done / settings.samples, len(chosen), f"{title}: {what}")
+                progress(index + done / settings.samples, len(subjects), f"{title}: {what}")
 
             rows.append(stress(specimen, machines, settings, report))
         devices = {name: backend.device() for name, backend in machines.here.items()}
     return Report(settings, devices, machines.missing, rows)
 
 
-def _suffix(path: str, known: tuple[str, ...]) -> str:
+def _suffix(path: str, suffixes: tuple[str, ...]) -> str:
     """The report's suffix. Raises SssgenError now if the report cannot be written, not after the run."""
     suffix = os.path.splitext(path)[1].lower()
-    if suffix not in known:
-        raise failure(f"a report is no '{suffix}' file", f"it is one of {', '.join(known)}", path)
+    if suffix not in suffixes:
+        raise failure(f"a report cannot be a '{suffix}' file", f"use one of {', '.join(suffixes)}", path)
     folder = os.path.dirname(path) or "."
-    there = os.path.exists(folder)
-    if os.path.isdir(path) or (there and not (os.path.isdir(folder) and os.access(folder, os.W_OK))):
-        raise failure("cannot write the report here", "name a file in a folder that you may write to", path)
+    exists = os.path.exists(folder)
+    if os.path.isdir(path) or (exists and not (os.path.isdir(folder) and os.access(folder, os.W_OK))):
+        raise failure("cannot write the report here", "choose a folder with write permission", path)
     return suffix
 
 
-def _write(path: str, suffix: str, made: Report) -> None:
+def _write(path: str, suffix: str, results: Report) -> None:
     """Writes the report atomically."""
     from sssgen.harness.stress import stress_report as report
 
-    text = report.as_markdown(made)
+    text = report.as_markdown(results)
     if suffix == ".json":
-        text = json.dumps(report.as_json(made), indent=2, ensure_ascii=False) + "\n"
+        text = json.dumps(report.as_json(results), indent=2, ensure_ascii=False) + "\n"
     folder, name = os.path.split(path)
     write_files(folder or ".", {name: text})
 
 
-def _print(made: Report, written: str | None) -> None:
+def _print(results: Report, written: str | None) -> None:
     from sssgen.harness.stress import stress_report as report
 
-    for line in report.summary(made):
+    for line in report.summary(results):
         print(line)
-    told = [line for row in made.rows for line in report.faults(row)]
-    if told:
+    faults = [line for row in results.rows for line in report.faults(row)]
+    if faults:
         print()
-    for line in told:
+    for line in faults:
         print(line)
-    print(f"\n{report.total(made)}")
+    print(f"\n{report.total(results)}")
     if written:
         print(f"wrote {written}")
-    if not made.devices:
-        print("nothing was run: none of these back ends is here")
-    elif made.missing and in_ci():
-        print(f"with CI set a missing back end is a failure: {', '.join(made.missing)}")
+    if not results.devices:
+        print("nothing was run: none of these back ends is available")
+    elif results.missing and in_ci():
+        print(f"with CI set a missing back end is a failure: {', '.join(results.missing)}")

@@ -76,7 +76,7 @@ def add_options(parser: ArgumentParser) -> None:
 
 
 def run(arguments: Namespace) -> int:
-    """Prints the translation, or writes it with its reflection beside it; or what `--verify` found."""
+    """Prints the translation, or writes it with its reflection; or prints the result of `--verify`."""
     wrong: list[Diagnostic] = []
     names = _targets(arguments, wrong)
     path = Path(arguments.FILE)
@@ -93,8 +93,8 @@ def run(arguments: Namespace) -> int:
         wrong += error.diagnostics
     for read in (path, *map(Path, loaded.paths if loaded is not None else ())):
         if arguments.output is not None and os.path.realpath(arguments.output) == os.path.realpath(read):
-            message = "the output is what was read: it would be lost"
-            wrong += failure(message, "write -o with another name", read.as_posix()).diagnostics
+            message = "the output file is also an input file"
+            wrong += failure(message, "give -o another name", read.as_posix()).diagnostics
             break
     if wrong or module is None:
         raise SssgenError(wrong)
@@ -106,14 +106,16 @@ def run(arguments: Namespace) -> int:
 
 
 def _targets(arguments: Namespace, wrong: list[Diagnostic]) -> list[str]:
-    """The one target that is wanted; none where nothing is translated."""
+    """The requested target; none if nothing is translated."""
     if arguments.verify or arguments.as_:
         if arguments.target is not None:
-            message = "--target goes with neither --verify nor --as"
+            message = "--target cannot be used with --verify or --as"
             wrong.append(Diagnostic("error", message, hint="leave one of them out"))
         return []
     if arguments.target is None:
-        wrong.append(Diagnostic("error", "which target?", hint="write --target wgsl; there are: sssgen list targets"))
+        wrong.append(
+            Diagnostic("error", "the target is missing", hint="write --target wgsl, or another of: sssgen list targets")
+        )
         return []
     names = chosen_targets(arguments.target, wrong)
     if arguments.trace and arguments.output in (None, "-"):
@@ -128,13 +130,13 @@ def _targets(arguments: Namespace, wrong: list[Diagnostic]) -> list[str]:
     return names
 
 
-def _macros(given: list[str]) -> dict[str, str]:
-    """What `-D NAME=VALUE` says; without a value it is 1, as for C's compilers."""
+def _macros(definitions: list[str]) -> dict[str, str]:
+    """The macros of `-D NAME=VALUE`; without a value it is 1, as in C compilers."""
     macros = {}
-    for text in given:
+    for text in definitions:
         name, sign, value = text.partition("=")
         if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
-            raise failure(f"-D {text}: '{name}' is no name of a macro", "write -D NAME or -D NAME=VALUE")
+            raise failure(f"-D {text}: '{name}' is not a macro's name", "write -D NAME or -D NAME=VALUE")
         macros[name] = value if sign else "1"
     return macros
 
@@ -145,7 +147,7 @@ def _translate(arguments: Namespace, module: Module, loaded: Loaded | None, targ
         called = [function.key for function in module.functions if function.span.file == path.as_posix()]
         called = [key for key in called if key == "main()"] or called
     options: dict[str, Any] = {"called": called} if called else {}
-    if loaded is not None:  # a technique's text is made shorter, an author's is kept
+    if loaded is not None:  # the text of a technique is simplified, that of plain GLSL is kept
         options |= {"keep": True, "head": loaded.head}
     trace = Trace(f"{os.path.basename(arguments.output)}.trace") if arguments.trace else None
     try:
@@ -170,7 +172,7 @@ def _title(path: Path) -> str:
 
 
 def _concerns(old: str, new: str, loaded: Loaded | None, files: dict[str, str]) -> bool:
-    """Whether a name is the author's, and is renamed in the output."""
+    """Whether the author wrote the name, and the output contains the new one."""
     bare = _bare(old)
     if bare in ("main", "mainImage") or bare.startswith("gl_"):
         return False
@@ -188,17 +190,17 @@ def _why(old: str, target: str) -> str:
     """Why a name was changed, in a few words."""
     bare = _bare(old)
     if "(" in old:
-        return "overloads need names of their own there"
+        return "each overload needs its own name there"
     language = load(target).language
-    near = sorted(names(), key=lambda name: (name != target, load(name).language != language))
-    reserving = [name for name in near if bare in load(name).names.exact]
+    ordered = sorted(names(), key=lambda name: (name != target, load(name).language != language))
+    reserving = [name for name in ordered if bare in load(name).names.exact]
     if target == "numpy" and keyword.iskeyword(bare):
         return "Python reserves it"
     if reserving:
         return f"{reserving[0]} reserves it"
     if "__" in bare or bare.startswith("gl_"):
-        return "no other language has such a name"
-    return "something else has this name there"
+        return "other languages do not allow such a name"
+    return "the name is taken there"
 
 
 def _print(
@@ -208,11 +210,11 @@ def _print(
     renamed: list[dict[str, str]],
     constants: list[str],
 ) -> None:
-    """The text to the output, or both files to where `-o` says; what there is to know beside it."""
+    """Prints the text, or writes both files of `-o`; and prints warnings and renamed identifiers."""
     texts = [text for name, text in files.items() if not name.endswith(REFLECTION)]
     reflections = [text for name, text in files.items() if name.endswith(REFLECTION)]
-    told: dict[str, Any] = {
-        "renamed": renamed, "constants": constants, "diagnostics": [one.as_json() for one in warnings],
+    details: dict[str, Any] = {
+        "renamed": renamed, "constants": constants, "diagnostics": [warning.as_json() for warning in warnings],
     }  # fmt: skip
     if arguments.output is not None:
         path = Path(arguments.output)
@@ -221,10 +223,10 @@ def _print(
             outputs[f"{path.name}{REFLECTION}"] = reflections[0]
         written = write_files(os.fspath(path.parent), outputs)
         if arguments.json:
-            rows = [{"file": posix(one.path), "changed": one.changed} for one in written]
-            print_json({"ok": True, "files": rows, **told})
+            rows = [{"file": posix(file.path), "changed": file.changed} for file in written]
+            print_json({"ok": True, "files": rows, **details})
     elif arguments.json:
-        print_json({"ok": True, "texts": files, **told})
+        print_json({"ok": True, "texts": files, **details})
     else:
         print("\n".join(texts), end="")
     if not arguments.json:
@@ -234,12 +236,12 @@ def _print(
 
 
 def _verify(arguments: Namespace, path: Path) -> int:
-    """Runs each function as it is written and as it is translated, and prints how far they are apart."""
+    """Runs each function as written and as translated, and prints the differences."""
     from sssgen.harness.verify import inline_includes as includes
     from sssgen.harness.verify import verification as transpiled
 
     if arguments.define:
-        raise failure("-D does not go with --verify", "write the #define into the file")
+        raise failure("-D cannot be used with --verify", "write the #define into the file")
     text = includes.expanded(read_text(path, path.as_posix()), path, arguments.include)
     report = transpiled.verify(text, path.as_posix(), arguments.samples, arguments.seed, arguments.entry)
     if arguments.json:
@@ -251,7 +253,7 @@ def _verify(arguments: Namespace, path: Path) -> int:
 
 
 def _technique(arguments: Namespace, module: Module, path: Path) -> int:
-    """A function of the file as a technique's file, its doc comment to be filled in."""
+    """Writes a function of the file as a technique's file, with a doc comment to be filled in."""
     name, text = technique_file(module, path.as_posix(), arguments.function)
     if arguments.output is None:
         if arguments.json:
@@ -263,7 +265,7 @@ def _technique(arguments: Namespace, module: Module, path: Path) -> int:
     if target.is_dir():
         target /= f"{name}.sss"
     if target.exists():
-        raise failure("the file is there already", "choose another name, or remove it first", target.as_posix())
+        raise failure("the file already exists", "choose another name, or remove it first", target.as_posix())
     write_files(os.fspath(target.parent), {target.name: text})
     if arguments.json:
         print_json({"ok": True, "file": target.as_posix()})

@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler
 from sssgen.material import library
-from sssgen.support import json_source
 from sssgen.support.diagnostics import failure
 from sssgen.support.file_memo import note
 from sssgen.support.paths import posix
@@ -49,6 +48,8 @@ def read(path: str) -> Baked | None:
     note(file)
     if not os.path.isfile(file):
         return None
+    from sssgen.support import json_source  # loads `json`, which few materials need
+
     shown = posix(file)
     try:
         with open(file, "rb") as opened:
