@@ -17,7 +17,7 @@ from sssgen.cli.options import add_workers
 from sssgen.harness import backends
 from sssgen.harness.backends import Backend
 from sssgen.lab.jobs.executor import Item, failures, run
-from sssgen.lab.jobs.render_items import Apart
+from sssgen.lab.jobs.render_items import PictureDifference
 from sssgen.lab.jobs.result_store import Store
 from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
@@ -65,13 +65,15 @@ def items() -> list[Item]:
     jobs = [Item("sssgen.lab.jobs.render_items:picture", (name,), name) for name in CAPTIONS]
     for title, size, samples in (("small", SMALL, None), ("one sample", None, 1)):
         jobs += [
-            Item("sssgen.lab.jobs.render_items:apart", (name, BACKENDS, size, samples), f"{name}, {title}")
+            Item("sssgen.lab.jobs.render_items:compare_backends", (name, BACKENDS, size, samples), f"{name}, {title}")
             for name in CAPTIONS
         ]
     return jobs
 
 
-def page(present: list[Backend], small: dict[str, list[Apart]], large: dict[str, list[Apart]]) -> str:
+def page(
+    present: list[Backend], small: dict[str, list[PictureDifference]], large: dict[str, list[PictureDifference]]
+) -> str:
     """The page's text, with the figures of this machine."""
     lines = [
         "# Gallery",

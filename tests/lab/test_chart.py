@@ -38,7 +38,7 @@ SAMPLES = 8
 @pytest.fixture(autouse=True)
 def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     work.code_stamp.cache_clear()  # somebody may edit sssgen while its tests run
-    work._own.cache_clear()
+    work._package_digest.cache_clear()
     in_cache(tmp_path / "cache", monkeypatch)
     yield
     cache._folder = None

@@ -137,12 +137,12 @@ def test_checks() -> None:
         "point 0: its role 'colour' is none of coordinates,",
         "point 1: 'label' is missing",
         "point 1: error.value is not finite, and 'failed' does not say why",
-        "point 2: cost.value is no number",
+        "point 2: cost.value is not a number",
         "point 2: error.value is below 0",
         "hypervolume 0: 'ours'",
     ):
         assert part in message
-    with pytest.raises(SssgenError, match="no JSON object"):
+    with pytest.raises(SssgenError, match="not a JSON object"):
         checked([])
 
 

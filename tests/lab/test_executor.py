@@ -26,8 +26,8 @@ from sssgen.lab.jobs import dask_cluster as cluster
 from sssgen.lab.jobs import work_items as work
 from sssgen.lab.jobs.executor import Failure, Item, failures, run
 from sssgen.lab.jobs.result_store import Store, decoded, encoded
-from sssgen.lab.jobs.stress_items import spread
-from sssgen.lab.jobs.work_items import execute, task
+from sssgen.lab.jobs.stress_items import run_stress
+from sssgen.lab.jobs.work_items import execute, task_of
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.progress import ProgressBar
 
@@ -36,11 +36,11 @@ from sssgen.support.progress import ProgressBar
 def stamped_anew() -> None:
     """Somebody may edit sssgen while its tests run; then only the test of that moment fails."""
     work.code_stamp.cache_clear()
-    work._own.cache_clear()
+    work._package_digest.cache_clear()
 
 
 def test_a_worker_with_other_code_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    one = task(Item("executor_items:echo", (1,), "the item"))
+    one = task_of(Item("executor_items:echo", (1,), "the item"))
     assert decoded(execute(one)) == (1, 1)
     monkeypatch.setattr(work, "code_stamp", lambda module: "another")
     refused = decoded(execute(one))
@@ -77,10 +77,10 @@ def test_bytes_depend_on_values_alone() -> None:
 
 def test_keys() -> None:
     one = Item("executor_items:echo", (1,), "one")
-    assert task(one).key == task(one._replace(name="another name")).key
+    assert task_of(one).key == task_of(one._replace(name="another name")).key
     remaining = [one._replace(arguments=(2,)), one._replace(function="executor_items:fail")]
     remaining += [one._replace(function="sssgen.support.progress:ProgressBar")]
-    assert len({task(other).key for other in [one, *remaining]}) == 4
+    assert len({task_of(other).key for other in [one, *remaining]}) == 4
 
 
 def test_duplicates_run_once(tmp_path: Path) -> None:
@@ -271,7 +271,7 @@ def test_distributed_stress_gives_the_same_results(
     with Machines(names) as machines:
         rows = [stress(one, machines, settings) for one in chosen]
         alone = Report(settings, {"numpy-f32": machines.here["numpy-f32"].device()}, machines.missing, rows)
-    shared = spread(chosen, names, settings, scheduler, None if scheduler else 2)
+    shared = run_stress(chosen, names, settings, scheduler, None if scheduler else 2)
     assert without_times(shared) == without_times(alone)
     assert len(shared.rows) == len(chosen) > 2 and [*shared.missing] == missing
 
@@ -304,7 +304,7 @@ def test_the_command_shares_out(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_distributed_rendering_gives_the_same_differences() -> None:
-    jobs = [Item("sssgen.lab.jobs.render_items:apart", ("resin_inlay", ("numpy-f32", "numpy"), (32, 24), 1))]
+    jobs = [Item("sssgen.lab.jobs.render_items:compare_backends", ("resin_inlay", ("numpy-f32", "numpy"), (32, 24), 1))]
     [[single, same]] = here = run(jobs, processes=0, store=Store(""))
     assert 0.0 < single.worst < 1.0 and single.beyond == 0 and same == (0.0, 0)
     assert as_bytes(run(jobs, processes=1, store=Store(""))) == as_bytes(here)

@@ -84,7 +84,7 @@ def test_the_fit_recovers_the_parameters_of_synthetic_light(
 
 def test_the_fit_is_deterministic(training: tuple[View, ...]) -> None:
     chosen = candidate("exact_thickness", "beer_lambert", "lobe_normalized", role="translucency")
-    assert measure.fitted(chosen, training) == measure.fitted(chosen, training)
+    assert measure.fit_candidate(chosen, training) == measure.fit_candidate(chosen, training)
 
 
 def test_scale_and_matte_are_not_negative(training: tuple[View, ...], tmp_path: Path) -> None:
@@ -117,7 +117,7 @@ def test_scale_and_matte_are_least_squares(training: tuple[View, ...], tmp_path:
     assert fit_problem is not None
     fit_problem = fit_problem.thinned(300)  # fewer than are left out of a fit
     result = fit.fit([built], [fit_problem])
-    values = fit_problem.values(built, fit.exact(result.parameters))
+    values = fit_problem.values(built, fit.chain_values(result.parameters))
 
     def error(scale: Array, matte: Array) -> float:
         apart = result._replace(scale=tuple(scale), matte=tuple(matte)).apply(values, fit_problem) - fit_problem.target
@@ -145,7 +145,7 @@ def test_the_scale_is_no_more_than_its_parameter_can_be(training: tuple[View, ..
 
 
 def test_an_empty_chain_is_fitted_by_front_reflection(training: tuple[View, ...]) -> None:
-    result = measure.fitted(Candidate("material", "none", "none", (), ()), training)
+    result = measure.fit_candidate(Candidate("material", "none", "none", (), ()), training)
     assert result.parameters == {} and result.scale == (0.0, 0.0, 0.0)
     assert [round(matte, 1) for matte in result.matte] != [0.0, 0.0, 0.0]
 
@@ -175,12 +175,14 @@ def test_the_emitted_material_gives_the_measured_light(
     if names[0] == "march_distance_texture":
         settings = candidates.settings(candidates.load(names[0]))[1]
     chosen = candidate(*names, settings=settings)
-    result = measure.fitted(chosen, training[:2])
+    result = measure.fit_candidate(chosen, training[:2])
     assert result.factor and max(result.scale) > 0.0
-    point = measure.measured(chosen, result, [cube])
+    point = measure.measure_candidate(chosen, result, [cube])
     fit_problem = measure.problem_of("material", cube)
     assert fit_problem is not None
-    shown = result.apply(fit_problem.values(chain(chosen, cube, tmp_path), fit.exact(result.parameters)), fit_problem)
+    shown = result.apply(
+        fit_problem.values(chain(chosen, cube, tmp_path), fit.chain_values(result.parameters)), fit_problem
+    )
 
     files = material_files(cube.scene, picked(cube.scene, point), "mine")
     for name, text in files.items():
@@ -198,7 +200,7 @@ def test_the_emitted_material_compiles_for_every_target(
     names: tuple[str, ...], cube: View, training: tuple[View, ...], tmp_path: Path
 ) -> None:
     chosen = candidate(*names)
-    point = measure.measured(chosen, measure.fitted(chosen, training[:1]), [cube])
+    point = measure.measure_candidate(chosen, measure.fit_candidate(chosen, training[:1]), [cube])
     files = material_files(cube.scene, picked(cube.scene, point), "mine")
     assert ("body.sss" in files) == (names[0] == "march_light")
     for name, text in files.items():
@@ -225,7 +227,7 @@ def test_the_parallax_of_an_inlay_has_the_scenes_parameters(tmp_path: Path) -> N
     scene = small("inlay_plate")
     requests = [each for each in candidates.coordinates() if each.name == "parallax_refracted"]
     plate = View("plate", replace(references.plate(scene), size=SIZE))
-    point = measure.measured(requests[0], measure.fitted(requests[0], [plate]), [View("own", scene)])
+    point = measure.measure_candidate(requests[0], measure.fit_candidate(requests[0], [plate]), [View("own", scene)])
     files = material_files(scene, Pick(scene.name, None, point, (), None, None, True), "mine")
     built = Chain(parse_material(files["mine.toml"], str(tmp_path / "mine.toml")))
     values = {uniform["technique_name"]: uniform["default"] for uniform in built.uniforms}

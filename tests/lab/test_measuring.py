@@ -136,7 +136,7 @@ def test_each_point_reads_its_own_texel() -> None:
 def thickness_error(one: MeasuredScene, *names: str, **settings: int) -> float:
     """The error of a thickness technique on a scene, with its own parameters as they are."""
     requests = candidate(*names, "shown_thickness", role="thickness", settings=tuple(settings.items()))
-    point = measure.measured(requests, Fitted({}, (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), 0.0), [View("own", one)])
+    point = measure.measure_candidate(requests, Fitted({}, (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), 0.0), [View("own", one)])
     return float(point["error"]["value"])
 
 
@@ -155,12 +155,12 @@ def test_light_that_meets_no_matter_asks_for_no_thickness() -> None:
     scene = small("inlay_plate")
     lit = replace(scene, medium=Medium("m", (1.0,) * 3, (1.0,) * 3), lights=(Light(None, (0.0, 0.0, 1.0), (1.0,) * 3),))
     with pytest.raises(SssgenError, match="no light passes through the body of 'inlay_plate'"):
-        problem.of_thickness(lit)
+        problem.thickness_problem(lit)
 
 
 def test_lights_in_one_call_equal_separate_calls(cube: View, tmp_path: Path) -> None:
     scene = small("capsule")
-    fit_problem = problem.of_light(scene, made_up(scene).seen)
+    fit_problem = problem.translucency_problem(scene, made_up(scene).references)
     assert fit_problem is not None and len(fit_problem.parts) == 2
     built = chain(candidate("exact_thickness", "beer_lambert", "lobe_gdc2011"), View("own", scene), tmp_path)
     together = fit_problem.values(built, {"power": 2.0})
@@ -179,7 +179,7 @@ def test_lights_in_one_call_equal_separate_calls(cube: View, tmp_path: Path) -> 
 def test_colours_of_all_lights_are_added() -> None:
     scene = small("capsule")
     view = made_up(scene)
-    each, whole = (problem.of_material(scene, view.seen, summed) for summed in (False, True))
+    each, whole = (problem.material_problem(scene, view.references, summed) for summed in (False, True))
     count = points(scene).count
     by_light = (each.target / each.gain).reshape(3, 2, count)
     colors = np.array([light.color for light in scene.lights]).T[..., None]
@@ -192,8 +192,8 @@ def test_shadowed_points_get_no_light_from_the_front() -> None:
     body_of = Union((Box(size=(2.0, 0.2, 2.0)), Ball(0.4, position=(0.0, 0.9, 0.0))))  # a ball over a board
     scene = replace(small("bracket"), geometry=body_of, lights=(Light(None, (0.0, 1.0, 0.0), (1.0, 1.0, 1.0)),))
     scene = replace(scene, camera=Camera((0.0, 2.5, 3.0), (0.0, 0.0, 0.0), 40.0), size=(24, 24))
-    seen = made_up(scene).seen
-    fit_problem = problem.of_material(scene, seen, False)
+    seen = made_up(scene).references
+    fit_problem = problem.material_problem(scene, seen, False)
     surface = points(scene)
     direction = np.array(scene.lights[0].direction)
     facing = surface.inputs["N"].T @ direction > 0.05
@@ -221,7 +221,7 @@ def test_a_chain_with_nan_has_failed(cube: View, monkeypatch: pytest.MonkeyPatch
         return result
 
     monkeypatch.setattr(Problem, "values", broken)
-    point = measure.measured(chosen, Fitted({}, (1.0,) * 3, (0.0,) * 3, 0.0), [cube])
+    point = measure.measure_candidate(chosen, Fitted({}, (1.0,) * 3, (0.0,) * 3, 0.0), [cube])
     assert point["failed"] == f"4 of {points(cube.scene).count} points are not finite"
 
 
@@ -240,9 +240,9 @@ def test_the_published_seed_3_is_ambient_light_times_transmittance(
     # each light's colour, added up: there is one
     assert silent == pytest.approx(fit_problem.gain * part.color * (0.2 * 0.7 * through), rel=1e-6)
     # and so is its point on the chart
-    result = measure.fitted(one, training)
+    result = measure.fit_candidate(one, training)
     mute = result._replace(parameters={**result.parameters, "scale": (0.0,)})
-    with_lobe, without = (measure.measured(one, each, [cube]) for each in (result, mute))
+    with_lobe, without = (measure.measure_candidate(one, each, [cube]) for each in (result, mute))
     assert with_lobe["error"] == without["error"]
     # the source that it follows has a lobe there
     other = chain(candidate("transmittance_map", "lobe_gdc2011"), cube, tmp_path)
@@ -256,7 +256,9 @@ def test_seed_0_mistakes_a_cube_and_a_march_to_the_light_does_not() -> None:
     error: dict[str, float] = {}
     for one in candidates.thickness():
         if one.name == "cheap_sss_thinness" or one.label == "march_light, 16 steps":
-            result = measure.measured(one, measure.fitted(one, fitted_to), [View("own", cube)])["error"]["value"]
+            result = measure.measure_candidate(one, measure.fit_candidate(one, fitted_to), [View("own", cube)])[
+                "error"
+            ]["value"]
             error[one.name] = min(error.get(one.name, np.inf), result)
     assert error["march_light"] < 0.2
     assert error["cheap_sss_thinness"] > 0.6
@@ -268,7 +270,7 @@ def slides(name: str) -> dict[str, float]:
     plate = View("plate", replace(references.plate(scene), size=SIZE))
     results = {}
     for each in candidates.coordinates():
-        point = measure.measured(each, measure.fitted(each, [plate]), [View("own", scene)])
+        point = measure.measure_candidate(each, measure.fit_candidate(each, [plate]), [View("own", scene)])
         results[each.name] = point["error"]["max"]
     return results
 
@@ -298,7 +300,8 @@ def test_light_transport_ranks_the_techniques() -> None:
     listed = [each for each in candidates.materials([]) if each.name in ("none", "Unity ice")]
     listed.append(candidate("exact_thickness", "absorption_tint"))
     error = {
-        scene.name: measure.measured(scene, measure.fitted(scene, fitted_to), own)["error"]["value"] for scene in listed
+        scene.name: measure.measure_candidate(scene, measure.fit_candidate(scene, fitted_to), own)["error"]["value"]
+        for scene in listed
     }
     assert error["absorption_tint"] < 0.8 * min(error["none"], error["Unity ice"])
 
@@ -327,20 +330,20 @@ def test_scenes_without_visible_light_are_refused() -> None:
     assert plate.inlay is not None
     deep = replace(small("inlay_ball"), geometry=Ball(0.2), inlay=replace(plate.inlay, depth=0.5))
     with pytest.raises(SssgenError, match="no ray meets the inlay of 'inlay_ball'"):
-        problem.of_coordinates(deep)
+        problem.coordinates_problem(deep)
     cube = small("cube")
     dark = View("own", cube, tuple((np.zeros((3, points(cube).count)),) * 2 for _ in cube.lights), "dark")
     through = candidate("wrap_lighting", role="translucency")
     with pytest.raises(SssgenError, match="no light passes through the bodies for fitting"):
-        measure.fitted(through, [dark])
+        measure.fit_candidate(through, [dark])
     with pytest.raises(SssgenError, match="no light passes through the body of 'cube'"):
-        measure.measured(through, Fitted({}, (1.0,) * 3, (0.0,) * 3, 0.0), [dark])
+        measure.measure_candidate(through, Fitted({}, (1.0,) * 3, (0.0,) * 3, 0.0), [dark])
 
 
 def test_fitting_in_two_steps_equals_fitting_the_chain(training: tuple[View, ...]) -> None:
     whole = candidate("march_light", "beer_lambert", "lobe_exp2", settings=(("steps", 4),))
     before = {"reach": (0.8,)}
-    result = measure.fitted(whole, training[:2], before)
+    result = measure.fit_candidate(whole, training[:2], before)
     assert result.parameters["reach"] == (0.8,) and set(result.parameters) > {"attenuation_distance", "power"}
     squares = []
     for view in training[:2]:
@@ -348,7 +351,7 @@ def test_fitting_in_two_steps_equals_fitting_the_chain(training: tuple[View, ...
         assert fit_problem is not None
         fit_problem = fit_problem.thinned(fit.LANES)
         with tempfile.TemporaryDirectory() as folder:
-            values = fit_problem.values(chain(whole, view, Path(folder)), fit.exact(result.parameters))
+            values = fit_problem.values(chain(whole, view, Path(folder)), fit.chain_values(result.parameters))
         apart = result.apply(values, fit_problem) - fit_problem.target
         squares.append((apart**2 / (fit_problem.target**2 + fit.EPSILON)).mean())
     assert np.sqrt(np.mean(squares)) == pytest.approx(result.error, rel=1e-6)

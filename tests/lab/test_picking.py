@@ -111,15 +111,15 @@ def test_roles_are_left_out_by_numbers() -> None:
     message = why(picked(2.0))
     assert message["translucency"][0] == message["thickness"][0] == ""
     assert "the error without it is 1.08" in message["translucency"][1]
-    assert "nothing lies below" in message["coordinates"][1]
+    assert "there is no inlay" in message["coordinates"][1]
     message = why(picked(0.85))
-    assert message["translucency"] == ("wrap_lighting", "without light that comes through the error is 1.08")
-    assert message["thickness"][0] == "" and "the best chain that has one errs by 0.12" in message["thickness"][1]
+    assert message["translucency"] == ("wrap_lighting", "without transmitted light the error is 1.08")
+    assert message["thickness"][0] == "" and "the best chain with one has the error 0.12" in message["thickness"][1]
     message = why(picked(0.61))
     assert message["thickness"][0] == "constant_thickness" and "the error would be 0.12" in message["thickness"][1]
     message = why(picked(0.5))
     assert message["thickness"][0] == "thickness_map"
-    assert "with the same thickness everywhere the error is 0.6;" in message["thickness"][1]
+    assert "with a constant thickness the error is 0.6;" in message["thickness"][1]
     assert "needs a baked thickness map" in message["thickness"][1]
     assert message["translucency"][0] == "lobe_exp2"
 
@@ -134,7 +134,7 @@ def test_coordinates_have_the_same_limit() -> None:
     assert (result.chain, result.coordinates, result.better, result.cheaper) == (None, slide, None, none)
     assert why(result)["coordinates"] == (
         "parallax_refracted",
-        "the picture is off by 0.012 of the way; without it by 1.08",
+        "the relative error of the offset is 0.012; without it 1.08",
     )
     assert why(pick({"points": [slide, none]}, "cube", 2.0, None))["coordinates"][0] == ""
     both = pick({"points": [slide, none, NONE]}, "cube", 0.1, None)

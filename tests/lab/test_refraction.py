@@ -9,7 +9,7 @@ import pytest
 
 from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Ball, Box, Geometry, Slab
-from sssgen.lab.reference.inlay_refraction import plane_offset, refracted, seen
+from sssgen.lab.reference.inlay_refraction import plane_offset, refracted, visible_inlay
 from sssgen.lab.scene.measured_scene import Inlay, MeasuredScene
 from sssgen.lab.scene.view_points import points
 
@@ -62,7 +62,7 @@ def test_on_a_plane_it_is_the_closed_form(n: float, placed: bool) -> None:
     inlay = Inlay(0.2, 1.2 * n, 1.2)  # only the two media's ratio counts
     camera = looking_at(plate, tuple(map(float, eye)), inlay, 40.0)
     surface = points(camera)
-    result = seen(camera, surface)
+    result = visible_inlay(camera, surface)
     N, V = surface.inputs["N"], surface.inputs["V"]
     top = N.T @ normal > 0.999
     assert top.sum() > 300
@@ -98,7 +98,7 @@ def test_on_a_ball_it_is_the_construction_in_two_dimensions(depth: float, n: flo
     ball = Ball(0.6, position=(0.3, -0.2, 0.1), rotation=(10.0, 50.0, 20.0), scale=scale)
     camera = looking_at(ball, (0.6, 1.0 * scale, 4.0 * scale), Inlay(depth * scale, n))
     surface = points(camera)
-    result = seen(camera, surface)
+    result = visible_inlay(camera, surface)
     cosine = (surface.inputs["N"] * surface.inputs["V"]).sum(axis=0)
     expected = arc_on_a_ball(np.sqrt(np.maximum(1.0 - cosine**2, 0.0)), 0.6 * scale, depth * scale, n)
     assert (result.hit == np.isfinite(expected)).all()
@@ -119,7 +119,7 @@ def test_a_ray_may_pass_the_layer_at_a_curved_edge() -> None:
     aside = np.linalg.norm(
         np.cross(surface.inputs["P"].T, surface.inputs["V"].T), axis=1
     )  # the ray's distance to the centre
-    assert (seen(camera, surface).hit == (aside < 0.3)).all()
+    assert (visible_inlay(camera, surface).hit == (aside < 0.3)).all()
     assert (aside > 0.3).any()
 
 
@@ -127,4 +127,4 @@ def test_seen_from_above_nothing_moves() -> None:
     camera = looking_at(Box(size=(1.0, 1.0, 1.0)), (0.0, 0.0, 300.0), Inlay(0.1, 1.5), 0.15)
     surface = points(camera)
     assert surface.count > 100
-    assert np.abs(seen(camera, surface).offset).max() < 2e-4
+    assert np.abs(visible_inlay(camera, surface).offset).max() < 2e-4

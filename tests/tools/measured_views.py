@@ -13,7 +13,7 @@ from sssgen.lab.measure import (
 from sssgen.lab.measure.candidates import Candidate
 from sssgen.lab.measure.measured_chain import Chain
 from sssgen.lab.measure.measurement import View
-from sssgen.lab.measure.problem import Seen
+from sssgen.lab.measure.problem import LightReference
 from sssgen.lab.reference.inside_lengths import thickness
 from sssgen.lab.scene import measured_scene
 from sssgen.lab.scene.measured_scene import MeasuredScene
@@ -30,7 +30,7 @@ def small(name: str) -> MeasuredScene:
 def made_up(one: MeasuredScene, name: str = "own") -> View:
     """A view with a made-up reference: light that falls off with the thickness, more from the front, and noise."""
     surface = points(one)
-    seen: list[Seen] = []
+    references: list[LightReference] = []
     for light in one.lights:
         assert light.direction is not None
         towards = np.tile(light.direction, (surface.count, 1))
@@ -38,8 +38,8 @@ def made_up(one: MeasuredScene, name: str = "own") -> View:
         front = np.maximum(surface.inputs["N"].T @ light.direction, 0.0)
         colors = np.array([0.9, 0.5, 0.3])[:, None]
         mean = colors * (0.4 * np.exp(-length / colors) + 0.5 * front)
-        seen.append((mean, np.full_like(mean, 1e-3)))
-    return View(name, one, tuple(seen), "made up")
+        references.append((mean, np.full_like(mean, 1e-3)))
+    return View(name, one, tuple(references), "made up")
 
 
 def candidate(*chain: str, role: str = "material", settings: tuple[tuple[str, int], ...] = ()) -> Candidate:

@@ -67,9 +67,9 @@ def run(arguments: Namespace) -> int:
     subjects = specimens(arguments.NAME)
     _check_rows(rows, subjects)
     if arguments.scheduler or arguments.processes is not None:
-        from sssgen.lab.jobs.stress_items import spread
+        from sssgen.lab.jobs.stress_items import run_stress
 
-        results = spread(subjects, names, settings, arguments.scheduler, arguments.processes)
+        results = run_stress(subjects, names, settings, arguments.scheduler, arguments.processes)
     else:
         results = _stressed(subjects, names, settings)
     if arguments.output:

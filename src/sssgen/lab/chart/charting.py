@@ -1,4 +1,4 @@
-"""Charts: fits and measures every candidate on every scene, and returns a record, to draw or to pick from.
+"""Fits and measures every candidate on every scene, and returns a chart's record, to draw or to pick from.
 
     record = charted([measured_scene.load("cube")], Settings())
 
@@ -29,7 +29,7 @@ from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.version import VERSION
 
 WORTHWHILE = 0.9
-"""Whole chains use a more expensive setting of a thickness technique if it lowers the training error to this share."""
+"""Complete chains use a more expensive setting of a thickness if it lowers the training error to this share."""
 
 VIEWS = ("own", "held out")
 """The names of a scene's two views."""
@@ -51,7 +51,7 @@ class Settings(NamedTuple):
     scheduler: str = ""
     processes: int | None = None
     shown: Callable[[], AbstractContextManager[Progress]] = lambda: nullcontext(lambda *_: None)
-    """Makes a progress bar for each stage of the work"""
+    """Returns the progress bar of a stage of the work, as a context"""
 
     def cache_name(self, scene: MeasuredScene) -> str:
         """The file of a scene's points in the cache."""
@@ -67,9 +67,9 @@ def charted(scenes: Sequence[MeasuredScene], settings: Settings) -> dict[str, An
     by_key = {scene.key: cached(scene, settings) for scene in scenes}
     new = [scene for scene in {scene.key: scene for scene in scenes}.values() if by_key[scene.key] is None]
     if new:
-        for scene, measured in zip(new, _measured(new, settings), strict=True):
-            by_key[scene.key] = measured
-            cache.write(settings.cache_name(scene), json.dumps(measured).encode())
+        for scene, entry in zip(new, _measured(new, settings), strict=True):
+            by_key[scene.key] = entry
+            cache.write(settings.cache_name(scene), json.dumps(entry).encode())
     results = [result for scene in scenes if (result := by_key[scene.key])]
     points = _on_fronts([point for result in results for point in result["points"]])
     return {
@@ -151,12 +151,12 @@ def with_references(
     named: Mapping[str, Sequence[tuple[str, MeasuredScene]]], settings: Settings, lit: bool = True
 ) -> dict[str, tuple[View, ...]]:
     """The named views of each group; if `lit`, with their references by light transport."""
-    wanted = list({scene.key: scene for group in named.values() for _, scene in group if lit}.values())
-    results = _results(references.items(wanted, settings.samples, settings.seed), settings)
-    seen = references.by_scene(wanted, results)
+    lit_scenes = list({scene.key: scene for group in named.values() for _, scene in group if lit}.values())
+    results = _results(references.items(lit_scenes, settings.samples, settings.seed), settings)
+    by_scene = references.by_scene(lit_scenes, results)
     stamp = f"{settings.samples} {settings.seed}"
     return {
-        key: tuple(View(name, scene, tuple(seen.get(scene.key, ())), stamp) for name, scene in group)
+        key: tuple(View(name, scene, tuple(by_scene.get(scene.key, ())), stamp) for name, scene in group)
         for key, group in named.items()
     }
 
@@ -166,11 +166,11 @@ def _points(
 ) -> Iterable[tuple[MeasuredScene, dict[str, Any]]]:
     """The points of the jobs. Scenes with the same training views share the fit.
 
-    `before` has the known parameters of first techniques.
+    `before` has the parameters of first techniques that are fitted already.
     """
     fits = [
         Item(
-            "sssgen.lab.measure.measurement:fitted",
+            "sssgen.lab.measure.measurement:fit_candidate",
             (
                 candidate,
                 _training(candidate, views[scene.key]),
@@ -183,7 +183,7 @@ def _points(
     fitted: list[Fitted] = _results(fits, settings)
     measures = [
         Item(
-            "sssgen.lab.measure.measurement:measured",
+            "sssgen.lab.measure.measurement:measure_candidate",
             (candidate, fit, views[scene.key].own),
             f"{candidate.label} on {scene.name}",
         )
@@ -197,7 +197,7 @@ def _points(
 def remeasured(
     record: Mapping[str, Any], scenes: Sequence[MeasuredScene], settings: Settings
 ) -> dict[tuple[str, str], float]:
-    """The errors of a record's materials, with their fitted parameters, against a reference made with other settings.
+    """The errors of a record's materials, with their fitted parameters, against references with other settings.
 
     (scene, label) → the largest error of the views; infinite for a chain that fails.
     """
@@ -205,16 +205,16 @@ def remeasured(
     points = [point for point in record["points"] if point["role"] == "material" and point["scene"] in views]
     items = [
         Item(
-            "sssgen.lab.measure.measurement:measured",
+            "sssgen.lab.measure.measurement:measure_candidate",
             (candidate_of(point), fitted_of(point), views[point["scene"]]),
-            f"{point['label']} on {point['scene']}, again",
+            f"{point['label']} on {point['scene']}, remeasured",
         )
         for point in points
     ]
     errors = {}
-    for point, again in zip(points, _results(items, settings), strict=True):
-        worst = max(float(view["value"]) for view in again["views"].values())
-        errors[point["scene"], point["label"]] = float("inf") if again["failed"] else worst
+    for point, result in zip(points, _results(items, settings), strict=True):
+        largest = max(float(view["value"]) for view in result["views"].values())
+        errors[point["scene"], point["label"]] = float("inf") if result["failed"] else largest
     return errors
 
 
@@ -255,7 +255,7 @@ def _results(items: Sequence[Item], settings: Settings) -> list[Any]:
 def expensive(points: Sequence[dict[str, Any]]) -> dict[tuple[tuple[str, ...], Any], dict[str, tuple[float, ...]]]:
     """The fitted parameters of the thickness techniques that evaluate a distance function: by technique and settings.
 
-    Whole chains use them unchanged, because fitting them again in each chain would take hours.
+    Complete chains use them unchanged, because fitting them again in each chain would take hours.
     """
     parameters: dict[tuple[tuple[str, ...], Any], dict[str, tuple[float, ...]]] = {}
     best: dict[tuple[tuple[str, ...], Any], float] = {}
@@ -271,7 +271,7 @@ def expensive(points: Sequence[dict[str, Any]]) -> dict[tuple[tuple[str, ...], A
 
 
 def worthwhile(points: Sequence[dict[str, Any]]) -> list[Candidate]:
-    """The thickness candidates for whole chains: each technique's cheapest setting, and those that lower the error.
+    """The thickness candidates for complete chains: each technique's cheapest setting, and those that lower the error.
 
     The training error decides, not the error on the scene.
     """
@@ -299,7 +299,7 @@ def _description(scene: MeasuredScene, views: _Views) -> dict[str, Any]:
 
 
 def _on_fronts(points: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The points; `front` says whether a point is on the front of its scene and role."""
+    """The points; `front` is whether a point is on the front of its scene and role."""
     groups: dict[tuple[str, str], list[dict[str, Any]]] = {}
     for point in points:
         groups.setdefault((point["scene"], point["role"]), []).append(point)
@@ -312,18 +312,18 @@ def hypervolumes(points: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     volumes = []
     for scene, role in dict.fromkeys((point["scene"], point["role"]) for point in points):
         group = [point for point in points if (point["scene"], point["role"]) == (scene, role)]
-        worst = [1.1 * max(float(point["cost"]["value"]) for point in group), 1.0]
+        reference_point = [1.1 * max(float(point["cost"]["value"]) for point in group), 1.0]
         ours = [point for point in group if not point["baseline"]]
-        theirs = [point for point in group if point["baseline"] or point["name"] == "none"]
+        baselines = [point for point in group if point["baseline"] or point["name"] == "none"]
         volumes.append({
-            "scene": scene, "role": role, "reference_point": worst,
-            "ours": hypervolume(ours, worst), "baselines": hypervolume(theirs, worst),
+            "scene": scene, "role": role, "reference_point": reference_point,
+            "ours": hypervolume(ours, reference_point), "baselines": hypervolume(baselines, reference_point),
         })  # fmt: skip
     return volumes
 
 
 def about(settings: Settings) -> dict[str, Any]:
-    """What is needed to repeat the measurement."""
+    """The conditions for repeating the measurement: versions, seed, samples."""
     packages = ("numpy", "scipy", "mitsuba", "embreex", "libigl", "flip-evaluator")
     return {
         "sssgen": VERSION, "commit": _commit(), "versions": {name: _version(name) for name in packages},

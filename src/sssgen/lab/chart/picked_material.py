@@ -23,7 +23,7 @@ def material_files(scene: MeasuredScene, picked: Pick, name: str) -> dict[str, s
     shape = body(scene.geometry)
     stages: list[Stage] = []
     if picked.coordinates is not None and picked.coordinates["name"] != "none":
-        stages += _slide(scene, picked.coordinates, shape)
+        stages += _coordinates(scene, picked.coordinates, shape)
     if picked.chain is not None:
         stages += stages_of(picked.chain, shape)
     matte = picked.chain["matte"] if picked.chain is not None else [1.0, 1.0, 1.0]
@@ -38,26 +38,28 @@ def material_files(scene: MeasuredScene, picked: Pick, name: str) -> dict[str, s
 
 
 def stages_of(point: Mapping[str, Any], shape: Body) -> list[Stage]:
-    """The stages of a point with its fitted parameters; counts are constants, an artist can change the rest."""
+    """The stages of a point with its fitted parameters; counts are constants, all others are adjustable."""
     candidate = candidate_of(point)
     stages = zip(candidate.techniques, candidate.stages(shape), strict=True)
-    return [_with(stage, _fitted(load(name), point)) for name, stage in stages]
+    return [_with_values(stage, _fitted(load(name), point)) for name, stage in stages]
 
 
-def _slide(scene: MeasuredScene, point: Mapping[str, Any], shape: Body) -> list[Stage]:
+def _coordinates(scene: MeasuredScene, point: Mapping[str, Any], shape: Body) -> list[Stage]:
     assert scene.inlay is not None
     stages = []
     for stage in stages_of(point, shape)[:1]:
-        known = {uniform.name for uniform in load(point["chain"][0]).uniforms}
-        values = {key: value for key, value in scene.inlay.parameters.items() if key in known}
-        stages.append(_with(stage, values))
+        parameters = {uniform.name for uniform in load(point["chain"][0]).uniforms}
+        values = {key: value for key, value in scene.inlay.parameters.items() if key in parameters}
+        stages.append(_with_values(stage, values))
     return stages
 
 
-def _with(stage: Stage, values: Mapping[str, object]) -> Stage:
-    """The stage with more parameters; it keeps those that it has."""
-    own = dict(stage.values)
-    return stage._replace(values=(*stage.values, *((key, value) for key, value in values.items() if key not in own)))
+def _with_values(stage: Stage, values: Mapping[str, object]) -> Stage:
+    """The stage with these parameters too; those that it has already are unchanged."""
+    present = dict(stage.values)
+    return stage._replace(
+        values=(*stage.values, *((key, value) for key, value in values.items() if key not in present))
+    )
 
 
 def _fitted(technique: Any, point: Mapping[str, Any]) -> dict[str, object]:
@@ -85,4 +87,6 @@ def _clamped(uniform: Uniform, value: Any) -> Any:
     if limits is None:
         return value
     low, high = float(limits[0]), float(limits[1])
-    return [min(max(float(one), low), high) for one in value] if isinstance(value, list) else min(max(value, low), high)
+    return (
+        [min(max(float(part), low), high) for part in value] if isinstance(value, list) else min(max(value, low), high)
+    )

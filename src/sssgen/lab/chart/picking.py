@@ -6,7 +6,7 @@ measured value.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from sssgen.lab.chart.record import front
@@ -42,7 +42,7 @@ class Pick(NamedTuple):
 
 
 def limit_of(point: Point) -> float:
-    """The upper bound of a point's error, see the module."""
+    """The upper bound of a point's error: the largest upper end of its views' error bars."""
     views = point["views"].values()
     return max((float(view["high"]) for view in views), default=float(point["error"]["high"]))
 
@@ -56,22 +56,22 @@ def pick(record: Mapping[str, Any], scene: str, max_error: float | None, max_cos
     """The choice for a scene of a chart's record; one of the limits is None. Raises SssgenError without points."""
     points = [point for point in record["points"] if point["scene"] == scene and allowed(point)]
     materials = [point for point in points if point["role"] == "material"]
-    slides = [point for point in points if point["role"] == "coordinates"]
-    if not materials and not slides:
+    shifts = [point for point in points if point["role"] == "coordinates"]
+    if not materials and not shifts:
         raise failure(f"the chart has no point of the scene '{scene}'", "chart it first: sssgen chart")
     chain, chain_met = chosen(materials, max_error, max_cost)
-    slide, slide_met = chosen(slides, max_error, max_cost)
-    main = chain or slide
+    shift, shift_met = chosen(shifts, max_error, max_cost)
+    main = chain or shift
     assert main is not None
-    line = front(materials or slides)
-    cheaper = max((point for point in line if cost_of(point) < cost_of(main)), key=cost_of, default=None)
-    better = min((point for point in line if limit_of(point) < limit_of(main)), key=cost_of, default=None)
-    roles = (_coordinates(slide, slides), *_light(chain, materials))
-    return Pick(scene, chain, slide, roles, cheaper, better, chain_met and slide_met)
+    front_points = front(materials or shifts)
+    cheaper = max((point for point in front_points if cost_of(point) < cost_of(main)), key=cost_of, default=None)
+    better = min((point for point in front_points if limit_of(point) < limit_of(main)), key=cost_of, default=None)
+    roles = (_coordinates(shift, shifts), *_light(chain, materials))
+    return Pick(scene, chain, shift, roles, cheaper, better, chain_met and shift_met)
 
 
 def allowed(point: Point) -> bool:
-    """Whether a point may be picked: it has not failed, and contains no baseline, which has its source's errata."""
+    """Whether a point may be picked: it has not failed, and contains no published technique (with errata)."""
     return not point["failed"] and not any(is_published(load(name)) for name in point["chain"])
 
 
@@ -91,23 +91,22 @@ def chosen(points: Sequence[Point], max_error: float | None, max_cost: float | N
 
     if max_error is not None:
         within: list[Point] = [point for point in points if limit_of(point) <= max_error]
-        best, otherwise = by_cost, by_error
+        key, fallback = by_cost, by_error
     else:
         assert max_cost is not None
         within = [point for point in points if cost_of(point) <= max_cost]
-        best, otherwise = by_error, by_cost
-    key: Callable[[Point], tuple[float, float]] = best if within else otherwise
-    return min(within or points, key=key), bool(within)
+        key, fallback = by_error, by_cost
+    return min(within or points, key=key if within else fallback), bool(within)
 
 
-def _coordinates(slide: Point | None, slides: Sequence[Point]) -> Role:
-    if slide is None:
-        return Role("coordinates", "", "left out: nothing lies below the surface")
-    without = next((limit_of(point) for point in slides if point["name"] == "none"), None)
-    if slide["name"] == "none":
-        return Role("coordinates", "", f"left out: without it the picture is off by {limit_of(slide):.3g} of the way")
-    more = f"; without it by {without:.3g}" if without is not None else ""
-    return Role("coordinates", slide["name"], f"the picture is off by {limit_of(slide):.3g} of the way{more}")
+def _coordinates(shift: Point | None, shifts: Sequence[Point]) -> Role:
+    if shift is None:
+        return Role("coordinates", "", "omitted: there is no inlay below the surface")
+    without = next((limit_of(point) for point in shifts if point["name"] == "none"), None)
+    if shift["name"] == "none":
+        return Role("coordinates", "", f"omitted: without it the relative error of the offset is {limit_of(shift):.3g}")
+    more = f"; without it {without:.3g}" if without is not None else ""
+    return Role("coordinates", shift["name"], f"the relative error of the offset is {limit_of(shift):.3g}{more}")
 
 
 def _light(chain: Point | None, materials: Sequence[Point]) -> list[Role]:
@@ -116,24 +115,24 @@ def _light(chain: Point | None, materials: Sequence[Point]) -> list[Role]:
     without = next(limit_of(point) for point in materials if point["name"] == "none")
     if not chain["chain"]:
         return [
-            Role("thickness", "", "left out: nothing reads it"),
-            Role("translucency", "", f"left out: the error without it is {without:.3g}"),
+            Role("thickness", "", "omitted: no technique reads it"),
+            Role("translucency", "", f"omitted: the error without it is {without:.3g}"),
         ]
     names = chain["chain"]
     light = names[-1]
-    roles = [Role("translucency", light, f"without light that comes through the error is {without:.3g}")]
+    roles = [Role("translucency", light, f"without transmitted light the error is {without:.3g}")]
     first = next((name for name in names if load(name).role == "thickness"), "")
     if not first:
         best = min(materials, key=limit_of)
-        why = f"left out: {light} reads none; the best chain that has one errs by {limit_of(best):.3g}"
+        why = f"omitted: {light} reads no thickness; the best chain with one has the error {limit_of(best):.3g}"
         return [Role("thickness", "", why), *roles]
-    plain = [point for point in materials if any(is_constant(load(name)) for name in point["chain"])]
+    constant = [point for point in materials if any(is_constant(load(name)) for name in point["chain"])]
     why = needs(load(first))
     if is_constant(load(first)):
-        measured = [point for point in materials if point["chain"] and point not in plain]
-        closest = min((limit_of(point) for point in measured), default=float("nan"))
-        why = f"one number for all of the body: measured where light passes the error would be {closest:.3g}"
-    elif plain:
-        least = min(limit_of(point) for point in plain)
-        why = f"with the same thickness everywhere the error is {least:.3g}" + (f"; it needs {why}" if why else "")
+        varying = [point for point in materials if point["chain"] and point not in constant]
+        closest = min((limit_of(point) for point in varying), default=float("nan"))
+        why = f"the same at every point; with a thickness that varies the error would be {closest:.3g}"
+    elif constant:
+        least = min(limit_of(point) for point in constant)
+        why = f"with a constant thickness the error is {least:.3g}" + (f"; it needs {why}" if why else "")
     return [Role("thickness", first, why), *roles]

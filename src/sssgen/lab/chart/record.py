@@ -37,10 +37,12 @@ Record = Mapping[str, Any]
 
 
 def checked(record: Any) -> dict[str, Any]:
-    """A copy of the record with None for numbers that are not finite. Raises SssgenError with all errors in it."""
-    faults = list(_faults(record)) if isinstance(record, dict) else ["it is no JSON object"]
+    """A copy of the record with None for numbers that are not finite. Raises SssgenError with up to 20 errors."""
+    faults = list(_faults(record)) if isinstance(record, dict) else ["it is not a JSON object"]
     if faults:
-        raise SssgenError([failure(f"this is no record of a chart: {fault}").diagnostics[0] for fault in faults[:20]])
+        raise SssgenError(
+            [failure(f"this is not a record of a chart: {fault}").diagnostics[0] for fault in faults[:20]]
+        )
     copy: dict[str, Any] = _finite(record)
     return copy
 
@@ -50,7 +52,7 @@ def _finite(value: Any) -> Any:
         return {str(name): _finite(part) for name, part in value.items()}
     if isinstance(value, list | tuple):
         return [_finite(part) for part in value]
-    if isinstance(value, float):  # NumPy's float64 is one, too
+    if isinstance(value, float):  # also a NumPy float64
         return float(value) if math.isfinite(value) else None
     return value
 
@@ -75,7 +77,7 @@ def _faults(record: dict[str, Any]) -> Iterator[str]:
 
 
 def _objects(value: Any) -> list[dict[str, Any]]:
-    return [one if isinstance(one, dict) else {} for one in value] if isinstance(value, list) else []
+    return [entry if isinstance(entry, dict) else {} for entry in value] if isinstance(value, list) else []
 
 
 def _point_faults(point: dict[str, Any], scenes: Sequence[Any]) -> Iterator[str]:
@@ -87,15 +89,15 @@ def _point_faults(point: dict[str, Any], scenes: Sequence[Any]) -> Iterator[str]
     for name in ("name", "label"):
         if not (isinstance(point.get(name), str) and point[name]):
             yield f"'{name}' is missing"
-    for name, known in (("cost", COSTS), ("error", ERRORS)):
+    for name, parts in (("cost", COSTS), ("error", ERRORS)):
         numbers = point.get(name)
         if not isinstance(numbers, dict):
             yield f"'{name}' is missing"
             continue
-        for part in known:
+        for part in parts:
             value = numbers.get(part)
             if value is not None and not _is_number(value):
-                yield f"{name}.{part} is no number"
+                yield f"{name}.{part} is not a number"
         value = numbers.get("value")
         if _is_number(value) and value < 0.0:
             yield f"{name}.value is below 0"

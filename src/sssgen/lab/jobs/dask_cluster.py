@@ -14,7 +14,7 @@ from collections.abc import Generator, Iterator
 from typing import Any
 
 from sssgen.lab.jobs.result_store import encoded
-from sssgen.lab.jobs.work_items import Ended, Failure, Task, execute
+from sssgen.lab.jobs.work_items import EncodedResult, Failure, Task, execute
 from sssgen.support.diagnostics import failure
 from sssgen.support.extras import need
 
@@ -24,19 +24,19 @@ WORKERS_SECONDS = 30
 """The timeout for its first worker."""
 
 
-def on_cluster(tasks: list[Task], address: str) -> Generator[Ended]:
-    """Yields the tasks as they end; closing it cancels the others. Raises SssgenError without a cluster."""
+def on_cluster(tasks: list[Task], address: str) -> Generator[EncodedResult]:
+    """Yields the tasks' results as they end; closing it cancels the rest. Raises SssgenError without a cluster."""
     distributed = need("distributed", extra="cluster")
     with _client(distributed, address) as client:
-        futures = {client.submit(execute, one, key=f"sssgen-{one.key}"): one for one in tasks}
-        ended = distributed.as_completed(list(futures), loop=client.loop, with_results=True, raise_errors=False)
-        for future, result in ended:
-            one = futures.pop(future)
+        futures = {client.submit(execute, task, key=f"sssgen-{task.key}"): task for task in tasks}
+        completed = distributed.as_completed(list(futures), loop=client.loop, with_results=True, raise_errors=False)
+        for future, result in completed:
+            task = futures.pop(future)
             if future.status == "cancelled":
-                raise failure(f"the Dask scheduler at {address} was lost", "the results so far are kept: run it again")
+                raise failure(f"the Dask scheduler at {address} was lost", "finished results are stored: run it again")
             if future.status == "error":
-                result = encoded(Failure(one.name, _message(result)))
-            yield one.key, result
+                result = encoded(Failure(task.name, _message(result)))
+            yield task.key, result
 
 
 def _message(error: Any) -> str:

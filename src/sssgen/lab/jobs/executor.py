@@ -1,6 +1,6 @@
 """Runs work items: here, in processes of this machine, or on a Dask cluster, with the same results to the byte.
 
-    items = [Item("sssgen.lab.chart.charting:measured", (technique, setting, scene), f"{technique} on {scene}") for ...]
+    items = [Item("package.measurement:error_of", (technique, setting, scene), f"{technique} on {scene}") for ...]
     with ProgressBar() as progress:
         results = run(items, progress=progress)
 
@@ -14,7 +14,7 @@ from collections.abc import Callable, Generator, Sequence
 from typing import Any
 
 from sssgen.lab.jobs.result_store import Store, decoded
-from sssgen.lab.jobs.work_items import Ended, Failure, Item, Task, execute, task
+from sssgen.lab.jobs.work_items import EncodedResult, Failure, Item, Task, execute, task_of
 
 __all__ = ["Failure", "Item", "Progress", "failures", "run"]
 
@@ -33,34 +33,35 @@ def run(
 
     They are computed by the Dask cluster whose scheduler has the address `scheduler` (`tcp://HOST:8786`); without one,
     in `processes` processes of this machine (by default one per core), or with 0 in this process. Stored results are
-    not computed again, and equal items are computed once. An interrupt ends the workers and keeps finished results.
+    not computed again, and equal items are computed once. An interrupt ends the workers; finished results stay stored.
     Raises SssgenError if the scheduler does not answer or is lost.
     """
     store = Store() if store is None else store
-    tasks = [task(item) for item in items]
-    wanted = {one.key: one for one in tasks}
+    tasks = [task_of(item) for item in items]
+    by_key = {task.key: task for task in tasks}
     results: dict[str, Any] = {}
 
-    def take(key: str, data: bytes) -> Any:
+    def add_result(key: str, data: bytes) -> Any:
         results[key] = decoded(data)
-        progress(len(results), len(wanted), wanted[key].name)
+        progress(len(results), len(by_key), by_key[key].name)
         return results[key]
 
-    for key in wanted:
-        if (kept := store.get(key)) is not None:
-            take(key, kept)
-    ended = _ended([one for one in wanted.values() if one.key not in results], scheduler, processes)
+    for key in by_key:
+        if (stored := store.get(key)) is not None:
+            add_result(key, stored)
+    computed = _computed([task for key, task in by_key.items() if key not in results], scheduler, processes)
     try:
-        for key, data in ended:
-            if not isinstance(take(key, data), Failure):
+        for key, data in computed:
+            if not isinstance(add_result(key, data), Failure):
                 store.put(key, data)
     finally:
-        ended.close()
-    return [_named(results[one.key], one) for one in tasks]
+        computed.close()
+    return [_with_name(results[task.key], task.name) for task in tasks]
 
 
-def _named(result: Any, one: Task) -> Any:
-    return result._replace(name=one.name) if isinstance(result, Failure) else result
+def _with_name(result: Any, name: str) -> Any:
+    """The result; a failure, which equal items share, with the item's own name."""
+    return result._replace(name=name) if isinstance(result, Failure) else result
 
 
 def failures(results: Sequence[Any]) -> list[Failure]:
@@ -68,8 +69,8 @@ def failures(results: Sequence[Any]) -> list[Failure]:
     return [result for result in results if isinstance(result, Failure)]
 
 
-def _ended(tasks: list[Task], scheduler: str, processes: int | None) -> Generator[Ended]:
-    """Yields the tasks as they end, in any order. Closing it ends the workers."""
+def _computed(tasks: list[Task], scheduler: str, processes: int | None) -> Generator[EncodedResult]:
+    """Yields the tasks' results as they end, in any order. Closing it ends the workers."""
     if not tasks:
         return
     if scheduler:
@@ -77,7 +78,7 @@ def _ended(tasks: list[Task], scheduler: str, processes: int | None) -> Generato
 
         yield from on_cluster(tasks, scheduler)
     elif processes == 0:
-        yield from ((one.key, execute(one)) for one in tasks)
+        yield from ((task.key, execute(task)) for task in tasks)
     else:
         from sssgen.lab.jobs.local_workers import in_processes
 

@@ -8,7 +8,7 @@ import threading
 from collections.abc import Callable, Generator
 
 from sssgen.lab.jobs.result_store import encoded
-from sssgen.lab.jobs.work_items import Ended, Failure, Task, execute
+from sssgen.lab.jobs.work_items import EncodedResult, Failure, Task, execute
 from sssgen.support.worker_process import LostError, Process
 
 TRIES = 3
@@ -18,21 +18,21 @@ SECONDS = 7 * 24 * 3600.0
 """The time limit of an item."""
 
 THREADS = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-"""The processes' environment: they already use all cores, and one thread keeps the order of sums."""
+"""The processes' environment: one thread each, because they use all cores already, and to keep the order of sums."""
 
 
-def in_processes(tasks: list[Task], processes: int) -> Generator[Ended]:
-    """Yields the tasks as they end, computed in `processes` processes; closing it ends these."""
+def in_processes(tasks: list[Task], processes: int) -> Generator[EncodedResult]:
+    """Yields the tasks' results as they end, computed in `processes` processes; closing it ends these."""
     waiting: queue.SimpleQueue[Task] = queue.SimpleQueue()
-    ended: queue.SimpleQueue[Ended | BaseException] = queue.SimpleQueue()
-    for one in tasks:
-        waiting.put(one)
-    workers = [_Worker(waiting, ended) for _ in range(processes)]
+    results: queue.SimpleQueue[EncodedResult | BaseException] = queue.SimpleQueue()
+    for task in tasks:
+        waiting.put(task)
+    workers = [_Worker(waiting, results) for _ in range(processes)]
     try:
         for worker in workers:
             worker.start()
         for _ in tasks:
-            result = ended.get()
+            result = results.get()
             if isinstance(result, BaseException):
                 raise result
             yield result
@@ -46,9 +46,11 @@ def in_processes(tasks: list[Task], processes: int) -> Generator[Ended]:
 class _Worker(threading.Thread):
     """A thread that gives tasks to its own process, one at a time, and queues the results."""
 
-    def __init__(self, waiting: queue.SimpleQueue[Task], ended: queue.SimpleQueue[Ended | BaseException]) -> None:
+    def __init__(
+        self, waiting: queue.SimpleQueue[Task], results: queue.SimpleQueue[EncodedResult | BaseException]
+    ) -> None:
         super().__init__(daemon=True)
-        self.waiting, self.ended = waiting, ended
+        self.waiting, self.results = waiting, results
         self.process = Process(__name__, "", THREADS, SECONDS)
         self.stopped = False
 
@@ -56,29 +58,29 @@ class _Worker(threading.Thread):
         """Runs until there are no more tasks, or it is stopped."""
         try:
             while not self.stopped:
-                one = self.waiting.get_nowait()
-                self.ended.put((one.key, self._result(one)))
+                task = self.waiting.get_nowait()
+                self.results.put((task.key, self._result(task)))
         except queue.Empty:
             pass
-        except BaseException as error:  # the run's own thread raises it
-            self.ended.put(error)
+        except BaseException as error:  # the thread of the run raises it again
+            self.results.put(error)
         finally:
             self.process.close()
 
-    def _result(self, one: Task) -> bytes:
+    def _result(self, task: Task) -> bytes:
         reason = ""
         for _ in range(TRIES):
             try:
                 if self.stopped:
                     break
-                result: bytes = self.process.ask(one)
+                result: bytes = self.process.ask(task)
                 return result
             except LostError as error:
                 reason = str(error)
-        return encoded(Failure(one.name, f"its process {reason}, {TRIES} times in a row"))
+        return encoded(Failure(task.name, f"its process {reason}, {TRIES} times in a row"))
 
     def end(self) -> None:
-        """Kills the process, repeatedly, until the thread has ended."""
+        """Kills the process, repeatedly, until the thread has results."""
         while self.is_alive():
             if (running := self.process.process) is not None:
                 running.kill()

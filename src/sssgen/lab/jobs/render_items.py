@@ -1,4 +1,4 @@
-"""Pictures of scenes as work items: a PNG, and the differences between back ends.
+"""Pictures of scenes as work items: PNG files, and the differences between back ends.
 
 An item names an example of the installation, which every worker has.
 """
@@ -23,11 +23,11 @@ from sssgen.harness.scenes.scene_loading import load
 from sssgen.support.extras import need
 from sssgen.support.paths import place
 
-_one = threading.Lock()
+_drawing = threading.Lock()
 """The back ends of a worker draw one picture at a time."""
 
 
-class Apart(NamedTuple):
+class PictureDifference(NamedTuple):
     """The difference of a back end's picture from the picture by NumPy in float64."""
 
     worst: float
@@ -38,24 +38,26 @@ class Apart(NamedTuple):
 
 def picture(example: str) -> bytes:
     """An example's scene as PNG, drawn by OpenGL."""
-    with _one:
+    with _drawing:
         color = render(_scene(example), _backend("gl")).encoded
     buffer = io.BytesIO()
     need("PIL.Image", "pillow").fromarray(np.rint(255.0 * color).astype(np.uint8)).save(buffer, "PNG", optimize=True)
     return buffer.getvalue()
 
 
-def apart(example: str, names: Sequence[str], size: tuple[int, int] | None, samples: int | None) -> list[Apart]:
+def compare_backends(
+    example: str, names: Sequence[str], size: tuple[int, int] | None, samples: int | None
+) -> list[PictureDifference]:
     """Compares an example's scene on the named back ends with NumPy.
 
     `size`, in pixels, and `samples`, per pixel, default to the scene's.
     """
     scene = _scene(example)
     scene = dataclasses.replace(scene, size=size or scene.size, samples=samples or scene.samples)
-    with _one:
-        wanted = render(scene, _backend("numpy")).encoded
-        differences = [255.0 * np.abs(render(scene, _backend(name)).encoded - wanted).max(axis=2) for name in names]
-    return [Apart(float(image.max()), int((image > 1.0).sum())) for image in differences]
+    with _drawing:
+        reference = render(scene, _backend("numpy")).encoded
+        differences = [255.0 * np.abs(render(scene, _backend(name)).encoded - reference).max(axis=2) for name in names]
+    return [PictureDifference(float(image.max()), int((image > 1.0).sum())) for image in differences]
 
 
 def _scene(example: str) -> Scene:

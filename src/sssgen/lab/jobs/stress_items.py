@@ -17,39 +17,41 @@ from sssgen.lab.jobs.result_store import Store
 from sssgen.support.diagnostics import Diagnostic, SssgenError
 from sssgen.support.progress import ProgressBar
 
-_one = threading.Lock()
+_running = threading.Lock()
 """The back ends of a worker run one item at a time."""
 
 
-def spread(
-    chosen: Sequence[Specimen],
+def run_stress(
+    specimens: Sequence[Specimen],
     names: Sequence[str],
     settings: Settings,
     scheduler: str = "",
     processes: int | None = None,
 ) -> Report:
-    """The report on the chosen techniques on the named back ends: as by one process, except for the times.
+    """The report on techniques on the named back ends: the same as from one process, except for the times.
 
     Raises SssgenError if the scheduler does not answer, and for a technique that always kills its worker.
     """
-    items = [Item(f"{__name__}:stressed", (one, tuple(names), settings), one.title) for one in chosen]
+    items = [
+        Item(f"{__name__}:stress_item", (specimen, tuple(names), settings), specimen.title) for specimen in specimens
+    ]
     with ProgressBar() as progress:
         results = run(items, scheduler, processes, Store(""), progress)
     if failed := failures(results):
-        raise SssgenError([Diagnostic("error", f"{one.name}: {one.message}") for one in failed])
+        raise SssgenError([Diagnostic("error", f"{failure.name}: {failure.message}") for failure in failed])
     devices: dict[str, str] = {}
     missing: dict[str, str] = {}
-    for _, here, lacking in results:
-        devices |= here
-        missing |= lacking
+    for _, worker_devices, worker_missing in results:
+        devices |= worker_devices
+        missing |= worker_missing
     return Report(settings, devices, missing, [row for row, *_ in results])
 
 
-def stressed(
+def stress_item(
     specimen: Specimen, names: tuple[str, ...], settings: Settings
 ) -> tuple[Row, dict[str, str], dict[str, str]]:
-    """The row of one technique, the devices of this process's back ends, and the reasons why others are missing."""
-    with _one:
+    """The row of one technique, the devices of this process's back ends, and the reasons why back ends are missing."""
+    with _running:
         machines = _machines(names)
         row = stress(specimen, machines, settings)
         return row, {name: backend.device() for name, backend in machines.here.items()}, machines.missing

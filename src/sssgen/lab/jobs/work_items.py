@@ -19,7 +19,7 @@ from sssgen.support import cache
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.paths import PACKAGE, place
 
-Ended = tuple[str, bytes]
+EncodedResult = tuple[str, bytes]
 """The key of a finished item, and its encoded result."""
 
 
@@ -27,7 +27,7 @@ class Failure(NamedTuple):
     """Replaces the result of a failed item. It is not stored: the next run tries again."""
 
     name: str
-    """The item's."""
+    """The item's name."""
     message: str
     """The error and its position."""
 
@@ -38,7 +38,7 @@ class Item(NamedTuple):
     function: str
     arguments: tuple[Any, ...] = ()
     name: str = ""
-    """The name for messages, which is not part of the key."""
+    """The name in messages, which is not part of the key."""
 
     @property
     def title(self) -> str:
@@ -57,7 +57,7 @@ class Task(NamedTuple):
     """The digest of the code that must run it."""
 
 
-def task(item: Item) -> Task:
+def task_of(item: Item) -> Task:
     """The item with its key: a digest of the function, the arguments and the code."""
     arguments = encoded(item.arguments)
     stamp = code_stamp(item.function.partition(":")[0])
@@ -65,20 +65,20 @@ def task(item: Item) -> Task:
     return Task(key, item.title, item.function, arguments, stamp)
 
 
-def execute(one: Task) -> bytes:
+def execute(task: Task) -> bytes:
     """Runs a task in this process; returns the encoded result, or a Failure if the function raised an exception."""
     try:
-        module, _, name = one.function.partition(":")
-        if code_stamp(module) != one.stamp:
-            return encoded(Failure(one.name, "this worker has another version of sssgen: restart it, or the run"))
+        module, _, name = task.function.partition(":")
+        if code_stamp(module) != task.stamp:
+            return encoded(Failure(task.name, "this worker has another version of sssgen: restart it, or the run"))
         function = getattr(importlib.import_module(module), name)
-        return encoded(function(*decoded(one.arguments)))
+        return encoded(function(*decoded(task.arguments)))
     except SssgenError as error:
-        return encoded(Failure(one.name, "; ".join(diagnostic.message for diagnostic in error.diagnostics)))
+        return encoded(Failure(task.name, "; ".join(diagnostic.message for diagnostic in error.diagnostics)))
     except (Exception, SystemExit) as error:
-        at = traceback.extract_tb(error.__traceback__)[-1]
-        place = f"{os.path.basename(at.filename)}:{at.lineno}"
-        return encoded(Failure(one.name, f"{type(error).__name__}: {error} ({place})"))
+        frame = traceback.extract_tb(error.__traceback__)[-1]
+        position = f"{os.path.basename(frame.filename)}:{frame.lineno}"
+        return encoded(Failure(task.name, f"{type(error).__name__}: {error} ({position})"))
 
 
 @functools.cache
@@ -86,7 +86,7 @@ def code_stamp(module: str) -> str:
     """A digest of the code, the same on every machine: of sssgen's files, of the module's file if it is not part of
     sssgen, and of the versions of Python and NumPy.
     """
-    parts = [b"Python %d.%d" % sys.version_info[:2], _numpy().encode(), _own().encode()]
+    parts = [b"Python %d.%d" % sys.version_info[:2], _numpy_version().encode(), _package_digest().encode()]
     if not module.startswith("sssgen."):
         spec = importlib.util.find_spec(module)
         if spec is not None and spec.origin is not None:
@@ -94,7 +94,7 @@ def code_stamp(module: str) -> str:
     return cache.digest(b"\0".join(parts))
 
 
-def _numpy() -> str:
+def _numpy_version() -> str:
     try:
         return version("numpy")
     except PackageNotFoundError:
@@ -102,12 +102,12 @@ def _numpy() -> str:
 
 
 @functools.cache
-def _own() -> str:
+def _package_digest() -> str:
     folders = [PACKAGE, *map(place, ("targets", "templates", "examples"))]
     digests = []
     for top in folders:
-        for folder, below, names in os.walk(top):
-            below[:] = sorted(name for name in below if name not in ("__pycache__", "_data"))
+        for folder, subfolders, names in os.walk(top):
+            subfolders[:] = sorted(name for name in subfolders if name not in ("__pycache__", "_data"))
             digests += [f"{name} {cache.digest(_content(os.path.join(folder, name)))}" for name in sorted(names)]
     return cache.digest("\n".join(digests))
 

@@ -1,7 +1,7 @@
 """The candidates of a chart: every technique of the library at several settings, and the published baselines.
 
 The settings are the technique's counts (steps, taps, rays), which trade speed for accuracy, over their `hint_range`;
-its other parameters are fitted. A new technique is charted as soon as its file exists.
+its other parameters are fitted. A new technique of the library is charted without further changes.
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ COUNTS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32)
 PROBES = os.path.join(os.path.dirname(__file__), "probes")
 
 PUBLISHED = os.path.join(os.path.dirname(__file__), "published.toml")
-"""The file of the published baselines, which are whole chains."""
+"""The file of the published baselines, which are complete chains."""
 
 
 class Candidate(NamedTuple):
-    """One point of a chart before it is measured."""
+    """A point of a chart before it is measured."""
 
     role: str
     """coordinates, thickness, translucency or material"""
@@ -108,24 +108,24 @@ def translucency() -> list[Candidate]:
     """The techniques of translucency, after the exact thickness, and the candidate without one."""
     result = [Candidate("translucency", "none", "none", (), ())]
     for technique in of_role("translucency"):
-        wanted = quantity_taken(technique)
-        for route in routes("thickness", wanted) if wanted else [()]:
-            before = ("exact_thickness", *route) if wanted else ()
-            chain, baseline = (*before, technique.name), technique.baseline
+        needed = quantity_taken(technique)
+        for route in routes("thickness", needed) if needed else [()]:
+            thickness_chain = ("exact_thickness", *route) if needed else ()
+            chain, baseline = (*thickness_chain, technique.name), technique.baseline
             result.append(Candidate("translucency", technique.name, technique.name, (), chain, baseline))
     return result
 
 
 def materials(lengths: Sequence[Candidate]) -> list[Candidate]:
-    """Whole chains: every thickness in `lengths` with every translucency, the published chains, and the empty chain."""
+    """Complete chains: each thickness in `lengths` with each translucency, the published chains, the empty chain."""
     result = [Candidate("material", "none", "no translucency", (), ())]
     for name, chain in published().items():
         result.append(Candidate("material", name, name, (), chain, True))
     for light in of_role("translucency"):
         if is_published(light):
             continue
-        wanted = quantity_taken(light)
-        if not wanted:
+        needed = quantity_taken(light)
+        if not needed:
             result.append(Candidate("material", light.name, light.name, (), (light.name,)))
             continue
         for length in lengths:
@@ -133,12 +133,12 @@ def materials(lengths: Sequence[Candidate]) -> list[Candidate]:
             if is_published(first):
                 continue
             to_length = length.techniques[1:-1]
-            for route in _conversions(first.function.quantity, to_length, wanted):
+            for route in _conversions(first.function.quantity, to_length, needed):
                 chain = (first.name, *route, light.name)
                 text = " → ".join((label(first.name, length.settings), *route, light.name))
                 result.append(Candidate("material", " → ".join(chain), text, length.settings, chain))
     unique: dict[tuple[tuple[str, ...], Any], Candidate] = {}
-    for candidate in result:  # published chains come first and win
+    for candidate in result:  # the published chain of several equal ones comes first
         unique.setdefault((candidate.techniques, candidate.settings), candidate)
     return list(unique.values())
 
@@ -147,32 +147,32 @@ def materials(lengths: Sequence[Candidate]) -> list[Candidate]:
 def published() -> dict[str, tuple[str, ...]]:
     """The published baselines: name → techniques."""
     with open(PUBLISHED, "rb") as file:
-        return {one["name"]: tuple(one["techniques"]) for one in tomllib.load(file)["chain"]}
+        return {chain["name"]: tuple(chain["techniques"]) for chain in tomllib.load(file)["chain"]}
 
 
-def _conversions(quantity: str, to_length: tuple[str, ...], wanted: str) -> Iterator[tuple[str, ...]]:
-    """The conversions of a technique's quantity to the wanted one: through a length, or directly."""
-    if wanted == quantity:
+def _conversions(quantity: str, to_length: tuple[str, ...], needed: str) -> Iterator[tuple[str, ...]]:
+    """The conversions of a technique's quantity to the needed one: through a length, or directly."""
+    if needed == quantity:
         yield ()
         return
-    for route in routes("thickness", wanted):
+    for route in routes("thickness", needed):
         yield (*to_length, *route)
-    yield from routes(quantity, wanted)
+    yield from routes(quantity, needed)
 
 
-def routes(quantity: str, wanted: str) -> list[tuple[str, ...]]:
+def routes(quantity: str, needed: str) -> list[tuple[str, ...]]:
     """The library's conversions from one quantity to another."""
-    if quantity == wanted:
+    if quantity == needed:
         return [()]
     return [
         (technique.name,)
         for technique in of_role("conversion")
-        if quantity_taken(technique) == quantity and technique.function.quantity == wanted
+        if quantity_taken(technique) == quantity and technique.function.quantity == needed
     ]
 
 
 def needs(technique: Technique) -> str:
-    """The data that a technique needs besides its parameters, as a text; may be ''."""
+    """The data that a technique needs besides its parameters, as text; '' for none."""
     parts = []
     for slot in technique.slots:
         texture = slot.params[0].quantity != "world_position"
@@ -204,7 +204,7 @@ def of_role(role: str) -> list[Technique]:
 
 
 def is_published(technique: Technique) -> bool:
-    """Whether a technique is the form of a publication, kept only for comparison."""
+    """Whether a technique has the form of a publication and serves only for comparison."""
     return bool(technique.attributes.superseded_by)
 
 
@@ -214,8 +214,8 @@ def settings(technique: Technique) -> list[tuple[tuple[str, int], ...]]:
     if not counts:
         return [()]
     default = int(counts[0].default[0])
-    most = next((count for count in COUNTS if count > default), COUNTS[-1])
-    values = [count for count in COUNTS if count <= most and all(_within(uniform, count) for uniform in counts)]
+    largest = next((count for count in COUNTS if count > default), COUNTS[-1])
+    values = [count for count in COUNTS if count <= largest and all(_within(uniform, count) for uniform in counts)]
     return [tuple((uniform.name, count) for uniform in counts) for count in values]
 
 
@@ -224,12 +224,12 @@ def _within(uniform: Uniform, count: int) -> bool:
     return limits is None or float(limits[0]) <= count <= float(limits[1])
 
 
-def most_counts(candidate: Candidate) -> tuple[tuple[str, int], ...]:
-    """Counts at which the candidate may be taken as converged: 64, or 20 each where there are two."""
-    uniforms = {one.name: one for name in candidate.techniques for one in load(name).uniforms}
+def converged_counts(candidate: Candidate) -> tuple[tuple[str, int], ...]:
+    """Counts at which the candidate should have converged: 64, or 20 each if there are two."""
+    uniforms = {uniform.name: uniform for name in candidate.techniques for uniform in load(name).uniforms}
     limits = {name: dict(uniforms[name].hints).get("hint_range", (1, 64)) for name, _ in candidate.settings}
-    many = 64 if len(limits) == 1 else 20
-    return tuple((name, min(many, int(float(limits[name][1])))) for name, _ in candidate.settings)
+    count = 64 if len(limits) == 1 else 20
+    return tuple((name, min(count, int(float(limits[name][1])))) for name, _ in candidate.settings)
 
 
 def label(name: str, counts: Sequence[tuple[str, int]]) -> str:

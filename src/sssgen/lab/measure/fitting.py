@@ -19,9 +19,9 @@ from sssgen.lab.measure.problem import Problem
 from sssgen.support.extras import need
 
 LANES = 400
-"""Lanes of a training problem that the fit uses."""
+"""The largest number of lanes of a training problem that the fit uses."""
 EVALUATIONS = 30
-"""The most evaluations of one search."""
+"""The limit of evaluations of one search."""
 COLORS = (0.0, 1.0)
 """The range of a colour's components."""
 
@@ -36,7 +36,7 @@ class Free(NamedTuple):
     logarithmic: bool
 
     def value(self, x: Array) -> Array:
-        """The parameter's components, of coordinates in 0..1."""
+        """The parameter's components at coordinates in 0..1."""
         if self.logarithmic:
             return self.low * (self.high / self.low) ** x
         return self.low + (self.high - self.low) * x
@@ -49,11 +49,11 @@ class Free(NamedTuple):
 
 
 class Factor(NamedTuple):
-    """A parameter that scales the output linearly; an emitted chain has the fitted scale in it."""
+    """A parameter to which the output is proportional; an emitted chain includes the fitted scale in it."""
 
     name: str
     components: int
-    most: float
+    largest: float
     """The largest scale that its range allows"""
     default: tuple[float, ...]
 
@@ -66,7 +66,7 @@ class Fitted(NamedTuple):
     scale: tuple[float, ...]
     """The factor of the chain's output, per channel"""
     matte: tuple[float, ...]
-    """The factor of the Lambert reflection, per channel: the albedo that goes with the chain"""
+    """The factor of the Lambert reflection, per channel: the albedo to use with the chain"""
     error: float
     """The relative error on the training problems"""
     factor: str = ""
@@ -86,16 +86,17 @@ def fit(chains: Sequence[Chain | None], problems: Sequence[Problem]) -> Fitted:
     thinned = [problem.thinned(LANES) for problem in problems]
     compiled = [chain for chain in chains if chain is not None]
     if not compiled:
-        return _solved({}, [np.zeros_like(problem.target) for problem in thinned], thinned, None)
-    known = {name for problem in thinned for part in problem.parts for name in part.values}
-    free, factor = free_parameters(compiled[0], known, thinned[0])
-    results = [_searched(compiled, thinned, free, start, factor) for start in _starts(free)]
+        return _with_best_scales({}, [np.zeros_like(problem.target) for problem in thinned], thinned, None)
+    of_scene = {name for problem in thinned for part in problem.parts for name in part.values}
+    free, factor = free_parameters(compiled[0], of_scene, thinned[0])
+    results = [_fit_from(compiled, thinned, free, start, factor) for start in _starts(free)]
     return min(results, key=lambda result: result.error)
 
 
-def _searched(
+def _fit_from(
     chains: Sequence[Chain], problems: Sequence[Problem], free: Sequence[Free], start: Array, factor: Factor | None
 ) -> Fitted:
+    """The result of one search, which begins at the coordinates `start`."""
     optimize = need("scipy.optimize", "scipy", "chart")
 
     def values_of(parameters: Mapping[str, Any]) -> list[Array]:
@@ -103,21 +104,21 @@ def _searched(
 
     def residual(x: Array) -> Array:
         values = values_of(_named(free, x))
-        fitted = _solved({}, values, problems, factor)
+        fitted = _with_best_scales({}, values, problems, factor)
         return np.concatenate([_residual(fitted, *pair).ravel() for pair in zip(values, problems, strict=True)])
 
     x = start
     if len(start):
-        most = max(EVALUATIONS // (len(start) + 1), 8)
-        x = optimize.least_squares(residual, start, bounds=(0.0, 1.0), diff_step=1e-3, max_nfev=most).x
+        evaluations = max(EVALUATIONS // (len(start) + 1), 8)
+        x = optimize.least_squares(residual, start, bounds=(0.0, 1.0), diff_step=1e-3, max_nfev=evaluations).x
     parameters = {
         name: tuple(float(np.float32(part)) for part in np.atleast_1d(value)) for name, value in _named(free, x).items()
     }
-    return _solved(parameters, values_of(exact(parameters)), problems, factor)
+    return _with_best_scales(parameters, values_of(chain_values(parameters)), problems, factor)
 
 
-def exact(parameters: Mapping[str, Sequence[float]]) -> dict[str, Any]:
-    """Parameters as a chain takes them: numbers, or arrays of components."""
+def chain_values(parameters: Mapping[str, Sequence[float]]) -> dict[str, Any]:
+    """Parameters as arguments of a chain: numbers, or arrays of components."""
     return {name: _component(np.array(value)) for name, value in parameters.items()}
 
 
@@ -128,7 +129,7 @@ def _residual(fitted: Fitted, values: Array, problem: Problem) -> Array:
     return weighted
 
 
-def _solved(
+def _with_best_scales(
     parameters: dict[str, tuple[float, ...]],
     values: Sequence[Array],
     problems: Sequence[Problem],
@@ -142,7 +143,7 @@ def _solved(
     channels = len(problems[0].target)
     per_channel = factor is not None and factor.components == 3 and problems[0].role != "coordinates"
     columns: list[list[Array]] = [[] for _ in range((channels if per_channel else 1) + channels)]
-    rights = []
+    targets = []
     for value, problem in zip(values, problems, strict=True):
         for channel in range(channels):
             weight = 1.0 / np.sqrt((problem.target[channel] ** 2 + EPSILON) * problem.target.size)
@@ -152,14 +153,14 @@ def _solved(
                 column.append(scaled if not per_channel or index == channel else zeros)
             for index, column in enumerate(columns[-channels:]):
                 column.append(matte if index == channel else zeros)
-            rights.append(problem.target[channel] * weight)
-    basis, right = np.stack([np.concatenate(column) for column in columns], axis=1), np.concatenate(rights)
-    best = nnls(basis.T @ basis, basis.T @ right)[0]
-    if factor is not None and (best[:-channels] > factor.most).any():
-        best[:-channels] = np.minimum(best[:-channels], factor.most)
-        rest = right - basis[:, :-channels] @ best[:-channels]
-        best[-channels:] = nnls(basis[:, -channels:].T @ basis[:, -channels:], basis[:, -channels:].T @ rest)[0]
-    squared_error = float(((basis @ best - right) ** 2).sum())
+            targets.append(problem.target[channel] * weight)
+    basis, target = np.stack([np.concatenate(column) for column in columns], axis=1), np.concatenate(targets)
+    best = nnls(basis.T @ basis, basis.T @ target)[0]
+    if factor is not None and (best[:-channels] > factor.largest).any():
+        best[:-channels] = np.minimum(best[:-channels], factor.largest)
+        remainder = target - basis[:, :-channels] @ best[:-channels]
+        best[-channels:] = nnls(basis[:, -channels:].T @ basis[:, -channels:], basis[:, -channels:].T @ remainder)[0]
+    squared_error = float(((basis @ best - target) ** 2).sum())
     scale = best[:-channels] if per_channel else np.repeat(best[:1], channels)
     albedo = tuple(map(float, best[-channels:]))
     error, name = float(np.sqrt(squared_error / len(problems))), factor.name if factor else ""
@@ -170,13 +171,13 @@ def _finite(values: Array) -> Array:
     return np.where(np.isfinite(values), values, 1e3)
 
 
-def free_parameters(chain: Chain, known: set[str], problem: Problem) -> tuple[list[Free], Factor | None]:
-    """The parameters that the scene does not set (`known`), and the factor among them, if any."""
+def free_parameters(chain: Chain, of_scene: set[str], problem: Problem) -> tuple[list[Free], Factor | None]:
+    """The parameters that the scene does not set (it sets those in `of_scene`), and the factor among them, if any."""
     free: dict[str, Free] = {}
     factors: list[Factor] = []
     for uniform in chain.uniforms:
         name, type_ = uniform["technique_name"], BY_NAME.get(uniform["type"])
-        if name in known or type_ is None or name in free:
+        if name in of_scene or type_ is None or name in free:
             continue
         if kind_of(type_) != "float" or not (uniform["range"] or uniform["color"]):
             continue
@@ -185,14 +186,14 @@ def free_parameters(chain: Chain, known: set[str], problem: Problem) -> tuple[li
         if len(default) != components(type_):
             continue
         if is_factor(chain, uniform, problem):
-            most = np.inf if uniform["color"] else high / default[0]
-            factors.append(Factor(name, len(default), float(most), default))
+            largest = np.inf if uniform["color"] else high / default[0]
+            factors.append(Factor(name, len(default), float(largest), default))
             continue
         logarithmic = low > 0.0 and high >= 50.0 * low
         if low == 0.0 and high >= 4.0 and uniform["unit"] in ("m", "1/m"):
             low, logarithmic = 1e-3 * high, True  # a length of 0 is a limit, not a value to try
         free[name] = Free(name, float(low), float(high), default, logarithmic)
-    return list(free.values()), max(factors, key=lambda factor: (factor.components, factor.most), default=None)
+    return list(free.values()), max(factors, key=lambda factor: (factor.components, factor.largest), default=None)
 
 
 def is_factor(chain: Chain, uniform: Mapping[str, Any], problem: Problem) -> bool:
@@ -200,11 +201,11 @@ def is_factor(chain: Chain, uniform: Mapping[str, Any], problem: Problem) -> boo
     name, default = uniform["technique_name"], np.array(uniform["default"])
     if not (default > 0.0).all():
         return False
-    few = problem.thinned(40)
+    small = problem.thinned(40)
     with np.errstate(all="ignore"):
-        values = few.values(chain, {name: _component(0.4 * default)})
-        doubled = few.values(chain, {name: _component(0.8 * default)})
-        few.values(chain, {name: _component(default)})
+        values = small.values(chain, {name: _component(0.4 * default)})
+        doubled = small.values(chain, {name: _component(0.8 * default)})
+        small.values(chain, {name: _component(default)})  # restores the chain's default
     if not np.isfinite(values).all() or not values.any():
         return False
     return bool(np.allclose(doubled, 2.0 * values, rtol=1e-6, atol=1e-12))

@@ -1,4 +1,4 @@
-"""One point of a chart: a candidate with fitted parameters, its error on a scene's views, and its static cost."""
+"""A point of a chart: a candidate with fitted parameters, its error on a scene's views, and its static cost."""
 
 from __future__ import annotations
 
@@ -12,12 +12,18 @@ import numpy as np
 
 from sssgen.harness.backends import Array
 from sssgen.lab.measure import error_metric as metrics
-from sssgen.lab.measure import fitting as fit
-from sssgen.lab.measure import problem
-from sssgen.lab.measure.candidates import PROBES, Candidate, load, most_counts
+from sssgen.lab.measure import fitting
+from sssgen.lab.measure.candidates import PROBES, Candidate, converged_counts, load
 from sssgen.lab.measure.fitting import Fitted
 from sssgen.lab.measure.measured_chain import Chain, material_of
-from sssgen.lab.measure.problem import Problem, Seen
+from sssgen.lab.measure.problem import (
+    LightReference,
+    Problem,
+    coordinates_problem,
+    material_problem,
+    thickness_problem,
+    translucency_problem,
+)
 from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.lab.scene.scene_body import Body, body
 from sssgen.lab.scene.view_points import points
@@ -37,8 +43,9 @@ class View(NamedTuple):
 
     name: str
     scene: MeasuredScene
-    seen: tuple[Seen, ...] = ()
-    reference: str = ""
+    references: tuple[LightReference, ...] = ()
+    """One per light"""
+    stamp: str = ""
     """Samples and seed of the references"""
 
 
@@ -48,7 +55,7 @@ _MOST_PROBLEMS = 48
 
 def problem_of(role: str, view: View, summed: bool = True) -> Problem | None:
     """The problem of a role on a view, cached for the next candidate; None where the role does not apply."""
-    key = (role, view.scene.key, view.reference, summed)
+    key = (role, view.scene.key, view.stamp, summed)
     if key not in _problems:
         if len(_problems) >= _MOST_PROBLEMS:
             _problems.clear()
@@ -58,37 +65,39 @@ def problem_of(role: str, view: View, summed: bool = True) -> Problem | None:
 
 def _problem_of(role: str, view: View, summed: bool) -> Problem | None:
     if role == "coordinates":
-        return problem.of_coordinates(view.scene)
+        return coordinates_problem(view.scene)
     if role == "thickness":
-        return problem.of_thickness(view.scene)
+        return thickness_problem(view.scene)
     if role == "translucency":
-        return problem.of_light(view.scene, view.seen)
-    return problem.of_material(view.scene, view.seen, summed)
+        return translucency_problem(view.scene, view.references)
+    return material_problem(view.scene, view.references, summed)
 
 
-def fitted(candidate: Candidate, training: Sequence[View], before: Parameters | None = None) -> Fitted:
+def fit_candidate(candidate: Candidate, training: Sequence[View], before: Parameters | None = None) -> Fitted:
     """Fits the candidate's parameters to the training views, light by light. Raises SssgenError.
 
-    `before` has the parameters of its first technique, if these are known: then that technique is evaluated only once,
-    and the rest of the chain is fitted to its output.
+    `before` has the parameters of its first technique, if they have been fitted: then that technique is evaluated only
+    once, and the rest of the chain is fitted to its output.
     """
-    solvable = [(view, one) for view in training if (one := problem_of(candidate.role, view, summed=False)) is not None]
+    solvable = [
+        (view, problem) for view in training if (problem := problem_of(candidate.role, view, summed=False)) is not None
+    ]
     if not solvable:
         raise failure(
             "no light passes through the bodies for fitting", "the medium does not scatter, or absorbs all light"
         )
-    problems = [problem_.thinned(fit.LANES) for _, problem_ in solvable]
+    problems = [problem.thinned(fitting.LANES) for _, problem in solvable]
     bodies = [body(view.scene.geometry) for view, _ in solvable]
     rest = candidate
     with tempfile.TemporaryDirectory() as folder:
         if before is not None:
             rest, first = split(candidate)
             name = f"measured_{load(candidate.techniques[0]).function.quantity}"
-            for index, (shape, unsolved) in enumerate(zip(bodies, problems, strict=True)):
+            for index, (shape, problem) in enumerate(zip(bodies, problems, strict=True)):
                 chain = chain_of(first, shape, folder)
                 assert chain is not None
-                problems[index] = unsolved.with_output_of(chain, name, fit.exact(before))
-        result = fit.fit([chain_of(rest, shape, folder) for shape in bodies], problems)
+                problems[index] = problem.with_output_of(chain, name, fitting.chain_values(before))
+        result = fitting.fit([chain_of(rest, shape, folder) for shape in bodies], problems)
     return result._replace(parameters={**(before or {}), **result.parameters})
 
 
@@ -109,48 +118,48 @@ def chain_of(candidate: Candidate, shape: Body, folder: str, dtype: Any = np.flo
     return Chain(material_of(candidate.stages(shape), folder), dtype)
 
 
-def measured(candidate: Candidate, fit_result: Fitted, views: Sequence[View]) -> dict[str, Any]:
+def measure_candidate(candidate: Candidate, fitted: Fitted, views: Sequence[View]) -> dict[str, Any]:
     """The candidate's error over the views of one scene, with fitted parameters, as a point of a chart's record.
 
-    `failed` of the point is not empty where the chain's output has NaN or infinity. Raises SssgenError.
+    `failed` of the point is not empty if the chain's output has NaN or infinity. Raises SssgenError.
     """
-    solvable = [(view, one) for view in views if (one := problem_of(candidate.role, view)) is not None]
+    solvable = [(view, problem) for view in views if (problem := problem_of(candidate.role, view)) is not None]
     if not solvable:
         raise failure(f"no light passes through the body of '{views[0].scene.name}'", "light it from behind, too")
-    problems = [one for _, one in solvable]
+    problems = [problem for _, problem in solvable]
     shape = body(views[0].scene.geometry)
     with tempfile.TemporaryDirectory() as folder:
         chain = chain_of(candidate, shape, folder)
-        outputs = [_values(chain, fit_result, one) for one in problems]
+        outputs = [_values(chain, fitted, problem) for problem in problems]
         cost = static_cost(chain)
         implementation = {
-            kind: difference(_values(variant, fit_result, problems[0]), outputs[0])
+            kind: difference(_values(variant, fitted, problems[0]), outputs[0])
             for kind, variant in _variants(candidate, shape, folder)
         }
     not_finite = sum(int((~np.isfinite(values)).any(axis=0).sum()) for values in outputs)
     lanes = sum(values.shape[1] for values in outputs)
-    pictures = [fit_result.apply(np.nan_to_num(values), one) for values, one in zip(outputs, problems, strict=True)]
+    pictures = [fitted.apply(np.nan_to_num(values), problem) for values, problem in zip(outputs, problems, strict=True)]
     error = metrics.compare(
         np.concatenate(pictures, axis=1),
-        np.concatenate([one.target for one in problems], axis=1),
-        np.concatenate([one.noise for one in problems], axis=1),
+        np.concatenate([problem.target for problem in problems], axis=1),
+        np.concatenate([problem.noise for problem in problems], axis=1),
     )
     view_errors = {}
-    for picture, (view, one) in zip(pictures, solvable, strict=True):
-        view_error = metrics.compare(picture, one.target, one.noise)
+    for picture, (view, problem) in zip(pictures, solvable, strict=True):
+        view_error = metrics.compare(picture, problem.target, problem.noise)
         view_errors[view.name] = {key: view_error[key] for key in ("value", "low", "high")}
     if candidate.role == "material":
         flips = [
-            metrics.flip(points(view.scene).picture(picture), points(view.scene).picture(one.target))
-            for picture, (view, one) in zip(pictures, solvable, strict=True)
+            metrics.flip(points(view.scene).picture(picture), points(view.scene).picture(problem.target))
+            for picture, (view, problem) in zip(pictures, solvable, strict=True)
         ]
         error["flip"] = float(np.mean(flips))
     return {
         "role": candidate.role, "name": candidate.name, "label": candidate.label, "baseline": candidate.baseline,
         "settings": dict(candidate.settings), "chain": list(candidate.techniques),
-        "parameters": {name: list(value) for name, value in fit_result.parameters.items()},
-        "scale": list(fit_result.scale), "matte": list(fit_result.matte), "factor": fit_result.factor,
-        "training_error": fit_result.error,
+        "parameters": {name: list(value) for name, value in fitted.parameters.items()},
+        "scale": list(fitted.scale), "matte": list(fitted.matte), "factor": fitted.factor,
+        "training_error": fitted.error,
         "cost": {"value": float(max(cost.weight, 1)), **cost._asdict(), "gpu_ms": None},
         "error": error, "views": view_errors, "implementation": implementation,
         "failed": f"{not_finite} of {lanes} points are not finite" if not_finite else "",
@@ -162,7 +171,7 @@ def _variants(candidate: Candidate, shape: Body, folder: str) -> Iterator[tuple[
     if candidate.techniques:
         yield "float32", chain_of(candidate, shape, folder, np.float32)
     if candidate.settings and candidate.role == "thickness":
-        yield "counts", chain_of(candidate._replace(settings=most_counts(candidate)), shape, folder)
+        yield "counts", chain_of(candidate._replace(settings=converged_counts(candidate)), shape, folder)
 
 
 def difference(values: Array, reference: Array) -> float:
@@ -172,14 +181,14 @@ def difference(values: Array, reference: Array) -> float:
     return float(np.sqrt(((values - reference)[finite] ** 2).mean())) / level if level > 0.0 else 0.0
 
 
-def _values(chain: Chain | None, fit_result: Fitted, unsolved: Problem) -> Array:
+def _values(chain: Chain | None, fitted: Fitted, problem: Problem) -> Array:
     if chain is None:
-        return np.zeros_like(unsolved.target)
-    return unsolved.values(chain, fit.exact(fit_result.parameters))
+        return np.zeros_like(problem.target)
+    return problem.values(chain, fitting.chain_values(fitted.parameters))
 
 
 def static_cost(chain: Chain | None) -> Cost:
-    """The cost of one evaluation of a chain for one light, without its probes."""
+    """The cost of an evaluation of a chain for one light, without its probes."""
     if chain is None:
         return Cost()
     entries = compile(chain.material, COST_TARGET, "functions").reflection["entries"]

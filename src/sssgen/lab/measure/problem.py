@@ -26,12 +26,12 @@ DEPTH_MAP = "light_depth_map"
 WHITE = 0.8
 """The value to which exposure scales a reference's brightest parts."""
 
-Seen = tuple[Array, Array]
+LightReference = tuple[Array, Array]
 """A light's reference, π L / E of a white light: the mean and its standard error, (3, n) each."""
 
 
 class Part(NamedTuple):
-    """One light in one view."""
+    """A light in a view."""
 
     inputs: dict[str, Array]
     """The chain's inputs, with n lanes in the last axis"""
@@ -79,24 +79,24 @@ class Problem:
         return values[:, self.keep] * self.gain
 
     def with_output_of(self, chain: Chain, name: str, parameters: Mapping[str, Any]) -> Problem:
-        """The same problem, in which the first channel of another chain's output is the parameter `name`."""
+        """The same problem with one more parameter, `name`: the first channel of another chain's output."""
         parts = []
         for part in self.parts:
             chain.set({**part.values, **parameters}, part.textures)
             output = chain.run(part.inputs, [part.light])[0][0]
-            # later techniques may have parameters of the same names: these have the same meaning
+            # parameters of later techniques with the same names have the same meaning
             parts.append(part._replace(values={**part.values, **parameters, name: output}))
         return replace(self, parts=tuple(parts))
 
     @cached_property
     def _merged(self) -> Part:
-        """All parts as one, with their lanes concatenated: each run of a chain has a large constant cost."""
+        """All parts as a single part, with their lanes concatenated: each run of a chain has a large constant cost."""
         if len(self.parts) == 1:
             return self.parts[0]
         counts = [part.inputs["P"].shape[1] for part in self.parts]
 
-        def merged(each: Sequence[Mapping[str, Any]], names: Collection[str]) -> dict[str, Any]:
-            return {name: _concatenated([values[name] for values in each], counts) for name in names}
+        def merged(groups: Sequence[Mapping[str, Any]], names: Collection[str]) -> dict[str, Any]:
+            return {name: _concatenated([values[name] for values in groups], counts) for name in names}
 
         first = self.parts[0]
         shared = {name for name in first.values if all(part.values[name] is first.values[name] for part in self.parts)}
@@ -118,19 +118,19 @@ class Problem:
         return _selected(self, np.unique(np.linspace(0, len(self.keep) - 1, count).astype(int)))
 
 
-def _selected(problem: Problem, chosen: Array) -> Problem:
+def _selected(problem: Problem, indices: Array) -> Problem:
     """The problem with only some of its compared lanes; its parts have no other lanes."""
-    lanes = problem.keep[chosen]
+    lanes = problem.keep[indices]
     parts, start = [], 0
     for part in problem.parts:
         count = part.inputs["P"].shape[1]
-        own = lanes[(lanes >= start) & (lanes < start + count)] - start
+        part_lanes = lanes[(lanes >= start) & (lanes < start + count)] - start
         start += count
-        if len(own):
-            parts.append(_lanes_of(part, own, count))
+        if len(part_lanes):
+            parts.append(_lanes_of(part, part_lanes, count))
     return Problem(
-        problem.role, tuple(parts), False, problem.target[:, chosen], problem.noise[:, chosen],
-        problem.lambert[:, chosen], np.arange(len(chosen)), problem.gain,
+        problem.role, tuple(parts), False, problem.target[:, indices], problem.noise[:, indices],
+        problem.lambert[:, indices], np.arange(len(indices)), problem.gain,
     )  # fmt: skip
 
 
@@ -142,22 +142,22 @@ def _concatenated(values: Sequence[Any], counts: Sequence[int]) -> Any:
     return np.concatenate(broadcast, axis=-1)
 
 
-def _lanes_of(part: Part, own: Array, count: int) -> Part:
-    """Some of a part's `count` lanes."""
+def _lanes_of(part: Part, lanes: Array, count: int) -> Part:
+    """The part with only some of its `count` lanes."""
 
-    def cut(values: Mapping[str, Any]) -> dict[str, Any]:
+    def selected(values: Mapping[str, Any]) -> dict[str, Any]:
         return {
-            name: value[..., own] if np.ndim(value) and np.shape(value)[-1] == count else value
+            name: value[..., lanes] if np.ndim(value) and np.shape(value)[-1] == count else value
             for name, value in values.items()
         }
 
-    return part._replace(inputs=cut(part.inputs), light=cut(part.light), values=cut(part.values))
+    return part._replace(inputs=selected(part.inputs), light=selected(part.light), values=selected(part.values))
 
 
-def of_thickness(scene: MeasuredScene) -> Problem:
+def thickness_problem(scene: MeasuredScene) -> Problem:
     """Thickness towards each light, relative to its mean, where the light passes through the body."""
-    at = points(scene)
-    parts = tuple(_part(scene, at, direction, np.ones((3, 1))) for direction in _directions(scene))
+    visible = points(scene)
+    parts = tuple(_part(scene, visible, direction, np.ones((3, 1))) for direction in _directions(scene))
     exact = np.concatenate([np.asarray(part.values["exact_length"]) for part in parts])[None]
     keep = np.flatnonzero(exact[0] > 1e-4 * max(float(exact.max(initial=0.0)), 1e-12))
     if not len(keep):
@@ -168,13 +168,13 @@ def of_thickness(scene: MeasuredScene) -> Problem:
     return Problem("thickness", parts, False, target, zeros, zeros, keep, gain)
 
 
-def of_light(scene: MeasuredScene, seen: Sequence[Seen]) -> Problem | None:
+def translucency_problem(scene: MeasuredScene, references: Sequence[LightReference]) -> Problem | None:
     """The transmitted light at points that face away from a light; None without such points."""
-    at = points(scene)
-    parts = [_part(scene, at, direction, np.ones((3, 1))) for direction in _directions(scene)]
-    facing = np.concatenate([np.einsum("cn,cn->n", at.inputs["N"], part.light["L"]) for part in parts])
+    visible = points(scene)
+    parts = [_part(scene, visible, direction, np.ones((3, 1))) for direction in _directions(scene)]
+    facing = np.concatenate([np.einsum("cn,cn->n", visible.inputs["N"], part.light["L"]) for part in parts])
     keep = np.flatnonzero(facing <= 0.0)
-    target, noise = (np.concatenate(arrays, axis=1)[:, keep] for arrays in zip(*seen, strict=True))
+    target, noise = (np.concatenate(arrays, axis=1)[:, keep] for arrays in zip(*references, strict=True))
     if not len(keep) or not target.any():
         return None
     gain = exposure(target)
@@ -182,23 +182,23 @@ def of_light(scene: MeasuredScene, seen: Sequence[Seen]) -> Problem | None:
     return Problem("translucency", tuple(parts), False, gain * target, gain * noise, lambert, keep, gain)
 
 
-def of_material(scene: MeasuredScene, seen: Sequence[Seen], summed: bool) -> Problem:
+def material_problem(scene: MeasuredScene, references: Sequence[LightReference], summed: bool) -> Problem:
     """All light that leaves the surface; the sum over the lights if `summed`, otherwise light by light."""
-    at = points(scene)
-    parts, lit, references = [], [], []
-    for light, direction, (mean, error) in zip(scene.lights, _directions(scene), seen, strict=True):
+    visible = points(scene)
+    parts, lit, colored = [], [], []
+    for light, direction, (mean, error) in zip(scene.lights, _directions(scene), references, strict=True):
         color = np.array(light.color)[:, None] if summed else np.ones((3, 1))
-        part = _part(scene, at, direction, color)
-        facing = np.maximum(np.einsum("cn,cn->n", at.inputs["N"], part.light["L"]), 0.0)
+        part = _part(scene, visible, direction, color)
+        facing = np.maximum(np.einsum("cn,cn->n", visible.inputs["N"], part.light["L"]), 0.0)
         parts.append(part)
-        lit.append(color * facing * _visible(scene, at, direction))
-        references.append((color * mean, color * error))
+        lit.append(color * facing * _unshadowed(scene, visible, direction))
+        colored.append((color * mean, color * error))
     if summed:
-        target = np.sum([mean for mean, _ in references], axis=0)
-        noise = np.sqrt(np.sum([error**2 for _, error in references], axis=0))
+        target = np.sum([mean for mean, _ in colored], axis=0)
+        noise = np.sqrt(np.sum([error**2 for _, error in colored], axis=0))
         lambert = np.sum(lit, axis=0)
     else:
-        target, noise = (np.concatenate(arrays, axis=1) for arrays in zip(*references, strict=True))
+        target, noise = (np.concatenate(arrays, axis=1) for arrays in zip(*colored, strict=True))
         lambert = np.concatenate(lit, axis=1)
     gain = exposure(target)
     keep = np.arange(target.shape[1])
@@ -206,42 +206,44 @@ def of_material(scene: MeasuredScene, seen: Sequence[Seen], summed: bool) -> Pro
 
 
 def exposure(target: Array) -> float:
-    """The factor that scales the 99th percentile of a reference to WHITE; the same for everything compared with it."""
+    """The factor that scales the 99th percentile of a reference to WHITE; it applies to compared values too."""
     bright = float(np.percentile(target.max(axis=0), 99.0))
     return WHITE / bright if bright > 0.0 else 1.0
 
 
-def of_coordinates(scene: MeasuredScene) -> Problem:
+def coordinates_problem(scene: MeasuredScene) -> Problem:
     """The offset along T and B at which refraction shows the inlay, in depths of the inlay."""
-    at = points(scene)
-    view = refraction.seen(scene, at)
-    keep = np.flatnonzero(view.hit)
+    visible = points(scene)
+    inlay = refraction.visible_inlay(scene, visible)
+    keep = np.flatnonzero(inlay.hit)
     if not len(keep):
-        raise failure(f"no ray meets the inlay of '{scene.name}'", "it lies deeper than the body is thick")
-    inputs = {**at.inputs, "uv": np.zeros_like(at.inputs["uv"])}
+        raise failure(
+            f"no ray meets the inlay of '{scene.name}'", "reduce its depth: it is larger than the body's thickness"
+        )
+    inputs = {**visible.inputs, "uv": np.zeros_like(visible.inputs["uv"])}
     assert scene.inlay is not None
     # uv is 0 at each point and its unit is one depth, so the output is the offset in depths
     values = {
-        **scene.inlay.parameters, "uv_per_unit": np.full((2, 1), 1.0 / view.depth),
+        **scene.inlay.parameters, "uv_per_unit": np.full((2, 1), 1.0 / inlay.depth),
         "depth 1": 1.0, "eta": scene.inlay.outside_ior / scene.inlay.ior,
     }  # fmt: skip
     part = Part(inputs, {}, values, {}, np.ones((3, 1)))
-    target = view.offset[:, keep] / view.depth
+    target = inlay.offset[:, keep] / inlay.depth
     zeros = np.zeros_like(target)
     return Problem("coordinates", (part,), False, target, zeros, zeros, keep)
 
 
-def _part(scene: MeasuredScene, at: Points, direction: tuple[float, float, float], color: Array) -> Part:
+def _part(scene: MeasuredScene, visible: Points, direction: tuple[float, float, float], color: Array) -> Part:
     body, light = scene_inputs.of_scene(scene), scene_inputs.of_light(scene, direction)
     return Part(
-        {**at.inputs, **body.inputs}, at.light(direction), {**body.values, **light.values},
+        {**visible.inputs, **body.inputs}, visible.light(direction), {**body.values, **light.values},
         {**body.textures, **light.textures}, color,
     )  # fmt: skip
 
 
-def _visible(scene: MeasuredScene, at: Points, direction: tuple[float, float, float]) -> Array:
+def _unshadowed(scene: MeasuredScene, visible: Points, direction: tuple[float, float, float]) -> Array:
     """1 where the body does not shadow the point from the light, otherwise 0: (n,)."""
-    origins = np.ascontiguousarray((at.inputs["P"] + 1e-4 * at.inputs["N"]).T)
+    origins = np.ascontiguousarray((visible.inputs["P"] + 1e-4 * visible.inputs["N"]).T)
     directions = np.broadcast_to(np.array(direction), origins.shape).copy()
     return (thickness(scene.geometry, origins, directions) < 1e-3).astype(float)
 

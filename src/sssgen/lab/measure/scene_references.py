@@ -11,7 +11,7 @@ from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Ball, Geometry, Slab
 from sssgen.harness.scenes.scene import Light
 from sssgen.lab.jobs.executor import Item
-from sssgen.lab.measure.problem import Seen
+from sssgen.lab.measure.problem import LightReference
 from sssgen.lab.reference.transport import radiance_along
 from sssgen.lab.reference.transport_mitsuba import Light as Beam
 from sssgen.lab.scene import scene_body as body
@@ -29,12 +29,12 @@ SLAB_LIGHTS = ((0.0, 0.0, -1.0), (0.6, 0.35, -0.72), (-0.3, 0.5, 0.8))
 
 
 def transport(scene: MeasuredScene, light: int, samples: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """The reference of one light on a scene's points: mean and standard error of π L / E, (3, n) in float32."""
+    """The reference of a light on a scene's points: mean and standard error of π L / E, (3, n) in float32."""
     assert scene.medium is not None
-    at, direction = points(scene), scene.lights[light].direction
+    visible, direction = points(scene), scene.lights[light].direction
     assert direction is not None
-    origins = np.broadcast_to(at.origin, (at.count, 3))
-    rays = np.ascontiguousarray(-at.inputs["V"].T)
+    origins = np.broadcast_to(visible.origin, (visible.count, 3))
+    rays = np.ascontiguousarray(-visible.inputs["V"].T)
     result = radiance_along(scene.geometry, scene.medium, Beam(direction), origins, rays, samples, seed)
     return result.mean.T.astype(np.float32), result.error.T.astype(np.float32)
 
@@ -51,9 +51,9 @@ def items(scenes: Sequence[MeasuredScene], samples: int = SAMPLES, seed: int = 0
     ]
 
 
-def by_scene(scenes: Sequence[MeasuredScene], results: Sequence[Seen]) -> dict[str, list[Seen]]:
+def by_scene(scenes: Sequence[MeasuredScene], results: Sequence[LightReference]) -> dict[str, list[LightReference]]:
     """The results of `items` by their scenes' keys."""
-    references: dict[str, list[Seen]] = {}
+    references: dict[str, list[LightReference]] = {}
     remaining = iter(results)
     for scene in scenes:
         if scene.medium is not None:
@@ -87,7 +87,7 @@ def _lit(
 
 
 def plate(scene: MeasuredScene) -> MeasuredScene:
-    """The training scene of parallax: a plane above the scene's inlay, seen under many angles."""
+    """The training scene of parallax: a plane above the scene's inlay, at many view angles."""
     assert scene.inlay is not None
     depth = scene.inlay.depth
     slab = Slab(400.0 * depth, 400.0 * depth, 10.0 * depth)

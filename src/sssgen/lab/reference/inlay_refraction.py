@@ -17,10 +17,11 @@ from sssgen.lab.scene.view_points import Points
 
 STEPS = 400
 TOUCHED = 1e-9
+"""The distance from the layer, relative to its depth, at which a ray hits it."""
 
 
-class Seen(NamedTuple):
-    """The inlay as n points show it."""
+class VisibleInlay(NamedTuple):
+    """The inlay as seen at n surface points."""
 
     hit: Array
     """(n,): whether the ray hits the layer; near a curved edge it may miss"""
@@ -48,36 +49,38 @@ def plane_offset(sine: Array, depth: float, n: float) -> Array:
     return depth * sine / np.sqrt(n**2 - sine**2)
 
 
-def seen(scene: MeasuredScene, at: Points) -> Seen:
-    """The scene's inlay as its points show it. The geometry's distance must be exact inside."""
+def visible_inlay(scene: MeasuredScene, visible: Points) -> VisibleInlay:
+    """The scene's inlay as seen at its points. The geometry's distance must be exact inside."""
     assert scene.inlay is not None
     geometry, inlay = scene.geometry, scene.inlay
-    N, T, B = at.inputs["N"], at.inputs["T"], at.inputs["B"]
+    N, T, B = visible.inputs["N"], visible.inputs["T"], visible.inputs["B"]
     to_object, scale = geometry.to_object(), geometry.scale
     depth = inlay.depth / scale
-    start = at.inputs["P_object"]
-    turn = to_object[:3, :3] * scale
-    ray = turn @ refracted(at.inputs["V"], N, inlay.outside_ior / inlay.ior)
-    t = np.zeros(at.count)
-    hit = np.zeros(at.count, np.bool_)
+    start = visible.inputs["P_object"]
+    rotation = to_object[:3, :3] * scale
+    ray = rotation @ refracted(visible.inputs["V"], N, inlay.outside_ior / inlay.ior)
+    t = np.zeros(visible.count)
+    hit = np.zeros(visible.count, np.bool_)
     active = np.abs(ray).any(axis=0)
     for _ in range(STEPS):
         # the layer is at least this far away
-        left = depth + geometry.distance((start + t * ray).T)
-        hit |= active & (left < TOUCHED * depth)
-        active &= (left >= TOUCHED * depth) & (left < depth * 1.001 + TOUCHED)
+        remaining = depth + geometry.distance((start + t * ray).T)
+        hit |= active & (remaining < TOUCHED * depth)
+        active &= (remaining >= TOUCHED * depth) & (remaining < depth * 1.001 + TOUCHED)
         if not active.any():
             break
-        t = np.where(active, t + np.maximum(left, 0.0), t)
+        t = np.where(active, t + np.maximum(remaining, 0.0), t)
     layer = start + t * ray
     outward = _outward(scene, layer, depth)
-    chord = scale * turn.T @ (layer + depth * outward - start)
+    chord = scale * rotation.T @ (layer + depth * outward - start)
     # the path on the surface is an arc, approximated by the ball with these two normals
-    half = 0.5 * np.arccos(np.clip((outward * (turn @ N)).sum(axis=0), -1.0, 1.0))
+    half = 0.5 * np.arccos(np.clip((outward * (rotation @ N)).sum(axis=0), -1.0, 1.0))
     arc = np.linalg.norm(chord, axis=0) / np.sinc(half / np.pi)
     along = np.stack([(chord * T).sum(axis=0), (chord * B).sum(axis=0)])
     length = np.linalg.norm(along, axis=0)
-    return Seen(hit, along * np.where(length > 0.0, arc / np.where(length > 0.0, length, 1.0), 0.0), inlay.depth)
+    return VisibleInlay(
+        hit, along * np.where(length > 0.0, arc / np.where(length > 0.0, length, 1.0), 0.0), inlay.depth
+    )
 
 
 def _outward(scene: MeasuredScene, layer: Array, depth: float) -> Array:
@@ -85,7 +88,7 @@ def _outward(scene: MeasuredScene, layer: Array, depth: float) -> Array:
     step = 1e-5 * max(depth, 1e-3)
     distance = scene.geometry.distance
     slopes = np.stack([
-        distance((layer + step * way[:, None]).T) - distance((layer - step * way[:, None]).T) for way in np.eye(3)
+        distance((layer + step * axis[:, None]).T) - distance((layer - step * axis[:, None]).T) for axis in np.eye(3)
     ])  # fmt: skip
     length = np.linalg.norm(slopes, axis=0)
     outward: Array = slopes / np.where(length > 0.0, length, 1.0)

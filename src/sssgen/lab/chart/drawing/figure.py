@@ -14,16 +14,16 @@ from sssgen.lab.chart.drawing.panels import Chart, Panel, Style, label_texts, nu
 from sssgen.lab.chart.record import LEAST, Point, measures
 from sssgen.support.extras import need
 
-WIDTH, TALL, SHORT, KEY_LINE = 9.0, 4.2, 3.2, 0.21
+WIDTH, TALL, SHORT, KEY_LINE = 9.0, 4.2, 3.8, 0.21
 """Inches: the chart's width, the height of a panel across the chart and of one of two in a row, a line of the key."""
 DPI = 200
 KEY_COLUMNS = 4
-LABEL_WIDTH, LABEL_SIZE = 28, 7.0
-"""Letters in a line of a label; their size in points."""
+LABEL_WIDTH, LABEL_SIZE = 20, 6.5
+"""Letters in a line of a label, more only for a long name; their size in points."""
 MOST_LINES = 60
-"""Techniques whose settings are joined by lines: more lines would hide the points."""
+"""The largest number of techniques whose settings are joined by lines: more lines would hide the points."""
 MARKER_AREAS = {True: 34.0, False: 18.0}
-"""Square points, on the front and behind it."""
+"""The areas of markers, on the front and off it, in square points."""
 PALE, GRID, SHADE, FAINT = "#5f6368", "#e4e6e8", "#f3f5f7", 0.38
 
 READING = "filled: ours · hollow: published baselines · stepped line: Pareto front · faint: not on it · ×: not finite"
@@ -205,17 +205,17 @@ def _draw_key(figure: Any, chart: Chart) -> None:
 
 
 def _draw_labels(axes: Any, panel: Panel, styles: dict[str, Style]) -> None:
-    """Labels the front's points; a label that would cover a point or another label is left out."""
+    """Labels the front's points, except where a label would cover a point or another label."""
     front = [point for point in panel.points if point.get("front")]
     if not front:
         return
     textalloc = need("textalloc", extra="chart")
     colors = [styles[series(point)].color for point in front]
-    texts = [fill(text, LABEL_WIDTH) for text in label_texts(front)]
+    texts = [fill(text, LABEL_WIDTH, break_long_words=False) for text in label_texts(front)]
     x, y = zip(*map(_place, front), strict=True)
     finite = [point for point in panel.points if math.isfinite(measures(point)[1])]
     x_points, y_points = zip(*map(_place, finite), strict=True)
-    pixels = 0.6 * axes.figure.dpi / 72.0  # of half a point, and a fifth more: a diamond is wider than its area's root
+    pixels = 0.6 * axes.figure.dpi / 72.0  # per typographic point of half a marker's side; a fifth more, because a diamond is wider than a square
     radii = [pixels * math.sqrt(MARKER_AREAS[bool(point.get("front"))]) for point in finite]
     lines = [_front_steps(axes, panel), *(path for _, path in _setting_lines(panel, styles))]
     x_lines, y_lines = zip(*(zip(*line, strict=True) for line in lines), strict=True)
