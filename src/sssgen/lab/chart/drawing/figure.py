@@ -215,7 +215,8 @@ def _draw_labels(axes: Any, panel: Panel, styles: dict[str, Style]) -> None:
     x, y = zip(*map(_place, front), strict=True)
     finite = [point for point in panel.points if math.isfinite(measures(point)[1])]
     x_points, y_points = zip(*map(_place, finite), strict=True)
-    pixels = 0.6 * axes.figure.dpi / 72.0  # per typographic point of half a marker's side; a fifth more, because a diamond is wider than a square
+    # the marker's radius in pixels: half of the root of its area, and a fifth more for diamonds, which are wider
+    pixels = 0.6 * axes.figure.dpi / 72.0
     radii = [pixels * math.sqrt(MARKER_AREAS[bool(point.get("front"))]) for point in finite]
     lines = [_front_steps(axes, panel), *(path for _, path in _setting_lines(panel, styles))]
     x_lines, y_lines = zip(*(zip(*line, strict=True) for line in lines), strict=True)
