@@ -1,7 +1,7 @@
 """Draws docs/accuracy/ and writes docs/accuracy.md: python docs/accuracy.py [--scheduler ADDRESS] [--processes N]
 
-Every figure of the page is measured here, but those of the GPU, which benchmarks/gpu.py and `--gpu` write into
-docs/accuracy/*.json on a machine that has one. What is interrupted goes on where it stood.
+It measures every figure of the page except those of the GPU, which benchmarks/gpu.py and `--gpu` write into
+docs/accuracy/*.json on a machine with a GPU. An interrupted run continues where it stopped.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ PAGE = HERE / "accuracy.md"
 GPU_CHART = "gpu_chart.json"
 BY_HAND = "gpu_jelly_cubes.json"
 TIMED = ("cube", "torus", "inlay_plate", "inlay_ball")
-"""The scenes whose chains are timed: a minute or two each."""
+"""The scenes whose chains are timed, in one or two minutes each."""
 SPOT = FOLDER / "spot.toml"
 MESHES = HERE.parent.parent / "shared" / "data" / "meshes"
 
@@ -45,15 +45,15 @@ Point = Mapping[str, Any]
 
 
 def main() -> int:
-    """Measures, draws and writes; with --gpu times the kept chart's chains instead."""
+    """Measures, draws the charts and writes the page; with --gpu, times the chains of the stored chart instead."""
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--gpu", action="store_true", help="time the chains of docs/accuracy/chart.json on this GPU")
     options.add_argument("--scheduler", default="")
     options.add_argument("--processes", type=int)
-    given = options.parse_args()
-    if given.gpu:
+    arguments = options.parse_args()
+    if arguments.gpu:
         return timed()
-    settings = Settings(scheduler=given.scheduler, processes=given.processes, shown=ProgressBar)
+    settings = Settings(scheduler=arguments.scheduler, processes=arguments.processes, shown=ProgressBar)
     record = chart.charted([measured_scene.load(name) for name in scenes()], settings)
     trial = pick_trial.tried(settings)
     page(record, trial)
@@ -61,20 +61,20 @@ def main() -> int:
 
 
 def scenes() -> list[str]:
-    """The scenes of the page: ours, and Spot where its mesh is there."""
+    """The scenes of the page: those of examples/lab, and Spot if its mesh is there."""
     return [*chart.DEFAULTS, *([str(SPOT)] if (MESHES / "spot.obj").is_file() else [])]
 
 
 def page(record: Record, trial: Sequence[Mapping[str, Any]]) -> None:
     """Writes the pictures and the page."""
     drawn = drawing.drawn(record)
-    kept = {name: data for name, data in drawn.items() if name.endswith((".png", ".csv", ".json"))}
+    files = {name: data for name, data in drawn.items() if name.endswith((".png", ".csv", ".json"))}
     if (FOLDER / GPU_CHART).is_file():
         timed_there = chart_gpu.by_gpu(json.loads((FOLDER / GPU_CHART).read_text(encoding="utf-8")))
-        kept |= {
+        files |= {
             name: data for name, data in drawing.drawn(timed_there, "gpu").items() if name.endswith("material.png")
         }
-    write_files(str(FOLDER), kept)
+    write_files(str(FOLDER), files)
     text = (FOLDER / "page.md.in").read_text(encoding="utf-8")
     parts: dict[str, Callable[[], str]] = {
         "scenes": lambda: scene_table(record), "fronts": lambda: fronts(record), "volumes": lambda: volumes(record),
@@ -91,40 +91,40 @@ def page(record: Record, trial: Sequence[Mapping[str, Any]]) -> None:
 
 
 def timed() -> int:
-    """Times what the kept chart has on its fronts, and the baselines, on the GPU of this machine."""
+    """Times the chains on the fronts of the stored chart, and the baselines, on the local GPU."""
     record = json.loads((FOLDER / "chart.json").read_text(encoding="utf-8"))
     points = [point for point in record["points"] if point["front"] or point["baseline"] or point["role"] != "material"]
     wanted = [scene["name"] for scene in record["scenes"] if scene["name"] in TIMED]
-    some = {**record, "points": [point for point in points if point["scene"] in wanted]}
+    shortened = {**record, "points": [point for point in points if point["scene"] in wanted]}
 
     def progress(done: int, of: int, name: str) -> None:
         print(f"{done} of {of}: {name}", file=sys.stderr, flush=True)
 
-    found = chart_gpu.with_gpu_cost(some, [measured_scene.load(name) for name in wanted], progress=progress)
-    write_files(str(FOLDER), {GPU_CHART: drawing.record.to_json(found)})
-    print(found["record"]["device"], found["record"]["rank_correlation"])
+    timed_record = chart_gpu.with_gpu_cost(shortened, [measured_scene.load(name) for name in wanted], progress=progress)
+    write_files(str(FOLDER), {GPU_CHART: drawing.record.to_json(timed_record)})
+    print(timed_record["record"]["device"], timed_record["record"]["rank_correlation"])
     return 0
 
 
 def scene_table(record: Record) -> str:
-    """What is measured on."""
+    """The table of the scenes."""
     rows = ["| scene | medium | σt per unit (r, g, b) | albedo (r, g, b) |", "|---|---|---|---|"]
     for scene in record["scenes"]:
         medium = scene.get("medium")
-        told = [medium["name"], *(", ".join(f"{x:.4g}" for x in medium[key]) for key in ("extinction", "albedo"))] \
+        cells = [medium["name"], *(", ".join(f"{x:.4g}" for x in medium[key]) for key in ("extinction", "albedo"))] \
             if medium else ["clear, with an inlay", "", ""]  # fmt: skip
-        rows.append(f"| `{scene['name']}`: {scene['title']} | {' | '.join(told)} |")
+        rows.append(f"| `{scene['name']}`: {scene['title']} | {' | '.join(cells)} |")
     return "\n".join(rows)
 
 
 def of(record: Record, scene: str, role: str) -> list[Point]:
     """The points of a scene and role, by cost."""
-    found = [point for point in record["points"] if point["scene"] == scene and point["role"] == role]
-    return sorted(found, key=lambda point: float(point["cost"]["value"]))
+    points = [point for point in record["points"] if point["scene"] == scene and point["role"] == role]
+    return sorted(points, key=lambda point: float(point["cost"]["value"]))
 
 
 def fronts(record: Record) -> str:
-    """What stands on the fronts of whole materials."""
+    """The fronts of whole materials."""
     rows = ["| scene | cost | relative error | FLIP | chain |", "|---|---:|---|---:|---|"]
     for scene in record["scenes"]:
         for point in of(record, scene["name"], "material"):
@@ -139,13 +139,13 @@ def fronts(record: Record) -> str:
 
 def error(point: Point) -> str:
     """An error with its bar."""
-    found = point["error"]
-    return f"{found['value']:.3f} ({found['low']:.3f}–{found['high']:.3f})"
+    figures = point["error"]
+    return f"{figures['value']:.3f} ({figures['low']:.3f}–{figures['high']:.3f})"
 
 
 def volumes(record: Record) -> str:
     """The hypervolumes."""
-    rows = ["| scene | role | ours | all baselines together |", "|---|---|---:|---:|"]
+    rows = ["| scene | role | library | all baselines together |", "|---|---|---:|---:|"]
     rows += [
         f"| {one['scene']} | {one['role']} | {one['ours']:.3f} | {one['baselines']:.3f} |"
         for one in record["hypervolume"]
@@ -154,26 +154,30 @@ def volumes(record: Record) -> str:
 
 
 def known_answers(record: Record) -> str:
-    """What must come out, and what does."""
-    rows = ["| answer known before | measured |", "|---|---|"]
+    """Known answers, and the measured figures."""
+    rows = ["| known answer | measured |", "|---|---|"]
     for scene in (one["name"] for one in record["scenes"] if "medium" in one):
         by_label = {point["label"]: point for point in of(record, scene, "material")}
         ice, gdc = by_label["Unity ice"], by_label["GDC 2011"]
         rows.append(
-            f"| the Unity ice lobe adds nothing to its ambient light: its fit leaves power, scale and distortion alone "
-            f"({scene}) | {untouched(ice)}; error {error(ice)}, with a lobe that works {error(gdc)} |"
+            "| the Unity ice lobe adds nothing to its ambient light, so its fit does not change power, scale and "
+            f"distortion ({scene}) | {untouched(ice)}; error {error(ice)}, with a correct lobe {error(gdc)} |"
         )
         thickness = {point["label"]: point for point in of(record, scene, "thickness")}
         cheap = min((one for one in thickness.values() if one["name"] == "cheap_sss_thinness"), key=value)
         best = min(thickness.values(), key=value)
         rows.append(
-            f"| Cheap SSS measures no thickness towards the light ({scene}) | {value(cheap):.3f}, "
-            f"where {best['label']} errs by {value(best):.4f} |"
+            f"| Cheap SSS does not measure the thickness towards the light ({scene}) | {value(cheap):.3f}, "
+            f"where {best['label']} has an error of {value(best):.4f} |"
         )
     for scene in (one["name"] for one in record["scenes"] if "medium" not in one):
         named = {point["name"]: point for point in of(record, scene, "coordinates")}
         on_plane = value(named["parallax_refracted"]) < 1e-6
-        known = "corrected Subsurface Parallax is exact on a plane" if on_plane else "on a curved body it is not"
+        known = (
+            "corrected Subsurface Parallax is exact on a plane"
+            if on_plane
+            else "corrected Subsurface Parallax is not exact on a curved body"
+        )
         rows.append(
             f"| {known} ({scene}) | {value(named['parallax_refracted']):.2g}; "
             f"without refraction {value(named['parallax_straight']):.3g} |"
@@ -187,14 +191,14 @@ def value(point: Point) -> float:
 
 
 def untouched(point: Point) -> str:
-    """Which of the lobe's parameters a fit has moved from where it began."""
+    """The fitted values of a lobe's power, scale and distortion."""
     return ", ".join(f"{name} {point['parameters'][name][0]:.3g}" for name in ("power", "scale", "distortion"))
 
 
 def losses(record: Record) -> str:
-    """Where a baseline stands on the front of whole materials or of a role, and what of ours comes nearest."""
+    """The baselines on a front, each with the cheapest technique of the library that is as accurate."""
     rows = [
-        "| scene | role | baseline | cost | error | ours at no more error | cost |",
+        "| scene | role | baseline | cost | error | library, at most this error | cost |",
         "|---|---|---|---:|---:|---|---:|",
     ]
     for scene in record["scenes"]:
@@ -218,22 +222,22 @@ def losses(record: Record) -> str:
 
 
 def implementation(record: Record) -> str:
-    """What float32 and the counts do, apart from the model."""
-    found: dict[str, dict[str, list[float]]] = {}
+    """The errors of float32 and of the counts, without that of the model."""
+    errors: dict[str, dict[str, list[float]]] = {}
     for point in record["points"]:
         if point["role"] in ("thickness", "translucency", "coordinates") and not point["failed"]:
             for kind, apart in point.get("implementation", {}).items():
                 if apart is not None:
-                    found.setdefault(point["label"], {}).setdefault(kind, []).append(float(apart))
+                    errors.setdefault(point["label"], {}).setdefault(kind, []).append(float(apart))
     rows = ["| technique | float32 | counts |", "|---|---:|---:|"]
-    for label, kinds in sorted(found.items()):
+    for label, kinds in sorted(errors.items()):
         shown = [f"{max(kinds[kind]):.1e}" if kind in kinds else "" for kind in ("float32", "counts")]
         rows.append(f"| {label} | {' | '.join(shown)} |")
     return "\n".join(rows)
 
 
 def gpu() -> str:
-    """The GPU's record, where there is one."""
+    """The record of the GPU, if there is one."""
     file = FOLDER / GPU_CHART
     if not file.is_file():
         return (
@@ -261,22 +265,23 @@ def gpu() -> str:
 
 
 def by_hand() -> str:
-    """Emitted shaders beside the same by hand, as `make bench-gpu` recorded them."""
+    """Emitted shaders compared with handwritten ones, as recorded by `make bench-gpu`."""
     record = json.loads((FOLDER / BY_HAND).read_text(encoding="utf-8"))
     scene_record = record["jelly_cubes"]
     scene = {name: one["net_ms"]["median"] for name, one in scene_record["programs"].items()}
     published, emitted = scene["jelly_cubes published"], scene["jelly_cubes emitted"]
     taken = {name: one["net_ms"]["median"] for name, one in record["techniques"]["programs"].items()}
-    shown = [name for name in taken if f"{name} by hand" in taken and taken[name] > 1e-4]  # some leave nothing to do
+    shown = [name for name in taken if f"{name} by hand" in taken and taken[name] > 1e-4]  # some compile to nothing
     ratios = {name: taken[name] / taken[f"{name} by hand"] for name in shown}
-    dearer = sorted((ratio, name) for name, ratio in ratios.items() if ratio > 1.01)
+    slower = sorted((ratio, name) for name, ratio in ratios.items() if ratio > 1.01)
     rows = [
         f"{scene_record['device']}, {scene_record['driver']}: the scene of 42yeah as published takes {published:.2f} "
         f"ms at 1080p and as emitted {emitted:.2f} ms, {emitted / published:.2f} ×, with the same picture (FLIP "
-        f"{scene_record['flip']:.4f}); of {len(ratios)} techniques {len(ratios) - len(dearer)} are within 1 % of the "
-        "formula by hand or faster. The dearer ones pay for what the hand leaves out, a guard or a stable form:",
-        "", "| technique | emitted / by hand | ms emitted |", "|---|---:|---:|",
-        *(f"| `{name}` | {ratio:.2f} | {taken[name]:.4f} |" for ratio, name in dearer),
+        f"{scene_record['flip']:.4f}); of {len(ratios)} techniques {len(ratios) - len(slower)} are within 1 % of the "
+        "handwritten formula or faster. The slower ones have a guard or a numerically stable form that the handwritten "
+        "code lacks:",
+        "", "| technique | emitted / handwritten | ms emitted |", "|---|---:|---:|",
+        *(f"| `{name}` | {ratio:.2f} | {taken[name]:.4f} |" for ratio, name in slower),
     ]  # fmt: skip
     return "\n".join(rows)
 

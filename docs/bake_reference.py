@@ -10,7 +10,7 @@ import numpy as np
 from sssgen.bake.atlas import filled
 from sssgen.bake.baked_files import write_picture
 from sssgen.harness.scenes.geometry import Mesh
-from sssgen.harness.scenes.light_view import from_place
+from sssgen.harness.scenes.light_view import point_view
 from sssgen.harness.scenes.scene import Scene
 from sssgen.harness.scenes.scene_loading import load
 from sssgen.lab.reference.inside_lengths import intervals, thickness
@@ -34,7 +34,7 @@ def write(scene_file: Path, name: str, deep: bool) -> Path:
     assert isinstance(mesh, Mesh) and towards is not None
     outwards = mesh.to_world()
     corners = mesh.triangles.places @ outwards[:3, :3].T + outwards[:3, 3]
-    view = from_place(corners, np.array(scene.camera.position), (SIZE, SIZE))
+    view = point_view(corners, np.array(scene.camera.position), (SIZE, SIZE))
     inwards = mesh.to_object()
     met, t = mesh.rays.nearest(view.origins @ inwards[:3, :3].T + inwards[:3, 3], view.directions @ inwards[:3, :3].T)
     hit = met >= 0

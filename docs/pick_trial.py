@@ -1,6 +1,7 @@
-"""Puts `sssgen pick` to the test: on scenes drawn by lot, against all that it could have picked, measured anew.
+"""Tests `sssgen pick` on random scenes: each pick is compared with all chains that could be picked.
 
-The truth is another reference: of other chance, with twice the samples. Nothing is tuned on these scenes.
+The true errors come from another reference, with other random numbers and twice the samples. Nothing is tuned on these
+scenes.
 """
 
 from __future__ import annotations
@@ -22,18 +23,18 @@ from sssgen.lab.scene.measured_scene import MeasuredScene
 
 SCENES = 5
 LIMITS = 8
-"""Limits a scene, from the best error there to what it has without any translucency."""
+"""Limits per scene, from the smallest error to the error without any translucency."""
 MEDIA = ("apple", "chicken1", "ketchup", "skin2", "wholemilk", "spectralon", "jade", "wax")
-"""None of those that the charts show."""
+"""Media that the charts do not use."""
 CLOSE = 1.10
-"""How much dearer than the best a pick may be."""
+"""The largest ratio of the costs of a pick and of the best chain."""
 TRUE_SEED, TIMES = 1001, 2
 
 Row = Mapping[str, Any]
 
 
 def drawn(number: int) -> MeasuredScene:
-    """A scene drawn by lot."""
+    """A random scene."""
     rng = np.random.default_rng([20, number])
     turn = tuple(float(angle) for angle in rng.uniform(-60.0, 60.0, 3))
     shape = shapes(rng, turn)[number % 5]
@@ -46,7 +47,7 @@ def drawn(number: int) -> MeasuredScene:
         red, green, blue = (float(part) for part in rng.uniform(0.3, 1.0, 3) * (1.0 if back else 0.4))
         lights.append(Light(None, (float(direction[0]), float(direction[1]), float(direction[2])), (red, green, blue)))
     camera = Camera((0.0, float(rng.uniform(-0.5, 1.2)), 3.4), (0.0, 0.0, 0.0), 28.0)
-    name = f"lot {number + 1}"
+    name = f"random scene {number + 1}"
     title = f"{type(shape).__name__.lower()} of {medium.name}"
     return MeasuredScene(name, title, shape, camera, tuple(lights), medium, None)
 
@@ -70,33 +71,33 @@ def tried(settings: Settings) -> list[Row]:
     truth = settings._replace(samples=TIMES * settings.samples, seed=TRUE_SEED)
     true = chart.remeasured(record, scenes, truth)
     rows: list[Row] = []
-    for one in scenes:
-        points = [point for point in record["points"] if point["scene"] == one.name and point["role"] == "material"]
-        mine = [point for point in points if allowed(point)]
-        errors = [true[one.name, point["label"]] for point in mine]
-        without = next(true[one.name, point["label"]] for point in mine if point["name"] == "none")
+    for scene in scenes:
+        points = [point for point in record["points"] if point["scene"] == scene.name and point["role"] == "material"]
+        candidates = [point for point in points if allowed(point)]
+        errors = [true[scene.name, point["label"]] for point in candidates]
+        without = next(true[scene.name, point["label"]] for point in candidates if point["name"] == "none")
         for limit in np.geomspace(1.02 * min(errors), 0.98 * without, LIMITS):
-            picked, _ = chosen(mine, float(limit), None)
+            picked, _ = chosen(candidates, float(limit), None)
             assert picked is not None
-            within = [cost_of(point) for point, error in zip(mine, errors, strict=True) if error <= limit]
+            within = [cost_of(point) for point, error in zip(candidates, errors, strict=True) if error <= limit]
             rows.append({
-                "scene": one.name, "title": one.title, "limit": float(limit), "picked": picked["label"],
-                "error": true[one.name, picked["label"]], "cost": cost_of(picked),
+                "scene": scene.name, "title": scene.title, "limit": float(limit), "picked": picked["label"],
+                "error": true[scene.name, picked["label"]], "cost": cost_of(picked),
                 "best": min(within, default=math.nan),
             })  # fmt: skip
     return rows
 
 
 def table(rows: Sequence[Row]) -> str:
-    """The rows, and what they come to."""
-    kept = [row["error"] <= row["limit"] for row in rows]
+    """The rows, and their summary."""
+    accurate = [row["error"] <= row["limit"] for row in rows]
     ratios = np.array([row["cost"] / row["best"] for row in rows])
     close = ratios <= CLOSE
-    both = np.array(kept) & close
+    both = np.array(accurate) & close
     lines = [
-        f"{len(rows)} cases, {SCENES} scenes: the true error is within the limit in {100.0 * np.mean(kept):.1f} %, the "
-        f"cost within {CLOSE:.2f} × of the cheapest that truly is in {100.0 * np.mean(close):.1f} % (median ratio "
-        f"{np.median(ratios):.3f}, mean {np.mean(ratios):.3f}), both in {100.0 * np.mean(both):.1f} %.",
+        f"{len(rows)} cases, {SCENES} scenes: the true error is within the limit in {100.0 * np.mean(accurate):.1f} %, "
+        f"the cost within {CLOSE:.2f} × of the cheapest chain within it in {100.0 * np.mean(close):.1f} % (median "
+        f"ratio {np.median(ratios):.3f}, mean {np.mean(ratios):.3f}), both in {100.0 * np.mean(both):.1f} %.",
         "",
         "| scene | limit | picked | true error | cost | cheapest within the limit |",
         "|---|---:|---|---:|---:|---:|",
