@@ -24,7 +24,7 @@ __all__ = [
 ]  # fmt: skip
 
 BACKENDS = ("numpy-f32", "gl", "webgpu", "hlsl", "browser")
-"""Those that are measured: all in float32, with four compilers and two drivers beneath."""
+"""Those that are measured: all in float32, with four compilers and two drivers below them."""
 
 CHAPTERS: dict[str, tuple[Erratum, ...]] = {
     "Cheap SSS": CHEAP_SSS,

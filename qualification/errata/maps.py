@@ -1,6 +1,6 @@
 """Pictures of what no scene can show, since a scene's picture must be finite: a technique over two inputs.
 
-What is no number is magenta.
+NaN and infinity are magenta.
 """
 
 from __future__ import annotations
@@ -117,6 +117,6 @@ def _picture(samples: Array) -> Array:
 
 
 def _colored(linear: Array) -> Array:
-    """Linear light as encoded colours; what is no number is magenta."""
+    """Linear light as encoded colours; NaN and infinity are magenta."""
     finite = np.isfinite(linear).all(axis=-1, keepdims=True)
     return np.where(finite, encode_srgb(np.nan_to_num(linear)), NO_NUMBER)

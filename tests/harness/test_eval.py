@@ -163,16 +163,16 @@ def test_deviation_is_relative_above_one_and_absolute_below() -> None:
         ({"V": None}, "needs more inputs: V (vec3)"),
         ({"M": 1.0}, "has no input 'M'"),
         ({"distorsion": 0.1}, "did you mean 'distortion'?"),
-        ({"N": [0, 0]}, "input 'N' has the shape 2, which is no vec3"),
+        ({"N": [0, 0]}, "input 'N' has the shape 2, not that of vec3"),
         ({"N": [[0, 0, 1], [0, 1]]}, "input 'N': its rows have different lengths"),
         ({"N": [[[0, 0, 1]]]}, "input 'N' has the shape 1×1×3"),
         ({"N": []}, "input 'N'"),
-        ({"through": [[0.5]]}, "input 'through' has the shape 1×1, which is no float"),
+        ({"through": [[0.5]]}, "input 'through' has the shape 1×1, not that of float"),
         ({"N": [[0, 0, 1]] * 3}, "the inputs have different numbers of values: N has 3, L has 2"),
         ({"N": [0, 0, float("nan")]}, "input 'N' is NaN or infinite at number 0"),
         ({"L": [[0, 0, 1], [0, float("inf"), 0]]}, "input 'L' is NaN or infinite at number 1"),
         ({"through": 1e300}, "input 'through' is too large for a 32-bit float"),
-        ({"through": True}, "input 'through' is no float"),
+        ({"through": True}, "input 'through' is not of type float"),
         ({"through": "half.png"}, "cannot find the picture"),
         ({"through": {"a": 1}}, "texture 'through'"),
     ],
@@ -188,7 +188,7 @@ def test_wrong_inputs(
     ("text", "message"),
     [
         ("{", "this is not JSON"),
-        ("[1, 2]", "the inputs are no object"),
+        ("[1, 2]", "the inputs are not a JSON object"),
         ("[" * 100_000, "nested too deeply"),
         ('{"V": [0, 0, 1],\n "N": [0, 0, 1,]}', ":2:"),
     ],
@@ -201,7 +201,7 @@ def test_wrong_files(capsys: pytest.CaptureFixture[str], given: Callable[..., st
     assert "cannot read the inputs" in complaint(capsys, "lobe_gdc2011", "-i", str(tmp_path / "none.json"))
     assert "cannot read the inputs" in complaint(capsys, "lobe_gdc2011", "-i", str(tmp_path))
     (tmp_path / "binary.json").write_bytes(b"\xff\xfe\x00")
-    assert "no UTF-8" in complaint(capsys, "lobe_gdc2011", "-i", str(tmp_path / "binary.json"))
+    assert "not UTF-8" in complaint(capsys, "lobe_gdc2011", "-i", str(tmp_path / "binary.json"))
     np.save(tmp_path / "volume.npy", np.ones((2, 2, 2, 1)))
     np.save(tmp_path / "bad.npy", np.full((2, 2, 3), np.nan))
     for file, said in (("volume.npy", "takes a sampler2D"), ("bad.npy", "NaN or infinity"), ("x.jpg", "'.jpg'")):
@@ -214,7 +214,7 @@ def test_wrong_arguments(capsys: pytest.CaptureFixture[str], given: Callable[...
     assert "did you mean 'webgpu'?" in complaint(capsys, "lobe_gdc2011", "-i", file, "-b", "webgpuu")
     assert "unknown technique 'lobe_gdc2012'" in complaint(capsys, "lobe_gdc2012", "-i", file)
     assert "own precision" in complaint(capsys, "lobe_gdc2011", "-i", file, "-b", "gl", "--precision", "f64")
-    assert "binds nothing" in complaint(capsys, "lobe_gdc2011", "-i", file, "--bind", "a")
+    assert "is not a binding" in complaint(capsys, "lobe_gdc2011", "-i", file, "--bind", "a")
 
 
 def test_a_missing_back_end(given: Callable[..., str]) -> None:

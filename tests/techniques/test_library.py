@@ -60,7 +60,10 @@ WRONG_ATTRIBUTES = {
     "limts: None.": ("unknown attribute 'limts'", "did you mean 'limits'?"),
     "units: a\nunits: b": ("attribute 'units' is given twice", ""),
     "shape: boxx": ("unknown shape 'boxx'", "did you mean 'box'?"),
-    "suggested: thickness": ("'thickness' is no conversion", "write `suggested: thinness to thickness`, say"),
+    "suggested: thickness": (
+        "'thickness' is not a conversion",
+        "write, for example, `suggested: thinness to thickness`",
+    ),
     "suggested: thickness to thinnes": ("unknown quantity 'thinnes'", "did you mean 'thinness'?"),
     "suggested: thickness to thinness": ("'f' does not convert thickness to thinness", ""),
     "superseded_by: beer_lambert": ("superseded_by is for baselines", "write `baseline: TEXT`, too"),
@@ -71,8 +74,8 @@ WRONG_ATTRIBUTES = {
     "deviation_bounds: largest 1": ("deviation_bounds without deviation", "write the reason: `deviation: TEXT`"),
     "deviation: Why.\ndeviation_bounds: most 1": ("unknown bound 'most'", "bounds: largest, share, bound_share"),
     "deviation: Why.\ndeviation_bounds: largest": (
-        "'largest' is no bound",
-        "write `largest 0.001, share 0.02`, say",
+        "'largest' is not a bound",
+        "write, for example, `largest 0.001, share 0.02`",
     ),
 }
 

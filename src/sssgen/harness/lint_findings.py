@@ -49,7 +49,7 @@ class Finding(NamedTuple):
         """The message of the diagnostic."""
         if self.verdict == PROVEN:
             return f"{self.site.what}: proven safe"
-        unseen = "not proven, and no input found that does it" if self.searched else "not proven"
+        unseen = "not proven, and no input was found that fails" if self.searched else "not proven"
         return f"{self.site.what}: {self.site.guard.problem}{f' ({unseen})' if self.verdict == UNKNOWN else ''}"
 
     @property
@@ -76,7 +76,7 @@ class Finding(NamedTuple):
         return "\n".join(lines)
 
     def with_operands(self, text: str) -> str:
-        """A text with the operands' names in place of their letters, or after the text where an operand is no name."""
+        """A text with the operands' names in place of their letters, or after the text if an operand is not a name."""
         if self.site.guard.replaces == "result":
             return text
         operand_texts = {}

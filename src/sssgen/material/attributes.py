@@ -97,7 +97,7 @@ def _conversion(text: str, shown: str) -> tuple[str, str]:
     """`thinness to thickness`."""
     match = _CONVERSION.fullmatch(text)
     if match is None:
-        raise failure(f"'{text}' is no conversion", "write `suggested: thinness to thickness`, say", shown)
+        raise failure(f"'{text}' is not a conversion", "write, for example, `suggested: thinness to thickness`", shown)
     for quantity in match.groups():
         if quantity not in SCALARS:
             raise _wrong(f"unknown quantity '{quantity}'", quantity, SCALARS, "quantities", shown)
@@ -113,13 +113,15 @@ def _bounds(text: str, shown: str) -> dict[str, dict[str, float]]:
         for item in rest.split(","):
             match = _BOUND.fullmatch(item.strip())
             if match is None:
-                raise failure(f"'{item.strip()}' is no bound", "write `largest 0.001, share 0.02`, say", shown)
+                raise failure(
+                    f"'{item.strip()}' is not a bound", "write, for example, `largest 0.001, share 0.02`", shown
+                )
             if match[1] not in BOUNDS:
                 raise _wrong(f"unknown bound '{match[1]}'", match[1], BOUNDS, "bounds", shown)
             try:
                 own[match[1]] = float(match[2])
             except ValueError:
-                raise failure(f"'{match[2]}' is no number", "", shown) from None
+                raise failure(f"'{match[2]}' is not a number", "", shown) from None
     return bounds
 
 

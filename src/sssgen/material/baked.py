@@ -18,7 +18,7 @@ FORMAT = 1
 MAX_BYTES = 2**20
 LARGEST = 1e30
 """Larger than any number of a bake."""
-UNITS = "materials count in metres: scale the mesh, so that it is a few units large"
+UNITS = "materials use metres: scale the mesh to a few units"
 """The remedy where a baked length is out of a parameter's range."""
 
 
@@ -55,18 +55,18 @@ def read(path: str) -> Baked | None:
         with open(file, "rb") as opened:
             data = json_source.parse(opened.read(MAX_BYTES + 1)[:MAX_BYTES].decode("utf-8"), shown)
     except (OSError, UnicodeDecodeError) as error:
-        raise failure(f"cannot read what was baked: {error}", "bake it anew", shown) from None
+        raise failure(f"cannot read the baked data: {error}", "bake it again", shown) from None
     if not isinstance(data, dict) or not isinstance(data.get("kind"), str):
         return None  # another program's JSON
     if data.get("format") != FORMAT:
-        raise failure(f"this is of another format than {FORMAT}", "bake it anew", shown)
+        raise failure(f"the format is not {FORMAT}", "bake it again", shown)
     parameters, settings = data.get("parameters", {}), data.get("import", {})
     if not isinstance(parameters, dict) or not isinstance(settings, dict):
-        raise failure("'parameters' and 'import' are tables", "bake it anew", shown)
+        raise failure("'parameters' and 'import' are tables", "bake it again", shown)
     for name, value in parameters.items():
         numbers = value if isinstance(value, list) else [value]
         if not all(isinstance(number, int | float) and abs(number) < LARGEST for number in numbers):
-            raise failure(f"'parameters': '{name}' is not made of numbers", "bake it anew", shown)
+            raise failure(f"'parameters': '{name}' must be a number or a list of numbers", "bake it again", shown)
     return Baked(data["kind"], str(data.get("holds") or ""), parameters, settings, data)
 
 
@@ -86,9 +86,11 @@ def check(baked_texture: Baked, uniform: Uniform, name: str) -> None:
         takes = "normals" if is_normal else "colours" if is_color else "other numbers"
         raise failure(f"'{name}' is a {baked_texture.kind} texture, and '{uniform.name}' takes {takes}")
     if is_normal and baked_texture.facts.get("green") == "directx":
-        raise failure(f"the green of '{name}' is down, as DirectX has it", "bake it with --green opengl")
+        raise failure(f"the green channel of '{name}' points down, as in DirectX", "bake it with --green opengl")
     if "repeat_disable" in hints and not quantity and baked_texture.holds:
-        raise failure(f"'{name}' holds {baked_texture.holds}, and '{uniform.name}' takes what a view of the body sees")
+        raise failure(
+            f"'{name}' holds {baked_texture.holds}, and '{uniform.name}' takes an image of the body from one view"
+        )
 
 
 def _readers(quantity: str) -> str:
@@ -100,7 +102,7 @@ def _readers(quantity: str) -> str:
         technique.name for technique in techniques if any(_takes(uniform, quantity) for uniform in technique.uniforms)
     ]
     if not reading:
-        return "bake it anew"
+        return "bake it again"
     return f"{quantity} is read by {' and '.join(reading)}; a conversion makes another quantity of it"
 
 

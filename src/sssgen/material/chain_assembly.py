@@ -143,7 +143,7 @@ def assemble(module: Module, stages: Sequence[ChainStage], lit: bool, opaque: bo
         for stage in outputs:
             encode.add(stage)
         entries["output"] = encode.finish("color", VEC3, None)
-    declared = StructDecl(struct, "What the techniques say of the surface.", NOWHERE)
+    declared = StructDecl(struct, "Surface values that the techniques compute.", NOWHERE)
     functions = module.functions + tuple(entry.function for entry in entries.values())
     return Chain(module._replace(structs=(*module.structs, declared), functions=functions), entries, struct)
 
@@ -323,7 +323,7 @@ class _Body:
         span = self.span
         fields = tuple(Local(field.type, field.name, span) for field in struct.fields)
         body = (*self.statements, Return(Construct(struct, fields, span), span))
-        doc = "Everything about the surface that does not depend on a light."
+        doc = "The values of the surface that do not depend on a light."
         return Entry(self.function(struct, body, doc, None), tuple(self.inputs))
 
     def finish(self, name: str, type_: Type, struct: Struct | None) -> Entry:
@@ -337,8 +337,8 @@ class _Body:
             statements = _retyped(statements, struct)
             value = _retype(value, struct)
         doc = {
-            "translucency": "What one light adds from behind, as a factor on its colour.",
-            "evaluate_lighting": "What one light adds from the front.",
+            "translucency": "The transmitted light of one light, as a factor on its colour.",
+            "evaluate_lighting": "The reflected light of one light.",
             "evaluate_output": "Encodes a linear colour for the display.",
         }.get(name if name == "translucency" else self.name, "")
         return Entry(self.function(type_, (*statements, Return(value, self.span)), doc, struct), tuple(self.inputs))

@@ -112,7 +112,7 @@ def _read_technique(path: str) -> Technique:
     doc = attributes.sections(function.doc, shown)
     role = doc.get("role", folder_of(path))
     if "role" not in doc and role not in ROLES:
-        hint = "write `role: translucency`, say, in the doc comment that stands directly before the function"
+        hint = "write, for example, `role: translucency` in the doc comment directly before the function"
         raise failure(f"the technique '{name}' has no role", hint, shown)
     if role not in ROLES:
         raise failure(f"unknown role '{role}'", did_you_mean(role, ROLES) or f"roles: {', '.join(ROLES)}", shown)

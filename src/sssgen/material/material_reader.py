@@ -17,7 +17,7 @@ from sssgen.support.toml_source import Document, parse
 _MATERIAL_KEYS = ("name", "title", "doc", "shading", "alpha_mode")
 _CHOICES = {
     "shading": (SHADINGS, "lit: the engine lights it; unlit: the chain gives the color"),
-    "alpha_mode": (ALPHA_MODES, "opaque: alpha is left out; mask: cut at one half; blend: see-through"),
+    "alpha_mode": (ALPHA_MODES, "opaque: alpha is ignored; mask: cut off at one half; blend: transparent"),
 }
 
 
@@ -70,7 +70,7 @@ class _Reader:
                 hint = (
                     f"sections: {', '.join(sections)}" if key not in _MATERIAL_KEYS else "it belongs below [material]"
                 )
-                error(place(key).key, f"'{key}' stands outside any section", hint)
+                error(place(key).key, f"'{key}' is outside any section", hint)
         name, title, doc, shading, alpha_mode = self.head(data.get("material"))
         stages = [stage for section in roles.SECTIONS for stage in self.section(section, data.get(section))]
         if not any(section in data for section in roles.SECTIONS):
@@ -116,11 +116,11 @@ class _Reader:
         """A text of the [material] section; only `doc` may have several lines."""
         span = self.document.place("material", key).value
         if not isinstance(raw, str):
-            self.document.error(span, f"'{key}' takes a text", f'write {key} = "…"')
+            self.document.error(span, f"'{key}' takes a string", f'write {key} = "…"')
             return ""
         controls = [character for character in raw if ord(character) < 32 and not (key == "doc" and character == "\n")]
         if controls and key != "name":
-            self.document.error(span, f"'{key}' holds the control character {controls[0]!r}", "write it in one line")
+            self.document.error(span, f"'{key}' contains the control character {controls[0]!r}", "write it in one line")
         return raw.strip() if key != "name" else raw
 
     # Stages
@@ -193,7 +193,7 @@ class _Reader:
             if name.endswith((".sss", ".glsl")):
                 file = os.path.join(os.path.dirname(self.path), name)
                 if not os.path.isfile(file):
-                    error(span, f"cannot find the file '{name}'", "it is looked for beside the material")
+                    error(span, f"cannot find the file '{name}'", "the path is relative to the material")
                     return None
                 technique = library.load_path(file)
             elif name in library.index():
@@ -212,7 +212,7 @@ class _Reader:
             hint = f"put it into [{home}]"
             if technique.role == "distance":
                 hint = f'it is bound to a slot: bind = {{ … = "{name}" }}'
-            error(span, f"'{name}' is a {technique.role} technique and cannot stand in [{section}]", hint)
+            error(span, f"'{name}' is a {technique.role} technique and cannot be in [{section}]", hint)
             self.complete = False
         return technique
 
@@ -290,7 +290,9 @@ class _Reader:
                     try:
                         components = read_value(other, texture.parameters[other.name])
                     except WrongValue as error:
-                        message = f"what is baked into '{stage.textures[uniform.name]}' does not fit: {error.message}"
+                        message = (
+                            f"a parameter baked with '{stage.textures[uniform.name]}' does not fit: {error.message}"
+                        )
                         self.document.error(span, message, "; ".join(filter(None, (error.hint, baked.UNITS))))
                         continue
                     stage = stage._replace(values={**stage.values, other.name: components})
@@ -384,7 +386,7 @@ def _is_plain_list(content: object) -> bool:
 
 def _section_hint(key: str, sections: tuple[str, ...]) -> str:
     if key == "conversion":
-        return "conversions stand in [[thickness]], after the technique whose result they convert"
+        return "conversions belong in [[thickness]], after the technique whose result they convert"
     if key == "distance":
         return 'distance functions are bound to slots: bind = { … = "…" }'
     return did_you_mean(key, sections) or f"sections: {', '.join(sections)}"

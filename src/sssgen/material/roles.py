@@ -154,7 +154,7 @@ def _check_value(technique: Technique, param: Param, values: dict[str, _Value], 
             span,
             f"'{technique.name}' takes '{param.name}' as {param.quantity or spell(param.type)}, "
             f"but in a chain it is {value.quantity or spell(value.type)}",
-            "write the parameter so in the technique, or rename it",
+            "declare the parameter with that type in the technique, or rename it",
         )
 
 

@@ -97,7 +97,7 @@ def find(text: str, slot: Function, folder: str) -> tuple[Module, Function]:
         path = next((path for path in paths if os.path.isfile(path)), None)
         note(paths[0])
         if path is None:
-            raise failure(f"cannot find the file '{source}'", "it is looked for beside the material")
+            raise failure(f"cannot find the file '{source}'", "the path is relative to the material")
         module = load_file(path, library.shown_name(path), (library.TECHNIQUES,))
         name = name or stem(path)
     else:

@@ -49,7 +49,7 @@ def read_texture(uniform: Uniform, raw: object) -> str:
     if not isinstance(raw, str):
         raise WrongValue(f"'{uniform.name}' takes {wanted(uniform)}, but this is {_kind_of_raw(raw)}")
     if not raw or any(ord(character) < 32 for character in raw):
-        raise WrongValue(f"{raw!r} is no file name", "leave the line out to use the texture's default")
+        raise WrongValue(f"{raw!r} is not a file name", "leave the line out to use the texture's default")
     return raw
 
 
@@ -75,7 +75,7 @@ def wanted(uniform: Uniform) -> str:
     }[kind]
     example = {"bool": "true", "float": "0.5", "int": "1", "uint": "1"}[kind]
     if is_colour(uniform):
-        return f'a colour: {count} numbers of linear RGB, or a text of sRGB as in "#ff8000"'
+        return f'a colour: {count} numbers of linear RGB, or an sRGB string as in "#ff8000"'
     if isinstance(type_, Matrix):
         return f"{count} numbers ({spell(type_)}), column by column"
     return f"{count} {many}, as in [{', '.join([example] * min(count, 4))}{', …' if count > 4 else ''}]"
@@ -96,7 +96,7 @@ def _colour(uniform: Uniform, text: str) -> tuple[float, ...]:
         hint = "write the number without quotes" if re.fullmatch(r"[-+0-9.eE]+", text.strip()) else ""
         if text.startswith("#"):
             hint = f"'{uniform.name}' is not declared a colour (source_color): give its components"
-        raise WrongValue(f"'{uniform.name}' takes {wanted(uniform)}, but this is a text", hint)
+        raise WrongValue(f"'{uniform.name}' takes {wanted(uniform)}, but this is a string", hint)
     if not _HEX.fullmatch(text):
         raise WrongValue(f"'{text}' is not a colour", 'write "#rgb", "#rrggbb" or "#rrggbbaa", or a list of linear RGB')
     digits = text[1:]
@@ -143,8 +143,8 @@ def _number(uniform: Uniform, raw: Any, index: int | None) -> float:
     contract = of_uniform(uniform)
     if kind == "float" and not contract.low <= raw <= contract.high:
         raise WrongValue(
-            f"{raw:g} is more than '{name}' is safe with",
-            f"without a hint_range it goes from {contract.low:g} to {contract.high:g}: give it one in the technique",
+            f"{raw:g}is outside the safe range of '{name}'",
+            f"without a hint_range the range is {contract.low:g} to {contract.high:g}: give it one in the technique",
             index,
         )
     return float(raw)
@@ -167,7 +167,7 @@ def _kind_of_raw(raw: object) -> str:
         return "true" if raw else "false"
     if isinstance(raw, int | float):
         return "a number"
-    for kind, description in ((str, "a text"), (list, "a list"), (dict, "a table")):
+    for kind, description in ((str, "a string"), (list, "a list"), (dict, "a table")):
         if isinstance(raw, kind):
             return description
     return "a date or time"

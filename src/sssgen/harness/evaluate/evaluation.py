@@ -127,7 +127,7 @@ def fitted(subject: Subject, raw: Mapping[str, Any]) -> Inputs:
     counts = {name: value.shape[-1] for name, value in values.items() if value.shape[-1] != 1}
     if len(set(counts.values())) > 1:
         lengths = ", ".join(f"{name} has {count}" for name, count in counts.items())
-        raise failure(f"the inputs have different numbers of values: {lengths}", "one value stands for all")
+        raise failure(f"the inputs have different numbers of values: {lengths}", "a single value applies to all")
     return Inputs(values, textures, next(iter(counts.values()), 1))
 
 
@@ -141,19 +141,23 @@ def shape_of(type_: Type) -> tuple[int, ...]:
 def _value(name: str, type_: Type, raw: Any) -> Array:
     """An input, lanes last."""
     if isinstance(type_, ArrayType):
-        raise failure(f"input '{name}' is an array of {spell(type_.element)}: a technique with one cannot be evaluated")
+        raise failure(
+            f"input '{name}' is an array of {spell(type_.element)}: techniques with arrays cannot be evaluated"
+        )
     shape, wanted = shape_of(type_), spell(type_)
     try:
         array = np.asarray(raw)
     except ValueError:
         raise failure(f"input '{name}': its rows have different lengths", f"a list of {wanted}") from None
     if array.dtype.kind not in "fiub" or (kind_of(type_) == "bool") != (array.dtype.kind == "b"):
-        raise failure(f"input '{name}' is no {wanted}", "true or false" if kind_of(type_) == "bool" else "numbers")
+        raise failure(
+            f"input '{name}' is not of type {wanted}", "true or false" if kind_of(type_) == "bool" else "numbers"
+        )
     if array.shape[array.ndim - len(shape) :] != shape or array.ndim > len(shape) + 1 or array.ndim < len(shape):
         each = ("a number", f"{components(type_)} numbers", f"{components(type_)} numbers in columns")[len(shape)]
         raise failure(
-            f"input '{name}' has the shape {'×'.join(map(str, array.shape)) or 'of one number'}, which is no {wanted}",
-            f"{each}, or a list of such",
+            f"input '{name}' has the shape {'×'.join(map(str, array.shape)) or 'of one number'}, not that of {wanted}",
+            f"{each}, or a list of them",
         )
     if array.ndim > len(shape) and not len(array):
         raise failure(f"input '{name}' is an empty list")
@@ -164,7 +168,7 @@ def _value(name: str, type_: Type, raw: Any) -> Array:
     if kind in ("int", "uint"):
         info = np.iinfo(DTYPES[kind])
         if (array != np.floor(array)).any() or (array < info.min).any() or (array > info.max).any():
-            raise failure(f"input '{name}' is no {wanted}", f"whole numbers from {info.min} to {info.max}")
+            raise failure(f"input '{name}' is not of type {wanted}", f"whole numbers from {info.min} to {info.max}")
     elif kind == "float":
         with np.errstate(over="ignore"):
             array = array.astype(np.float32)
@@ -198,7 +202,7 @@ def _texture(subject: Subject, name: str, type_: Sampler, raw: Any) -> Texture:
     if raw.dim != type_.dim:
         raise failure(f"texture '{name}' is {raw.dim}, and {subject.name} takes {with_article(spell(type_))}")
     if not all(np.isfinite(level).all() for level in raw.levels):
-        raise failure(f"texture '{name}' has NaN or infinity in it")
+        raise failure(f"texture '{name}' contains NaN or infinity")
     return half(raw)
 
 
@@ -208,7 +212,7 @@ def half(texture: Texture) -> Texture:
     with np.errstate(over="ignore"):
         levels = [level.astype(np.float16) for level in texture.levels]
     if not all(np.isfinite(level).all() for level in levels):
-        raise failure("a texture has NaN, infinity or numbers beyond 65504 in it", "these are no texels of 16 bits")
+        raise failure("a texture contains NaN, infinity or numbers beyond 65504", "texels are 16-bit floats")
     rounded = Texture(levels[0], texture.filter, texture.wrap, texture.dim)
     rounded.levels = levels
     return rounded

@@ -23,7 +23,7 @@ def bindings(texts: Sequence[str]) -> dict[str, str]:
     for text in texts:
         slot, equals, function = text.partition("=")
         if not (equals and slot and function):
-            raise failure(f"'{text}' binds nothing", "--bind SLOT=FUNCTION or SLOT=FILE:FUNCTION")
+            raise failure(f"'{text}' is not a binding", "--bind SLOT=FUNCTION or SLOT=FILE:FUNCTION")
         if slot in functions:
             raise failure(f"'{slot}' is bound twice")
         functions[slot] = function
@@ -46,14 +46,14 @@ def read(path: str, subject: Subject) -> dict[str, Any]:
             refuse_special(path, path)
             text = file.read_text(encoding="utf-8")
     except UnicodeDecodeError:
-        raise failure("the inputs are no UTF-8 text", "numbers by name, in JSON", path) from None
+        raise failure("the inputs are not UTF-8 text", "numbers by name, in JSON", path) from None
     except OSError as error:
         raise failure(f"cannot read the inputs: {error.strerror}", file=path) from None
     except ValueError:
-        raise failure("no file can have this name", file=path) from None
+        raise failure("this is not a valid file name", file=path) from None
     data = json_source.parse(text, path)
     if not isinstance(data, dict):
-        raise failure("the inputs are no object", 'for instance {"N": [[0, 0, 1]], "power": 4.0}', path)
+        raise failure("the inputs are not a JSON object", 'for instance {"N": [[0, 0, 1]], "power": 4.0}', path)
     colors = {name for name, uniform in subject.uniforms.items() if "source_color" in dict(uniform.hints)}
     return {
         name: _texture(name, value, file, name in colors) if isinstance(value, str | dict) else value
@@ -70,7 +70,7 @@ def _texture(name: str, raw: str | dict[str, Any], beside: Path, srgb: bool) -> 
         or not all(isinstance(option, str) for option in options.values())
     ):
         raise failure(
-            f"texture '{name}' is given in a way that is not understood",
+            f"texture '{name}'has an unknown form",
             'a file name, or {"file": …, "wrap": …, "filter": …}',
             str(beside),
         )
@@ -90,4 +90,4 @@ def texture(path: str, wrap: str = "repeat", filter: str = "linear", srgb: bool 
     try:
         return Texture(np.flipud(data) if picture else data[..., None] if data.ndim == 2 else data, filter, wrap)
     except ValueError as error:
-        raise failure(f"this is no texture: {error}", "(height, width, channels), in 3-D (depth, …)", path) from None
+        raise failure(f"this is not a texture: {error}", "(height, width, channels), in 3-D (depth, …)", path) from None

@@ -85,7 +85,7 @@ ROWS = (
     DangerousRow(
         "seams", "a seam in the texture coordinates, a jump of derivatives", "finite", surface.seams, alike=False,
     ),
-    DangerousRow("lipschitz", "a field that is no distance", "each tap clamped", field.not_lipschitz),
+    DangerousRow("lipschitz", "a field that is not a distance", "each tap clamped", field.not_lipschitz),
     DangerousRow(
         "medial-axis", "across the medial axis", "no jump; a change of the slope is documented", field.medial_axis,
     ),
@@ -96,7 +96,7 @@ ROWS = (
     ),
     DangerousRow(
         "meshes", "open, non-manifold, self-intersecting, inverted meshes", "signed by winding, or refused", None,
-        "a scene's mesh: the sign is that of the winding number, and what is no mesh is refused by name",
+        "a scene's mesh: the sign is that of the winding number, and an invalid mesh is rejected with a message",
     ),
     DangerousRow("concave", "concave bodies, gaps", "the sum of the intervals inside", field.concave),
     DangerousRow("eight-bits", "an 8-bit distance or thickness", "half a step off at most", surface.eight_bits),

@@ -152,7 +152,7 @@ def faults(row: Row, beyond: bool = False) -> Iterator[str]:
         fault = same_faults[0][1]
         got = np.array2string(fault.got, precision=7, separator=", ")
         where = f"{output} is {got} in {fault.lanes} of {fault.of}, on {', '.join(name for name, _ in same_faults)}"
-        yield f"{row.specimen.title}: {trial}: {kind}: {where}{'' if counts else ', which does not count'}"
+        yield f"{row.specimen.title}: {trial}: {kind}: {where}{'' if counts else ', not counted'}"
         if command := next((fault.command for _, fault in same_faults if fault.command), ""):
             yield f"  {command}"
 

@@ -24,37 +24,37 @@ const float OPAQUE_DISTANCE = 1.0e-6;
 const float ENDLESS = 10000.0;
 const float OPAQUE_DEPTH = 80.0;
 
-uniform float variation;  // How much the levels of the cells differ: 0 = all the same
-uniform float cell_count;  // Cells along one unit of texture coordinate
-uniform float thickness_factor;  // Thickness of the thickest cell
-uniform float bevel;  // Width of the slope beside an edge, in cells
-uniform float attenuation_distance;  // The length after which 1/e (37 %) of the light is left; 0 = opaque
+uniform float variation;  // How much the levels of the cells differ: 0 = all are equal
+uniform float cell_count;  // Number of cells along one unit of texture coordinate
+uniform float thickness_factor;  // Thickness of a cell of level 1
+uniform float bevel;  // Width of the slope next to an edge, in cells
+uniform float attenuation_distance;  // The length after which 1/e (37 %) of the light remains; 0 = opaque
 uniform vec4 tint;  // Multiplies the texture
 uniform float metalness;  // 0 = not a metal, 1 = metal
-uniform float surface_roughness;  // 0 = a mirror, 1 = chalk
-uniform float relief;  // How far the thickest cells rise above their edges
-uniform vec2 uv_per_unit;  // How far the texture coordinates move for one world unit along T and along B
+uniform float surface_roughness;  // 0 = smooth as a mirror, 1 = rough as chalk
+uniform float relief;  // Height of the thickest cells above their edges
+uniform vec2 uv_per_unit;  // Change of the texture coordinates per world unit along T and along B
 uniform float cover;  // Multiplies the texture
-uniform vec2 red_speed;  // How fast the red layer moves
-uniform vec2 green_speed;  // How fast the green layer moves
-uniform vec2 blue_speed;  // How fast the blue layer moves
+uniform vec2 red_speed;  // Velocity of the red layer
+uniform vec2 green_speed;  // Velocity of the green layer
+uniform vec2 blue_speed;  // Velocity of the blue layer
 uniform vec3 vein_color;  // Colour of the light in the red and green layers, where both are bright
 uniform vec3 spark_color;  // Colour of the light in the blue layer
 uniform float texel_size;
 uniform float edge;  // Width of the soft edge, in the texture's values
-uniform float erosion;  // How much is gone: 0 = nothing, 1 = everything
-uniform float edge_height;  // How far the surface falls at the edge
-uniform float distortion;  // How much the normal bends the light on its way through: 0 ignores the shape
-uniform vec3 subsurface_color;  // Colour of the light that has passed through
-uniform float attenuation;  // Strength of it all
+uniform float erosion;  // How much is eroded: 0 = nothing, 1 = everything
+uniform float edge_height;  // Height of the step in the surface at the edge
+uniform float distortion;
+uniform vec3 subsurface_color;  // Colour of the transmitted light
+uniform float attenuation;  // Factor on the whole result
 uniform float scale;  // Strength of the glow towards the light
-uniform float ambient;  // Glow that is there from every side
-uniform float power;  // How tight the glow is around the light: the larger, the smaller the spot
+uniform float ambient;  // Glow that does not depend on the direction
+uniform float power;  // How narrow the glow around the light is: the larger, the smaller the spot
 
 uniform sampler2D base_color_texture;  // Colour of the surface (an sRGB texture), with its opacity in alpha
-uniform sampler2D cover_texture;  // What covers the ice (snow, rock): black = bare ice, white = covered
-uniform sampler2D packed_texture;  // Three pictures in one: red, green and blue each hold a layer
-uniform sampler2D erosion_texture;  // Dark parts go first
+uniform sampler2D cover_texture;  // Cover on the ice (snow, rock): black = bare ice, white = covered
+uniform sampler2D packed_texture;  // Three pictures in one texture: red, green and blue each hold a layer
+uniform sampler2D erosion_texture;  // Mask of the erosion: dark parts disappear first
 
 // The direction of `x`; of a zero vector, 0.
 vec2 safe_normalize(vec2 x) {
@@ -86,7 +86,7 @@ Cell cell_at(vec2 p) {
     float first_square = 32.0;
     float second_square = 32.0;
     uint owner = 0u;
-    // from the corner of its own cell, so that far cells are as exact as near ones
+    // relative to the cell's corner, so that precision does not depend on the distance from the origin
     vec2 home = floor(p);
     vec2 within = p - home;
     for (int j = -1; j <= 1; j++) {
@@ -113,7 +113,7 @@ Cell cell_at(vec2 p) {
     return Cell(nearest, second, level);
 }
 
-// How much further the second site is than the nearest one: 0 on the edges.
+// How much farther the second nearest site is than the nearest one: 0 on the edges.
 float to_edge(Cell cell) {
     return length(cell.second) - length(cell.nearest);
 }
@@ -124,13 +124,13 @@ float voronoi_thickness(vec2 uv) {
     return thickness_factor * cell.level * smoothstep(0.0, bevel, to_edge(cell));
 }
 
-// `d` in mean free paths, 0 or more.
+// The thickness `d` in mean free paths, 0 or more.
 float optical_depth(float d, float mean_free_path) {
     float path = max(mean_free_path, OPAQUE_DISTANCE);
     return clamp(d, 0.0, ENDLESS * path) / path;
 }
 
-// Thickness to transmittance: what absorption leaves of the light.
+// Thickness to transmittance: the part of the light that absorption leaves.
 float beer_lambert(float d) {
     return exp(-min(optical_depth(d, attenuation_distance), OPAQUE_DEPTH));
 }
@@ -150,21 +150,21 @@ void pbr_constants(out float metallic, out float roughness) {
 
 // The gradient of to_edge.
 vec2 from_edge(Cell cell) {
-    // the nearest site may be just here, the second one never: they are at least 0.4 apart
+    // the nearest site may be exactly here, the second one cannot: they are at least 0.4 apart
     return safe_normalize(cell.nearest) - normalize(cell.second);
 }
 
-// Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add.
+// Adds `detail` to `base`: x and y are added, z is multiplied; for small slopes this adds the slopes.
 vec3 blend_normals(vec3 base, vec3 detail) {
     return safe_normalize(vec3(base.xy + detail.xy, base.z * detail.z));
 }
 
-// The normal of a height field; `slope` is the height gained per unit of length along T and B.
+// The normal of a height field; `slope` is the increase in height per unit of length along T and B.
 vec3 normal_of_slope(vec2 slope) {
     return normalize(vec3(-slope, 1.0));
 }
 
-// The normal of the Voronoi cells, so that reflected light agrees with light that comes through.
+// The normal of the Voronoi cells, so that reflected light agrees with transmitted light.
 void voronoi_normal(vec2 uv, inout vec3 normal) {
     Cell cell = cell_at(uv * cell_count);
     float x = clamp(to_edge(cell) / bevel, 0.0, 1.0);
@@ -174,32 +174,32 @@ void voronoi_normal(vec2 uv, inout vec3 normal) {
     normal = blend_normals(normal, normal_of_slope(slope));
 }
 
-// Light comes through the bare ice only.
+// Only the bare ice transmits light.
 void ice_mask(vec2 uv, inout float through) {
     float covered = cover * texture(cover_texture, uv).r;
     through = through * smoothstep(0.0, 0.1, 1.0 - covered);
 }
 
-// One moving layer: the offset stays within 1, so that it loses no precision in a long session.
+// One moving layer; the offset stays below 1, so that precision does not decrease with time.
 vec4 layer(vec2 uv, vec2 speed, float time) {
     return texture(packed_texture, uv + fract(speed * time));
 }
 
-// Moving light below the surface, from the channels of one texture that scroll each its own way.
+// Moving light below the surface, from the channels of one texture, each of which scrolls separately.
 void packed_scroll(vec2 uv, float time, inout vec3 emission) {
     float veins = layer(uv, red_speed, time).x * layer(uv, green_speed, time).y;
     float sparks = layer(uv, blue_speed, time).z;
     emission = min(emission + (vein_color * veins + spark_color * sparks), 65504.0);
 }
 
-// What is left at `uv`: 1 = whole, 0 = gone.
+// The part of the surface that remains at `uv`: 1 = all, 0 = none.
 float left_at(vec2 uv) {
-    // the threshold starts below black and ends at white, so that 0 is whole and 1 is gone
+    // the threshold goes from below black to white, so that erosion 0 keeps and erosion 1 removes everything
     float threshold = mix(-edge, 1.0, erosion);
     return clamp((texture(erosion_texture, uv).r - threshold) / edge, 0.0, 1.0);
 }
 
-// Eats the surface away, dark parts of a mask first, with a bevel at the edge that takes the light.
+// Erodes the surface, dark parts of a mask first, with a bevelled normal at the edge.
 void alpha_erosion(vec2 uv, inout float alpha, inout vec3 normal) {
     vec2 e = vec2(texel_size, 0.0);
     vec2 at = uv;
@@ -210,7 +210,7 @@ void alpha_erosion(vec2 uv, inout float alpha, inout vec3 normal) {
     alpha *= left_at(at);
 }
 
-// The light that comes through where `lobe` (0..1) points at the eye.
+// The transmitted light for a lobe value of 0..1 and a transmittance.
 vec3 glow(float lobe, float through) {
     return subsurface_color * (attenuation * (lobe * scale + ambient) * through);
 }
@@ -221,28 +221,28 @@ vec3 lobe_normalized(vec3 V, vec3 N, vec3 L, float through) {
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through);
 }
 
-// The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
+// The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one light.
 vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughness, vec3 light_color) {
     vec3 H = safe_normalize(V + L);
     float NoL = max(dot(N, L), 0.0);
     float NoV = max(dot(N, V), 0.0001);
     float NoH = clamp(dot(N, H), 0.0, 1.0);
     float a = max(roughness, 0.045) * max(roughness, 0.045);
-    // (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak; never below a^2
+    // (a^2 - 1) dot(N, H)^2 + 1, but accurate at the peak, where N and H nearly coincide; never below a^2
     vec3 across = cross(N, H);
     float spread = NoH > 0.0 ? max(dot(across, across) + NoH * NoH * (a * a), a * a) : 1.0;
     // D times pi
     float facets = a * a / (spread * spread);
-    // masking and shadowing, over 4 dot(N, L) dot(N, V)
+    // masking and shadowing, divided by 4 dot(N, L) dot(N, V)
     float visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
-    // nothing reflects more than all
+    // a surface reflects at most all light
     vec3 F0 = mix(vec3(0.04), min(albedo, 1.0), metallic);
     vec3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     vec3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);
     return (diffuse + facets * visible * F) * NoL * light_color;
 }
 
-// Everything about the surface that does not depend on a light.
+// The values of the surface that do not depend on a light.
 Surface evaluate_surface(vec2 uv, float time) {
     float thickness = voronoi_thickness(uv);
     float transmittance = beer_lambert(thickness);
@@ -261,12 +261,12 @@ Surface evaluate_surface(vec2 uv, float time) {
     return Surface(albedo, alpha, normal, metallic, roughness, emission, transmittance);
 }
 
-// What one light adds from behind, as a factor on its colour.
+// The transmitted light of one light, as a factor on its colour.
 vec3 evaluate_translucency(Surface surface, vec3 V, vec3 N, vec3 L) {
     return lobe_normalized(V, N, L, surface.transmittance);
 }
 
-// What one light adds from the front.
+// The reflected light of one light.
 vec3 evaluate_lighting(Surface surface, vec3 N, vec3 V, vec3 L, vec3 light_color) {
     return standard(N, V, L, surface.albedo, surface.metallic, surface.roughness, light_color);
 }

@@ -56,7 +56,7 @@ Cell cell_at(vec2 p, float variation) {
     float first_square = 32.0;
     float second_square = 32.0;
     uint owner = 0u;
-    // from the corner of its own cell, so that far cells are as exact as near ones
+    // relative to the cell's corner, so that precision does not depend on the distance from the origin
     vec2 home = floor(p);
     vec2 within = p - home;
     for (int j = -1; j <= 1; j++) {
@@ -83,7 +83,7 @@ Cell cell_at(vec2 p, float variation) {
     return Cell(nearest, second, level);
 }
 
-// How much further the second site is than the nearest one: 0 on the edges.
+// How much farther the second nearest site is than the nearest one: 0 on the edges.
 float to_edge(Cell cell) {
     return length(cell.second) - length(cell.nearest);
 }
@@ -94,13 +94,13 @@ float voronoi_thickness(vec2 uv, float variation, float cell_count, float thickn
     return thickness_factor * cell.level * smoothstep(0.0, bevel, to_edge(cell));
 }
 
-// `d` in mean free paths, 0 or more.
+// The thickness `d` in mean free paths, 0 or more.
 float optical_depth(float d, float mean_free_path) {
     float path = max(mean_free_path, OPAQUE_DISTANCE);
     return clamp(d, 0.0, ENDLESS * path) / path;
 }
 
-// Thickness to transmittance: what absorption leaves of the light.
+// Thickness to transmittance: the part of the light that absorption leaves.
 float beer_lambert(float d, float attenuation_distance) {
     return exp(-min(optical_depth(d, attenuation_distance), OPAQUE_DEPTH));
 }
@@ -120,21 +120,21 @@ void pbr_constants(out float metallic, out float roughness, float metalness, flo
 
 // The gradient of to_edge.
 vec2 from_edge(Cell cell) {
-    // the nearest site may be just here, the second one never: they are at least 0.4 apart
+    // the nearest site may be exactly here, the second one cannot: they are at least 0.4 apart
     return safe_normalize(cell.nearest) - normalize(cell.second);
 }
 
-// Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add.
+// Adds `detail` to `base`: x and y are added, z is multiplied; for small slopes this adds the slopes.
 vec3 blend_normals(vec3 base, vec3 detail) {
     return safe_normalize(vec3(base.xy + detail.xy, base.z * detail.z));
 }
 
-// The normal of a height field; `slope` is the height gained per unit of length along T and B.
+// The normal of a height field; `slope` is the increase in height per unit of length along T and B.
 vec3 normal_of_slope(vec2 slope) {
     return normalize(vec3(-slope, 1.0));
 }
 
-// The normal of the Voronoi cells, so that reflected light agrees with light that comes through.
+// The normal of the Voronoi cells, so that reflected light agrees with transmitted light.
 void voronoi_normal(vec2 uv, inout vec3 normal, float variation, float cell_count, float bevel, float relief,
     vec2 uv_per_unit) {
     Cell cell = cell_at(uv * cell_count, variation);
@@ -145,18 +145,18 @@ void voronoi_normal(vec2 uv, inout vec3 normal, float variation, float cell_coun
     normal = blend_normals(normal, normal_of_slope(slope));
 }
 
-// Light comes through the bare ice only.
+// Only the bare ice transmits light.
 void ice_mask(vec2 uv, inout float through, float cover, sampler2D cover_texture) {
     float covered = cover * texture(cover_texture, uv).r;
     through = clamp(through * smoothstep(0.0, 0.1, 1.0 - covered), 0.0, 1.0);
 }
 
-// One moving layer: the offset stays within 1, so that it loses no precision in a long session.
+// One moving layer; the offset stays below 1, so that precision does not decrease with time.
 vec4 layer(vec2 uv, vec2 speed, float time, sampler2D packed_texture) {
     return texture(packed_texture, uv + fract(speed * time));
 }
 
-// Moving light below the surface, from the channels of one texture that scroll each its own way.
+// Moving light below the surface, from the channels of one texture, each of which scrolls separately.
 void packed_scroll(vec2 uv, float time, inout vec3 emission, sampler2D packed_texture, vec2 red_speed,
     vec2 green_speed, vec2 blue_speed, vec3 vein_color, vec3 spark_color) {
     float veins = layer(uv, red_speed, time, packed_texture).x
@@ -165,14 +165,14 @@ void packed_scroll(vec2 uv, float time, inout vec3 emission, sampler2D packed_te
     emission = min(emission + (vein_color * veins + spark_color * sparks), 65504.0);
 }
 
-// What is left at `uv`: 1 = whole, 0 = gone.
+// The part of the surface that remains at `uv`: 1 = all, 0 = none.
 float left_at(vec2 uv, float edge, float erosion, sampler2D erosion_texture) {
-    // the threshold starts below black and ends at white, so that 0 is whole and 1 is gone
+    // the threshold goes from below black to white, so that erosion 0 keeps and erosion 1 removes everything
     float threshold = mix(-edge, 1.0, erosion);
     return clamp((texture(erosion_texture, uv).r - threshold) / edge, 0.0, 1.0);
 }
 
-// Eats the surface away, dark parts of a mask first, with a bevel at the edge that takes the light.
+// Erodes the surface, dark parts of a mask first, with a bevelled normal at the edge.
 void alpha_erosion(vec2 uv, inout float alpha, inout vec3 normal, vec2 uv_per_unit, float texel_size,
     float edge, float erosion, sampler2D erosion_texture, float edge_height) {
     vec2 e = vec2(texel_size, 0.0);
@@ -186,7 +186,7 @@ void alpha_erosion(vec2 uv, inout float alpha, inout vec3 normal, vec2 uv_per_un
     alpha *= left_at(at, edge, erosion, erosion_texture);
 }
 
-// The light that comes through where `lobe` (0..1) points at the eye.
+// The transmitted light for a lobe value of 0..1 and a transmittance.
 vec3 glow(float lobe, float through, vec3 subsurface_color, float attenuation, float scale, float ambient) {
     return subsurface_color * (attenuation * (lobe * scale + ambient) * through);
 }
@@ -199,28 +199,28 @@ vec3 lobe_normalized(vec3 V, vec3 N, vec3 L, float through, float distortion, ve
         ambient);
 }
 
-// The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
+// The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one light.
 vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughness, vec3 light_color) {
     vec3 H = safe_normalize(V + L);
     float NoL = max(dot(N, L), 0.0);
     float NoV = max(dot(N, V), 0.0001);
     float NoH = clamp(dot(N, H), 0.0, 1.0);
     float a = max(roughness, 0.045) * max(roughness, 0.045);
-    // (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak; never below a^2
+    // (a^2 - 1) dot(N, H)^2 + 1, but accurate at the peak, where N and H nearly coincide; never below a^2
     vec3 across = cross(N, H);
     float spread = NoH > 0.0 ? max(dot(across, across) + NoH * NoH * (a * a), a * a) : 1.0;
     // D times pi
     float facets = a * a / (spread * spread);
-    // masking and shadowing, over 4 dot(N, L) dot(N, V)
+    // masking and shadowing, divided by 4 dot(N, L) dot(N, V)
     float visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
-    // nothing reflects more than all
+    // a surface reflects at most all light
     vec3 F0 = mix(vec3(0.04), min(albedo, 1.0), metallic);
     vec3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     vec3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);
     return (diffuse + facets * visible * F) * NoL * light_color;
 }
 
-// Everything about the surface that does not depend on a light.
+// The values of the surface that do not depend on a light.
 Surface evaluate_surface(vec2 uv, float time, float variation, float cell_count, float thickness_factor,
     float bevel, float attenuation_distance, vec4 tint, sampler2D base_color_texture, float metalness,
     float surface_roughness, float relief, vec2 uv_per_unit, float cover, sampler2D cover_texture,
@@ -245,14 +245,14 @@ Surface evaluate_surface(vec2 uv, float time, float variation, float cell_count,
     return Surface(albedo, alpha, normal, metallic, roughness, emission, transmittance);
 }
 
-// What one light adds from behind, as a factor on its colour.
+// The transmitted light of one light, as a factor on its colour.
 vec3 evaluate_translucency(Surface surface, vec3 V, vec3 N, vec3 L, float distortion, vec3 subsurface_color,
     float attenuation, float scale, float ambient, float power) {
     return lobe_normalized(V, N, L, surface.transmittance, distortion, subsurface_color, attenuation, scale,
         ambient, power);
 }
 
-// What one light adds from the front.
+// The reflected light of one light.
 vec3 evaluate_lighting(Surface surface, vec3 N, vec3 V, vec3 L, vec3 light_color) {
     return standard(N, V, L, surface.albedo, surface.metallic, surface.roughness, light_color);
 }

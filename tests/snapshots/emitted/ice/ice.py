@@ -13,32 +13,32 @@ OPAQUE_DISTANCE = 1e-06
 ENDLESS = 10000.0
 OPAQUE_DEPTH = 80.0
 
-variation = 0.6  # How much the levels of the cells differ: 0 = all the same.
-cell_count = 10.0  # Cells along one unit of texture coordinate.
-thickness_factor = 0.3  # Thickness of the thickest cell.
-bevel = 0.35  # Width of the slope beside an edge, in cells.
-attenuation_distance = 0.25  # The length after which 1/e (37 %) of the light is left; 0 = opaque.
+variation = 0.6  # How much the levels of the cells differ: 0 = all are equal.
+cell_count = 10.0  # Number of cells along one unit of texture coordinate.
+thickness_factor = 0.3  # Thickness of a cell of level 1.
+bevel = 0.35  # Width of the slope next to an edge, in cells.
+attenuation_distance = 0.25  # The length after which 1/e (37 %) of the light remains; 0 = opaque.
 tint = vec(0.75, 0.9, 1.0, 1.0)  # Multiplies the texture.
 metalness = 0.0  # 0 = not a metal, 1 = metal.
-surface_roughness = 0.12  # 0 = a mirror, 1 = chalk.
-relief = 0.01  # How far the thickest cells rise above their edges.
-uv_per_unit = vec(1.0, 1.0)  # How far the texture coordinates move for one world unit along T and along B.
+surface_roughness = 0.12  # 0 = smooth as a mirror, 1 = rough as chalk.
+relief = 0.01  # Height of the thickest cells above their edges.
+uv_per_unit = vec(1.0, 1.0)  # Change of the texture coordinates per world unit along T and along B.
 cover = 1.0  # Multiplies the texture.
-red_speed = vec(0.02, 0.0)  # How fast the red layer moves.
-green_speed = vec(-0.01, 0.015)  # How fast the green layer moves.
-blue_speed = vec(0.0, -0.025)  # How fast the blue layer moves.
+red_speed = vec(0.02, 0.0)  # Velocity of the red layer.
+green_speed = vec(-0.01, 0.015)  # Velocity of the green layer.
+blue_speed = vec(0.0, -0.025)  # Velocity of the blue layer.
 vein_color = vec(0.3, 0.8, 1.0)  # Colour of the light in the red and green layers, where both are bright.
 spark_color = vec(0.6, 0.9, 1.0)  # Colour of the light in the blue layer.
 texel_size = 0.002  # The length, in texture coordinates, over which slopes are measured: about one texel.
 edge = 0.15  # Width of the soft edge, in the texture's values.
-erosion = 0.2  # How much is gone: 0 = nothing, 1 = everything.
-edge_height = 0.02  # How far the surface falls at the edge.
-distortion = 0.2  # How much the normal bends the light on its way through: 0 ignores the shape.
-subsurface_color = vec(0.55, 0.85, 1.0)  # Colour of the light that has passed through.
-attenuation = 0.8  # Strength of it all.
+erosion = 0.2  # How much is eroded: 0 = nothing, 1 = everything.
+edge_height = 0.02  # Height of the step in the surface at the edge.
+distortion = 0.2  # How far the normal bends the light's direction inside the body: 0 ignores the shape.
+subsurface_color = vec(0.55, 0.85, 1.0)  # Colour of the transmitted light.
+attenuation = 0.8  # Factor on the whole result.
 scale = 2.0  # Strength of the glow towards the light.
-ambient = 0.12  # Glow that is there from every side.
-power = 6.0  # How tight the glow is around the light: the larger, the smaller the spot.
+ambient = 0.12  # Glow that does not depend on the direction.
+power = 6.0  # How narrow the glow around the light is: the larger, the smaller the spot.
 
 base_color_texture = Texture([[[1.0, 1.0, 1.0, 1.0]]])
 cover_texture = Texture([[[0.0, 0.0, 0.0, 1.0]]])
@@ -71,7 +71,7 @@ def cell_at(p):
     first_square = 32.0
     second_square = 32.0
     owner = to_uint(0)
-    # from the corner of its own cell, so that far cells are as exact as near ones
+    # relative to the cell's corner, so that precision does not depend on the distance from the origin
     home = floor(p)
     within = p - home
     for j in range(-1, 2):
@@ -95,7 +95,7 @@ def cell_at(p):
     return Record(nearest=nearest, second=second, level=level)
 
 def to_edge(cell):
-    """How much further the second site is than the nearest one: 0 on the edges."""
+    """How much farther the second nearest site is than the nearest one: 0 on the edges."""
     return length(cell.second) - length(cell.nearest)
 
 def voronoi_thickness(uv):
@@ -104,12 +104,12 @@ def voronoi_thickness(uv):
     return thickness_factor * cell.level * smoothstep(0.0, bevel, to_edge(cell))
 
 def optical_depth(d, mean_free_path):
-    """`d` in mean free paths, 0 or more."""
+    """The thickness `d` in mean free paths, 0 or more."""
     path = max(mean_free_path, OPAQUE_DISTANCE)
     return clamp(d, 0.0, ENDLESS * path) / path
 
 def beer_lambert(d):
-    """Thickness to transmittance: what absorption leaves of the light."""
+    """Thickness to transmittance: the part of the light that absorption leaves."""
     return exp(-min(optical_depth(d, attenuation_distance), OPAQUE_DEPTH))
 
 def base_color(uv):
@@ -127,19 +127,19 @@ def pbr_constants():
 
 def from_edge(cell):
     """The gradient of to_edge."""
-    # the nearest site may be just here, the second one never: they are at least 0.4 apart
+    # the nearest site may be exactly here, the second one cannot: they are at least 0.4 apart
     return safe_normalize_vec2(cell.nearest) - normalize(cell.second)
 
 def blend_normals(base, detail):
-    """Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add."""
+    """Adds `detail` to `base`: x and y are added, z is multiplied; for small slopes this adds the slopes."""
     return safe_normalize_vec3(vec(swizzle(base, "xy") + swizzle(detail, "xy"), base[2] * detail[2]))
 
 def normal_of_slope(slope):
-    """The normal of a height field; `slope` is the height gained per unit of length along T and B."""
+    """The normal of a height field; `slope` is the increase in height per unit of length along T and B."""
     return normalize(vec(-slope, 1.0))
 
 def voronoi_normal(uv, normal):
-    """The normal of the Voronoi cells, so that reflected light agrees with light that comes through."""
+    """The normal of the Voronoi cells, so that reflected light agrees with transmitted light."""
     cell = cell_at(uv * cell_count)
     x = clamp(to_edge(cell) / bevel, 0.0, 1.0)
     # the derivative of the smoothstep
@@ -149,30 +149,30 @@ def voronoi_normal(uv, normal):
     return normal
 
 def ice_mask(uv, through):
-    """Light comes through the bare ice only."""
+    """Only the bare ice transmits light."""
     covered = cover * texture(cover_texture, uv)[0]
     through = through * smoothstep(0.0, 0.1, 1.0 - covered)
     return through
 
 def layer(uv, speed, time):
-    """One moving layer: the offset stays within 1, so that it loses no precision in a long session."""
+    """One moving layer; the offset stays below 1, so that precision does not decrease with time."""
     return texture(packed_texture, uv + fract(speed * time))
 
 def packed_scroll(uv, time, emission):
-    """Moving light below the surface, from the channels of one texture that scroll each its own way."""
+    """Moving light below the surface, from the channels of one texture, each of which scrolls separately."""
     veins = layer(uv, red_speed, time)[0] * layer(uv, green_speed, time)[1]
     sparks = layer(uv, blue_speed, time)[2]
     emission = min(emission + (vein_color * veins + spark_color * sparks), 65504.0)
     return emission
 
 def left_at(uv):
-    """What is left at `uv`: 1 = whole, 0 = gone."""
-    # the threshold starts below black and ends at white, so that 0 is whole and 1 is gone
+    """The part of the surface that remains at `uv`: 1 = all, 0 = none."""
+    # the threshold goes from below black to white, so that erosion 0 keeps and erosion 1 removes everything
     threshold = mix(-edge, 1.0, erosion)
     return clamp((texture(erosion_texture, uv)[0] - threshold) / edge, 0.0, 1.0)
 
 def alpha_erosion(uv, alpha, normal):
-    """Eats the surface away, dark parts of a mask first, with a bevel at the edge that takes the light."""
+    """Erodes the surface, dark parts of a mask first, with a bevelled normal at the edge."""
     e = vec(texel_size, 0.0)
     at = uv
     across = left_at(at + e) - left_at(at - e)
@@ -183,7 +183,7 @@ def alpha_erosion(uv, alpha, normal):
     return alpha, normal
 
 def glow(lobe, through):
-    """The light that comes through where `lobe` (0..1) points at the eye."""
+    """The transmitted light for a lobe value of 0..1 and a transmittance."""
     return subsurface_color * (attenuation * (lobe * scale + ambient) * through)
 
 def lobe_normalized(V, N, L, through):
@@ -192,27 +192,27 @@ def lobe_normalized(V, N, L, through):
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through)
 
 def standard(N, V, L, albedo, metallic, roughness, light_color):
-    """The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light."""
+    """The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one light."""
     H = safe_normalize_vec3(V + L)
     NoL = max(dot(N, L), 0.0)
     NoV = max(dot(N, V), 0.0001)
     NoH = clamp(dot(N, H), 0.0, 1.0)
     a = max(roughness, 0.045) * max(roughness, 0.045)
-    # (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak; never below a^2
+    # (a^2 - 1) dot(N, H)^2 + 1, but accurate at the peak, where N and H nearly coincide; never below a^2
     across = cross(N, H)
     spread = select(NoH > 0.0, max(dot(across, across) + NoH * NoH * (a * a), a * a), 1.0)
     # D times pi
     facets = a * a / (spread * spread)
-    # masking and shadowing, over 4 dot(N, L) dot(N, V)
+    # masking and shadowing, divided by 4 dot(N, L) dot(N, V)
     visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a)
-    # nothing reflects more than all
+    # a surface reflects at most all light
     F0 = mix(splat(3, 0.04), min(albedo, 1.0), metallic)
     F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0)
     diffuse = albedo * (1.0 - metallic) * (1.0 - F)
     return (diffuse + facets * visible * F) * NoL * light_color
 
 def evaluate_surface(uv, time):
-    """Everything about the surface that does not depend on a light."""
+    """The values of the surface that do not depend on a light."""
     thickness = voronoi_thickness(uv)
     transmittance = beer_lambert(thickness)
     albedo, alpha = base_color(uv)
@@ -227,9 +227,9 @@ def evaluate_surface(uv, time):
         emission=emission, transmittance=transmittance)
 
 def evaluate_translucency(surface, V, N, L):
-    """What one light adds from behind, as a factor on its colour."""
+    """The transmitted light of one light, as a factor on its colour."""
     return lobe_normalized(V, N, L, surface.transmittance)
 
 def evaluate_lighting(surface, N, V, L, light_color):
-    """What one light adds from the front."""
+    """The reflected light of one light."""
     return standard(N, V, L, surface.albedo, surface.metallic, surface.roughness, light_color)

@@ -56,7 +56,7 @@ Cell cell_at(float2 p, float variation) {
     float first_square = 32.0;
     float second_square = 32.0;
     uint owner = 0u;
-    // from the corner of its own cell, so that far cells are as exact as near ones
+    // relative to the cell's corner, so that precision does not depend on the distance from the origin
     float2 home = floor(p);
     float2 within = p - home;
     [unroll]
@@ -86,7 +86,7 @@ Cell cell_at(float2 p, float variation) {
     return cell;
 }
 
-// How much further the second site is than the nearest one: 0 on the edges.
+// How much farther the second nearest site is than the nearest one: 0 on the edges.
 float to_edge(Cell cell) {
     return length(cell.second) - length(cell.nearest);
 }
@@ -97,13 +97,13 @@ float voronoi_thickness(float2 uv, float variation, float cell_count, float thic
     return thickness_factor * cell.level * smoothstep(0.0, bevel, to_edge(cell));
 }
 
-// `d` in mean free paths, 0 or more.
+// The thickness `d` in mean free paths, 0 or more.
 float optical_depth(float d, float mean_free_path) {
     float path = max(mean_free_path, OPAQUE_DISTANCE);
     return clamp(d, 0.0, ENDLESS * path) / path;
 }
 
-// Thickness to transmittance: what absorption leaves of the light.
+// Thickness to transmittance: the part of the light that absorption leaves.
 float beer_lambert(float d, float attenuation_distance) {
     return exp(-min(optical_depth(d, attenuation_distance), OPAQUE_DEPTH));
 }
@@ -123,21 +123,21 @@ void pbr_constants(out float metallic, out float roughness, float metalness, flo
 
 // The gradient of to_edge.
 float2 from_edge(Cell cell) {
-    // the nearest site may be just here, the second one never: they are at least 0.4 apart
+    // the nearest site may be exactly here, the second one cannot: they are at least 0.4 apart
     return safe_normalize(cell.nearest) - normalize(cell.second);
 }
 
-// Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add.
+// Adds `detail` to `base`: x and y are added, z is multiplied; for small slopes this adds the slopes.
 float3 blend_normals(float3 base, float3 detail) {
     return safe_normalize(float3(base.xy + detail.xy, base.z * detail.z));
 }
 
-// The normal of a height field; `slope` is the height gained per unit of length along T and B.
+// The normal of a height field; `slope` is the increase in height per unit of length along T and B.
 float3 normal_of_slope(float2 slope) {
     return normalize(float3(-slope, 1.0));
 }
 
-// The normal of the Voronoi cells, so that reflected light agrees with light that comes through.
+// The normal of the Voronoi cells, so that reflected light agrees with transmitted light.
 void voronoi_normal(float2 uv, inout float3 normal, float variation, float cell_count, float bevel,
     float relief, float2 uv_per_unit) {
     Cell cell = cell_at(uv * cell_count, variation);
@@ -148,18 +148,18 @@ void voronoi_normal(float2 uv, inout float3 normal, float variation, float cell_
     normal = blend_normals(normal, normal_of_slope(slope));
 }
 
-// Light comes through the bare ice only.
+// Only the bare ice transmits light.
 void ice_mask(float2 uv, inout float through, float cover, sampler2D cover_texture) {
     float covered = cover * tex2D(cover_texture, uv).r;
     through = clamp(through * smoothstep(0.0, 0.1, 1.0 - covered), 0.0, 1.0);
 }
 
-// One moving layer: the offset stays within 1, so that it loses no precision in a long session.
+// One moving layer; the offset stays below 1, so that precision does not decrease with time.
 float4 layer(float2 uv, float2 speed, float time, sampler2D packed_texture) {
     return tex2D(packed_texture, uv + frac(speed * time));
 }
 
-// Moving light below the surface, from the channels of one texture that scroll each its own way.
+// Moving light below the surface, from the channels of one texture, each of which scrolls separately.
 void packed_scroll(float2 uv, float time, inout float3 emission, sampler2D packed_texture, float2 red_speed,
     float2 green_speed, float2 blue_speed, float3 vein_color, float3 spark_color) {
     float veins = layer(uv, red_speed, time, packed_texture).x
@@ -168,14 +168,14 @@ void packed_scroll(float2 uv, float time, inout float3 emission, sampler2D packe
     emission = min(emission + (vein_color * veins + spark_color * sparks), 65504.0);
 }
 
-// What is left at `uv`: 1 = whole, 0 = gone.
+// The part of the surface that remains at `uv`: 1 = all, 0 = none.
 float left_at(float2 uv, float edge, float erosion, sampler2D erosion_texture) {
-    // the threshold starts below black and ends at white, so that 0 is whole and 1 is gone
+    // the threshold goes from below black to white, so that erosion 0 keeps and erosion 1 removes everything
     float threshold = lerp(-edge, 1.0, erosion);
     return clamp((tex2D(erosion_texture, uv).r - threshold) / edge, 0.0, 1.0);
 }
 
-// Eats the surface away, dark parts of a mask first, with a bevel at the edge that takes the light.
+// Erodes the surface, dark parts of a mask first, with a bevelled normal at the edge.
 void alpha_erosion(float2 uv, inout float alpha, inout float3 normal, float2 uv_per_unit, float texel_size,
     float edge, float erosion, sampler2D erosion_texture, float edge_height) {
     float2 e = float2(texel_size, 0.0);
@@ -189,7 +189,7 @@ void alpha_erosion(float2 uv, inout float alpha, inout float3 normal, float2 uv_
     alpha *= left_at(at, edge, erosion, erosion_texture);
 }
 
-// The light that comes through where `lobe` (0..1) points at the eye.
+// The transmitted light for a lobe value of 0..1 and a transmittance.
 float3 glow(float lobe, float through, float3 subsurface_color, float attenuation, float scale,
     float ambient) {
     return subsurface_color * (attenuation * (lobe * scale + ambient) * through);
@@ -203,7 +203,7 @@ float3 lobe_normalized(float3 V, float3 N, float3 L, float through, float distor
         ambient);
 }
 
-// Everything about the surface that does not depend on a light.
+// The values of the surface that do not depend on a light.
 Surface evaluate_surface(float2 uv, float time, float variation, float cell_count, float thickness_factor,
     float bevel, float attenuation_distance, float4 tint, sampler2D base_color_texture, float metalness,
     float surface_roughness, float relief, float2 uv_per_unit, float cover, sampler2D cover_texture,
@@ -229,7 +229,7 @@ Surface evaluate_surface(float2 uv, float time, float variation, float cell_coun
     return surface;
 }
 
-// What one light adds from behind, as a factor on its colour.
+// The transmitted light of one light, as a factor on its colour.
 float3 evaluate_translucency(Surface surface, float3 V, float3 N, float3 L, float distortion,
     float3 subsurface_color, float attenuation, float scale, float ambient, float power) {
     return lobe_normalized(V, N, L, surface.transmittance, distortion, subsurface_color, attenuation, scale,

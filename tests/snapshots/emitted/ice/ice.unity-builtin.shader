@@ -43,32 +43,32 @@ Shader "sssgen/Ice" {
         #pragma target 3.5
         #include "UnityPBSLighting.cginc"
 
-        float _Variation;  // How much the levels of the cells differ: 0 = all the same
-        float _CellCount;  // Cells along one unit of texture coordinate
-        float _ThicknessFactor;  // Thickness of the thickest cell
-        float _Bevel;  // Width of the slope beside an edge, in cells
-        float _AttenuationDistance;  // The length after which 1/e (37 %) of the light is left; 0 = opaque
+        float _Variation;  // How much the levels of the cells differ: 0 = all are equal
+        float _CellCount;  // Number of cells along one unit of texture coordinate
+        float _ThicknessFactor;  // Thickness of a cell of level 1
+        float _Bevel;  // Width of the slope next to an edge, in cells
+        float _AttenuationDistance;  // The length after which 1/e (37 %) of the light remains; 0 = opaque
         float4 _Tint;  // Multiplies the texture
         float _Metalness;  // 0 = not a metal, 1 = metal
-        float _SurfaceRoughness;  // 0 = a mirror, 1 = chalk
-        float _Relief;  // How far the thickest cells rise above their edges
-        float2 _UvPerUnit;  // How far the texture coordinates move for one world unit along T and along B
+        float _SurfaceRoughness;  // 0 = smooth as a mirror, 1 = rough as chalk
+        float _Relief;  // Height of the thickest cells above their edges
+        float2 _UvPerUnit;  // Change of the texture coordinates per world unit along T and along B
         float _Cover;  // Multiplies the texture
-        float2 _RedSpeed;  // How fast the red layer moves
-        float2 _GreenSpeed;  // How fast the green layer moves
-        float2 _BlueSpeed;  // How fast the blue layer moves
+        float2 _RedSpeed;  // Velocity of the red layer
+        float2 _GreenSpeed;  // Velocity of the green layer
+        float2 _BlueSpeed;  // Velocity of the blue layer
         float3 _VeinColor;  // Colour of the light in the red and green layers, where both are bright
         float3 _SparkColor;  // Colour of the light in the blue layer
         float _TexelSize;  // The length, in texture coordinates, over which slopes are measured: about one texel
         float _Edge;  // Width of the soft edge, in the texture's values
-        float _Erosion;  // How much is gone: 0 = nothing, 1 = everything
-        float _EdgeHeight;  // How far the surface falls at the edge
-        float _Distortion;  // How much the normal bends the light on its way through: 0 ignores the shape
-        float3 _SubsurfaceColor;  // Colour of the light that has passed through
-        float _Attenuation;  // Strength of it all
+        float _Erosion;  // How much is eroded: 0 = nothing, 1 = everything
+        float _EdgeHeight;  // Height of the step in the surface at the edge
+        float _Distortion;  // How far the normal bends the light's direction inside the body: 0 ignores the shape
+        float3 _SubsurfaceColor;  // Colour of the transmitted light
+        float _Attenuation;  // Factor on the whole result
         float _Scale;  // Strength of the glow towards the light
-        float _Ambient;  // Glow that is there from every side
-        float _Power;  // How tight the glow is around the light: the larger, the smaller the spot
+        float _Ambient;  // Glow that does not depend on the direction
+        float _Power;  // How narrow the glow around the light is: the larger, the smaller the spot
 
         sampler2D _BaseColorTexture;
         sampler2D _CoverTexture;
@@ -131,7 +131,7 @@ Shader "sssgen/Ice" {
             float first_square = 32.0;
             float second_square = 32.0;
             uint owner = 0u;
-            // from the corner of its own cell, so that far cells are as exact as near ones
+            // relative to the cell's corner, so that precision does not depend on the distance from the origin
             float2 home = floor(p);
             float2 within = p - home;
             [unroll]
@@ -161,7 +161,7 @@ Shader "sssgen/Ice" {
             return cell;
         }
 
-        // How much further the second site is than the nearest one: 0 on the edges.
+        // How much farther the second nearest site is than the nearest one: 0 on the edges.
         float to_edge(Cell cell) {
             return length(cell.second) - length(cell.nearest);
         }
@@ -172,13 +172,13 @@ Shader "sssgen/Ice" {
             return _ThicknessFactor * cell.level * smoothstep(0.0, _Bevel, to_edge(cell));
         }
 
-        // `d` in mean free paths, 0 or more.
+        // The thickness `d` in mean free paths, 0 or more.
         float optical_depth(float d, float mean_free_path) {
             float path = max(mean_free_path, OPAQUE_DISTANCE);
             return clamp(d, 0.0, ENDLESS * path) / path;
         }
 
-        // Thickness to transmittance: what absorption leaves of the light.
+        // Thickness to transmittance: the part of the light that absorption leaves.
         float beer_lambert(float d) {
             return exp(-min(optical_depth(d, _AttenuationDistance), OPAQUE_DEPTH));
         }
@@ -198,21 +198,21 @@ Shader "sssgen/Ice" {
 
         // The gradient of to_edge.
         float2 from_edge(Cell cell) {
-            // the nearest site may be just here, the second one never: they are at least 0.4 apart
+            // the nearest site may be exactly here, the second one cannot: they are at least 0.4 apart
             return safe_normalize(cell.nearest) - normalize(cell.second);
         }
 
-        // Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add.
+        // Adds `detail` to `base`: x and y are added, z is multiplied; for small slopes this adds the slopes.
         float3 blend_normals(float3 base, float3 detail) {
             return safe_normalize(float3(base.xy + detail.xy, base.z * detail.z));
         }
 
-        // The normal of a height field; `slope` is the height gained per unit of length along T and B.
+        // The normal of a height field; `slope` is the increase in height per unit of length along T and B.
         float3 normal_of_slope(float2 slope) {
             return normalize(float3(-slope, 1.0));
         }
 
-        // The normal of the Voronoi cells, so that reflected light agrees with light that comes through.
+        // The normal of the Voronoi cells, so that reflected light agrees with transmitted light.
         void voronoi_normal(float2 uv, inout float3 normal) {
             Cell cell = cell_at(uv * _CellCount);
             float x = clamp(to_edge(cell) / _Bevel, 0.0, 1.0);
@@ -222,32 +222,32 @@ Shader "sssgen/Ice" {
             normal = blend_normals(normal, normal_of_slope(slope));
         }
 
-        // Light comes through the bare ice only.
+        // Only the bare ice transmits light.
         void ice_mask(float2 uv, inout float through) {
             float covered = _Cover * tex2D(_CoverTexture, uv).r;
             through = through * smoothstep(0.0, 0.1, 1.0 - covered);
         }
 
-        // One moving layer: the offset stays within 1, so that it loses no precision in a long session.
+        // One moving layer; the offset stays below 1, so that precision does not decrease with time.
         float4 layer(float2 uv, float2 speed, float time) {
             return tex2D(_PackedTexture, uv + frac(speed * time));
         }
 
-        // Moving light below the surface, from the channels of one texture that scroll each its own way.
+        // Moving light below the surface, from the channels of one texture, each of which scrolls separately.
         void packed_scroll(float2 uv, float time, inout float3 emission) {
             float veins = layer(uv, _RedSpeed, time).x * layer(uv, _GreenSpeed, time).y;
             float sparks = layer(uv, _BlueSpeed, time).z;
             emission = min(emission + (_VeinColor * veins + _SparkColor * sparks), 65504.0);
         }
 
-        // What is left at `uv`: 1 = whole, 0 = gone.
+        // The part of the surface that remains at `uv`: 1 = all, 0 = none.
         float left_at(float2 uv) {
-            // the threshold starts below black and ends at white, so that 0 is whole and 1 is gone
+            // the threshold goes from below black to white, so that erosion 0 keeps and erosion 1 removes everything
             float threshold = lerp(-_Edge, 1.0, _Erosion);
             return clamp((tex2D(_ErosionTexture, uv).r - threshold) / _Edge, 0.0, 1.0);
         }
 
-        // Eats the surface away, dark parts of a mask first, with a bevel at the edge that takes the light.
+        // Erodes the surface, dark parts of a mask first, with a bevelled normal at the edge.
         void alpha_erosion(float2 uv, inout float alpha, inout float3 normal) {
             float2 e = float2(_TexelSize, 0.0);
             float2 at = uv;
@@ -258,7 +258,7 @@ Shader "sssgen/Ice" {
             alpha *= left_at(at);
         }
 
-        // The light that comes through where `lobe` (0..1) points at the eye.
+        // The transmitted light for a lobe value of 0..1 and a transmittance.
         float3 glow(float lobe, float through) {
             return _SubsurfaceColor * (_Attenuation * (lobe * _Scale + _Ambient) * through);
         }
@@ -269,7 +269,7 @@ Shader "sssgen/Ice" {
             return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), _Power), through);
         }
 
-        // Everything about the surface that does not depend on a light.
+        // The values of the surface that do not depend on a light.
         Surface evaluate_surface(float2 uv, float time) {
             float thickness = voronoi_thickness(uv);
             float transmittance = beer_lambert(thickness);
@@ -289,7 +289,7 @@ Shader "sssgen/Ice" {
             return surface;
         }
 
-        // What one light adds from behind, as a factor on its colour.
+        // The transmitted light of one light, as a factor on its colour.
         float3 evaluate_translucency(Surface surface, float3 V, float3 N, float3 L) {
             return lobe_normalized(V, N, L, surface.transmittance);
         }

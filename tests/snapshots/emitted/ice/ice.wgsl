@@ -25,32 +25,32 @@ const ENDLESS: f32 = 10000.0;
 const OPAQUE_DEPTH: f32 = 80.0;
 
 struct Material {
-    variation: f32,  // How much the levels of the cells differ: 0 = all the same
-    cell_count: f32,  // Cells along one unit of texture coordinate
-    thickness_factor: f32,  // Thickness of the thickest cell
-    bevel: f32,  // Width of the slope beside an edge, in cells
-    attenuation_distance: f32,  // The length after which 1/e (37 %) of the light is left; 0 = opaque
+    variation: f32,  // How much the levels of the cells differ: 0 = all are equal
+    cell_count: f32,  // Number of cells along one unit of texture coordinate
+    thickness_factor: f32,  // Thickness of a cell of level 1
+    bevel: f32,  // Width of the slope next to an edge, in cells
+    attenuation_distance: f32,  // The length after which 1/e (37 %) of the light remains; 0 = opaque
     tint: vec4f,  // Multiplies the texture
     metalness: f32,  // 0 = not a metal, 1 = metal
-    surface_roughness: f32,  // 0 = a mirror, 1 = chalk
-    relief: f32,  // How far the thickest cells rise above their edges
-    uv_per_unit: vec2f,  // How far the texture coordinates move for one world unit along T and along B
+    surface_roughness: f32,  // 0 = smooth as a mirror, 1 = rough as chalk
+    relief: f32,  // Height of the thickest cells above their edges
+    uv_per_unit: vec2f,  // Change of the texture coordinates per world unit along T and along B
     cover: f32,  // Multiplies the texture
-    red_speed: vec2f,  // How fast the red layer moves
-    green_speed: vec2f,  // How fast the green layer moves
-    blue_speed: vec2f,  // How fast the blue layer moves
+    red_speed: vec2f,  // Velocity of the red layer
+    green_speed: vec2f,  // Velocity of the green layer
+    blue_speed: vec2f,  // Velocity of the blue layer
     vein_color: vec3f,  // Colour of the light in the red and green layers, where both are bright
     spark_color: vec3f,  // Colour of the light in the blue layer
     texel_size: f32,  // The length, in texture coordinates, over which slopes are measured: about one texel
     edge: f32,  // Width of the soft edge, in the texture's values
-    erosion: f32,  // How much is gone: 0 = nothing, 1 = everything
-    edge_height: f32,  // How far the surface falls at the edge
-    distortion: f32,  // How much the normal bends the light on its way through: 0 ignores the shape
-    subsurface_color: vec3f,  // Colour of the light that has passed through
-    attenuation: f32,  // Strength of it all
+    erosion: f32,  // How much is eroded: 0 = nothing, 1 = everything
+    edge_height: f32,  // Height of the step in the surface at the edge
+    distortion: f32,  // How far the normal bends the light's direction inside the body: 0 ignores the shape
+    subsurface_color: vec3f,  // Colour of the transmitted light
+    attenuation: f32,  // Factor on the whole result
     scale: f32,  // Strength of the glow towards the light
-    ambient: f32,  // Glow that is there from every side
-    power: f32,  // How tight the glow is around the light: the larger, the smaller the spot
+    ambient: f32,  // Glow that does not depend on the direction
+    power: f32,  // How narrow the glow around the light is: the larger, the smaller the spot
 }
 @group(1) @binding(0) var<uniform> material: Material;
 
@@ -94,7 +94,7 @@ fn cell_at(p: vec2f) -> Cell {
     var first_square = 32.0;
     var second_square = 32.0;
     var owner = 0u;
-    // from the corner of its own cell, so that far cells are as exact as near ones
+    // relative to the cell's corner, so that precision does not depend on the distance from the origin
     let home = floor(p);
     let within = p - home;
     for (var j = -1; j <= 1; j++) {
@@ -121,7 +121,7 @@ fn cell_at(p: vec2f) -> Cell {
     return Cell(nearest, second, level);
 }
 
-// How much further the second site is than the nearest one: 0 on the edges.
+// How much farther the second nearest site is than the nearest one: 0 on the edges.
 fn to_edge(cell: Cell) -> f32 {
     return length(cell.second) - length(cell.nearest);
 }
@@ -132,13 +132,13 @@ fn voronoi_thickness(uv: vec2f) -> f32 {
     return material.thickness_factor * cell.level * smoothstep(0.0, material.bevel, to_edge(cell));
 }
 
-// `d` in mean free paths, 0 or more.
+// The thickness `d` in mean free paths, 0 or more.
 fn optical_depth(d: f32, mean_free_path: f32) -> f32 {
     let path = max(mean_free_path, OPAQUE_DISTANCE);
     return clamp(d, 0.0, ENDLESS * path) / path;
 }
 
-// Thickness to transmittance: what absorption leaves of the light.
+// Thickness to transmittance: the part of the light that absorption leaves.
 fn beer_lambert(d: f32) -> f32 {
     return exp(-min(optical_depth(d, material.attenuation_distance), OPAQUE_DEPTH));
 }
@@ -158,21 +158,21 @@ fn pbr_constants(metallic: ptr<function, f32>, roughness: ptr<function, f32>) {
 
 // The gradient of to_edge.
 fn from_edge(cell: Cell) -> vec2f {
-    // the nearest site may be just here, the second one never: they are at least 0.4 apart
+    // the nearest site may be exactly here, the second one cannot: they are at least 0.4 apart
     return safe_normalize_vec2(cell.nearest) - normalize(cell.second);
 }
 
-// Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add.
+// Adds `detail` to `base`: x and y are added, z is multiplied; for small slopes this adds the slopes.
 fn blend_normals(base: vec3f, detail: vec3f) -> vec3f {
     return safe_normalize_vec3(vec3f(base.xy + detail.xy, base.z * detail.z));
 }
 
-// The normal of a height field; `slope` is the height gained per unit of length along T and B.
+// The normal of a height field; `slope` is the increase in height per unit of length along T and B.
 fn normal_of_slope(slope: vec2f) -> vec3f {
     return normalize(vec3f(-slope, 1.0));
 }
 
-// The normal of the Voronoi cells, so that reflected light agrees with light that comes through.
+// The normal of the Voronoi cells, so that reflected light agrees with transmitted light.
 fn voronoi_normal(uv: vec2f, normal: ptr<function, vec3f>) {
     let cell = cell_at(uv * material.cell_count);
     let x = clamp(to_edge(cell) / material.bevel, 0.0, 1.0);
@@ -182,18 +182,18 @@ fn voronoi_normal(uv: vec2f, normal: ptr<function, vec3f>) {
     *normal = blend_normals(*normal, normal_of_slope(slope));
 }
 
-// Light comes through the bare ice only.
+// Only the bare ice transmits light.
 fn ice_mask(uv: vec2f, through: ptr<function, f32>) {
     let covered = material.cover * textureSample(cover_texture, cover_texture_sampler, uv).r;
     *through = *through * smoothstep(0.0, 0.1, 1.0 - covered);
 }
 
-// One moving layer: the offset stays within 1, so that it loses no precision in a long session.
+// One moving layer; the offset stays below 1, so that precision does not decrease with time.
 fn layer(uv: vec2f, speed: vec2f, time: f32) -> vec4f {
     return textureSample(packed_texture, packed_texture_sampler, uv + fract(speed * time));
 }
 
-// Moving light below the surface, from the channels of one texture that scroll each its own way.
+// Moving light below the surface, from the channels of one texture, each of which scrolls separately.
 fn packed_scroll(uv: vec2f, time: f32, emission: ptr<function, vec3f>) {
     let veins = layer(uv, material.red_speed, time).x * layer(uv, material.green_speed, time).y;
     let sparks = layer(uv, material.blue_speed, time).z;
@@ -201,15 +201,15 @@ fn packed_scroll(uv: vec2f, time: f32, emission: ptr<function, vec3f>) {
         vec3f(65504.0));
 }
 
-// What is left at `uv`: 1 = whole, 0 = gone.
+// The part of the surface that remains at `uv`: 1 = all, 0 = none.
 fn left_at(uv: vec2f) -> f32 {
-    // the threshold starts below black and ends at white, so that 0 is whole and 1 is gone
+    // the threshold goes from below black to white, so that erosion 0 keeps and erosion 1 removes everything
     let threshold = mix(-material.edge, 1.0, material.erosion);
     return clamp((textureSample(erosion_texture, erosion_texture_sampler, uv).r - threshold) / material.edge,
         0.0, 1.0);
 }
 
-// Eats the surface away, dark parts of a mask first, with a bevel at the edge that takes the light.
+// Erodes the surface, dark parts of a mask first, with a bevelled normal at the edge.
 fn alpha_erosion(uv: vec2f, alpha: ptr<function, f32>, normal: ptr<function, vec3f>) {
     let e = vec2f(material.texel_size, 0.0);
     let at = uv;
@@ -220,7 +220,7 @@ fn alpha_erosion(uv: vec2f, alpha: ptr<function, f32>, normal: ptr<function, vec
     *alpha *= left_at(at);
 }
 
-// The light that comes through where `lobe` (0..1) points at the eye.
+// The transmitted light for a lobe value of 0..1 and a transmittance.
 fn glow(lobe: f32, through: f32) -> vec3f {
     return material.subsurface_color
         * (material.attenuation * (lobe * material.scale + material.ambient) * through);
@@ -232,7 +232,7 @@ fn lobe_normalized(V: vec3f, N: vec3f, L: vec3f, through: f32) -> vec3f {
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), material.power), through);
 }
 
-// The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light.
+// The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one light.
 fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughness: f32,
     light_color: vec3f) -> vec3f {
     let H = safe_normalize_vec3(V + L);
@@ -240,21 +240,21 @@ fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughnes
     let NoV = max(dot(N, V), 0.0001);
     let NoH = clamp(dot(N, H), 0.0, 1.0);
     let a = max(roughness, 0.045) * max(roughness, 0.045);
-    // (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak; never below a^2
+    // (a^2 - 1) dot(N, H)^2 + 1, but accurate at the peak, where N and H nearly coincide; never below a^2
     let across = cross(N, H);
     let spread = select(1.0, max(dot(across, across) + NoH * NoH * (a * a), a * a), NoH > 0.0);
     // D times pi
     let facets = a * a / (spread * spread);
-    // masking and shadowing, over 4 dot(N, L) dot(N, V)
+    // masking and shadowing, divided by 4 dot(N, L) dot(N, V)
     let visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
-    // nothing reflects more than all
+    // a surface reflects at most all light
     let F0 = mix(vec3f(0.04), min(albedo, vec3f(1.0)), metallic);
     let F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     let diffuse = albedo * (1.0 - metallic) * (1.0 - F);
     return (diffuse + facets * visible * F) * NoL * light_color;
 }
 
-// Everything about the surface that does not depend on a light.
+// The values of the surface that do not depend on a light.
 fn evaluate_surface(uv: vec2f, time: f32) -> Surface {
     let thickness = voronoi_thickness(uv);
     var transmittance = beer_lambert(thickness);
@@ -273,12 +273,12 @@ fn evaluate_surface(uv: vec2f, time: f32) -> Surface {
     return Surface(albedo, alpha, normal, metallic, roughness, emission, transmittance);
 }
 
-// What one light adds from behind, as a factor on its colour.
+// The transmitted light of one light, as a factor on its colour.
 fn evaluate_translucency(surface: Surface, V: vec3f, N: vec3f, L: vec3f) -> vec3f {
     return lobe_normalized(V, N, L, surface.transmittance);
 }
 
-// What one light adds from the front.
+// The reflected light of one light.
 fn evaluate_lighting(surface: Surface, N: vec3f, V: vec3f, L: vec3f, light_color: vec3f) -> vec3f {
     return standard(N, V, L, surface.albedo, surface.metallic, surface.roughness, light_color);
 }

@@ -39,7 +39,7 @@ def cell_at(p, variation):
     first_square = 32.0
     second_square = 32.0
     owner = to_uint(0)
-    # from the corner of its own cell, so that far cells are as exact as near ones
+    # relative to the cell's corner, so that precision does not depend on the distance from the origin
     home = floor(p)
     within = p - home
     for j in range(-1, 2):
@@ -63,7 +63,7 @@ def cell_at(p, variation):
     return Record(nearest=nearest, second=second, level=level)
 
 def to_edge(cell):
-    """How much further the second site is than the nearest one: 0 on the edges."""
+    """How much farther the second nearest site is than the nearest one: 0 on the edges."""
     return length(cell.second) - length(cell.nearest)
 
 def voronoi_thickness(uv, variation, cell_count, thickness_factor, bevel):
@@ -72,12 +72,12 @@ def voronoi_thickness(uv, variation, cell_count, thickness_factor, bevel):
     return thickness_factor * cell.level * smoothstep(0.0, bevel, to_edge(cell))
 
 def optical_depth(d, mean_free_path):
-    """`d` in mean free paths, 0 or more."""
+    """The thickness `d` in mean free paths, 0 or more."""
     path = max(mean_free_path, OPAQUE_DISTANCE)
     return clamp(d, 0.0, ENDLESS * path) / path
 
 def beer_lambert(d, attenuation_distance):
-    """Thickness to transmittance: what absorption leaves of the light."""
+    """Thickness to transmittance: the part of the light that absorption leaves."""
     return exp(-min(optical_depth(d, attenuation_distance), OPAQUE_DEPTH))
 
 def base_color(uv, tint, base_color_texture):
@@ -95,19 +95,19 @@ def pbr_constants(metalness, surface_roughness):
 
 def from_edge(cell):
     """The gradient of to_edge."""
-    # the nearest site may be just here, the second one never: they are at least 0.4 apart
+    # the nearest site may be exactly here, the second one cannot: they are at least 0.4 apart
     return safe_normalize_vec2(cell.nearest) - normalize(cell.second)
 
 def blend_normals(base, detail):
-    """Lays `detail` over `base`: x and y add, z multiplies; for gentle normals their slopes add."""
+    """Adds `detail` to `base`: x and y are added, z is multiplied; for small slopes this adds the slopes."""
     return safe_normalize_vec3(vec(swizzle(base, "xy") + swizzle(detail, "xy"), base[2] * detail[2]))
 
 def normal_of_slope(slope):
-    """The normal of a height field; `slope` is the height gained per unit of length along T and B."""
+    """The normal of a height field; `slope` is the increase in height per unit of length along T and B."""
     return normalize(vec(-slope, 1.0))
 
 def voronoi_normal(uv, normal, variation, cell_count, bevel, relief, uv_per_unit):
-    """The normal of the Voronoi cells, so that reflected light agrees with light that comes through."""
+    """The normal of the Voronoi cells, so that reflected light agrees with transmitted light."""
     cell = cell_at(uv * cell_count, variation)
     x = clamp(to_edge(cell) / bevel, 0.0, 1.0)
     # the derivative of the smoothstep
@@ -117,31 +117,31 @@ def voronoi_normal(uv, normal, variation, cell_count, bevel, relief, uv_per_unit
     return normal
 
 def ice_mask(uv, through, cover, cover_texture):
-    """Light comes through the bare ice only."""
+    """Only the bare ice transmits light."""
     covered = cover * texture(cover_texture, uv)[0]
     through = clamp(through * smoothstep(0.0, 0.1, 1.0 - covered), 0.0, 1.0)
     return through
 
 def layer(uv, speed, time, packed_texture):
-    """One moving layer: the offset stays within 1, so that it loses no precision in a long session."""
+    """One moving layer; the offset stays below 1, so that precision does not decrease with time."""
     return texture(packed_texture, uv + fract(speed * time))
 
 def packed_scroll(uv, time, emission, packed_texture, red_speed, green_speed, blue_speed, vein_color,
     spark_color):
-    """Moving light below the surface, from the channels of one texture that scroll each its own way."""
+    """Moving light below the surface, from the channels of one texture, each of which scrolls separately."""
     veins = layer(uv, red_speed, time, packed_texture)[0] * layer(uv, green_speed, time, packed_texture)[1]
     sparks = layer(uv, blue_speed, time, packed_texture)[2]
     emission = min(emission + (vein_color * veins + spark_color * sparks), 65504.0)
     return emission
 
 def left_at(uv, edge, erosion, erosion_texture):
-    """What is left at `uv`: 1 = whole, 0 = gone."""
-    # the threshold starts below black and ends at white, so that 0 is whole and 1 is gone
+    """The part of the surface that remains at `uv`: 1 = all, 0 = none."""
+    # the threshold goes from below black to white, so that erosion 0 keeps and erosion 1 removes everything
     threshold = mix(-edge, 1.0, erosion)
     return clamp((texture(erosion_texture, uv)[0] - threshold) / edge, 0.0, 1.0)
 
 def alpha_erosion(uv, alpha, normal, uv_per_unit, texel_size, edge, erosion, erosion_texture, edge_height):
-    """Eats the surface away, dark parts of a mask first, with a bevel at the edge that takes the light."""
+    """Erodes the surface, dark parts of a mask first, with a bevelled normal at the edge."""
     e = vec(texel_size, 0.0)
     at = uv
     across = left_at(at + e, edge, erosion, erosion_texture) - left_at(at - e, edge, erosion, erosion_texture)
@@ -153,7 +153,7 @@ def alpha_erosion(uv, alpha, normal, uv_per_unit, texel_size, edge, erosion, ero
     return alpha, normal
 
 def glow(lobe, through, subsurface_color, attenuation, scale, ambient):
-    """The light that comes through where `lobe` (0..1) points at the eye."""
+    """The transmitted light for a lobe value of 0..1 and a transmittance."""
     return subsurface_color * (attenuation * (lobe * scale + ambient) * through)
 
 def lobe_normalized(V, N, L, through, distortion, subsurface_color, attenuation, scale, ambient, power):
@@ -163,20 +163,20 @@ def lobe_normalized(V, N, L, through, distortion, subsurface_color, attenuation,
         ambient)
 
 def standard(N, V, L, albedo, metallic, roughness, light_color):
-    """The standard light of plain targets: Lambert and GGX with metallic and roughness, for one light."""
+    """The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one light."""
     H = safe_normalize_vec3(V + L)
     NoL = max(dot(N, L), 0.0)
     NoV = max(dot(N, V), 0.0001)
     NoH = clamp(dot(N, H), 0.0, 1.0)
     a = max(roughness, 0.045) * max(roughness, 0.045)
-    # (a^2 - 1) dot(N, H)^2 + 1, but exact where N and H nearly meet and a mirror has its peak; never below a^2
+    # (a^2 - 1) dot(N, H)^2 + 1, but accurate at the peak, where N and H nearly coincide; never below a^2
     across = cross(N, H)
     spread = select(NoH > 0.0, max(dot(across, across) + NoH * NoH * (a * a), a * a), 1.0)
     # D times pi
     facets = a * a / (spread * spread)
-    # masking and shadowing, over 4 dot(N, L) dot(N, V)
+    # masking and shadowing, divided by 4 dot(N, L) dot(N, V)
     visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a)
-    # nothing reflects more than all
+    # a surface reflects at most all light
     F0 = mix(splat(3, 0.04), min(albedo, 1.0), metallic)
     F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0)
     diffuse = albedo * (1.0 - metallic) * (1.0 - F)
@@ -186,7 +186,7 @@ def evaluate_surface(uv, time, variation, cell_count, thickness_factor, bevel, a
     base_color_texture, metalness, surface_roughness, relief, uv_per_unit, cover, cover_texture,
     packed_texture, red_speed, green_speed, blue_speed, vein_color, spark_color, texel_size, edge, erosion,
     erosion_texture, edge_height):
-    """Everything about the surface that does not depend on a light."""
+    """The values of the surface that do not depend on a light."""
     thickness = voronoi_thickness(uv, variation, cell_count, thickness_factor, bevel)
     transmittance = beer_lambert(thickness, attenuation_distance)
     albedo, alpha = base_color(uv, tint, base_color_texture)
@@ -203,10 +203,10 @@ def evaluate_surface(uv, time, variation, cell_count, thickness_factor, bevel, a
         emission=emission, transmittance=transmittance)
 
 def evaluate_translucency(surface, V, N, L, distortion, subsurface_color, attenuation, scale, ambient, power):
-    """What one light adds from behind, as a factor on its colour."""
+    """The transmitted light of one light, as a factor on its colour."""
     return lobe_normalized(V, N, L, surface.transmittance, distortion, subsurface_color, attenuation, scale,
         ambient, power)
 
 def evaluate_lighting(surface, N, V, L, light_color):
-    """What one light adds from the front."""
+    """The reflected light of one light."""
     return standard(N, V, L, surface.albedo, surface.metallic, surface.roughness, light_color)
