@@ -48,8 +48,8 @@ def converted(value: Number, kind: str) -> Number | None:
     if kind == "float":
         return float32(float(value))
     if isinstance(value, float):
-        whole = int(value)
-        return whole if whole == wrapped(whole, kind) else None
+        integer = int(value)
+        return integer if integer == wrapped(integer, kind) else None
     return wrapped(int(value), kind)
 
 
@@ -67,10 +67,10 @@ def binary(op: str, left: Numbers, right: Numbers, kind: str) -> Numbers | None:
 def unary(op: str, value: Numbers, kind: str) -> Numbers | None:
     """`op value`."""
     if op == "!":
-        return tuple([not one for one in value])
+        return tuple([not component for component in value])
     if kind == "float":
-        return tuple([-one for one in value]) if op == "-" else None
-    return tuple([wrapped(-int(one) if op == "-" else ~int(one), kind) for one in value])
+        return tuple([-component for component in value]) if op == "-" else None
+    return tuple([wrapped(-int(component) if op == "-" else ~int(component), kind) for component in value])
 
 
 def builtin(name: str, args: Sequence[Numbers], types: Sequence[Type], result: Type) -> Numbers | None:
@@ -79,8 +79,8 @@ def builtin(name: str, args: Sequence[Numbers], types: Sequence[Type], result: T
         values = _values(name, args)
     except (ArithmeticError, ValueError):
         return None
-    found = _rounded(values, kind_of(result)) if values is not None else None
-    return found if found is not None and len(found) == components(result) else None
+    result_values = _rounded(values, kind_of(result)) if values is not None else None
+    return result_values if result_values is not None and len(result_values) == components(result) else None
 
 
 def outside(name: str, args: Sequence[Numbers]) -> bool:
@@ -134,8 +134,8 @@ def _rounded(values: Sequence[Number], kind: str) -> Numbers | None:
 def _quotient(x: int, y: int) -> int:
     if (x, y) == (-0x80000000, -1):
         raise ArithmeticError
-    whole = abs(x) // abs(y)
-    return whole if (x < 0) == (y < 0) else -whole
+    quotient = abs(x) // abs(y)
+    return quotient if (x < 0) == (y < 0) else -quotient
 
 
 def _remainder(x: int, y: int) -> int:

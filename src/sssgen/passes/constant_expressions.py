@@ -29,14 +29,14 @@ def literal(type: Type, values: Numbers, span: Span) -> Expr:
     """Scalars or a vector as literals; `vec3(1.0)` where all are the same."""
     if isinstance(type, Scalar):
         return Literal(type, values[0], span)
-    one = Scalar(kind_of(type))
+    scalar = Scalar(kind_of(type))
     if all(same_number(value, values[0]) for value in values):
         values = values[:1]
-    return Construct(type, tuple([Literal(one, value, span) for value in values]), span)
+    return Construct(type, tuple([Literal(scalar, value, span) for value in values]), span)
 
 
-def same_number(one: Number, other: Number) -> bool:
-    return one == other and copysign(1.0, one) == copysign(1.0, other)
+def same_number(first: Number, second: Number) -> bool:
+    return first == second and copysign(1.0, first) == copysign(1.0, second)
 
 
 def constant_numbers(expr: Expr) -> Numbers | None:

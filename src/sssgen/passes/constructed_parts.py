@@ -38,8 +38,8 @@ def picked(value: Construct, indices: list[int], type: Type, span: Span) -> Expr
             groups.append((number, [part]))
     used = [number for number, _ in groups]
     for number, arg in enumerate(value.args):
-        twice = used.count(number) > 1 and not isinstance(arg, Local | Global | Literal)
-        if twice or (number not in used and calls(arg)):
+        repeated = used.count(number) > 1 and not isinstance(arg, Local | Global | Literal)
+        if repeated or (number not in used and calls(arg)):
             return None
     pieces = [_piece(value.args[number], parts, span) for number, parts in groups]
     return pieces[0] if len(pieces) == 1 else Construct(type, tuple(pieces), span)

@@ -8,21 +8,23 @@ from __future__ import annotations
 
 from sssgen.ir.nodes import Block, Call, Evaluate, Expr, Function, Intrinsic, Local, Module, Return, Stmt
 from sssgen.ir.transform import rewrite_module
-from sssgen.ir.walk import subexpressions
+from sssgen.passes.constructed_parts import calls
 
 
 def drop_conversions(module: Module) -> Module:
     """The module with the argument in place of each call of a conversion. The functions themselves remain."""
-    converted = {function.key: place for function in module.functions if (place := _converted(function)) is not None}
+    converted = {
+        function.key: position for function in module.functions if (position := _converted(function)) is not None
+    }
     if not converted:
         return module
 
     def change(node: Expr) -> Expr:
         if type(node) is not Call or node.function not in converted:
             return node
-        place = converted[node.function]
-        dropped = node.args[:place] + node.args[place + 1 :]
-        return node if any(map(_calls, dropped)) else node.args[place]
+        position = converted[node.function]
+        dropped = node.args[:position] + node.args[position + 1 :]
+        return node if any(map(calls, dropped)) else node.args[position]
 
     return rewrite_module(module, change, _without_idle_calls)
 
@@ -34,11 +36,6 @@ def _converted(function: Function) -> int | None:
     names = [param.name for param in function.params]
     only_reads = all(param.direction == "in" for param in function.params)
     return names.index(value.name) if only_reads and isinstance(value, Local) else None
-
-
-def _calls(expr: Expr) -> bool:
-    """Whether an expression calls a function, which may do more than give its value."""
-    return any(type(part) is Call for part in subexpressions(expr))
 
 
 def _without_idle_calls(stmt: Stmt) -> Block | None:

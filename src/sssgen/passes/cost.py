@@ -18,7 +18,7 @@ UNKNOWN_TRIPS = 16
 
 
 class Cost(NamedTuple):
-    """What one evaluation does."""
+    """The operations of one evaluation."""
 
     operations: int = 0
     transcendentals: int = 0
@@ -90,7 +90,7 @@ class _Counter:
         return total
 
     def trips(self, loop: ir.For) -> int:
-        """How often a loop runs, as far as its header shows."""
+        """The number of iterations that a loop's header shows; UNKNOWN_TRIPS if it does not."""
         condition = loop.condition
         while isinstance(condition, ir.Binary) and condition.op == "&&":
             condition = condition.left

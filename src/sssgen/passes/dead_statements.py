@@ -88,12 +88,12 @@ class Cleaner:
         }
 
     def cleaned(self, key: str) -> Cleaned:
-        found = self.done.get(key)
-        if found is None:
+        cleaned = self.done.get(key)
+        if cleaned is None:
             function = self.functions[key]
             self.done[key] = Cleaned(function, Needs({}, set(), set()), True)
-            found = self.done[key] = FunctionCleaner(self, function).run()
-        return found
+            cleaned = self.done[key] = FunctionCleaner(self, function).run()
+        return cleaned
 
     def reads(self, key: str) -> set[str]:
         """The uniforms, textures and constants that a function reads, itself or through what it calls."""
@@ -103,12 +103,12 @@ class Cleaner:
         return needs.globals.union(*(self.reads(callee) for callee in needs.calls))
 
     def acts(self, key: str) -> bool:
-        """Whether a call may drop the fragment or write a module variable; so may what is not known."""
+        """Whether a call may drop the fragment or write a module variable; so may an unknown function."""
         return key not in self.functions or self.cleaned(key).acts
 
 
 class FunctionCleaner:
-    """Finds and drops what has no effect in one function.
+    """Finds and removes the statements of one function that have no effect.
 
     Variables are numbered by declaration, as sibling blocks may use one name for several. In the IR no
     visible variable is hidden, so a name stands for its latest declaration.
@@ -147,9 +147,9 @@ class FunctionCleaner:
         read = {need.name for need in kept if isinstance(need, Global)}
         read.update(*(self.cleaner.reads(need.function) for need in kept if isinstance(need, Call)))
         for unit in self.assumptions:
-            known = all(need.name in read for need in unit.needs if isinstance(need, Global))
+            read_anyway = all(need.name in read for need in unit.needs if isinstance(need, Global))
             live = all(self.live[number] for number in unit.variables)
-            unit.kept = known and live and (unit.parent is None or unit.parent.kept)
+            unit.kept = read_anyway and live and (unit.parent is None or unit.parent.kept)
 
     def number(self, name: str, live: bool = False) -> int:
         self.numbers[name] = len(self.stores)
@@ -160,7 +160,7 @@ class FunctionCleaner:
     # Finding what each statement reads and writes
 
     def block(self, block: Block, parent: Unit | None) -> tuple[list[Unit], bool]:
-        """The units of a block, up to where it is left for good; and whether it is."""
+        """The units of a block up to its first statement that always leaves it, and whether there is one."""
         units = []
         for stmt in block:
             unit = Unit(stmt, parent)
@@ -171,7 +171,7 @@ class FunctionCleaner:
         return units, False
 
     def statement(self, stmt: Stmt, unit: Unit) -> bool:
-        """Fills a statement's unit; whether nothing after the statement is reached."""
+        """Fills a statement's unit; returns whether the statements after it are unreachable."""
         if isinstance(stmt, Declare):
             if stmt.value is not None:
                 self.expression(stmt.value, unit)
@@ -211,7 +211,7 @@ class FunctionCleaner:
             self.expression(stmt.condition, unit)
             self.assumptions.append(unit)
         elif isinstance(stmt, Discard):
-            # a target may still want a return after it, so what follows stays
+            # a target may require a return after it, so the statements after it are kept
             self.acts = True
             self.essential.append(unit)
         elif self.jumps is not None:
@@ -226,7 +226,7 @@ class FunctionCleaner:
         self.jumps = outer
 
     def expression(self, expr: Expr, unit: Unit) -> None:
-        """Notes what an expression reads, and what its calls write."""
+        """Notes the variables that an expression reads, and those that its calls write."""
         variables, numbers = unit.variables, self.numbers
         stack: list[Any] = [expr]
         while stack:

@@ -82,22 +82,22 @@ _UNKNOWN = Summary(False, True, True, (), ())
 def summaries(module: Module) -> dict[str, Summary]:
     """A summary of each function of a module."""
     functions = {function.key: function for function in module.functions}
-    found: dict[str, Summary] = {}
+    result: dict[str, Summary] = {}
     shared = effects(module)
 
     def visit(key: str) -> Summary:
-        known = found.get(key)
-        if known is None:
+        summary = result.get(key)
+        if summary is None:
             function = functions.get(key)
             if function is None:
                 return _UNKNOWN
-            found[key] = _UNKNOWN
-            known = found[key] = _summary(function, visit, shared.get(key, NONE))
-        return known
+            result[key] = _UNKNOWN
+            summary = result[key] = _summary(function, visit, shared.get(key, NONE))
+        return summary
 
     for key in functions:
         visit(key)
-    return found
+    return result
 
 
 def _summary(function: Function, visit: Any, shared: Effects) -> Summary:
@@ -183,7 +183,7 @@ class Divergence:
             self.statement(stmt)
 
     def statement(self, stmt: Stmt) -> None:
-        before = self.flow
+        uniform_before = self.flow
         diverges = False
         hits = self.hits
         if isinstance(stmt, Declare):
@@ -211,16 +211,16 @@ class Divergence:
             self.escapes += not self.flow
         elif isinstance(stmt, Evaluate):
             self.varies(stmt.call)
-        if before:
+        if uniform_before:
             if diverges or (self.hits > hits and not isinstance(stmt, If | For | While)):
                 self.inside.add(id(stmt))
             if not self.flow:
                 self.after.add(id(stmt))
 
-    def store(self, name: str, varies: bool, whole: bool) -> None:
+    def store(self, name: str, varies: bool, complete: bool) -> None:
         if varies or not self.flow:
             self.varying.add(name)
-        elif whole:
+        elif complete:
             self.varying.discard(name)
 
     def choice(self, stmt: If) -> bool:

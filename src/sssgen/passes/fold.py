@@ -64,9 +64,9 @@ def fold(module: Module, fixed: Mapping[str, tuple[float, ...]] = {}) -> Module:
     for constant in module.constants:
         value = folder.expression(constant.value)
         constants.append(constant if value is constant.value else constant._replace(value=value))
-        known = folder.known(value)
-        if isinstance(known, Literal) or constant_numbers(known) is not None:
-            folder.constants[constant.name] = known
+        substituted = folder.known(value)
+        if isinstance(substituted, Literal) or constant_numbers(substituted) is not None:
+            folder.constants[constant.name] = substituted
     functions = tuple([folder.function(function) for function in module.functions])
     uniforms = module.uniforms
     if folder.fixed:
@@ -179,9 +179,9 @@ class _Folder(Transformer):
     def settled(self, condition: Expr) -> Expr:
         if isinstance(condition, Literal) or not self.constants:
             return condition
-        known = self.known(condition)
-        if known is condition or isinstance(known, Literal):
-            return known
+        substituted = self.known(condition)
+        if substituted is condition or isinstance(substituted, Literal):
+            return substituted
         if isinstance(condition, Binary) and condition.op in ("&&", "||"):
             left, right = self.settled(condition.left), self.settled(condition.right)
             if left is not condition.left or right is not condition.right:
@@ -346,12 +346,12 @@ def _is_neutral(op: str, right: Expr) -> bool:
 
 def _logic(expr: Binary, x: Numbers | None, y: Numbers | None) -> Expr:
     """`&&`, `||` or `^^`, of which one side may be known."""
-    known, other = (x, expr.right) if x is not None else (y, expr.left)
-    if known is None:
+    constant, other = (x, expr.right) if x is not None else (y, expr.left)
+    if constant is None:
         return expr
     if expr.op == "^^":
-        return Unary(BOOL, "!", other, expr.span) if known[0] else other
-    if known[0] == (expr.op == "&&"):
+        return Unary(BOOL, "!", other, expr.span) if constant[0] else other
+    if constant[0] == (expr.op == "&&"):
         return other
     # the right side is not evaluated where the left one decides; a left side with effects is
-    return expr if x is None and calls(other) else Literal(BOOL, known[0], expr.span)
+    return expr if x is None and calls(other) else Literal(BOOL, constant[0], expr.span)

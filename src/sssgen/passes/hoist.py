@@ -48,7 +48,7 @@ from sssgen.ir.walk import (
     written_root,
 )
 from sssgen.passes.divergence import Divergence, Site, Summary, implicit, joined, summaries
-from sssgen.passes.scopes import declared, fresh
+from sssgen.passes.scopes import declared, fresh, qualified_name
 
 _LARGEST = 64
 """How many nodes an expression may have that replaces a variable."""
@@ -68,19 +68,19 @@ def hoist(module: Module, entries: Iterable[str]) -> tuple[Module, list[Note]]:
     """
     if implicit().isdisjoint(builtins_of(module)):
         return module, []
-    known = summaries(module)
+    summary_of = summaries(module)
     functions = {function.key: function for function in module.functions}
     sites: dict[str, Site] = {}
     for key in entries:
-        if known[key].compares:
+        if summary_of[key].compares:
             sites[key] = Site(True, frozenset(param.name for param in functions[key].params))
     notes: dict[Note, None] = {}
-    for key in _callers_first(sites, known):
+    for key in _callers_first(sites, summary_of):
         function = functions[key]
-        flow = Divergence(function, sites[key], known, functions)
+        flow = Divergence(function, sites[key], summary_of, functions)
         if flow.misplaced:
-            functions[key] = function = _Hoister(function, sites[key], flow, known, notes).run()
-            flow = Divergence(function, sites[key], known, functions)
+            functions[key] = function = _Hoister(function, sites[key], flow, summary_of, notes).run()
+            flow = Divergence(function, sites[key], summary_of, functions)
         for callee, site in flow.sites.items():
             sites[callee] = joined(sites.get(callee), site)
     changed = any(functions[function.key] is not function for function in module.functions)
@@ -89,15 +89,15 @@ def hoist(module: Module, entries: Iterable[str]) -> tuple[Module, list[Note]]:
     return module, list(notes)
 
 
-def _callers_first(entries: Iterable[str], known: Mapping[str, Summary]) -> list[str]:
+def _callers_first(entries: Iterable[str], summaries: Mapping[str, Summary]) -> list[str]:
     """The functions that compare pixels, each after those that call it."""
     order: list[str] = []
-    seen: set[str] = set()
+    visited: set[str] = set()
 
     def visit(key: str) -> None:
-        if key not in seen and key in known and known[key].compares:
-            seen.add(key)
-            for callee in known[key].callees:
+        if key not in visited and key in summaries and summaries[key].compares:
+            visited.add(key)
+            for callee in summaries[key].callees:
                 visit(callee)
             order.append(key)
 
@@ -107,22 +107,22 @@ def _callers_first(entries: Iterable[str], known: Mapping[str, Summary]) -> list
 
 
 class _Region:
-    """Statements that not all pixels reach, and what is known before them."""
+    """Statements that not all pixels reach, and the values known before them."""
 
     def __init__(self, visible: Iterable[str], reachable: bool = True) -> None:
         self.available = set(visible)
-        """The variables that there are before the region."""
+        """The variables that exist before the region."""
         self.changed: set[str] = set()
-        """Those of them that have changed since, and module variables (see `named`)."""
+        """Those of them that have changed since, and module variables (see `qualified_name`)."""
         self.definitions: dict[str, Expr] = {}
-        """What variables hold, as expressions over what was available and has not changed."""
+        """The values of variables, as expressions over available variables that have not changed."""
         self.starts: dict[str, Expr] = {}
-        """What the region's own variables held first, in the same way."""
+        """The first values of the region's own variables, in the same form."""
         self.hoisted: list[Stmt] = []
-        self.made: dict[object, str] = {}
-        """The hoisted variables, by what they hold."""
+        self.variables: dict[object, str] = {}
+        """The names of the hoisted variables, by the keys of their values."""
         self.reachable = reachable
-        """Whether there is a place before it; not so where the whole function is called from a branch."""
+        """Whether statements can be inserted before it; False where the whole function is called from a branch."""
 
     def change(self, names: Iterable[str]) -> None:
         for name in names:
@@ -195,10 +195,10 @@ class _Hoister(Transformer):
         self.depths[stmt.name] = self.depth
         if self.region is not None:
             self.region.starts.pop(stmt.name, None)
-            known = self.before(new.value) if new.value is not None else None
-            self.define(stmt.name, known)
-            if known is not None:
-                self.region.starts[stmt.name] = known
+            earlier = self.before(new.value) if new.value is not None else None
+            self.define(stmt.name, earlier)
+            if earlier is not None:
+                self.region.starts[stmt.name] = earlier
         return new
 
     def assign(self, stmt: Assign) -> Stmt | None:
@@ -225,7 +225,7 @@ class _Hoister(Transformer):
         return new
 
     def define(self, name: str, value: Expr | None) -> None:
-        """Notes what a variable holds from here on, expressed by what existed before the region."""
+        """Notes the new value of a variable, as an expression over variables from before the region."""
         assert self.region is not None
         if value is not None and sum(1 for _ in subexpressions(value)) <= _LARGEST:
             self.region.definitions[name] = value
@@ -233,19 +233,19 @@ class _Hoister(Transformer):
             self.region.definitions.pop(name, None)
 
     def note_store(self, target: Expr, op: str, value: Expr) -> None:
-        """Notes what an assignment changes. In the variable's own block it is as good as a declaration."""
+        """Notes what an assignment changes. In the block of the variable's declaration it defines the variable."""
         assert self.region is not None
         variable = written_root(target)
         if variable is None:
             return
         if isinstance(variable, Global):
-            self.region.change((named(variable),))
+            self.region.change((qualified_name(variable),))
         elif target is variable and self.depths.get(variable.name, 0) == self.depth:
             if op:
                 value = Binary(target.type, op, target, value, target.span)
-            known = self.before(value)
+            earlier = self.before(value)
             self.region.change((variable.name,))
-            self.define(variable.name, known)
+            self.define(variable.name, earlier)
         else:
             self.region.change((variable.name,))
 
@@ -255,7 +255,7 @@ class _Hoister(Transformer):
         for stmt in statements(block):
             target = written_root(stmt.target) if isinstance(stmt, Assign) else None
             if target is not None:
-                names.add(named(target))
+                names.add(qualified_name(target))
         for expr in all_expressions(block):
             if isinstance(expr, Call):
                 names |= self.written(expr)
@@ -264,7 +264,9 @@ class _Hoister(Transformer):
     def written(self, call: Call) -> set[str]:
         summary = self.known[call.function]
         targets = [written_root(call.args[index]) for index in summary.outs]
-        return {named(target) for target in targets if target is not None}.union(map("${}".format, summary.writes))
+        return {qualified_name(target) for target in targets if target is not None}.union(
+            map("${}".format, summary.writes)
+        )
 
     # Expressions
 
@@ -273,9 +275,9 @@ class _Hoister(Transformer):
         changed = super().expression(expr)
         if id(expr) in self.flow.misplaced:
             assert isinstance(changed, Call | Intrinsic)
-            known = self.before(changed)
-            if known is not None:
-                return self.hoisted(known, _base_name(changed), expr.span)
+            earlier = self.before(changed)
+            if earlier is not None:
+                return self.hoisted(earlier, _base_name(changed), expr.span)
             if isinstance(changed, Intrinsic):
                 return self.explicit(changed)
         if self.region is not None and isinstance(expr, Call):
@@ -292,7 +294,7 @@ class _Hoister(Transformer):
                 return region.definitions[expr.name]
             return expr if expr.name in region.available and expr.name not in region.changed else None
         if isinstance(expr, Global):
-            return None if named(expr) in region.changed else expr
+            return None if qualified_name(expr) in region.changed else expr
         if isinstance(expr, Call):
             called = self.known[expr.function]
             if not called.pure or not region.changed.isdisjoint(map("${}".format, called.reads)):
@@ -306,20 +308,20 @@ class _Hoister(Transformer):
         whole = tuple([operand for operand in new if operand is not None])
         if len(whole) < len(new):
             return None
-        same = all(one is other for one, other in zip(whole, operands(expr), strict=True))
+        same = all(replacement is operand_ for replacement, operand_ in zip(whole, operands(expr), strict=True))
         return expr if same else with_operands(expr, whole)
 
     def hoisted(self, value: Expr, name: str, span: Span) -> Local:
         """A variable before the region that holds a value."""
         assert self.region is not None
         key = _key(value)
-        known = self.region.made.get(key)
-        if known is None:
-            known = self.region.made[key] = fresh(name, self.taken)
-            self.taken.add(known)
-            self.region.available.add(known)
-            self.region.hoisted.append(Declare(known, value.type, value, span))
-        return Local(value.type, known, span)
+        variable = self.region.variables.get(key)
+        if variable is None:
+            variable = self.region.variables[key] = fresh(name, self.taken)
+            self.taken.add(variable)
+            self.region.available.add(variable)
+            self.region.hoisted.append(Declare(variable, value.type, value, span))
+        return Local(value.type, variable, span)
 
     # The level made explicit
 
@@ -329,21 +331,21 @@ class _Hoister(Transformer):
         if row.kind == "derivative":
             self.note(f"{expr.name} is taken as 0 here", expr.span)
             return _zero(expr.type, expr.span)
-        map_, at, *rest = expr.args
+        map_, coordinate, *others = expr.args
         assert isinstance(map_.type, Sampler)
         if row.with_level is None or not row.with_gradients:
-            return expr  # there is none with a level of its own
+            return expr  # no such builtin has an explicit level
         if map_.type.shadow and map_.type != Sampler("2D", shadow=True):
-            return expr  # there is none with a level of its own
-        offset, bias = rest[: len(row.constant)], rest[len(row.constant) :]
-        coordinates = self.start(at) if not map_.type.shadow else None
+            return expr  # no such builtin has an explicit level
+        offset, bias = others[: len(row.constant)], others[len(row.constant) :]
+        coordinates = self.start(coordinate) if not map_.type.shadow else None
         if coordinates is None or not any(map(self.may_vary, subexpressions(coordinates))):
             self.note(f"{_words(map_)} is read at level 0 here", expr.span)
             level = bias[0] if bias else Literal(FLOAT, 0.0, expr.span)
-            return Intrinsic(expr.type, row.with_level.name, (map_, at, level, *offset), expr.span)
+            return Intrinsic(expr.type, row.with_level.name, (map_, coordinate, level, *offset), expr.span)
         name = coordinates.name if isinstance(coordinates, Local) else "coordinates"
         if map_.type.array:  # the layer has no slope
-            letters = "xyzw"[: components(at.type) - 1]
+            letters = "xyzw"[: components(coordinate.type) - 1]
             coordinates = Swizzle(vector_of("float", len(letters)), coordinates, letters, expr.span)
         slopes: list[Expr] = []
         for builtin, axis in (("dFdx", "dx"), ("dFdy", "dy")):
@@ -353,15 +355,14 @@ class _Hoister(Transformer):
             scale = Intrinsic(FLOAT, "exp2", (bias[0],), expr.span)
             slopes = [Binary(slope.type, "*", slope, scale, expr.span) for slope in slopes]
         self.note(f"{_words(map_)} is read here at the level that its coordinates had before", expr.span)
-        return Intrinsic(expr.type, row.with_gradients, (map_, at, *slopes, *offset), expr.span)
+        return Intrinsic(expr.type, row.with_gradients, (map_, coordinate, *slopes, *offset), expr.span)
 
     def may_vary(self, part: Expr) -> bool:
-        """Whether it is a variable."""
+        """Whether it is a variable, of the function or of the module."""
         return isinstance(part, Local) or (isinstance(part, Global) and part.name in self.shared)
 
     def start(self, expr: Expr) -> Expr | None:
-        """What coordinates start from before the region: as far as they are known, sums without what is
-        not."""
+        """The value that coordinates have before the region; unknown terms of a sum are omitted."""
         region = self.region
         if region is None or not region.reachable:
             return None
@@ -373,18 +374,13 @@ class _Hoister(Transformer):
         if isinstance(expr, Binary) and expr.op in ("+", "-"):
             left, right = parts
             if left is None or right is None:
-                known = left if left is not None else right
-                return known if known is not None and known.type == expr.type else None
+                term = left if left is not None else right
+                return term if term is not None and term.type == expr.type else None
         return self.over(expr, parts)
 
     def note(self, message: str, span: Span) -> None:
-        why = "neighbouring pixels may take another branch"
-        self.notes[Note(f"{message}: {why}, so their difference is not known", span)] = None
-
-
-def named(variable: Local | Global) -> str:
-    """A variable's name, with `$` for one of the module, as in the IR's text form."""
-    return variable.name if isinstance(variable, Local) else f"${variable.name}"
+        reason = "neighbouring pixels may take another branch"
+        self.notes[Note(f"{message}: {reason}, so their difference is not known", span)] = None
 
 
 def _base_name(expr: Call | Intrinsic) -> str:

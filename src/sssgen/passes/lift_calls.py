@@ -49,7 +49,7 @@ from sssgen.ir.walk import (
     with_operands,
     written_root,
 )
-from sssgen.passes.scopes import declared, fresh
+from sssgen.passes.scopes import declared, fresh, qualified_name
 from sssgen.passes.variable_effects import NONE, Effects
 
 Functions = Mapping[str, Function]
@@ -71,7 +71,7 @@ def lift_calls(module: Module) -> Module:
 
 
 class Calls:
-    """What the calls of a module's functions write; `shared` has their effects on module variables."""
+    """The effects of calls of a module's functions; `shared` has those on module variables."""
 
     def __init__(self, functions: Functions, shared: Mapping[str, Effects] = _NOTHING) -> None:
         self.functions, self.shared = functions, shared
@@ -79,14 +79,14 @@ class Calls:
 
     def change(self, key: str) -> bool:
         """Whether a function writes through its parameters, or a module variable."""
-        known = self.known.get(key)
-        if known is None:
-            through = any(param.direction != "in" for param in self.functions[key].params)
-            known = self.known[key] = through or bool(self.shared.get(key, NONE).writes)
-        return known
+        changes = self.known.get(key)
+        if changes is None:
+            by_parameter = any(param.direction != "in" for param in self.functions[key].params)
+            changes = self.known[key] = by_parameter or bool(self.shared.get(key, NONE).writes)
+        return changes
 
     def writing(self, expr: Expr) -> bool:
-        """Whether a call inside an expression changes something beside its result."""
+        """Whether a call inside an expression has an effect apart from its result."""
         stack = [expr]
         while stack:
             node = stack.pop()
@@ -100,22 +100,22 @@ class Calls:
 
 
 def lift(function: Function, calls: Calls) -> Function:
-    """One function with its writing calls as statements; discarding stays as it is."""
+    """One function with its writing calls as statements; discards are not changed."""
     return _Lifter(function, calls).run()
 
 
 def awkward(function: Function, calls: Calls) -> list[Stmt]:
     """The statements in which a writing call is inside a larger expression.
 
-    There languages differ in the order of evaluation, and in whether the right side of `&&` and both arms of a choice
-    are always evaluated; and what other passes compute before the statement would be computed too early.
+    Languages differ there in the order of evaluation, and in whether the right side of `&&` and both arms of a choice
+    are always evaluated; and values that other passes compute before the statement would be computed too early.
     """
     lifter = _Lifter(function, calls)
     stmts = []
     for stmt in statements(function.body or ()):
         for expr in expressions(stmt):
-            alone = isinstance(expr, Call) and not (isinstance(stmt, Assign) and lifter.meets(stmt))
-            if any(map(lifter.writes, operands(expr) if alone else (expr,))):
+            whole_statement = isinstance(expr, Call) and not (isinstance(stmt, Assign) and lifter.meets(stmt))
+            if any(map(lifter.writes, operands(expr) if whole_statement else (expr,))):
                 stmts.append(stmt)
     return stmts
 
@@ -134,10 +134,10 @@ def discards(function: Function) -> bool:
     return bool(function.params) and function.params[-1].name == DISCARDED and function.params[-1].direction == "out"
 
 
-def _announce_discard(function: Function, known: Functions, taken: set[str]) -> Function:
+def _announce_discard(function: Function, functions: Functions, taken: set[str]) -> Function:
     body = function.body or ()
-    inside = any(isinstance(stmt, Discard) for stmt in statements(body))
-    if not inside and not any(discards(known[key]) for key in callees(function) if key in known):
+    own = any(isinstance(stmt, Discard) for stmt in statements(body))
+    if not own and not any(discards(functions[key]) for key in callees(function) if key in functions):
         return function
     new = function._replace(params=(*function.params, Param(DISCARDED, BOOL, "out", "", function.span)))
     while new.key in taken:
@@ -145,17 +145,13 @@ def _announce_discard(function: Function, known: Functions, taken: set[str]) -> 
     return new
 
 
-def _named(variable: Local | Global) -> str:
-    return variable.name if isinstance(variable, Local) else f"${variable.name}"
-
-
 def _read(expr: Expr) -> list[str]:
     """The variables that an expression mentions."""
-    return [_named(part) for part in subexpressions(expr) if isinstance(part, Local | Global)]
+    return [qualified_name(part) for part in subexpressions(expr) if isinstance(part, Local | Global)]
 
 
 class _Lifter(Transformer):
-    """Rewrites one function: what must be computed before a statement is appended to `out` before it."""
+    """Rewrites one function: values that must be computed before a statement are appended to `out` before it."""
 
     def __init__(self, function: Function, calls: Calls) -> None:
         super().__init__()
@@ -169,7 +165,7 @@ class _Lifter(Transformer):
         return self.function(self.source) if self.writes_in(self.source.body or ()) else self.source
 
     def writes(self, expr: Expr | None) -> bool:
-        """Whether a call inside the expression changes something beside its result."""
+        """Whether a call inside the expression has an effect apart from its result."""
         return expr is not None and self.calls.writing(expr)
 
     def writes_in(self, body: Block) -> bool:
@@ -203,8 +199,8 @@ class _Lifter(Transformer):
             return stmt
         pinned = any(map(self.written(value).__contains__, _read(stmt.target)))
         target = self.expression(self.pinned(stmt.target) if pinned else stmt.target)
-        alone = isinstance(target, Local | Global) and not stmt.op and not self.meets(stmt)
-        if alone and isinstance(value, Call) and self.writes_itself(value):
+        direct = isinstance(target, Local | Global) and not stmt.op and not self.meets(stmt)
+        if direct and isinstance(value, Call) and self.writes_itself(value):
             call, after = self.call(value)
             self.out += [Assign(target, "", call, stmt.span), *after]
             return None
@@ -239,10 +235,10 @@ class _Lifter(Transformer):
     def meets(self, stmt: Assign) -> bool:
         """Whether an assignment's value also writes what the assignment writes."""
         target = written_root(stmt.target)
-        return target is not None and _named(target) in self.written(stmt.value)
+        return target is not None and qualified_name(target) in self.written(stmt.value)
 
     def expression(self, expr: Expr) -> Expr:
-        """The expression with what its calls write computed before it."""
+        """The expression without its writing calls, which are executed before it."""
         if not self.writes(expr):
             return expr
         if isinstance(expr, Select) and (self.writes(expr.yes) or self.writes(expr.no)):
@@ -260,25 +256,25 @@ class _Lifter(Transformer):
 
     def written(self, expr: Expr) -> set[str]:
         """The variables that the calls in an expression change, the module's as `$name`."""
-        found: set[str] = set()
+        names: set[str] = set()
         for part in subexpressions(expr) if self.writes(expr) else ():
             if isinstance(part, Call):
                 params = self.functions[part.function].params
                 outs = [arg for arg, param in zip(part.args, params, strict=False) if param.direction != "in"]
-                found.update(_named(place) for place in map(written_root, outs) if place is not None)
-                found.update(map("${}".format, self.shared.get(part.function, NONE).writes))
-        return found
+                names.update(qualified_name(place) for place in map(written_root, outs) if place is not None)
+                names.update(map("${}".format, self.shared.get(part.function, NONE).writes))
+        return names
 
     def read(self, expr: Expr) -> set[str]:
-        """The variables that an expression reads, the module's as `$name`, those that its calls read too."""
-        found = set(_read(expr))
+        """The variables that an expression and its calls read, the module's as `$name`."""
+        names = set(_read(expr))
         for part in subexpressions(expr):
             if isinstance(part, Call):
-                found.update(map("${}".format, self.shared.get(part.function, NONE).reads))
-        return found
+                names.update(map("${}".format, self.shared.get(part.function, NONE).reads))
+        return names
 
     def in_order(self, exprs: tuple[Expr, ...]) -> list[Expr]:
-        """Expressions evaluated from left to right: what a later one changes is read before."""
+        """Expressions evaluated from left to right: a variable that a later one changes is read before."""
         return [self.before(expr, exprs[index + 1 :]) for index, expr in enumerate(exprs)]
 
     def before(self, expr: Expr, others: tuple[Expr, ...]) -> Expr:
@@ -302,7 +298,7 @@ class _Lifter(Transformer):
         return chosen
 
     def call(self, call: Call) -> tuple[Call, list[Stmt]]:
-        """A call with variables for its out arguments, and what is to be done after it."""
+        """A call with variables for its out arguments, and the statements to be executed after it."""
         function = self.functions[call.function]
         args: list[Expr] = []
         after: list[Stmt] = []
@@ -317,21 +313,21 @@ class _Lifter(Transformer):
                 after.append(Assign(place, "", arg, arg.span))
             args.append(arg)
         if discards(function) and len(args) < len(function.params):
-            gone = self.local(BOOL, DISCARDED, call.span)
-            self.out.append(Declare(gone.name, BOOL, None, call.span))
-            args.append(gone)
-            after.append(If(gone, (Discard(call.span),), (), call.span))
+            discarded = self.local(BOOL, DISCARDED, call.span)
+            self.out.append(Declare(discarded.name, BOOL, None, call.span))
+            args.append(discarded)
+            after.append(If(discarded, (Discard(call.span),), (), call.span))
         return Call(call.type, function.key, tuple(args), call.span), after
 
     def pinned(self, place: Expr) -> Expr:
-        """A place to write to, with its indices computed now, as the call may change what they depend on."""
+        """A place to write to, with its indices computed now, as the call may change their values."""
         if isinstance(place, Swizzle | Member):
             return place._replace(value=self.pinned(place.value))
         if isinstance(place, Index):
             index = self.expression(place.index)
             if not isinstance(index, Literal):
-                kept = self.local(index.type, "place", index.span)
-                self.out.append(Declare(kept.name, kept.type, index, index.span))
-                index = kept
+                copy = self.local(index.type, "place", index.span)
+                self.out.append(Declare(copy.name, copy.type, index, index.span))
+                index = copy
             return place._replace(value=self.pinned(place.value), index=index)
         return place

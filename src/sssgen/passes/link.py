@@ -47,7 +47,7 @@ class Linked(NamedTuple):
 
 
 class LinkError(Exception):
-    """Something that cannot be linked, with its place."""
+    """The reason why techniques cannot be linked, with its place."""
 
     def __init__(self, message: str, span: Span) -> None:
         super().__init__(message)
@@ -96,7 +96,7 @@ class _Linker:
             if bound is None:
                 raise LinkError(f"slot '{function.name}' of {stage.technique} is not bound", function.span)
             return self.function(bound[1], bound[0], index, stage)
-        by_key = {other.key: other for other in module.functions}
+        by_key = {callee.key: callee for callee in module.functions}
         calls: dict[str, str] = {}
         names: dict[str, str] = {}
         for expr in all_expressions(function.body):
@@ -118,8 +118,8 @@ class _Linker:
 
     def struct(self, struct: StructDecl) -> None:
         assert isinstance(struct.type, Struct)
-        known = self.structs.setdefault(struct.type.name, struct)
-        if known.type != struct.type:
+        first = self.structs.setdefault(struct.type.name, struct)
+        if first.type != struct.type:
             raise LinkError(f"two different structs are called '{struct.type.name}'", struct.span)
 
     def global_name(self, name: str, module: Module, index: int, stage: LinkStage) -> str:
@@ -137,13 +137,13 @@ class _Linker:
             }
             if any(old != new for old, new in inner.items()):
                 value = rewrite(value, _renaming({}, inner))
-            free = self.free_name(name, stage.technique)
-            self.global_names[constant.span] = free
-            self.constants[free] = constant._replace(name=free, value=value)
+            linked_name = self.free_name(name, stage.technique)
+            self.global_names[constant.span] = linked_name
+            self.constants[linked_name] = constant._replace(name=linked_name, value=value)
         return self.global_names[constant.span]
 
     def uniform(self, uniform: Uniform, index: int, stage: LinkStage) -> str:
-        """A technique's own uniforms are the stage's; those of shared files and bound functions are everyone's."""
+        """A technique's own uniforms are the stage's; those of shared files and bound functions are common."""
         own = uniform.span.file == stage.function.span.file
         identity = (uniform.span, index if own else None)
         name = self.global_names.get(identity)

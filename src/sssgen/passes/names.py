@@ -94,7 +94,9 @@ class _Namer:
             constants = tuple([self.constant(constant) for constant in constants])
         uniforms, variables = module.uniforms, module.variables
         if self.globals:
-            uniforms = tuple([one._replace(name=self.globals.get(one.name, one.name)) for one in uniforms])
+            uniforms = tuple(
+                [uniform._replace(name=self.globals.get(uniform.name, uniform.name)) for uniform in uniforms]
+            )
         if self.structs or self.globals:
             variables = tuple([self.variable(variable) for variable in variables])
         functions = tuple([self.function(key, function) for key, function in self.keyed])
@@ -180,18 +182,20 @@ class _Namer:
             if len(functions) > 1 and (self.mangle_overloads or self.confused([one for _, one in functions])):
                 types = [[_word(param.type) for param in function.params] for _, function in functions]
                 for count in range(1, max(map(len, types)) + 1):
-                    words = ["_".join([name, *some[:count]]) for some in types]
-                    if len(set(words)) == len(words):
+                    spelled = ["_".join([name, *words[:count]]) for words in types]
+                    if len(set(spelled)) == len(spelled):
                         break
-                result |= {key: word for (key, _), word in zip(functions, words, strict=True)}
+                result |= {key: word for (key, _), word in zip(functions, spelled, strict=True)}
         return result
 
     def confused(self, overloads: list[Function]) -> bool:
         """Whether the target cannot distinguish these: HLSL a vec4 from a mat2."""
         if self.matrix_overloads:
             return False
-        shapes = [[VEC4 if param.type == Matrix(2) else param.type for param in one.params] for one in overloads]
-        return any(shape in shapes[:place] for place, shape in enumerate(shapes))
+        signatures = [
+            [VEC4 if param.type == Matrix(2) else param.type for param in function.params] for function in overloads
+        ]
+        return any(types in signatures[:index] for index, types in enumerate(signatures))
 
     def name_structs(self, names: Mapping[tuple[str, str], str]) -> None:
         """Finds the structs that change: by name, by a member's name, or by a member's type."""

@@ -68,7 +68,7 @@ def prune(module: Module, roots: Iterable[str]) -> Module:
 
 def _same(old: tuple[_T, ...], new: list[_T]) -> tuple[_T, ...]:
     """`new` as a tuple; `old` itself where it holds the same."""
-    same = len(old) == len(new) and all(one is other for one, other in zip(old, new, strict=True))
+    same = len(old) == len(new) and all(first is second for first, second in zip(old, new, strict=True))
     return old if same else tuple(new)
 
 

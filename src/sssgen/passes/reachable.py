@@ -1,4 +1,4 @@
-"""The part of a module that some functions use, with every statement as it is."""
+"""The part of a module that some functions use, with all their statements."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from sssgen.ir.walk import all_expressions, callees, statements, subexpressions
 
 
 def only(module: Module, roots: Iterable[str]) -> Module:
-    """The module with the functions alone that `roots` call, themselves or through others; all else as it was.
+    """The module with only the functions that `roots` call, directly or indirectly; the other declarations remain.
 
     Raises KeyError for a root that the module does not have.
     """
@@ -26,11 +26,11 @@ def only(module: Module, roots: Iterable[str]) -> Module:
 
 
 def used(module: Module) -> Module:
-    """The module with the declarations alone that its functions mention, themselves or through others."""
+    """The module with only the declarations that its functions mention, directly or indirectly."""
     names: set[str] = set()
     pending = [expr for function in module.functions for expr in all_expressions(function.body or ())]
     values = {constant.name: constant.value for constant in module.constants}
-    values |= {one.name: one.value for one in module.variables if one.value is not None}
+    values |= {variable.name: variable.value for variable in module.variables if variable.value is not None}
     types: set[Type] = set()
     for function in module.functions:
         types |= {function.result, *(param.type for param in function.params)}
@@ -44,10 +44,10 @@ def used(module: Module) -> Module:
                 pending += subexpressions(values[expr.name])
     structs = set(structs_in(types))
     return module._replace(
-        structs=tuple([one for one in module.structs if one.type in structs]),
-        constants=tuple([one for one in module.constants if one.name in names]),
-        uniforms=tuple([one for one in module.uniforms if one.name in names]),
-        variables=tuple([one for one in module.variables if one.name in names]),
+        structs=tuple([struct for struct in module.structs if struct.type in structs]),
+        constants=tuple([constant for constant in module.constants if constant.name in names]),
+        uniforms=tuple([uniform for uniform in module.uniforms if uniform.name in names]),
+        variables=tuple([variable for variable in module.variables if variable.name in names]),
     )
 
 

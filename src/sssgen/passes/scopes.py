@@ -49,6 +49,11 @@ def mentions(function: Function) -> tuple[set[str], set[str]]:
     return globals_, calls
 
 
+def qualified_name(variable: Local | Global) -> str:
+    """A variable's name, with `$` for one of the module, as in the IR's text form."""
+    return variable.name if isinstance(variable, Local) else f"${variable.name}"
+
+
 def outs_of(functions: Iterable[Function]) -> dict[str, tuple[int, ...]]:
     """The keys of the functions that write through parameters, and the positions of these."""
     outs = {}
@@ -60,7 +65,7 @@ def outs_of(functions: Iterable[Function]) -> dict[str, tuple[int, ...]]:
 
 
 def assigned(function: Function, outs: Mapping[str, tuple[int, ...]]) -> set[str]:
-    """The parameters and variables of a function that its statements write; not where they are declared.
+    """The parameters and variables of a function that its statements write; declarations do not count.
 
     `outs` is the result of `outs_of` for the module's functions.
     """

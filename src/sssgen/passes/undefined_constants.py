@@ -52,8 +52,8 @@ def undefined_constants(module: Module) -> list[Undefined]:
             for expr in expressions(stmt):
                 checker.numbers(expr)
             if isinstance(stmt, Assign) and stmt.op:
-                whole = Binary(stmt.target.type, stmt.op, stmt.target, stmt.value, stmt.span)
-                checker.binary(whole, None, checker.numbers(stmt.value))
+                checked = Binary(stmt.target.type, stmt.op, stmt.target, stmt.value, stmt.span)
+                checker.binary(checked, None, checker.numbers(stmt.value))
     return list(checker.found.values())
 
 
@@ -76,17 +76,17 @@ class _Checker:
         parts = [self.numbers(operand) for operand in operands(expr)]
         if isinstance(expr, Binary):
             return self.binary(expr, parts[0], parts[1])
-        known = [part for part in parts if part is not None]
-        if len(known) < len(parts):
+        constants = [part for part in parts if part is not None]
+        if len(constants) < len(parts):
             return None
         if isinstance(expr, Intrinsic):
-            return self.builtin(expr, known)
+            return self.builtin(expr, constants)
         if isinstance(expr, Construct):
-            return _constructed(expr, known)
+            return _constructed(expr, constants)
         if isinstance(expr, Unary):
-            return arithmetic.unary(expr.op, known[0], kind_of(expr.type))
+            return arithmetic.unary(expr.op, constants[0], kind_of(expr.type))
         if isinstance(expr, Swizzle):
-            return tuple([known[0]["xyzw".index(letter)] for letter in expr.components])
+            return tuple([constants[0]["xyzw".index(letter)] for letter in expr.components])
         return None
 
     def binary(self, expr: Binary, left: Numbers | None, right: Numbers | None) -> Numbers | None:
@@ -110,8 +110,8 @@ class _Checker:
 
     def builtin(self, expr: Intrinsic, args: list[Numbers]) -> Numbers | None:
         if args and arithmetic.outside(expr.name, args):
-            what = "a finite number" if kind_of(expr.type) == "float" else "defined"
-            return self.wrong(f"{expr.name} of these constants is not {what}", expr)
+            expected = "a finite number" if kind_of(expr.type) == "float" else "defined"
+            return self.wrong(f"{expr.name} of these constants is not {expected}", expr)
         return arithmetic.builtin(expr.name, args, [arg.type for arg in expr.args], expr.type)
 
     def wrong(self, message: str, expr: Expr) -> Numbers | None:

@@ -2,8 +2,8 @@
 them.
 
 Why: a function library to paste, or an engine's custom-function node, gets its parameters from its caller.
-Place: after `prune` and `hoist`, so that only what is read is passed on; before `legalise` and `names`, as it
-brings parameters to shape and names to make legal.
+Place: after `prune` and `hoist`, so that only uniforms that are read are passed; before `legalise` and `names`, which
+legalise the new parameters and their names.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from sssgen.passes.scopes import declared, fresh, mentions, rename_locals
 
 
 def uniforms_to_parameters(module: Module, textures: bool = True) -> Module:
-    """The module with every function closed over the uniforms that it reads, itself or through what it calls.
+    """The module with the uniforms that each function or its callees read as parameters of the function.
 
-    They become parameters behind its own, in the order of the uniforms' declarations, with their names; a
+    They come after its own parameters, in the order of the uniforms' declarations, with their names; a
     variable of that name is renamed. `module.uniforms` stays for the documentation. Without `textures` these
     remain global. The keys of functions change with their parameters.
     """
@@ -36,9 +36,9 @@ def uniforms_to_parameters(module: Module, textures: bool = True) -> Module:
 
 
 class Closer:
-    """Gives functions parameters for the globals that they use, themselves or through what they call.
+    """Gives functions parameters for the globals that they or their callees use.
 
-    `parameters` are the globals with their parameters; `written` says which of them a function writes, by its key: they
+    `parameters` are the globals with their parameters; `written` has those that a function writes, by its key: they
     are inout there.
     """
 

@@ -28,8 +28,8 @@ def effects(module: Module) -> dict[str, Effects]:
     if not module.variables:
         return {}
     finder = _Finder(module)
-    every = {function.key: finder.of(function.key) for function in module.functions}
-    return {key: effect for key, effect in every.items() if effect != NONE}
+    result = {function.key: finder.of(function.key) for function in module.functions}
+    return {key: effect for key, effect in result.items() if effect != NONE}
 
 
 class _Finder:

@@ -45,14 +45,18 @@ def technique_file(module: Module, shown: str, wanted: str = "") -> tuple[str, s
 
 
 def _chosen(module: Module, shown: str, wanted: str) -> Function:
-    own = [one for one in module.functions if one.body is not None and one.span.file == shown and one.name != "main"]
+    functions = [
+        function
+        for function in module.functions
+        if function.body is not None and function.span.file == shown and function.name != "main"
+    ]
     if wanted:
-        own = [one for one in own if one.name == wanted]
-    if not own:
-        names = [one.name for one in module.functions]
+        functions = [function for function in functions if function.name == wanted]
+    if not functions:
+        names = [function.name for function in module.functions]
         message = f"there is no function '{wanted}' in this file" if wanted else "there is no function in this file"
         raise failure(message, did_you_mean(wanted, names), shown)
-    return own[-1]
+    return functions[-1]
 
 
 def _uniform(uniform: Uniform) -> str:
@@ -63,7 +67,9 @@ def _uniform(uniform: Uniform) -> str:
         return f"{doc}\nuniform {spell(type_)} {uniform.name} : default_white;"
     if isinstance(type_, Array | Struct):
         return f"{doc}\nuniform {spell(type_)} {uniform.name};"
-    numbers = [f"{int(one)}" if kind_of(type_) in ("int", "uint") else repr(float(one)) for one in uniform.default]
+    numbers = [
+        f"{int(number)}" if kind_of(type_) in ("int", "uint") else repr(float(number)) for number in uniform.default
+    ]
     value = numbers[0] if components(type_) == 1 else f"{spell(type_)}({', '.join(numbers)})"
     if kind_of(type_) == "bool":
         return f"{doc}\nuniform {spell(type_)} {uniform.name};"
@@ -80,7 +86,7 @@ def _doc(function: Function) -> str:
     lines += ["formula: ", "source: ", "units: ", "limits: "]
     text = "/**\n" + "".join(f" * {line}".rstrip() + "\n" for line in lines) + " */\n"
     notes = [f"// role: one of {', '.join(ROLES)}"]
-    for name, type_ in [("the result", function.result), *((one.name, one.type) for one in function.params)]:
+    for name, type_ in [("the result", function.result), *((param.name, param.type) for param in function.params)]:
         quantities = [quantity for quantity, plain in QUANTITIES.items() if plain == type_]
         if quantities:
             notes.append(f"// {name}: {spell(type_)}, or if it measures that: {', '.join(quantities)}")

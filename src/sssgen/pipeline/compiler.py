@@ -153,12 +153,12 @@ def _check_guards(guards: str) -> None:
 def _program_of(material: Material, target: Target, form: str, guards: str, trace: Trace | None) -> Program:
     """The program of a material, with the material's values as the uniforms' defaults."""
     fixed = {name for stage in material.stages for name in stage.fixed}
-    bare = material._replace(stages=tuple([_bare(stage, fixed) for stage in material.stages]))
-    structure = _structure(bare, target) if trace is None else ""
+    structural = material._replace(stages=tuple([_bare(stage, fixed) for stage in material.stages]))
+    structure = _structure(structural, target) if trace is None else ""
     key = (structure, target.name, form, guards)
     program = _programs.get(key) if structure else None
     if program is None:
-        program = _stored_program(bare, structure, target, form, guards, trace)
+        program = _stored_program(structural, structure, target, form, guards, trace)
         if len(_programs) >= _CACHE_SIZE:
             _programs.clear()
         _programs[key] = program
@@ -167,18 +167,18 @@ def _program_of(material: Material, target: Target, form: str, guards: str, trac
 
 
 def _stored_program(
-    bare: Material, structure: str, target: Target, form: str, guards: str, trace: Trace | None
+    structural: Material, structure: str, target: Target, form: str, guards: str, trace: Trace | None
 ) -> Program:
     """A program from the cache folder, or a new one. One entry per material file, target, form and guards is kept."""
 
     def make_program() -> Program:
         from sssgen.pipeline.programs import make
 
-        return make(bare, structure, target, form, guards, trace)
+        return make(structural, structure, target, form, guards, trace)
 
     if not structure or target.folder != place("targets"):  # it is unknown which files a plug-in's program depends on
         return make_program()
-    name = "\0".join([os.path.abspath(bare.file), target.name, form, guards])
+    name = "\0".join([os.path.abspath(structural.file), target.name, form, guards])
     program: Program = cache.load_or_make(f"program-{cache.digest(name)}", [installation(), structure], make_program)
     return program
 
@@ -191,14 +191,14 @@ def _bare(stage: Stage, fixed: set[str]) -> Stage:
     return stage._replace(values={name: value for name, value in stage.values.items() if name in read})
 
 
-def _structure(bare: Material, target: Target) -> str:
+def _structure(structural: Material, target: Target) -> str:
     """Everything that the program of a material depends on, as text; '' where this is unknown."""
     modules = [library.load(target.lighting).module] if target.lighting else []
-    parts: list[object] = [bare.shading, bare.alpha_mode]
-    for stage in bare.stages:
-        technique, bound = stage.technique, stage.bindings
-        modules += [technique.module, *(binding.module for binding in bound.values())]
-        functions = [(slot, binding.function.key) for slot, binding in bound.items()]
+    parts: list[object] = [structural.shading, structural.alpha_mode]
+    for stage in structural.stages:
+        technique, bindings = stage.technique, stage.bindings
+        modules += [technique.module, *(binding.module for binding in bindings.values())]
+        functions = [(slot, binding.function.key) for slot, binding in bindings.items()]
         values = sorted(stage.values.items())
         parts.append((technique.name, technique.role, functions, values, sorted(stage.fixed), stage.span))
     keys = [key_of(module) for module in modules]

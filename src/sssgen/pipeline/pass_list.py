@@ -128,22 +128,22 @@ TARGET: tuple[Pass, ...] = (
     Pass("names", steps.make_names_legal, "make names legal; every pass before may bring new ones"),
     Pass("interface", steps.find_interface, "place inputs and outputs, under their final names", _SHADER),
 )
-"""What follows for one target, after each of the others."""
+"""The passes for one target, after one of the other lists."""
 
 
 def run(passes: Sequence[Pass], state: State, trace: Trace | None = None) -> State:
     """Runs the passes on the state. Raises SssgenError."""
-    for one in passes:
+    for pass_ in passes:
         try:
-            if one.when is None or one.when.holds(state):
-                state.module = one.step(state)
+            if pass_.when is None or pass_.when.holds(state):
+                state.module = pass_.step(state)
         except LinkError as error:
             raise SssgenError([_error(error.message, error)]) from None
         except Unsupported as error:
             errors = [_error(f"{each.message} ({state.target.name})", each) for each in (error, *error.more)]
             raise SssgenError(errors) from None
         if trace is not None:
-            trace.record(one.name, one.reason, state.module)
+            trace.record(pass_.name, pass_.reason, state.module)
     return state
 
 
@@ -153,7 +153,7 @@ def _error(message: str, error: LinkError | Unsupported) -> Diagnostic:
 
 def describe(passes: Sequence[Pass]) -> str:
     """The passes as a table: number, name, condition, reason."""
-    rows = [(one.name, f"if {one.when.text}" if one.when else "", one.reason) for one in passes]
+    rows = [(pass_.name, f"if {pass_.when.text}" if pass_.when else "", pass_.reason) for pass_ in passes]
     names, conditions = (max(len(row[column]) for row in rows) for column in (0, 1))
     lines = [
         f"{number:2}  {name:{names}}   {condition:{conditions}}   {reason}"

@@ -134,9 +134,9 @@ def emit(target: Target, program: Program, form: str, templates: str | None = No
     members, size = place(module.uniforms, target.layout)
     textures = [uniform for uniform in module.uniforms if isinstance(uniform.type, Sampler)]
     marks: list[Span] = []
-    declared = form not in target.parameters
-    uniform_lines: list[Line] = printer.print_uniforms(members) if declared else []
-    texture_lines: list[Line] = printer.print_textures(textures) if declared else []
+    declares = form not in target.parameters
+    uniform_lines: list[Line] = printer.print_uniforms(members) if declares else []
+    texture_lines: list[Line] = printer.print_textures(textures) if declares else []
     code = {
         "types": _text(program.parts["types"], marks),
         "constants": _text(program.parts["constants"], marks),
@@ -153,7 +153,7 @@ def emit(target: Target, program: Program, form: str, templates: str | None = No
     for output in target.files.get(form, ()):
         name = output.name.format(material=program.about.name)
         files[name], lines[name] = _finish(render(output.template, context, templates, target.folder), marks)
-    bindings = [printer.binding(index) for index in range(len(textures))] if declared else []
+    bindings = [printer.binding(index) for index in range(len(textures))] if declares else []
     return Emitted(files, lines, members, size, [binding for binding in bindings if binding])
 
 
@@ -178,7 +178,7 @@ def _context(target: Target, program: Program, printer: Printer, form: str, code
     entries = {
         kind: _entry(target, printer, kind, function, inputs) for kind, (function, inputs) in program.entries.items()
     }
-    inputs = {name for _, given in program.entries.values() for name in given}
+    inputs = {name for _, entry_inputs in program.entries.values() for name in entry_inputs}
     surface = program.surface
     return {
         "material": program.about._asdict(),
@@ -204,23 +204,23 @@ def _header(target: Target, program: Program) -> list[str]:
     import textwrap
 
     about = program.about
-    words = f"{about.title}: {about.doc}" if about.doc else about.title
-    what = "the material" if program.entries else "the source"
-    made = f"Made by sssgen for {target.title}. Change {what} and emit it again rather than this file."
-    own = ["", *map(comment_text, about.head)] if about.head else []
-    return [comment_text(line) for line in textwrap.wrap(words, 100)] + [made, *own]
+    description = f"{about.title}: {about.doc}" if about.doc else about.title
+    origin = "the material" if program.entries else "the source"
+    notice = f"Made by sssgen for {target.title}. Change {origin} and emit it again rather than this file."
+    head = ["", *map(comment_text, about.head)] if about.head else []
+    return [comment_text(line) for line in textwrap.wrap(description, 100)] + [notice, *head]
 
 
 def _entry(target: Target, printer: Printer, kind: str, function: Function, inputs: tuple[str, ...]) -> dict[str, Any]:
     """An entry with the text of its call: the shell's expressions for its inputs, then the uniforms."""
-    given = {**target.inputs, **(target.light_inputs if kind in ("translucency", "lighting") else {})}
+    expressions = {**target.inputs, **(target.light_inputs if kind in ("translucency", "lighting") else {})}
     leading = ["surface"] if len(function.params) > 0 and isinstance(function.params[0].type, Struct) else []
     names = [*leading, *inputs]
     uniforms = {uniform.span: uniform.name for uniform in printer.module.uniforms}
     params, args = [], []
     for index, param in enumerate(function.params):
         name = names[index] if index < len(names) else ""
-        text = given.get(name, name) if name else _passed(printer, param, uniforms[param.span])
+        text = expressions.get(name, name) if name else _passed(printer, param, uniforms[param.span])
         params.append({"name": param.name, "type": printer.type(param.type), "input": name})
         args.append(text)
     call = f"{function.name}({', '.join(args)})"
@@ -257,12 +257,12 @@ def _uniform(printer: Printer, uniform: Uniform, program: Program) -> dict[str, 
 
 
 def _textures(printer: Printer, program: Program) -> list[dict[str, Any]]:
-    found: list[dict[str, Any]] = []
+    textures: list[dict[str, Any]] = []
     for uniform in program.module.uniforms:
         if not isinstance(uniform.type, Sampler):
             continue
         source = program.source_names.get(uniform.name, uniform.name)
-        found.append(
+        textures.append(
             {
                 "name": uniform.name,
                 "source_name": source,
@@ -273,11 +273,11 @@ def _textures(printer: Printer, program: Program) -> list[dict[str, Any]]:
                 "doc": " ".join(uniform.doc.split()),
                 "label": source.replace("_", " ").capitalize(),
                 "holds": uniform.quantity,
-                "binding": 1 + 2 * len(found),
-                "sampler_binding": 2 + 2 * len(found),
+                "binding": 1 + 2 * len(textures),
+                "sampler_binding": 2 + 2 * len(textures),
             }
         )
-    return found
+    return textures
 
 
 def _finish(text: str, marks: list[Span]) -> tuple[str, dict[int, Span]]:

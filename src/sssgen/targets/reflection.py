@@ -85,7 +85,7 @@ def _stage(program: Program) -> dict[str, Any]:
     """The inputs and outputs of a whole shader; its uniforms are listed apart."""
     if program.stage is None:
         return {}
-    both = {"stage_inputs": program.stage.inputs, "stage_outputs": program.stage.outputs}
+    sides = {"stage_inputs": program.stage.inputs, "stage_outputs": program.stage.outputs}
     return {
         name: [
             {"name": slot.variable.name, "builtin": slot.variable.builtin or None}
@@ -93,7 +93,7 @@ def _stage(program: Program) -> dict[str, Any]:
             | {"location": slot.location if slot.location >= 0 else None}
             for slot in slots
         ]
-        for name, slots in both.items()
+        for name, slots in sides.items()
     }
 
 
@@ -136,8 +136,8 @@ def _described(uniform: Uniform) -> dict[str, Any]:
 def _import(uniform: Uniform) -> dict[str, Any]:
     """The import settings of the image for a texture."""
     assert isinstance(uniform.type, Sampler)
-    held = _has(uniform, "repeat_disable")
-    wrap, mipmaps = "clamp" if held else "repeat", not held and uniform.type.dim != "3D"
+    clamped = _has(uniform, "repeat_disable")
+    wrap, mipmaps = "clamp" if clamped else "repeat", not clamped and uniform.type.dim != "3D"
     return import_settings(uniform.type.dim, wrap, _has(uniform, "source_color"), mipmaps, _has(uniform, "normal_map"))
 
 

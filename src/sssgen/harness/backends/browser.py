@@ -103,7 +103,9 @@ def _packed(todo: Plan) -> tuple[str, bytes]:
         end += len(data)
         return {"at": end - len(data), "size": len(data)}
 
-    textures = [one._asdict() | {"levels": [level._asdict() for level in one.levels]} for one in todo.textures]
+    textures = [
+        texture._asdict() | {"levels": [level._asdict() for level in texture.levels]} for texture in todo.textures
+    ]
     lists = {"textures": textures, "blocks": [block._asdict() for block in todo.blocks], "groups": _groups(todo)}
     vertices = {"attributes": ATTRIBUTE_PLAN, "vertexStride": STRIDE}
     return json.dumps(todo._asdict() | lists | vertices, default=piece), b"".join(pieces)

@@ -1,8 +1,8 @@
 """Gives integer operators the same result in every language: that of WGSL, which defines it for all operands.
 
 Why: in GLSL and HLSL a division by 0 is undefined, so is a remainder of a negative number (glslang makes a floored
-one of it) and a shift by 32 bits or more. Here x / 0 is x, x % 0 is 0, `%` has the sign of x, and of a shift's amount
-the low five bits count. Operands that are evidently safe (constants, counters of loops) stay unchanged. Used by
+one of it) and a shift by 32 bits or more. Here x / 0 is x, x % 0 is 0, `%` has the sign of x, and only the low five
+bits of a shift's amount count. Operands that are evidently safe (constants, counters of loops) stay unchanged. Used by
 `legalise`.
 """
 
@@ -80,15 +80,15 @@ def _and_31(amount: ir.Expr, kind: str, span: ir.Span) -> ir.Expr:
 
 
 def _is_zero(divisor: ir.Expr, span: ir.Span) -> ir.Expr:
-    """1 where it is 0, else 0."""
+    """1 where the divisor is 0, else 0."""
     type_ = divisor.type
-    one = Scalar(kind_of(type_))
+    scalar = Scalar(kind_of(type_))
     if isinstance(type_, Vector):
-        zeros = ir.Construct(type_, (ir.Literal(one, 0, span),), span)
-        found: ir.Expr = ir.Intrinsic(_bools(type_), "equal", (divisor, zeros), span)
+        zeros = ir.Construct(type_, (ir.Literal(scalar, 0, span),), span)
+        comparison: ir.Expr = ir.Intrinsic(_bools(type_), "equal", (divisor, zeros), span)
     else:
-        found = ir.Binary(BOOL, "==", divisor, ir.Literal(one, 0, span), span)
-    return ir.Construct(type_, (found,), span)
+        comparison = ir.Binary(BOOL, "==", divisor, ir.Literal(scalar, 0, span), span)
+    return ir.Construct(type_, (comparison,), span)
 
 
 def _bools(type_: Type) -> Type:

@@ -74,10 +74,10 @@ def _equality(binary: ir.Binary, capabilities: Capabilities, keep: Keep) -> ir.E
     else:
         return binary
     result: ir.Expr | None = None
-    for one, other in pairs:
-        equal = legal_operator(ir.Binary(BOOL, binary.op, one, other, span), capabilities, keep)
-        joined = "&&" if binary.op == "==" else "||"
-        result = equal if result is None else ir.Binary(BOOL, joined, result, equal, span)
+    for first, second in pairs:
+        equal = legal_operator(ir.Binary(BOOL, binary.op, first, second, span), capabilities, keep)
+        connective = "&&" if binary.op == "==" else "||"
+        result = equal if result is None else ir.Binary(BOOL, connective, result, equal, span)
     assert result is not None
     return result
 

@@ -31,7 +31,7 @@ Polyfill = Callable[[str, Sequence[Type]], ir.Module]
 
 
 class _OutOfOrder(Exception):
-    """Something would be computed before a call that comes before it in the source."""
+    """A value would be computed before a call that precedes it in the source."""
 
 
 def legalise(module: ir.Module, dialect: str, capabilities: Capabilities, polyfill: Polyfill) -> ir.Module:
@@ -40,7 +40,7 @@ def legalise(module: ir.Module, dialect: str, capabilities: Capabilities, polyfi
 
 
 class _Legaliser(Transformer):
-    """Rewrites functions: what must be computed before a statement is appended to `out` before it."""
+    """Rewrites functions: values that must be computed before a statement are appended to `out` before it."""
 
     def __init__(self, module: ir.Module, dialect: str, capabilities: Capabilities, polyfill: Polyfill) -> None:
         super().__init__()
@@ -65,7 +65,7 @@ class _Legaliser(Transformer):
         self.writing = bool(self.shared or self.outs)
         """Whether any call can write anything."""
         self.ordered: set[int] = set()
-        """The statements, by id, before which nothing of theirs may be computed."""
+        """The ids of the statements of which no part may be computed before them."""
 
     def run(self) -> ir.Module:
         functions, errors = list[ir.Function](), list[Unsupported]()
@@ -159,7 +159,7 @@ class _Legaliser(Transformer):
         return stmt if begin is value else ir.Declare(stmt.name, stmt.type, begin, stmt.span)
 
     def initial(self, value: ir.Expr) -> ir.Expr:
-        """The first value of a variable: there every language can list the parts of an array or struct."""
+        """An initial value: there every language can list the parts of an array or struct."""
         if type(value) is ir.Construct and isinstance(value.type, (Array, Struct)):
             return value._replace(args=tuple([self.initial(arg) for arg in value.args]))
         return self.expression(value)
@@ -199,7 +199,7 @@ class _Legaliser(Transformer):
         return stmt if value is stmt.value else ir.Return(value, stmt.span)
 
     def returned(self, value: ir.Expr, span: ir.Span) -> ir.Expr:
-        """What a function returns at its end; the first arm of a choice that needs an if returns before."""
+        """The value of the function's last return; the first arm of a choice that needs an if returns before it."""
         if not isinstance(value, ir.Select) or not self.branches(value):
             return self.expression(value)
         condition, then = self.expression(value.condition), self.inner((ir.Return(value.yes, value.yes.span),))
@@ -274,7 +274,7 @@ class _Legaliser(Transformer):
         return self.construct(new) if isinstance(new, ir.Construct) else self.node(new)
 
     def place(self, place: ir.Expr) -> ir.Expr:
-        """What is assigned to: only its indices are expressions."""
+        """The target of an assignment: only its indices are expressions."""
         if isinstance(place, ir.Swizzle | ir.Member):
             return place._replace(value=self.place(place.value))
         if isinstance(place, ir.Index):
@@ -331,10 +331,10 @@ class _Legaliser(Transformer):
 
     def text(self, name: str, types: tuple[Type, ...]) -> str:
         """How the target writes a builtin of these types."""
-        known = self.texts.get((name, types))
-        if known is None:
-            known = self.texts[name, types] = signatures.text(name, self.dialect, types)
-        return known
+        text = self.texts.get((name, types))
+        if text is None:
+            text = self.texts[name, types] = signatures.text(name, self.dialect, types)
+        return text
 
     def call_polyfill(self, call: ir.Intrinsic, module: ir.Module) -> ir.Expr:
         """The polyfill's expression where it is short and its arguments are cheap, else a call of the polyfill."""
@@ -398,8 +398,8 @@ class _Legaliser(Transformer):
 
     def chooses(self, select: ir.Select) -> bool:
         """Whether the target has an expression for this choice."""
-        whole = isinstance(select.type, Struct | Array)
-        return self.capabilities.ternary and (not whole or self.capabilities.struct_choices)
+        aggregate = isinstance(select.type, Struct | Array)
+        return self.capabilities.ternary and (not aggregate or self.capabilities.struct_choices)
 
     def branches(self, select: ir.Select) -> bool:
         """Whether a choice becomes an if: its arms are not plain values, or one of them calls or samples."""

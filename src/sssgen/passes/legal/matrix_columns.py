@@ -61,7 +61,7 @@ def by_whole_columns(type_: Matrix, args: Sequence[ir.Expr], span: Span) -> ir.C
 
     A vector in `args` that is part of two columns is read twice.
     """
-    cells = [(arg, at) for arg in args for at in range(components(arg.type))]
+    cells = [(arg, component) for arg in args for component in range(components(arg.type))]
     size = type_.size
     columns = [_column(cells[start : start + size], size, span) for start in range(0, size * size, size)]
     return ir.Construct(type_, tuple(columns), span)
@@ -70,11 +70,11 @@ def by_whole_columns(type_: Matrix, args: Sequence[ir.Expr], span: Span) -> ir.C
 def _column(cells: Sequence[tuple[ir.Expr, int]], size: int, span: Span) -> ir.Expr:
     """One column from (argument, which of its components) for each of its numbers."""
     runs: list[tuple[ir.Expr, str]] = []
-    for arg, at in cells:
+    for arg, component in cells:
         if runs and runs[-1][0] is arg:
-            runs[-1] = arg, runs[-1][1] + "xyzw"[at]
+            runs[-1] = arg, runs[-1][1] + "xyzw"[component]
         else:
-            runs.append((arg, "xyzw"[at]))
+            runs.append((arg, "xyzw"[component]))
     parts = tuple([_part(arg, letters) for arg, letters in runs])
     return parts[0] if len(parts) == 1 else ir.Construct(Vector("float", size), parts, span)
 

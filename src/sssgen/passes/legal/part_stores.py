@@ -31,7 +31,7 @@ def is_swizzle_store(part: ir.Expr) -> bool:
 
 
 def is_dynamic_store(part: ir.Expr) -> bool:
-    """Whether it depends on a value which component or column would be stored."""
+    """Whether the stored component or column depends on a value."""
     return isinstance(part, ir.Index) and _in_registers(part) and not isinstance(part.index, ir.Literal)
 
 
@@ -45,7 +45,7 @@ def base_name(place: ir.Expr) -> str:
 
 
 def parts_of(place: ir.Expr) -> list[ir.Expr]:
-    """A place and what it is a part of, up to an array's element or a whole variable."""
+    """A place and the values that contain it, up to an array's element or a whole variable."""
     parts: list[ir.Expr] = []
     while isinstance(place, ir.Swizzle) or (isinstance(place, ir.Index) and _in_registers(place)):
         parts.append(place)
@@ -67,45 +67,45 @@ def _pinned(place: ir.Expr, keep: Keep) -> ir.Expr:
 
 
 def _wider(place: ir.Expr, value: ir.Expr, keep: Keep) -> tuple[ir.Expr, ir.Expr]:
-    """The store one step further out: of what `place` is a part of."""
+    """The store one step further out: of the vector or matrix that `place` is a part of."""
     assert isinstance(place, ir.Swizzle | ir.Index)
-    whole, span = place.value, place.span
-    type_ = whole.type
+    vector, span = place.value, place.span
+    type_ = vector.type
     assert isinstance(type_, Vector | Matrix)
-    one = Vector("float", type_.size) if isinstance(type_, Matrix) else Scalar(type_.kind)
+    part_type = Vector("float", type_.size) if isinstance(type_, Matrix) else Scalar(type_.kind)
 
-    def old(number: int) -> ir.Expr:
+    def old(component: int) -> ir.Expr:
         if isinstance(type_, Matrix):
-            return ir.Index(one, whole, ir.Literal(Scalar("int"), number, span), span)
-        return ir.Swizzle(one, whole, "xyzw"[number], span)
+            return ir.Index(part_type, vector, ir.Literal(Scalar("int"), component, span), span)
+        return ir.Swizzle(part_type, vector, "xyzw"[component], span)
 
     parts = [old(number) for number in range(type_.size)]
     if isinstance(place, ir.Swizzle):
         if len(place.components) > 1:
-            value = keep(value, f"{base_name(whole)}_{place.components}")
+            value = keep(value, f"{base_name(vector)}_{place.components}")
         for number, letter in enumerate(place.components):
-            parts["xyzw".index(letter)] = _component(value, number, one)
+            parts["xyzw".index(letter)] = _component(value, number, part_type)
     elif isinstance(place.index, ir.Literal):
         parts[int(place.index.value)] = value
     else:
-        value = keep(value, f"{base_name(whole)}_new")
+        value = keep(value, f"{base_name(vector)}_new")
         for number in range(type_.size):
-            hit = ir.Binary(BOOL, "==", place.index, ir.Literal(place.index.type, number, span), span)
-            parts[number] = ir.Select(one, hit, value, parts[number], span)
-    return whole, ir.Construct(type_, tuple(_joined(parts)), span)
+            selected = ir.Binary(BOOL, "==", place.index, ir.Literal(place.index.type, number, span), span)
+            parts[number] = ir.Select(part_type, selected, value, parts[number], span)
+    return vector, ir.Construct(type_, tuple(_joined(parts)), span)
 
 
 def _joined(parts: list[ir.Expr]) -> list[ir.Expr]:
     """The components of a vector, with neighbours of one vector taken together: `v.x, v.y, w.z` as `v, w.z`."""
-    found: list[ir.Expr] = []
+    joined: list[ir.Expr] = []
     for part in parts:
-        last = found[-1] if found else None
+        last = joined[-1] if joined else None
         if not isinstance(part, ir.Swizzle) or not isinstance(last, ir.Swizzle) or part.value is not last.value:
-            found.append(part)
+            joined.append(part)
             continue
         letters = last.components + part.components
-        found[-1] = part._replace(type=vector_of(kind_of(part.type), len(letters)), components=letters)
-    return [_whole(part) for part in found]
+        joined[-1] = part._replace(type=vector_of(kind_of(part.type), len(letters)), components=letters)
+    return [_whole(part) for part in joined]
 
 
 def _whole(part: ir.Expr) -> ir.Expr:

@@ -2,21 +2,20 @@
 
 Why: NumPy computes all lanes of a batch at once, so `if (c) x = a;` becomes `x = select(c, a, x)`, and a loop
 runs while any lane is in it. Place: after all other passes but `names`, as its result is for targets without
-control flow per lane, and no longer meant for other passes. What is uniform (see `uniformity`) stays as it
-is.
+control flow per lane; no other pass expects it. Uniform control flow (see `uniformity`) is kept.
 
 The result is ordinary IR with these conventions:
-- a mask is a bool variable: `mask` (lanes in the arm of an if), `running` (still in the loop), `active` (not
-  yet done with this pass of the loop, where it has a continue), `returned` (done with the function, `result`
+- a mask is a bool variable: `mask` (the lanes in the arm of an if), `running` (those still in the loop), `active`
+  (those still in this iteration of the loop, where it has a continue), `returned` (those that have returned; `result`
   is their value);
-- `if`, `for` and `while` are left only where their condition is the same in all lanes, `for` only where it
-  counts (`uniformity.count`); a loop that lanes leave one by one runs `while (any_lane(running))`, an
-  intrinsic of its own;
-- a call that writes stands alone (see `lift_calls`), and a function says in `out bool discarded` which lanes
-  are discarded;
-- a variable is masked only against lanes that may still read it: what is declared under a mask, or read no
-  more after a return, is assigned plainly, and lanes that are out hold garbage there. Loads and builtins run
-  for all lanes, so they must bear garbage: indices are clamped, divisions by 0 go on.
+- `if`, `for` and `while` remain only where their condition is the same in all lanes, `for` only where it counts
+  (`uniformity.count`); a loop that lanes leave one by one runs `while (any_lane(running))`, with an intrinsic for this;
+- a call that writes is a statement by itself (see `lift_calls`), and a function reports in `out bool discarded` which
+  lanes are discarded;
+- an assignment is masked only where lanes outside the mask may still read the variable. A variable that is declared
+  under a mask, or that is not read after a return, is assigned without a mask and has arbitrary values in the other
+  lanes. Reads and builtins run for all lanes, so they accept any value: indices are clamped, a division by 0 gives
+  infinity or NaN.
 """
 
 from __future__ import annotations
@@ -71,17 +70,17 @@ class _Frame:
 
     def __init__(self, mask: Mask | None, running: str = "", active: str = "") -> None:
         self.mask = mask
-        """The lanes here, None for all. It may be wrong for lanes that no one here asks about: see `base`."""
+        """The lanes that run this code; None: all. It may be wrong for lanes outside the frame of `base`."""
         self.running, self.active = running, active
         """A loop's masks, '' if it has none."""
         self.more = False
         """Whether statements of this frame follow."""
         self.branches = 0
-        """How many uniform ifs and loops of this frame we are in."""
+        """How many uniform ifs and loops of this frame enclose the current statement."""
 
 
 _OUTSIDE = -1
-"""The depth of what lives on when the function has returned."""
+"""The depth of variables that are read after the function has returned."""
 
 
 class _Converter:
@@ -97,10 +96,10 @@ class _Converter:
         """The frame that each variable belongs to."""
         self.frames = [_Frame(None)]
         self.loops: list[int] = []
-        """For each loop we are in the depth of its frame, 0 where it has none."""
+        """The depth of the frame of each enclosing loop, 0 for a loop without one."""
         self.out: list[Stmt] = []
         self.python_depth = 0
-        """How many loops and ifs of the result we are in."""
+        """How many loops and ifs of the result enclose the current statement."""
         self.diverges = "return" in self.facts.jumps(function.body or (), False)
         self.returned, self.result = "", ""
         self.arms_to_come = 0
@@ -122,7 +121,7 @@ class _Converter:
         return name
 
     def mask(self, value: Expr, name: str = "mask") -> Mask:
-        """Keeps a condition as a mask."""
+        """Stores a condition in a mask."""
         name = self.new(name)
         self.out.append(Declare(name, BOOL, value, value.span))
         return Mask(name)
@@ -138,7 +137,7 @@ class _Converter:
     # Statements
 
     def block(self, block: Block) -> bool:
-        """Converts statements; whether no lane of the frame gets beyond them."""
+        """Converts statements; returns whether no lane of the frame reaches their end."""
         frame = self.frame
         outer = frame.more
         ended = False
@@ -151,16 +150,16 @@ class _Converter:
         return ended
 
     def nested(self, block: Block) -> tuple[Block, bool]:
-        """Converts statements that stay inside a statement of the result."""
+        """Converts statements into the block of a statement of the result; returns also what `block` does."""
         outer, self.out = self.out, []
         self.python_depth += 1
         ended = self.block(block)
         self.python_depth -= 1
-        made, self.out = self.out, outer
-        return tuple(made), ended
+        statements, self.out = self.out, outer
+        return tuple(statements), ended
 
     def statement(self, stmt: Stmt) -> bool:
-        """Converts a statement; whether no lane of the frame gets beyond it."""
+        """Converts a statement; returns whether no lane of the frame reaches its end."""
         if isinstance(stmt, Declare):
             self.depths[stmt.name] = self.depth
             if isinstance(stmt.value, Call):
@@ -191,7 +190,7 @@ class _Converter:
         return False
 
     def mask_for(self, name: str) -> Mask | None:
-        """The lanes in which a variable may change here, None if it may in all."""
+        """The lanes in which a variable may change here; None: all."""
         return self.frame.mask if self.depths[name] < self.depth else None
 
     def assign(self, stmt: Assign) -> None:
@@ -206,7 +205,7 @@ class _Converter:
         self.out.append(Assign(target, "", mask.choose(value, target, span), span))
 
     def call(self, stmt: Declare | Assign | Evaluate, call: Call) -> None:
-        """A call that may write: under a mask, it writes to variables of its own, which are then copied."""
+        """A call that may write: under a mask it writes to temporary variables, which are then copied."""
         args = list(call.args)
         after: list[Stmt] = []
         for index, param in enumerate(self.functions[call.function].params):
@@ -215,10 +214,10 @@ class _Converter:
                 assert isinstance(arg, Local)
                 mask = self.mask_for(arg.name)
                 if mask is not None:
-                    kept = args[index] = Local(arg.type, self.new(arg.name), arg.span)
+                    temporary = args[index] = Local(arg.type, self.new(arg.name), arg.span)
                     value = arg if param.direction == "inout" else None
-                    self.out.append(Declare(kept.name, arg.type, value, arg.span))
-                    after.append(Assign(arg, "", mask.choose(kept, arg, arg.span), arg.span))
+                    self.out.append(Declare(temporary.name, arg.type, value, arg.span))
+                    after.append(Assign(arg, "", mask.choose(temporary, arg, arg.span), arg.span))
         call = call._replace(args=tuple(args))
         if isinstance(stmt, Evaluate):
             self.out.append(stmt._replace(call=call))
@@ -226,9 +225,9 @@ class _Converter:
             variable = root(stmt.target)
             assert variable is not None
             if out_arguments(call, self.functions) and self.mask_for(variable.name) is not None:
-                kept = Local(stmt.target.type, self.new(variable.name), stmt.span)
-                self.out.append(Declare(kept.name, kept.type, call, stmt.span))
-                self.assign(stmt._replace(value=kept))
+                temporary = Local(stmt.target.type, self.new(variable.name), stmt.span)
+                self.out.append(Declare(temporary.name, temporary.type, call, stmt.span))
+                self.assign(stmt._replace(value=temporary))
             else:
                 self.assign(stmt._replace(value=call))
         else:
@@ -273,15 +272,15 @@ class _Converter:
         return ended
 
     def constant_in(self, name: str, stmt: If) -> bool:
-        """Whether a variable can serve as the mask of an if: nothing in there changes it."""
+        """Whether a variable can be the mask of an if: no statement inside changes it."""
         if any(_jumps_inside(arm) for arm in (stmt.then, stmt.otherwise)):
             return False
         return name not in written_outside(stmt, self.functions)
 
     def base(self, stmt: If) -> int:
-        """The depth of the outermost frame to which something belongs that the if changes.
+        """The depth of the outermost frame whose variables or masks the if changes.
 
-        Its mask need tell apart only the lanes of that frame, so it need not repeat the masks further out.
+        The mask of the if must be right only for the lanes of that frame, so it need not include the masks further out.
         """
         depths = [self.depth]
         depths += [self.depths[name] for name in written_outside(stmt, self.functions) if name in self.depths]
@@ -289,7 +288,7 @@ class _Converter:
             if isinstance(inner, Return):
                 depths.append(0)
             elif isinstance(inner, Break | Continue) and self.loops:
-                target = self.loops[-1]  # or a loop inside; what goes on after a continue must not break
+                target = self.loops[-1]  # or an inner loop; a lane that continues must not break
                 depths.append(target - 1 if self.frames[target].active and isinstance(inner, Break) else target)
             elif isinstance(inner, Discard) or (
                 isinstance(inner, For | While) and self.facts.loops[id(inner)].diverges
@@ -325,11 +324,11 @@ class _Converter:
         frame.more = more
 
     def diverging_loop(self, loop: For | While, masked: bool, jumps: frozenset[str]) -> None:
-        """A loop with a mask of the lanes still in it, and perhaps one of those still in this pass."""
+        """A loop with a mask of the lanes still in it, and where needed one of those still in this iteration."""
         outer, span = self.frame, loop.span
         init, step = (loop.init, loop.step) if isinstance(loop, For) else (None, None)
         if isinstance(init, Declare):
-            # lanes that are done with the loop need no counter any more, but those do that go on with the next round
+            # lanes that have left the loop need no counter, but those that continue with the next iteration do
             steps = "continue" in jumps and may_change(loop.body, init.name)
             self.depths[init.name] = self.depth + (0 if steps else 1)
             if masked:
@@ -380,33 +379,33 @@ class _Converter:
         local = Local(BOOL, name, value.span)
         self.out.append(Assign(local, "", Binary(BOOL, op, local, value, value.span), value.span))
 
-    def clear(self, mask: Mask, gone: Mask | None, span: Span) -> None:
-        """Takes lanes out of a mask; all of them for None."""
-        if gone is None:
+    def clear(self, mask: Mask, condition: Mask | None, span: Span) -> None:
+        """Removes lanes from a mask; None: all of them."""
+        if condition is None:
             self.out.append(Assign(Local(BOOL, mask.name, span), "", Literal(BOOL, mask.inverted, span), span))
         elif mask.inverted:
-            self.update(mask.name, "||", gone.expr(span))
+            self.update(mask.name, "||", condition.expr(span))
         else:
-            self.update(mask.name, "&&", Mask(gone.name, not gone.inverted).expr(span))
+            self.update(mask.name, "&&", Mask(condition.name, not condition.inverted).expr(span))
 
     def leave(self, target: int, kind: str, span: Span) -> None:
-        """Takes the lanes of this frame out of the frames around it, up to that at depth `target`."""
-        gone = self.frame.mask
-        assert gone is not None
+        """Removes the lanes of this frame from the masks of the enclosing frames, up to that at depth `target`."""
+        leaving = self.frame.mask
+        assert leaving is not None
         for depth in range(max(target, 1), self.depth):
             frame = self.frames[depth]
             if frame.running and not (kind == "continue" and depth == target):
-                self.clear(Mask(frame.running), gone, span)
+                self.clear(Mask(frame.running), leaving, span)
             if frame.more and frame.mask is not None and frame.mask.name != frame.running:
-                self.clear(frame.mask, gone, span)
+                self.clear(frame.mask, leaving, span)
         frame = self.frame
         if kind != "continue" and frame.running:
             if not frame.active:
                 self.out.append(Break(span))
                 return
-            self.clear(Mask(frame.running), gone, span)
+            self.clear(Mask(frame.running), leaving, span)
         if frame.more and (frame.branches or frame.active):
-            self.clear(gone, None, span)
+            self.clear(leaving, None, span)
 
     def leave_loop(self, stmt: Break | Continue) -> None:
         kind = "break" if isinstance(stmt, Break) else "continue"
@@ -418,13 +417,13 @@ class _Converter:
             self.leave(target, kind, stmt.span)
 
     def prepare_return(self, stmt: Stmt) -> None:
-        """Before a loop or if of the result in which lanes may return: nobody has yet."""
-        inside = any(isinstance(inner, Return | Discard) for inner in statements((stmt,)))
-        if self.diverges and inside and not self.returned and self.python_depth == 0:
+        """Declares that no lane has returned yet, before a loop or if of the result in which lanes may return."""
+        may_return = any(isinstance(inner, Return | Discard) for inner in statements((stmt,)))
+        if self.diverges and may_return and not self.returned and self.python_depth == 0:
             self.start_return(Literal(BOOL, False, stmt.span), None, stmt.span)
 
     def start_return(self, returned: Expr, result: Expr | None, span: Span) -> None:
-        """Declares which lanes have returned, and what."""
+        """Declares which lanes have returned, and their results."""
         type_: Type = self.function.result
         if type_ != VOID:
             self.result = self.new("result")
@@ -445,15 +444,15 @@ class _Converter:
         if self.depth == 0:
             self.out.append(Return(value, span))
             return
-        gone = self.frame.mask
-        assert gone is not None
+        leaving = self.frame.mask
+        assert leaving is not None
         if not self.returned:
-            self.start_return(gone.expr(span), value, span)
+            self.start_return(leaving.expr(span), value, span)
         else:
             if value is not None:
                 self.out.append(Assign(Local(value.type, self.result, span), "", value, span))
             if self.loops or self.arms_to_come or any(frame.more for frame in self.frames):
-                self.update(self.returned, "||", gone.expr(span))
+                self.update(self.returned, "||", leaving.expr(span))
         self.leave(0, "return", span)
 
     def discard(self, stmt: Discard) -> None:
@@ -473,7 +472,7 @@ def _any_lane(mask: str, span: Span) -> Expr:
 
 
 def _jumps_inside(block: Block) -> bool:
-    """Whether there is a jump in a statement of the block, beside the block's own."""
+    """Whether a statement inside the block's statements is a jump; jumps of the block itself do not count."""
     jumps = (Break, Continue, Return, Discard)
     return any(
         isinstance(inner, jumps) for stmt in block if not isinstance(stmt, jumps) for inner in statements((stmt,))

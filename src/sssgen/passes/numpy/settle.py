@@ -11,7 +11,7 @@ from sssgen.passes.numpy.variable_uses import is_local, mentions, reads_of, writ
 
 
 def settle(body: Block, function: Function, functions: Functions) -> Block:
-    """Gives a start to variables, out parameters too, that may be read before they are set in all lanes.
+    """Gives an initial value to variables and out parameters that may be read before they are set in all lanes.
 
     A second declaration, of two arms that are now in one block, becomes an assignment.
     """
@@ -47,7 +47,7 @@ def _settle(block: Block, visible: dict[str, Type], functions: Functions) -> Blo
 
 
 def _set_first(block: Block, name: str, functions: Functions, out: bool = False) -> bool:
-    """Whether a variable is set whole, or not used at all, before anything reads it; returns read an `out` one."""
+    """Whether a variable is set as a whole before it is read, or not used; a return reads it if it is `out`."""
     for stmt in block:
         if isinstance(stmt, Declare) and stmt.name == name and (stmt.value is None or not mentions(stmt.value, name)):
             return True

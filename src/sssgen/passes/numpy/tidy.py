@@ -17,17 +17,17 @@ _NUMBER = re.compile(r"_\d+$")
 
 
 class _Uses(NamedTuple):
-    """What tidying needs to know of a function's variables."""
+    """The uses of a function's variables."""
 
     made: Set[str]
     single: Set[str]
-    """Of those made the ones that are set once and read at most once."""
+    """Those of `made` that are set once and read at most once."""
     reads: dict[str, int]
     functions: Functions
 
 
 def tidy(body: Block, made: Set[str], functions: Functions) -> Block:
-    """Joins the two arms' assignments where it can, and drops or inlines what was made and is used once."""
+    """Joins the assignments of two arms where possible, and removes or inlines variables of `made` used once."""
     body = _join_arms(body, functions)
     while True:
         reads: dict[str, int] = {}
@@ -44,7 +44,7 @@ def tidy(body: Block, made: Set[str], functions: Functions) -> Block:
 
 
 def _inline(block: Block, uses: _Uses) -> Block:
-    """One step: drops or moves the first declaration that can be."""
+    """One step: removes or inlines the first declaration for which this is possible."""
     for index, stmt in enumerate(block):
         if isinstance(stmt, Declare) and stmt.name in uses.single:
             new = _inline_declaration(block, index, stmt, uses)
@@ -59,9 +59,13 @@ def _inline(block: Block, uses: _Uses) -> Block:
             if body is not stmt.body:
                 return (*block[:index], stmt._replace(body=body), *block[index + 1 :])
         elif isinstance(stmt, Return) and isinstance(stmt.value, Local) and index:
-            before = block[index - 1]
-            if isinstance(before, Assign) and stmt.value.name in uses.made and is_local(before.target, stmt.value.name):
-                return (*block[: index - 1], Return(before.value, stmt.span), *block[index + 1 :])
+            previous = block[index - 1]
+            if (
+                isinstance(previous, Assign)
+                and stmt.value.name in uses.made
+                and is_local(previous.target, stmt.value.name)
+            ):
+                return (*block[: index - 1], Return(previous.value, stmt.span), *block[index + 1 :])
     return block
 
 
@@ -72,10 +76,10 @@ def _inline_declaration(block: Block, index: int, declare: Declare, uses: _Uses)
     if name not in uses.reads:
         return block[:index] + block[index + 1 :]
     free = {part.name for part in subexpressions(value) if isinstance(part, Local)}
-    for place in range(index + 1, len(block)):
-        user = block[place]
+    for position in range(index + 1, len(block)):
+        user = block[position]
         if not isinstance(user, For | While) and name in own_reads(user):
-            return block[:index] + block[index + 1 : place] + (_put(user, name, value),) + block[place + 1 :]
+            return block[:index] + block[index + 1 : position] + (_put(user, name, value),) + block[position + 1 :]
         if free.intersection(writes_of((user,), uses.functions)):
             break
     return block
@@ -107,9 +111,9 @@ def _join_arms(block: Block, functions: Functions) -> Block:
         elif isinstance(stmt, Assign) and isinstance(stmt.target, Local) and isinstance(stmt.value, Select):
             name, choice = stmt.target.name, stmt.value
             if isinstance(choice.condition, Local) and is_local(choice.yes, name) and not mentions(choice.no, name):
-                place = _other_arm(result, name, choice.condition.name, functions)
-                if place is not None:
-                    other = result.pop(place)
+                position = _other_arm(result, name, choice.condition.name, functions)
+                if position is not None:
+                    other = result.pop(position)
                     assert isinstance(other, Assign) and isinstance(other.value, Select)
                     stmt = stmt._replace(value=choice._replace(yes=other.value.yes))
         result.append(stmt)
@@ -117,15 +121,15 @@ def _join_arms(block: Block, functions: Functions) -> Block:
 
 
 def _other_arm(done: list[Stmt], name: str, mask: str, functions: Functions) -> int | None:
-    """The position of `name = select(mask, …, name)`, if it can as well be at the end."""
+    """The position of `name = select(mask, …, name)`, if it may move to the end."""
     changed: set[str] = set()
-    for place in range(len(done) - 1, -1, -1):
-        stmt = done[place]
+    for position in range(len(done) - 1, -1, -1):
+        stmt = done[position]
         if isinstance(stmt, Assign) and not stmt.op and is_local(stmt.target, name) and isinstance(stmt.value, Select):
             choice = stmt.value
-            free = {part.name for part in subexpressions(choice.yes) if isinstance(part, Local)} | {mask}
-            fits = is_local(choice.condition, mask) and is_local(choice.no, name) and not free & changed
-            return place if fits else None
+            reads = {part.name for part in subexpressions(choice.yes) if isinstance(part, Local)} | {mask}
+            joinable = is_local(choice.condition, mask) and is_local(choice.no, name) and not reads & changed
+            return position if joinable else None
         changed.update(writes_of((stmt,), functions))
         if name in changed or name in reads_of((stmt,)):
             return None
@@ -133,7 +137,7 @@ def _other_arm(done: list[Stmt], name: str, mask: str, functions: Functions) -> 
 
 
 def renumber(body: Block, made: Set[str], taken: Set[str]) -> Block:
-    """Closes the gaps that tidying left in the numbers of the names that were made."""
+    """Numbers the names in `made` without gaps: `tidy` removed some of them."""
     names: dict[str, str] = {}
     used = set(taken) - made
     for stmt in statements(body):

@@ -1,7 +1,7 @@
 """Finds the control flow that is the same in all lanes, where Python's own `if` and loops can be used.
 
-A condition is uniform when it is made of literals, module constants and variables that hold nothing else.
-What comes from outside (parameters, uniforms, textures) may differ from lane to lane. Used by `predicate`.
+A condition is uniform if it consists of literals, module constants, and variables computed from these alone.
+Inputs (parameters, uniforms, textures) may differ from lane to lane. Used by `predicate`.
 """
 
 from __future__ import annotations
@@ -51,9 +51,9 @@ class LoopFacts(NamedTuple):
     counted: bool
     """As `for … in range(…)`."""
     masked: bool
-    """As a `while` with a mask, as its own condition differs from lane to lane, or lanes leave it."""
+    """As a `while` with a mask, because its condition differs from lane to lane, or because lanes leave it."""
     jumps: frozenset[str]
-    """break, continue and return (also for discard), where some lanes do it and others do not."""
+    """The kinds of jumps that only some lanes execute: break, continue, return (also for discard)."""
 
     @property
     def diverges(self) -> bool:
@@ -144,7 +144,7 @@ class Uniformity:
         self.block(loop.body, inner)
 
     def facts(self, loop: For | While, inside: bool) -> LoopFacts:
-        """How to run a loop; `inside`: it is where only some lanes are active."""
+        """How to run a loop; `inside`: only some lanes are active there."""
         body = loop.body
         counter = count(loop) if isinstance(loop, For) else None
         counted = counter is not None and self.fixed(counter, body)
@@ -162,7 +162,7 @@ class Uniformity:
         return LoopFacts(counted, not uniform or bool(jumps and not counted), frozenset(jumps))
 
     def fixed(self, counter: Count, body: Block) -> bool:
-        """Whether the counter and its bounds are uniform and stay as they are during the loop."""
+        """Whether the counter and its bounds are uniform and the loop's body does not change them."""
         if not self.uniform(counter.start) or not self.uniform(counter.stop):
             return False
         watched = {part.name for part in subexpressions(counter.stop) if isinstance(part, Local)} | {counter.name}
@@ -176,20 +176,20 @@ class Uniformity:
         return True
 
     def jumps(self, block: Block, diverged: bool) -> set[str]:
-        """How some lanes, and not others, leave the loop whose body this is, or its pass."""
-        found: set[str] = set()
+        """The kinds of jumps by which only some lanes leave the loop with this body, or its iteration."""
+        kinds: set[str] = set()
         for stmt in block:
             if isinstance(stmt, Break | Continue | Return | Discard):
                 if diverged:
-                    found.add(_kind(stmt))
+                    kinds.add(_kind(stmt))
             elif isinstance(stmt, If):
                 inner = diverged or not self.uniform(stmt.condition)
-                found |= self.jumps(stmt.then, inner) | self.jumps(stmt.otherwise, inner)
+                kinds |= self.jumps(stmt.then, inner) | self.jumps(stmt.otherwise, inner)
             elif (
                 isinstance(stmt, For | While) and _returns(stmt.body) and (diverged or self.facts(stmt, False).diverges)
             ):
-                found.add("return")
-        return found
+                kinds.add("return")
+        return kinds
 
 
 def _kind(jump: Break | Continue | Return | Discard) -> str:
@@ -204,10 +204,10 @@ def _returns(block: Block) -> bool:
 
 def _own_jumps(block: Block) -> set[str]:
     """The breaks and continues of a loop with this body, without those of loops inside it."""
-    found: set[str] = set()
+    kinds: set[str] = set()
     for stmt in block:
         if isinstance(stmt, Break | Continue):
-            found.add(_kind(stmt))
+            kinds.add(_kind(stmt))
         elif isinstance(stmt, If):
-            found |= _own_jumps(stmt.then) | _own_jumps(stmt.otherwise)
-    return found
+            kinds |= _own_jumps(stmt.then) | _own_jumps(stmt.otherwise)
+    return kinds

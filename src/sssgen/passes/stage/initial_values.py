@@ -18,17 +18,29 @@ def set_at_start(module: Module, entry: str, all_of_them: bool = False) -> Modul
     Only those that are no constants, unless it is to be `all_of_them`. Raises Unsupported where `entry` is ''.
     """
     constants = {constant.name for constant in module.constants}
-    moved = [one for one in module.variables if one.value is not None and (all_of_them or _varies(one, constants))]
+    moved = [
+        declaration
+        for declaration in module.variables
+        if declaration.value is not None and (all_of_them or _varies(declaration, constants))
+    ]
     if not moved:
         return module
     if not entry:
         message = f"the value of '{moved[0].name}' is not constant, and there is no main() that could set it"
         raise Unsupported(message, moved[0].span)
     names = {variable.name for variable in moved}
-    variables = tuple([one._replace(value=None) if one.name in names else one for one in module.variables])
+    variables = tuple(
+        [
+            declaration._replace(value=None) if declaration.name in names else declaration
+            for declaration in module.variables
+        ]
+    )
     stmts = tuple(map(_set, moved))
     functions = tuple(
-        [one._replace(body=(*stmts, *(one.body or ()))) if one.key == entry else one for one in module.functions]
+        [
+            declaration._replace(body=(*stmts, *(declaration.body or ()))) if declaration.key == entry else declaration
+            for declaration in module.functions
+        ]
     )
     return module._replace(variables=variables, functions=functions)
 

@@ -1,6 +1,7 @@
 """The interface of a whole shader: its stage, and where each of its in and out variables is bound.
 
-A module with a function `void main()` is one: a vertex shader where gl_Position is written, else a fragment shader.
+A module with a function `void main()` is a whole shader: a vertex shader if it writes gl_Position, else a fragment
+shader.
 A location that the author wrote is kept; the other variables get the lowest free ones in the order of their
 declaration, so that a vertex shader's outputs meet a fragment shader's inputs where both are declared alike.
 Place: what depends on the framebuffer before `hoist`, the interface last, as the names are final there.
@@ -36,7 +37,7 @@ class Slot(NamedTuple):
 
     variable: Variable
     path: tuple[int, ...]
-    """The indices that lead to it."""
+    """The indices of the element or column."""
     type: Type
     location: int
     """-1 for a builtin."""
@@ -53,13 +54,17 @@ class Stage(NamedTuple):
     outputs: tuple[Slot, ...]
     """Those with a location first, in its order."""
     resolution: str
-    """The uniform from whose y gl_FragCoord.y is taken; '' where it stays as it is."""
+    """The uniform from whose y gl_FragCoord.y is subtracted; '' where y is not flipped."""
 
 
 def entry_of(module: Module) -> Function | None:
     """The function that a stage begins with."""
-    found = (one for one in module.functions if one.key == ENTRY and one.result == VOID and one.body is not None)
-    return next(found, None)
+    entries = (
+        function
+        for function in module.functions
+        if function.key == ENTRY and function.result == VOID and function.body is not None
+    )
+    return next(entries, None)
 
 
 def stage_kind(module: Module) -> str:
@@ -82,7 +87,9 @@ def interface(module: Module, kind: str, function: str, builtins: Collection[str
     for variable in inputs:
         if variable.builtin and variable.builtin not in builtins:
             raise Unsupported(f"a {kind} shader of this target is given no {variable.builtin}", variable.span)
-    outputs = [one for one in outputs if not one.builtin or one.builtin in builtins or one.builtin in COLORS]
+    outputs = [
+        output for output in outputs if not output.builtin or output.builtin in builtins or output.builtin in COLORS
+    ]
     resolution = resolution_of(module) if turned and kind == "fragment" else ""
     return Stage(kind, function, _slots(inputs), _slots(outputs), resolution)
 
@@ -109,7 +116,7 @@ def turned_derivatives(module: Module) -> Module:
 
 def colors_in_use(module: Module) -> Module:
     """The module with gl_FragData as long as its highest index requires, where all indices are constant."""
-    data = {one.name: one.type for one in module.variables if one.builtin == "gl_FragData"}
+    data = {variable.name: variable.type for variable in module.variables if variable.builtin == "gl_FragData"}
     if not data:
         return module
     length = 0
@@ -127,7 +134,12 @@ def colors_in_use(module: Module) -> Module:
     def change(expr: Expr) -> Expr:
         return expr._replace(type=short(expr.type)) if isinstance(expr, Global) and expr.name in data else expr
 
-    variables = tuple([one._replace(type=short(one.type)) if one.name in data else one for one in module.variables])
+    variables = tuple(
+        [
+            variable._replace(type=short(variable.type)) if variable.name in data else variable
+            for variable in module.variables
+        ]
+    )
     return rewrite_module(module._replace(variables=variables), change)
 
 
@@ -135,10 +147,10 @@ def remarks(
     module: Module, builtins: Collection[str], turned: bool, capabilities: Capabilities
 ) -> list[tuple[str, Span]]:
     """What differs from the source in a target's whole shader, with its place."""
-    found = []
+    differences = []
     for variable in module.variables:
         if variable.interpolation == "noperspective" and not capabilities.noperspective:
-            found.append(
+            differences.append(
                 (
                     f"'{variable.name}' is interpolated with perspective here: this target has no other interpolation",
                     variable.span,
@@ -146,32 +158,38 @@ def remarks(
             )
         if variable.builtin == "gl_FragCoord" and turned and not resolution_of(module):
             hint = f"declare a uniform vec2 {RESOLUTION}, and it is flipped"
-            found.append((f"gl_FragCoord.y counts from the top of the framebuffer here; {hint}", variable.span))
+            differences.append((f"gl_FragCoord.y counts from the top of the framebuffer here; {hint}", variable.span))
         elif variable.storage == "out" and variable.builtin and variable.builtin not in (*builtins, *COLORS):
-            found.append((f"{variable.builtin} has no effect here: this target has no such output", variable.span))
-    return found
+            differences.append(
+                (f"{variable.builtin} has no effect here: this target has no such output", variable.span)
+            )
+    return differences
 
 
 def _slots(variables: Sequence[Variable]) -> tuple[Slot, ...]:
-    """What the variables are made of: what has a location, then the builtins."""
+    """The slots of the variables: those with a location, then the builtins."""
     placed: list[Slot] = []
     builtins: list[Slot] = []
     taken: set[int] = set()
-    written = {one.name: one.location if one.builtin not in COLORS else 0 for one in variables}
-    parts = {one.name: _parts(one, one.type) for one in variables}
+    written = {variable.name: variable.location if variable.builtin not in COLORS else 0 for variable in variables}
+    parts = {variable.name: _parts(variable, variable.type) for variable in variables}
     for name, location in written.items():
         if location >= 0:
             taken.update(range(location, location + len(parts[name])))
     for variable in variables:
-        found = parts[variable.name]
+        own_parts = parts[variable.name]
         if variable.builtin and variable.builtin not in COLORS:
             builtins.append(Slot(variable, (), variable.type, -1))
             continue
         first = written[variable.name]
         if first < 0:
-            first = next(at for at in range(len(taken) + 1) if taken.isdisjoint(range(at, at + len(found))))
-            taken.update(range(first, first + len(found)))
-        placed += [Slot(variable, path, type_, first + index) for index, (path, type_) in enumerate(found)]
+            first = next(
+                candidate
+                for candidate in range(len(taken) + 1)
+                if taken.isdisjoint(range(candidate, candidate + len(own_parts)))
+            )
+            taken.update(range(first, first + len(own_parts)))
+        placed += [Slot(variable, path, type_, first + index) for index, (path, type_) in enumerate(own_parts)]
     return (*sorted(placed, key=lambda slot: slot.location), *builtins)
 
 
@@ -182,7 +200,7 @@ def _parts(variable: Variable, type_: Type, path: tuple[int, ...] = ()) -> list[
         raise Unsupported(f"'{variable.name}' contains structs, which cannot be passed between stages", variable.span)
     if not isinstance(type_, Array | Matrix):
         return [(path, type_)]
-    found = element_type(type_)
-    assert found is not None
-    element, count = found
+    elements = element_type(type_)
+    assert elements is not None
+    element, count = elements
     return [part for index in range(count) for part in _parts(variable, element, (*path, index))]

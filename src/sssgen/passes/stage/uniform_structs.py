@@ -1,9 +1,9 @@
 """Splits uniforms that are structs, or arrays of them: each member becomes a uniform of its own.
 
-Why: uniform blocks lay structs out otherwise in each language, and an engine's material has no such parameters. Of
-`uniform Light lights[4]` comes `uniform vec3 lights_color[4]`, a struct of arrays; a nested member's name is formed the
-same way, and arrays in an array become one, element after element. A struct that is read whole is constructed.
-Place: first of all, as no other pass handles these.
+Why: the layout of a struct in a uniform block differs between languages, and an engine's material has no such
+parameters. `uniform Light lights[4]` gives `uniform vec3 lights_color[4]`: arrays of members. A nested member's name is
+formed the same way, and an array of arrays becomes one array, element after element. A struct that is read as a whole
+is constructed. Place: first of all, as no other pass handles these.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ class _Splitter:
     def __init__(self, module: Module) -> None:
         self.module = module
         declared = (module.constants, module.uniforms, module.variables, module.functions)
-        self.taken = {one.name for group in declared for one in group}
+        self.taken = {declaration.name for group in declared for declaration in group}
         self.split = {uniform.name for uniform in module.uniforms if _holds_struct(uniform.type)}
         self.leaves: dict[Path, _Leaf] = {}
 
@@ -78,8 +78,10 @@ class _Splitter:
         uniforms = tuple([part for uniform in self.module.uniforms for part in self.parts(uniform)])
         variables = tuple(
             [
-                one if one.value is None else one._replace(value=self.whole(rewrite(one.value, self.change)))
-                for one in self.module.variables
+                variable
+                if variable.value is None
+                else variable._replace(value=self.whole(rewrite(variable.value, self.change)))
+                for variable in self.module.variables
             ]
         )
         return rewrite_module(self.module._replace(uniforms=uniforms, variables=variables), self.change, self.restate)
@@ -96,10 +98,10 @@ class _Splitter:
             leaf = self.leaves[path] = _Leaf(name, lengths, element)
             yield uniform._replace(name=name, type=leaf.type, default=default)
 
-    # Rewriting, from the leaves up: a chain of members and indices waits until it ends in a scalar, vector or matrix
+    # Rewriting, from the leaves up: a chain of members and indices is rewritten as a whole, at its end
 
     def change(self, node: Expr) -> Expr:
-        """A node whose operands are done."""
+        """A node whose operands are rewritten."""
         if self.waits(node):
             return node if isinstance(node.type, Struct | Array) else self.read(node)
         old = operands(node)
@@ -123,7 +125,7 @@ class _Splitter:
         return isinstance(node, Global) and node.name in self.split
 
     def whole(self, node: Expr) -> Expr:
-        """The value of a chain; any other expression as it is."""
+        """The value of a chain; any other expression unchanged."""
         return self.read(node) if self.waits(node) else node
 
     def read(self, node: Expr) -> Expr:
@@ -138,8 +140,8 @@ class _Splitter:
             values = [self.read(Member(field.type, node, field.name, node.span)) for field in node.type.fields]
             return Construct(node.type, tuple(values), node.span)
         assert isinstance(node.type, Array)
-        places = [Literal(INT, index, node.span) for index in range(node.type.length)]
-        values = [self.read(Index(node.type.element, node, place, node.span)) for place in places]
+        positions = [Literal(INT, index, node.span) for index in range(node.type.length)]
+        values = [self.read(Index(node.type.element, node, position, node.span)) for position in positions]
         return Construct(node.type, tuple(values), node.span)
 
     def element(self, leaf: _Leaf, indices: list[Expr], span: Span) -> Expr:
@@ -147,10 +149,10 @@ class _Splitter:
         value = Global(leaf.type, leaf.name, span)
         if not indices:
             return value
-        place = indices[0]
+        position = indices[0]
         for length, index in zip(leaf.lengths[1:], indices[1:], strict=True):
-            place = _sum(_product(_whole_number(place), length), _whole_number(index))
-        return Index(leaf.element, value, place, span)
+            position = _sum(_product(_whole_number(position), length), _whole_number(index))
+        return Index(leaf.element, value, position, span)
 
 
 def _taken_apart(node: Expr) -> tuple[Path, list[Expr]]:
@@ -175,14 +177,16 @@ def _members(
         start = 0
         for field in type_.fields:
             end = start + components(field.type)
-            yield from _members((*path, field.name), field.type, lengths, [some[start:end] for some in numbers])
+            yield from _members((*path, field.name), field.type, lengths, [element[start:end] for element in numbers])
             start = end
     elif isinstance(type_, Array):
         size = components(type_.element)
-        parts = [some[at : at + size] for some in numbers for at in range(0, size * type_.length, size)]
+        parts = [
+            element[start_ : start_ + size] for element in numbers for start_ in range(0, size * type_.length, size)
+        ]
         yield from _members(path, type_.element, (*lengths, type_.length), parts)
     else:
-        yield path, lengths, type_, tuple([number for some in numbers for number in some])
+        yield path, lengths, type_, tuple([number for element in numbers for number in element])
 
 
 def _whole_number(index: Expr) -> Expr:
@@ -198,7 +202,7 @@ def _product(left: Expr, right: int) -> Expr:
 def _sum(left: Expr, right: Expr) -> Expr:
     if isinstance(left, Literal) and isinstance(right, Literal):
         return left._replace(value=int(left.value) + int(right.value))
-    for one, other in ((left, right), (right, left)):
-        if isinstance(one, Literal) and one.value == 0:
-            return other
+    for first, second in ((left, right), (right, left)):
+        if isinstance(first, Literal) and first.value == 0:
+            return second
     return Binary(INT, "+", left, right, right.span)

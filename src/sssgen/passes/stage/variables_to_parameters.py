@@ -3,13 +3,13 @@
 Why: a NumPy function has no variables but its own, and its inputs must be visible.
 Place: after `hoist` and `guards`, before `uniforms_to_parameters`, whose parameters follow these, and `legalise`.
 
-A function gets a parameter for each variable that it uses, itself or through what it calls: behind its own, in the
-order in which the variables are declared, with their names; `inout` where the variable may be written, else `in`. A
-variable of the function's own that is called so is renamed. The caller of such a function from outside passes the
-initial values of the variables; nothing else sets them.
+A function gets a parameter for each variable that it or its callees use: after its own parameters, in the order in
+which the variables are declared, with their names; `inout` where the variable may be written, else `in`. A local
+variable of the same name is renamed. A caller from outside passes the initial values of the variables; nothing else
+sets them.
 
-The entry of a stage takes only what the stage is given (its `in` variables), and gives its `out` variables through
-`out` parameters; the private ones are variables of its own, which begin with their values.
+The entry of a stage has the stage's `in` variables as parameters and its `out` variables as `out` parameters; private
+variables become local variables with their initial values.
 """
 
 from __future__ import annotations
@@ -40,8 +40,10 @@ def variables_to_parameters(module: Module, entry: str = "") -> Handed:
     shared = effects(module)
     calls = Calls({function.key: function for function in module.functions}, shared)
     # from here on a call that writes is a statement of its own, so that no variable is passed twice
-    module = module._replace(functions=tuple([lift(one, calls) for one in module.functions]))
-    parameters = {one.name: Param(one.name, one.type, "in", "", one.span) for one in module.variables}
+    module = module._replace(functions=tuple([lift(variable, calls) for variable in module.functions]))
+    parameters = {
+        variable.name: Param(variable.name, variable.type, "in", "", variable.span) for variable in module.variables
+    }
     closer = Closer(module, parameters, {key: effect.writes for key, effect in shared.items()})
     added: dict[str, tuple[Param, ...]] = {}
     functions = []

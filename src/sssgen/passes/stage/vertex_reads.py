@@ -26,5 +26,5 @@ def _with_level(expr: Expr) -> Expr:
     level = (Literal(FLOAT, 0.0, expr.span),) if explicit else ()
     # a constant offset comes next; a bias, which comes last, has no meaning here
     args = (*expr.args[:position], *level, *expr.args[position : position + len(row.constant)])
-    known = resolve(name, [arg.type for arg in args]) == expr.type
-    return Intrinsic(expr.type, name, args, expr.span) if known else expr
+    exists = resolve(name, [arg.type for arg in args]) == expr.type
+    return Intrinsic(expr.type, name, args, expr.span) if exists else expr

@@ -15,7 +15,11 @@ class GlslPrinter(Printer):
 
     def __init__(self, target: Target, module: ir.Module) -> None:
         super().__init__(target, module)
-        self.builtins = {one.name: one.builtin for one in module.variables if one.builtin and one.builtin not in COLORS}
+        self.builtins = {
+            variable.name: variable.builtin
+            for variable in module.variables
+            if variable.builtin and variable.builtin not in COLORS
+        }
 
     def global_value(self, value: ir.Global) -> str:
         return self.builtins.get(value.name, value.name)
@@ -54,8 +58,8 @@ class GlslPrinter(Printer):
         if not self.kept or not plain or not any(uniform.default) or not self.target.capabilities.uniform_values:
             return ""
         number = Scalar(kind_of(uniform.type))
-        whole = number.kind != "float"
-        parts = [ir.Literal(number, int(value) if whole else value, uniform.span) for value in uniform.default]
+        integral = number.kind != "float"
+        parts = [ir.Literal(number, int(value) if integral else value, uniform.span) for value in uniform.default]
         texts = ", ".join(map(self.literal, parts))
         return f" = {texts if len(parts) == 1 else f'{self.type(uniform.type)}({texts})'}"
 

@@ -63,10 +63,10 @@ class HlslPrinter(Printer):
 
     def print_function(self, function: ir.Function) -> list[Line]:
         """A function, after those that return the sizes of its textures."""
-        wanted = [texture for texture in hlsl_sizes.texture_types(function) if texture not in self.sized]
-        self.sized.update(wanted)
-        before = [line for texture in wanted for line in hlsl_sizes.definition(texture)]
-        return [*before, *super().print_function(function)]
+        textures = [texture for texture in hlsl_sizes.texture_types(function) if texture not in self.sized]
+        self.sized.update(textures)
+        size_functions = [line for texture in textures for line in hlsl_sizes.definition(texture)]
+        return [*size_functions, *super().print_function(function)]
 
     def statement(self, stmt: ir.Stmt, indent: int) -> list[Line]:
         """A statement; a loop with an attribute, as FXC would try to unroll 64 steps of a ray march."""

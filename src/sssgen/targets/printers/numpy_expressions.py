@@ -122,8 +122,8 @@ class NumpyExpressions(Printer):
 
     def call(self, call: ir.Call) -> str:
         function = self.by_key[call.function]
-        given = [arg for arg, param in zip(call.args, function.params, strict=True) if param.direction != "out"]
-        return f"{function.name}({', '.join([self.typed(arg)[0] for arg in given])})"
+        passed = [arg for arg, param in zip(call.args, function.params, strict=True) if param.direction != "out"]
+        return f"{function.name}({', '.join([self.typed(arg)[0] for arg in passed])})"
 
     def construct(self, construct: ir.Construct) -> tuple[str, int]:
         type_, args = construct.type, construct.args
@@ -156,5 +156,7 @@ class NumpyExpressions(Printer):
     def converted(self, kind: str, *args: ir.Expr) -> str:
         """The arguments of a constructor, each converted to its kind."""
         texts = self.typed(*args)
-        foreign = [kind_of(arg.type) != kind for arg in args]
-        return ", ".join(f"to_{kind}({text})" if far else text for text, far in zip(texts, foreign, strict=True))
+        conversions = [kind_of(arg.type) != kind for arg in args]
+        return ", ".join(
+            f"to_{kind}({text})" if converts else text for text, converts in zip(texts, conversions, strict=True)
+        )

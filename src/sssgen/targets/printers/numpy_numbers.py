@@ -44,8 +44,8 @@ class Numbers:
             counter = count(stmt) if isinstance(stmt, ir.For) else None
             if counter is not None:
                 bounds = [self.bound(counter.start), self.bound(counter.stop)]
-                known = [bound for bound in bounds if bound is not None]
-                counters[counter.name] = max(known) if len(known) == 2 else None
+                constant_bounds = [bound for bound in bounds if bound is not None]
+                counters[counter.name] = max(constant_bounds) if len(constant_bounds) == 2 else None
                 self.locals[self.key].add(counter.name)
                 self.ranges[self.key].add(counter.name)
 

@@ -120,11 +120,11 @@ class NumpyPrinter(NumpyExpressions):
         if isinstance(target, ir.Swizzle):
             return self.store(target.value, f'store_swizzle({self.expr(target.value)}, "{target.components}", {value})')
         if isinstance(target, ir.Index):
-            place = self.expr(target.index)
-            return self.store(target.value, f"store_index({self.expr(target.value)}, {place}, {value})")
+            index = self.expr(target.index)
+            return self.store(target.value, f"store_index({self.expr(target.value)}, {index}, {value})")
         if isinstance(target, ir.Member):
-            whole = self.expr(target.value, POSTFIX)
-            return self.store(target.value, f"{whole}.replace({target.field}={value})")
+            record = self.expr(target.value, POSTFIX)
+            return self.store(target.value, f"{record}.replace({target.field}={value})")
         return f"{self.expr(target)} = {value}"
 
     def returned(self, values: list[str]) -> str:
@@ -137,8 +137,8 @@ class NumpyPrinter(NumpyExpressions):
     def print_function(self, function: ir.Function) -> list[Line]:
         self.function = function
         self.numbers.enter(function)
-        given = ", ".join([param.name for param in function.params if param.direction != "out"])
-        lines = [Line(""), *wrap(f"def {function.name}({given}):", function.span)]
+        params = ", ".join([param.name for param in function.params if param.direction != "out"])
+        lines = [Line(""), *wrap(f"def {function.name}({params}):", function.span)]
         lines += [
             Line('    """' + text.replace("\\", "\\\\").replace('"', "'") + '"""') for text in summary(function.doc)
         ]
@@ -156,19 +156,19 @@ class NumpyPrinter(NumpyExpressions):
 
     def local_constants(self, function: ir.Function) -> list[str]:
         """The constants that a function has to compute, each after those that it depends on."""
-        found: dict[str, None] = {}
+        names: dict[str, None] = {}
 
         def need(name: str) -> None:
             if name in self.constants and not self.shared(self.constants[name]):
                 for part in subexpressions(self.constants[name].value):
                     if isinstance(part, ir.Global):
                         need(part.name)
-                found[name] = None
+                names[name] = None
 
         for part in all_expressions(function.body or ()):
             if isinstance(part, ir.Global):
                 need(part.name)
-        return list(found)
+        return list(names)
 
     def shared(self, constant: ir.Constant) -> bool:
         """Whether a constant is the same in every precision, so that it can be a global of the module."""
@@ -190,9 +190,9 @@ class NumpyPrinter(NumpyExpressions):
         """Each uniform with its default, which the caller may replace."""
         lines = []
         for uniform in (member.uniform for member in members):
-            words = summary(uniform.doc)
+            doc = summary(uniform.doc)
             text = f"{uniform.name} = {value_text(uniform.type, uniform.default)}"
-            lines.append(Line(f"{text}  # {words[0]}" if words else text, uniform.span))
+            lines.append(Line(f"{text}  # {doc[0]}" if doc else text, uniform.span))
         return lines
 
     def print_textures(self, textures: list[ir.Uniform]) -> list[Line]:

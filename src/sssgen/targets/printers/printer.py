@@ -466,12 +466,12 @@ _BREAKS = (" + ", " - ", " * ", " ? ", " : ", " && ", " || ")
 
 def _break_place(text: str) -> int:
     """Where to break a line: inside as few parentheses as possible, then as late as possible; 0 for nowhere."""
-    best, best_score, depth = 0, -1000.0, 0
+    position, best_score, depth = 0, -1000.0, 0
     start = len(text) - len(text.lstrip()) + 8
     for index, char in enumerate(text[:WIDTH]):
         depth += (char in "([") - (char in ")]")
         if index > start and (text[index - 1 : index + 1] == ", " or text.startswith(_BREAKS, index)):
             score = index / WIDTH - 2.0 * depth
             if score > best_score:
-                best, best_score = index, score
-    return best
+                position, best_score = index, score
+    return position

@@ -21,17 +21,17 @@ from sssgen.targets.uniform_layout import Member
 
 def target() -> Target:
     """The target `wgsl` in half precision. It has only the functions form: uniform blocks hold float32."""
-    single = load("wgsl")
+    base = load("wgsl")
     sizes = (2, 3, 4)
     halves = {f"vec{size}": f"vec{size}h" for size in sizes} | {f"mat{size}": f"mat{size}x{size}h" for size in sizes}
     library = OutputFile("{material}.functions.wgsl", "wgsl/functions_half.wgsl.j2", {"library": ""})
-    return single._replace(
+    return base._replace(
         name="wgsl-f16",
         title="WGSL in half precision",
         language=f"{__name__}:{WgslHalfPrinter.__name__}",
-        types={**single.types, "float": "f16", **halves},
+        types={**base.types, "float": "f16", **halves},
         files={"functions": (library,)},
-        half_of=single.name,
+        half_of=base.name,
     )
 
 
