@@ -309,7 +309,7 @@ def test_a_text_too_deep_for_a_compiler(run: Run, compiler: Callable[[str], Comp
         (["no/such"], "no such file\n  --> no/such"),
         (["icee"], "unknown material 'icee'\n  help: did you mean 'ice'?"),
         (["empty.frag"], "the file is empty\n  --> empty.frag"),
-        (["zero.frag"], "holds a zero byte\n  --> zero.frag"),
+        (["zero.frag"], "contains a zero byte\n  --> zero.frag"),
         (["latin.frag"], "this is not UTF-8 text\n  --> latin.frag:1:3"),
         (["bare"], "nothing to compile\n  --> bare"),
         (["what.txt"], "the language of the file cannot be told\n  --> what.txt\n  help: say it with --target T:"),

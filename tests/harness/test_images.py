@@ -211,7 +211,7 @@ def test_unsupported_pictures_are_refused() -> None:
 def test_where_nothing_can_be_written() -> None:
     Path("file").write_text("mine", encoding="utf-8")
     for write, name in ((write_png, "a.png"), (write_exr, "a.exr")):
-        with pytest.raises(SssgenError, match="a file stands where a folder is wanted"):
+        with pytest.raises(SssgenError, match="a file has the name of the folder"):
             write(f"file/{name}", RAMP)
         with pytest.raises(SssgenError, match="must end in"):
             write("a.npy", RAMP)

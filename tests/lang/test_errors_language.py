@@ -291,7 +291,7 @@ def test_the_number_of_errors_is_limited() -> None:
     source = "float f() { return x; }\n" * 500
     error = errors_of(source)
     assert len(error.diagnostics) == diagnostics.MAX_ERRORS + 1
-    assert error.diagnostics[-1].message == "more than 100 errors; the rest is not looked at"
+    assert error.diagnostics[-1].message == "more than 100 errors; the others are not reported"
 
 
 # How errors are shown

@@ -12,7 +12,7 @@ from sssgen.lang.loader import load_file
 from sssgen.material import attributes
 from sssgen.material.attributes import Attributes
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
-from sssgen.support.file_memo import Kept, remembered
+from sssgen.support.file_memo import CachedResult, remembered
 from sssgen.support.paths import PACKAGE, posix, stem
 
 TECHNIQUES = os.path.join(PACKAGE, "techniques")
@@ -95,7 +95,7 @@ def load(name: str) -> Technique:
     return load_path(path)
 
 
-_techniques: dict[str, Kept] = {}
+_techniques: dict[str, CachedResult] = {}
 
 
 def load_path(path: str) -> Technique:

@@ -7,7 +7,7 @@ import os
 from sssgen.material.material_reader import read_material
 from sssgen.material.model import Material
 from sssgen.support.diagnostics import did_you_mean, failure
-from sssgen.support.file_memo import Kept, note, remembered
+from sssgen.support.file_memo import CachedResult, note, remembered
 from sssgen.support.paths import place, posix
 from sssgen.support.text_files import read_text
 
@@ -19,7 +19,7 @@ def examples() -> dict[str, str]:
     return {name: path for name, path in paths.items() if os.path.isfile(path)}
 
 
-_materials: dict[str, Kept] = {}
+_materials: dict[str, CachedResult] = {}
 
 
 def load_material(path_or_name: str | os.PathLike[str]) -> Material:

@@ -1,4 +1,4 @@
-"""Errors for people: a file, a line, a column, a caret, and what to do.
+"""Errors for users: a file, a line, a column, a caret, and a hint.
 
 A run collects every error it can find and raises them together as one `SssgenError`.
 """
@@ -18,7 +18,7 @@ MAX_MESSAGE = 500
 
 
 class Diagnostic(NamedTuple):
-    """One error or warning. `source_line` is the text of the line that `span` begins on, where there is one."""
+    """One error or warning. `source_line` is the text of the line that `span` begins on, if it is known."""
 
     severity: str
     message: str
@@ -87,11 +87,11 @@ class SssgenError(Exception):
         super().__init__("\n".join(diagnostic.render() for diagnostic in self.diagnostics))
 
     def __reduce__(self) -> tuple[type[SssgenError], tuple[list[Diagnostic]]]:
-        return type(self), (self.diagnostics,)  # it may come from another process
+        return type(self), (self.diagnostics,)  # errors are sent between processes
 
 
 def failure(message: str, hint: str = "", file: str = "") -> SssgenError:
-    """An error that has no place in a source text (a missing file, a bad argument)."""
+    """An error without a position in a source text (a missing file, a bad argument)."""
     return SssgenError([Diagnostic("error", message, Span(file, 0, 0, 0, 0), hint)])
 
 
@@ -111,15 +111,15 @@ class Reporter:
     def error(self, span: Span, message: str, hint: str = "") -> None:
         """Records an error; the same message at the same place is recorded once. Raises after too many."""
         message, hint = _cut(message), _cut(hint)
-        if self.macros and (written := self.line(span)[span.column - 1 : span.end_column - 1]) in self.macros:
-            message = f"{message}, in what the macro {written} stands for"
+        if self.macros and (macro := self.line(span)[span.column - 1 : span.end_column - 1]) in self.macros:
+            message = f"{message}, in the expansion of the macro {macro}"
         if (span, message) in self.seen:
             return
         self.seen.add((span, message))
         self.diagnostics.append(Diagnostic("error", message, span, hint, self.line(span)))
         if len(self.diagnostics) >= MAX_ERRORS:
             self.diagnostics.append(
-                Diagnostic("error", f"more than {MAX_ERRORS} errors; the rest is not looked at", span)
+                Diagnostic("error", f"more than {MAX_ERRORS} errors; the others are not reported", span)
             )
             self.check()
 
@@ -136,20 +136,20 @@ class Reporter:
     def check(self) -> None:
         """Raises the collected errors in source order, if there are any."""
         if self.diagnostics:
-            raise SssgenError(sorted(self.diagnostics, key=lambda found: found.span[1:3]))
+            raise SssgenError(sorted(self.diagnostics, key=lambda diagnostic: diagnostic.span[1:3]))
 
 
 def _cut(text: str) -> str:
     return text if len(text) <= MAX_MESSAGE else f"{text[:MAX_MESSAGE]}…"
 
 
-def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """`did you mean 'x'?` for the nearest known name, or ''."""
+def did_you_mean(word: str, candidates: Iterable[str]) -> str:
+    """`did you mean 'x'?` for the most similar candidate, or ''."""
     import difflib
 
     if len(word) > 100:
         return ""
-    names = [name for name in known if len(name) <= 100][:2000]
+    names = [name for name in candidates if len(name) <= 100][:2000]
     near = difflib.get_close_matches(word, names, n=1, cutoff=0.6)
     if not near:
         folded = {name.lower(): name for name in names}

@@ -1,4 +1,4 @@
-"""Optional packages: what imports them, and how the error of a missing one names the extra that installs it."""
+"""Imports optional packages; the error for a missing one names the extra that installs it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from sssgen.support.diagnostics import failure
 def need(module: str, package: str = "", extra: str = "render") -> Any:
     """Imports a module of the distribution `package`, which an extra of sssgen installs.
 
-    Raises SssgenError where it is missing.
+    Raises SssgenError if it is missing.
     """
     try:
         with _delayed_interrupts():
@@ -26,9 +26,9 @@ def need(module: str, package: str = "", extra: str = "render") -> Any:
 
 
 def missing_package(error: ModuleNotFoundError, extra: str) -> Exception:
-    """The error for the user where a package is not installed; `error` itself where the module is of sssgen or Python.
+    """The error for the user if a package is not installed; `error` itself if the module belongs to sssgen or Python.
 
-    `extra` is the one that installs what the command needs.
+    `extra` is the one that installs the packages of the command.
     """
     name = (error.name or "").partition(".")[0]
     if name in ("", "sssgen") or name in sys.stdlib_module_names:
@@ -37,7 +37,7 @@ def missing_package(error: ModuleNotFoundError, extra: str) -> Exception:
 
 
 def install_hint(extra: str) -> str:
-    """The command that installs an extra; double quotes do in every shell."""
+    """The command that installs an extra; double quotes work in every shell."""
     return f'pip install "sssgen[{extra}]"'
 
 

@@ -16,7 +16,7 @@ MAX_RESULTS = 1024
 """The number of results in one memory before it is emptied."""
 
 
-class Kept(NamedTuple):
+class CachedResult(NamedTuple):
     """A result, the files that it depends on, and their state."""
 
     files: tuple[str, ...]
@@ -45,18 +45,18 @@ def watched(make: Callable[[], _T]) -> tuple[_T, list[str]]:
         _watching.pop()
 
 
-def remembered(memory: dict[str, Kept], key: str, make: Callable[[], _T]) -> _T:
+def remembered(memory: dict[str, CachedResult], key: str, make: Callable[[], _T]) -> _T:
     """The result of `make`, or the earlier one for this key if none of its files has changed."""
-    kept = memory.get(key)
-    if kept is not None and _state(kept.files) == kept.state:
-        for path in kept.files:
+    cached = memory.get(key)
+    if cached is not None and _state(cached.files) == cached.state:
+        for path in cached.files:
             note(path)
-        return kept.value  # type: ignore[return-value]  # a memory has results of one type
+        return cached.value  # type: ignore[return-value]  # a memory has results of one type
     value, files = watched(make)
     names = tuple(files)
     if len(memory) >= MAX_RESULTS:
         memory.clear()
-    memory[key] = Kept(names, _state(names), value)
+    memory[key] = CachedResult(names, _state(names), value)
     return value
 
 

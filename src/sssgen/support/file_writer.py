@@ -22,22 +22,22 @@ class Written(NamedTuple):
 
 def check_names(names: Iterable[str]) -> None:
     """Raises SssgenError with every name that leaves its folder, or that is invalid on some system."""
-    wrong = [
+    errors = [
         Diagnostic(
             "error",
-            f"cannot write {name[:200]!r}: {why}",
+            f"cannot write {name[:200]!r}: {reason}",
             NOWHERE,
             "an output is named like `ice.wgsl` or `include/ice.hlsl`",
         )
         for name in names
-        if (why := _fault(name))
+        if (reason := _fault(name))
     ]
-    if wrong:
-        raise SssgenError(wrong)
+    if errors:
+        raise SssgenError(errors)
 
 
 _DRIVE = re.compile("[A-Za-z]:")
-_UNFIT = re.compile(r'[\x00-\x1f<>:"|?*\\]')
+_INVALID = re.compile(r'[\x00-\x1f<>:"|?*\\]')
 
 
 def _fault(name: str) -> str:
@@ -47,8 +47,8 @@ def _fault(name: str) -> str:
     if name.startswith(("/", "\\")) or _DRIVE.match(name):
         return "the name is absolute"
     if ".." in re.split(r"[/\\]", name):
-        return "the name climbs out of the output folder"
-    if _UNFIT.search(name):
+        return "the name leaves the output folder"
+    if _INVALID.search(name):
         return "the name has characters that file names cannot have on every system"
     if any(part in ("", ".") or part.endswith((".", " ")) for part in name.split("/")):
         return "the name is not a plain file name"
@@ -58,14 +58,14 @@ def _fault(name: str) -> str:
 def write_files(folder: str | os.PathLike[str], files: Mapping[str, str | bytes]) -> list[Written]:
     """Writes texts (as UTF-8) and bytes to a folder, which is created if missing; names may have sub-folders.
 
-    All are written to temporary files before the first old file is replaced, each in one step: after an interruption
-    every file is complete, the old or the new one. A link is replaced, not followed. Raises SssgenError where a name
+    All are written to temporary files before the first old file is replaced, each atomically: after an interruption
+    every file has its complete old or new content. A link is replaced, not followed. Raises SssgenError where a name
     leaves the folder or is a device, or the system refuses.
     """
     folder = os.fspath(folder)
     check_names(files)
     _check_links(folder, files)
-    waiting: list[tuple[str, str]] = []
+    temporaries: list[tuple[str, str]] = []
     written: list[Written] = []
     try:
         for name, content in files.items():
@@ -73,7 +73,7 @@ def write_files(folder: str | os.PathLike[str], files: Mapping[str, str | bytes]
             if _is_special(path):
                 raise failure("cannot write the file: this is a device or a pipe", "name a file", posix(path))
             data = content if isinstance(content, bytes) else content.encode("utf-8")
-            if _holds(path, data):
+            if _has_content(path, data):
                 written.append(Written(path, False))
                 continue
             parent, base = os.path.split(path)
@@ -81,18 +81,18 @@ def write_files(folder: str | os.PathLike[str], files: Mapping[str, str | bytes]
             if os.path.isdir(path):
                 raise failure("cannot write the file: a folder has its name", file=posix(path))
             temporary = os.path.join(parent, f".{base}.{os.getpid()}.tmp")
-            waiting.append((temporary, path))
+            temporaries.append((temporary, path))
             _write_bytes(temporary, data)
             written.append(Written(path, True))
-        while waiting:
-            _replace(*waiting[0])
-            waiting.pop(0)
+        while temporaries:
+            _replace(*temporaries[0])
+            temporaries.pop(0)
     except OSError as error:
         place = str(error.filename or folder)
-        place = next((path for temporary, path in waiting if temporary == place), place)
+        place = next((path for temporary, path in temporaries if temporary == place), place)
         raise failure(f"cannot write: {error.strerror or error}", _advice(error), posix(place)) from None
     finally:
-        for temporary, _ in waiting:
+        for temporary, _ in temporaries:
             with contextlib.suppress(OSError):
                 os.unlink(temporary)
     return written
@@ -112,7 +112,7 @@ def _replace(temporary: str, path: str) -> None:
     os.replace(temporary, path)
 
 
-def _holds(path: str, data: bytes) -> bool:
+def _has_content(path: str, data: bytes) -> bool:
     """Whether the file already has this content: engines import a file again when it is written."""
     try:
         if os.stat(path).st_size != len(data) or not os.path.isfile(path):
@@ -129,12 +129,12 @@ def _check_links(folder: str, names: Iterable[str]) -> None:
     for parent in sorted({os.path.dirname(name) for name in names} - {""}):
         path = os.path.join(folder, parent)
         if os.path.commonpath([top, os.path.realpath(path)]) != top:
-            raise failure("cannot write here: this folder is a link out of the output folder", file=posix(path))
+            raise failure("cannot write here: this folder is a link that leaves the output folder", file=posix(path))
 
 
 def _advice(error: OSError) -> str:
     if isinstance(error, PermissionError):
-        return "choose a folder that you may write to, with -o"
+        return "choose a folder with write permission, with -o"
     if isinstance(error, FileExistsError | NotADirectoryError):
-        return "a file stands where a folder is wanted: choose another one, with -o"
+        return "a file has the name of the folder: choose another one, with -o"
     return ""

@@ -1,4 +1,4 @@
-"""JSON that people write; errors have their position."""
+"""Parses JSON that users write; errors have their position."""
 
 from __future__ import annotations
 

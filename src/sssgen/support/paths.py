@@ -17,7 +17,7 @@ PACKAGE = os.path.dirname(os.path.dirname(__file__))
 
 
 def place(name: str) -> str:
-    """The path of the folder called `name`, wherever this installation has it."""
+    """The path of the folder called `name`, in a checkout or an installed package."""
     packaged = os.path.join(PACKAGE, "_data", name)
     return packaged if os.path.isdir(packaged) else os.path.join(os.path.dirname(os.path.dirname(PACKAGE)), name)
 

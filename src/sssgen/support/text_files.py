@@ -1,4 +1,4 @@
-"""Reads text files that people wrote. Every file that is read is recorded for `file_memo`."""
+"""Reads text files of users. Every file that is read is recorded for `file_memo`."""
 
 from __future__ import annotations
 
@@ -30,19 +30,19 @@ def read_text(path: str | os.PathLike[str], shown: str) -> str:
         raise failure("no such file", file=shown) from None
     except OSError as error:
         raise failure(f"cannot read the file: {error.strerror}", file=shown) from None
-    except ValueError:  # a zero byte or half a surrogate in its name
+    except ValueError:  # a zero byte or a lone surrogate in its name
         raise failure("no file can have this name", file=shown) from None
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise _not_text("this is not UTF-8 text", data, error.start, shown) from None
     if "\x00" in text:
-        raise _not_text("this is not a text file: it holds a zero byte", data, data.index(b"\x00"), shown)
+        raise _not_text("this is not a text file: it contains a zero byte", data, data.index(b"\x00"), shown)
     return text.replace("\r\n", "\n")
 
 
 def refuse_special(path: str | os.PathLike[str], shown: str) -> None:
-    """Raises SssgenError for a pipe, which would wait, and for a device, which may have no end; OSError as `stat`."""
+    """Raises SssgenError for a pipe, which would block, and a device, which may be endless; OSError as `stat`."""
     mode = os.stat(path).st_mode
     if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
         raise failure("this is not a file", "write its content into a file first", shown)

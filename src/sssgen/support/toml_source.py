@@ -1,4 +1,4 @@
-"""TOML with positions: tomllib's values, and the place of each key and value in the text.
+"""TOML with positions: tomllib's values, and the position of each key and value in the text.
 
 tomllib reads the values and reports syntax errors; a small scanner over the same text finds the places.
 """
@@ -37,7 +37,7 @@ class Place(NamedTuple):
 
 
 class Document:
-    """A TOML text: `data` is what tomllib gives; `reporter` collects what is wrong with it."""
+    """A TOML text: `data` is the result of tomllib; `reporter` collects the errors."""
 
     def __init__(self, data: dict[str, Any], places: dict[Path, Place], reporter: Reporter) -> None:
         self.data = data

@@ -1,10 +1,10 @@
-"""A Python process that answers questions: a driver that crashes or hangs there loses one answer only.
+"""A Python process that answers questions: if a driver crashes or hangs there, only one answer is lost.
 
     process = Process("sssgen.harness.compilers.compiler_process", "tint", seconds=60.0)
     version = process.start()
     messages = process.ask(source)
 
-The module named has a function `serve(name)` that returns the first answer and a function from questions to answers.
+The module must have a function `serve(name)` that returns the first answer and a function from questions to answers.
 Both are pickled over the process's standard input and output; the output of drivers is discarded.
 """
 
@@ -24,7 +24,7 @@ from typing import IO, Any
 
 
 class LostError(Exception):
-    """The process has ended; the text says how: `crashed (SIGSEGV)`, `did not answer within 60 seconds`."""
+    """The process has ended; the message states how: `crashed (SIGSEGV)`, `did not answer within 60 seconds`."""
 
 
 class Process:
@@ -46,7 +46,7 @@ class Process:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path)), **self.environment},
-            start_new_session=True,  # ended with its children, and not interrupted by Ctrl-C
+            start_new_session=True,  # its own group: killed with its children, not interrupted by Ctrl-C
         )
         atexit.register(self.close)
         return self._answer()

@@ -38,18 +38,18 @@ class GlobalChecker:
 
     def global_(self, external: s.GlobalSyntax) -> None:
         context, declaration = self.context, external.declaration
-        words = declaration.qualifiers.words
+        keywords = declaration.qualifiers.keywords
         if not declaration.declarators and declaration.type.struct is None:
-            if "invariant" in words or "precise" in words:
+            if "invariant" in keywords or "precise" in keywords:
                 return  # no other language has these
             raise context.fail(declaration.type.span, "this declares nothing", "write a type and a name")
         if declaration.type.struct is not None:
             declare_struct(context, declaration.type.struct)
-        if "uniform" in words:
+        if "uniform" in keywords:
             for declarator in declaration.declarators:
                 for element in self.interface.textures(declaration, declarator):
                     self.uniform(declaration, element, external.doc)
-        elif "const" in words:
+        elif "const" in keywords:
             for declarator in declaration.declarators:
                 self.constant(declaration, declarator)
         elif context.plain:

@@ -28,11 +28,11 @@ class ShaderInterface:
 
     def declare(self, declaration: s.Declaration, doc: str) -> None:
         """Declares inputs, outputs or private variables."""
-        context, words = self.context, declaration.qualifiers.words
-        if "buffer" in words or "shared" in words:
+        context, keywords = self.context, declaration.qualifiers.keywords
+        if "buffer" in keywords or "shared" in keywords:
             message = "storage buffers and shared memory belong to compute shaders"
             raise context.fail(declaration.qualifiers.span, message)
-        storage = self.storage(words)
+        storage = self.storage(keywords)
         element, quantity = named_type(context, replace(declaration.type, lengths=()))
         for declarator in declaration.declarators:
             name, span = declarator.name.text, declarator.name.span
@@ -52,7 +52,9 @@ class ShaderInterface:
             value = None
             if declarator.value is not None:
                 value = self.initial_value(declarator.value, type_, quantity, name)
-            interpolation = next((word for word in words if word in ("flat", "noperspective", "centroid")), "")
+            interpolation = next(
+                (keyword for keyword in keywords if keyword in ("flat", "noperspective", "centroid")), ""
+            )
             location = self.location(declaration.qualifiers)
             if storage == "private":
                 interpolation, location = "", -1
@@ -71,13 +73,13 @@ class ShaderInterface:
             raise self.context.fail(value.span, "the initial value of a global variable cannot call functions", hint)
         return expr
 
-    def storage(self, words: tuple[str, ...]) -> str:
+    def storage(self, keywords: tuple[str, ...]) -> str:
         """private, in or out, from the qualifiers; for a varying also from the stage."""
-        if "attribute" in words:
+        if "attribute" in keywords:
             return "in"
-        if "varying" in words:
+        if "varying" in keywords:
             return "out" if self.vertex else "in"
-        return next((word for word in words if word in ("in", "out")), "private")
+        return next((keyword for keyword in keywords if keyword in ("in", "out")), "private")
 
     def location(self, qualifiers: s.Qualifiers) -> int:
         """The n of `layout(location = n)`, or -1."""
@@ -108,10 +110,10 @@ class ShaderInterface:
 
     def members(self, block: s.BlockSyntax) -> list[s.GlobalSyntax]:
         """The members of a block, as separate uniforms, inputs or outputs."""
-        context, words = self.context, block.qualifiers.words
+        context, keywords = self.context, block.qualifiers.keywords
         if not context.plain:
             raise context.fail(block.name.span, "a technique cannot declare blocks", "write uniform …;")
-        if "buffer" in words:
+        if "buffer" in keywords:
             raise context.fail(block.name.span, "storage buffers belong to compute shaders")
         if block.lengths:
             raise context.fail(block.lengths[0].span, "there are no arrays of blocks", "declare one block of arrays")
@@ -126,9 +128,9 @@ class ShaderInterface:
                     name = unused_global_name(context, f"{block.instance.text}_{label.text}")
                     label = replace(label, text=name)
                 renamed.append(replace(declarator, name=label))
-            own = [word for word in member.qualifiers.words if word not in words]
+            own = [keyword for keyword in member.qualifiers.keywords if keyword not in keywords]
             layout = member.qualifiers.layout or block.qualifiers.layout
-            qualifiers = s.Qualifiers((*words, *own), layout, block.qualifiers.span)
+            qualifiers = s.Qualifiers((*keywords, *own), layout, block.qualifiers.span)
             declaration = replace(member, qualifiers=qualifiers, declarators=tuple(renamed))
             members.append(s.GlobalSyntax(declaration, block.doc))
         return members

@@ -108,7 +108,7 @@ class StatementChecker:
         type_, quantity = named_type(context, replace(declaration.type, lengths=()))
         if type_ == VOID or isinstance(type_, Sampler):
             raise context.fail(declaration.type.span, f"a variable cannot be {a_type(type_)}")
-        const = "const" in declaration.qualifiers.words
+        const = "const" in declaration.qualifiers.keywords
         for declarator in declaration.declarators:
             name = declarator.name
             check_not_reserved(context, name)

@@ -17,7 +17,7 @@ END = "$END"
 
 
 class Reduction(NamedTuple):
-    """What to do with the values on the stack when a rule is complete."""
+    """The action on the stack of values when a rule is complete."""
 
     size: int
     origin: str
@@ -25,13 +25,13 @@ class Reduction(NamedTuple):
     callback: str
     """The builder's method; '' for a helper whose children are those of the rule around it."""
     children: tuple[tuple[int, bool, int], ...]
-    """Of each value that is kept: its place, whether it is a helper's list, and how many absent ones go before it."""
+    """For each kept value: its position, whether it is a helper's list, and the number of absent values before it."""
     absent: int
-    """How many absent ones come at the end."""
+    """The number of absent values at the end."""
 
 
 Action: TypeAlias = int | Reduction | str
-"""The state to go to, a rule to reduce, or the name of a rule that passes its one child through."""
+"""The next state, a rule to reduce, or the name of a rule that passes its only child through."""
 
 
 class Tables(NamedTuple):
@@ -42,23 +42,23 @@ class Tables(NamedTuple):
     start: int
     end: int
     passed: dict[tuple[int, int, str], int]
-    """Where a child that is passed through ends up: by the state below it, its own, and the next token."""
+    """The last state of a child that is passed through: by the state below it, its own, and the next token."""
 
 
 class Unexpected(Exception):
-    """A token that cannot stand where it does; carries its index (the number of tokens, for the end) and what could."""
+    """A token that does not fit; has its index (the number of tokens, for the end) and the terminals that would fit."""
 
     def __init__(self, index: int, accepted: set[str]) -> None:
         super().__init__(index)
         self.index, self.accepted = index, accepted
 
 
-def run(found: Tables, tokens: Sequence[Token], methods: dict[str, Callable[[list[Any]], Any]]) -> Any:
-    """What the start rule's method makes of the tokens. Raises Unexpected for the first that does not fit."""
-    actions, goto = found.actions, found.goto
-    states: list[int] = [found.start]
+def run(tables: Tables, tokens: Sequence[Token], methods: dict[str, Callable[[list[Any]], Any]]) -> Any:
+    """The value of the start rule's method for the tokens. Raises Unexpected for the first token that does not fit."""
+    actions, goto = tables.actions, tables.goto
+    states: list[int] = [tables.start]
     values: list[Any] = []
-    passed = found.passed
+    passed = tables.passed
     for index, token in enumerate((*tokens, Token(END, "", NOWHERE))):
         kind = token[0]
         while True:
@@ -71,19 +71,19 @@ def run(found: Tables, tokens: Sequence[Token], methods: dict[str, Callable[[lis
             if action.__class__ is Reduction:
                 size, origin, callback, children, absent = action
                 if size:
-                    given = values[-size:]
+                    popped = values[-size:]
                     del states[-size:], values[-size:]
                 else:
-                    given = values  # of which nothing is taken
+                    popped = values  # an empty rule reads none of them
                 if callback:
-                    values.append(methods[callback](_gathered(given, children, absent)))
+                    values.append(methods[callback](_gathered(popped, children, absent)))
                 else:
-                    values.append(_listed(given, children, absent))
+                    values.append(_listed(popped, children, absent))
                 states.append(goto[states[-1]][origin])
-                if kind == END and states[-1] == found.end:
+                if kind == END and states[-1] == tables.end:
                     return values[-1]
             elif action is None:
-                raise Unexpected(index, accepted(found, states))
+                raise Unexpected(index, accepted(tables, states))
             else:
                 below = states[-2]
                 key = (below, top, kind)
@@ -94,43 +94,43 @@ def run(found: Tables, tokens: Sequence[Token], methods: dict[str, Callable[[lis
                         reached = goto[below][through]
                     passed[key] = reached
                 states[-1] = reached
-    raise Unexpected(len(tokens), accepted(found, states))
+    raise Unexpected(len(tokens), accepted(tables, states))
 
 
-def _gathered(given: list[Any], children: tuple[tuple[int, bool, int], ...], absent: int) -> list[Any]:
-    """The values that a rule keeps, those of helpers among them."""
-    kept: list[Any] = []
+def _gathered(popped: list[Any], children: tuple[tuple[int, bool, int], ...], absent: int) -> list[Any]:
+    """The values that a rule keeps, with those of its helpers."""
+    result: list[Any] = []
     for place, is_list, before in children:
         if before:
-            kept += [None] * before
+            result += [None] * before
         if is_list:
-            kept += given[place]
+            result += popped[place]
         else:
-            kept.append(given[place])
+            result.append(popped[place])
     if absent:
-        kept += [None] * absent
-    return kept
+        result += [None] * absent
+    return result
 
 
-def _listed(given: list[Any], children: tuple[tuple[int, bool, int], ...], absent: int) -> list[Any]:
-    """A helper's list; one that begins with another helper's goes on in it, so that long lists are not copied."""
+def _listed(popped: list[Any], children: tuple[tuple[int, bool, int], ...], absent: int) -> list[Any]:
+    """A helper's list; one that begins with another helper's list extends that, so that long lists are not copied."""
     if children and children[0][1] and not children[0][2]:
-        kept: list[Any] = given[children[0][0]]
-        kept += _gathered(given, children[1:], absent)
-        return kept
-    return _gathered(given, children, absent)
+        result: list[Any] = popped[children[0][0]]
+        result += _gathered(popped, children[1:], absent)
+        return result
+    return _gathered(popped, children, absent)
 
 
-def accepted(found: Tables, states: list[int]) -> set[str]:
+def accepted(tables: Tables, states: list[int]) -> set[str]:
     """The terminals that could come next."""
-    return {kind for kind in found.actions[states[-1]] if _fits(found, states, kind)}
+    return {kind for kind in tables.actions[states[-1]] if _fits(tables, states, kind)}
 
 
-def _fits(found: Tables, states: list[int], kind: str) -> bool:
+def _fits(tables: Tables, states: list[int], kind: str) -> bool:
     """Whether a terminal is shifted in the end, not only reduced for."""
     stack = list(states)
     while True:
-        action = found.actions[stack[-1]].get(kind)
+        action = tables.actions[stack[-1]].get(kind)
         if action is None:
             return False
         if isinstance(action, int):
@@ -138,4 +138,4 @@ def _fits(found: Tables, states: list[int], kind: str) -> bool:
         size, origin = (1, action) if isinstance(action, str) else (action.size, action.origin)
         if size:
             del stack[-size:]
-        stack.append(found.goto[stack[-1]][origin])
+        stack.append(tables.goto[stack[-1]][origin])

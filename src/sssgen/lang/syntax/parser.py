@@ -1,6 +1,6 @@
 """Tokens → syntax tree, by the tables of grammar.lark.
 
-A syntax error does not hide the next: the faulty declaration is left out and the rest is parsed again.
+A syntax error does not hide others: the faulty declaration is removed and the rest is parsed again.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from sssgen.support.diagnostics import Diagnostic, Reporter, SssgenError
 from sssgen.support.gc_pause import paused
 
 MAX_DEPTH = 100
-"""How deeply expressions and statements may nest, together. Hand-written shaders stay below 30; passes and printers
-recurse over what is nested, and a stack of Python's own 1000 frames must be enough for them."""
+"""The deepest nesting of expressions and statements together. Hand-written shaders stay below 30; passes and printers
+are recursive, and Python's default stack of 1000 frames must be enough for them."""
 
 _TOO_DEEP = (
     f"nested more than {MAX_DEPTH} levels deep",
@@ -28,7 +28,7 @@ _TOO_DEEP = (
 )
 
 MAX_OPERATORS = 1000
-"""How many operators one expression may have outside its brackets."""
+"""The largest number of operators of one expression outside its brackets."""
 
 MAX_SYNTAX_ERRORS = 20
 
@@ -44,28 +44,28 @@ _DIRECTIVE = re.compile(r'^[ \t]*#[ \t]*(?:include[ \t]+"[^"\n]*"|version[^\n]*)
 def parse(text: str, file: str) -> s.File:
     """Parses a technique's source. Raises `SssgenError` with every syntax error found.
 
-    Its only directives are `#include "file"`, which the loader follows, and `#version`, which says nothing here.
+    Its only directives are `#include "file"`, which the loader follows, and `#version`, which is ignored.
     """
     with paused():
         try:
-            tokens, comments = scan(_DIRECTIVE.sub(lambda found: " " * len(found.group()), text), file)
+            tokens, comments = scan(_DIRECTIVE.sub(lambda match: " " * len(match.group()), text), file)
         except SssgenError as error:
-            raise SssgenError([_without_directives(found) for found in error.diagnostics]) from None
+            raise SssgenError([_without_directives(diagnostic) for diagnostic in error.diagnostics]) from None
         return parse_tokens(tokens, {file: comments}, Reporter(file, text))
 
 
-def _without_directives(found: Diagnostic) -> Diagnostic:
-    """What the lexer says of a `#`, for a technique's author."""
-    if not found.message.startswith("'#'"):
-        return found
+def _without_directives(diagnostic: Diagnostic) -> Diagnostic:
+    """The lexer's error; the one about a `#` is reworded for a technique's author."""
+    if not diagnostic.message.startswith("'#'"):
+        return diagnostic
     hint = 'only #include "file.sss" is possible; write a const, a function or a uniform instead'
-    return found._replace(message="a technique has no preprocessor", hint=hint)
+    return diagnostic._replace(message="a technique has no preprocessor", hint=hint)
 
 
 def parse_tokens(
     tokens: Sequence[Token], comments: Mapping[str, Sequence[Comment]], reporter: Reporter, plain: bool = False
 ) -> s.File:
-    """Parses the tokens of a file and of what it includes, whose comments are given by file.
+    """Parses the tokens of a file and of those that it includes; `comments` are by file.
 
     `plain`: any comment before a function is its documentation. Raises `SssgenError` with every syntax error found.
     """
@@ -93,9 +93,9 @@ def parse_tokens(
 _BEGINNING = frozenset(
     "IF FOR WHILE DO SWITCH RETURN BREAK CONTINUE DISCARD CONST UNIFORM STRUCT RBRACE".split()  # noqa: SIM905
 )
-"""What a statement or a declaration begins with, or what stands behind the last one."""
+"""The terminals that begin a statement or a declaration, or follow the last one."""
 _ENDING = frozenset("NAME INT FLOAT BOOL RPAR RSQB INCDEC RETURN BREAK CONTINUE DISCARD".split())  # noqa: SIM905
-"""What a statement ends with, before its semicolon."""
+"""The terminals that end a statement, before its semicolon."""
 
 _OPENED = frozenset(("LPAR", "LSQB", "LBRACE"))
 _CLOSED = frozenset(("RPAR", "RSQB", "RBRACE"))
@@ -103,7 +103,7 @@ _OPERATORS = frozenset(("OPERATOR", "PLUSMINUS", "NOT", "ASSIGN", "QMARK"))
 
 
 def _check_shape(tokens: Sequence[Token], reporter: Reporter) -> None:
-    """Refuses, before a tree is made of them, deep brackets and endless expressions."""
+    """Refuses too deep brackets and too long expressions before they are parsed."""
     depth = operators = 0
     for token in tokens:
         kind = token[0]
@@ -135,7 +135,7 @@ _BEFORE_TYPE = frozenset(
 
 
 def _as_names(tokens: Sequence[Token]) -> Sequence[Token]:
-    """The tokens with the keywords of later versions as names where no qualifier can stand."""
+    """The tokens; keywords of later versions become names where a qualifier is impossible."""
     places = [
         index
         for index, token in enumerate(tokens)
@@ -150,7 +150,7 @@ def _as_names(tokens: Sequence[Token]) -> Sequence[Token]:
 
 
 def _report(error: Unexpected, tokens: list[Token], reporter: Reporter) -> None:
-    """Says what cannot stand where it does, and what to do."""
+    """Reports the unexpected token, and what would fit."""
     index, accepted = error.index, error.accepted
     before = tokens[index - 1].span if index else None
     if index >= len(tokens):
@@ -159,8 +159,8 @@ def _report(error: Unexpected, tokens: list[Token], reporter: Reporter) -> None:
         reporter.error(place, "the file ends too early", "is a '}' or ';' missing?")
         return
     token = tokens[index]
-    whole = index > 0 and tokens[index - 1].type in _ENDING
-    ended = before is not None and (before.end_line < token.span.line or (whole and token.type in _BEGINNING))
+    complete = index > 0 and tokens[index - 1].type in _ENDING
+    ended = before is not None and (before.end_line < token.span.line or (complete and token.type in _BEGINNING))
     if before is not None and ended and "SEMICOLON" in accepted and "LBRACE" not in accepted:
         end = before._replace(line=before.end_line, column=before.end_column, end_column=before.end_column + 1)
         reporter.error(end, "a ';' is missing here")

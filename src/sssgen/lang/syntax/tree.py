@@ -156,7 +156,7 @@ Expression: TypeAlias = (
 class Qualifiers:
     """The qualifiers before a type: keywords, and the items of `layout(…)`."""
 
-    words: tuple[str, ...] = ()
+    keywords: tuple[str, ...] = ()
     layout: tuple[tuple[str, Expression | None], ...] = ()
     span: Span = NOWHERE
 

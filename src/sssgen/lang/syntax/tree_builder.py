@@ -67,9 +67,9 @@ class Builder:
 
     def param(self, children: list[Any]) -> s.Parameter:
         qualifiers, type_, name, lengths = children
-        direction = next((word for word in qualifiers.words if word in ("in", "out", "inout")), "in")
+        direction = next((keyword for keyword in qualifiers.keywords if keyword in ("in", "out", "inout")), "in")
         label = s.Name(name.text, name.span) if name is not None else None
-        return s.Parameter(direction, type_, label, lengths or (), "const" in qualifiers.words)
+        return s.Parameter(direction, type_, label, lengths or (), "const" in qualifiers.keywords)
 
     def global_(self, children: list[Any]) -> s.GlobalSyntax:
         qualifiers, type_, declarators = children
@@ -91,10 +91,10 @@ class Builder:
     def qualifiers(self, children: list[Any]) -> s.Qualifiers:
         if not children:
             return s.PLAIN
-        words = tuple([child.text for child in children if isinstance(child, Token)])
+        keywords = tuple([child.text for child in children if isinstance(child, Token)])
         layout = tuple([item for child in children if not isinstance(child, Token) for item in child])
         span = next((child.span for child in children if isinstance(child, Token)), s.PLAIN.span)
-        return s.Qualifiers(words, layout, span)
+        return s.Qualifiers(keywords, layout, span)
 
     local_qualifiers = qualifiers
 
