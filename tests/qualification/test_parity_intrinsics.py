@@ -94,7 +94,7 @@ def test_a_broken_rule_is_caught(
     arguments = [float(number) for number in rest.partition(":")[0].split(", ")]
     assert title == "mod(float, float)"
     assert min(arguments) < 0.0 < max(arguments)
-    assert measure(gpu, chosen)["mod"].right
+    assert measure(gpu, [case for case in chosen if case.name == "mod"])["mod"].right
 
 
 # The page

@@ -160,7 +160,8 @@ def _server(path: str, page: str, connections: queue.Queue[ServerConnection], en
     )  # fmt: skip
     # The threads of the connections inherit that they are daemons.
     threading.Thread(target=server.serve_forever, daemon=True).start()
-    ending.callback(server.shutdown)
+    # `shutdown` closes connections in a thread pool, which cannot start at the interpreter's exit; `hold` ends without.
+    ending.callback(server.shutdown, close_connections=False)
     ending.callback(over.set)
     return server
 
