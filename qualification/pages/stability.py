@@ -72,8 +72,8 @@ class Chapter(NamedTuple):
 PICTURES = {
     "cube": Picture(
         (Shot("cube"), Shot("cube", "mended")),
-        "Two cubes with the light behind: one with a dark X and a black square on each face, one lit smoothly from the "
-        "edges that the light is near",
+        "Two cubes with the light behind them: one with a dark X and a black square on each face, one lit smoothly "
+        "from the edges near the light",
         "42yeah's thinness, and `march_light` with `beer_lambert`. The light is behind, above and to the left.",
     ),
     "wax": Picture(
@@ -102,19 +102,19 @@ PICTURES = {
     "wedge": Picture(
         (Shot("wedge"), Shot("wedge", "mended")),
         "Two panels: one evenly bright with stripes, one that darkens evenly from left to right",
-        "The face of a wedge, .2 m thick at the left and 1.2 m at the right. The article's sum, with 32 steps: the "
-        "thick end is no darker, and the stripes are steps that meet the back. "
-        "Right: `march_distance_texture`, with 16.",
+        "The face of a wedge, .2 m thick at the left and 1.2 m at the right. The article's sum with 32 steps: the "
+        "thick end is not darker, and stripes appear where steps reach the back. Right: `march_distance_texture` with "
+        "16 steps.",
     ),
     "ring": Picture(
         (Shot("ring"), Shot("ring", "mended")),
-        "Two rings with the light behind: one blank above and black below, one shaded all round",
-        "A ring of wax whose box begins above the origin. 3D Distance Fields looks for the matter beside where it is. "
+        "Two rings with the light behind them: one blank at the top and black at the bottom, one shaded all around",
+        "A ring of wax whose box begins above the origin. 3D Distance Fields reads the texture at the wrong place. "
         "Right: `march_distance_texture`.",
     ),
     "ball": Picture(
         (Shot("ball"), Shot("ball", "mended")),
-        "Two balls with a lamp behind: one flat and dark, one that glows where the lamp is",
+        "Two balls with a lamp behind them: one flat and dark, one that glows near the lamp",
         "The same lamp, thickness, `power` and `scale` in the Unity ice lobe and in `lobe_normalized`.",
     ),
     "floor": Picture(
