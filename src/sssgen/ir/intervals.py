@@ -48,7 +48,7 @@ class Range:
     @property
     def size(self) -> float:
         """The largest magnitude."""
-        return max(-self.low, self.high)
+        return self.high if self.high > -self.low else -self.low
 
     def has_zero(self) -> bool:
         return self.gap == 0.0
@@ -59,6 +59,8 @@ class Range:
 
     def joined(self, other: Range) -> Range:
         """The smallest range that contains both."""
+        if self is other:
+            return self
         return Range(min(self.low, other.low), max(self.high, other.high), min(self.gap, other.gap))
 
     def met(self, other: Range) -> Range:
@@ -117,7 +119,7 @@ def square(x: Range) -> Range:
 
 
 def absolute(x: Range) -> Range:
-    return Range(x.gap, x.size)
+    return x if x.low > 0.0 else Range(x.gap, x.size)
 
 
 def minimum(x: Range, y: Range | float) -> Range:

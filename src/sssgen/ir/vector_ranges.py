@@ -8,7 +8,7 @@ components (the caller takes as many as the result has) and of its length, with 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from sssgen.ir.formats import Format
@@ -44,15 +44,16 @@ Result = tuple[list[Range], Range]
 """The ranges of a result's components and of its length (ANY: no more than the components imply)."""
 
 
-def length_of(parts: tuple[Range, ...]) -> Range:
+def length_of(parts: Sequence[Range]) -> Range:
     """The length that the components allow."""
     if len(parts) == 1:
         return absolute(parts[0])
-    low = math.sqrt(sum(part.gap * part.gap for part in parts))
-    size = max(part.size for part in parts)
-    if size == INF:
+    low = math.sqrt(sum([part.gap * part.gap for part in parts]))
+    sizes = [part.size for part in parts]
+    largest = max(sizes)
+    if largest == INF:
         return Range(low, INF)
-    return Range(low, size * math.sqrt(sum((part.size / size) ** 2 for part in parts)) if size else 0.0)
+    return Range(low, largest * math.sqrt(sum([(size / largest) ** 2 for size in sizes])) if largest else 0.0)
 
 
 def exact_dot(x: Value, y: Value) -> Range:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, cast
 
 from sssgen.ir import nodes as ir
@@ -33,12 +33,6 @@ class ExpressionRanges(CallRanges):
     def local(self, node: ir.Local) -> Value:
         value = self.state.env.get(node.name)
         return self.unknown(node.type) if value is None else self.refined(value)
-
-    def refined(self, value: Value) -> Value:
-        """A value with the facts at this point."""
-        if value.texel is not None or not self.state.facts.ranges:
-            return value
-        return self.value(value.parts, value.numbers, value.length)
 
     def global_(self, node: ir.Global) -> Value:
         if node.name in self.variables:  # any function may have changed it
@@ -95,11 +89,8 @@ class ExpressionRanges(CallRanges):
             return self.integer(node, left, right)
         if op == "/":
             return self.division(node, left, right)
-        size = max(len(left.parts), len(right.parts))
         parts, numbers = [], []
-        for index in range(size):
-            a, m = left.parts[index % len(left.parts)], left.numbers[index % len(left.numbers)]
-            b, n = right.parts[index % len(right.parts)], right.numbers[index % len(right.numbers)]
+        for a, m, b, n in _components(left, right):
             if op == "*":
                 parts.append(self.product(a, m, b, n) if kind == "float" else square(a) if m == n else a * b)
                 if m == n and kind == "float":
@@ -115,7 +106,8 @@ class ExpressionRanges(CallRanges):
         """A product of floats, which may be of a number with itself or with its negative."""
         if m == n:
             return square(a)
-        return -square(a) if self.negated(m) == n or self.negated(n) == m else a * b
+        definitions = self.numbers.definitions
+        return -square(a) if definitions[m] == ("neg", n) or definitions[n] == ("neg", m) else a * b
 
     def sum(self, a: Range, m: int, b: Range, n: int, op: str) -> Range:
         if op == "+":
@@ -153,14 +145,11 @@ class ExpressionRanges(CallRanges):
         return ANY
 
     def division(self, node: ir.Binary, left: Value, right: Value) -> Value:
-        size = max(len(left.parts), len(right.parts))
         least = self.format.tiny
         counts = _is_count(node.right)
         smallest = 1.0 if counts else self.format.divisor
         parts, numbers, proven = [], [], True
-        for index in range(size):
-            a, m = left.parts[index % len(left.parts)], left.numbers[index % len(left.numbers)]
-            b, n = right.parts[index % len(right.parts)], right.numbers[index % len(right.numbers)]
+        for a, m, b, n in _components(left, right):
             safe = b.gap >= least
             proven &= safe
             if not safe:  # the range behind the guard
@@ -188,10 +177,8 @@ class ExpressionRanges(CallRanges):
 
     def integer(self, node: ir.Binary, left: Value, right: Value) -> Value:
         """The other integer operators. `legalise` defines what languages leave undefined."""
-        size = max(len(left.parts), len(right.parts))
         parts, numbers = [], []
-        for index in range(size):
-            a, b = left.parts[index % len(left.parts)], right.parts[index % len(right.parts)]
+        for a, _, b, _ in _components(left, right):
             part = self.limits(kind_of(node.type))
             if node.op == "/" and b.low > 0.0 and a.low >= 0.0:
                 part = Range(float(int(a.low / b.high)), float(int(a.high / b.low)))
@@ -354,6 +341,15 @@ class ExpressionRanges(CallRanges):
         value = self.expr(node.value)
         start, count = field_at(cast(Struct, node.value.type), node.field)
         return self.value(value.parts[start : start + count], value.numbers[start : start + count])
+
+
+def _components(left: Value, right: Value) -> Iterator[tuple[Range, int, Range, int]]:
+    """The range and the number of each component of two operands; a scalar counts for all components."""
+    if len(left.parts) == len(right.parts):
+        return zip(left.parts, left.numbers, right.parts, right.numbers, strict=True)
+    if len(left.parts) == 1:
+        return ((left.parts[0], left.numbers[0], b, n) for b, n in zip(right.parts, right.numbers, strict=True))
+    return ((a, m, right.parts[0], right.numbers[0]) for a, m in zip(left.parts, left.numbers, strict=True))
 
 
 def _is_count(node: ir.Expr) -> bool:

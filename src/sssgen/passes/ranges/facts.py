@@ -53,11 +53,14 @@ class Numbers:
         number = self.of(op, *(sorted((left, right)) if op == "+" else (left, right)), kind)
         one, two = self.sum_of(left), self.sum_of(right)
         sign = 1.0 if op == "+" else -1.0
-        terms = _added(one.terms, two.terms, sign)
-        if len(terms) <= _TERMS:
-            earlier = self.sums.get(number)
-            most = max(one.slack + two.slack + slack, earlier.slack if earlier else 0.0)
-            self.sums[number] = Sum(terms, one.constant + sign * two.constant, most)
+        slack += one.slack + two.slack
+        earlier = self.sums.get(number)
+        if earlier is None:
+            terms = _added(one.terms, two.terms, sign)
+            if len(terms) <= _TERMS:
+                self.sums[number] = Sum(terms, one.constant + sign * two.constant, slack)
+        elif slack > earlier.slack:
+            self.sums[number] = Sum(earlier.terms, earlier.constant, slack)
         return number
 
     def sum_of(self, number: int) -> Sum:

@@ -63,6 +63,8 @@ class AnalysisState:
         self.format = format
         self.chained = chained
         """Whether the names of parameters have the meaning that they have in a chain."""
+        self.floats = Range(-format.largest, format.largest)
+        self.integers = {kind: Range(low, high) for kind, (low, high) in INTEGERS.items()}
         self.numbers = Numbers(format.tiny)
         self.sites: dict[tuple[int, str], Site] = {}
         self.compounds: dict[int, ir.Binary] = {}
@@ -76,7 +78,7 @@ class AnalysisState:
             contract = contracts.of_uniform(uniform, format)
             value = self.input(inner, contract)
             if (at := contracts.alpha_at(uniform)) is not None:
-                value = value._replace(parts=(*value.parts[:at], Range(0.0, 1.0)))
+                value = self.value((*value.parts[:at], Range(0.0, 1.0)), value.numbers, value.length)
             self.globals[uniform.name] = value
         for constant in module.constants:
             self.globals[constant.name] = self.expr(constant.value)
@@ -98,21 +100,32 @@ class AnalysisState:
         return self.value(parts, tuple([self.numbers.fresh() for _ in parts]))
 
     def limits(self, kind: str) -> Range:
-        low, high = INTEGERS.get(kind, (-self.format.largest, self.format.largest))
-        return Range(low, high)
+        return self.integers.get(kind, self.floats)
 
     def value(self, parts: tuple[Range, ...], numbers: tuple[int, ...], length: Range = ANY) -> Value:
         """A value, refined by the facts about its components and its length."""
         facts = self.state.facts.ranges
-        if facts:
+        if facts and not facts.keys().isdisjoint(numbers):
             parts = tuple([part.met(facts[n]) if n in facts else part for part, n in zip(parts, numbers, strict=True)])
         if parts:
             length = length.met(length_of(parts)) if length is not ANY else length_of(parts)
-            fact = facts.get(self.numbers.existing.get(("length", *numbers), -1)) if facts else None
+            fact = self.length_fact(numbers)
             if fact is not None:
                 length = length.met(fact)
                 parts = tuple([clip(part, -length.high, length.high) for part in parts])
         return Value(parts, numbers, length)
+
+    def refined(self, value: Value) -> Value:
+        """A value with the facts at this point."""
+        facts = self.state.facts.ranges
+        if not facts or (facts.keys().isdisjoint(value.numbers) and self.length_fact(value.numbers) is None):
+            return value
+        return self.value(value.parts, value.numbers, value.length)
+
+    def length_fact(self, numbers: tuple[int, ...]) -> Range | None:
+        """The fact about the length of a vector, if any."""
+        facts = self.state.facts.ranges
+        return facts.get(self.numbers.existing.get(("length", *numbers), -1)) if facts and numbers else None
 
     def computed(self, node: ir.Expr, parts: Sequence[Range], numbers: Sequence[int], length: Range = ANY) -> Value:
         """The result of an operation: rounded, and checked for overflow."""
@@ -154,7 +167,8 @@ class AnalysisState:
             a = a.met(at_one.ranges[m]) if m in at_one.ranges else a
             b = b.met(at_two.ranges[n]) if n in at_two.ranges else b
             parts.append(a.joined(b))
-        return Value(tuple(parts), tuple(numbers), one.length.joined(two.length), one.texel)
+        length = one.length.joined(two.length)
+        return Value(tuple(parts), tuple(numbers), length.met(length_of(parts)) if parts else length, one.texel)
 
     def join(self, one: State, two: State) -> State:
         if one is two:
