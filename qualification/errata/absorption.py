@@ -17,8 +17,8 @@ ABSORPTION = (
     Erratum(
         "pow(0, 0)",
         "glTF volume",
-        "Thickness 0, `attenuation_color` (0, .5, 1): all light passes, 1 in each component. three.js #23448 renders "
-        "black",
+        "Thickness 0, `attenuation_color` (0, .5, 1): all light is transmitted, 1 in each component. three.js #23448 "
+        "renders black",
         Measure("gltf_volume", ({**_CLEAR, "attenuation_distance": 1.0},)),
         (),
         Measure("absorption_tint", ({**_CLEAR, "attenuation_distance": 1.0, "weight": 1.0},)),
@@ -28,7 +28,7 @@ ABSORPTION = (
     Erratum(
         "attenuationDistance 0",
         "glTF volume",
-        "The same with an attenuation distance of 0: 0/0. Nothing is in the way: 1 in each component",
+        "The same with an attenuation distance of 0: 0/0. There is no matter: 1 in each component",
         Measure("gltf_volume", (_OPAQUE,)),
         (),
         Measure("absorption_tint", ({**_OPAQUE, "weight": 1.0},)),
@@ -36,10 +36,10 @@ ABSORPTION = (
         everywhere=False,
     ),
     Erratum(
-        "more light than there is",
+        "more light than the lamp has",
         "GPU Gems 16",
-        "A lit point .1 m before what the coarse depth map says, `sigma_t` 5: exp(5 · .1). Ours: a thickness of 0, and "
-        "so a transmittance of 1",
+        "A lit point .1 m in front of the surface in the coarse depth map, `sigma_t` 5: exp(5 · .1). `sssgen`: a "
+        "thickness of 0, and so a transmittance of 1",
         Measure("depth_map_absorption", (_BEFORE_THE_MAP,), each),
         (math.exp(0.5),),
         Measure("depth_map_thickness", (_BEFORE_THE_MAP,), each),

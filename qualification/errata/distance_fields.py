@@ -121,7 +121,7 @@ CHEAP_SSS = (
     Erratum(
         "range",
         "Cheap SSS",
-        "Thinness of slabs of 0, .01, .1, .4 and .774 m. 1 = no matter at all",
+        "Thinness of slabs of 0, .01, .1, .4 and .774 m. 1 is no matter",
         Measure("cheap_sss_thinness", (_SLAB,), bind=_BOX),
         tuple(_thinness_of_slab(slab) for slab in _SLABS),
         Measure("thinness_uniform", (_SLAB,), bind=_BOX),
@@ -130,8 +130,8 @@ CHEAP_SSS = (
     Erratum(
         "nearest face",
         "Cheap SSS",
-        "A cube's face, 0 and .2 m from its edge: the cube is 1 m deep at both. Ours: metres towards the light, from 1 "
-        "mm and .2 m",
+        "A cube's face, 0 and .2 m from its edge; the cube is 1 m deep at both. `sssgen`: metres towards the light, "
+        "from 1 mm and .2 m",
         Measure("cheap_sss_thinness", (_face([(0.5, 0.0), (0.3, 0.0)]),), bind=_BOX),
         (sum(_TAPS) / 30.0, sum(max(d - 0.2, 0.0) for d in _TAPS) / 30.0),
         Measure("march_light", (_lit_face([(0.499, 0.0), (0.3, 0.0)], _BEHIND),), bind=_BOX),
@@ -150,7 +150,8 @@ CHEAP_SSS = (
     Erratum(
         "the dead centre",
         "Cheap SSS",
-        "The most in the middle .22 m of a cube's face. Ours: metres of matter towards the light, at least",
+        "The maximum in the middle .22 m of a cube's face. `sssgen`: the minimum, in metres of matter towards the "
+        "light",
         Measure("cheap_sss_thinness", (_face(_CENTRE),), _largest, _BOX),
         (0.0,),
         Measure("march_light", (_lit_face(_CENTRE),), _smallest, _BOX),
@@ -159,7 +160,7 @@ CHEAP_SSS = (
     Erratum(
         "half-space",
         "Cheap SSS, attenuated",
-        "Thinness of an endless body: 0",
+        "Thinness of an infinite body; it is 0",
         Measure("cheap_sss_attenuated", (_ENDLESS,), bind=_GROUND),
         (sum((1.0 - 0.9**i) * d for i, d in enumerate(_TAPS)) / 30.0,),
         Measure("thinness_attenuated", (_ENDLESS,), bind=_GROUND),
@@ -168,7 +169,7 @@ CHEAP_SSS = (
     Erratum(
         "contrast",
         "Cheap SSS, attenuated",
-        "Thinness of no matter at all: 1. Less that of an endless body, a sixth of the contrast is left",
+        "Thinness of no matter; it is 1. Minus that of an infinite body, a sixth of the contrast remains",
         Measure("cheap_sss_attenuated", (_NOTHING,), bind=_BOX),
         (sum((1.0 + 0.9**i) * d for i, d in enumerate(_TAPS)) / 30.0,),
         Measure("thinness_attenuated", (_NOTHING,), bind=_BOX),
@@ -177,8 +178,8 @@ CHEAP_SSS = (
     Erratum(
         "contact",
         "Cheap SSS",
-        "A cube's side 2 cm above the floor that it stands in, floor and cube in one field: as thin as an edge. "
-        "Ours: metres of matter straight inwards, to half a step",
+        "A side of a cube 2 cm above the floor, with floor and cube in one field: as thin as an edge. `sssgen`: "
+        "metres of matter straight inwards, with an error of up to half a step",
         Measure("cheap_sss_thinness", (_CONTACT,), bind={"body_distance": "jelly_scene"}),
         (sum(max(d - 0.04, 0.0) for d in _TAPS) / 30.0,),
         Measure(
@@ -189,7 +190,7 @@ CHEAP_SSS = (
     Erratum(
         "no far limit",
         "Cheap SSS",
-        "How far a ray goes that meets nothing, in metres",
+        "The length of a ray that hits nothing, in metres",
         Measure("cheap_sss_raymarch", (_MISS,), _far, {"scene_distance": "ground_plane"}),
         (math.inf,),
         Measure("raymarch", (_MISS,), _far, {"scene_distance": "ground_plane"}),
@@ -198,7 +199,7 @@ CHEAP_SSS = (
     Erratum(
         "the sine hash",
         "XT95",
-        "Thickness where there is no matter: 0. The hash multiplies what each GPU's sine rounds",
+        "Thickness without matter; it is 0. The hash amplifies the rounding errors of each GPU's sine",
         Measure("xt95_thickness", (_NOTHING,), bind=_BOX),
         (_xt95_of_nothing(),),
         Measure("thinness_xt95", (_NOTHING,), _as_thickness, _BOX),
@@ -211,8 +212,8 @@ OPEN = (
     Erratum(
         "biased normals",
         "Cheap SSS",
-        "The largest error of the normal on a ball of 5 cm, in radians. Cheap SSS takes one-sided differences of 1 mm, "
-        "`raymarch` the four corners of a tetrahedron 1 mm along each axis: its error is as large as that of the mixed "
+        "The largest error of the normal on a ball of 5 cm, in radians. Cheap SSS uses one-sided differences of 1 mm, "
+        "`raymarch` the four corners of a tetrahedron 1 mm along each axis: its error is of the size of the mixed "
         "second derivatives",
         Measure("cheap_sss_raymarch", (_AT_BALL,), _turned, {"scene_distance": "sphere"}),
         (math.sqrt(0.5) * 1e-3 / _RADIUS,),

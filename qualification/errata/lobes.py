@@ -61,8 +61,8 @@ ALISAVAKIS = (
     Erratum(
         "pow(0, 0)",
         "Alisavakis",
-        "`concentration` as it comes, 0, `scale` 1, the eye where there is no lobe. x^0 is 1 for every x > 0; at 0 "
-        "each language has its own. Ours, at the least `power`, 1: no light",
+        "The default `concentration`, 0, `scale` 1, the eye outside of the lobe. x^0 is 1 for every x > 0; at 0 the "
+        "languages differ. `sssgen`, with the smallest `power`, 1: no light",
         Measure("alisavakis_lobe", ({**_NO_LOBE, "d": 0.0, "scale": 1.0},), _white),
         (),
         Measure("lobe_normalized", ({**_NO_LOBE, **_LOBE, "power": 1.0},), _white),
@@ -72,7 +72,7 @@ ALISAVAKIS = (
     Erratum(
         "dark by default",
         "Alisavakis",
-        "All as it comes (`concentration` 0, `scale` 0), the light behind: pow(1, 0) · 0, no glow. Ours, as it comes",
+        "All defaults (`concentration` 0, `scale` 0), the light behind: pow(1, 0) · 0, no glow. `sssgen`: its defaults",
         Measure("alisavakis_lobe", ({**_BACK_LIT, "d": 0.0},), _white),
         (0.0,),
         Measure("lobe_normalized", ({**_BACK_LIT, "through": 1.0},), _white),
@@ -81,8 +81,8 @@ ALISAVAKIS = (
     Erratum(
         "the zero half vector",
         "Alisavakis",
-        "`distortion` 1, `scale` 1, the light .001 to one side, straight behind, and .001 to the other side. Straight "
-        "behind L + N is 0 and has no direction. Ours does not normalise",
+        "`distortion` 1, `scale` 1, the light .001 to one side, directly behind, and .001 to the other side. Directly "
+        "behind, L + N is 0 and has no direction. `sssgen` (`lobe_gdc2011`) does not normalise",
         Measure("alisavakis_lobe", ({**_ZERO_HALF, "d": 0.0, "concentration": 4.0, "scale": 1.0},), _white),
         (),
         Measure("lobe_gdc2011", ({**_ZERO_HALF, **_LOBE},), _white),
@@ -92,7 +92,8 @@ ALISAVAKIS = (
     Erratum(
         "the zero half vector, normalised",
         "Alisavakis",
-        "The same, straight behind alone. Ours normalises as well, and is guarded: a lobe from 0 to 1",
+        "The same, only directly behind. `sssgen` (`lobe_normalized`) normalises, too, but with a guard: a lobe from "
+        "0 to 1",
         Measure("alisavakis_lobe", ({**_JUST_BEHIND, "d": 0.0, "concentration": 4.0, "scale": 1.0},), _white),
         (),
         Measure("lobe_normalized", ({**_JUST_BEHIND, **_LOBE},), _white),
@@ -105,8 +106,8 @@ UNITY_ICE = (
     Erratum(
         "the zero lobe",
         "Unity ice",
-        f"The largest lobe over {_COUNT:,} random N, L and `distortion` below 1, without `ambient`; the eye where it "
-        "should peak, at 1",
+        f"The largest lobe over {_COUNT:,} random N, L and `distortion` below 1, without `ambient`, with the eye at "
+        "the peak of the lobe; it is 1",
         Measure("ice_shader_lobe", (_NO_EYE,), _largest),
         (0.0,),
         Measure("lobe_normalized", (_SPREAD,), _largest),
@@ -115,36 +116,36 @@ UNITY_ICE = (
     Erratum(
         "constant ambient",
         "Unity ice",
-        "The light before, beside and behind; `attenuation` .5, `ambient` .1, map .8, `scale` 2, `power` 4: always "
-        "attenuation · ambient · map. Ours: a glow with the light behind",
+        "The light in front, at the side and behind; `attenuation` .5, `ambient` .1, map .8, `scale` 2, `power` 4: "
+        "always attenuation · ambient · map. `sssgen`: a glow with the light behind",
         Measure("ice_shader_lobe", ({**_LIGHTS, **_ICE},), _white),
         (0.04, 0.04, 0.04),
         Measure("lobe_normalized", ({**_LIGHTS, **_ICE, "V": _FRONT},), _white),
         (about(0.04, 1e-6), about(0.04, 1e-6), about(0.84, 1e-5)),
     ),
     Erratum(
-        "a duller peak",
+        "a lower peak",
         "GDC 2011",
-        "The eye, the normal and the light in one line, `distortion` .2, `power` 6: (1 − .2)^6. Ours, with a unit half "
-        "vector: 1",
+        "The eye, the normal and the light in one line, `distortion` .2, `power` 6: (1 − .2)^6. `sssgen`, with a unit "
+        "half vector: 1",
         Measure("lobe_gdc2011", ({**_BACK_LIT, **_LOBE, "power": 6.0, "distortion": 0.2},), _white),
         (0.8**6,),
         Measure("lobe_normalized", ({**_BACK_LIT, **_LOBE, "power": 6.0, "distortion": 0.2},), _white),
         (about(1.0, 1e-5),),
     ),
     Erratum(
-        "a floor of light",
+        "a minimum of light",
         "Barré-Brisebois 2012",
-        "The same with the light before the surface: 2^−6 remains. Ours: 0",
+        "The same with the light in front of the surface: 2^−6 remains. `sssgen`: 0",
         Measure("lobe_exp2", ({**_BACK_LIT, "L": _FRONT, **_LOBE, "power": 6.0},), _white),
         (2.0**-6,),
         Measure("lobe_normalized", ({**_BACK_LIT, "L": _FRONT, **_LOBE, "power": 6.0},), _white),
         (about(0.0, 0.0),),
     ),
     Erratum(
-        "not the lobe it names",
+        "not the lobe that it cites",
         "three.js",
-        "Its own defaults, eye, normal and light in one line: 1. GDC 2011, which it names, has (1 − .1)² with the same",
+        "Its own defaults, with eye, normal and light in one line: 1. GDC 2011, which it cites, gives (1 − .1)²",
         Measure("three_js_port", ({**_BACK_LIT, "through": 1.0},), _white),
         (1.0,),
         Measure(

@@ -102,8 +102,8 @@ DISTANCE_FIELDS = (
     Erratum(
         "polarity",
         "3D Distance Fields",
-        "A box of nothing and a box of matter. By its text 0 to .5 is outside, so .25 and .75 are stored; its code "
-        "counts what is below .5. Ours, as it stores them: metres",
+        "An empty box and a box of matter. In the text 0 to .5 is outside, so .25 and .75 are stored; the code counts "
+        "values below .5. `sssgen`, with its own encoding: metres",
         Measure(_PUBLISHED, (_filled(0.25), _filled(0.75)), bind=_FROM_TEXTURE),
         (0.25 * 8, 0.0),
         Measure(_OURS, (_filled(0.75), _filled(0.25)), bind=_FROM_TEXTURE),
@@ -112,8 +112,8 @@ DISTANCE_FIELDS = (
     Erratum(
         "deep counts least",
         "3D Distance Fields",
-        "Slabs of .21, .61 and .99 m, the light before them, 32 steps, .1 m stored: the thicker, the thinner. Ours: "
-        "metres",
+        "Slabs of .21, .61 and .99 m, the light in front of them, 32 steps, .1 m stored: a thicker slab has a smaller "
+        "sum. `sssgen`: metres",
         Measure(_PUBLISHED, tuple(_published(slab, 32, 0.1, light=_FRONT) for slab in _SLABS), bind=_FROM_BOX),
         tuple(_march(slab, 1.0, 32, 0.1) for slab in _SLABS),
         Measure(_OURS, tuple(_ours(slab, 32, light=_FRONT) for slab in _SLABS), bind=_FROM_BOX),
@@ -122,7 +122,7 @@ DISTANCE_FIELDS = (
     Erratum(
         "no length: steps",
         "3D Distance Fields",
-        "A slab of .99 m, the light behind it, with 8, 16 and 32 steps. Ours: metres",
+        "A slab of .99 m, the light behind it, with 8, 16 and 32 steps. `sssgen`: metres",
         Measure(_PUBLISHED, tuple(_published(_THICK, steps, 1.0) for steps in (8, 16, 32)), bind=_FROM_BOX),
         tuple(_march(_THICK, -1.0, steps, 1.0) for steps in (8, 16, 32)),
         Measure(_OURS, tuple(_ours(_THICK, steps) for steps in (8, 16, 32)), bind=_FROM_BOX),
@@ -131,16 +131,16 @@ DISTANCE_FIELDS = (
     Erratum(
         "no length: units",
         "3D Distance Fields",
-        "The same slab in metres, and twice as large in all: 16 steps. Ours: metres",
+        "The same slab, and the whole scene twice as large: 16 steps. `sssgen`: metres",
         Measure(_PUBLISHED, tuple(_published(_THICK, 16, 1.0, scale=scale) for scale in (1.0, 2.0)), bind=_FROM_BOX),
         (_march(_THICK, -1.0, 16, 1.0),) * 2,
         Measure(_OURS, tuple(_ours(_THICK, 16, scale=scale) for scale in (1.0, 2.0)), bind=_FROM_BOX),
         (about(_THICK, 0.01), about(2.0 * _THICK, 0.02)),
     ),
     Erratum(
-        "a box that is no cube",
+        "a box that is not a cube",
         "3D Distance Fields",
-        "The same slab in a box of 2 × 2 × 2 m, and of 2 × 2 × 4 m: 16 steps. Ours: metres",
+        "The same slab in a box of 2 × 2 × 2 m, and of 2 × 2 × 4 m: 16 steps. `sssgen`: metres",
         Measure(_PUBLISHED, (_published(_THICK, 16, 1.0), _published(_THICK, 16, 1.0, **_LONG)), bind=_FROM_BOX),
         (_march(_THICK, -1.0, 16, 1.0), _march(_THICK, -1.0, 16, 1.0, 4.0)),
         Measure(_OURS, (_ours(_THICK, 16), _ours(_THICK, 16, **_LONG)), bind=_FROM_BOX),
@@ -149,8 +149,8 @@ DISTANCE_FIELDS = (
     Erratum(
         "a box above the origin",
         "3D Distance Fields",
-        "A ball of 1 m in a box of 2 m about the origin, and both 3 m higher up: p + abs(min) leaves the box, where "
-        "there is nothing. Ours: metres",
+        "A ball of 1 m in a box of 2 m around the origin, and both 3 m higher: p + abs(min) is outside of the box, "
+        "where nothing is stored. `sssgen`: metres",
         Measure(_PUBLISHED, (_ball(0.0, steps=16), _ball(3.0, steps=16)), bind=_FROM_BALL),
         (_march(1.0, -1.0, 16, 1.0), 0.0),
         Measure(
@@ -163,7 +163,7 @@ DISTANCE_FIELDS = (
     Erratum(
         "a flat box",
         "3D Distance Fields",
-        "A sheet in a box without height: 0 / 0. There is no matter: 0",
+        "A sheet in a box without height: 0 / 0. There is no matter; it is 0",
         Measure(_PUBLISHED, (_FLAT,), bind=_FROM_BOX),
         (),
         Measure(_OURS, (_FLAT,), bind=_FROM_BOX),

@@ -83,9 +83,9 @@ _HALF = _slide(45.0, _AIR_TO_GLASS) * math.sqrt(0.5)
 
 SUBSURFACE_PARALLAX = (
     Erratum(
-        "index unsaid: total reflection",
+        "undefined index: total reflection",
         "Subsurface Parallax",
-        "`eta` 1.5, the index of glass: the first angle of the view, in degrees, that gives 0/0. 90: none does",
+        "`eta` 1.5, the index of glass: the smallest angle of the view, in degrees, that gives 0/0. 90: none does",
         Measure("subsurface_parallax", ({**_FRAME, "V": _view(_SWEEP), "eta": 1.5},), _first_bad),
         (_CRITICAL,),
         Measure("parallax_refracted", ({**_FRAME, "V": _view(_SWEEP), "ior": 1.0, "outside_ior": 1.5},), _first_bad),
@@ -95,16 +95,16 @@ SUBSURFACE_PARALLAX = (
     Erratum(
         "past the critical angle",
         "Subsurface Parallax",
-        "The slide over the depth there, at 60°",
+        "The same at 60°: the offset divided by the depth",
         Measure("subsurface_parallax", ({**_FRAME, "V": _view([60.0]), "eta": 1.5},), _slides),
         (math.nan,),
         Measure("parallax_refracted", ({**_FRAME, "V": _view([60.0]), "ior": 1.0, "outside_ior": 1.5},), _slides),
         (about(0.0, 0.0),),
     ),
     Erratum(
-        "index unsaid: the wrong way",
+        "undefined index: the wrong direction",
         "Subsurface Parallax",
-        "`eta` 1.5 at 15°, 30° and 40°: the slide over the depth. Ours, `ior` 1.5: sin θ / √(n² − sin² θ)",
+        "`eta` 1.5 at 15°, 30° and 40°: the offset divided by the depth. `sssgen`, `ior` 1.5: sin θ / √(n² − sin² θ)",
         Measure("subsurface_parallax", ({**_FRAME, "V": _view([15.0, 30.0, 40.0]), "eta": 1.5},), _slides),
         tuple(_slide(angle, 1.5) for angle in (15.0, 30.0, 40.0)),
         Measure("parallax_refracted", ({**_FRAME, "V": _view([15.0, 30.0, 40.0]), "ior": 1.5},), _slides),
@@ -114,7 +114,7 @@ SUBSURFACE_PARALLAX = (
     Erratum(
         "grazing",
         "Subsurface Parallax",
-        "The longest slide over the depth, without refraction, up to 89.9°. Ours: at most 1.054 / .2",
+        "The largest offset divided by the depth, without refraction, up to 89.9°. `sssgen`: at most 1.054 / .2",
         Measure("subsurface_parallax", ({**_FRAME, "V": _view(_SWEEP[:8991]), "eta": 1.0},), _longest),
         (math.tan(math.radians(89.9)),),
         Measure("parallax_straight", ({**_FRAME, "V": _view(_SWEEP[:8991])},), _longest),
@@ -124,8 +124,8 @@ SUBSURFACE_PARALLAX = (
     Erratum(
         "depth in texture coordinates",
         "Subsurface Parallax",
-        "A mesh whose texture is twice as dense in u and half as dense in v: the slide along both, over the depth, at "
-        "45° along the diagonal",
+        "A mesh whose texture is twice as dense in u and half as dense in v: the offset along both, divided by the "
+        "depth, at 45° along the diagonal",
         Measure("subsurface_parallax", ({**_FRAME, "V": [_DIAGONAL], "eta": _AIR_TO_GLASS},), _both),
         (_HALF, _HALF),
         Measure("parallax_refracted", ({**_FRAME, "V": [_DIAGONAL], "ior": 1.5, "uv_per_unit": (2.0, 0.5)},), _both),
@@ -134,7 +134,7 @@ SUBSURFACE_PARALLAX = (
     Erratum(
         "a sheared frame",
         "Subsurface Parallax",
-        "T and B at 60°: the slide along both, over the depth, at 45°",
+        "T and B at 60°: the offset along both, divided by the depth, at 45°",
         Measure("subsurface_parallax", ({**_FRAME, "V": [_SKEWED_VIEW], "B": _SHEARED, "eta": _AIR_TO_GLASS},), _both),
         _published_slide(_SKEWED_VIEW, _X, _SHEARED, _AIR_TO_GLASS),
         Measure("parallax_refracted", ({**_FRAME, "V": [_SKEWED_VIEW], "B": _SHEARED, "ior": 1.5},), _both),
@@ -143,8 +143,8 @@ SUBSURFACE_PARALLAX = (
     Erratum(
         "a scaled frame",
         "Subsurface Parallax",
-        "T half as long, B twice: the slide along both, over the depth, at 45° along the diagonal. It is a length: "
-        "that of the unit frame",
+        "T half as long, B twice as long: the offset along both, divided by the depth, at 45° along the diagonal. It "
+        "is a length, as in the unit frame",
         Measure("subsurface_parallax", ({**_FRAME, "V": [_DIAGONAL], **_ODD, "eta": _AIR_TO_GLASS},), _both),
         _published_slide(_DIAGONAL, _ODD["T"], _ODD["B"], _AIR_TO_GLASS),
         Measure("parallax_refracted", ({**_FRAME, "V": [_DIAGONAL], **_ODD, "ior": 1.5},), _both),
@@ -153,8 +153,8 @@ SUBSURFACE_PARALLAX = (
     Erratum(
         "a mirrored frame",
         "Subsurface Parallax",
-        "Mirrored texture coordinates, T = −x, at 45° along y; B as cross(N, T), an orthonormal frame: the slide along "
-        "v, over the depth. Ours: B with the sign in the tangent's w, as our shells hand it on",
+        "Mirrored texture coordinates, T = −x, at 45° along y; B = cross(N, T), an orthonormal frame: the offset "
+        "along v, divided by the depth. `sssgen`: B with the sign in the tangent's w, as its shells compute it",
         Measure(
             "subsurface_parallax",
             ({**_FRAME, "V": [_view(45.0, 90.0)], "T": (-1.0, 0.0, 0.0), "B": (0.0, -1.0, 0.0), "eta": _AIR_TO_GLASS},),
@@ -171,8 +171,8 @@ SUBSURFACE_PARALLAX = (
     Erratum(
         "no tangent",
         "Subsurface Parallax",
-        "A mesh without tangents, T = 0, and a B: the longest slide over the depth, at 45° along the diagonal. Ours: "
-        "none",
+        "A mesh without tangents, T = 0, and a B: the largest offset divided by the depth, at 45° along the diagonal. "
+        "`sssgen`: none",
         Measure("subsurface_parallax", ({**_FRAME, "V": [_DIAGONAL], "T": _NONE, "eta": _AIR_TO_GLASS},), _longest),
         (abs(_published_slide(_DIAGONAL, _NONE, _Y, _AIR_TO_GLASS)[1]),),
         Measure("parallax_refracted", ({**_FRAME, "V": [_DIAGONAL], "T": _NONE, "ior": 1.5},), _longest),

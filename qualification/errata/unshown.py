@@ -14,33 +14,39 @@ class Unshown(NamedTuple):
 
 
 UNSHOWN = (
-    Unshown("Cheap SSS", "tap 0 is wasted", "it is 0 in every sum: the .38667 above is 29 taps over 30"),
-    Unshown("Cheap SSS", "th knows no light", "it has no such parameter; `march_light` has one"),
+    Unshown(
+        "Cheap SSS", "tap 0 is wasted", "it is 0 in every sum: the .38667 above is a sum of 29 taps, divided by 30"
+    ),
+    Unshown("Cheap SSS", "th does not depend on the light", "it has no such parameter; `march_light` has one"),
     Unshown("Cheap SSS", "rays over the hemisphere are described without code", "there is nothing to run"),
-    Unshown("Alisavakis", "the light's direction is called a position", "the text is wrong, its code is not"),
-    Unshown("Alisavakis", "`fixed4` clips a bright colour", "a type of Unity's; everything here computes in float32"),
+    Unshown("Alisavakis", "the light's direction is called a position", "only the text is wrong, the code is correct"),
+    Unshown("Alisavakis", "`fixed4` clips a bright colour", "a type of Unity; everything here computes in float32"),
+    Unshown("Alisavakis", "the colour's alpha is added to the surface's", "the baseline omits it: light has no alpha"),
     Unshown(
-        "Alisavakis", "the colour's alpha is added to the surface's", "the baseline leaves it out: light has no alpha"
+        "Alisavakis",
+        "the light's colour is shadowed by the body itself",
+        "the engine does this before it calls the technique",
     ),
     Unshown(
-        "Alisavakis", "the light's colour is shadowed by the body itself", "the engine does it, before the technique"
+        "Alisavakis, Unity ice",
+        "a bright map means thick in one source, transparent in the other",
+        "in `sssgen` this is a type error",
     ),
-    Unshown(
-        "Alisavakis, Unity ice", "a bright map means thick in one, clear in the other", "here it is an error of types"
-    ),
-    Unshown("3D Distance Fields", '"convex" should read concave', "a word"),
+    Unshown("3D Distance Fields", '"convex" should be "concave"', "only a word is wrong"),
     Unshown(
         "3D Distance Fields",
-        "step counts, lengths and the transfer to light are not given",
-        "nothing is said that is wrong",
+        "the numbers and lengths of steps and the conversion to light are missing",
+        "the text contains no error",
     ),
-    Unshown("Unity ice", "iceAmount is what covers the ice", "a name"),
+    Unshown("Unity ice", "iceAmount is the amount of what covers the ice", "only a name is misleading"),
     Unshown(
-        "Subsurface Parallax", "`float2` is given three components", "it does not compile; the baseline has a vec3"
+        "Subsurface Parallax",
+        "a `float2` is assigned from three components",
+        "it does not compile; the baseline has a vec3",
     ),
     Unshown(
         "Subsurface Parallax",
         "the text's refract(v, n, η) has the wrong sign",
-        "its code, which the baseline is, has the right",
+        "the code, which the baseline follows, is correct",
     ),
 )

@@ -31,7 +31,7 @@ PUBLISHED_FIGURES = {
     ("Cheap SSS", "the dead centre"): (0.0,),
     ("Cheap SSS, attenuated", "half-space"): (0.16068,),
     ("Unity ice", "the zero lobe"): (0.0,),
-    ("Subsurface Parallax", "index unsaid: total reflection"): (41.81,),
+    ("Subsurface Parallax", "undefined index: total reflection"): (41.81,),
 }
 """Known from elsewhere: worked out by hand from the sources' formulas."""
 
