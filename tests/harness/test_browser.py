@@ -150,7 +150,7 @@ def test_a_browser_that_is_lost_is_started_again(browser: Browser, monkeypatch: 
     assert_draws(browser)
     first = browser.page.process
     threading.Timer(0.3, os.killpg, (first.pid, signal.SIGKILL)).start()
-    assert "crashed, or was ended by somebody else" in refusal(browser, drawing(ENDLESS))
+    assert "crashed, or was ended by another program" in refusal(browser, drawing(ENDLESS))
     assert_draws(browser)
     os.killpg(browser.page.process.pid, signal.SIGKILL)  # between two draws
     browser.page.process.wait()

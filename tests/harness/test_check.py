@@ -261,7 +261,7 @@ def test_a_missing_compiler_is_reported(run: Run, monkeypatch: pytest.MonkeyPatc
     assert run("a.wgsl").status == 1
     named = run("a.wgsl", "--compiler", "tint")
     assert (named.status, named.out) == (2, "")
-    assert "error: tint is not here\n  help: " in named.err
+    assert "error: tint is not available\n  help: " in named.err
 
 
 def test_a_check_without_a_compilation_fails(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -312,10 +312,13 @@ def test_a_text_too_deep_for_a_compiler(run: Run, compiler: Callable[[str], Comp
         (["zero.frag"], "contains a zero byte\n  --> zero.frag"),
         (["latin.frag"], "this is not UTF-8 text\n  --> latin.frag:1:3"),
         (["bare"], "nothing to compile\n  --> bare"),
-        (["what.txt"], "the language of the file cannot be told\n  --> what.txt\n  help: say it with --target T:"),
-        (["what.txt", "-t", "wgsl,hlsl"], "the language of the file cannot be told"),
+        (
+            ["what.txt"],
+            "the language of the file cannot be determined\n  --> what.txt\n  help: name it with --target T:",
+        ),
+        (["what.txt", "-t", "wgsl,hlsl"], "the language of the file cannot be determined"),
         (["x.glsl-330.frag", "-t", "wgsl"], "the file is for glsl-330\n  --> x.glsl-330.frag"),
-        (["map.wgsl"], "this is not a reflection of sssgen's\n  --> map.wgsl.reflection.json"),
+        (["map.wgsl"], "this is not a reflection file of sssgen\n  --> map.wgsl.reflection.json"),
         (["ice", "-t", "wgls"], "unknown target 'wgls'\n  help: did you mean 'wgsl'?"),
         (["ice", "--compiler", "glslng"], "unknown compiler 'glslng'\n  help: did you mean 'glslang'?"),
         (["ok.frag", "--compiler", "tint"], "no tint reads glsl-330\n  help: compilers that do: gl, glslang"),

@@ -156,7 +156,7 @@ def test_unity_accepts_the_samples(file: str, language: str, assert_compiles: Ca
         ("surface.shader", "void shade(", "void other(", "no function void shade"),
         ("surface.shader", "half4 LightingBacklit(", "half4 LightingOther(", "no lighting function"),
         ("surface.shader", "float _Strength;", "float _Strength; float4 _BaseMap_ST;", "which Unity"),
-        ("surface.shader", "Range(0.5, 16)) = 4", 'Range(0.5, 16)) = "white" {}', "no default for a Range"),
+        ("surface.shader", "Range(0.5, 16)) = 4", 'Range(0.5, 16)) = "white" {}', "not a default of a Range"),
         ("surface.shader", '"bump" {}', '"bump" {', "not a property"),
         ("surface.shader", "ENDCG", "", "CGPROGRAM without its other end"),
         ("urp.shader", "light.direction + normal", "light.missing", "ForwardLit"),
@@ -207,7 +207,7 @@ def test_keyword_variants_cover_every_pair() -> None:
 
 def test_surface_lighting_and_output_must_agree() -> None:
     code = "struct Input { float2 uv_A; };\nvoid surf(Input i, inout SurfaceOutput o) { }"
-    with pytest.raises(surface.SurfaceError, match="wants SurfaceOutputStandard"):
+    with pytest.raises(surface.SurfaceError, match="requires SurfaceOutputStandard"):
         surface.entries(code, "surf Standard")
 
 

@@ -237,5 +237,5 @@ def test_an_adapter_without_halves_is_reported(backend: Get, monkeypatch: pytest
     gpu = backends.get("webgpu")
     assert isinstance(gpu, WebGPU)
     monkeypatch.setattr(gpu.naga, "gpu", Without(gpu.gpu))
-    with pytest.raises(CompilerMissing, match=r"shader-f16, which naga in wgpu .* has not"):
+    with pytest.raises(CompilerMissing, match=r"shader-f16, which naga in wgpu .* lacks"):
         WebGPU("webgpu-f16", TARGET)

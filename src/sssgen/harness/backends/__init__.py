@@ -36,7 +36,7 @@ __all__ = [
 
 
 def get(name: str) -> Backend:
-    """The back end of that name. Raises CompilerMissing, which says how to get it, where this machine lacks it."""
+    """The back end of that name. Raises CompilerMissing, which states how to get it, where this machine lacks it."""
     backend = _find(name)
     if isinstance(backend, str):
         raise CompilerMissing(backend)

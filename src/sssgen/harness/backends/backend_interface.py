@@ -51,7 +51,7 @@ class Backend(ABC):
 
     name: str
     target: Target
-    unmade: frozenset[str] = frozenset()
+    unsupported_types: frozenset[str] = frozenset()
     """Sampler types of the target for which this back end cannot create textures."""
 
     @abstractmethod
@@ -122,9 +122,9 @@ ATTRIBUTES = {"position": (0, 3), "normal": (3, 3), "tangent": (6, 4), "uv": (10
 
 def refused(backend: str, text: Text, messages: Sequence[Message]) -> SssgenError:
     """The driver's messages about emitted text, at the technique's own lines."""
-    shown = [message for message in messages if message.severity == "error"] or list(messages)
+    reported = [message for message in messages if message.severity == "error"] or list(messages)
     lines = text.text.splitlines()
-    return SssgenError([_diagnostic(backend, text, lines, message) for message in shown[:8]])
+    return SssgenError([_diagnostic(backend, text, lines, message) for message in reported[:8]])
 
 
 def _diagnostic(backend: str, text: Text, lines: list[str], message: Message) -> Diagnostic:
@@ -135,6 +135,6 @@ def _diagnostic(backend: str, text: Text, lines: list[str], message: Message) ->
     return Diagnostic("error", f"{backend}: {message.text}", span, hint, source_line(span) if file else "")
 
 
-def gave_up(backend: str, what: str, hint: str = "") -> SssgenError:
+def backend_failure(backend: str, problem: str, hint: str = "") -> SssgenError:
     """The error of a back end that failed for a reason outside of the text: a lost device, too little memory."""
-    return SssgenError([Diagnostic("error", f"{backend}: {what}", hint=hint)])
+    return SssgenError([Diagnostic("error", f"{backend}: {problem}", hint=hint)])

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.harness.backends.backend_interface import Array, Drawing, gave_up, refused
+from sssgen.harness.backends.backend_interface import Array, Drawing, backend_failure, refused
 from sssgen.harness.backends.browser_page import START, LostError, Page, find
 from sssgen.harness.backends.call_program import FRAGMENT
 from sssgen.harness.backends.draw_backend import DrawingBackend
@@ -25,11 +25,11 @@ SECONDS = 60.0
 
 
 _WHOLE_QUADS = "diagnostic(off, derivative_uniformity);"
-"""For the program around functions: whole quads take its branches, which Tint cannot know."""
+"""For the program around functions: whole quads take its branches, which Tint cannot prove."""
 
 
 class Browser(DrawingBackend):
-    """A page carries out the plans; a browser that is lost is started again for the next draw.
+    """A page executes the plans; a browser that is lost is started again for the next draw.
 
     `seconds`: how long a small draw may take.
     """
@@ -46,11 +46,13 @@ class Browser(DrawingBackend):
 
     def draw(self, drawing: Drawing) -> Array:
         self.check(drawing)
-        todo = plan(drawing)
+        drawing_plan = plan(drawing)
         if drawing.fragment.entry == FRAGMENT:
-            todo = todo._replace(code=_WHOLE_QUADS + todo.code)  # on the first line: line numbers stay the same
-        head, data = _packed(todo)
-        seconds = self.seconds + _extra(todo, len(data))
+            drawing_plan = drawing_plan._replace(
+                code=_WHOLE_QUADS + drawing_plan.code
+            )  # on the first line: line numbers stay the same
+        head, data = _packed(drawing_plan)
+        seconds = self.seconds + _extra(drawing_plan, len(data))
         try:
             if not self.page.alive():
                 self.page.close()
@@ -58,21 +60,21 @@ class Browser(DrawingBackend):
             self.page.send(head, data, seconds)
             answer, picture = self.page.receive(seconds)
         except LostError as reason:
-            raise gave_up(self.name, f"the browser {reason}") from None
+            raise backend_failure(self.name, f"the browser {reason}") from None
         except CompilerMissing as reason:
-            raise gave_up(self.name, f"the browser is gone, and does not start again: {reason}") from None
+            raise backend_failure(self.name, f"the browser ended and cannot be restarted: {reason}") from None
         if "messages" in answer:
             messages = [Message("error", line, column, _first(text)) for line, column, text in answer["messages"]]
             raise refused(self.name, drawing.fragment.text, messages)
         if "lost" in answer:
             self.page.close()
-            raise gave_up(self.name, f"the browser lost its device: {answer['lost']}")
+            raise backend_failure(self.name, f"the browser lost its device: {answer['lost']}")
         if "error" in answer:
-            raise gave_up(self.name, _first(answer["error"]))
-        self.drew = answer["drew"]
+            raise backend_failure(self.name, _first(answer["error"]))
+        self.draw_seconds = answer["drew"]
         dtype: Any = np.float32 if drawing.floats else np.uint32
-        rows = np.frombuffer(bytearray(picture), dtype).reshape(todo.height, answer["stride"] // 4)
-        return rows[:, : todo.width * 4].reshape(todo.height, todo.width, 4)
+        rows = np.frombuffer(bytearray(picture), dtype).reshape(drawing_plan.height, answer["stride"] // 4)
+        return rows[:, : drawing_plan.width * 4].reshape(drawing_plan.height, drawing_plan.width, 4)
 
 
 def _open() -> tuple[Page, dict[str, Any]]:
@@ -92,7 +94,7 @@ def _open() -> tuple[Page, dict[str, Any]]:
     return page, facts
 
 
-def _packed(todo: Plan) -> tuple[str, bytes]:
+def _packed(drawing_plan: Plan) -> tuple[str, bytes]:
     """The plan as JSON, with `{at, size}` in place of each piece of the bytes, and the bytes."""
     pieces: list[bytes] = []
     end = 0
@@ -104,16 +106,21 @@ def _packed(todo: Plan) -> tuple[str, bytes]:
         return {"at": end - len(data), "size": len(data)}
 
     textures = [
-        texture._asdict() | {"levels": [level._asdict() for level in texture.levels]} for texture in todo.textures
+        texture._asdict() | {"levels": [level._asdict() for level in texture.levels]}
+        for texture in drawing_plan.textures
     ]
-    lists = {"textures": textures, "blocks": [block._asdict() for block in todo.blocks], "groups": _groups(todo)}
+    lists = {
+        "textures": textures,
+        "blocks": [block._asdict() for block in drawing_plan.blocks],
+        "groups": _groups(drawing_plan),
+    }
     vertices = {"attributes": ATTRIBUTE_PLAN, "vertexStride": STRIDE}
-    return json.dumps(todo._asdict() | lists | vertices, default=piece), b"".join(pieces)
+    return json.dumps(drawing_plan._asdict() | lists | vertices, default=piece), b"".join(pieces)
 
 
-def _groups(todo: Plan) -> list[list[dict[str, Any]]]:
+def _groups(drawing_plan: Plan) -> list[list[dict[str, Any]]]:
     """The entries of each group's layout in JavaScript's spelling."""
-    groups = layout_entries(todo)
+    groups = layout_entries(drawing_plan)
     for entry in (entry for entries in groups.values() for entry in entries):
         if "texture" in entry:
             reads = entry["texture"]
@@ -126,6 +133,6 @@ def _first(text: str) -> str:
     return text.split("\n")[0]
 
 
-def _extra(todo: Plan, size: int) -> float:
+def _extra(drawing_plan: Plan, size: int) -> float:
     """Additional seconds for large draws: 30 for each million pixels, 0.1 for each million bytes."""
-    return 30e-6 * todo.width * todo.height + 0.1e-6 * size
+    return 30e-6 * drawing_plan.width * drawing_plan.height + 0.1e-6 * size

@@ -43,14 +43,14 @@ _SILENT.propagate = False
 
 
 class LostError(Exception):
-    """The page or its browser is gone; the message says how and follows the browser's name."""
+    """The page or its browser is gone; the message states the reason and follows the browser's name."""
 
 
 def find() -> str:
     """The browser's program: $SSSGEN_CHROMIUM if it is set, else one that is installed; '' where there is none."""
-    named = os.environ.get("SSSGEN_CHROMIUM")
-    if named:
-        return shutil.which(named) or ""
+    configured = os.environ.get("SSSGEN_CHROMIUM")
+    if configured:
+        return shutil.which(configured) or ""
     roots = [os.environ.get(name, "") for name in ("ProgramFiles", "ProgramFiles(x86)", "LocalAppData")]
     places = [
         *("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome"),
@@ -103,8 +103,8 @@ class Page:
 
     def _first(self, connections: queue.Queue[ServerConnection]) -> ServerConnection:
         """The page's connection, once it is open."""
-        until = time.monotonic() + START
-        while time.monotonic() < until:
+        deadline = time.monotonic() + START
+        while time.monotonic() < deadline:
             if not self.alive():
                 raise LostError(f"ended as it started (exit status {self.process.returncode})")
             with contextlib.suppress(queue.Empty):
@@ -114,10 +114,10 @@ class Page:
     @contextlib.contextmanager
     def _limited(self, seconds: float) -> Iterator[None]:
         """Ends the browser when a transfer takes longer or is interrupted: its rest would be read as the next one."""
-        late = threading.Event()
+        timed_out = threading.Event()
 
         def end() -> None:
-            late.set()
+            timed_out.set()
             self.close()
 
         timer = threading.Timer(seconds, end)
@@ -127,9 +127,9 @@ class Page:
             yield
         except (OSError, ValueError, WebSocketException):
             self.close()
-            if late.is_set():
+            if timed_out.is_set():
                 raise LostError(f"did not answer within {seconds:.3g} seconds, and was ended") from None
-            raise LostError("crashed, or was ended by somebody else") from None
+            raise LostError("crashed, or was ended by another program") from None
         except BaseException:
             self.close()
             raise
@@ -139,7 +139,7 @@ class Page:
 
 def _server(path: str, page: str, connections: queue.Queue[ServerConnection], ending: contextlib.ExitStack) -> Server:
     """A server that gives the page to a GET of `path`, and puts its WebSocket into `connections`."""
-    over = threading.Event()
+    closed = threading.Event()
 
     def respond(connection: ServerConnection, request: Request) -> Response | None:
         if request.path != path:
@@ -152,7 +152,7 @@ def _server(path: str, page: str, connections: queue.Queue[ServerConnection], en
 
     def hold(connection: ServerConnection) -> None:
         connections.put(connection)
-        over.wait()
+        closed.wait()
 
     server = serve(
         hold, "127.0.0.1", 0, process_request=respond, compression=None, max_size=None, ping_interval=None,
@@ -162,7 +162,7 @@ def _server(path: str, page: str, connections: queue.Queue[ServerConnection], en
     threading.Thread(target=server.serve_forever, daemon=True).start()
     # `shutdown` closes connections in a thread pool, which cannot start at the interpreter's exit; `hold` ends without.
     ending.callback(server.shutdown, close_connections=False)
-    ending.callback(over.set)
+    ending.callback(closed.set)
     return server
 
 

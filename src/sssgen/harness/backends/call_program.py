@@ -149,7 +149,7 @@ def drawing(
     writer = _Writer(target, grid(lanes))
     for number, call in enumerate(calls):
         writer.call(number, call)
-    declared = [_declared(target, name, one) for name, one in bound.items()]
+    declared = [_declared(target, name, resource) for name, resource in bound.items()]
     body = "\n".join(f"    {line}" for line in writer.body)
     main = writer.language.main.format(textures="\n".join(declared), body=body, rows=writer.grid.rows)
     rows = writer.data or [np.zeros((writer.grid.rows * writer.grid.width, 4), np.uint32)]
@@ -186,23 +186,23 @@ class _Writer:
         self.slots = 0
 
     def call(self, number: int, call: Call) -> None:
-        before, args = [], []
+        statements, args = [], []
         for index, (type_, arg) in enumerate(zip(call.params, call.args, strict=True)):
             name = f"a{number}_{index}"
             if isinstance(arg, str):
                 args.append(self.target.textures.argument.format(name=arg, sampler=f"{arg}_sampler"))
                 continue
-            before.append(self._declare(type_, name, self._read(type_, len(self.data) * self.grid.rows)))
+            statements.append(self._declare(type_, name, self._read(type_, len(self.data) * self.grid.rows)))
             args.append(name)
             self.data += _rows(type_, self._rounded(np.asarray(arg)), self.grid)
         result = f"r{number}"
-        before.append(self._declare(call.result, result, f"{call.function}({', '.join(args)})"))
+        statements.append(self._declare(call.result, result, f"{call.function}({', '.join(args)})"))
         columns = call.result.size if isinstance(call.result, Matrix) else 1
         for column in range(columns):
             part = f"{result}[{column}]" if isinstance(call.result, Matrix) else result
-            before.append(f"if (slot == {self.slots + column}) {{ words = {self._words(call.result, part)}; }}")
-        inside = f"if (slot >= {self.slots} && slot < {self.slots + columns}) {{"
-        self.body += [inside, *before, "}"]
+            statements.append(f"if (slot == {self.slots + column}) {{ words = {self._words(call.result, part)}; }}")
+        condition = f"if (slot >= {self.slots} && slot < {self.slots + columns}) {{"
+        self.body += [condition, *statements, "}"]
         self.places.append((self.slots, columns))
         self.slots += columns
 
@@ -260,8 +260,8 @@ def _rows(type_: Type, value: Array, grid: Grid) -> list[Array]:
         return [row for column in value for row in _rows(Vector("float", type_.size), column, grid)]
     words = np.zeros((grid.rows * grid.width, 4), np.uint32)
     with np.errstate(over="ignore", invalid="ignore"):
-        whole = value.reshape(components(type_), -1).astype(DTYPES[kind_of(type_)])
-    words[: whole.shape[-1] if whole.shape[-1] > 1 else None, : len(whole)] = whole.T.view(np.uint32)
+        converted = value.reshape(components(type_), -1).astype(DTYPES[kind_of(type_)])
+    words[: converted.shape[-1] if converted.shape[-1] > 1 else None, : len(converted)] = converted.T.view(np.uint32)
     return [words]
 
 

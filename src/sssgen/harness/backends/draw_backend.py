@@ -6,7 +6,7 @@ from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 
 from sssgen.harness.backends import call_program as programs
-from sssgen.harness.backends.backend_interface import Array, Backend, Call, Drawing, Text, gave_up
+from sssgen.harness.backends.backend_interface import Array, Backend, Call, Drawing, Text, backend_failure
 from sssgen.targets import registry
 from sssgen.targets.runtime.numpy_textures import Texture
 
@@ -15,7 +15,7 @@ class DrawingBackend(Backend):
     """Draws programs. `top_first`: whether the first row of a picture is at the top."""
 
     top_first = False
-    drew = 0.0
+    draw_seconds = 0.0
     """The duration of the last draw in seconds; in WebGPU with the read of the picture."""
 
     largest: Mapping[str, int] = {}
@@ -31,10 +31,14 @@ class DrawingBackend(Backend):
             if isinstance(bound.data, Texture):
                 side, most = max(bound.data.size()), self.largest.get(bound.data.dim, 1 << 30)
                 if side > most:
-                    raise gave_up(self.name, f"texture '{name}' is {side} texels wide", f"this driver takes {most}")
+                    raise backend_failure(
+                        self.name, f"texture '{name}' is {side} texels wide", f"this driver takes {most}"
+                    )
         most = self.largest.get("2D", 1 << 30)
         if max(drawing.size) > most:
-            raise gave_up(self.name, f"{drawing.size[0]} × {drawing.size[1]} is too large", f"at most {most} on a side")
+            raise backend_failure(
+                self.name, f"{drawing.size[0]} × {drawing.size[1]} is too large", f"at most {most} on a side"
+            )
 
     @abstractmethod
     def draw(self, drawing: Drawing) -> Array:

@@ -45,21 +45,21 @@ class HLSL(OpenGL):
         module, log = compiled(text.text, stage.entry, kind, self.compiler)
         if not module:
             raise refused(self.name, stage.text, self.messages(log))
-        glsl, log = crossed(module)
+        glsl, log = cross_compiled(module)
         if not glsl:
             raise refused(self.name, stage.text, [Message("error", 0, 0, log)])
         return glsl
 
     def owner(self, member: str, names: Collection[str]) -> str:
         """DXC writes `type_` before a block's name; spirv-cross joins a texture's name with its sampler's."""
-        for plain in (member, member.removeprefix("type_")):
-            if plain in names:
-                return plain
-        joined = member.removeprefix("SPIRV_Cross_Combined")
-        if joined == member:
+        for candidate in (member, member.removeprefix("type_")):
+            if candidate in names:
+                return candidate
+        combined = member.removeprefix("SPIRV_Cross_Combined")
+        if combined == member:
             return ""
         for name in names:
-            if joined.startswith((f"{name}sampler", f"{name}SPIRV_Cross_DummySampler", f"{name}{name}_sampler")):
+            if combined.startswith((f"{name}sampler", f"{name}SPIRV_Cross_DummySampler", f"{name}{name}_sampler")):
                 return name
         return ""
 
@@ -87,18 +87,22 @@ def compiled(text: str, entry: str, stage: str, compiler: str) -> tuple[bytes, s
             module = glslang.find().spirv(text, stage, entry, dx9_samplers=compiler == "dx9")
     except ValueError as error:
         return b"", str(error)
-    done = _process([_tools()["spirv-val"], "--target-env", "vulkan1.1"], module)
-    return (b"", f"spirv-val: {done.stderr.decode(errors='replace').strip()}") if done.returncode else (module, "")
+    completed = _process([_tools()["spirv-val"], "--target-env", "vulkan1.1"], module)
+    return (
+        (b"", f"spirv-val: {completed.stderr.decode(errors='replace').strip()}")
+        if completed.returncode
+        else (module, "")
+    )
 
 
 @lru_cache(64)
-def crossed(module: bytes, *options: str) -> tuple[str, str]:
+def cross_compiled(module: bytes, *options: str) -> tuple[str, str]:
     """GLSL from SPIR-V by spirv-cross (with `options`, another language), or nothing and the log."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "in.spv"
         path.write_bytes(module)
-        done = _process([_tools()["spirv-cross"], str(path), *(options or ("--version", "430", "--no-es"))], b"")
-    return ("", done.stderr.decode(errors="replace")) if done.returncode else (done.stdout.decode(), "")
+        completed = _process([_tools()["spirv-cross"], str(path), *(options or ("--version", "430", "--no-es"))], b"")
+    return ("", completed.stderr.decode(errors="replace")) if completed.returncode else (completed.stdout.decode(), "")
 
 
 def _process(command: list[str], data: bytes) -> subprocess.CompletedProcess[bytes]:

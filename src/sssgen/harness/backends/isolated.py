@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from sssgen.harness import backends
 from sssgen.harness.backends import Array, Backend, Call, CompilerMissing, Drawing, DrawingBackend, Text
-from sssgen.harness.backends.backend_interface import gave_up
+from sssgen.harness.backends.backend_interface import backend_failure
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.worker_process import LostError, Process
 from sssgen.targets import registry
@@ -38,7 +38,7 @@ class Isolated(DrawingBackend):
         try:
             self.facts: _Facts = self.process.start()
         except LostError as reason:
-            raise gave_up(name, f"the back end {reason} as it started") from None
+            raise backend_failure(name, f"the back end {reason} as it started") from None
         self.target = registry.load(self.facts.target)
         self.top_first = self.facts.top_first
 
@@ -65,7 +65,7 @@ class Isolated(DrawingBackend):
         try:
             return self.process.ask((method, arguments))
         except LostError as reason:
-            raise gave_up(self.name, f"the back end {reason}", "the others continue without it") from None
+            raise backend_failure(self.name, f"the back end {reason}", "the others continue without it") from None
 
 
 def isolated(name: str, seconds: float = SECONDS) -> Isolated:
@@ -92,6 +92,6 @@ def serve(name: str) -> tuple[_Facts, Callable[[tuple[str, tuple[Any, ...]]], An
         except (SssgenError, CompilerMissing):
             raise
         except Exception as error:
-            raise gave_up(name, f"{type(error).__name__}: {error}") from None
+            raise backend_failure(name, f"{type(error).__name__}: {error}") from None
 
     return _Facts(backend.device(), backend.target.name, getattr(backend, "top_first", False)), answer

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from sssgen.harness.backends import call_program as programs
-from sssgen.harness.backends.backend_interface import Array, Backend, Call, Text, gave_up
+from sssgen.harness.backends.backend_interface import Array, Backend, Call, Text, backend_failure
 from sssgen.targets import registry
 from sssgen.targets.runtime.numpy_textures import Texture
 from sssgen.targets.runtime.numpy_values import grid, precision
@@ -33,18 +33,18 @@ class Reference(Backend):
         """One call, on the same grid of pixels as in the other back ends, so that derivatives have neighbours."""
         lanes = max((np.shape(arg)[-1] for arg in call.args if not isinstance(arg, str)), default=1)
         shape = programs.grid(lanes)
-        filled = shape.width * shape.rows
-        args = [textures[arg] if isinstance(arg, str) else self._lanes(np.asarray(arg), filled) for arg in call.args]
+        padded = shape.width * shape.rows
+        args = [textures[arg] if isinstance(arg, str) else self._lanes(np.asarray(arg), padded) for arg in call.args]
         try:
             with precision(self.dtype), grid(shape.rows, shape.width):
-                found = functions[call.function](*args)
-                value, gone = found if isinstance(found, tuple) else (found, None)
-                value = value if gone is None else np.where(gone, np.zeros_like(value), value)
+                results = functions[call.function](*args)
+                value, discarded = results if isinstance(results, tuple) else (results, None)
+                value = value if discarded is None else np.where(discarded, np.zeros_like(value), value)
         except MemoryError:
-            raise gave_up(self.name, f"no memory for {lanes} evaluations of {call.function}") from None
+            raise backend_failure(self.name, f"no memory for {lanes} evaluations of {call.function}") from None
         value = np.asarray(value)
         inner = value.shape[:-1] if value.ndim else ()
-        return np.broadcast_to(value, (*inner, filled))[..., :lanes]
+        return np.broadcast_to(value, (*inner, padded))[..., :lanes]
 
     def _lanes(self, value: Array, lanes: int) -> Array:
         """An argument in the working precision; unused lanes at the end of the grid are 0, as in a picture."""

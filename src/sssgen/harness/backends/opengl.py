@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from sssgen.harness import compilers
-from sssgen.harness.backends.backend_interface import ATTRIBUTES, Array, Block, Drawing, Text, gave_up, refused
+from sssgen.harness.backends.backend_interface import ATTRIBUTES, Array, Block, Drawing, Text, backend_failure, refused
 from sssgen.harness.backends.draw_backend import DrawingBackend
 from sssgen.harness.compilers.gl_driver import DriverGL, messages
 from sssgen.targets.runtime.numpy_textures import Texture
@@ -29,7 +29,9 @@ _KEPT = 64
 class OpenGL(DrawingBackend):
     """Compiles GLSL in the driver and draws with it."""
 
-    unmade = frozenset(("samplerCubeArray", "samplerCubeShadow", "sampler2DArrayShadow"))  # moderngl cannot bind them
+    unsupported_types = frozenset(
+        ("samplerCubeArray", "samplerCubeShadow", "sampler2DArrayShadow")
+    )  # moderngl cannot bind them
 
     def __init__(self, name: str, target: str) -> None:
         super().__init__(name, target)
@@ -52,9 +54,11 @@ class OpenGL(DrawingBackend):
             try:
                 return self.fill(program, drawing)
             except MemoryError:
-                raise gave_up(self.name, f"no memory for a picture of {drawing.size[0]}×{drawing.size[1]}") from None
+                raise backend_failure(
+                    self.name, f"no memory for a picture of {drawing.size[0]}×{drawing.size[1]}"
+                ) from None
             except Exception as error:
-                raise gave_up(self.name, f"the driver gave up: {error}") from error
+                raise backend_failure(self.name, f"the driver failed: {error}") from error
 
     def stages(self, drawing: Drawing) -> tuple[str, str]:
         """The GLSL of the two stages."""
@@ -71,22 +75,22 @@ class OpenGL(DrawingBackend):
             self.programs.move_to_end(key)
             return self.programs[key]
         try:
-            made = self.context.program(vertex_shader=vertex, fragment_shader=fragment)
+            program = self.context.program(vertex_shader=vertex, fragment_shader=fragment)
         except Exception as error:
             raise refused(self.name, origin, messages(str(error))) from None
-        self.programs[key] = made
+        self.programs[key] = program
         if len(self.programs) > _KEPT:
             self.programs.popitem(last=False)[1].release()
-        return made
+        return program
 
     def fill(self, program: Any, drawing: Drawing) -> Array:
         """Binds by name and draws; only the program is kept."""
         context, (width, height) = self.context, drawing.size
-        made: list[Any] = []
+        resources: list[Any] = []
 
-        def keep(one: Any) -> Any:
-            made.append(one)
-            return one
+        def keep(resource: Any) -> Any:
+            resources.append(resource)
+            return resource
 
         try:
             kind = "f4" if drawing.floats else "u4"
@@ -109,12 +113,12 @@ class OpenGL(DrawingBackend):
             start = perf_counter()
             array.render(context.TRIANGLES, vertices=-1 if drawing.triangles is not None else 3)
             context.finish()
-            self.drew = perf_counter() - start
+            self.draw_seconds = perf_counter() - start
             dtype: Any = np.float32 if drawing.floats else np.uint32
             data = frame.read(components=4, dtype=kind)
             return np.frombuffer(data, dtype).reshape(height, width, 4)
         finally:
-            for one in made:
+            for one in resources:
                 one.release()
 
     def bind_blocks(self, program: Any, blocks: Mapping[str, Block], keep: Any) -> None:
@@ -150,27 +154,27 @@ class OpenGL(DrawingBackend):
         """A texture with the same filter and wrapping; the driver computes further levels."""
         context = self.context
         if isinstance(data, np.ndarray):
-            made = context.texture((data.shape[1], data.shape[0]), 4, np.ascontiguousarray(data), dtype="u4")
-            made.filter = (context.NEAREST, context.NEAREST)
-            return made
-        made = self.depths(data) if data.compare else self.texels(data)
+            texture = context.texture((data.shape[1], data.shape[0]), 4, np.ascontiguousarray(data), dtype="u4")
+            texture.filter = (context.NEAREST, context.NEAREST)
+            return texture
+        texture = self.depths(data) if data.compare else self.texels(data)
         if len(data.levels) > 1:
-            made.build_mipmaps()
-        between, within = {
+            texture.build_mipmaps()
+        with_levels, single_level = {
             "linear": (context.LINEAR_MIPMAP_LINEAR, context.LINEAR),
             "nearest": (context.NEAREST_MIPMAP_LINEAR, context.NEAREST),
         }[data.filter]
-        made.filter = (between if len(data.levels) > 1 else within, within)
+        texture.filter = (with_levels if len(data.levels) > 1 else single_level, single_level)
         if data.dim != "Cube":
-            made.repeat_x = made.repeat_y = data.wrap == "repeat"
+            texture.repeat_x = texture.repeat_y = data.wrap == "repeat"
         if data.dim == "3D":
-            made.repeat_z = data.wrap == "repeat"
-        return made
+            texture.repeat_z = data.wrap == "repeat"
+        return texture
 
     def texels(self, data: Texture) -> Any:
         """The first level of a texture, not yet filtered. Raises SssgenError for a kind that moderngl cannot create."""
         if data.layers and data.dim != "2D":
-            raise gave_up(self.name, "cube maps in layers cannot be made in OpenGL here", "WebGPU has them")
+            raise backend_failure(self.name, "this back end has no layered cube maps", "WebGPU has them")
         name = {"2D": "texture", "3D": "texture3d", "Cube": "texture_cube"}[data.dim]
         name = "texture_array" if data.layers else name
         size = (*data.size(), len(data.levels[0])) if data.layers else data.size()
@@ -181,11 +185,11 @@ class OpenGL(DrawingBackend):
     def depths(self, data: Texture) -> Any:
         """A depth texture that compares. Raises SssgenError for a kind that moderngl cannot create or bind."""
         if data.layers or data.dim != "2D":
-            raise gave_up(self.name, "only flat depth textures can be made in OpenGL here", "WebGPU has the others")
+            raise backend_failure(self.name, "this back end has only 2D depth textures", "WebGPU has the others")
         depths = np.ascontiguousarray(data.levels[0][..., 0], np.float32)
-        made = self.context.depth_texture(data.size(), depths.tobytes())
-        made.compare_func = "<="
-        return made
+        texture = self.context.depth_texture(data.size(), depths.tobytes())
+        texture.compare_func = "<="
+        return texture
 
 
 def is_loose(member: Any) -> bool:

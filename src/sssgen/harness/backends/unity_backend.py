@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 from sssgen.harness import compilers
-from sssgen.harness.backends.backend_interface import Stage, Text, gave_up
+from sssgen.harness.backends.backend_interface import Stage, Text, backend_failure
 from sssgen.harness.backends.hlsl_spirv import HLSL
 from sssgen.harness.backends.unity_program import UnityProgram
 from sssgen.harness.compilers import compiler_interface as base
@@ -33,14 +33,14 @@ class UnityHLSL(HLSL):
         try:
             return text._replace(text=_preprocessed(self.unity, text.text, self.target.name))
         except ValueError as error:
-            raise gave_up(self.name, f"the preprocessor: {error}") from None
+            raise backend_failure(self.name, f"the preprocessor: {error}") from None
 
     def forward(self, shader: Text, stage: base.Stage, keywords: Sequence[str]) -> Stage:
         """A stage of an emitted shader's forward pass, as `whole` draws it; `keywords` are macros, `NAME=1`."""
         try:
             text, entry = self.unity.forward(shader.text, self.target.name, stage, keywords)
         except ValueError as error:
-            raise gave_up(self.name, f"the preprocessor: {error}") from None
+            raise backend_failure(self.name, f"the preprocessor: {error}") from None
         return Stage(shader._replace(text=text), entry)
 
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from sssgen.harness.backends.backend_interface import Array, Block, Bound, Drawing, Place, Stage, refused
-from sssgen.harness.backends.hlsl_spirv import HLSL, compiled, crossed
+from sssgen.harness.backends.hlsl_spirv import HLSL, compiled, cross_compiled
 from sssgen.harness.compilers import Message
 from sssgen.harness.compilers import unity_compiler as unity
 from sssgen.targets.runtime.numpy_textures import Texture
@@ -50,13 +50,13 @@ class UnityProgram(HLSL):
 
     def spirv_cross(self, stage: Stage, kind: str, *options: str) -> str:
         """The output of spirv-cross for a stage."""
-        shown = stage.text._replace(text="")  # messages have lines of the .shader file
+        origin = stage.text._replace(text="")  # messages have lines of the .shader file
         module, log = compiled(_aligned(stage.text.text), stage.entry, kind, self.compiler)
         if not module:
-            raise refused(self.name, shown, self.messages(log))
-        text, log = crossed(module, *options)
+            raise refused(self.name, origin, self.messages(log))
+        text, log = cross_compiled(module, *options)
         if not text:
-            raise refused(self.name, shown, [Message("error", 0, 0, log)])
+            raise refused(self.name, origin, [Message("error", 0, 0, log)])
         return text
 
 
@@ -107,7 +107,7 @@ def _place(data: Array, member: Mapping[str, Any], vectors: Array) -> None:
     size = int(kind[-1]) if kind[-1].isdigit() else 1
     columns = size if kind.startswith("mat") else 1
     numbers = np.ascontiguousarray(vectors[:, :size], _KINDS.get(kind[0], np.float32)).view(np.uint32)
-    for at, vector in enumerate(numbers[: prod(member.get("array", [1])) * columns]):
-        element, column = divmod(at, columns)
+    for index, vector in enumerate(numbers[: prod(member.get("array", [1])) * columns]):
+        element, column = divmod(index, columns)
         start = member["offset"] + element * member.get("array_stride", 0) + column * member.get("matrix_stride", 0)
         data[start // 4 : start // 4 + len(vector)] = vector

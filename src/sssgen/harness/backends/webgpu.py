@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from sssgen.harness import compilers
-from sssgen.harness.backends.backend_interface import Array, Drawing, gave_up, refused
+from sssgen.harness.backends.backend_interface import Array, Drawing, backend_failure, refused
 from sssgen.harness.backends.draw_backend import DrawingBackend
 from sssgen.harness.backends.webgpu_plan import ATTRIBUTE_PLAN, STRIDE, Plan, TexturePlan, layout_entries, plan
 from sssgen.harness.compilers import CompilerMissing
@@ -31,7 +31,7 @@ class WebGPU(DrawingBackend):
         assert isinstance(naga, Naga)
         self.start(naga)
         if self.target.half_of and "shader-f16" not in self.gpu.features:
-            raise CompilerMissing(f"a WebGPU adapter with the feature shader-f16, which {self.device()} has not")
+            raise CompilerMissing(f"a WebGPU adapter with the feature shader-f16, which {self.device()} lacks")
 
     def start(self, naga: Naga) -> None:
         """Uses naga's device, with an empty cache."""
@@ -48,18 +48,18 @@ class WebGPU(DrawingBackend):
         import wgpu
 
         self.check(drawing)
-        todo = plan(drawing)
+        drawing_plan = plan(drawing)
         try:
-            return self.carry_out(todo)
+            return self.execute(drawing_plan)
         except wgpu.GPUError as error:
             if self.lost():
                 self.naga.gpu = find().gpu  # the compiler's device is the same
                 self.start(self.naga)
-                raise gave_up(self.name, "the device was lost", "a new one is there for the next run") from None
-            messages = self.naga.complaints(todo.code)
+                raise backend_failure(self.name, "the device was lost", "the next run uses a new one") from None
+            messages = self.naga.complaints(drawing_plan.code)
             if messages:
                 raise refused(self.name, drawing.fragment.text, messages) from None
-            raise gave_up(self.name, f"{type(error).__name__}: {error}") from error
+            raise backend_failure(self.name, f"{type(error).__name__}: {error}") from error
 
     def lost(self) -> bool:
         """Whether the device is lost."""
@@ -71,86 +71,99 @@ class WebGPU(DrawingBackend):
             return True
         return False
 
-    def carry_out(self, todo: Plan) -> Array:
+    def execute(self, drawing_plan: Plan) -> Array:
         """Draws and reads the picture."""
-        gpu, size = self.gpu, (todo.width, todo.height, 1)
-        pipeline, layouts = self.pipeline(todo)
-        target = gpu.create_texture(size=size, format=todo.format, usage=_TARGET | _FROM_TEXTURE)
+        gpu, size = self.gpu, (drawing_plan.width, drawing_plan.height, 1)
+        pipeline, layouts = self.pipeline(drawing_plan)
+        target = gpu.create_texture(size=size, format=drawing_plan.format, usage=_TARGET | _FROM_TEXTURE)
         encoder = gpu.create_command_encoder()
         attachment = {"view": target.create_view(), "load_op": "clear", "store_op": "store"}
         drawing = encoder.begin_render_pass(color_attachments=[attachment])
         drawing.set_pipeline(pipeline)
-        for group, entries in self.resources(todo).items():
+        for group, entries in self.resources(drawing_plan).items():
             drawing.set_bind_group(group, gpu.create_bind_group(layout=layouts[group], entries=entries))
-        if todo.triangles:
-            vertices = gpu.create_buffer_with_data(data=todo.vertices, usage=_VERTEX)
-            triangles = gpu.create_buffer_with_data(data=todo.triangles, usage=_INDEX)
+        if drawing_plan.triangles:
+            vertices = gpu.create_buffer_with_data(data=drawing_plan.vertices, usage=_VERTEX)
+            triangles = gpu.create_buffer_with_data(data=drawing_plan.triangles, usage=_INDEX)
             drawing.set_vertex_buffer(0, vertices)
             drawing.set_index_buffer(triangles, "uint32")
-            drawing.draw_indexed(len(todo.triangles) // 4)
+            drawing.draw_indexed(len(drawing_plan.triangles) // 4)
         else:
             drawing.draw(3)
         drawing.end()
         start = perf_counter()
         gpu.queue.submit([encoder.finish()])
-        layout = {"offset": 0, "bytes_per_row": todo.width * 16, "rows_per_image": todo.height}
+        layout = {"offset": 0, "bytes_per_row": drawing_plan.width * 16, "rows_per_image": drawing_plan.height}
         read = gpu.queue.read_texture({"texture": target}, layout, size)  # waits for the draw
-        self.drew = perf_counter() - start
-        dtype: Any = np.float32 if todo.format == "rgba32float" else np.uint32
-        return np.frombuffer(read, dtype).reshape(todo.height, todo.width, 4)
+        self.draw_seconds = perf_counter() - start
+        dtype: Any = np.float32 if drawing_plan.format == "rgba32float" else np.uint32
+        return np.frombuffer(read, dtype).reshape(drawing_plan.height, drawing_plan.width, 4)
 
-    def pipeline(self, todo: Plan) -> tuple[Any, list[Any]]:
+    def pipeline(self, drawing_plan: Plan) -> tuple[Any, list[Any]]:
         """The pipeline and the layouts of its groups, cached."""
-        groups = layout_entries(todo)
-        key = (todo.code, todo.vertex, todo.fragment, todo.format, bool(todo.triangles), repr(groups))
+        groups = layout_entries(drawing_plan)
+        key = (
+            drawing_plan.code,
+            drawing_plan.vertex,
+            drawing_plan.fragment,
+            drawing_plan.format,
+            bool(drawing_plan.triangles),
+            repr(groups),
+        )
         if key in self.pipelines:
             self.pipelines.move_to_end(key)
             cached: tuple[Any, list[Any]] = self.pipelines[key]
             return cached
         gpu = self.gpu
-        module = gpu.create_shader_module(code=todo.code)
+        module = gpu.create_shader_module(code=drawing_plan.code)
         layouts = [gpu.create_bind_group_layout(entries=groups.get(i, [])) for i in range(max(groups, default=-1) + 1)]
-        buffers = [{"array_stride": STRIDE, "step_mode": "vertex", "attributes": _SNAKE}] if todo.triangles else []
-        made = gpu.create_render_pipeline(
+        buffers = (
+            [{"array_stride": STRIDE, "step_mode": "vertex", "attributes": _SNAKE}] if drawing_plan.triangles else []
+        )
+        pipeline = gpu.create_render_pipeline(
             layout=gpu.create_pipeline_layout(bind_group_layouts=layouts),
-            vertex={"module": module, "entry_point": todo.vertex, "buffers": buffers},
-            fragment={"module": module, "entry_point": todo.fragment, "targets": [{"format": todo.format}]},
+            vertex={"module": module, "entry_point": drawing_plan.vertex, "buffers": buffers},
+            fragment={
+                "module": module,
+                "entry_point": drawing_plan.fragment,
+                "targets": [{"format": drawing_plan.format}],
+            },
             primitive={"topology": "triangle-list", "cull_mode": "none"},
         )
-        self.pipelines[key] = made, layouts
+        self.pipelines[key] = pipeline, layouts
         if len(self.pipelines) > _KEPT:
             self.pipelines.popitem(last=False)
-        return made, layouts
+        return pipeline, layouts
 
-    def resources(self, todo: Plan) -> dict[int, list[dict[str, Any]]]:
+    def resources(self, drawing_plan: Plan) -> dict[int, list[dict[str, Any]]]:
         """Group → the entries of its bind group."""
         groups: dict[int, list[dict[str, Any]]] = {}
-        for block in todo.blocks:
+        for block in drawing_plan.blocks:
             buffer = self.gpu.create_buffer_with_data(data=block.data, usage=_UNIFORM)
             resource = {"buffer": buffer, "offset": 0, "size": len(block.data)}
             groups.setdefault(block.group, []).append({"binding": block.binding, "resource": resource})
-        for texture in todo.textures:
+        for texture in drawing_plan.textures:
             view = self.upload(texture).create_view(dimension=texture.view)
             entries = groups.setdefault(texture.group, [])
             entries.append({"binding": texture.binding, "resource": view})
             if texture.sampler >= 0:
                 wraps = {f"address_mode_{axis}": texture.wrap for axis in "uvw"}
                 filters = dict.fromkeys(("mag_filter", "min_filter"), texture.filter) | {"mipmap_filter": "linear"}
-                made = self.gpu.create_sampler(**filters, **wraps, compare=texture.compare or None)
-                entries.append({"binding": texture.sampler, "resource": made})
+                sampler = self.gpu.create_sampler(**filters, **wraps, compare=texture.compare or None)
+                entries.append({"binding": texture.sampler, "resource": sampler})
         return groups
 
     def upload(self, texture: TexturePlan) -> Any:
         """The texture with all its levels."""
-        first = texture.levels[0].size
-        made = self.gpu.create_texture(
-            size=first, format=texture.format, usage=_BOUND | _TO_TEXTURE, dimension=texture.dimension,
+        size = texture.levels[0].size
+        created = self.gpu.create_texture(
+            size=size, format=texture.format, usage=_BOUND | _TO_TEXTURE, dimension=texture.dimension,
             mip_level_count=len(texture.levels),
         )  # fmt: skip
         for number, level in enumerate(texture.levels):
             layout = {"bytes_per_row": level.size[0] * texture.bytes_per_texel, "rows_per_image": level.size[1]}
-            self.gpu.queue.write_texture({"texture": made, "mip_level": number}, level.data, layout, level.size)
-        return made
+            self.gpu.queue.write_texture({"texture": created, "mip_level": number}, level.data, layout, level.size)
+        return created
 
 
 _SNAKE = [

@@ -1,4 +1,4 @@
-"""A drawing in terms of WebGPU: plain data, which both `wgpu` and a page in a browser carry out."""
+"""A drawing in terms of WebGPU: plain data, which both `wgpu` and a page in a browser execute."""
 
 from __future__ import annotations
 
@@ -131,9 +131,9 @@ def layout_entries(plan: Plan) -> dict[int, list[dict[str, Any]]]:
         groups.setdefault(block.group, []).append(entry)
     for texture in plan.textures:
         reads = {"sample_type": _SAMPLED[texture.format], "view_dimension": texture.view}
-        found = groups.setdefault(texture.group, [])
-        found.append({"binding": texture.binding, "visibility": fragment, "texture": reads})
+        resources = groups.setdefault(texture.group, [])
+        resources.append({"binding": texture.binding, "visibility": fragment, "texture": reads})
         if texture.sampler >= 0:
             sampler = {"type": "comparison" if texture.compare else "filtering"}
-            found.append({"binding": texture.sampler, "visibility": fragment, "sampler": sampler})
+            resources.append({"binding": texture.sampler, "visibility": fragment, "sampler": sampler})
     return groups

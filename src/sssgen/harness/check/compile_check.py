@@ -55,21 +55,21 @@ def run(shaders: Sequence[Shader], names: Sequence[str] = (), unity_includes: st
     """
     programs = [(shader, source) for shader in shaders for source in shader.sources]
     languages = sorted({source.language for _, source in programs})
-    chosen = [
+    selected = [
         name
         for name, record in COMPILERS.items()
         if name in (names or COMPILERS) and record.languages.intersection(languages)
     ]
-    if not chosen:
-        who = " or ".join(names) or "compiler here"
-        those = sorted({name for language in languages for name in readers(language)})
-        hint = f"compilers that do: {', '.join(those)}" if those else ""
-        raise failure(f"no {who} reads {', '.join(languages)}", hint)
+    if not selected:
+        requested = " or ".join(names) or "available compiler"
+        able = sorted({name for language in languages for name in readers(language)})
+        hint = f"compilers that do: {', '.join(able)}" if able else ""
+        raise failure(f"no {requested} reads {', '.join(languages)}", hint)
     environment = {"SSSGEN_UNITY_INCLUDES": _headers(unity_includes)} if unity_includes is not None else {}
     stop = Event()
 
     def work(name: str) -> tuple[str, bool, list[Result]]:
-        """(version or how to get it, whether it is there, results)."""
+        """(version or how to get it, whether it is available, results)."""
         worker = Worker(name, environment)
         try:
             version = worker.version()
@@ -78,26 +78,30 @@ def run(shaders: Sequence[Shader], names: Sequence[str] = (), unity_includes: st
                 for shader, source in programs
                 if name in readers(source.language) and not stop.is_set()
             ]
-        except CompilerMissing as how:
-            return str(how), False, []
+        except CompilerMissing as error:
+            return str(error), False, []
         finally:
             worker.close()
         return version, True, results
 
-    with ThreadPoolExecutor(len(chosen)) as pool:
+    with ThreadPoolExecutor(len(selected)) as pool:
         try:
-            outcomes = dict(zip(chosen, pool.map(work, chosen), strict=True))
+            outcomes = dict(zip(selected, pool.map(work, selected), strict=True))
         finally:
             stop.set()
-    missing = {name: text for name, (text, there, _) in outcomes.items() if not there}
-    if lacking := [name for name in names if name in missing]:
+    missing = {name: text for name, (text, available, _) in outcomes.items() if not available}
+    if absent := [name for name in names if name in missing]:
         raise SssgenError(
-            [diagnostic for name in lacking for diagnostic in failure(f"{name} is not here", missing[name]).diagnostics]
+            [
+                diagnostic
+                for name in absent
+                for diagnostic in failure(f"{name} is not available", missing[name]).diagnostics
+            ]
         )
     order = {id(shader): number for number, shader in enumerate(shaders)}
-    results = [result for _, _, own in outcomes.values() for result in own]
+    results = [result for _, _, compiler_results in outcomes.values() for result in compiler_results]
     return Report(
-        {name: text for name, (text, there, _) in outcomes.items() if there},
+        {name: text for name, (text, available, _) in outcomes.items() if available},
         missing,
         sorted(results, key=lambda result: order[id(result.shader)]),
     )
@@ -155,12 +159,12 @@ def as_json(report: Report) -> dict[str, Any]:
 
 
 def _message_as_json(result: Result, message: Message) -> dict[str, Any]:
-    entry: dict[str, Any] = {
+    record: dict[str, Any] = {
         "severity": message.severity,
         "line": message.line,
         "column": message.column,
         "text": message.text,
     }
     if origin := result.origin(message):
-        entry["source"] = origin
-    return entry
+        record["source"] = origin
+    return record

@@ -15,19 +15,19 @@ _OTHER_STAGE = {"vertex": "fragment", "fragment": "vertex"}
 def sources(files: Mapping[str, str]) -> list[Source]:
     """The sources in `files` (file name → text), by the file names in the targets' descriptors.
 
-    A file with several entry points gives one source each, a GLSL stage has the other one beside it as
+    A file with several entry points gives one source each, a GLSL stage has the other stage as
     `companion`, and a .shader file is one source. Files of no target (a reflection) are left out.
     """
-    found = []
+    result = []
     for name, text in files.items():
         for target, material, output in outputs(name):
             stages = output.stages
-            if name.endswith(".shader"):  # holds all its stages, and says itself where they begin
+            if name.endswith(".shader"):  # has all its stages, and declares their entries
                 stages = dict(list(stages.items())[:1])
             for stage, entry in stages.items():
                 companion = _companion(files, name, target, material, stage)
-                found.append(Source(text, target.name, cast(Stage, stage), entry or "main", name, companion))
-    return found
+                result.append(Source(text, target.name, cast(Stage, stage), entry or "main", name, companion))
+    return result
 
 
 def outputs(name: str) -> list[tuple[descriptor.Target, str, descriptor.OutputFile]]:
@@ -36,14 +36,14 @@ def outputs(name: str) -> list[tuple[descriptor.Target, str, descriptor.OutputFi
     A material's stage and a whole shader's of plain GLSL are files of one name and one kind: one entry stands for both.
     """
     matches = []
-    known: set[tuple[str, str]] = set()
+    seen: set[tuple[str, str]] = set()
     base = name.rpartition("/")[2]
     for target in map(registry.load, registry.names()):
         for output in (entry for entries in target.files.values() for entry in entries):
             pattern = re.escape(output.name).replace(re.escape("{material}"), r"(\w+)")
             match = re.fullmatch(pattern, base)
-            if match and (target.name, output.name) not in known:
-                known.add((target.name, output.name))
+            if match and (target.name, output.name) not in seen:
+                seen.add((target.name, output.name))
                 matches.append((len(output.name), target, match[1], output))
     longest = max((length for length, *_ in matches), default=0)
     return [(target, material, output) for length, target, material, output in matches if length == longest]

@@ -28,11 +28,11 @@ _SIGNS = {
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 
 
-def language_of(ending: str, text: str, wanted: Sequence[str]) -> str:
-    """The language among those `wanted` (all, where there are none); '' where it is none of them, or not known."""
-    possible = [name for name in LANGUAGES_OF.get(ending, ()) if not wanted or name in wanted]
-    signed = [name for name in possible if name in _SIGNS and re.search(_SIGNS[name], text, re.MULTILINE)]
-    return next(iter([*signed, *possible]), "")
+def language_of(extension: str, text: str, allowed: Sequence[str]) -> str:
+    """The language among those `allowed` (empty: all); '' where it is none of them, or unknown."""
+    possible = [name for name in LANGUAGES_OF.get(extension, ()) if not allowed or name in allowed]
+    marked = [name for name in possible if name in _SIGNS and re.search(_SIGNS[name], text, re.MULTILINE)]
+    return next(iter([*marked, *possible]), "")
 
 
 def hand_written(text: str, language: str, name: str) -> list[Source]:
@@ -49,22 +49,22 @@ def _stage(text: str, language: str, name: str) -> Stage:
             return "vertex"
         return "fragment" if name.endswith(".frag") or re.search(r"\bvoid\s+main\s*\(", text) else "library"
     if language == "wgsl":
-        found = re.search(r"@(vertex|fragment)\b", text)
-        return "library" if found is None else "vertex" if found[1] == "vertex" else "fragment"
+        stage = re.search(r"@(vertex|fragment)\b", text)
+        return "library" if stage is None else "vertex" if stage[1] == "vertex" else "fragment"
     return "fragment" if name.endswith(".shader") else "library"
 
 
 def _hlsl_entries(text: str) -> list[tuple[Stage, str]]:
-    """The functions that nobody calls and that return SV_Target or SV_Position, themselves or in a struct."""
+    """The functions that are not called and that return SV_Target or SV_Position, directly or in a struct."""
     entries: list[tuple[Stage, str]] = []
     for function in functions(text):
         semantic = re.search(rf"\b{function.name}\s*\([^()]*\)\s*:\s*(\w+)", text)
         struct = re.search(rf"\bstruct\s+{function.returns}\s*\{{([^{{}}]*)\}}", text)
-        told = (semantic[1] if semantic else struct[1] if struct else "").upper()
+        semantics = (semantic[1] if semantic else struct[1] if struct else "").upper()
         if len(re.findall(rf"\b{function.name}\s*\(", text)) > 1:
             continue
-        if "SV_TARGET" in told:
+        if "SV_TARGET" in semantics:
             entries.append(("fragment", function.name))
-        elif "SV_POSITION" in told:
+        elif "SV_POSITION" in semantics:
             entries.append(("vertex", function.name))
     return entries or [("library", "main")]

@@ -31,14 +31,14 @@ class Shader:
 
 
 def read(arguments: Sequence[str], targets: Sequence[str]) -> list[Shader]:
-    """The shaders that files, folders, materials and examples hold, for `targets` only where there are any.
+    """The shaders that files, folders, materials and examples hold, only for `targets` if there are any.
 
-    Raises SssgenError with all that is wrong with the input, and where there is nothing to check.
+    Raises SssgenError with all errors of the input, and where there is nothing to check.
     """
-    wrong: list[Diagnostic] = []
+    problems: list[Diagnostic] = []
     shaders: list[Shader] = []
     files: dict[str, str] = {}
-    asked: set[str] = set()
+    named: set[str] = set()
     for argument in dict.fromkeys(arguments):
         try:
             if os.path.isdir(argument):
@@ -46,17 +46,17 @@ def read(arguments: Sequence[str], targets: Sequence[str]) -> list[Shader]:
             elif _is_material(argument):
                 shaders += of_material(argument, targets)
             else:
-                shown = posix(argument)
-                files[shown] = _read_file(argument, shown)
-                asked.add(shown)
+                path = posix(argument)
+                files[path] = _read_file(argument, path)
+                named.add(path)
         except SssgenError as error:
-            wrong += error.diagnostics
+            problems += error.diagnostics
     try:
-        shaders = [*of_files(files, asked, targets), *shaders]
+        shaders = [*of_files(files, named, targets), *shaders]
     except SssgenError as error:
-        wrong += error.diagnostics
-    if wrong:
-        raise SssgenError(dict.fromkeys(wrong))
+        problems += error.diagnostics
+    if problems:
+        raise SssgenError(dict.fromkeys(problems))
     if not shaders:
         for_targets = f" for {', '.join(targets)}" if targets else ""
         hint = f"a shader is what `sssgen emit` writes, or ends in {', '.join(LANGUAGES_OF)}"
@@ -65,45 +65,45 @@ def read(arguments: Sequence[str], targets: Sequence[str]) -> list[Shader]:
 
 
 def of_material(argument: str, targets: Sequence[str]) -> list[Shader]:
-    """Both forms of a material for each target; all that a compiler reads, where none is named."""
+    """Both forms of a material for each target; no target: for all that a compiler reads."""
     material = load_material(argument)
-    found: list[Shader] = []
+    shaders: list[Shader] = []
     for target in targets or [name for name in registry.names() if readers(name)]:
         for form in FORMS:
-            made = compile(material, target, form)
-            found += _shaders(made.files, sources(made.files), made.reflection["source_map"])
-    return found
+            compiled = compile(material, target, form)
+            shaders += _shaders(compiled.files, sources(compiled.files), compiled.reflection["source_map"])
+    return shaders
 
 
-def of_files(files: Mapping[str, str], asked: set[str], targets: Sequence[str]) -> list[Shader]:
-    """The shaders among `files` (path → text). Raises SssgenError for one of those `asked` for that is none."""
+def of_files(files: Mapping[str, str], named: set[str], targets: Sequence[str]) -> list[Shader]:
+    """The shaders among `files` (path → text). Raises SssgenError for a file in `named` that is no shader."""
     emitted: dict[str, str] = {}
-    wrong: list[Diagnostic] = []
-    found: list[Source] = []
+    problems: list[Diagnostic] = []
+    handwritten: list[Source] = []
     for path, text in files.items():
         target = _emitted_for(path, text)
         if target and (not targets or target in targets):
             emitted[path] = text
         elif target:
-            if path in asked:
+            if path in named:
                 hint = f"write --target {target}, or leave --target out"
-                wrong += failure(f"the file is for {target}", hint, path).diagnostics
-        elif language := _language(path, text, path in asked, targets):
-            found += hand_written(text, language, path)
-        elif path in asked:
-            hint = f"say it with --target T: {', '.join(registry.names())}"
-            wrong += failure("the language of the file cannot be told", hint, path).diagnostics
-    if wrong:
-        raise SssgenError(wrong)
-    return _shaders(files, [*sources(emitted), *found], {path: _origins(path) for path in files})
+                problems += failure(f"the file is for {target}", hint, path).diagnostics
+        elif language := _language(path, text, path in named, targets):
+            handwritten += hand_written(text, language, path)
+        elif path in named:
+            hint = f"name it with --target T: {', '.join(registry.names())}"
+            problems += failure("the language of the file cannot be determined", hint, path).diagnostics
+    if problems:
+        raise SssgenError(problems)
+    return _shaders(files, [*sources(emitted), *handwritten], {path: _origins(path) for path in files})
 
 
 def _shaders(
-    files: Mapping[str, str], found: Sequence[Source], origins: Mapping[str, Mapping[str, str]]
+    files: Mapping[str, str], sources: Sequence[Source], origins: Mapping[str, Mapping[str, str]]
 ) -> list[Shader]:
     """One for each file that has sources."""
     by_name: dict[str, list[Source]] = {}
-    for source in found:
+    for source in sources:
         by_name.setdefault(source.name, []).append(source)
     return [Shader(name, files[name], tuple(by_name[name]), origins.get(name, {})) for name in files if name in by_name]
 
@@ -111,25 +111,25 @@ def _shaders(
 def _is_material(argument: str) -> bool:
     if argument.endswith(".toml"):
         return True
-    ending = os.path.splitext(argument)[1]
-    return not os.path.exists(argument) and "/" not in argument and os.sep not in argument and not ending
+    extension = os.path.splitext(argument)[1]
+    return not os.path.exists(argument) and "/" not in argument and os.sep not in argument and not extension
 
 
 def _read_folder(folder: str) -> dict[str, str]:
-    """The shaders of a folder and of those below it, but for hidden ones. Raises SssgenError for what is no text."""
-    wrong: list[Diagnostic] = []
+    """The shaders of a folder and its subfolders, not hidden ones. Raises SssgenError for a binary file."""
+    problems: list[Diagnostic] = []
     files: dict[str, str] = {}
     for path in _walk(folder):
         shown = posix(path)
-        ending = os.path.splitext(path)[1]
-        # Python is code like any other, unless a reflection says that it is ours
+        extension = os.path.splitext(path)[1]
+        # a Python file is a shader only if it has a reflection
         try:
-            if (ending != ".py" and (ending in LANGUAGES_OF or outputs(shown))) or _origins(shown):
+            if (extension != ".py" and (extension in LANGUAGES_OF or outputs(shown))) or _origins(shown):
                 files[shown] = _read_file(path, shown)
         except SssgenError as error:
-            wrong += error.diagnostics
-    if wrong:
-        raise SssgenError(wrong)
+            problems += error.diagnostics
+    if problems:
+        raise SssgenError(problems)
     return files
 
 
@@ -150,7 +150,7 @@ def _read_file(path: str, shown: str) -> str:
 
 
 def _emitted_for(path: str, text: str) -> str:
-    """The target that wrote a file, or ''. A name alone does not always tell: `my.hlsl` may be anybody's."""
+    """The target that wrote a file, or ''. A name alone does not always decide: any program may write `my.hlsl`."""
     for target, _, output in outputs(path):
         named = f".{target.name}." in output.name
         if named or _origins(path) or all(entry in text for entry in output.stages.values()):
@@ -158,21 +158,21 @@ def _emitted_for(path: str, text: str) -> str:
     return ""
 
 
-def _language(path: str, text: str, asked: bool, targets: Sequence[str]) -> str:
-    if asked and len(targets) == 1:
+def _language(path: str, text: str, named: bool, targets: Sequence[str]) -> str:
+    if named and len(targets) == 1:
         return targets[0]
     return language_of(os.path.splitext(path)[1], text, targets)
 
 
 def _origins(path: str) -> dict[str, str]:
-    """The source map of an emitted file, from the reflection beside it; empty where there is none."""
+    """The source map of an emitted file, from the reflection next to it; empty where there is none."""
     folder, base = os.path.split(path)
-    names = [f"{base}.{REFLECTION}"]  # `sssgen transpile` names it so, and the text in it otherwise
+    names = [f"{base}.{REFLECTION}"]  # the name that `sssgen transpile` uses
     for target, material, _ in outputs(path):
         names += [f"{material}.{target.name}.{form}{REFLECTION}" for form in ("", "functions.")]
     for name in dict.fromkeys(names):
-        if os.path.isfile(beside := os.path.join(folder, name)):
-            maps = _source_map(beside)
+        if os.path.isfile(reflection := os.path.join(folder, name)):
+            maps = _source_map(reflection)
             if base in maps:
                 return maps[base]
             if name == names[0] and len(maps) == 1:
@@ -185,4 +185,4 @@ def _source_map(path: str) -> dict[str, dict[str, str]]:
         maps = json.loads(read_text(path, posix(path)))["source_map"]
         return {str(file): {str(line): str(span) for line, span in lines.items()} for file, lines in maps.items()}
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        raise failure("this is not a reflection of sssgen's", "emit it again, or remove it", posix(path)) from None
+        raise failure("this is not a reflection file of sssgen", "emit it again, or remove it", posix(path)) from None

@@ -38,24 +38,24 @@ __all__ = [
 
 def available() -> list[Compiler]:
     """Every compiler that this machine has, started."""
-    return [found for found in map(_find, COMPILERS) if isinstance(found, Compiler)]
+    return [compiler for compiler in map(_find, COMPILERS) if isinstance(compiler, Compiler)]
 
 
 def missing() -> list[tuple[str, str]]:
     """(name, how to get it) of every compiler that this machine lacks."""
-    return [(name, found) for name in COMPILERS if isinstance(found := _find(name), str)]
+    return [(name, reason) for name in COMPILERS if isinstance(reason := _find(name), str)]
 
 
 def get(name: str) -> Compiler:
-    """The compiler of that name. Raises CompilerMissing, which says how to get it, where it is not there."""
-    found = _find(name)
-    if isinstance(found, str):
-        raise CompilerMissing(found)
-    return found
+    """The compiler of that name. Raises CompilerMissing, which states how to get it, where it is missing."""
+    compiler = _find(name)
+    if isinstance(compiler, str):
+        raise CompilerMissing(compiler)
+    return compiler
 
 
 def check(source: Source) -> dict[str, list[Message]]:
-    """What each compiler at hand says of `source`, by the compiler's name."""
+    """The messages of each available compiler about `source`, by its name."""
     return {c.name: c.check(source) for c in map(_find, readers(source.language)) if isinstance(c, Compiler)}
 
 

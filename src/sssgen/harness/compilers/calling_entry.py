@@ -100,21 +100,21 @@ def _c_calls(library: list[Function], declare: str, opaque: dict[str, Opaque]) -
 
 
 def _top_level(text: str) -> str:
-    """`text` without comments, preprocessor lines, and what stands between braces."""
-    kept: list[str] = []
+    """`text` without comments, preprocessor lines, and the text between braces."""
+    pieces: list[str] = []
     depth = 0
     for piece in re.split(r"([{}])", _COMMENT.sub(" ", text)):
         if piece == "{":
             depth += 1
             if depth == 1:
-                kept.append("{")
+                pieces.append("{")
         elif piece == "}":
             depth -= 1
             if depth == 0:
-                kept.append("}")
+                pieces.append("}")
         elif depth == 0:
-            kept.append(piece)
-    return "".join(kept)
+            pieces.append(piece)
+    return "".join(pieces)
 
 
 def _split(parameters: str) -> list[str]:

@@ -35,7 +35,7 @@ class Source:
 class Message:
     """One message of a compiler. Line and column count from 1; 0 where the compiler does not state them.
 
-    `file` is the name that the compiler gives to what the place is in; '' where it is in the text itself.
+    `file` is the compiler's name of the file with the place; '': the text itself.
     """
 
     severity: Severity
@@ -50,7 +50,7 @@ class Message:
 
 
 class CompilerMissing(Exception):
-    """Raised by a family's `find()` where the compiler is missing; the text says how to get it."""
+    """Raised by a family's `find()` where the compiler is missing; the text states how to get it."""
 
 
 class Compiler(ABC):
@@ -60,7 +60,7 @@ class Compiler(ABC):
 
     @abstractmethod
     def version(self) -> str:
-        """What the compiler calls itself, for reports."""
+        """The compiler's name and version, for reports."""
 
     @abstractmethod
     def check(self, source: Source) -> list[Message]:
@@ -68,5 +68,5 @@ class Compiler(ABC):
 
 
 def errors(messages: list[Message]) -> list[Message]:
-    """Only what stops the text from compiling."""
+    """Only the errors."""
     return [m for m in messages if m.severity == "error"]

@@ -19,7 +19,7 @@ class Worker:
         self.process = Process(__name__, name, environment, seconds)
 
     def version(self) -> str:
-        """What the compiler calls itself. Raises CompilerMissing, which says how to get it or why it does not start."""
+        """Its name and version. Raises CompilerMissing, which states how to get it or why it does not start."""
         try:
             return str(self.process.start())
         except LostError as reason:
@@ -28,19 +28,19 @@ class Worker:
     def check(self, source: Source) -> list[Message]:
         """The compiler's messages about `source`; a crash or a timeout is an error of the text."""
         try:
-            found: list[Message] = self.process.ask(source)
+            messages: list[Message] = self.process.ask(source)
         except LostError as reason:
             return [Message("error", 0, 0, f"{self.name} {reason} on this text")]
         except Exception as error:  # the compiler's package may fail in any way
             return [Message("error", 0, 0, f"{self.name} failed: {type(error).__name__}: {error}")]
-        return found
+        return messages
 
     def close(self) -> None:
-        """Ends the process, and what it started."""
+        """Ends the process and its children."""
         self.process.close()
 
 
 def serve(name: str) -> tuple[str, Callable[[Source], list[Message]]]:
-    """The compiler's version, and what answers texts with messages. Raises CompilerMissing."""
+    """The compiler's version, and the function from texts to messages. Raises CompilerMissing."""
     compiler = get(name)
     return compiler.version(), compiler.check

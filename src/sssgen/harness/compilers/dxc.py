@@ -94,8 +94,8 @@ def serve(_: str) -> tuple[str, Callable[[Question], bytes]]:
 def messages(log: str) -> list[Message]:
     """The messages in DXC's log."""
     pattern = r"^(?:((?:[A-Za-z]:)?[^:\n]*):(\d+):(\d+): )?(fatal error|error|warning|note): (.*)"
-    found = [
+    result = [
         Message(_SEVERITY[kind], int(line or 0), int(column or 0), text, "" if file in _OWN else file)
         for file, line, column, kind, text in re.findall(pattern, log, re.MULTILINE)
     ]
-    return found or [Message("error", 0, 0, log.strip())]
+    return result or [Message("error", 0, 0, log.strip())]

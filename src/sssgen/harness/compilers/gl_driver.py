@@ -47,15 +47,15 @@ class DriverGL(Compiler):
             vertex, fragment = source.companion or _matching_vertex(text, source.language), text
         log = self._link(vertex, fragment)
         if log and source.companion:
-            alone = self.check(replace(source, companion=""))
-            # what the compiler finds in the other stage is that one's: its lines are not ours
-            return alone or ([] if "Compiler failed" in log else messages(log))
+            own_messages = self.check(replace(source, companion=""))
+            # messages about the other stage are reported with that stage
+            return own_messages or ([] if "Compiler failed" in log else messages(log))
         if log:
             return _in_text(messages(log), source.text)
         return _unfed(vertex, fragment) if source.companion else []
 
     def _link(self, vertex: str, fragment: str) -> str:
-        """What the driver says of two stages that do not compile or link; '' where they do."""
+        """The driver's messages about two stages that do not compile or link; '' where they do."""
         try:
             with self.context:  # other libraries (wgpu) make contexts of their own current
                 self.context.program(vertex_shader=vertex, fragment_shader=fragment).release()
@@ -96,8 +96,8 @@ def _interface(text: str, direction: str) -> list[tuple[str, str, str, str]]:
 
 def _unfed(vertex: str, fragment: str) -> list[Message]:
     """Fragment inputs that the vertex stage does not write: undefined, and no error in desktop OpenGL."""
-    fed = {name for *_, name in _interface(vertex, "out")}
-    names = [name for *_, name in _interface(fragment, "in") if name not in fed]
+    written = {name for *_, name in _interface(vertex, "out")}
+    names = [name for *_, name in _interface(fragment, "in") if name not in written]
     return [Message("error", 0, 0, f"the vertex stage does not write the fragment's {name}") for name in names]
 
 
@@ -110,30 +110,30 @@ def _matching_vertex(fragment: str, language: str) -> str:
     return "\n".join([*lines, "    gl_Position = vec4(0.0);", "}", ""])
 
 
-def _in_text(found: list[Message], text: str) -> list[Message]:
+def _in_text(parsed: list[Message], text: str) -> list[Message]:
     """Messages with columns of the text: Mesa's preprocessor puts one space for several, and counts after that."""
     lines = text.split("\n")
     return [
         replace(m, column=_column(lines[m.line - 1], m.column)) if m.column and 0 < m.line <= len(lines) else m
-        for m in found
+        for m in parsed
     ]
 
 
-def _column(line: str, told: int) -> int:
+def _column(line: str, reported: int) -> int:
     starts = [piece.start() for piece in re.finditer(r"\s+|\S", line)]
-    return starts[told - 1] + 1 if 0 < told <= len(starts) else 0
+    return starts[reported - 1] + 1 if 0 < reported <= len(starts) else 0
 
 
 def messages(log: str) -> list[Message]:
-    """What a log says. Mesa has `0:4(18): error: …`, NVIDIA `0(4) : error C1008: …`, the linker `error: …`."""
-    found = []
+    """The messages in a log. Mesa has `0:4(18): error: …`, NVIDIA `0(4) : error C1008: …`, the linker `error: …`."""
+    all_messages = []
     for line in log.splitlines():
         if match := re.match(r"\d+:(\d+)\((\d+)\): (error|warning): (.*)", line):
-            found.append(Message(_SEVERITY[match[3]], int(match[1]), int(match[2]), match[4]))
+            all_messages.append(Message(_SEVERITY[match[3]], int(match[1]), int(match[2]), match[4]))
         elif match := re.match(r"\d+\((\d+)\) : (error|warning) (.*)", line):
-            found.append(Message(_SEVERITY[match[2]], int(match[1]), 0, match[3]))
+            all_messages.append(Message(_SEVERITY[match[2]], int(match[1]), 0, match[3]))
         elif match := re.match(r"(?:ERROR: \d+:(\d+): |error: )(.*)", line):
-            found.append(Message("error", int(match[1] or 0), 0, match[2]))
-    # Mesa lists every overload of the function that did not fit; the first line says which that was
-    told = [m for m in found if not m.text.startswith("   ") and "sssgen_check" not in m.text]
-    return told or found or [Message("error", 0, 0, log.strip())]
+            all_messages.append(Message("error", int(match[1] or 0), 0, match[2]))
+    # Mesa lists every overload of the function that did not fit; the first line names it
+    relevant = [m for m in all_messages if not m.text.startswith("   ") and "sssgen_check" not in m.text]
+    return relevant or all_messages or [Message("error", 0, 0, log.strip())]

@@ -49,9 +49,9 @@ class Glslang(Compiler):
 
     def spirv(self, text: str, stage: str, entry: str, dx9_samplers: bool = False) -> bytes:
         """The SPIR-V of HLSL. Raises ValueError with the compiler's log."""
-        done, module = self._hlsl(text, stage, entry, dx9_samplers)
-        if done.returncode:
-            raise ValueError(f"{done.stdout}{done.stderr}")
+        completed, module = self._hlsl(text, stage, entry, dx9_samplers)
+        if completed.returncode:
+            raise ValueError(f"{completed.stdout}{completed.stderr}")
         return module
 
     def _hlsl(self, text: str, stage: str, entry: str, dx9_samplers: bool) -> tuple[CompletedProcess[str], bytes]:
@@ -60,20 +60,20 @@ class Glslang(Compiler):
             options += ["--auto-map-bindings", "--auto-map-locations"]
             options += ["--hlsl-dx9-compatible"] if dx9_samplers else []
             path = Path(folder) / "out.spv"
-            done = self._run(text, [*options, "-o", str(path)])
-            return done, path.read_bytes() if path.is_file() else b""
+            completed = self._run(text, [*options, "-o", str(path)])
+            return completed, path.read_bytes() if path.is_file() else b""
 
     def _run(self, text: str, options: list[str]) -> CompletedProcess[str]:
         command = [self._program, "--stdin", *options]
         return subprocess.run(command, input=text, capture_output=True, encoding="utf-8", check=False)
 
 
-def _messages_of(done: CompletedProcess[str]) -> list[Message]:
+def _messages_of(completed: CompletedProcess[str]) -> list[Message]:
     """The messages of a run; a failure without a message is an error, too."""
-    found = messages(done.stdout + done.stderr)
-    if done.returncode and not any(m.severity == "error" for m in found):
-        found.append(Message("error", 0, 0, done.stdout.strip() or f"exit status {done.returncode}"))
-    return found
+    parsed = messages(completed.stdout + completed.stderr)
+    if completed.returncode and not any(m.severity == "error" for m in parsed):
+        parsed.append(Message("error", 0, 0, completed.stdout.strip() or f"exit status {completed.returncode}"))
+    return parsed
 
 
 def find() -> Glslang:
@@ -86,10 +86,10 @@ def find() -> Glslang:
 
 def messages(log: str) -> list[Message]:
     """The messages in glslang's log."""
-    found = []
+    result = []
     for line in log.splitlines():
         match = re.match(r"(ERROR|WARNING): (?:((?:[A-Za-z]:)?[^:]*):(\d+): )?(.*)", line)
         if match and not re.search(r"compilation terminated|\d+ compilation errors", match[4]):
             file = "" if match[2] in _OWN else match[2]
-            found.append(Message(_SEVERITY[match[1]], int(match[3] or 0), 0, match[4].strip(), file))
-    return found
+            result.append(Message(_SEVERITY[match[1]], int(match[3] or 0), 0, match[4].strip(), file))
+    return result

@@ -63,6 +63,6 @@ def _message(log: str) -> Message:
     body = re.sub(r"(?s).*?(?:parsing|validation) error:\s*", "", log, count=1)
     first = next((line.strip() for line in body.splitlines() if line.strip()), log)
     notes = re.findall(r"^[ \u2502]*\^+ +(\w.*)$|^ += (?:note: )?(.*)$", body, re.MULTILINE)
-    told = [first, *(note for note in ("".join(pair) for pair in notes) if note not in first)]
+    parts = [first, *(note for note in ("".join(pair) for pair in notes) if note not in first)]
     line, column = (int(place[1]), int(place[2])) if place else (0, 0)
-    return Message("error", line, column, "; ".join(told))
+    return Message("error", line, column, "; ".join(parts))

@@ -99,30 +99,30 @@ def parse(text: str, name: str) -> Shader:
 
 def _pairwise(lists: list[list[str]]) -> list[list[str]]:
     """Rows, one choice from each list, that cover every pair of choices: greedy, and the same each time."""
-    places = [(i, j) for j in range(len(lists)) for i in range(j)]
-    wanted = {(i, a, j, b) for i, j in places for a in lists[i] for b in lists[j]}
+    list_pairs = [(i, j) for j in range(len(lists)) for i in range(j)]
+    uncovered = {(i, a, j, b) for i, j in list_pairs for a in lists[i] for b in lists[j]}
     rows = [[choices[0] for choices in lists]]
     if len(lists) == 1:
         return [[choice] for choice in lists[0]]
-    while wanted := {(i, a, j, b) for i, a, j, b in wanted if not any(r[i] == a and r[j] == b for r in rows)}:
-        i, a, j, b = min(wanted)
+    while uncovered := {(i, a, j, b) for i, a, j, b in uncovered if not any(r[i] == a and r[j] == b for r in rows)}:
+        i, a, j, b = min(uncovered)
         row = [choices[0] for choices in lists]
         row[i], row[j] = a, b
-        settled = {i, j}
-        for k in (k for k in range(len(lists)) if k not in settled):
-            near = [pair for pair in wanted if k in (pair[0], pair[2])]
-            gains = [sum(_agrees(row, settled, k, choice, pair) for pair in near) for choice in lists[k]]
+        chosen = {i, j}
+        for k in (k for k in range(len(lists)) if k not in chosen):
+            related = [pair for pair in uncovered if k in (pair[0], pair[2])]
+            gains = [sum(_agrees(row, chosen, k, choice, pair) for pair in related) for choice in lists[k]]
             row[k] = lists[k][gains.index(max(gains))]
-            settled.add(k)
+            chosen.add(k)
         rows.append(row)
     return rows
 
 
-def _agrees(row: list[str], settled: set[int], k: int, choice: str, pair: tuple[int, str, int, str]) -> bool:
+def _agrees(row: list[str], chosen: set[int], k: int, choice: str, pair: tuple[int, str, int, str]) -> bool:
     """Whether `choice` at place `k` completes `pair` with a place that is settled."""
     i, a, j, b = pair
-    other, value, own = (j, b, a) if i == k else (i, a, b)
-    return own == choice and other in settled and row[other] == value
+    other, value, required = (j, b, a) if i == k else (i, a, b)
+    return required == choice and other in chosen and row[other] == value
 
 
 def _keywords(pragma: str, value: str, stage: str) -> list[str]:
@@ -155,21 +155,21 @@ def _read_properties(shell: str, shader: Shader) -> None:
             position += 1
         if shell[position : position + 1] in ("}", ""):
             return
-        found = _PROPERTY.match(shell, position)
-        if not found:
+        match = _PROPERTY.match(shell, position)
+        if not match:
             line = shell[position:].split("\n", 1)[0].strip()
             shader.messages.append(_error(shell, position, f"not a property: {line}"))
             return
-        name, kind, default = found[2], re.sub(r"\s*\(.*", "", found[3]).lower(), found[4]
+        name, kind, default = match[2], re.sub(r"\s*\(.*", "", match[3]).lower(), match[4]
         if kind not in _DEFAULTS:
-            shader.messages.append(_error(shell, found.start(3), f"unknown property type {found[3]}"))
+            shader.messages.append(_error(shell, match.start(3), f"unknown property type {match[3]}"))
         elif not re.fullmatch(_DEFAULTS[kind], default, re.DOTALL):
-            message = f"{default} is no default for {with_article(found[3])}"
-            shader.messages.append(_error(shell, found.start(4), message))
+            message = f"{default} is not a default of {with_article(match[3])}"
+            shader.messages.append(_error(shell, match.start(4), message))
         if name in shader.properties:
-            shader.messages.append(_error(shell, found.start(2), f"property {name} is there twice"))
+            shader.messages.append(_error(shell, match.start(2), f"property {name} is declared twice"))
         shader.properties[name] = kind
-        position = found.end()
+        position = match.end()
 
 
 def _check_braces(shell: str, messages: list[Message]) -> None:

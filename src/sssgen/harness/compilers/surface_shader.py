@@ -124,27 +124,27 @@ def entries(code: str, pragma: str) -> str:
 
     Raises SurfaceError where the pragma names a function that `code` lacks.
     """
-    asked = _read(pragma)
-    output = _output_type(code, asked)
-    modifier = re.search(rf"\bvoid\s+{asked.vertex}\s*\(([^)]*)\)", code) if asked.vertex else None
-    if asked.vertex and not modifier:
-        raise SurfaceError(f"no vertex function {asked.vertex}")
+    surface_pragma = _read(pragma)
+    output = _output_type(code, surface_pragma)
+    modifier = re.search(rf"\bvoid\s+{surface_pragma.vertex}\s*\(([^)]*)\)", code) if surface_pragma.vertex else None
+    if surface_pragma.vertex and not modifier:
+        raise SurfaceError(f"no vertex function {surface_pragma.vertex}")
     second = modifier is not None and "," in modifier[1]
-    call = f"    Input custom; {asked.vertex}(v{', custom' if second else ''});" if modifier else ""
-    fields, own = _input_fields(code), []
+    call = f"    Input custom; {surface_pragma.vertex}(v{', custom' if second else ''});" if modifier else ""
+    fields, custom = _input_fields(code), []
     names = [name for _, name in fields]
     if second:
-        own = [(kind, name) for kind, name in fields if name not in _INPUTS and not _TEXTURE_INPUT.fullmatch(name)]
+        custom = [(kind, name) for kind, name in fields if name not in _INPUTS and not _TEXTURE_INPUT.fullmatch(name)]
     textures = sorted({m[2] for name in names if (m := _TEXTURE_INPUT.fullmatch(name))})
     for texture in textures:
         if re.search(rf"\b{texture}_ST\s*;", code):
             raise SurfaceError(f"declares {texture}_ST, which Unity declares for the input uv{texture}")
     # As in the editor, which supplies worldNormal only where no tangent frame is needed.
-    given = [name for name in names if not (name == "worldNormal" and "internalSurfaceTtoW0" in names)]
-    inputs = [f"    surfIN.{name} = {value};" for name in given if (value := _input(name))]
-    inputs += [f"    surfIN.{name} = i.custom_{name};" for _, name in own]
-    varyings = [f"    {kind} custom_{name} : TEXCOORD{6 + k};" for k, (kind, name) in enumerate(own)]
-    carried = [f"    i.custom_{name} = custom.{name};" for _, name in own]
+    supplied = [name for name in names if not (name == "worldNormal" and "internalSurfaceTtoW0" in names)]
+    inputs = [f"    surfIN.{name} = {value};" for name in supplied if (value := _input(name))]
+    inputs += [f"    surfIN.{name} = i.custom_{name};" for _, name in custom]
+    varyings = [f"    {kind} custom_{name} : TEXCOORD{6 + k};" for k, (kind, name) in enumerate(custom)]
+    carried = [f"    i.custom_{name} = custom.{name};" for _, name in custom]
     return (
         "".join(f"float4 {texture}_ST;\n" for texture in textures)
         + _VERTEX.format(modifier=call, varyings="\n".join(varyings), carried="\n".join(carried))
@@ -152,8 +152,8 @@ def entries(code: str, pragma: str) -> str:
             inputs="\n".join(inputs),
             output=output,
             defaults="    o.Occlusion = 1.0;" if _has_occlusion(code, output) else "",
-            surface=asked.surface,
-            lighting=f"Lighting{asked.model}",
+            surface=surface_pragma.surface,
+            lighting=f"Lighting{surface_pragma.model}",
         )
     )
 
@@ -166,15 +166,17 @@ def _read(pragma: str) -> _Pragma:
     return _Pragma(words[0], words[1], vertex)
 
 
-def _output_type(code: str, asked: _Pragma) -> str:
-    surface = re.search(rf"\bvoid\s+{asked.surface}\s*\(\s*Input\s+\w+\s*,\s*inout\s+(\w+)\s+\w+\s*\)", code)
+def _output_type(code: str, pragma: _Pragma) -> str:
+    surface = re.search(rf"\bvoid\s+{pragma.surface}\s*\(\s*Input\s+\w+\s*,\s*inout\s+(\w+)\s+\w+\s*\)", code)
     if not surface:
-        raise SurfaceError(f"no function void {asked.surface}(Input, inout SurfaceOutput…)")
-    own = BUILTIN_LIGHTING.get(asked.model)
-    if own is None and not re.search(rf"\bLighting{asked.model}\s*\(", code):
-        raise SurfaceError(f"no lighting function Lighting{asked.model}")
-    if own not in (None, surface[1]):
-        raise SurfaceError(f"lighting model {asked.model} wants {own}, the surface function gives {surface[1]}")
+        raise SurfaceError(f"no function void {pragma.surface}(Input, inout SurfaceOutput…)")
+    expected = BUILTIN_LIGHTING.get(pragma.model)
+    if expected is None and not re.search(rf"\bLighting{pragma.model}\s*\(", code):
+        raise SurfaceError(f"no lighting function Lighting{pragma.model}")
+    if expected not in (None, surface[1]):
+        raise SurfaceError(
+            f"lighting model {pragma.model} requires {expected}, but the surface function has {surface[1]}"
+        )
     return surface[1]
 
 

@@ -106,8 +106,8 @@ def find() -> Tint:
     node = shutil.which("node") or shutil.which("nodejs")
     if node is None:
         raise CompilerMissing("node (Debian: nodejs npm)")
-    named = os.environ.get("SSSGEN_NODE_MODULES")
-    modules = Path(named) if named else folder("build") / "node" / "node_modules"
+    configured = os.environ.get("SSSGEN_NODE_MODULES")
+    modules = Path(configured) if configured else folder("build") / "node" / "node_modules"
     if not (modules / "webgpu" / "package.json").is_file():
         raise CompilerMissing("npm install --prefix build/node webgpu@0.6.2 (make setup does it)")
     return Tint(node, modules.resolve())

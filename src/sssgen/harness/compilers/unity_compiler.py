@@ -129,8 +129,8 @@ class Unity(Compiler):
         if shader.messages:
             raise ValueError(shader.messages[0].text)
         program = shader.programs[0]
-        if (asked := program.pragma("surface")) is not None:
-            job = _surface_job(program, asked, stage, tuple(keywords))
+        if (surface_pragma := program.pragma("surface")) is not None:
+            job = _surface_job(program, surface_pragma, stage, tuple(keywords))
         else:
             job = _pass_job(program, stage, tuple(keywords), language == "unity-builtin")
         return self._text(job), job.entry
@@ -154,23 +154,23 @@ class Unity(Compiler):
         return (self.root / _GRAPH / "ShaderVariables.hlsl").is_file()
 
     def _run(self, jobs: Iterator[_Job]) -> list[Message]:
-        found: dict[tuple[int, int, str], Message] = {}
-        done: set[tuple[str, str]] = set()
+        unique: dict[tuple[int, int, str], Message] = {}
+        compiled: set[tuple[str, str]] = set()
         for job in jobs:
             try:
                 text = self._text(job)
             except ValueError as error:
                 return [located(_preprocessing_error(str(error)), job.what)]
-            if (text, job.entry) in done:
+            if (text, job.entry) in compiled:
                 continue
-            done.add((text, job.entry))
+            compiled.add((text, job.entry))
             if job.builtin:
                 messages = self._glslang.check_hlsl(text, job.stage, job.entry, dx9_samplers=True)
             else:
                 messages = self._dxc.check_hlsl(text, job.stage, job.entry)
             for m in messages:
-                found.setdefault((m.line, m.column, m.text), located(m, job.what))
-        return list(found.values())
+                unique.setdefault((m.line, m.column, m.text), located(m, job.what))
+        return list(unique.values())
 
     def _text(self, job: _Job) -> str:
         """Raises ValueError with the preprocessor's log."""
@@ -182,12 +182,12 @@ class Unity(Compiler):
         return [self.root / "CGIncludes", self.root] if builtin else [self.root]
 
 
-def located(message: Message, what: str) -> Message:
+def located(message: Message, job: str) -> Message:
     """A message with the name of its job; a place outside of the text becomes part of the message."""
     if message.file in ("", _TEXT):
-        return replace(message, text=f"{what}: {message.text}", file="")
+        return replace(message, text=f"{job}: {message.text}", file="")
     place = f"{message.file}:{message.line}"
-    return Message(message.severity, 0, 0, f"{what}: {place}: {message.text}", message.file)
+    return Message(message.severity, 0, 0, f"{job}: {place}: {message.text}", message.file)
 
 
 def _library_jobs(source: Source, preview: bool) -> Iterator[_Job]:
@@ -208,43 +208,43 @@ def _library_jobs(source: Source, preview: bool) -> Iterator[_Job]:
 def _program_jobs(program: shaderlab.Program, language: str) -> Iterator[_Job]:
     builtin = language == "unity-builtin"
     stages: tuple[Stage, ...] = ("vertex", "fragment")
-    asked = program.pragma("surface")
-    if asked is not None:
+    surface_pragma = program.pragma("surface")
+    if surface_pragma is not None:
         for macros in _SURFACE_PASSES:
             for stage in stages:
-                yield _surface_job(program, asked, stage, macros)
+                yield _surface_job(program, surface_pragma, stage, macros)
         return
     for stage in stages:
         for keywords in program.keyword_sets(stage):
-            on = tuple(f"{word}=1" for word in keywords if not (builtin and word == "INSTANCING_ON"))
-            yield _pass_job(program, stage, on, builtin)
+            defines = tuple(f"{word}=1" for word in keywords if not (builtin and word == "INSTANCING_ON"))
+            yield _pass_job(program, stage, defines, builtin)
 
 
-def _surface_job(program: shaderlab.Program, asked: str, stage: Stage, macros: tuple[str, ...]) -> _Job:
+def _surface_job(program: shaderlab.Program, surface_pragma: str, stage: Stage, macros: tuple[str, ...]) -> _Job:
     """A stage of one of the passes that the editor makes of a surface shader; `macros[0]` names the pass."""
-    code = f'{program.code}#line 1 "surface entries"\n{surface.entries(program.code, asked)}'
-    what = macros[0].removeprefix("UNITY_PASS_").partition("=")[0]
-    every = (*_BUILTIN_MACROS, *macros, f"SHADER_STAGE_{stage.upper()}=1")
-    return _Job(what, (*_CG_HEADERS, *_SURFACE_HEADERS), every, code, stage, f"sssgen_{stage}", True)
+    code = f'{program.code}#line 1 "surface entries"\n{surface.entries(program.code, surface_pragma)}'
+    pass_name = macros[0].removeprefix("UNITY_PASS_").partition("=")[0]
+    defines = (*_BUILTIN_MACROS, *macros, f"SHADER_STAGE_{stage.upper()}=1")
+    return _Job(pass_name, (*_CG_HEADERS, *_SURFACE_HEADERS), defines, code, stage, f"sssgen_{stage}", True)
 
 
-def _pass_job(program: shaderlab.Program, stage: Stage, on: tuple[str, ...], builtin: bool) -> _Job:
+def _pass_job(program: shaderlab.Program, stage: Stage, keywords: tuple[str, ...], builtin: bool) -> _Job:
     """A stage of a pass with vertex and fragment programs of its own. Raises SurfaceError."""
     entry = program.pragma(stage)
     if entry is None:
         raise surface.SurfaceError(f"{program.name}: no #pragma {stage}")
-    included = _CG_HEADERS if program.dialect == "CG" else ()
+    headers = _CG_HEADERS if program.dialect == "CG" else ()
     common = _BUILTIN_MACROS if builtin else (*_URP_MACROS, _INSTANCED)
-    defines = (*common, f"SHADER_STAGE_{stage.upper()}=1", *on)
-    return _Job(f"{program.name} {stage}", included, defines, program.code, stage, entry, builtin)
+    defines = (*common, f"SHADER_STAGE_{stage.upper()}=1", *keywords)
+    return _Job(f"{program.name} {stage}", headers, defines, program.code, stage, entry, builtin)
 
 
 def _check_batcher(shader: shaderlab.Shader) -> list[Message]:
     """The SRP batcher wants the same UnityPerMaterial in every pass, with every property but the textures."""
     buffers = {}
     for program in shader.programs:
-        found = re.search(r"CBUFFER_START\s*\(UnityPerMaterial\)(.*?)CBUFFER_END", program.code, re.DOTALL)
-        buffers[program.name] = " ".join(re.sub(r"//[^\n]*", "", found[1]).split()) if found else ""
+        match = re.search(r"CBUFFER_START\s*\(UnityPerMaterial\)(.*?)CBUFFER_END", program.code, re.DOTALL)
+        buffers[program.name] = " ".join(re.sub(r"//[^\n]*", "", match[1]).split()) if match else ""
     messages = []
     if len(set(buffers.values())) > 1:
         text = f"UnityPerMaterial differs between the passes {', '.join(buffers)}"
@@ -259,8 +259,8 @@ def _check_batcher(shader: shaderlab.Shader) -> list[Message]:
 
 def find() -> Unity:
     """The headers, a C preprocessor, glslang and DXC. Raises CompilerMissing where one of them is missing."""
-    named = os.environ.get("SSSGEN_UNITY_INCLUDES")
-    root = Path(named).expanduser() if named else STANDIN
+    configured = os.environ.get("SSSGEN_UNITY_INCLUDES")
+    root = Path(configured).expanduser() if configured else STANDIN
     if not holds_headers(root):
         raise CompilerMissing(f"SSSGEN_UNITY_INCLUDES must name a folder with {HEADERS}")
     return Unity(root.resolve(), root.resolve() != STANDIN.resolve(), _preprocessor())
@@ -282,12 +282,12 @@ def _preprocessor() -> Callable[[str, list[str], list[Path]], str]:
         options = [f"-D{macro}" for macro in macros]
         for folder in folders:
             options += ["-I", str(folder)]
-        whole = [*command, *options, "-"]
-        done = subprocess.run(whole, input=text, capture_output=True, encoding="utf-8", check=False)
-        if done.returncode:
-            raise ValueError(done.stderr.strip())
-        kept = re.sub(r"^[ \t]*#pragma.*$", "", done.stdout, flags=re.MULTILINE)
-        return re.sub(r'^# (\d+) "((?:[^"\\]|\\.)*)".*$', r'#line \1 "\2"', kept, flags=re.MULTILINE)
+        call = [*command, *options, "-"]
+        completed = subprocess.run(call, input=text, capture_output=True, encoding="utf-8", check=False)
+        if completed.returncode:
+            raise ValueError(completed.stderr.strip())
+        output = re.sub(r"^[ \t]*#pragma.*$", "", completed.stdout, flags=re.MULTILINE)
+        return re.sub(r'^# (\d+) "((?:[^"\\]|\\.)*)".*$', r'#line \1 "\2"', output, flags=re.MULTILINE)
 
     return preprocess
 
