@@ -34,7 +34,7 @@ NAMES = sorted(library.index())
 # Documented
 
 SECTIONS = {"summary", "role", "formula", "source", "units"}
-STRUCTURED = {"role", "formula", "superseded_by", "suggested", "legend", "shape", "deviation_bounds"}
+STRUCTURED = {"role", "formula", "superseded_by", "suggested", "legend", "shape", "sets", "deviation_bounds"}
 """Sections that are no sentences."""
 
 
@@ -66,6 +66,8 @@ WRONG_ATTRIBUTES = {
     ),
     "suggested: thickness to thinnes": ("unknown quantity 'thinnes'", "did you mean 'thinness'?"),
     "suggested: thickness to thinness": ("'f' does not convert thickness to thinness", ""),
+    "sets: tint": ("'tint' is not a setting", "write, for example, `sets: albedo by tint`"),
+    "sets: albedo by tint": ("'f' does not write 'albedo'", ""),
     "superseded_by: beer_lambert": ("superseded_by is for baselines", "write `baseline: TEXT`, too"),
     "baseline: One.\nsuperseded_by: beer_lamber": (
         "unknown technique 'beer_lamber' in superseded_by",

@@ -1,7 +1,6 @@
 """The attributes of a technique: `key: text` sections of its doc comment, checked when the file is loaded.
 
-docs/language.md has the table of them. What the program must know about a technique stands here, never in a list of
-techniques' names elsewhere.
+docs/language.md has the table of them. The program knows a technique only by its attributes, not by its name.
 """
 
 from __future__ import annotations
@@ -16,20 +15,21 @@ from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 TEXTS = ("role", "formula", "source", "units", "limits", "corrects", "baseline", "uncharted", "glows", "legend")
 """Attributes of free text; `role` is checked by the library."""
 
-ATTRIBUTES = (*TEXTS, "superseded_by", "suggested", "shape", "deviation", "deviation_bounds")
+ATTRIBUTES = (*TEXTS, "superseded_by", "suggested", "shape", "sets", "deviation", "deviation_bounds")
 
 SHAPES = ("box", "sphere", "torus", "texture")
-"""What a distance function can declare as its `shape`, for those who need a body of a known kind."""
+"""The values of `shape`, the body that a distance function describes."""
 
 BOUNDS = ("largest", "share", "bound_share")
 """What `deviation_bounds` can bound."""
 
 _CONVERSION = re.compile(r"(\w+) to (\w+)")
+_SETTING = re.compile(r"(\w+) by (\w+)")
 _BOUND = re.compile(r"(\w+) ([0-9.e+-]+)")
 
 
 class Attributes(NamedTuple):
-    """What a technique declares, but for its texts."""
+    """The attributes of a technique that are more than text."""
 
     baseline: bool = False
     """A formula as its source published it."""
@@ -45,6 +45,8 @@ class Attributes(NamedTuple):
     """What a chart's legend adds to the name of a chain with this conversion."""
     shape: str = ""
     """The body whose distance it gives, one of `SHAPES`."""
+    sets: Mapping[str, str] = {}
+    """Value of the surface → the uniform that is its value, as long as textures have their defaults."""
     deviation: str = ""
     """Why back ends may deviate from the reference by more than the goal."""
     deviation_bounds: Mapping[str, Mapping[str, float]] = {}
@@ -88,6 +90,7 @@ def read(texts: Mapping[str, str], shown: str) -> Attributes:
         suggested=_conversion(texts["suggested"], shown) if "suggested" in texts else None,
         legend=texts.get("legend", ""),
         shape=shape,
+        sets=_settings(texts["sets"], shown) if "sets" in texts else {},
         deviation=texts.get("deviation", ""),
         deviation_bounds=bounds,
     )
@@ -102,6 +105,17 @@ def _conversion(text: str, shown: str) -> tuple[str, str]:
         if quantity not in SCALARS:
             raise _wrong(f"unknown quantity '{quantity}'", quantity, SCALARS, "quantities", shown)
     return match[1], match[2]
+
+
+def _settings(text: str, shown: str) -> dict[str, str]:
+    """`metallic by metalness, roughness by surface_roughness`."""
+    settings = {}
+    for item in text.split(","):
+        match = _SETTING.fullmatch(item.strip())
+        if match is None:
+            raise failure(f"'{item.strip()}' is not a setting", "write, for example, `sets: albedo by tint`", shown)
+        settings[match[1]] = match[2]
+    return settings
 
 
 def _bounds(text: str, shown: str) -> dict[str, dict[str, float]]:

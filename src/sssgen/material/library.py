@@ -117,12 +117,12 @@ def _read_technique(path: str) -> Technique:
     if role not in ROLES:
         raise failure(f"unknown role '{role}'", did_you_mean(role, ROLES) or f"roles: {', '.join(ROLES)}", shown)
     declared = attributes.read(doc, shown)
-    _check_attributes(declared, function, shown)
+    _check_attributes(declared, module, function, shown)
     return Technique(name, role, path, module, function, doc, declared)
 
 
-def _check_attributes(declared: Attributes, function: Function, shown: str) -> None:
-    """Raises SssgenError where attributes do not agree with the library or the function."""
+def _check_attributes(declared: Attributes, module: Module, function: Function, shown: str) -> None:
+    """Raises SssgenError if attributes do not agree with the library, the uniforms or the function."""
     for name in declared.superseded_by:
         if name not in index():
             raise failure(f"unknown technique '{name}' in superseded_by", did_you_mean(name, index()), shown)
@@ -130,10 +130,26 @@ def _check_attributes(declared: Attributes, function: Function, shown: str) -> N
         source, target = declared.suggested
         if [param.quantity for param in function.params] != [source] or function.quantity != target:
             raise failure(f"'{function.name}' does not convert {source} to {target}", "", shown)
+    for value, uniform in declared.sets.items():
+        written = [param.name for param in function.params if param.direction != "in"]
+        if value not in written:
+            raise failure(f"'{function.name}' does not write '{value}'", did_you_mean(value, written), shown)
+        names = [declared_uniform.name for declared_uniform in module.uniforms]
+        if uniform not in names:
+            raise failure(f"the file has no uniform '{uniform}'", did_you_mean(uniform, names), shown)
+
+
+def setter(value: str) -> tuple[str, str]:
+    """The technique that sets a value of the surface to a uniform, and the uniform, by the attribute `sets`."""
+    return next(
+        (technique.name, technique.attributes.sets[value])
+        for technique in load_all()
+        if value in technique.attributes.sets
+    )
 
 
 def load_all() -> Iterator[Technique]:
-    """Every technique of the library. Raises SssgenError with the errors of all faulty ones."""
+    """Every technique of the library. Raises SssgenError with the errors of all faulty files."""
     errors = []
     for path in index().values():
         try:

@@ -223,7 +223,7 @@ class _Reader:
             table.error("parameters", "'parameters' takes a table", "write parameters = { radius = 1.0 }")
             parameters = {}
         shape = Distance(
-            table.text("technique", "sphere"),
+            table.text("technique", Distance.technique),
             self.folder,
             parameters,
             table.number("reach", 4.0, POSITIVE),

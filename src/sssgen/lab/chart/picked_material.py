@@ -15,6 +15,7 @@ from sssgen.lab.measure.candidates import load
 from sssgen.lab.measure.measured_chain import Stage, material_text
 from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.lab.scene.scene_body import Body, body
+from sssgen.material import library
 from sssgen.material.slots import needs
 
 
@@ -27,14 +28,17 @@ def material_files(scene: MeasuredScene, picked: Pick, name: str) -> dict[str, s
     if picked.chain is not None:
         stages += stages_of(picked.chain, shape)
     matte = picked.chain["matte"] if picked.chain is not None else [1.0, 1.0, 1.0]
-    stages += [
-        Stage("surface", "base_color", (("tint", [*matte, 1.0]),)),
-        Stage("surface", "pbr_constants", (("surface_roughness", 1.0),)),
-    ]
+    stages += [_surface("albedo", [*matte, 1.0]), _surface("roughness", 1.0)]
     doc = f"Picked for the scene {scene.name}: {scene.title}."
     used = {bound for stage in stages for _, bound in stage.bind}
     files = {file: text for file, text in shape.files.items() if any(bound.startswith(file) for bound in used)}
     return {f"{name}.toml": material_text(name, stages, scene.title, doc), **files}
+
+
+def _surface(name: str, value: object) -> Stage:
+    """The stage that sets a value of the surface; a colour has an opacity as its fourth component."""
+    technique, uniform = library.setter(name)
+    return Stage("surface", technique, ((uniform, value),))
 
 
 def stages_of(point: Mapping[str, Any], shape: Body) -> list[Stage]:

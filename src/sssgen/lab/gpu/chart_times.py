@@ -22,6 +22,7 @@ from sssgen.lab.gpu.gpu_timing import Measured
 from sssgen.lab.measure.measured_chain import Stage, material_of
 from sssgen.lab.scene import scene_body as body
 from sssgen.lab.scene.measured_scene import MeasuredScene
+from sssgen.material import library
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import compile
 
@@ -102,8 +103,9 @@ def _timed(
                 file.write(text)
         chains: list[tuple[str, Sequence[Stage]]] = [(EMPTY, ())]
         chains += [(str(number), stages_of(point, shape)) for number, point in enumerate(points)]
+        plain = Stage("surface", library.setter("albedo")[0])
         for name, stages in chains:
-            surface = [] if any(stage.section == "surface" for stage in stages) else [Stage("surface", "base_color")]
+            surface = [] if any(stage.section == "surface" for stage in stages) else [plain]
             material = material_of([*stages, *surface], folder)
             fitting = _with_parameters(scene, measured, material)
             programs.append(gpu_programs.of_material(name, material, fitting, surface_points, EVALUATIONS))

@@ -1,0 +1,51 @@
+"""The code knows techniques by their attributes, not by their names."""
+
+from __future__ import annotations
+
+import re
+
+from folders import ROOT
+from sssgen.material import library
+
+EXAMPLE, SHAPE, HINT = "an example in a text for users", "a shape of a body", "a hint of uniforms"
+PERMITTED = {
+    "cli/ci.py": (EXAMPLE, {"lobe_gdc2011"}),
+    "cli/new.py": (
+        "the material to start from, which the user edits",
+        {"base_color", "beer_lambert", "lobe_normalized", "parallax_refracted", "pbr_constants", "thickness_map"},
+    ),
+    "harness/evaluate/evaluation.py": (EXAMPLE, {"lobe_gdc2011"}),
+    "harness/lint_findings.py": (EXAMPLE, {"lobe_gdc2011"}),
+    "harness/scenes/distance_field.py": ("the default of a scene's distance function", {"sphere"}),
+    "harness/scenes/scene_reader.py": (
+        "kinds of geometry; an example",
+        {"box", "capsule", "sphere", "torus"},
+    ),
+    "harness/stress/rows_field.py": (SHAPE, {"box", "sphere", "torus"}),
+    "harness/testing/project_run.py": (EXAMPLE, {"lobe_gdc2011"}),
+    "lab/chart/charting.py": ("names of scenes", {"capsule", "torus"}),
+    "lab/gpu/timed_programs.py": (EXAMPLE, {"lobe_exp2"}),
+    "lab/reference/transport_mitsuba.py": ("Mitsuba's names", {"box", "sphere"}),
+    "lang/check/uniform_hints.py": (HINT, {"normal_map"}),
+    "material/attributes.py": (SHAPE, {"box", "sphere", "torus"}),
+    "material/baked.py": (HINT, {"normal_map"}),
+    "material/slots.py": (EXAMPLE, {"box"}),
+    "targets/assemble.py": (HINT, {"normal_map"}),
+    "targets/reflection.py": (HINT, {"normal_map"}),
+    "targets/texture_import.py": ("settings of a texture import", {"normal_map", "srgb"}),
+}
+"""File → the reason, and the quoted words that are also names of techniques."""
+DATA = ("lab/measure/published.toml",)
+"""Files that list techniques as data: the chains of the published sources."""
+
+
+def test_no_technique_is_known_by_its_name() -> None:
+    quoted = re.compile(rf"[\"']({'|'.join(library.index())})(?::\w+)?[\"']")
+    package = ROOT / "src" / "sssgen"
+    names = {}
+    for path in sorted(package.rglob("*")):
+        file = path.relative_to(package).as_posix()
+        if path.suffix in (".py", ".toml", ".json") and file not in DATA:
+            names[file] = set(quoted.findall(path.read_text(encoding="utf-8")))
+    with_names = {file: matches for file, matches in names.items() if matches}
+    assert with_names == {file: permitted for file, (_, permitted) in PERMITTED.items()}
