@@ -1,6 +1,6 @@
-"""How fast and how right distance textures are baked, beside other tools: `make bench`, or see --help.
+"""Speed and accuracy of baked distance textures, compared with other tools: `make bench`, or see --help.
 
-All tools get the same triangles and the same voxel centres, in turns; what is timed leads from triangles to signed
+All tools get the same triangles and the same voxel centres, in turns; the time is from triangles to signed
 float32 distances, the building of trees included. Tools that are not installed are named and left out: `pip install
 open3d mesh-to-sdf` brings them. Errors are those against brute force, at some of the voxels. --growth runs the command
 itself, each time in a process of its own, and prints how time and memory grow.
@@ -96,7 +96,7 @@ TOOLS: dict[str, Callable[[], Bake]] = {
 
 
 def installed() -> Iterator[tuple[str, Bake]]:
-    """The tools that are there; of the others it says so."""
+    """The available tools; the others are reported."""
     for name, tool in TOOLS.items():
         try:
             yield name, tool()
@@ -147,7 +147,7 @@ def measure(tools: dict[str, Bake], name: str, places: Array, corners: Indices, 
             start = time.perf_counter()
             try:
                 result = bake(places, corners, grid, points)
-            except Exception as error:  # whatever a tool of others fails with
+            except Exception as error:  # any failure of another tool
                 print(f"fails: {tool.strip()} ({type(error).__name__}: {error})")
                 del tools[tool]
                 continue

@@ -1,6 +1,6 @@
-"""How fast emitting is, as ratios measured in one run: `make bench`, or python benchmarks/bench_emit.py [MATERIAL…].
+"""Speed of emitting, as ratios measured in one run: `make bench`, or python benchmarks/bench_emit.py [MATERIAL…].
 
-Everything is measured beside one `glslangValidator` process on the fragment shader that was emitted, in turn, medians
+Everything is compared with one `glslangValidator` process on the emitted fragment shader, in turn, medians
 of the rounds. Cold is a whole process of `sssgen emit` of one material to all targets: with nothing changed since the
 last one; with the value of a parameter changed each time; with a parameter folded to a new constant each time, so that
 every pass runs again; with an empty cache folder. Warm is one process, the materials loaded, changed in the same ways.
@@ -121,7 +121,7 @@ def measure(name: str) -> None:
 
 
 def measure_variants(name: str) -> None:
-    """Prints how many variants a second there are, and whether the last take as long as the first."""
+    """Prints the number of variants a second, and whether the last are as fast as the first."""
     materials = [parse_material(variant(name, 5000 + index), examples()[name]) for index in range(VARIANTS)]
     parts = []
     for start in range(0, VARIANTS, VARIANTS // 4):

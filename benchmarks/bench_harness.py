@@ -1,4 +1,4 @@
-"""What the harness costs: `make bench`, or python benchmarks/bench_harness.py [COUNT].
+"""The cost of the harness: `make bench`, or python benchmarks/bench_harness.py [COUNT].
 
 Each technique is evaluated COUNT times (10,000) in one draw, on every back end, and the table has evaluations a second,
 the share of the time that is spent outside the draw, and the time of the first call, which compiles, over that of the

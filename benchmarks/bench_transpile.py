@@ -1,4 +1,4 @@
-"""How much public shader code `sssgen transpile` takes, and how fast.
+"""How much public shader code `sssgen transpile` accepts, and how fast.
 
     python benchmarks/bench_transpile.py --kind library=FOLDER --kind scenes=FOLDER [--jobs 2] [--json FILE]
     python benchmarks/bench_transpile.py --speed
@@ -55,7 +55,7 @@ class Pool:
         self.threads = ThreadPoolExecutor(jobs)
 
     def ask(self, what: str, inputs: Sequence[tuple[object, ...]]) -> list[Any]:
-        """The answers, in order; what a process was lost on is answered by the LostError."""
+        """The answers, in order; an item that ended its process has a LostError."""
         return list(self.threads.map(lambda one: self._ask((what, one)), inputs))
 
     def _ask(self, question: object) -> Any:
@@ -98,7 +98,7 @@ def judged(
 
 
 def asked_naga(verdicts: Sequence[Verdict], folders: Sequence[Path], pool: Pool) -> list[Verdict]:
-    """The verdicts with what naga says of the files as they are."""
+    """The verdicts with naga's messages for the unchanged files."""
     codes = [read(verdict.path, folders) for verdict in verdicts]
     texts = [(preprocessed(code), code.stage) for code in codes]
     answers = pool.ask(naga_glsl.__name__, texts)
@@ -175,7 +175,7 @@ def main() -> None:
 
 
 def measure(kinds: dict[str, Path], targets: Sequence[str], inputs: argparse.Namespace) -> None:
-    """Judges all files and prints what was found."""
+    """Judges all files and prints the results."""
     skipped: Counter[str] = Counter()
     verdicts: list[Verdict] = []
     pool = Pool(inputs.jobs)

@@ -1,4 +1,4 @@
-"""What emitted shaders cost on a GPU, beside the same written by hand: make bench-gpu, or python benchmarks/gpu.py.
+"""The cost of emitted shaders on a GPU, compared with the same written by hand: make bench-gpu, or python benchmarks/gpu.py.
 
     python benchmarks/gpu.py --size 320x180 --rounds 5 --json out.json --markdown out.md
 
@@ -50,7 +50,7 @@ def published(aspect: float) -> Program:
 
 
 def emitted(aspect: float) -> Program:
-    """The same, as emitted: only its image is made as wide as the other."""
+    """The same, emitted: its image has the other's width."""
     compiled = sssgen.compile("jelly_cubes", "glsl-330")
     values = {one["name"]: one["default"] for one in compiled.reflection["uniforms"]}
     # 0.9 of a mean that was never more than 0.38667

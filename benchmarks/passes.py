@@ -1,4 +1,4 @@
-"""What each pass costs on the examples, as a ratio to walking the same module once and changing nothing.
+"""The cost of each pass on the examples, as a ratio to walking the same module once without a change.
 
 python benchmarks/passes.py [TARGET]
 """

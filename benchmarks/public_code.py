@@ -1,6 +1,6 @@
-"""One file of public shader code: whether it counts, and what becomes of it in every target and every compiler.
+"""One file of public shader code: whether it counts, and its result in every target and every compiler.
 
-A file counts where glslang takes it as GLSL. One without `#version` is read as 4.50 of the compatibility profile, which
+A file counts where glslang accepts it as GLSL. One without `#version` is read as 4.50 of the compatibility profile, which
 knows `varying`, `texture2D` and `gl_FragColor` too; one with a version as it is, or, where that fails, as 4.50. A file
 of functions gets an empty `main`, a Shadertoy scene the uniforms and the `main` that the site gives it.
 """
@@ -49,7 +49,7 @@ _SCENE_MAIN = "\nvoid main() { vec4 color; mainImage(color, gl_FragCoord.xy); gl
 
 
 class Code(NamedTuple):
-    """A file as it is found."""
+    """A file before transpilation."""
 
     path: Path
     text: str
@@ -67,7 +67,7 @@ class Code(NamedTuple):
 
 
 class Made(NamedTuple):
-    """What one target made of a file."""
+    """The result of one target for a file."""
 
     source: Source | None
     """The text, with the entry that it has; None where there is none."""
@@ -76,7 +76,7 @@ class Made(NamedTuple):
 
 
 def read(path: Path, folders: Sequence[Path]) -> Code:
-    """A file with what it includes, which is looked for in `folders` too; one that lacks a file does not compile."""
+    """A file with its includes, which are also searched in `folders`; without one of them it does not compile."""
     try:
         return Code(path, expanded(read_text(path, path.as_posix()), path, folders))
     except SssgenError as error:
@@ -84,7 +84,7 @@ def read(path: Path, folders: Sequence[Path]) -> Code:
 
 
 def accepted(codes: Sequence[Code]) -> list[str]:
-    """What glslang says of each file: '' where it counts."""
+    """glslang's error for each file: '' where it counts."""
     reported = _in_batches([(code.stage, _whole(code, own_version=True)) for code in codes])
     again = [index for index, message in enumerate(reported) if message and _VERSION.search(codes[index].text)]
     for index, message in zip(
@@ -95,7 +95,7 @@ def accepted(codes: Sequence[Code]) -> list[str]:
 
 
 def glslang(sources: Sequence[Source]) -> list[str]:
-    """What glslang says of GLSL that was made: '' of what it takes."""
+    """glslang's error for each emitted GLSL text: '' where it is accepted."""
     return _in_batches([(_STAGES[source.stage], _with_entry(source)) for source in sources])
 
 
@@ -105,7 +105,7 @@ def _with_entry(source: Source) -> str:
 
 
 def preprocessed(code: Code) -> str:
-    """The whole program without directives, as 4.50, for a front end that wants Vulkan's GLSL.
+    """The whole program without directives, as 4.50, for a front end of Vulkan's GLSL.
 
     What Vulkan wants of an interface is no part of the code: what a stage is given and gives, and uniforms but for
     textures, become variables.
@@ -152,7 +152,7 @@ def _in_batches(programs: Sequence[tuple[str, str]]) -> list[str]:
 
 
 def _batch(programs: Sequence[tuple[str, str]]) -> list[str]:
-    """One process; where it does not end well, one for each text, so that only one is without an answer."""
+    """One process; where it fails, one for each text, so that only one has no answer."""
     with tempfile.TemporaryDirectory() as folder:
         paths = [Path(folder) / f"{number}.{stage}" for number, (stage, _) in enumerate(programs)]
         for path, (_, text) in zip(paths, programs, strict=True):
@@ -184,7 +184,7 @@ Question = tuple[str, tuple[object, ...]]
 
 
 def naga_glsl(text: str, stage: str) -> str:
-    """What naga's own front end for GLSL says of a text; '' where it takes it."""
+    """The error of naga's own front end for GLSL; '' where it accepts the text."""
     import wgpu
 
     try:
@@ -206,7 +206,7 @@ def serve(_: str) -> tuple[str, Callable[[Question], object]]:
 
 
 def made(code: Code, folders: Sequence[Path], targets: Sequence[str]) -> dict[str, Made]:
-    """Each target's text and what the compilers in this process say of it; {"": …} where the file cannot be read."""
+    """Each target's text and the messages of the compilers in this process; {"": …} where the file cannot be read."""
     try:
         entry = "shadertoy" if code.is_scene else ""
         module = load_glsl(code.path, code.path.name, tuple(folders), entry=entry).module
@@ -233,7 +233,7 @@ def _complaints(source: Source) -> Iterator[str]:
 
 
 def _reason(error: Exception) -> str:
-    """A message for people, or, where there is none, what broke."""
+    """A readable message, or the exception where there is none."""
     if isinstance(error, SssgenError):
         return error.diagnostics[0].message
     trace = error.__traceback__
@@ -244,7 +244,7 @@ def _reason(error: Exception) -> str:
 
 
 def blank(message: str) -> str:
-    """A message without the names and numbers in it, so that equal reasons are counted together."""
+    """A message without its names and numbers, so that equal reasons are counted together."""
     message = re.sub(r"'[^']*'|\"[^\"]*\"|`[^`]*`", "'…'", message.splitlines()[0] if message else "")
     return re.sub(r"\d+", "N", message)[:150]
 

@@ -27,7 +27,7 @@ SHOWN = 40
 
 
 def checkout(state: str, place: Path) -> Path:
-    """The folder that holds a state of the project: itself, or a commit's files in `place`."""
+    """The folder of a state of the project: itself, or a commit's files in `place`."""
     if Path(state).is_dir():
         return Path(state).resolve()
     archive = place.with_suffix(".tar")

@@ -1,4 +1,4 @@
-"""How fast the stages of `sssgen transpile` are, on a text of our own, and whether their time goes with its length.
+"""Speed of the stages of `sssgen transpile` on a synthetic text, and whether it is linear in the length.
 
 The text is functions as people write them for effects: hashes, noise and its sums, distances, colours; with comments,
 macros, loops and swizzles, each with a number in its name. 100 kB of it are timed, then ten times as much: a growth of
@@ -77,7 +77,7 @@ def stages(text: str, targets: Sequence[str]) -> dict[str, float]:
     results: dict[str, float] = {}
 
     def timed(name: str, work: Callable[[], Made]) -> Made:
-        with paused():  # as it is for users
+        with paused():  # as for users
             start = time.perf_counter()
             result = work()
         results[name] = min(results.get(name, float("inf")), time.perf_counter() - start)

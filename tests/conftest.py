@@ -1,4 +1,4 @@
-"""What the tests share: the real compilers, hypothesis without clocks, and the counts of random inputs."""
+"""Shared by the tests: the real compilers, hypothesis without deadlines, and the counts of random inputs."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def backend() -> Callable[[str], Backend]:
 
 @pytest.fixture(scope="session")
 def assert_compiles() -> Callable[[Source], None]:
-    """`assert_compiles(source)`: every compiler for the source's language takes it."""
+    """`assert_compiles(source)`: every compiler for the source's language accepts it."""
 
     def check(source: Source) -> None:
         readers = map(compiler_or_skip, compilers.readers(source.language))
@@ -48,7 +48,7 @@ def assert_compiles() -> Callable[[Source], None]:
 
 
 def pytest_report_header() -> list[str]:
-    """Which Unity headers the run was against, and what is not there."""
+    """The Unity headers of the run."""
     named = os.environ.get("SSSGEN_UNITY_INCLUDES")
     return [f"Unity headers: {f'real ones, {named}' if named else 'the stand-ins of harness/compilers/unity_standin'}"]
 

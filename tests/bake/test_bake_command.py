@@ -45,7 +45,7 @@ def there() -> set[str]:
 
 @pytest.fixture
 def idle(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What takes long must not begin."""
+    """Fails the test where a bake starts computing."""
 
     def working(*_: Any, **__: Any) -> None:
         raise AssertionError("the work began")
@@ -56,7 +56,7 @@ def idle(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
-    """What is said of a bake that must not be; nothing is written."""
+    """The errors of an invalid bake, which writes nothing."""
     before = there()
     capsys.readouterr()
     status = main(["bake", *arguments])
@@ -248,7 +248,7 @@ def test_a_sheet_has_no_thickness_map(capsys: pytest.CaptureFixture[str]) -> Non
 
 
 def test_inputs_are_not_overwritten(capsys: pytest.CaptureFixture[str], idle: None) -> None:
-    """Neither by the texture nor by what is written beside it: its JSON, and a mesh that gets texture coordinates."""
+    """By the texture and the files next to it: its JSON, and a mesh that gets texture coordinates."""
     box = meshes.box()._replace(uv=None)
     write(Path("box.png.obj"), box)
     images.write_png("height.png", np.eye(4))
@@ -377,7 +377,7 @@ def test_ctrl_c_ends_all_of_it(arguments: list[str]) -> None:
 
 
 def test_processes_make_no_difference() -> None:
-    """To the byte: the chance of the rays goes by the texel."""
+    """Byte for byte: the random rays depend on the texel only."""
     common = ["thickness", "box.obj", "--size", "96", "--rays", "64"]
     bake(*common, "-o", "one.png", "--processes", "1")
     bake(*common, "-o", "two.png", "--processes", "2")

@@ -145,7 +145,7 @@ def test_a_picture_is_no_volume(maps: None) -> None:
 
 
 def shell(textures: str, section: str, place: str = "", parameters: str = "") -> Shell:
-    """What a scene gives to a material with these textures, which lie beside it."""
+    """The values of a scene for a material with these textures in its folder."""
     path = material("made.toml", section)
     Path("scene.toml").write_text(
         f'material = "{path}"\n[geometry]\nkind = "mesh"\nfile = "box.obj"\n{place}\n'

@@ -1,4 +1,4 @@
-"""Baked pictures: Voronoi cells against all sites there are, normals against closed forms, channels in their places."""
+"""Baked pictures: Voronoi cells against all sites, normals against closed forms, the order of channels."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def centers(width: int, height: int) -> Array:
 
 
 def sites(across: int, up: int, jitter: float, seed: int, tileable: bool, beyond: int = 4) -> Array:
-    """All sites there are, and some cells beyond: (n, 2), in cells."""
+    """All sites, also those of some cells outside: (n, 2), in cells."""
     columns, rows = np.arange(-beyond, across + beyond), np.arange(-beyond, up + beyond)
     keys = cells._keys(columns, rows, (across, up) if tileable else None, seed)
     return np.stack(cells._sites(keys, columns, rows, jitter), axis=-1).reshape(-1, 2)
@@ -68,7 +68,7 @@ def test_far_sites_matter_at_full_jitter() -> None:
 
 
 def test_one_is_the_largest_possible_distance() -> None:
-    """By sites put where they are furthest; and no picture goes beyond, nor stays far below."""
+    """With sites at the largest distance; the values of pictures reach nearly 1 and do not exceed it."""
     for jitter in (0.0, 0.3, 1.0):
         reach = 0.5 + 0.5 * jitter  # sites at the far corners of four cells around the origin
         assert scale("f1", jitter) == pytest.approx(np.hypot(reach, reach))

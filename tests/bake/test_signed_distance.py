@@ -34,7 +34,7 @@ def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def decode(texels: npt.NDArray[Any], reach: float, name: str) -> Array:
-    """The distances that texels stand for, as the technique distance_texture reads them."""
+    """The distances that texels encode, as the technique distance_texture reads them."""
     result: Array = (2.0 * texels.astype(np.float64) / ENCODINGS[name].one - 1.0) * reach
     return result
 
@@ -52,7 +52,7 @@ def grid_about(body: MeshDistance, resolution: int = 24, padding: float = 0.1) -
 
 
 def centers(grid: Grid) -> Array:
-    """(z y x, 3), written out anew."""
+    """The centres of the voxels, (z y x, 3), computed independently."""
     z, y, x = np.mgrid[: grid.counts[2], : grid.counts[1], : grid.counts[0]]
     result: Array = grid.low + (np.stack([x, y, z], axis=-1).reshape(-1, 3) + 0.5) * grid.voxel
     return result
@@ -94,7 +94,7 @@ def test_a_box_has_its_distance(size: Any, middle: Any) -> None:
 
 
 def dent(result: Made, exact: Any) -> float:
-    """How far the triangles are from the surface that they stand for, at 66 places of each."""
+    """The distance of the triangles from the exact surface, at 66 places of each."""
     weights = np.array([(i, j, 10 - i - j) for i in range(11) for j in range(11 - i)]) / 10.0
     worst = 0.0
     for some in np.array_split(result.faces, max(1, len(result.faces) // 20_000)):
@@ -225,7 +225,7 @@ def test_distance_and_sign_of_odd_meshes_are_those_of_all_their_triangles(name: 
     turn = turns(points, result.triangles)
     turn = -turn if name in ("inside out", "open and inside out") else turn
     results = inside(body, grid, unsigned).ravel()
-    clear = np.abs(turn - INSIDE) > 0.02  # what the fast number may be off by
+    clear = np.abs(turn - INSIDE) > 0.02  # the error of the fast winding number
     assert (results == (turn > INSIDE))[clear].all()
     assert clear.mean() > 0.9 and 0.01 < results.mean() < 0.9
 
@@ -383,7 +383,7 @@ def test_an_inverted_mesh_is_reported_and_has_the_right_sign() -> None:
 
 
 def stored(built: Volume) -> Array:
-    """The distances that the texels stand for, (z y x,)."""
+    """The distances that the texels encode, (z y x,)."""
     result: Array = decode(built.texels, built.reach, built.facts["encoding"]).ravel()
     return result
 

@@ -60,17 +60,17 @@ def baked(path: str, size: tuple[int, int], expected: Request, unwrap: bool = Fa
 
 
 def lengths(built: Map, at: Atlas) -> Array:
-    """What the texels of an atlas stand for."""
+    """The places that the texels of an atlas cover."""
     result: Array = built.values.ravel()[at.texels] * built.facts["range"][1]
     return result
 
 
 def assert_sound(value: Array, exact: Any, error: Array, bias: float = 0.0) -> None:
-    """Within the errors that are told, as often as such errors should be."""
+    """The errors are within the reported standard errors, as often as expected."""
     z = (value - exact) / error
     assert abs(z.mean()) <= 4.0 / np.sqrt(len(z)) + bias / error.mean(), z.mean()
     assert 0.85 <= np.sqrt((z**2).mean()) <= 1.3
-    assert (np.abs(z) > 3.0).mean() <= 0.02  # 0.0027 of a normal distribution, and what estimated errors add
+    assert (np.abs(z) > 3.0).mean() <= 0.02  # 0.0027 of a normal distribution, and a margin for estimated errors
     assert (np.abs(value - exact) <= 6.0 * error + bias).all()
 
 
@@ -283,7 +283,7 @@ def test_a_ball_has_no_seam(globe: str) -> None:
 
 
 def covered(uv: Array, size: int) -> Any:
-    """How many triangles hold each texel's centre, (size, size)."""
+    """The number of triangles that contain each texel's centre, (size, size)."""
     count = np.zeros((size, size), np.int64)
     for corners in uv * size - 0.5:
         low, high = np.ceil(corners.min(axis=0)).astype(int), np.floor(corners.max(axis=0)).astype(int)

@@ -1,4 +1,4 @@
-"""Files of volumes: they are what the formats' documents say, and are read again; what is faulty is refused."""
+"""Files of volumes: they follow the formats' specifications, are read back, and faulty ones are refused."""
 
 from __future__ import annotations
 

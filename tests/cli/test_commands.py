@@ -1,4 +1,4 @@
-"""The command line: what each command prints and writes, its exit status, and what it says of errors."""
+"""The command line: the output, files, exit status and error messages of each command."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def test_help_and_version(arguments: list[str], capsys: pytest.CaptureFixture[st
 
 
 def test_help_and_emit_start_light() -> None:
-    """What `--help` and reading a material import: nothing heavy."""
+    """The modules that `--help` and reading a material import."""
     code = """
 import sys, sssgen.cli.emit, sssgen.cli.main, sssgen.material.material_loading
 try:
@@ -243,7 +243,7 @@ def test_warnings_do_not_change_the_result(run: Run, compiler: FakeCompiler) -> 
     compiler.warnings = [Diagnostic("warning", "beware", Span("wax.toml", 1, 1, 1, 2))]
     ran = run("emit", "wax.toml", "-t", "all", "-o", "out")
     assert ran.status == 0
-    assert ran.err.count("warning: beware") == 1  # though two targets say it
+    assert ran.err.count("warning: beware") == 1  # although two targets report it
 
 
 def test_all_errors_of_all_materials_and_targets(run: Run, compiler: FakeCompiler) -> None:

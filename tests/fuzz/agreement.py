@@ -28,7 +28,7 @@ SHOWS = ("_result", "_floats", "_whole")
 
 
 def compiles(module: Module, assert_compiles: Callable[[Source], None]) -> None:
-    """Every compiler takes what every language's target makes of the module."""
+    """Every compiler accepts the text of the module in every language."""
     for language in LANGUAGES:
         for source in sources(transpile(module, language, "fuzzed").files):
             assert_compiles(source)
@@ -68,7 +68,7 @@ def arguments() -> Inputs:
 
 
 class Oracle:
-    """What the numpy target makes of a text, and where float32 can be held against it."""
+    """The results of the numpy target for a text, and the lanes where float32 is comparable."""
 
     def __init__(self, text: str) -> None:
         self.text = text

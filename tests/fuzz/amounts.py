@@ -19,7 +19,7 @@ def examples(few: int, share: float = 1.0, shrink: bool = True) -> settings:
     return settings(
         max_examples=max(1, round(int(os.environ["FUZZ_EXAMPLES"]) * share)) if LONG else few,
         derandomize=not LONG,
-        deadline=None,  # the watchdog's business, which says what the input was
+        deadline=None,  # the watchdog reports the input
         suppress_health_check=list(HealthCheck),
         phases=[Phase.generate, *([Phase.shrink] if shrink else [])],
         database=None,

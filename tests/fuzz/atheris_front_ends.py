@@ -1,4 +1,4 @@
-"""Bytes that look for new ways through a front end: atheris, https://github.com/google/atheris, where it is installed.
+"""Coverage-guided bytes for the front ends: atheris, https://github.com/google/atheris, where it is installed.
 
     python tests/fuzz/atheris_front_ends.py source CORPUS -max_total_time=60
 

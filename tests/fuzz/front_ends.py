@@ -92,7 +92,7 @@ def _checked(path: Path) -> None:
 
 
 def _reflection(path: Path) -> None:
-    """Read as what lies beside a shader."""
+    """Read as a file next to a shader."""
     shader = path.with_name(path.name.removesuffix(".reflection.json"))
     shader.write_text("vec3 f(vec3 x) { return x; }\n", encoding="utf-8")
     shader_files.read([str(shader)], [])

@@ -1,4 +1,4 @@
-"""Texts that upset readers, whatever language they are read as."""
+"""Texts that are difficult for parsers of any language."""
 
 from __future__ import annotations
 

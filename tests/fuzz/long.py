@@ -1,4 +1,4 @@
-"""Fuzzes for as long as one likes: rounds of the tests here, each with other inputs, then atheris if it is installed.
+"""Fuzzes for a given time: rounds of the tests here, each with other inputs, then atheris if it is installed.
 
     python tests/fuzz/long.py --minutes 10
 

@@ -238,7 +238,7 @@ class ShaderPrograms:
     # Statements
 
     def block(self, indent: int, size: int) -> str:
-        """Up to `size` statements; what they declare is gone at the end."""
+        """Up to `size` statements; their declarations are local to the block."""
         known, places = list(self.known), list(self.places)
         text = "".join(self.statement(indent, size) for _ in range(self.random.randint(1, size)))
         self.known, self.places = known, places

@@ -29,7 +29,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return result
 
 
-@pytest.mark.filterwarnings("ignore")  # what Pillow, trimesh and OpenEXR warn of is not what is tested
+@pytest.mark.filterwarnings("ignore")  # warnings of Pillow, trimesh and OpenEXR are not tested
 @pytest.mark.parametrize("name", FRONT_ENDS)
 @examples(60, 1.0)
 @given(draw=st.data())
@@ -40,7 +40,7 @@ def test_mutated_valid_input(name: str, folder: Path, draw: st.DataObject) -> No
 
 @pytest.mark.parametrize("name", FRONT_ENDS)
 def test_the_seeds_are_right(name: str, folder: Path) -> None:
-    """What is mutated is taken as it is; else the mutations would test the first check alone."""
+    """The seeds are valid; else the mutations would test the first check alone."""
     front_end = FRONT_ENDS[name]
     good = [survives(front_end, seed, folder) for seed in front_end.seeds()]
     assert sum(good) > 0.8 * len(good)

@@ -49,7 +49,7 @@ def test_an_unreadable_file(name: str, tmp_path: Path) -> None:
 
 
 def included(path: Path) -> str:
-    """What loading a file says, or ''."""
+    """The error of loading a file, or ''."""
     with bounded():
         try:
             load_file(path, path.name)
@@ -73,7 +73,7 @@ def test_a_chain_of_files(tmp_path: Path) -> None:
 
 
 def test_paths_that_double(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each file includes the next by two names: twice as many ways with each, which are not all gone."""
+    """Each file includes the next by two names: the number of paths doubles with each file; not all are followed."""
     read: list[str] = []
     original = loader.read_text
     monkeypatch.setattr(loader, "read_text", lambda path, shown: (read.append(str(path)), original(path, shown))[1])

@@ -100,7 +100,7 @@ ARRAYS = {
 
 
 def exr(width: int, height: int) -> bytes:
-    """A picture whose head says that it is of another size."""
+    """A picture whose header has another size."""
     good = FRONT_ENDS["exr"].seeds()[0]
     index = good.index(b"\0\x10\0\0\0", good.index(b"dataWindow")) + 5
     return good[:index] + struct.pack("<4i", 0, 0, width, height) + good[index + 16 :]
@@ -170,7 +170,7 @@ def test_wrong_sizes_of_exr(size: tuple[int, int], tmp_path: Path) -> None:
         assert not survives(FRONT_ENDS["exr"], exr(*size), tmp_path)
 
 
-@pytest.mark.filterwarnings("ignore")  # trimesh's readers compute with what they find
+@pytest.mark.filterwarnings("ignore")  # trimesh's readers compute with any numbers
 @pytest.mark.parametrize("title", MESHES)
 def test_wrong_meshes(title: str, tmp_path: Path) -> None:
     with roomy(ROOM):

@@ -18,8 +18,8 @@ CUT = ("switches.glsl", "side_effects.glsl", "structs.glsl", "uniforms.frag", "m
 
 
 def refused(text: str) -> SssgenError | None:
-    """What is said of a text, each with a place in it, within the time; None where it is taken."""
-    load_glsl_text("float f() { return 1.0; }", "seed.glsl")  # the grammar's tables are not what is measured
+    """The messages for a text, each with a place in it, within the time; None where it is accepted."""
+    load_glsl_text("float f() { return 1.0; }", "seed.glsl")  # the grammar's tables are loaded before the measurement
     try:
         with bounded():
             load_glsl_text(text, "fuzzed.glsl")

@@ -119,5 +119,5 @@ def test_a_template_cannot_change_the_target(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("mark", ["\x02999999\x03", "\x02abc\x03", "\x02", "\x03\x02", "\x020\x03", "\x02٣\x03"])
 def test_templates_may_contain_line_marks(mark: str, tmp_path: Path) -> None:
-    """A template may hold the characters by which lines are known."""
+    """A template may contain the characters that mark lines."""
     assert rendered(tmp_path, f"// x{mark}y\n").startswith("#version")

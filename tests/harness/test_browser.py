@@ -1,4 +1,4 @@
-"""The back end `browser`: draws in Chromium, and its messages where none can be made."""
+"""The back end `browser`: draws in Chromium, and its messages where it cannot draw."""
 
 from __future__ import annotations
 
@@ -188,7 +188,7 @@ def short_folder() -> Iterator[Path]:
 
 
 def test_a_killed_python_leaves_nothing(browser: Browser, short_folder: Path) -> None:
-    """The folder goes when the browser has ended."""
+    """The folder is removed when the browser has ended."""
     script = "from sssgen.harness import backends; print(backends.get('browser').device(), flush=True); input()"
     python = subprocess.Popen(
         [sys.executable, "-c", script], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,

@@ -76,7 +76,7 @@ def emitted(target: str, form: str = "shader") -> dict[str, str]:
 
 
 def program(name: str, script: str) -> str:
-    """A program that stands for a compiler which behaves badly."""
+    """A program that imitates a compiler that misbehaves."""
     path = Path(name)
     path.write_text(f"#!/bin/sh\n{script}\n", encoding="utf-8")
     path.chmod(path.stat().st_mode | stat.S_IXUSR)

@@ -63,7 +63,7 @@ def test_cases_are_collected_from_folders() -> None:
         ("render", "a/scene.toml", ("gl",), False),
         ("eval", "a/half.eval.json", ("webgpu", "gl"), True),
         ("compile", "broken_material.toml", (), True),
-        ("compile", "broken_other.toml", (), True),  # whose it is cannot be told
+        ("compile", "broken_other.toml", (), True),  # its owner is unknown
         ("compile", "misspelt.toml", (), True),
         ("render", "without_material.toml", ("webgpu",), True),
         ("render", "without_material.toml", ("gl",), False),

@@ -1,4 +1,4 @@
-"""examples/ci as a user has it: copied, run, changed, healed; with pytest and with `sssgen ci`, each as a program."""
+"""examples/ci as a user runs it: copied, run, changed, updated; with pytest and with `sssgen ci`, each as a program."""
 
 from __future__ import annotations
 
@@ -152,4 +152,4 @@ def test_the_workflow_runs_the_commands_of_the_example() -> None:
 
 def test_the_folder_is_no_example_material() -> None:
     assert "ci" not in examples()
-    assert not list(EXAMPLE.glob("*.toml"))  # which the makefile takes for materials
+    assert not list(EXAMPLE.glob("*.toml"))  # the makefile takes such files for materials

@@ -48,7 +48,7 @@ def answer(capsys: pytest.CaptureFixture[str], *arguments: str, status: int = 0)
 
 
 def complaint(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
-    """What the command says of wrong input."""
+    """The command's error for wrong input."""
     assert main(["eval", *arguments]) == 2
     return capsys.readouterr().err
 
@@ -57,7 +57,7 @@ def complaint(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
 
 
 def test_outputs_of_the_oracle(capsys: pytest.CaptureFixture[str], given: Callable[..., str]) -> None:
-    """GDC 2011: pow(dot(V, −(L + N distortion)), power) scale, and ambient, times what comes through."""
+    """GDC 2011: pow(dot(V, −(L + N distortion)), power) scale, and ambient, times the transmitted part."""
     values = {**LOBE, "distortion": 0.2, "power": 2.0, "scale": 3.0, "ambient": 0.1, "attenuation": 1.0}
     report = answer(capsys, "lobe_gdc2011", "-i", given(values | {"subsurface_color": [1.0, 0.5, 0.25]}))
     lobe = [(light[2] + 0.2) ** 2 * 3.0 for light in LOBE["L"]]
@@ -218,7 +218,7 @@ def test_wrong_arguments(capsys: pytest.CaptureFixture[str], given: Callable[...
 
 
 def test_a_missing_back_end(given: Callable[..., str]) -> None:
-    """Named alone it is an error that says how to get it; among all it is a line, and the rest goes on."""
+    """Requested alone it is an error with instructions; among all it is a line, and the others run."""
     environment = {**os.environ, "SSSGEN_CHROMIUM": "/nowhere/chromium", "CI": ""}
     command = [sys.executable, "-m", "sssgen", "eval", "lobe_gdc2011", "-i", given(LOBE), "-b"]
     alone = subprocess.run([*command, "browser"], env=environment, capture_output=True, text=True, check=False)
@@ -236,7 +236,7 @@ def test_a_missing_back_end(given: Callable[..., str]) -> None:
 
 
 def test_a_refusal_names_the_techniques_line(backend: Callable[[str], Backend]) -> None:
-    """A text that the driver does not take: its message stands at the line of ours that it came from."""
+    """A text that the driver refuses: its message has the line of the technique."""
     from sssgen.harness.backends import Call, Text
     from sssgen.ir.types import FLOAT
 

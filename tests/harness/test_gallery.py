@@ -40,7 +40,7 @@ def test_an_example_is_a_picture(name: str, backend: Callable[[str], Backend]) -
     shown = picture.encoded[picture.covered > 0.5]
     share = len(shown) / picture.covered.size
     assert 0.2 < share <= 1.0
-    # neither dark nor blown out, in the whole and in parts; not flat; not gray
+    # not dark or overexposed, as a whole and in parts; not flat; not gray
     assert 0.2 < shown.mean() < 0.75
     assert np.percentile(shown.max(axis=1), 5) > 0.03
     assert (shown.min(axis=1) > 0.99).mean() < 0.03
@@ -112,7 +112,7 @@ def test_the_gallery_is_small() -> None:
 
 
 def test_the_gallery_is_current(backend: Callable[[str], Backend]) -> None:
-    """A scene that was changed is drawn again: its small picture is the gallery's, made small."""
+    """The scene drawn small equals the gallery's picture scaled down."""
     backend("gl")
     for name in examples():
         stored = images.decode_srgb(_picture(ROOT / "docs" / "gallery" / f"{name}.png"))

@@ -190,7 +190,7 @@ def test_files_that_end_early(suffix: str) -> None:
     data = Path(f"whole.{suffix}").read_bytes()
     for part in (9, len(data) // 2, len(data) - 20):
         Path(f"part.{suffix}").write_bytes(data[:part])
-        if (suffix, part) != ("png", len(data) - 20):  # what misses its last marks only may be read
+        if (suffix, part) != ("png", len(data) - 20):  # files that lack only their last bytes may be read
             assert "part" in wrong(f"part.{suffix}")
 
 

@@ -1,4 +1,4 @@
-"""`sssgen lint`: what may fail, where, with what, and what is proven not to."""
+"""`sssgen lint`: the operations that may fail, their places and inputs, and those that are proven safe."""
 
 from __future__ import annotations
 
@@ -63,8 +63,8 @@ def test_proven_functions_pass(tmp_path: Path, capsys: pytest.CaptureFixture[str
 
 
 def test_the_example_fails(capsys: pytest.CaptureFixture[str]) -> None:
-    """The line that is printed, run as it stands, gives NaN."""
-    assert main(["lint", "lobe_normalized"]) == 0  # what is emitted is guarded
+    """The printed line gives NaN when it is run."""
+    assert main(["lint", "lobe_normalized"]) == 0  # emitted text is guarded
     line = next(one for one in capsys.readouterr().out.splitlines() if "example: " in one)
     command = line.split("example: ")[1].replace("sssgen eval", f"{sys.executable} -m sssgen eval")
     done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, check=True)
@@ -139,7 +139,7 @@ def test_wrong_names(name: str, message: str) -> None:
 
 
 def test_wrong_files(tmp_path: Path) -> None:
-    """What is no shader is told as such, with its place."""
+    """A file that is not a shader is reported with its place."""
     for name, data in (("a.glsl", b"float f( {"), ("b.glsl", b"\x00\xff\x01"), ("c.glsl", b"")):
         path = tmp_path / name
         path.write_bytes(data)

@@ -40,7 +40,7 @@ Run = Callable[..., pytest.RunResult]
 def run(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch, backend: Callable[[str], Backend]
 ) -> Callable[..., pytest.RunResult]:
-    """`run(test, *options)` runs the text of a test file, beside which lie scene.toml and lamp.toml."""
+    """`run(test, *options)` runs the text of a test file, in a folder with scene.toml and lamp.toml."""
     backend("gl")
     monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
     monkeypatch.delenv("CI", raising=False)
@@ -232,7 +232,7 @@ def test_pytest_loads_the_plugin_and_it_imports_little(tmp_path: Path) -> None:
 
 
 def test_without_numpy(tmp_path: Path) -> None:
-    """Where NumPy cannot be imported, materials compile all the same, and the other fixtures say what to install."""
+    """Without NumPy materials compile, and the other fixtures name the package to install."""
     packages = tmp_path / "packages"
     packages.mkdir()
     (packages / "numpy.py").write_text("raise ImportError('not installed', name='numpy')\n", encoding="utf-8")

@@ -1,4 +1,4 @@
-"""`sssgen render`: emitted shaders drawn whole, on every back end, and held against the same shells in NumPy."""
+"""`sssgen render`: complete shaders drawn on every back end, compared with the same shells in NumPy."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def scene(tmp_path: Path) -> Callable[..., str]:
 
 @pytest.fixture
 def probe(tmp_path: Path) -> Callable[..., Path]:
-    """Writes a material that shows what its shell gives, and a texture."""
+    """Writes a material that shows the inputs of its shell, and a texture."""
 
     def write(alpha_mode: str = "opaque") -> Path:
         (tmp_path / "probe.sss").write_text(PROBE, encoding="utf-8")
@@ -291,7 +291,7 @@ def test_field_of_view_grows_by_the_border() -> None:
 def test_a_texture_too_large_for_the_driver(
     backend: Callable[[str], Backend], scene: Callable[..., str], tmp_path: Path
 ) -> None:
-    """OpenGL would draw on with nothing in it, and say nothing."""
+    """OpenGL would draw with an empty texture, without an error."""
     for name in ("gl", "hlsl", "webgpu"):
         gpu = backend(name)
         widest = gpu.largest["2D"]  # type: ignore[attr-defined]

@@ -1,4 +1,4 @@
-"""Unity's programs, drawn whole: the forward pass of the emitted .shader, with what the engine gives it.
+"""Unity's programs, drawn: the forward pass of the emitted .shader, with the engine's inputs.
 
 With the stand-in headers the lighting is that of the other targets' shells, so that pictures must be the same. With
 Unity's own (SSSGEN_UNITY_INCLUDES) only what does not depend on Unity's standard lighting must.
@@ -142,7 +142,7 @@ def test_an_unlit_surface_with_a_lighting_of_its_own(unity: UnityHLSL, tmp_path:
 
 @pytest.mark.parametrize("lights", LIT_FROM_BEHIND.values(), ids=LIT_FROM_BEHIND)
 def test_transmitted_light_is_equal_in_glsl(unity: UnityHLSL, lights: str) -> None:
-    """The translucency lobe of each kind of light, and of none twice, whatever lighting is around it."""
+    """The translucency lobe of each kind of light, counted once, with any lighting."""
     ball = '[geometry]\nkind = "ball"\nrotation = [20, 30, 40]\nscale = 0.9\n'
     values = "[parameters]\npower = 2.0\nscale = 1.5\ndistortion = 0.4\n"
     shown = scene(f'material = "paper_lantern"\nsamples = 1\n{ball}{lights}{values}')
@@ -152,7 +152,7 @@ def test_transmitted_light_is_equal_in_glsl(unity: UnityHLSL, lights: str) -> No
 
 
 def test_ambient_light(unity: UnityHLSL) -> None:
-    """Unity takes the 4 percent away that a surface mirrors."""
+    """Unity subtracts the 4 percent that a surface reflects."""
     shown = scene(f'material = "paper_lantern"\nsamples = 1\nambient = [0.2, 0.4, 0.6]\n{BALL}')
     result, gl = drawn(shown, unity), drawn(shown, backends.get("gl"))
     on = gl.covered > 0.99

@@ -1,4 +1,4 @@
-"""What our shells compute themselves is finite on hostile points, too, whatever a mesh or a program gives them.
+"""The computations of our shells are finite on hostile points too, for any input of a mesh or a program.
 
 Drawn on a mesh of one vertex a pixel, as `sssgen render` does, into pictures of floats, which nothing clamps. What the
 built-in pipeline's surface shaders do with a normal of 0 is Unity's own: there the unlit shader is drawn.
@@ -145,7 +145,7 @@ def made(tmp_path: Path) -> Callable[[str, str], Compiled]:
 
 
 def assert_numbers(picture: Array) -> None:
-    """No NaN and no infinity by the bits, and nothing that clamping has made of them."""
+    """No NaN and no infinity by the bits, and no value that clamping them would give."""
     bits = np.ascontiguousarray(picture, np.float32).view(np.uint32)
     assert ((bits >> 23) & 0xFF != 0xFF).all()
     assert np.abs(picture).max() < BRIGHT
@@ -201,7 +201,7 @@ def test_examples_on_hostile_points(material: str, name: str, backend: Callable[
 
 @pytest.mark.parametrize("name", ["gl", "gl-es", "webgpu", "hlsl", "unity-urp", "numpy-f32"])
 def test_a_short_normal_does_not_sharpen_the_highlight(name: str, backend: Callable[[str], Backend]) -> None:
-    """A direction shorter than 1 gives a highlight of its inverse cube: a normal is whole, or 0, which is not lit."""
+    """A direction shorter than 1 gives a highlight of its inverse cube: a normal has length 1, or 0 and is not lit."""
     machine = backend(name)
     compiled = compile(load_material("resin_inlay"), machine.target.name)
     brightest = []

@@ -101,7 +101,7 @@ def test_dangerous_row(row: str, name: str, machines: Callable[[str], Machines])
 
 
 def test_the_table_is_complete() -> None:
-    """Every row has a name of its own, what it asks, and inputs, or where else it is held."""
+    """Every row has its own name, its requirement, and inputs, or the test that covers it."""
     assert len({row.name for row in dangerous.ROWS}) == len(dangerous.ROWS) == 26
     assert all(row.inputs and row.requires and (row.trials or row.elsewhere) for row in dangerous.ROWS)
     page = (DOCS / "harness.md").read_text(encoding="utf-8")
@@ -109,7 +109,7 @@ def test_the_table_is_complete() -> None:
 
 
 def test_dangerous_row_meshes(tmp_path: Path) -> None:
-    """An open box: below 0 inside, above 0 outside. What holds no triangle is refused by name."""
+    """An open box: below 0 inside, above 0 outside. A mesh without triangles is refused by name."""
     reason = "a mesh's distance needs libigl and trimesh: pip install 'sssgen[render]'"
     pytest.importorskip("igl", reason=reason)
     trimesh = pytest.importorskip("trimesh", reason=reason)
@@ -376,7 +376,7 @@ def test_wrong_arguments(arguments: list[str], message: str, capsys: pytest.Capt
 
 
 def test_a_missing_back_end_is_reported() -> None:
-    """The rest goes on; with CI set it is a failure, and so it is where none is here."""
+    """The others run; with CI set it is a failure, and also where none is available."""
     command = [sys.executable, "-m", "sssgen", "stress", "beer_lambert", "--samples", "10", "-b"]
     bare = {**os.environ, "SSSGEN_CHROMIUM": "/nowhere/chromium", "CI": ""}
     among = subprocess.run([*command, "numpy-f32,browser"], env=bare, capture_output=True, text=True, check=False)

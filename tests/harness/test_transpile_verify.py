@@ -49,7 +49,7 @@ def rows(text: str, read: Callable[[str, str], Module] = load) -> dict[str, Row]
 
 
 def misread(*mistakes: tuple[str, str]) -> Callable[[str, str], Module]:
-    """A front end that reads something else than what is written."""
+    """A front end that misreads its text."""
 
     def read(text: str, shown: str) -> Module:
         for right, wrong in mistakes:

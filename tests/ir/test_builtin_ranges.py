@@ -1,4 +1,4 @@
-"""The `range` and `guards` of the intrinsic table: results lie in the range, and guards make them finite."""
+"""The `range` and `guards` of the intrinsic table: results are in the range, and guards make them finite."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ LARGEST = FLOAT32.largest
 
 
 def called(name: str, args: tuple[Any, ...]) -> Array:
-    """What NumPy gives in float32."""
+    """The results of NumPy in float32."""
     with runtime.precision("float32"), np.errstate(all="ignore"):
         return np.asarray(getattr(runtime, name + "_" * (name == "not"))(*args))
 
@@ -60,14 +60,14 @@ def a_box(rng: np.random.Generator, row: Builtin, index: int, type_: Type) -> li
         edges = np.array([edge for edge in EDGES if least <= edge <= most and abs(edge) < 1e12])
         drawn = rng.uniform(max(least, -8.0), min(most, 8.0), 2)
         low, high = sorted(float(np.float32(rng.choice(edges) if rng.random() < 0.5 else end)) for end in drawn)
-        if rng.random() < 0.4:  # narrow: what cancels shows
+        if rng.random() < 0.4:  # narrow: cancellation is visible
             high = float(np.float32(low + abs(low) * 1e-6))
         boxes.append(Range(low, high))
     return boxes
 
 
 def drawn(rng: np.random.Generator, box: list[Range], type_: Type) -> Array:
-    """Members of a box, lane last: its corners first, then others, with 0 and 1 where they lie in it."""
+    """Members of a box, lane last: its corners first, then others, with 0 and 1 where the box has them."""
     columns = []
     for part in box:
         column = part.low + (part.high - part.low) * rng.random(LANES)
@@ -107,7 +107,7 @@ def assert_inside(results: Value, result: Type, built: Array, message: object) -
 
 @pytest.mark.parametrize("row", [row for row in COMPUTED if not row.unbounded], ids=lambda row: row.name)
 def test_results_are_in_the_computed_range(row: Builtin) -> None:
-    """For all members of random boxes; and finite where the table says that nothing can go wrong."""
+    """For all members of random boxes; and finite where the table has no guard."""
     rng = np.random.default_rng(zlib.crc32(row.name.encode()))
     checked = 0
     for params, result in overloads(row):
@@ -158,7 +158,7 @@ def test_the_check_of_ranges_detects_wrong_rows(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_results_of_vectors_differ_from_those_of_components() -> None:
-    """Value numbers: what differs in any component may differ in the result; so do components of one result."""
+    """Value numbers: a difference in any component may change the result; components of one result differ."""
     analysis = RangeAnalysis(ir.Module(), FLOAT32)
     x, y, z = (analysis.numbers.fresh() for _ in range(3))
     for name, type_, result in (("any", "bvec2", "bool"), ("packSnorm2x16", "vec2", "uint")):

@@ -1,4 +1,4 @@
-"""Arithmetic of ranges against members: what float32 makes of members lies in the range of the result."""
+"""Arithmetic of ranges against members: float32 results of members are in the range of the result."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def members(rng: np.random.Generator, x: Range) -> Any:
 
 
 def assert_holds(result: Range, values: Any, message: object) -> None:
-    """Every value lies in the range, which is a range."""
+    """Every value is in the range, whose ends are in order."""
     assert result.low <= result.high and result.gap >= 0.0, (message, result)
     values = np.asarray(values, np.float64)
     inside = (values >= result.low) & (values <= result.high) & (np.abs(values) >= result.gap)
@@ -166,7 +166,7 @@ def test_joined_and_met() -> None:
 
 
 def test_a_range_is_never_inside_out() -> None:
-    """Not even one without members, as behind a condition that cannot hold."""
+    """Not even an empty one, as after a condition that cannot hold."""
     for low, high, gap in ((0.0, 0.0, 1.0), (-0.5, 0.25, 1.0), (-2.0, 0.5, 1.0), (-0.5, 2.0, 1.0), (-0.5, 0.0, 1.0)):
         result = Range(low, high, gap)
         assert result.low <= result.high and not result.has_zero()

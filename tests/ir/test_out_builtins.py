@@ -1,4 +1,4 @@
-"""Builtins with out parameters, and projective reads: their numbers on every back end, and what there is of them."""
+"""Builtins with out parameters, and projective reads: their results on every back end, and their overloads."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def typed(name: str, size: int) -> list[Type]:
 
 
 def program(name: str, size: int) -> tuple[str, list[Type]]:
-    """A function for each thing that comes out of a call, and the types of what comes out."""
+    """A function for each output of a call, and the types of the outputs."""
     types = typed(name, size)
     outs = 2 if name.endswith("Extended") else 1
     source = out_builtin(name, types)

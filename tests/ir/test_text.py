@@ -136,7 +136,7 @@ def test_malformed_text(text: str) -> None:
 
 
 def test_text_cut_anywhere() -> None:
-    """Whatever is left of a text gives a module or a TextError."""
+    """Any part of a text gives a module or a TextError."""
     text = print_module(SAMPLE_MODULE)
     for end in range(0, len(text), 7):
         try:

@@ -1,4 +1,4 @@
-"""The verifier: it accepts what is well typed and names what is not."""
+"""The verifier: it accepts well-typed modules and names type errors."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ NOWHERE = ir.NOWHERE
 @settings(max_examples=60)
 @given(modules(), st.data())
 def test_verifier_accepts_well_typed_modules_and_sees_a_wrong_type(module: ir.Module, data: st.DataObject) -> None:
-    """No expression can claim another type unnoticed (a constructor can, where what is around it takes either)."""
+    """No expression can claim another type unnoticed (a constructor can, where the context accepts either)."""
     assert verify(module) == []
     bound = all(function.body is not None for function in module.functions)
     assert (verify(module, linked=True) == []) == bound

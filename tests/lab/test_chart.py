@@ -1,4 +1,4 @@
-"""Charts: measured once, the same wherever the work runs, a sound record, and errors for people."""
+"""Charts: measured once, independent of where the work runs, a valid record, and readable errors."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def test_measurements_are_cached(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     stored.write_bytes(b"{")
     assert to_json(chart.charted([one], settings())) == to_json(first)
     assert not ran
-    # an interrupted run goes on where it stood
+    # an interrupted run continues
     stored.unlink()
     lost = sorted((tmp_path / "cache" / "lab" / "results").glob("*/*"))[::5]
     for path in lost:
@@ -246,7 +246,7 @@ def test_every_technique_that_has_a_reference_is_charted(monkeypatch: pytest.Mon
     assert {one.name for one in whole if one.baseline} == set(candidates.published())
     assert len({one.label for one in whole}) == len(whole)
     for one in whole:
-        # each stage takes what the one before gives
+        # each stage reads the result of the previous one
         inputs = ""
         for name in one.techniques:
             technique = candidates.load(name)

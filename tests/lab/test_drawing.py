@@ -1,4 +1,4 @@
-"""Charts from records: the front and the hypervolume, where everything stands, and files that are always the same."""
+"""Charts from records: the front and the hypervolume, the layout, and reproducible files."""
 
 from __future__ import annotations
 
@@ -295,7 +295,7 @@ def test_drawing_again_gives_the_same_files(folder: Path, tmp_path: Path) -> Non
 def test_pictures(folder: Path) -> None:
     image = pytest.importorskip("PIL.Image")
     with image.open(folder / "chart_thickness.png") as picture:
-        assert picture.width == 1800  # twice what a README shows
+        assert picture.width == 1800  # twice the size in a README
         colors = {color for _, color in picture.convert("RGB").getcolors(1 << 24)}
     assert {tuple(bytes.fromhex(color[1:])) for color in COLORS} <= colors
     text = (folder / "chart_thickness.svg").read_text()

@@ -1,4 +1,4 @@
-"""Work items: the same bytes wherever they run, once each, whatever dies."""
+"""Work items: the same bytes on any executor, each run once, although processes die."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ def test_a_failure_concerns_its_item_alone(processes: int) -> None:
     assert failed[0].message == "the scene has no light"
     assert failed[1].message.startswith("ValueError: no such thing (executor_items.py:")
     assert "no_such_module" in failed[4].message
-    assert len(store.memory) == 1  # what failed is tried again
+    assert len(store.memory) == 1  # failed items are run again
 
 
 def test_a_killed_process_costs_nothing(tmp_path: Path) -> None:

@@ -47,7 +47,7 @@ pytestmark = pytest.mark.usefixtures("no_cache")
 
 
 def synthetic(view: View, result: Chain, inputs: Mapping[str, Any], scale: Array) -> Problem:
-    """The light that a chain gives itself with these parameters."""
+    """The light that the chain computes with these parameters."""
     fit_problem = measure.problem_of("translucency", view, summed=False)
     assert fit_problem is not None
     return replace(
@@ -127,7 +127,7 @@ def test_scale_and_matte_are_least_squares(training: tuple[View, ...], tmp_path:
     assert np.ptp(scale) == 0.0
     assert error(scale, matte) == pytest.approx(result.error, rel=1e-6)
     for more in (0.97, 1.03):
-        if more < 1.0 or scale[0] * more <= 1.0 / 0.5:  # `weight` takes the scale, and goes to 1
+        if more < 1.0 or scale[0] * more <= 1.0 / 0.5:  # `weight` is the scale, and at most 1
             assert error(more * scale, matte) > result.error
         for channel in range(3):
             assert error(scale, matte * np.where(np.arange(3) == channel, more, 1.0)) >= result.error
@@ -189,7 +189,7 @@ def test_the_emitted_material_gives_the_measured_light(
         (tmp_path / name).write_text(text, encoding="utf-8")
     emitted = Chain(parse_material(files["mine.toml"], str(tmp_path / "mine.toml")))
     albedo = emitted.surface(fit_problem.parts[0].inputs, "albedo")
-    # its parameters are in its text; only what the scene's body gives is set
+    # its parameters are in its text; only those of the scene's body are set
     light = fit_problem.values(emitted, {}) + albedo * fit_problem.lambert
     assert light == pytest.approx(shown, rel=1e-4, abs=1e-6)
     assert albedo[:, 0] == pytest.approx(result.matte, rel=1e-5)
@@ -213,7 +213,7 @@ def test_the_emitted_material_compiles_for_every_target(
 
 
 def test_every_translucency_technique_has_a_scale_parameter(training: tuple[View, ...], tmp_path: Path) -> None:
-    # else what is emitted could not be as bright as what was measured
+    # else the emitted material could not be as bright as the measured one
     for one in candidates.translucency():
         if one.techniques and not candidates.is_published(candidates.load(one.name)):
             fit_problem = measure.problem_of("translucency", training[0], summed=False)

@@ -81,7 +81,7 @@ def test_a_ball_has_twice_its_radius_times_the_cosine() -> None:
     origins = np.tile([0.0, 0.0, 0.7], (5, 1))
     assert thickness(Ball(0.7), origins, ways) == pytest.approx(2.0 * 0.7 * np.cos(angle), abs=1e-12)
     assert thickness(Ball(0.7), origins, -ways) == pytest.approx(np.zeros(5), abs=1e-12)  # away from it
-    assert one(Ball(0.7), (0.0, 0.0, 0.2), Z) == pytest.approx(0.5)  # from inside: what is left
+    assert one(Ball(0.7), (0.0, 0.0, 0.2), Z) == pytest.approx(0.5)  # from inside: the remaining length
     assert one(Ball(0.7), (0.7001, 0.0, -3.0), Z) == 0.0
 
 
@@ -149,7 +149,7 @@ def test_a_capsule() -> None:
 def test_a_union_counts_overlaps_once_and_no_gaps() -> None:
     apart = Union((Ball(0.5, position=(-1.0, 0.0, 0.0)), Ball(0.25, position=(1.0, 0.0, 0.0))))
     assert one(apart, (-5.0, 0.0, 0.0), (1.0, 0.0, 0.0)) == pytest.approx(1.5)
-    assert one(apart, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)) == pytest.approx(0.5)  # what lies behind does not count
+    assert one(apart, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)) == pytest.approx(0.5)  # matter behind the origin does not count
     overlapping = Union((Ball(0.5), Ball(0.5, position=(0.5, 0.0, 0.0)), Box(size=(0.1, 0.1, 0.1))))
     assert one(overlapping, (-5.0, 0.0, 0.0), (1.0, 0.0, 0.0)) == pytest.approx(1.5)
     touching = Union((Box(size=(1.0, 1.0, 1.0)), Box(size=(1.0, 1.0, 1.0), position=(1.0, 0.0, 0.0))))
@@ -193,7 +193,7 @@ def test_thickness_equals_that_of_distance_samples(shape: Geometry) -> None:
     assert (exact > 0.0).sum() > 20
     # a step may be counted or not at each of at most six ends
     assert np.abs(exact - sampled(shape, origins, ways, reach, 4000)).max() < 6.0 * reach / 4000
-    starts, onwards = origins + 0.5 * reach * ways, ways  # half of it lies behind, some begin inside
+    starts, onwards = origins + 0.5 * reach * ways, ways  # half of it is behind, some begin inside
     rest = thickness(shape, starts, onwards)
     assert (rest < exact - 0.05).sum() > 10
     assert np.abs(rest - sampled(shape, starts, onwards, reach, 4000)).max() < 6.0 * reach / 4000
@@ -229,7 +229,7 @@ def test_a_distance_function_has_the_thickness_of_the_solid(function: Distance, 
     origins, ways = through(solid, 400)
     exact = thickness(solid, origins, ways)
     result = thickness(function, origins, ways)
-    # what is shorter than the shortest step may be missed
+    # lengths below the shortest step may be missed
     missed = (result == 0.0) & (exact > 0.0)
     assert exact[missed].max(initial=0.0) < 0.05
     assert result[~missed] == pytest.approx(exact[~missed], abs=1e-3)

@@ -1,4 +1,4 @@
-"""Measuring a chain of techniques: what a scene gives it, its errors, and results that are known from elsewhere."""
+"""Measuring a chain of techniques: the inputs of its scene, its errors, and independently known results."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def test_a_chain_computes_its_formula(tmp_path: Path) -> None:
     bent = light["L"] + 0.25 * surface.inputs["N"]
     lobe = np.clip(-(surface.inputs["V"] * bent).sum(axis=0), 0.0, 1.0) ** 3.0
     assert result == pytest.approx(color[:, None] * (1.5 * lobe + 0.1) * np.exp(-0.3 / 0.7), rel=1e-9)
-    # a parameter may have a value for each point, and what is not given stays
+    # a parameter may have a value for each point; the others keep theirs
     lengths = np.linspace(0.1, 1.0, surface.count)
     built.set({"thickness_factor": lengths}, {})
     (result,) = built.run(surface.inputs, [light])
@@ -115,7 +115,7 @@ def test_the_text_of_a_chain_lists_its_stages() -> None:
     ]
 
 
-# --- what a scene gives ---
+# --- the inputs of a scene ---
 
 
 def test_the_mean_chord_of_a_ball_is_four_thirds_of_its_radius() -> None:
@@ -208,7 +208,7 @@ def test_shadowed_points_get_no_light_from_the_front() -> None:
     assert (shaded[board] == (np.hypot(x, z)[board] < 0.4)).all()
 
 
-# --- errors, and what is known beforehand ---
+# --- errors, and results known in advance ---
 
 
 def test_a_chain_with_nan_has_failed(cube: View, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -320,7 +320,7 @@ def test_a_view_keeps_the_size_and_the_lanes_of_its_pixels() -> None:
     assert surface.inputs["V"] == pytest.approx(away / np.linalg.norm(away, axis=0))
 
 
-# --- what cannot be measured is said ---
+# --- errors of scenes that cannot be measured ---
 
 
 def test_scenes_without_visible_light_are_refused() -> None:

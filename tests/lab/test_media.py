@@ -11,7 +11,7 @@ import pytest
 from sssgen.lab.scene.media import Medium, media, preset
 from sssgen.support.diagnostics import SssgenError
 
-# The diffuse reflectance that the same table gives beside the coefficients.
+# The diffuse reflectance of the same table.
 REFLECTANCES = {
     "apple": (0.85, 0.84, 0.53),
     "chicken1": (0.31, 0.15, 0.10),

@@ -1,4 +1,4 @@
-"""Errors against a noisy reference: their definition, that noise adds nothing on average, that bars cover the truth."""
+"""Errors against a noisy reference: their definition, their lack of bias, and the coverage of their bars."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_percentile_is_not_the_maximum() -> None:
 
 
 def trials(apart: float, noise: float, count: int = 1500, lanes: int = 400) -> tuple[float, np.ndarray]:
-    """The true relMSE of values that are off by so much, and what is found against that many noisy references."""
+    """The true relMSE of values with this error, and the estimates from that many noisy references."""
     generator = np.random.default_rng(8)
     truth = generator.uniform(0.4, 1.0, (3, lanes))
     values = truth * (1.0 + apart * generator.normal(size=truth.shape))
@@ -87,5 +87,5 @@ def test_flip_is_0_for_equal_pictures_and_grows() -> None:
     errors = [flip(reference + more, reference) for more in (0.0, 0.01, 0.05, 0.2)]
     assert errors[0] == 0.0
     assert errors == sorted(errors) and errors[1] < errors[2] < errors[3] <= 1.0
-    # what is brighter than a screen can show is cut in both
+    # both are clamped to the range of a screen
     assert flip(np.full((16, 16, 3), 3.0), np.full((16, 16, 3), 2.0)) == 0.0

@@ -186,7 +186,7 @@ def test_a_cached_chart_is_not_measured_again(
     assert run("--max-cost", "5") == 0
     output = capsys.readouterr().out
     assert "next better" in output and "a cost of at most 5" in output
-    # no chain keeps this: the nearest is shown, and the exit status says so
+    # no chain is within this limit: the nearest is shown, and the exit status is an error
     assert run("--max-error", "1e-30") == 1
     assert "which no chain reaches; this is the nearest" in capsys.readouterr().out
     assert run("--max-error", "1e-30", "--json") == 1
@@ -252,7 +252,7 @@ def test_another_process_uses_the_cache(charted: str) -> None:
         capture_output=True, text=True, check=False, timeout=HANG, env=environment,
     )  # fmt: skip
     assert result.returncode == 0, result.stderr
-    # what measures is not even loaded
+    # the modules that measure are not loaded
     assert "sssgen.lab.chart.picking" in result.stderr
     for heavy in ("scipy", "mitsuba", "embreex", "flip_evaluator"):
         assert f" {heavy}\n" not in result.stderr, heavy

@@ -40,7 +40,7 @@ def test_refracted_rays_keep_snells_law(n: float) -> None:
     inside = refracted(V, N, 1.0 / n)
     assert np.linalg.norm(inside, axis=0) == pytest.approx(np.ones(200))
     assert ((inside * N).sum(axis=0) < 0.0).all()
-    # n sin θ' = sin θ with its direction: what lies along the surface is the same before and after
+    # n sin θ' = sin θ with its direction: the tangential component is unchanged
     assert n * np.cross(inside.T, N.T) == pytest.approx(-np.cross(V.T, N.T), abs=1e-12)
 
 
@@ -106,7 +106,7 @@ def test_on_a_ball_it_is_the_construction_in_two_dimensions(depth: float, n: flo
     length = np.linalg.norm(result.offset, axis=0)
     assert length[result.hit] == pytest.approx(expected[result.hit], rel=1e-5, abs=1e-6)
     assert np.isfinite(result.offset).all()
-    # the eye sees what lies away from it: along the frame, against V
+    # the offset is away from the eye: along the frame, against V
     towards = np.stack([(surface.inputs["V"] * surface.inputs[name]).sum(axis=0) for name in ("T", "B")])
     same = (result.offset * towards).sum(axis=0) / np.maximum(length * np.linalg.norm(towards, axis=0), 1e-12)
     assert same[result.hit & (length > 1e-3)] == pytest.approx(-1.0, abs=1e-6)

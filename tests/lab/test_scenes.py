@@ -1,4 +1,4 @@
-"""Scenes that are measured: capsules, unions, media and inlays as files say them, and bodies as materials have them."""
+"""Scenes that are measured: capsules, unions, media and inlays from files, and bodies of materials."""
 
 from __future__ import annotations
 
@@ -194,7 +194,7 @@ def test_bodies_without_a_transform_are_bound_directly(tmp_path: Path) -> None:
     (tmp_path / "egg.sss").write_text(text, encoding="utf-8")
     egg = Distance("egg.sss:egg", folder=str(tmp_path))
     assert body.body(egg) == body.Body("egg.sss:egg", {"egg.sss": text}, {})
-    # a function of object space does not know where the body stands
+    # a function of object space does not depend on the body's position
     assert body.body(replace(egg, position=(1.0, 0.0, 0.0))).function == "distance_texture_world"
     assert body.body(Mesh(path="m.obj")).function == "distance_texture_world"
     with pytest.raises(SssgenError, match="cannot be part of a union"):
@@ -229,7 +229,7 @@ def test_placed_corners_hold_the_body() -> None:
         assert len(inside) and (corners.min(axis=0) <= inside).all() and (inside <= corners.max(axis=0)).all()
 
 
-# --- what scenes are fitted to ---
+# --- the scenes of the fit ---
 
 
 def test_training_sizes_are_powers_of_two() -> None:
@@ -241,6 +241,6 @@ def test_training_sizes_are_powers_of_two() -> None:
     for each in trained:
         assert each.medium == scene.medium
         surface = points(replace(each, size=(16, 16)))
-        # each is lit from behind and from the front of what is seen
+        # each is lit from behind and from the front
         facing = [float((surface.inputs["V"].mean(axis=1) * light.direction).sum()) for light in each.lights]
         assert min(facing) < -0.4 and max(facing) > 0.4

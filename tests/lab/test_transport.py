@@ -1,4 +1,4 @@
-"""The reference against what is known without it: within three standard errors of closed forms and published codes."""
+"""The reference renderer compared with closed forms and published codes: within three standard errors."""
 
 from __future__ import annotations
 
@@ -228,7 +228,7 @@ def test_a_medium_without_absorption_vanishes_in_an_even_sky(geometry: Geometry)
 
 @pytest.mark.parametrize("geometry", SHAPES[:3], ids=lambda shape: type(shape).__name__)
 def test_each_pixel_looks_along_its_own_ray(geometry: Geometry) -> None:
-    # what only absorbs shows the length of the ray in the body; the shapes stand askew, so a flip would be found
+    # a purely absorbing medium shows the ray's length in the body; the shapes are rotated, which would reveal a flip
     origin, directions = CAMERA.rays(24, 18)
     first = geometry.hits(origin, directions)
     far = origin + 20.0 * directions
@@ -264,7 +264,7 @@ def test_a_mesh_of_a_ball_reads_like_the_ball() -> None:
 
 @pytest.mark.slow
 def test_the_error_is_that_of_equal_rays() -> None:
-    # 400 equal rays, in 8 and in 64 batches: their means spread as each one's own error says
+    # 400 equal rays, in 8 and in 64 batches: their means spread by their standard errors
     origins, directions = (np.repeat(part, 400, axis=0) for part in looking(np.array([0.8])))
     for samples in (128, 1024):
         estimate = radiance_along(wide_slab(40.0), grey(0.9), Light((0.0, 0.0, 1.0)), origins, directions, samples)
@@ -309,7 +309,7 @@ def test_a_refracting_boundary_conserves_energy() -> None:
 
 
 def test_a_slab_that_bends_by_adding_and_doubling() -> None:
-    # by reciprocity: what an even sky shows of a slab, looked at straight down, is R + T of a beam along the ray
+    # by reciprocity: the radiance of a slab under an even sky, seen from above, is R + T of a beam along the ray
     medium = Medium("resin", (0.1,) * 3, (0.9,) * 3, ior=1.5)
     estimate = radiance_along(wide_slab(2.0), medium, SKY, *looking(np.array([1.0])), 40_000)
     reflected, through, _, _ = iadpython.Sample(a=0.9, b=2.0, g=0.0, n=1.5, quad_pts=16).rt()
@@ -365,7 +365,7 @@ def test_invalid_scenes_are_refused(change: dict[str, object], message: str) -> 
     assert message in str(caught.value)
 
 
-# --- what is kept ---
+# --- the cache ---
 
 
 @pytest.fixture

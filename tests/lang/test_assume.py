@@ -140,7 +140,7 @@ def test_no_target_prints_assumptions(target: str) -> None:
 
 
 class Checked(NamedTuple):
-    """A technique that drops the fragment where an assumption does not hold."""
+    """A technique that discards the fragment where an assumption does not hold."""
 
     subject: Subject
     count: int

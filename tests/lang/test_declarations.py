@@ -1,4 +1,4 @@
-"""The language: what declarations become in the IR, with their documentation and their places."""
+"""The language: declarations in the IR, with their documentation and their places."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ function float h() slot
 
 
 def test_prototypes_and_their_definitions() -> None:
-    """A definition takes the prototype's place; a prototype after the definition, or twice, changes nothing."""
+    """A definition replaces its prototype; a prototype after the definition, or twice, changes nothing."""
     source = """
 float f(float x);
 float f(float x);
@@ -61,7 +61,7 @@ float g() { return f(1.0) + f(1.0, 2.0) + f(1); }
 
 
 def test_included_declarations() -> None:
-    """What an include brings stands first; its prototype may be defined here, its function not again."""
+    """Included declarations are first; an included prototype may be defined, an included function not."""
     included = checked(
         "struct S { float x; };\nconst int N = 2;\nuniform float u;\n"
         "float slot(float x);\nfloat f(S s) { return slot(s.x) + u; }"

@@ -214,7 +214,7 @@ HOSTILE = {
 @pytest.mark.parametrize("name", HOSTILE)
 def test_hostile_text(name: str) -> None:
     """It ends soon, with errors that can be shown."""
-    check(parse("float f() { return 1.0; }", ""), "")  # the grammar's tables are not what is measured
+    check(parse("float f() { return 1.0; }", ""), "")  # the grammar's tables are loaded before the measurement
     with bounded():
         error = errors_of(HOSTILE[name])
     assert len(str(error)) < 100_000
@@ -241,7 +241,7 @@ def test_nesting_up_to_the_limit_is_accepted(piece: str) -> None:
 
 
 def test_text_cut_anywhere() -> None:
-    """Whatever is left of a file gives a module or errors."""
+    """Any part of a file gives a module or errors."""
     for end in range(0, len(SAMPLE), 5):
         try:
             check(parse(SAMPLE[:end], "cut.sss"), SAMPLE[:end])

@@ -1,4 +1,4 @@
-"""The lexer: tokens, their places, and what is not a token."""
+"""The lexer: tokens, their places, and invalid tokens."""
 
 from __future__ import annotations
 
@@ -157,7 +157,7 @@ PIECES += [" ", "\n", "\\\n", "\t", "\r", "{", "}", "(", ")", "é", "@", "#", '"
 
 @given(st.lists(st.sampled_from(PIECES), max_size=30).map("".join))
 def test_tokens_cover_the_text(text: str) -> None:
-    """Each word's text stands at its place, and between the words are only blanks and comments."""
+    """Each token's text is at its place, and between tokens are only blanks and comments."""
     try:
         tokens, comments = scan(text, "f")
     except SssgenError:

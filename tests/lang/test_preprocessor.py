@@ -1,4 +1,4 @@
-"""The preprocessor: C's macros and conditions, places through macros and includes, what is kept, what is refused."""
+"""The preprocessor: C's macros and conditions, places through macros and includes, preserved constants, errors."""
 
 from __future__ import annotations
 

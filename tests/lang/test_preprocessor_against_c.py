@@ -60,7 +60,7 @@ def program(chance: random.Random) -> str:
 
 
 def spelled(tokens: list[Token]) -> list[str]:
-    """The words with kept constants written out."""
+    """The tokens with the preserved constants expanded."""
     values: dict[str, list[str]] = {}
     result: list[str] = []
     rest = [token.text for token in tokens]
@@ -85,7 +85,7 @@ def test_random_macros_expand_as_in_c(seed: int) -> None:
         theirs = subprocess.run(command, input=text, capture_output=True, text=True, timeout=HANG, check=False)
         try:
             ours = run(text)
-        except SssgenError:  # C has words that GLSL has not (1B), and we refuse directives between arguments
+        except SssgenError:  # C has tokens that GLSL lacks (1B), and directives between arguments are refused here
             continue
         if theirs.returncode == 0:
             expected = [token.text for token in scan(theirs.stdout, "cpp")[0]]

@@ -1,4 +1,4 @@
-"""The rules of quantity types, each held and each broken."""
+"""The rules of quantity types, each with valid and invalid examples."""
 
 from __future__ import annotations
 
@@ -198,7 +198,7 @@ def test_quantities_in_arrays_and_structs() -> None:
 
 
 def test_scaling_in_place_keeps_a_quantity() -> None:
-    """As docs/language.md says: scaling is what masks do."""
+    """See docs/language.md: masks scale."""
     checked("thickness f(thickness d, thinness t, float x) { d *= x; d /= 2.0; d *= t; return d; }")
     checked("world_direction f(world_direction v) { v *= 2.0; return v; }")
     for statement in ("d += 1.0;", "d++;", "d += t;", "v *= m;", "v *= vec3(1.0);", "v += P;"):

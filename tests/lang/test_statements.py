@@ -1,4 +1,4 @@
-"""The language: what expressions and statements become in the IR."""
+"""The language: expressions and statements in the IR."""
 
 from __future__ import annotations
 
@@ -258,7 +258,7 @@ def test_statement(statement: str) -> None:
 
 
 def test_hidden_names_are_renamed() -> None:
-    """An inner variable gets a name that nothing visible has; uniforms stay apart from locals."""
+    """An inner variable gets a name that is unique in its scope; uniforms and locals are separate."""
     source = """
 uniform float x;
 float f(float a) {

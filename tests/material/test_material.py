@@ -44,7 +44,7 @@ def errors_of(text: str) -> SssgenError:
     return caught.value
 
 
-# What a file says
+# The contents of a file
 
 
 @pytest.mark.parametrize("name", sorted(examples()))
@@ -318,7 +318,7 @@ def test_a_huge_file_is_refused() -> None:
 
 def test_the_number_of_errors_is_limited() -> None:
     error = errors_of(HEAD + "".join(f'[[surface]]\ntechnique = "base_color"\nzzz{n} = 1\n' for n in range(3000)))
-    assert len(error.diagnostics) == MAX_ERRORS + 1  # which says that there are more
+    assert len(error.diagnostics) == MAX_ERRORS + 1  # the last one reports that there are more
 
 
 @given(st.data())

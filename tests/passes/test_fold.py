@@ -19,7 +19,7 @@ def becomes(before: str, after: str, **fixed: tuple[float, ...]) -> None:
 
 
 def value(expression: str, result_type: str = "float") -> str:
-    """What an expression becomes, as it is written in the IR's text."""
+    """The IR text of an expression."""
     params = "float x, float y, int i, uint u, bool c, vec2 p, vec3 q, ivec2 iq"
     module = fold(module_of(f"{UNIFORMS} {result_type} f({params}) {{ return {expression}; }}"))
     (line,) = [line for line in text(module).splitlines() if "return" in line]

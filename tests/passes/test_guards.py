@@ -26,7 +26,7 @@ NAMES = sorted(library.index())
 
 
 def guarded(source: str, mode: str = "auto") -> Guarded:
-    """The module of a source; its last function is what is called from outside."""
+    """The module of a source; its last function is the entry point."""
     module = module_of(source)
     result = guard(module, [module.functions[-1].key], mode, guard_source, polyfill)
     assert verify(result.module) == []
@@ -34,7 +34,7 @@ def guarded(source: str, mode: str = "auto") -> Guarded:
 
 
 def lines(source: str, mode: str = "auto", target: str = "glsl-330") -> list[str]:
-    """The emitted lines, without what stands before the first function."""
+    """The emitted lines from the first function on."""
     module = module_of(source)
     compiled = transpile(module, target, "case", guards=mode, called=[module.functions[-1].key])
     shown = next(iter(compiled.files.values())).splitlines()
@@ -222,7 +222,7 @@ def test_the_guarded_library_compiles(target: str, assert_compiles: Callable[[So
 
 
 def test_surface_outputs_are_clamped_where_they_are_computed(tmp_path: Path) -> None:
-    """A surface technique may give any roughness; the lighting takes it to be 0 to 1."""
+    """A surface technique may return any roughness; the lighting expects 0 to 1."""
     (tmp_path / "rough.sss").write_text(
         "/**\n * A rough surface.\n * role: surface\n */\n"
         "void rough(uv_position uv, out vec3 albedo, out float roughness)\n"

@@ -21,7 +21,7 @@ HEAD = """
 
 
 def becomes(before: str, after: str, *notes: str, entries: tuple[str, ...] = ("f",)) -> None:
-    """Hoisting gives this module, and notes that begin so."""
+    """Hoisting gives this module, and notes with these beginnings."""
     module = module_of(HEAD + before)
     result, found = hoist(module, [function.key for function in module.functions if function.name in entries])
     assert_is(result, HEAD + after)
@@ -431,7 +431,7 @@ def test_tint_finds_all_flow_uniform(compiler: Callable[[str], Compiler], seed: 
 
 
 def _entry(library: str) -> str:
-    """A fragment shader that calls `f` with a uniform's members where those are wanted, and else with what varies."""
+    """A fragment shader that calls `f` with a uniform's members where requested, and else with varying values."""
     (function,) = [function for function in functions(library, wgsl=True) if function.name == "f"]
     inputs, before, args = [], [], []
     for place, (kind, name, _) in enumerate(function.parameters):

@@ -105,7 +105,7 @@ VARIABLES: dict[str, Any] = {"g": 1.0, "h": (2.0, 3.0), "k": 0}
 
 
 def outcome(module: Module, a: float, b: float) -> tuple[Any, ...]:
-    """What f gives, and what it leaves in the variables."""
+    """The result of f, and the variables after it."""
     interpreter = Interpreter(module)
     return (*interpreter.call(KEY, a, b), *[interpreter.globals.get(*one) for one in VARIABLES.items()])
 

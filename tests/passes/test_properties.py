@@ -28,7 +28,7 @@ ARGUMENTS = [(0.5, 1.5, 1, 0.0), (-2.0, 5.0, 2, 3.0), (4.5, -0.5, 0, 1.0), (0.0,
 
 
 def texel(map_: None, at: Any, *rest: Any) -> Any:
-    """What a texture holds at a place, whatever its level."""
+    """The value of a texture at a place, the same for all levels."""
     total = sum(part if math.isfinite(part) else 0.0 for part in at)
     return tuple(math.fmod(total * scale, 4.0) for scale in (1.0, -0.5, 0.25, 2.0))
 
@@ -49,7 +49,7 @@ def _reads() -> Any:
 
 
 def outcomes(module: Module, name: str = "f", extra: tuple[Any, ...] = ()) -> list[str]:
-    """What `f` gives for each set of arguments; NaN is like NaN, and 0 like -0."""
+    """The results of `f` for each set of arguments; NaN equals NaN, and 0 equals -0."""
     results = []
     for arguments in ARGUMENTS:
         machine = Interpreter(module, VALUES)

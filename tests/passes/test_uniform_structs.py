@@ -1,4 +1,4 @@
-"""Uniforms that hold structs, taken apart: they read the same, and every target has them."""
+"""Uniforms of struct types, split: they read the same, in every target."""
 
 from __future__ import annotations
 

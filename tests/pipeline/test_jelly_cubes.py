@@ -1,4 +1,4 @@
-"""42yeah's scene: what the compiler makes of jelly_cubes, against the same scene written by hand in float64."""
+"""42yeah's scene: the compiled jelly_cubes compared with a reference implementation in float64."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def by_hand(view: View) -> Scene:
 
 
 def uniforms(reflection: dict[str, Any], view: View) -> dict[str, Any]:
-    """Each uniform's numbers: its default, or what the view says."""
+    """Each uniform's numbers: its default, or that of the view."""
     values = {one["name"]: one["default"] for one in reflection["uniforms"]}
     return values | {"aspect": [view.aspect], "look_at": list(view.look_at)}
 
@@ -67,7 +67,7 @@ def in_opengl(view: View, context: Any) -> Array:
     with context:
         program = context.program(vertex_shader=vertex, fragment_shader=fragment)
         for name, value in {**uniforms(compiled.reflection, view), "time": [view.time]}.items():
-            if name in program:  # a driver drops what it finds unused
+            if name in program:  # a driver removes unused uniforms
                 program[name].write(np.array(value, np.float32).tobytes())
         frame = context.framebuffer([context.texture((WIDTH, HEIGHT), 4, dtype="f4")])
         frame.use()
@@ -82,7 +82,7 @@ def difference(picture: Array, exact: Scene) -> float:
 
 @views
 def test_silhouettes_are_few(view: View) -> None:
-    """So that what they leave out hides nothing: 0.0007 of the pixels are measured at 160 × 120."""
+    """The excluded share is small: 0.0007 of the pixels at 160 × 120."""
     assert by_hand(view).silhouette.mean() < 0.002
 
 

@@ -1,4 +1,4 @@
-"""The list of passes, and the trace of what they did."""
+"""The list of passes, and the trace of their changes."""
 
 from __future__ import annotations
 

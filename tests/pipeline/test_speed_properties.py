@@ -88,7 +88,7 @@ def test_an_emit_with_warm_caches_imports_little(tmp_path: Path) -> None:
     )
 
 
-# What is kept in the process
+# Caches in the process
 
 
 def test_the_same_input_gives_the_same_result() -> None:
@@ -217,7 +217,7 @@ def test_a_command_is_recalled_until_something_changes(tmp_path: Path, monkeypat
         assert emitted_cache.load(*command) is None
         path.write_text(text, encoding="utf-8")
         assert emitted_cache.load(*command) is not None
-    Path("common").mkdir()  # a file that stands before the library's
+    Path("common").mkdir()  # a file that hides the library's
     Path("common/uv_scale.sss").write_text("", encoding="utf-8")
     assert emitted_cache.load(*command) is None
 

@@ -1,6 +1,6 @@
-"""Plain GLSL of every construct (tests/transpile): what is made of it is kept, compiles, is stable, computes the same.
+"""Plain GLSL of every construct (tests/transpile): its texts equal the snapshots, compile, are stable, compute the same.
 
-UPDATE_SNAPSHOTS=1 keeps what is made now.
+UPDATE_SNAPSHOTS=1 writes the snapshots.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def entry(name: str) -> str:
 
 @cache
 def made(name: str, target: str) -> str:
-    """The text that is made of a file. Raises SssgenError."""
+    """The transpiled text of a file. Raises SssgenError."""
     loaded = load_glsl(CORPUS / name, name, (), None, entry(name))
     return next(iter(transpile(loaded.module, target, name.split(".")[0], keep=True).files.values()))
 
@@ -91,7 +91,7 @@ def test_other_compilers_accept_it(compiler: str) -> None:
 
 @pytest.mark.parametrize("name", FILES)
 def test_a_second_transpilation_changes_nothing(name: str) -> None:
-    """GLSL made of GLSL is that GLSL, and means the same."""
+    """Transpiling the emitted GLSL again gives the same text."""
     title = name.split(".")[0]
     text = HEADER.sub("", made(name, "glsl-330"))
     shown = f"{title}.vert" if name.endswith(".vert") else name
@@ -102,7 +102,7 @@ def test_a_second_transpilation_changes_nothing(name: str) -> None:
 
 
 def computed(name: str, samples: int) -> None:
-    """Fails where a function gives another number than the author's text does in OpenGL's driver."""
+    """Fails where a function's result differs from that of the original text in OpenGL's driver."""
     text = expanded((CORPUS / name).read_text("utf-8"), CORPUS / name)
     report = transpiled.verify(text, name, samples, 0, entry(name))
     failures = [

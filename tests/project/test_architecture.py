@@ -32,7 +32,7 @@ def test_every_folder_of_the_package_is_in_its_table() -> None:
 
 
 def test_the_layers_are_those_of_the_contracts() -> None:
-    """Each row of the table stands above the rows that it may import."""
+    """Each row of the table is above the rows that it may import."""
     table = TEXT.split("## Layers")[1].split("## The pipeline")[0]
     rows = re.findall(r"^\| `(\w+)/` \|", table, re.MULTILINE)
     contracts = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["importlinter"]["contracts"]
@@ -46,7 +46,7 @@ def test_the_root_of_the_package_has_few_files() -> None:
 
 
 def test_module_names_are_unique() -> None:
-    """A name says which module is meant. A command may have the name of what it runs."""
+    """A name identifies a module. A command may have the name of the module that it runs."""
     names = Counter(
         path.name for path in python_files() if path.name != "__init__.py" and path.parent != PACKAGE / "cli"
     )

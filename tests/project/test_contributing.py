@@ -71,7 +71,7 @@ def test_add_a_role(tmp_path: Path, compiler: Callable[[str], Any]) -> None:
 
 
 def test_add_a_target(tmp_path: Path, compiler: Callable[[str], Any]) -> None:
-    """In a fresh environment that has sssgen and what it needs, and no plug-in yet."""
+    """In a fresh environment with sssgen and its dependencies, and no plug-in yet."""
     compiler("glslang")
     environment = tmp_path / "environment"
     venv.create(environment)

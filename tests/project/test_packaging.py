@@ -1,4 +1,4 @@
-"""The wheel carries what `sssgen emit` needs, and emits in an empty environment what the checkout does."""
+"""The wheel has the data of `sssgen emit`, and emits the same files in an empty environment as the checkout."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The programs of an environment that has the wheel, what it asks for, and nothing else."""
+    """The programs of an environment that has only the wheel and its dependencies."""
     path = tmp_path_factory.mktemp("environment")
     venv.create(path)
     programs = path / ("Scripts" if sys.platform == "win32" else "bin")

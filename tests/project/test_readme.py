@@ -26,7 +26,7 @@ DOCUMENTS += sorted((ROOT / "examples").rglob("*.md"))
 
 @pytest.fixture(scope="module")
 def reader(tmp_path_factory: pytest.TempPathFactory) -> Reader:
-    """A reader in a folder beside the examples."""
+    """A reader in a folder next to the examples."""
     folder = tmp_path_factory.mktemp("reader")
     shutil.copytree(ROOT / "examples", folder / "examples")
     environment = {"PYTHONPATH": str(ROOT / "src"), "SSSGEN_CACHE": str(folder / "cache")}
@@ -196,7 +196,7 @@ def test_the_webgpu_page_draws_every_example(tmp_path: Path, compiler: Callable[
 
 
 def test_the_examples_hold_nothing_built() -> None:
-    """The wheel carries the folder as it is."""
+    """The wheel has the folder unchanged."""
     ends = (".pyc", ".egg-info", ".wgsl", "reflection.json")
     built = [path for path in (ROOT / "examples").rglob("*") if path.name.endswith(ends)]
     assert not built, built

@@ -1,4 +1,4 @@
-"""The errata in figures: the published techniques are off as theory says, ours are right, on every back end."""
+"""The errata in figures: the published techniques have the predicted errors, ours are right, on every back end."""
 
 from __future__ import annotations
 

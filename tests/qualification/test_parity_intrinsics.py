@@ -66,7 +66,7 @@ def test_arguments_reach_the_edges_and_stay_in_the_domain(name: str) -> None:
 
 @contextmanager
 def mod_as_fmod(monkeypatch: pytest.MonkeyPatch, native: bool) -> Iterator[None]:
-    """The table says `mod` as it says `fmod`; with `native` HLSL's own function."""
+    """The table's `mod` is written as `fmod`; with `native` HLSL's own function."""
     fmod = BUILTINS["fmod"]
     texts = {**fmod.texts, "hlsl": "fmod"} if native else fmod.texts
     broken = BUILTINS["mod"]._replace(texts=texts, polyfill=fmod.polyfill.replace(" fmod(", " mod("))

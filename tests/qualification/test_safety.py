@@ -1,4 +1,4 @@
-"""The library's guards: each is needed, they cost little, and docs/safety.md tells it as it is."""
+"""The library's guards: each is needed, they cost little, and docs/safety.md is current."""
 
 from __future__ import annotations
 
@@ -49,13 +49,13 @@ def test_every_guard_of_the_library_is_needed(name: str) -> None:
 
 
 def test_guards_cost_little() -> None:
-    """At most a third of what guards everywhere would."""
+    """At most a third of the cost of guards everywhere."""
     auto, everywhere = (sum(one.added(mode) for one in counted()) for mode in ("auto", "all"))
     assert 0 < auto <= everywhere / 3
 
 
 def test_most_is_proven() -> None:
-    """What is guarded is the lesser part; and nothing is left out."""
+    """The guarded operations are the smaller part; none is missing."""
     proven, guarded = sum(one.proven for one in counted()), sum(one.guarded for one in counted())
     assert proven > 2 * guarded > 0
 

@@ -39,7 +39,7 @@ def rows() -> dict[str, list[str]]:
 
 
 def panels(name: str) -> list[npt.NDArray[np.float64]]:
-    """The pictures of a row, as they are kept."""
+    """The stored pictures of a row."""
     stored = images.read(FOLDER / f"{name}.png")
     step = WIDTH + script()["GAP"]
     return [stored[:, start : start + WIDTH] for start in range(0, stored.shape[1], step)]

@@ -24,7 +24,7 @@ def test_an_entry_is_read_back() -> None:
 
 
 def test_no_flipped_bit_is_unpickled(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each single bit of an entry is flipped: the entry is never unpickled, and the value is made again."""
+    """Each single bit of an entry is flipped: the entry is never unpickled, and the value is recomputed."""
     cache.load_or_make("value", "stamp", lambda: {"a": (1, 2.5)})
     entry = (folder / "value").read_bytes()
     monkeypatch.setattr(pickle, "loads", lambda _: pytest.fail("a damaged entry was unpickled"))

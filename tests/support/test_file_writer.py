@@ -1,4 +1,4 @@
-"""Writing emitted files: only inside of their folder, whatever links and names are in it."""
+"""Writing emitted files: only inside of their folder, with any links and names in it."""
 
 from __future__ import annotations
 

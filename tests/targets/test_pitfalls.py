@@ -1,4 +1,4 @@
-"""Where GLSL, HLSL and WGSL part ways: each file of tests/pitfalls is one rule, with cases that show all languages.
+"""Differences between GLSL, HLSL and WGSL: each file of tests/pitfalls is one rule, with cases that show all languages.
 
 A case is a source under `=== source` (see `validate`) and behind it what each target makes of it. GLSL ES stands there
 where it differs from GLSL 3.30, and Unity's dialects where they differ from HLSL. A new case is a new source;
@@ -51,7 +51,7 @@ def test_renames_are_reported() -> None:
 
 @pytest.mark.parametrize("target", sssgen.all_targets())
 def test_conventions_are_reported(target: str) -> None:
-    """Which way is up, what is column and what row, who encodes: nothing in the text shows it."""
+    """The direction of y, rows and columns, the encoding of colors: the text does not show them."""
     conventions = sssgen.compile("ice", target).reflection["conventions"]
     assert {"matrices", "framebuffer_y", "uv_origin", "color_space"} <= set(conventions)
     in_a_shell = target not in ("numpy", "unity-shadergraph")

@@ -1,4 +1,4 @@
-"""A module with a main(): a whole shader in every language, which other compilers take, with the meaning of GLSL."""
+"""A module with a main(): a whole shader in every language, which other compilers accept, with the meaning of GLSL."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def test_unused_colour_outputs_are_omitted() -> None:
 
 
 def test_the_stages_meet() -> None:
-    """What the vertex shader gives is what the fragment shader takes, and the GL driver links them."""
+    """The outputs of the vertex shader are the inputs of the fragment shader, and the GL driver links them."""
     for target in ("glsl-330", "glsl-es-300"):
         source = Source(whole(FRAGMENT, target), target, "fragment", companion=whole(VERTEX, target))
         assert [str(one) for messages in check(source).values() for one in errors(messages)] == []

@@ -65,7 +65,7 @@ SHAPES: dict[str, tuple[dict[str, Any], Callable[[], Array], float]] = {
 
 @pytest.mark.parametrize("name", SHAPES)
 def test_shapes(name: str) -> None:
-    """The closed form, and what marching relies on: it changes by no more than the way gone, and mostly by it."""
+    """The closed form, and the Lipschitz bound of 1 that marching needs, which is mostly reached."""
     values, expected, tolerance = SHAPES[name]
     distance = technique(name)
     close(distance(p=P, **values), expected(), atol=tolerance)

@@ -1,4 +1,4 @@
-"""Integrals from few evaluations of a distance: how near they are to the same integral in full, and what they cost.
+"""Integrals from few evaluations of a distance: their errors compared with the full integral, and their cost.
 
 Errors are root mean squares over points that rays find on shapes, relative to the root mean square of the value.
 `python tests/techniques/test_fewer_evaluations.py` prints them beside those of the techniques with even steps.
@@ -71,7 +71,7 @@ def points(name: str, count: int = 150) -> Points:
 
 
 def off(result: Array, right: Array) -> float:
-    """The error, relative to the size of what is right."""
+    """The error, relative to the exact values."""
     return float(np.sqrt(((result - right) ** 2).mean() / (right**2).mean()))
 
 
@@ -164,7 +164,7 @@ def test_a_wide_slab_needs_one_tap(taps: int, width: float) -> None:
 
 @pytest.mark.parametrize("outside", [-9e-4, 5e-4, 1e-3])
 def test_hits_off_the_surface_add_no_noise(outside: float) -> None:
-    """A raymarched hit is as far off as its tolerance."""
+    """A raymarched hit is off the surface by up to its tolerance."""
     p, n, _ = points("cube")
     function = technique("thinness_traced", body_distance="box")
     result = function(P=p + outside * n, N=n, reach=REACH, **SHAPES["cube"].values)
@@ -211,7 +211,7 @@ def test_the_front_moves() -> None:
 
 
 def test_a_body_of_several_parts() -> None:
-    """Two balls and a wall: gaps do not count, and what is beyond them does."""
+    """Two balls and a wall: gaps do not count, and matter beyond them does."""
     p = 0.3 * units(150) + np.where(units(150)[:, 1:2] > 0.0, 1.0, -1.0) * [0.0, 0.4, 0.0]
     light = units(150, 9)
     even = technique("march_light", body_distance=TWO_BALLS_AND_A_WALL)

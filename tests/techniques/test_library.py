@@ -213,13 +213,13 @@ def compiled(name: str, target: str, form: str) -> Compiled:
     return compile_material(material(name), target, form)
 
 
-# These hand a value on as it is, and leave no line.
+# These return a value unchanged, and leave no line.
 IDENTITIES = {"thinness_from_transmittance", "transmittance_from_thinness"}
 
 
 @pytest.mark.parametrize("name", sorted({*NAMES} - IDENTITIES))
 def test_every_technique_makes_a_material(name: str) -> None:
-    """And lines of it stand in the output."""
+    """And its lines are in the output."""
     maps = compiled(name, "glsl-330", "shader").reflection["source_map"]
     places = {place for file in maps.values() for place in file.values()}
     assert any(place.startswith(library.shown_name(library.index()[name])) for place in places), places

@@ -270,7 +270,7 @@ def test_normal_from_height() -> None:
 
 
 def test_alpha_erosion() -> None:
-    """Nothing is gone at 0, all at 1, the dark first; the bevel is the slope of what is left."""
+    """Nothing is eroded at 0, all at 1, the dark first; the bevel is the slope of the remaining part."""
     picture, along_u, along_v = heights()
     uv = rng().uniform(0.1, 0.9, (400, 2))
     mask = uv @ [along_u, along_v]

@@ -191,7 +191,7 @@ def test_march_through_flat_faces_is_exact(degrees: float) -> None:
 
 
 def test_the_march_sums_the_inside_lengths() -> None:
-    """Two slabs of 0.3 and 0.5 with a gap; the depth map of the same body takes the gap for matter."""
+    """Two slabs of 0.3 and 0.5 with a gap; the depth map of the same body counts the gap as matter."""
     slabs = technique("march_light", body_distance=TWO_SLABS)
     close(slabs(P=ORIGIN, L=UP, steps=50), 0.8, atol=1e-12)
     slanted = np.array([0.6, 0.8, 0.0])

@@ -30,7 +30,7 @@ TEXTURES = {"2D": "map", "3D": "volume", "Cube": "cube"}
 
 
 def pixels(lanes: int) -> tuple[Array, Array]:
-    """Where each lane stands in the image."""
+    """The pixel of each lane in the image."""
     return np.arange(lanes) % (lanes // HEIGHT), np.arange(lanes) // (lanes // HEIGHT)
 
 
@@ -106,7 +106,7 @@ def differences(
     tolerance: float = 2e-5,
     loose: Mapping[str, float] = MappingProxyType({}),
 ) -> list[str]:
-    """What a back end gives for the calls that is not what the numpy target gives.
+    """The differences between a back end's results for the calls and those of the numpy target.
 
     Each call has a title; `loose` has the tolerance, relative and absolute, of those that need another.
     """

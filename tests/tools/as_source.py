@@ -1,4 +1,4 @@
-"""Writes IR as source in the language: what the front end makes of it is the same module, spans aside."""
+"""Writes IR as source in the language: the front end gives the same module for it, apart from spans."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ NOWHERE = ir.NOWHERE
 
 
 def as_source(module: ir.Module) -> str:
-    """The source of a module that `strategies.modules` has made, every expression in brackets."""
+    """The source of a module from `strategies.modules`, every expression in parentheses."""
     return _Source(module).text()
 
 
@@ -101,7 +101,7 @@ class _Source:
         return f"{quantity}({text})" if quantity else text
 
     def expr(self, expr: ir.Expr) -> str:
-        """An expression as a plain value: a quantity is taken off by the constructor of its plain type."""
+        """An expression as a plain value: the constructor of its plain type removes a quantity."""
         text = self.bare(expr)
         return f"{spell(expr.type)}({text})" if self.quantity(expr) else f"({text})"
 

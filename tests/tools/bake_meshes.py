@@ -1,4 +1,4 @@
-"""Meshes for the tests of `sssgen bake`, made here so that their closed forms are known, and the files they lie in."""
+"""Meshes for the tests of `sssgen bake`, with known closed forms, and their files."""
 
 from __future__ import annotations
 
@@ -169,5 +169,5 @@ def bake(*arguments: str) -> None:
 
 
 def facts(path: str) -> Any:
-    """The JSON beside a baked file."""
+    """The JSON file of a baked file."""
     return json.loads(Path(path + ".json").read_text(encoding="utf-8"))

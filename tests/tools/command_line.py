@@ -36,7 +36,7 @@ class Target(NamedTuple):
 
 
 class FakeCompiler(types.ModuleType):
-    """A compiler that writes down what it was asked, so that these tests are about the command line alone."""
+    """A compiler that records its arguments, so that these tests cover the command line alone."""
 
     def __init__(self) -> None:
         super().__init__("sssgen.pipeline.compiler")

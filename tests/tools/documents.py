@@ -1,4 +1,4 @@
-"""The documents' code blocks, put to the test: what a comment before a block says of it is made true or fails.
+"""The tests of the documents' code blocks: a comment before a block states how it is checked.
 
     <!-- file: PATH -->            the block is that file of the project
     <!-- part of: PATH -->         its lines stand in that file, in this order
@@ -34,7 +34,7 @@ _BLOCK = re.compile(
 
 
 class Block(NamedTuple):
-    """One code block with what is said of it."""
+    """One code block with its comment."""
 
     document: Path
     line: int
@@ -65,7 +65,7 @@ def blocks(document: Path, under: str = "") -> list[Block]:
 
 
 def uncommented(document: Path) -> list[int]:
-    """The lines of the blocks that no comment puts to the test."""
+    """The lines of the blocks without such a comment."""
     text = read(document)
     tested = {text.count("\n", 0, match.start()) + 2 for match in _BLOCK.finditer(text)}
     fences = [number for number, line in enumerate(text.splitlines(), 1) if line.startswith("```")][::2]
@@ -73,7 +73,7 @@ def uncommented(document: Path) -> list[int]:
 
 
 class Reader:
-    """Somebody who follows a document in a folder of their own, with the project's commands at hand."""
+    """Follows a document in its own folder, with the project's commands on the path."""
 
     def __init__(self, folder: Path, programs: Path, environment: dict[str, str]) -> None:
         self.folder = folder
@@ -82,7 +82,7 @@ class Reader:
         self.environment = {**stored, "PATH": path, "PYTHONDONTWRITEBYTECODE": "1", "PYTHONUTF8": "1", **environment}
 
     def run(self, command: str, status: int = 0) -> tuple[str, str]:
-        """What a command prints to its output and to its errors."""
+        """The standard output and the standard error of a command."""
         shell = ["bash", "-euc", command]
         done = subprocess.run(
             shell, cwd=self.folder, env=self.environment, capture_output=True, text=True, encoding="utf-8", check=False
@@ -91,7 +91,7 @@ class Reader:
         return done.stdout, done.stderr
 
     def follow(self, block: Block) -> None:
-        """Does what the block says. Raises AssertionError where it is not so."""
+        """Executes or checks the block. Raises AssertionError where it does not hold."""
         if block.verb == "write":
             path = self.folder / block.argument
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -108,7 +108,7 @@ class Reader:
             check(block, self.made(block))
 
     def made(self, block: Block) -> str:
-        """What the block has to be."""
+        """The expected text of the block."""
         if block.verb == "file":
             return read(ROOT / block.argument)
         if block.verb == "emitted":
@@ -123,7 +123,7 @@ class Reader:
 
 
 def programs(folder: Path, python: str = sys.executable) -> Path:
-    """A folder with `sssgen` and `python`, as an installation has them."""
+    """A folder with the programs `sssgen` and `python`, as in an installation."""
     folder.mkdir(parents=True)
     for name, text in {"sssgen": f"{shlex.quote(python)} -m sssgen", "python": shlex.quote(python)}.items():
         path = folder / name
@@ -133,7 +133,7 @@ def programs(folder: Path, python: str = sys.executable) -> Path:
 
 
 def check(block: Block, expected: str) -> None:
-    """Fails where the block is not that text; UPDATE_SNAPSHOTS=1 puts it in."""
+    """Fails where the block is not that text; UPDATE_SNAPSHOTS=1 writes it."""
     expected = "".join(f"{line.rstrip()}\n" for line in expected.rstrip().splitlines())
     if os.environ.get("UPDATE_SNAPSHOTS") and block.text != expected:
         text = read(block.document)

@@ -18,7 +18,7 @@ from sssgen.support.diagnostics import failure
 
 
 class Measured(NamedTuple):
-    """Of the kinds of values that results are made of."""
+    """With every kind of value that results contain."""
 
     name: str
     numbers: np.ndarray[Any, Any]
@@ -26,7 +26,7 @@ class Measured(NamedTuple):
 
 
 def note(folder: str, number: int) -> None:
-    """Leaves a file that says that the item ran once."""
+    """Writes a file that records one run of the item."""
     Path(folder, f"{number}-{uuid.uuid4()}").touch()
 
 
@@ -36,7 +36,7 @@ def runs(folder: str | Path) -> list[int]:
 
 
 def measure(folder: str, number: int) -> Measured:
-    """Numbers from a seed, some of them the same object twice, and an array that does not lie as it reads."""
+    """Numbers from a seed, some of them the same object twice, and an array that is not in C order."""
     note(folder, number)
     return _measured(number)
 

@@ -59,7 +59,7 @@ def half_cases() -> tuple[Case, ...]:
 
 
 def wrong_lanes(case: Case, actual: Array) -> str:
-    """The lane that is furthest outside of the limits, in words; '' where all are within them."""
+    """A message about the lane that exceeds the limits most; '' where all are within them."""
     expected = np.broadcast_to(oracle(case), actual.shape)
     if kind_of(case.result) != "float":
         error = np.where(actual == expected, 0.0, np.inf).reshape(-1, case.lanes).max(axis=0)

@@ -1,4 +1,4 @@
-"""42yeah's scene written by hand: jelly cubes on a floor, in float64, to check what the compiler makes of jelly_cubes.
+"""42yeah's scene written by hand: jelly cubes on a floor, in float64, as a reference for the compiled jelly_cubes.
 
 It is written from the formulas (`sssgen show TECHNIQUE`, docs/errata.md; 42yeah, Raymarching Cheap Subsurface
 Scattering) and uses nothing of the project. Rays stand first and components last: (n, 3).

@@ -1,4 +1,4 @@
-"""Small views of the measured scenes, with light that is made up, and chains of techniques to measure in them."""
+"""Small views of the measured scenes, with synthetic light, and chains of techniques to measure in them."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def small(name: str) -> MeasuredScene:
 
 
 def made_up(one: MeasuredScene, name: str = "own") -> View:
-    """A view with a made-up reference: light that falls off with the thickness, more from the front, and noise."""
+    """A view with a synthetic reference: light that falls off with the thickness, more from the front, and noise."""
     surface = points(one)
     references: list[LightReference] = []
     for light in one.lights:

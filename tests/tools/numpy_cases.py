@@ -1,4 +1,4 @@
-"""For tests of the NumPy target: source to Python, and a run of both the Python and the interpreter."""
+"""Tests of the NumPy target: source to Python, and a run of both the Python and the interpreter."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def lanes_of(type_: Type, values: list[Any]) -> Any:
 
 
 def assert_agrees(source: str, lanes: list[tuple[Any, ...]], name: str = "f", **uniforms: Any) -> None:
-    """The printed function gives in every lane what the interpreter gives, to the last bit.
+    """The printed function equals the interpreter in every lane, bit for bit.
 
     `lanes` holds the in and inout arguments of each lane.
     """

@@ -1,4 +1,4 @@
-"""Runs one technique on arrays: the NumPy text that the compiler makes of it, in float64.
+"""Runs one technique on arrays: its compiled NumPy text, in float64.
 
     lobe = technique("lobe_gdc2011")
     lobe(V=v, N=n, L=l, through=0.5, power=4.0)          # v, n, l: (count, 3) or (3,)
@@ -46,7 +46,7 @@ def rng(seed: int = 7) -> np.random.Generator:
 
 
 def unit(v: Any) -> Array:
-    """Vectors, brought to length 1."""
+    """Normalized vectors."""
     result: Array = np.asarray(v, np.float64) / np.linalg.norm(v, axis=-1, keepdims=True)
     return result
 
@@ -109,7 +109,7 @@ def _technique(name: str, slots: tuple[tuple[str, str], ...]) -> Technique:
     own = {param.name: param.type for param in function.params if param.direction != "out"}
     declared_uniforms = {uniform.name: uniform for uniform in linked.module.uniforms}
     renamed = list(signature(result).parameters)[len(own) :]
-    # a name that some language reserves (HLSL's `center`) has got a suffix
+    # a name that some language reserves (HLSL's `center`) has a suffix
     rest = [name if name in declared_uniforms else re.sub(r"_\d*$", "", name) for name in renamed]
     uniforms = {name: declared_uniforms[name] for name in rest}
     results = [function.result] if function.result != VOID else []
@@ -160,7 +160,7 @@ def _inwards(type_: Type, value: Any) -> Any:
 
 
 def _outwards(type_: Type, value: Any, counts: set[int]) -> Any:
-    """And back; where no argument has lanes the result has none."""
+    """The inverse; where no argument has lanes the result has none."""
     rank = _rank(type_)
     array = np.asarray(value)
     array = np.moveaxis(array, -1, 0) if array.ndim > rank else array

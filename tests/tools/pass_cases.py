@@ -23,7 +23,7 @@ def key(module: Module, name: str) -> str:
 
 
 def assert_is(module: Module, source: str) -> None:
-    """The module is valid, and says what the source says, wherever its nodes stand."""
+    """The module is valid, and equals that of the source apart from spans."""
     assert verify(module) == []
     assert text(module) == text(module_of(source))
 

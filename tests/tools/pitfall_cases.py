@@ -1,4 +1,4 @@
-"""The cases of tests/pitfalls: one rule to a file, each case a source and what the targets make of it.
+"""The cases of tests/pitfalls: one rule per file, each case a source and its text in the targets.
 
 A case is a source under `=== source` (see `validate`), followed by the output of each target. GLSL ES is given
 where it differs from GLSL 3.30, and Unity's dialects where they differ from HLSL. A new case is a new source;
@@ -25,7 +25,7 @@ SHOWN = {"glsl": "", "glsl-es": "glsl", "hlsl": "", "dx9": "hlsl", "urp": "hlsl"
 
 
 class Case(NamedTuple):
-    """One source and the texts it gives, by target."""
+    """One source and its texts, by target."""
 
     rule: str
     source: str
@@ -48,7 +48,7 @@ def read(path: Path) -> tuple[str, list[Case]]:
 
 
 def renewed(path: Path) -> str:
-    """The file's text with what the targets make of its sources now."""
+    """The file's text with the current texts of its sources."""
     rule, cases = read(path)
     lines = [rule, ""]
     for case in cases:

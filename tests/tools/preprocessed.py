@@ -28,7 +28,7 @@ def words(text: str, files: Mapping[str, str] | None = None, **defines: str) -> 
 
 
 def spaced(text: str) -> str:
-    """A text's words as `words` gives them."""
+    """A text's tokens, separated by spaces, as from `words`."""
     return " ".join(token.text for token in scan(text, "")[0])
 
 

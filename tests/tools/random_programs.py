@@ -115,7 +115,7 @@ class Programs:
     # Statements
 
     def block(self, indent: int, size: int) -> str:
-        """Up to `size` statements; what they declare is gone at the end."""
+        """Up to `size` statements; their declarations are local to the block."""
         floats, ints, declared = list(self.floats), list(self.ints), list(self.declared)
         text = "".join(self.statement(indent, size) for _ in range(self.random.randint(1, size)))
         self.floats, self.ints, self.declared = floats, ints, declared

@@ -92,7 +92,7 @@ def rounded(value: Value) -> Value:
 
 
 class Checker(Interpreter):
-    """Runs a program in float32 and compares each value with what the analysis found."""
+    """Runs a program in float32 and compares each value with the range of the analysis."""
 
     def __init__(self, module: ir.Module, analysis: Recorder, uniforms: dict[str, Value] | None = None) -> None:
         self.analysis = analysis
@@ -209,7 +209,7 @@ class Checker(Interpreter):
 
 
 def _holds(part: Range, number: float) -> bool:
-    # GPUs may flush what is below the smallest normal number, and the ranges allow for that
+    # GPUs may flush subnormal numbers, and the ranges allow for that
     return part.low <= number <= part.high and abs(number) >= part.gap
 
 
@@ -304,7 +304,7 @@ class RangePrograms(Programs):
         return ["N.y", "P.z", "w.x", "w.y", "w.z", "m[1].x", "m[0][1]", "body.at.y", "body.size[1]", "body.turn[0].y"]
 
     def small(self) -> str:
-        """An index, which may lie outside where it is computed."""
+        """An index, which may be out of bounds where it is computed."""
         return self.random.choice(["0", "1", *self.counters, *self.ints, "n", "k"])
 
     def place(self) -> str:

@@ -1,4 +1,4 @@
-"""Comparing a text with the one kept under tests/snapshots; UPDATE_SNAPSHOTS=1 keeps the new one instead."""
+"""Compares a text with that under tests/snapshots; UPDATE_SNAPSHOTS=1 stores the new one instead."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from folders import SNAPSHOTS
 
 
 def check_snapshot(name: str, text: str) -> None:
-    """Fails where `text` is not what the file tests/snapshots/NAME holds."""
+    """Fails where `text` is not the content of tests/snapshots/NAME."""
     path = SNAPSHOTS / name
     if os.environ.get("UPDATE_SNAPSHOTS"):
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -146,7 +146,7 @@ def placed(module: ir.Module, choices: list[ir.Span]) -> ir.Module:
 
 
 class _Maker:
-    """Draws the parts of one module, and knows what is in scope."""
+    """Draws the parts of one module, and tracks the scope."""
 
     def __init__(self, draw: st.DrawFn) -> None:
         self.draw = draw

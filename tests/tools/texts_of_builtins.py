@@ -1,6 +1,6 @@
-"""What the targets make of every builtin of the intrinsic table, side by side.
+"""The text of every builtin of the intrinsic table in each target.
 
-SAME has what is equal everywhere; the rest is in CASES (and in texts_of_glsl_4.py and texts_of_reads.py), each for
+SAME has the texts that are equal everywhere; the rest is in CASES (and in texts_of_glsl_4.py and texts_of_reads.py), each for
 GLSL 3.30, HLSL and WGSL. GLSL ES is as GLSL, and Unity's two dialects are as HLSL, where a case does not say otherwise.
 NumPy has each builtin under its own name.
 """

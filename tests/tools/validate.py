@@ -1,4 +1,4 @@
-"""One text of our language and what every target makes of it, side by side.
+"""One text of the language and its text in every target.
 
     validate_all("saturate(x)", {"glsl": "clamp(x, 0.0, 1.0)", "hlsl": "saturate(x)", "wgsl": "saturate(x)"})
 
@@ -47,7 +47,7 @@ _VARIABLE = re.compile(rf"(?<![.\w])(?:[xyztijkuvwpq][234]?|[mn][234]|{'|'.join(
 
 
 def validate_all(source: str, expected: Mapping[str, str]) -> None:
-    """Fails with all targets' texts where one is not what is expected."""
+    """Fails with all targets' texts where one is not the expected one."""
     results = {target: printed(source, target) for target in expected}
     reference = {target: dedent(text).strip() for target, text in expected.items()}
     texts = "\n".join(f"{target}:\n{text}" for target, text in results.items())
@@ -90,7 +90,7 @@ def module_of(source: str, file: str = "case") -> ir.Module:
 
 
 def variable_type(name: str) -> Type:
-    """The type that a free variable's name stands for."""
+    """The type of a free variable by its name."""
     if name in SAMPLERS:
         return BY_NAME[SAMPLERS[name]]
     if name[0] in "mn":

@@ -20,7 +20,7 @@ HANG = 600
 
 
 class TooSlow(BaseException):
-    """An input took longer than it may. It is no Exception, so that the code under test cannot catch it."""
+    """An input exceeded its time. Not an Exception, so that the code under test cannot catch it."""
 
 
 @contextlib.contextmanager

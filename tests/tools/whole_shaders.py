@@ -1,4 +1,4 @@
-"""Whole shaders in the IR's text form, and what the targets make of them."""
+"""Complete shaders in the IR's text form, and their text in the targets."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def whole(text: str, target: str, keep: bool = True) -> str:
 
 
 def wrong(text: str, target: str, stage: Stage = "fragment") -> list[str]:
-    """What compilers that are not ours find wrong in a whole shader."""
+    """The errors of other compilers in a complete shader."""
     entry = "main" if target.startswith("glsl") else f"{stage}_main"
     result = check(Source(text, target, stage, entry))
     return [str(one) for messages in result.values() for one in errors(messages)]
