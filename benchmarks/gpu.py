@@ -1,4 +1,4 @@
-"""The cost of emitted shaders on a GPU, compared with the same written by hand: make bench-gpu, or python benchmarks/gpu.py.
+"""The cost of emitted shaders on a GPU against hand-written ones: make bench-gpu, or python benchmarks/gpu.py.
 
     python benchmarks/gpu.py --size 320x180 --rounds 5 --json out.json --markdown out.md
 

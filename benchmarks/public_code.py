@@ -1,6 +1,6 @@
 """One file of public shader code: whether it counts, and its result in every target and every compiler.
 
-A file counts where glslang accepts it as GLSL. One without `#version` is read as 4.50 of the compatibility profile, which
+A file counts where glslang accepts it. One without `#version` is read as 4.50 of the compatibility profile, which
 knows `varying`, `texture2D` and `gl_FragColor` too; one with a version as it is, or, where that fails, as 4.50. A file
 of functions gets an empty `main`, a Shadertoy scene the uniforms and the `main` that the site gives it.
 """

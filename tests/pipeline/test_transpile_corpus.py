@@ -1,4 +1,4 @@
-"""Plain GLSL of every construct (tests/transpile): its texts equal the snapshots, compile, are stable, compute the same.
+"""Plain GLSL of every construct (tests/transpile): texts equal the snapshots, compile, are stable, compute the same.
 
 UPDATE_SNAPSHOTS=1 writes the snapshots.
 """
