@@ -331,7 +331,7 @@ def test_the_fit_command_shows_parameters(tmp_path: Path, capsys: pytest.Capture
         (["chart", "cube", "--role", "thicknes"], "did you mean 'thickness'"),
         (["chart", "cube", "--role", "colour"], "roles: coordinates, thickness, translucency, material"),
         (["chart", "cube", "cube"], "two scenes are called 'cube'"),
-        (["chart", "ice.toml"], "does not describe what its body is made of"),
+        (["chart", "ice.toml"], "does not describe the medium of its body"),
         (["fit", "cube", "wrap_lightning"], "did you mean 'wrap_lighting'"),
         (["fit", "cueb"], "did you mean 'cube'"),
     ],

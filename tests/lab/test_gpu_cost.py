@@ -65,7 +65,7 @@ def benchmark() -> ModuleType:
 @pytest.fixture
 def counted(monkeypatch: pytest.MonkeyPatch) -> None:
     """Counts the rounds of LOOP in place of milliseconds."""
-    monkeypatch.setattr(gpu_cost._Stage, "time", lambda stage, drawn: float(drawn.array.program["count"].value))
+    monkeypatch.setattr(gpu_cost._TimedFrame, "time", lambda frame, linked: float(linked.array.program["count"].value))
 
 
 def measured(*programs: Program) -> Measured:

@@ -325,7 +325,7 @@ def test_a_view_keeps_the_size_and_the_lanes_of_its_pixels() -> None:
 
 def test_scenes_without_visible_light_are_refused() -> None:
     plate = small("inlay_plate")
-    with pytest.raises(SssgenError, match="the camera of 'inlay_plate' sees nothing of its body"):
+    with pytest.raises(SssgenError, match="the camera of 'inlay_plate' does not see its body"):
         points(replace(plate, camera=Camera((0.0, 0.0, 3.0), (0.0, 0.0, 6.0), 30.0)))
     assert plate.inlay is not None
     deep = replace(small("inlay_ball"), geometry=Ball(0.2), inlay=replace(plate.inlay, depth=0.5))

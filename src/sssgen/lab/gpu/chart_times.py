@@ -1,6 +1,6 @@
 """A chart's second cost: milliseconds on this machine's GPU, of each chain's emitted shader at its scene's points.
 
-The whole emitted shader is timed with the scene's lights; the time of the same shader without the chain is subtracted.
+The emitted shader is timed with the scene's lights; the time of the same shader without the chain is subtracted.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from sssgen.pipeline.compiler import compile
 AT_ONCE = 40
 """Programs that alternate; with more of them, a round is so long that clocks change in it."""
 EVALUATIONS = 8
-"""Evaluations of a chain per pixel: a single one hides behind the reads of the points."""
+"""Evaluations of a chain per pixel: the reads of the points would hide the time of a single evaluation."""
 LEAST = 1e-4
 """The least cost in milliseconds: smaller times are not measurable."""
 EMPTY = "without"
@@ -52,15 +52,15 @@ def with_gpu_cost(
     about = dict(record["record"])
     done = 0
     for measured in scenes:
-        own = [point for point in points if point["scene"] == measured.name and not point["failed"]]
-        for start in range(0, len(own), AT_ONCE):
-            some = own[start : start + AT_ONCE]
-            times = _timed(measured, some, size, rounds)
-            for number, point in enumerate(some):
+        scene_points = [point for point in points if point["scene"] == measured.name and not point["failed"]]
+        for start in range(0, len(scene_points), AT_ONCE):
+            batch = scene_points[start : start + AT_ONCE]
+            times = _timed(measured, batch, size, rounds)
+            for number, point in enumerate(batch):
                 net = times.net_times[str(number)] - times.net_times[EMPTY]
                 low, median, high = (float(value) for value in np.percentile(net, [10.0, 50.0, 90.0]))
                 point["cost"] = {**point["cost"], **_cost(low, median, high, times)}
-            done += len(some)
+            done += len(batch)
             progress(done, len(points), measured.name)
             about |= {"device": times.device.renderer, "driver": times.device.version}
             about |= {"software": times.device.software, "size": list(size), "rounds": rounds}
@@ -127,7 +127,7 @@ def _with_parameters(scene: Scene, measured: MeasuredScene, material: Material) 
         **(measured.inlay.parameters if measured.inlay is not None else {}),
     }
     read = {uniform["source_name"] for uniform in reflection["uniforms"]}
-    textures = {each["source_name"] for each in reflection["textures"]}
+    textures = {declared["source_name"] for declared in reflection["textures"]}
     return dataclasses.replace(
         scene,
         parameters={name: value for name, value in values.items() if name in read},

@@ -1,8 +1,8 @@
 """Times of shaders on a GPU, in milliseconds per frame.
 
-    result = measure([Program("mine", text, {"power": 4.0}), Program("theirs", other)], size=(1920, 1080))
-    result.net("mine").median                                   # ms of one evaluation at every pixel
-    result.ratio("mine", "theirs")                              # the quotient of the times, with its spread
+    result = measure([Program("new", text, {"power": 4.0}), Program("old", old_text)], size=(1920, 1080))
+    result.net("new").median                                    # ms of one evaluation at every pixel
+    result.ratio("new", "old")                                  # the quotient of the times, with its spread
 
 Programs are full-screen fragment shaders, drawn by OpenGL into 32-bit floats. One timer query spans many draws of a
 program. The programs alternate in a random order in every round, so that a drifting clock does not favour one.
@@ -31,7 +31,7 @@ from sssgen.targets.runtime.numpy_textures import Texture
 SIZE = (1920, 1080)
 ROUNDS = 31
 SAMPLE = 2.0
-"""Milliseconds of drawing in one timer query: well above the timer's resolution."""
+"""Milliseconds of drawing in a timer query: well above the timer's resolution."""
 WARM_UP = 300.0
 """Milliseconds of drawing before the first query, in which a GPU raises its clocks."""
 MOST_DRAWS = 1000
@@ -97,7 +97,7 @@ class Measured:
     """Program → (rounds,): ms of one evaluation at every pixel, without the floor."""
 
     def raw(self, name: str) -> Spread:
-        """The time of a whole draw, in ms."""
+        """The time of a draw with its floor, in ms."""
         return _spread(self.raw_times[name])
 
     def net(self, name: str) -> Spread:
@@ -138,19 +138,19 @@ def measure(
 
     Raises SssgenError without OpenGL, and for a program that the driver rejects.
     """
-    with _Stage(size) as stage:
-        drawn: dict[str, _Drawn] = {}
+    with _TimedFrame(size) as frame:
+        linked: dict[str, _LinkedProgram] = {}
         for program in programs:
             for text in filter(None, (program.fragment, program.floor)):
                 key = _key(text, program)
-                drawn[key] = drawn.get(key) or stage.prepare(program, text)
-        _warm(stage, list(drawn.values()), sample)
-        times = {key: np.empty(rounds) for key in drawn}
+                linked[key] = linked.get(key) or frame.prepare(program, text)
+        _warm_up(frame, list(linked.values()), sample)
+        times = {key: np.empty(rounds) for key in linked}
         for number in range(rounds):
-            keys = list(drawn)
+            keys = list(linked)
             np.random.default_rng(number).shuffle(keys)
             for key in keys:
-                times[key][number] = stage.time(drawn[key])
+                times[key][number] = frame.time(linked[key])
         raw = {program.name: times[_key(program.fragment, program)] for program in programs}
         net = {
             program.name: (raw[program.name] - (times[_key(program.floor, program)] if program.floor else 0.0))
@@ -158,18 +158,18 @@ def measure(
             for program in programs
         }
         counts = {program.name: program.evaluations for program in programs}
-        return Measured(stage.device, size, rounds, counts, raw, net)
+        return Measured(frame.device, size, rounds, counts, raw, net)
 
 
 def picture(program: Program, size: tuple[int, int]) -> npt.NDArray[np.float32]:
     """The output of a program, (height, width, 4), row 0 at the bottom. Raises SssgenError as `measure` does."""
-    with _Stage(size) as stage:
-        stage.time(stage.prepare(program, program.fragment))
-        return np.frombuffer(stage.frame.read(components=4, dtype="f4"), np.float32).reshape(size[1], size[0], 4)
+    with _TimedFrame(size) as frame:
+        frame.time(frame.prepare(program, program.fragment))
+        return np.frombuffer(frame.framebuffer.read(components=4, dtype="f4"), np.float32).reshape(size[1], size[0], 4)
 
 
 @dataclass
-class _Drawn:
+class _LinkedProgram:
     """A linked program with its textures."""
 
     array: Any
@@ -179,8 +179,8 @@ class _Drawn:
     """Draws per timer query."""
 
 
-class _Stage:
-    """The frame that all programs draw into, and the timer. The end releases all GPU objects."""
+class _TimedFrame:
+    """The frame that all programs draw into, and the timer: a context that releases all GPU objects at its end."""
 
     def __init__(self, size: tuple[int, int]) -> None:
         self.gpu = cast(OpenGL, backends.needed("gl"))
@@ -192,11 +192,13 @@ class _Stage:
         software = bool(_SOFTWARE.search(info["GL_RENDERER"]))
         self.device = Device(info["GL_RENDERER"], info["GL_VERSION"], software)
 
-    def __enter__(self) -> _Stage:
+    def __enter__(self) -> _TimedFrame:
         self.context.__enter__()
-        self.frame = self._keep(self.context.framebuffer([self._keep(self.context.texture(self.size, 4, dtype="f4"))]))
+        self.framebuffer = self._keep(
+            self.context.framebuffer([self._keep(self.context.texture(self.size, 4, dtype="f4"))])
+        )
         self.query = self.context.query(time=True)
-        self.frame.use()
+        self.framebuffer.use()
         self.context.viewport = (0, 0, *self.size)
         self.context.disable(self.context.DEPTH_TEST | self.context.BLEND | self.context.CULL_FACE)
         return self
@@ -210,7 +212,7 @@ class _Stage:
         self.objects.append(gpu_object)
         return gpu_object
 
-    def prepare(self, program: Program, text: str) -> _Drawn:
+    def prepare(self, program: Program, text: str) -> _LinkedProgram:
         """Links a text and sets the program's uniforms and textures."""
         try:
             linked = self._keep(self.context.program(vertex_shader=_SCREEN, fragment_shader=text))
@@ -223,7 +225,7 @@ class _Stage:
                 textures.append(self._texture(program.textures[name]))
             elif name in program.uniforms:
                 _write(linked[name], program.uniforms[name])
-        return _Drawn(self._keep(self.context.vertex_array(linked, [])), textures)
+        return _LinkedProgram(self._keep(self.context.vertex_array(linked, [])), textures)
 
     def _texture(self, data: Texture | backends.Array) -> Any:
         if id(data) not in self.uploaded:
@@ -238,12 +240,12 @@ class _Stage:
         texture.filter = (self.context.NEAREST, self.context.NEAREST)
         return texture
 
-    def time(self, drawn: _Drawn) -> float:
+    def time(self, linked: _LinkedProgram) -> float:
         """Milliseconds of one draw."""
-        for unit, texture in enumerate(drawn.textures):
+        for unit, texture in enumerate(linked.textures):
             texture.use(unit)
         self.context.finish()
-        return self._timed(lambda: [drawn.array.render(vertices=3) for _ in range(drawn.draws)]) / drawn.draws
+        return self._timed(lambda: [linked.array.render(vertices=3) for _ in range(linked.draws)]) / linked.draws
 
     def _timed(self, work: Callable[[], object]) -> float:
         # a software rasteriser draws after the query has ended
@@ -257,20 +259,20 @@ class _Stage:
         return float(self.query.elapsed) * 1e-6
 
 
-def _warm(stage: _Stage, drawn: Sequence[_Drawn], sample: float) -> None:
+def _warm_up(frame: _TimedFrame, programs: Sequence[_LinkedProgram], sample: float) -> None:
     """Draws until clocks and caches have settled, then chooses the draws per timer query."""
-    for one in drawn:
-        stage.time(one)  # some drivers compile at the first draw
+    for program in programs:
+        frame.time(program)  # some drivers compile at the first draw
     spent = 0.0
-    while spent < (0.0 if stage.device.software else WARM_UP):
-        spent += sum(stage.time(one) for one in drawn)
-    for one in drawn:
-        once = min(stage.time(one) for _ in range(2))
-        one.draws = int(np.clip(np.ceil(sample / max(once, 1e-6)), 1, MOST_DRAWS))
+    while spent < (0.0 if frame.device.software else WARM_UP):
+        spent += sum(frame.time(program) for program in programs)
+    for program in programs:
+        once = min(frame.time(program) for _ in range(2))
+        program.draws = int(np.clip(np.ceil(sample / max(once, 1e-6)), 1, MOST_DRAWS))
 
 
 def _key(text: str, program: Program) -> str:
-    """Programs with equal text, numbers and textures have equal keys: floors often have."""
+    """A key: equal for programs with equal text, numbers and textures, as floors often are."""
     values = sorted((name, str(np.asarray(value).tolist())) for name, value in program.uniforms.items())
     return repr((text, values, sorted((name, id(data)) for name, data in program.textures.items())))
 

@@ -4,7 +4,7 @@
     program = of_technique("lobe_exp2", ball)
 
 A full-screen pass reads one surface point per pixel from three float textures, and runs the code of the emitted
-fragment stage there. Its floor, which is subtracted, reads the same textures and adds the values. Where one evaluation
+fragment stage there. Its floor, which is subtracted, reads the same textures and adds the values. If one evaluation
 takes too little time compared with the reads, each pixel runs several, at slightly different points, so that the
 compiler cannot merge them.
 """
@@ -39,7 +39,7 @@ EYE, LIGHT = (0.0, 0.0, 1.8), (2.5, 1.0, 0.3)
 """Positions of the eye and of the light for single techniques: half of the visible part of a unit ball is lit."""
 
 MOST_RAYS = 500_000
-"""The limit of rays that the CPU casts for one picture."""
+"""The limit of rays that the CPU casts for a picture."""
 
 
 class Points(NamedTuple):
@@ -57,11 +57,11 @@ TARGET = "glsl-330"
 """The target whose emitted text is timed."""
 
 _VARYINGS = {
-    "v_position": ("vec3", "timing_place.xyz + moved"),
-    "v_ray": ("vec3", "timing_place.xyz + moved"),
-    "v_normal": ("vec3", "timing_normal.xyz + moved"),
-    "v_tangent": ("vec4", "timing_tangent + vec4(vec3(moved), 0.0)"),
-    "v_uv": ("vec2", "vec2(timing_place.w, timing_normal.w) + moved"),
+    "v_position": ("vec3", "timing_place.xyz + offset"),
+    "v_ray": ("vec3", "timing_place.xyz + offset"),
+    "v_normal": ("vec3", "timing_normal.xyz + offset"),
+    "v_tangent": ("vec4", "timing_tangent + vec4(vec3(offset), 0.0)"),
+    "v_uv": ("vec2", "vec2(timing_place.w, timing_normal.w) + offset"),
 }
 """The varyings of emitted fragment stages: type, and GLSL expression in the timing pass."""
 
@@ -202,7 +202,8 @@ def of_technique(
     for key in values or {}:
         if key not in defaults:
             raise failure(
-                f"{function} has no parameter '{key}'", did_you_mean(key, defaults) or f"it has: {', '.join(defaults)}"
+                f"{function} has no parameter '{key}'",
+                did_you_mean(key, defaults) or f"parameters: {', '.join(defaults)}",
             )
     numbers: dict[str, Any] = {**defaults, **(values or {})}
     shade = _shade(_signature(text, function, renamed), subject, numbers)
@@ -242,10 +243,12 @@ def _signature(text: str, function: str, renamed: Mapping[str, str]) -> _Signatu
     emitted = renamed.get(function, function)
     match = re.search(rf"^(\w+) {emitted}\(([^)]*)\)\s*\{{", text, re.MULTILINE)
     if match is None:
-        raise failure(f"the text has no function '{function}'", "give it the technique's name")
+        raise failure(f"the text has no function '{function}'", "its function must have the technique's name")
     names = {new: old.removeprefix(f"{function}.") for old, new in renamed.items() if old.startswith(f"{function}.")}
-    declared = [param.split() for param in match[2].split(",") if param.strip()]
-    params = [_Input(part[0] if len(part) == 3 else "in", part[-2], names.get(part[-1], part[-1])) for part in declared]
+    declarations = [param.split() for param in match[2].split(",") if param.strip()]
+    params = [
+        _Input(part[0] if len(part) == 3 else "in", part[-2], names.get(part[-1], part[-1])) for part in declarations
+    ]
     return _Signature(match[1], emitted, params)
 
 
@@ -256,21 +259,21 @@ def _shade(called: _Signature, subject: probes.Subject, numbers: Mapping[str, An
     outputs = [param for param in called.params if param.name not in subject.uniforms and param.direction == "out"]
     read = {varying for param in inputs for varying in _input(param)[1]}
     varyings = [varying for varying in _VARYINGS if varying in read]
-    locals_ = [f"    {param.type} given_{param.name} = {_input(param)[0]};\n" for param in inputs]
-    locals_ += [f"    {param.type} given_{param.name};\n" for param in outputs]
-    arguments = [("value_" if param in uniforms else "given_") + param.name for param in called.params]
+    locals_ = [f"    {param.type} argument_{param.name} = {_input(param)[0]};\n" for param in inputs]
+    locals_ += [f"    {param.type} argument_{param.name};\n" for param in outputs]
+    arguments = [("value_" if param in uniforms else "argument_") + param.name for param in called.params]
     call = f"{called.function}({', '.join(arguments)})"
     results = [
-        (param.type, f"given_{param.name}")
+        (param.type, f"argument_{param.name}")
         for param in called.params
         if param not in uniforms and param.direction != "in"
     ]
     if called.result != "void":
-        call, results = f"{called.result} given_result = {call}", [(called.result, "given_result"), *results]
+        call, results = f"{called.result} argument_result = {call}", [(called.result, "argument_result"), *results]
     shared = "uniform vec3 timing_eye;\nuniform vec3 timing_light;\nuniform float timing_time;\n" + _declared(varyings)
     start = f"{shared}void shade() {{\n{''.join(locals_)}"
     declarations = "".join(_declaration(param, numbers) for param in uniforms)
-    sum_of_inputs = _sum((param.type, f"given_{param.name}") for param in inputs)
+    sum_of_inputs = _sum((param.type, f"argument_{param.name}") for param in inputs)
     return _Shade(
         f"{declarations}{start}    {call};\n    fragment_color = {_sum(results)};\n}}\n",
         f"{start}    fragment_color = {sum_of_inputs};\n}}\n",
@@ -319,20 +322,20 @@ _SOURCES = {"timing_place": "timing_places", "timing_normal": "timing_normals", 
 
 def _main(varyings: Sequence[str]) -> str:
     """The `main` of the pass: it reads a point and evaluates `shade` there and at points nearby."""
-    moves = [f"        {varying} = {_VARYINGS[varying][1]};\n" for varying in varyings]
-    used = [local for local in _SOURCES if any(local in move for move in moves)]
+    assignments = [f"        {varying} = {_VARYINGS[varying][1]};\n" for varying in varyings]
+    used = [local for local in _SOURCES if any(local in line for line in assignments)]
     samplers = "".join(f"uniform sampler2D {_SOURCES[local]};\n" for local in used)
-    reads = "".join(f"    vec4 {local} = texelFetch({_SOURCES[local]}, at, 0);\n" for local in used)
+    reads = "".join(f"    vec4 {local} = texelFetch({_SOURCES[local]}, pixel, 0);\n" for local in used)
     return f"""
 {samplers}uniform int timing_evaluations;
 out vec4 timing_color;
 
 void main() {{
-    ivec2 at = ivec2(gl_FragCoord.xy);
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
 {reads}    timing_color = vec4(0.0);
     for (int i = 0; i < timing_evaluations; i++) {{
-        float moved = 1.0e-4 * float(i);
-{"".join(moves)}        shade();
+        float offset = 1.0e-4 * float(i);
+{"".join(assignments)}        shade();
         timing_color += fragment_color;
     }}
 }}
@@ -356,7 +359,7 @@ class TimedMaterial(NamedTuple):
 def costs(
     materials: Sequence[TimedMaterial], size: tuple[int, int] = SIZE, rounds: int = ROUNDS, evaluations: int = 1
 ) -> Measured:
-    """The times of whole materials: `costs(...).net(name).median` is the time of shading a picture, in ms.
+    """The times of complete materials: `costs(...).net(name).median` is the time of shading a picture, in ms.
 
     The time includes the standard light, for all lights of the scene, and excludes the reads of the points. Raises
     SssgenError without OpenGL, and for a material that does not fit its scene.

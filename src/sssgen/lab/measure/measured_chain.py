@@ -23,7 +23,7 @@ NAME = "measured"
 
 
 class Stage(NamedTuple):
-    """One stage of a chain, as in a material file."""
+    """A stage of a chain, as in a material file."""
 
     section: str
     technique: str

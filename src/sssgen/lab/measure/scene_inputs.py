@@ -38,18 +38,18 @@ class SceneInputs:
 @lru_cache(48)
 def of_scene(scene: MeasuredScene) -> SceneInputs:
     """The inputs that do not depend on a light."""
-    geometry, at = scene.geometry, points(scene)
+    geometry, visible = scene.geometry, points(scene)
     distances = body.distance_texture(geometry)
     chord = mean_chord(scene)
-    # one texel per point, without filtering: a perfect bake
-    texels = (np.arange(at.count) + 0.5) / at.count
+    # one texel per point, without filtering, so that the bake has no error
+    texels = (np.arange(visible.count) + 0.5) / visible.count
     longest = max(float(chord.max(initial=0.0)), 1e-9)
-    typical = max(float(np.median(chord)), 1e-9) if at.count else 1.0
+    typical = max(float(np.median(chord)), 1e-9) if visible.count else 1.0
 
     def ideal(values: Array) -> Texture:
         return Texture(values[None, :, None], "nearest", "clamp")
 
-    # one lane for all points: a vector of three is not mistaken for three points
+    # one lane for all points, so that a vector of three components does not become three lanes
     parameters = body.texture_parameters(geometry, distances) | {"stored_range": distances.range}
     values = {
         name: np.array(value)[:, None] if isinstance(value, list) else value for name, value in parameters.items()
@@ -60,29 +60,31 @@ def of_scene(scene: MeasuredScene) -> SceneInputs:
         "thinness_texture": ideal(1.0 - chord / longest),
         "transmittance_texture": ideal(np.exp(-chord / typical)),
     }
-    return SceneInputs(values, textures, {"uv": np.stack([texels, np.full(at.count, 0.5)])})
+    return SceneInputs(values, textures, {"uv": np.stack([texels, np.full(visible.count, 0.5)])})
 
 
 @lru_cache(192)
 def of_light(scene: MeasuredScene, direction: tuple[float, float, float]) -> SceneInputs:
     """The inputs that depend on a directional light: the exact thickness towards it, and its depth map."""
-    geometry, at = scene.geometry, points(scene)
-    towards = np.broadcast_to(np.array(direction), (at.count, 3)).copy()
-    exact = thickness(geometry, np.ascontiguousarray(at.inputs["P"].T), towards)
+    geometry, visible = scene.geometry, points(scene)
+    towards = np.broadcast_to(np.array(direction), (visible.count, 3)).copy()
+    exact = thickness(geometry, np.ascontiguousarray(visible.inputs["P"].T), towards)
     values, textures = _depth_map(scene, np.array(direction))
     return SceneInputs(values | {"exact_length": exact}, textures)
 
 
 def mean_chord(scene: MeasuredScene) -> Array:
     """The mean length inside the body over inward directions, weighted by the cosine to −N: (n,)."""
-    at = points(scene)
-    frame = np.stack([at.inputs["T"], np.cross(at.inputs["N"].T, at.inputs["T"].T).T, -at.inputs["N"]])
+    visible = points(scene)
+    frame = np.stack(
+        [visible.inputs["T"], np.cross(visible.inputs["N"].T, visible.inputs["T"].T).T, -visible.inputs["N"]]
+    )
     # a Fibonacci spiral on the disc, projected to the hemisphere: a cosine-weighted density
     index = np.arange(RAYS)
     radius, angle = np.sqrt((index + 0.5) / RAYS), index * np.pi * (3.0 - np.sqrt(5.0))
     local = np.stack([radius * np.cos(angle), radius * np.sin(angle), np.sqrt(1.0 - radius**2)])
     directions = np.einsum("kr,kcn->rnc", local, frame).reshape(-1, 3)
-    origins = np.tile(at.inputs["P"].T, (RAYS, 1))
+    origins = np.tile(visible.inputs["P"].T, (RAYS, 1))
     mean: Array = thickness(scene.geometry, origins, np.ascontiguousarray(directions)).reshape(RAYS, -1).mean(axis=0)
     return mean
 

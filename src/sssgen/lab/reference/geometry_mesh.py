@@ -72,9 +72,9 @@ def _ring(major: float, minor: float, steps: int) -> tuple[Array, Indices]:
     around, tube = (angle.ravel() for angle in np.meshgrid(*[np.arange(steps) * (2.0 * np.pi / steps)] * 2))
     distance = major + minor * np.cos(tube)
     vertices = np.stack([distance * np.sin(around), minor * np.sin(tube), distance * np.cos(around)], axis=1)
-    at = np.arange(steps * steps).reshape(steps, steps)
-    right, up = np.roll(at, -1, axis=1), np.roll(at, -1, axis=0)
-    quads = np.stack([at, right, np.roll(right, -1, axis=0), up], axis=-1).reshape(-1, 4)
+    corner = np.arange(steps * steps).reshape(steps, steps)
+    right, up = np.roll(corner, -1, axis=1), np.roll(corner, -1, axis=0)
+    quads = np.stack([corner, right, np.roll(right, -1, axis=0), up], axis=-1).reshape(-1, 4)
     return vertices, _halves(quads)
 
 
@@ -107,7 +107,7 @@ def _level(distance: Callable[[Array], Array], reach: float, resolution: int) ->
     grid = np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
     values = np.concatenate([cut(part) for part in np.array_split(grid, 16)])
     if not (values < 0.0).any():
-        raise failure("the distance function is nowhere negative: there is no inside", "widen its reach")
+        raise failure("the distance function has no negative value: the body has no inside", "widen its reach")
     # a value of exactly 0 at a grid point makes triangles without area
     values = np.where(np.abs(values) < 1e-9 * reach, 1e-9 * reach, values)
     result = igl.marching_cubes(values, grid, count, count, count, 0.0)
@@ -120,7 +120,7 @@ def _on_level(cut: Callable[[Array], Array], vertices: Array, farthest: float) -
     step = 1e-4 * farthest
     points = vertices
     for _ in range(_NEWTON_STEPS):
-        slope = np.stack([cut(points + step * way) - cut(points - step * way) for way in np.eye(3)], axis=1)
+        slope = np.stack([cut(points + step * axis) - cut(points - step * axis) for axis in np.eye(3)], axis=1)
         slope /= 2.0 * step
         square = np.maximum(np.einsum("nc,nc->n", slope, slope), 1e-6)
         moved = points - (cut(points) / square)[:, None] * slope - vertices

@@ -23,8 +23,8 @@ def thickness(geometry: Geometry, origins: Array, directions: Array) -> Array:
 
     Parts behind the origin do not count. Raises SssgenError for a mesh that cannot be read.
     """
-    starts, ways = _to_object(geometry, origins, directions)
-    parts = np.maximum(intervals(geometry, starts, ways), 0.0)
+    starts, rays = _to_object(geometry, origins, directions)
+    parts = np.maximum(intervals(geometry, starts, rays), 0.0)
     length: Array = geometry.scale * (parts[..., 1] - parts[..., 0]).sum(axis=1)
     return length
 
@@ -41,10 +41,10 @@ def intervals(geometry: Geometry, origins: Array, directions: Array) -> Array:
     They include the part behind the origin, except for meshes and distance functions. A line with fewer than k
     intervals has empty ones.
     """
-    raise NotImplementedError(type(geometry).__name__)  # each shape that a scene can have is registered below
+    raise NotImplementedError(type(geometry).__name__)  # every shape of a scene is registered below
 
 
-def _one(enters: Array, leaves: Array) -> Array:
+def _single(enters: Array, leaves: Array) -> Array:
     """Lines with one interval each; empty where the end is before the start."""
     hit = enters < leaves
     return np.stack([np.where(hit, enters, 0.0), np.where(hit, leaves, 0.0)], axis=1)[:, None]
@@ -55,7 +55,7 @@ def _(geometry: Ball, origins: Array, directions: Array) -> Array:
     middle = -np.einsum("nc,nc->n", origins, directions)
     closest = origins + middle[:, None] * directions
     half = np.sqrt(np.maximum(geometry.radius**2 - np.einsum("nc,nc->n", closest, closest), 0.0))
-    return _one(middle - half, middle + half)
+    return _single(middle - half, middle + half)
 
 
 def _box(size: Array, origins: Array, directions: Array) -> Array:
@@ -65,7 +65,7 @@ def _box(size: Array, origins: Array, directions: Array) -> Array:
     along = directions == 0.0  # parallel to a pair of faces: always or never between them
     enters = np.where(along, -between, ends.min(axis=0)).max(axis=1)
     leaves = np.where(along, between, ends.max(axis=0)).min(axis=1)
-    return _one(enters, leaves)
+    return _single(enters, leaves)
 
 
 @intervals.register
@@ -80,7 +80,7 @@ def _(geometry: Slab, origins: Array, directions: Array) -> Array:
 
 @intervals.register
 def _(geometry: Capsule, origins: Array, directions: Array) -> Array:
-    return _one(*geometry.interval(origins, directions))
+    return _single(*geometry.interval(origins, directions))
 
 
 @intervals.register
@@ -99,7 +99,7 @@ def _(geometry: Torus, origins: Array, directions: Array) -> Array:
     companion[:, 1, 0] = companion[:, 2, 1] = companion[:, 3, 2] = 1.0
     companion[:, 0, 3], companion[:, 1, 3], companion[:, 2, 3] = -c, -b, -a
     roots = np.sort(np.linalg.eigvals(companion).real, axis=1)
-    for _ in range(3):  # Newton steps for the real roots; complex ones are sorted out below
+    for _ in range(3):  # Newton steps for the real roots; complex roots are excluded below
         value = ((roots**2 + a[:, None]) * roots + b[:, None]) * roots + c[:, None]
         slopes = (4.0 * roots**2 + 2.0 * a[:, None]) * roots + b[:, None]
         step = np.divide(value, slopes, out=np.zeros_like(value), where=np.abs(slopes) > 1e-9)
@@ -143,20 +143,20 @@ def _(geometry: Mesh, origins: Array, directions: Array) -> Array:
     order = np.lexsort((t[keep], rays[keep]))
     t, rays, side = t[keep][order], rays[keep][order], side[keep][order]
     # a ray through an edge crosses both of its triangles, but the surface only once
-    again = (
+    repeated = (
         (np.diff(rays, prepend=-1) == 0) & (np.diff(t, prepend=0.0) < 1e-7 * size) & (np.diff(side, prepend=0.0) == 0.0)
     )
-    t, rays, side = t[~again], rays[~again], side[~again]
+    t, rays, side = t[~repeated], rays[~repeated], side[~repeated]
     first = np.searchsorted(rays, np.arange(len(origins)))
-    most = int(np.bincount(rays, minlength=1).max(initial=0)) + 1
-    result = np.zeros((len(origins), most, 2))
+    count = int(np.bincount(rays, minlength=1).max(initial=0)) + 1
+    result = np.zeros((len(origins), count, 2))
     starts = np.diff(rays, prepend=-1) != 0
-    left = np.cumsum(side)
-    left -= np.repeat((left - side)[starts], np.diff(np.flatnonzero(starts), append=len(rays)))
-    # parts may be nested; a ray starts inside a part where it leaves more often than it enters
-    deep = np.zeros(len(origins))
-    np.maximum.at(deep, rays, left)
-    inside = deep[rays] - left + side > 0.0
+    exits = np.cumsum(side)
+    exits -= np.repeat((exits - side)[starts], np.diff(np.flatnonzero(starts), append=len(rays)))
+    # parts may be nested; a ray starts inside a part if it leaves more often than it enters
+    depth = np.zeros(len(origins))
+    np.maximum.at(depth, rays, exits)
+    inside = depth[rays] - exits + side > 0.0
     rank = np.arange(len(rays)) - first[rays]
     begins = np.where(starts, 0.0, np.roll(t, 1))
     result[rays[inside], rank[inside]] = np.stack([begins, t], axis=1)[inside]
@@ -175,16 +175,16 @@ def _(geometry: Distance, origins: Array, directions: Array) -> Array:
     value = geometry.distance(origins + t[:, None] * directions).copy()
     starts_inside = np.flatnonzero(value < 0.0)
     brackets: list[tuple[Any, Array, Array]] = []
-    going = t < end
-    while going.any():
-        rays = np.flatnonzero(going)
+    active = t < end
+    while active.any():
+        rays = np.flatnonzero(active)
         step = np.maximum(np.abs(value[rays]), shortest)
         after = np.minimum(t[rays] + step, end[rays])
         new = geometry.distance(origins[rays] + after[:, None] * directions[rays])
         crossed = (new < 0.0) != (value[rays] < 0.0)
         brackets.append((rays[crossed], t[rays[crossed]], after[crossed]))
         t[rays], value[rays] = after, new
-        going[rays] = after < end[rays]
+        active[rays] = after < end[rays]
     rays, low, high = (np.concatenate(parts) for parts in zip(*brackets, strict=True)) if brackets else (t[:0],) * 3
     rays = rays.astype(np.int64)
     at = _bisected(geometry, origins[rays], directions[rays], low, high)

@@ -1,4 +1,4 @@
-"""A cache of renders, so that an interrupted render continues, and one with more samples starts from it.
+"""A cache of renders, so that an interrupted render continues, and a render with more samples extends it.
 
 An entry has the number of batches, their sum and the sum of their squares, which give mean and noise. The state after n
 batches does not depend on the run, so caching does not change results.
@@ -35,25 +35,25 @@ class Batches(NamedTuple):
         return self.total / self.number
 
     def error(self) -> Array:
-        """The standard error of the mean, from the batches' spread; two batches at least."""
+        """The standard error of the mean, from the batches' spread; at least two batches."""
         spread = np.maximum(self.squares / self.number - self.mean() ** 2, 0.0)
         error: Array = np.sqrt(spread / (self.number - 1))
         return error
 
 
-def nothing(shape: tuple[int, ...]) -> Batches:
+def no_batches(shape: tuple[int, ...]) -> Batches:
     """The sum of no batches."""
     return Batches(0, np.zeros(shape), np.zeros(shape))
 
 
-def cached(key: str, shape: tuple[int, ...], wanted: int) -> Batches:
-    """The largest cached state of a key with at most `wanted` batches; no batches without a cache folder."""
+def cached(key: str, shape: tuple[int, ...], limit: int) -> Batches:
+    """The largest cached state of a key with at most `limit` batches; no batches without a cache folder."""
     for count in sorted(_counts(key), reverse=True):
-        if count <= wanted:
+        if count <= limit:
             state = _read(_name(key, count), shape)
             if state is not None and state.number == count:
                 return state
-    return nothing(shape)
+    return no_batches(shape)
 
 
 def store(key: str, batches: Batches, instead_of: int = 0) -> None:

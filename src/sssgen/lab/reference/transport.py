@@ -32,7 +32,7 @@ FEWEST_BATCHES = 8
 """The least number of batches: the noise is estimated from their spread."""
 
 _VERSION = 1
-"""The version of cached references: to increase whenever this package computes other numbers."""
+"""The version of cached references: increase it when this package computes other numbers."""
 
 _SECONDS_BETWEEN_WRITES = 5.0
 
@@ -68,7 +68,7 @@ def radiance(
     """The picture, (height, width, 3), of a body of `medium` in front of black, with one light.
 
     Its pixels are those of `camera.rays(*size)`, the rays through their centres, row 0 at the bottom; `light_direction`
-    is the unit vector towards the light, or a `Light`. `samples` is rounded up to whole batches of 16, at
+    is the unit vector towards the light, or a `Light`. `samples` is rounded up to full batches of 16, at
     least 8. Rays that miss the geometry read 0. The same arguments give the same numbers for any number of threads.
     Torus, distance function and mesh are triangles (see `geometry_mesh`, for `resolution`).
 
@@ -125,27 +125,27 @@ def radiance_along(
     # each channel separately: free paths sampled for one channel have a far larger variance in another
     for channel in dict.fromkeys(channels):
         state = _converge(body, channel, light, rays, batches, seed, scatterings)
-        same = [index for index, other in enumerate(channels) if other == channel]
+        same = [index for index, candidate in enumerate(channels) if candidate == channel]
         mean[:, same], error[:, same] = state.mean()[:, None], state.error()[:, None]
     return Transport(mean, error, batches * BATCH)
 
 
 def _converge(
-    body: Body, channel: Channel, light: Light, rays: tuple[Array, Array], wanted: int, seed: int, scatterings: int
+    body: Body, channel: Channel, light: Light, rays: tuple[Array, Array], count: int, seed: int, scatterings: int
 ) -> Batches:
-    """The `wanted` batches of one channel: cached ones, and newly rendered ones."""
+    """The `count` batches of one channel: from the cache, and newly rendered."""
     arguments = (_VERSION, mitsuba().__version__, BATCH, channel, light, seed, scatterings)
     content = b"".join([repr(arguments).encode(), body.content(), rays[0].tobytes(), rays[1].tobytes()])
     key = cache.digest(content)
-    state = cached(key, (len(rays[0]),), wanted)
-    if state.number == wanted:
+    state = cached(key, (len(rays[0]),), count)
+    if state.number == count:
         return state
     base = int(np.random.SeedSequence(int(cache.digest(content + b"stream"), 16)).generate_state(1)[0])
     renderer = Renderer(body, channel, light, rays, base, scatterings)
     written_batches, written = 0, time.monotonic()
-    while state.number < wanted:
+    while state.number < count:
         state = state.and_another(renderer.batch(state.number, BATCH))
-        if state.number < wanted and time.monotonic() - written > _SECONDS_BETWEEN_WRITES:
+        if state.number < count and time.monotonic() - written > _SECONDS_BETWEEN_WRITES:
             store(key, state, instead_of=written_batches)
             written_batches, written = state.number, time.monotonic()
     store(key, state, instead_of=written_batches)
@@ -155,10 +155,10 @@ def _converge(
 def _check(geometry: Geometry, medium: Medium, light: Light, origins: Array, directions: Array, samples: int) -> None:
     if samples < 1:
         raise failure(
-            f"there cannot be {samples} samples", "a few hundred are enough for a picture, thousands for a reference"
+            f"{samples} samples are too few", "a few hundred are enough for a picture, thousands for a reference"
         )
     if not 0.0 <= light.radius < 90.0:
-        raise failure(f"the light cannot have a radius of {light.radius:g} degrees", "it goes from 0 to below 90")
+        raise failure(f"the light cannot have a radius of {light.radius:g} degrees", "at least 0, and less than 90")
     if light.direction is not None and abs(np.linalg.norm(light.direction) - 1.0) > 1e-6:
         raise failure("the direction towards the light is not of length 1", "divide it by its length")
     if not np.allclose(np.linalg.norm(directions, axis=1), 1.0, atol=1e-6):
@@ -169,4 +169,4 @@ def _check(geometry: Geometry, medium: Medium, light: Light, origins: Array, dir
     starts = np.unique(origins, axis=0)
     to_object = geometry.to_object()
     if len(starts) and (geometry.distance(starts @ to_object[:3, :3].T + to_object[:3, 3]) < 0.0).any():
-        raise failure("a ray starts in the body", "move the camera out of it")
+        raise failure("a ray starts inside the body", "move the camera out of it")

@@ -24,7 +24,7 @@ _BLOCK = 32
 """The side of a render block in pixels. Mitsuba's own choice depends on the number of threads."""
 
 _FAINT = 1e-3
-"""The weight below which Russian roulette ends paths: so low that few surviving paths weigh much."""
+"""The weight below which Russian roulette ends paths: so low that surviving paths with a large weight are rare."""
 
 _ROULETTE_ALBEDO = 0.95
 """The largest albedo for Russian roulette. Mitsuba continues at most 95 % of the paths, so that above it their weights
@@ -59,14 +59,14 @@ class Body:
 
 def body_of(geometry: Geometry, resolution: int = RESOLUTION) -> Body:
     """Ball, box and slab are exact; other shapes become triangles, see `geometry_mesh`, with its SssgenError."""
-    none = np.zeros((0, 3))
+    empty = np.zeros((0, 3))
     if isinstance(geometry, Ball | Box | Slab):
         half = np.full(3, geometry.radius) if isinstance(geometry, Ball) else 0.5 * np.array(box_size(geometry))
         reach = geometry.radius if isinstance(geometry, Ball) else float(np.linalg.norm(half))
         matrix = geometry.to_world() @ np.diag([*half, 1.0])
         kind = "sphere" if isinstance(geometry, Ball) else "cube"
-        where = np.array(geometry.position, np.float64)
-        return Body(kind, matrix, none, none.astype(np.int64), where, reach * geometry.scale)
+        centre = np.array(geometry.position, np.float64)
+        return Body(kind, matrix, empty, empty.astype(np.int64), centre, reach * geometry.scale)
     vertices, faces = mesh_of(geometry, resolution)
     centre = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     radius = float(np.linalg.norm(vertices - centre, axis=1).max())
@@ -94,7 +94,7 @@ class Light:
 
 
 class Renderer:
-    """Renders of n rays through one body, in one channel; each call of `batch` is independent of the others."""
+    """Renders of n rays through one body, in one channel; the calls of `batch` are independent."""
 
     def __init__(
         self, body: Body, channel: Channel, light: Light, rays: tuple[Array, Array], base: int, scatterings: int
@@ -105,7 +105,7 @@ class Renderer:
         """
         self._mitsuba = mitsuba()
         # Mitsuba seeds pixel i of block b in render s with  base + s · (pixels) + b · (a block's pixels) + i.  The
-        # film is one line high, so blocks reach past it: renders this far apart never share a seed.
+        # film is one line high, and blocks extend beyond it: renders this far apart never share a seed.
         blocks = -(-len(rays[0]) // _BLOCK)
         self._stride = -(-blocks * _BLOCK * _BLOCK // len(rays[0]))
         self._scene = self._load(body, channel, light, rays, base, scatterings)
@@ -122,8 +122,13 @@ class Renderer:
         mi = self._mitsuba
         line = {"type": "hdrfilm", "height": 1, "rfilter": {"type": "box"}, "component_format": "float32"}
         sensors: dict[str, Any] = {
-            f"ray{i:07}": {"type": "radiancemeter", "origin": origin, "direction": way, "film": {**line, "width": 1}}
-            for i, (origin, way) in enumerate(zip(rays[0].tolist(), rays[1].tolist(), strict=True))
+            f"ray{i:07}": {
+                "type": "radiancemeter",
+                "origin": origin,
+                "direction": direction,
+                "film": {**line, "width": 1},
+            }
+            for i, (origin, direction) in enumerate(zip(rays[0].tolist(), rays[1].tolist(), strict=True))
         }
         film = {**line, "width": len(rays[0]), "pixel_format": "rgb"}
         return mi.load_dict(
@@ -171,15 +176,15 @@ class Renderer:
             return {"type": "constant", "radiance": float(1.0 / np.pi)}
         if light.radius == 0.0:
             return {"type": "directional", "direction": [-x for x in light.direction], "irradiance": 1.0}
-        away = _FAR * body.radius
-        middle = body.centre + away * np.array(light.direction)
-        turn = mi.ScalarTransform4f().look_at(
-            origin=middle.tolist(), target=body.centre.tolist(), up=_across(np.array(light.direction)).tolist()
+        distance = _FAR * body.radius
+        middle = body.centre + distance * np.array(light.direction)
+        to_world = mi.ScalarTransform4f().look_at(
+            origin=middle.tolist(), target=body.centre.tolist(), up=_perpendicular(np.array(light.direction)).tolist()
         )
-        wide = np.tan(np.radians(light.radius)) * away
+        radius = np.tan(np.radians(light.radius)) * distance
         radiance = float(1.0 / (np.pi * np.sin(np.radians(light.radius)) ** 2))
         emitter = {"type": "area", "radiance": radiance}
-        return {"type": "disk", "to_world": turn @ mi.ScalarTransform4f().scale(float(wide)), "emitter": emitter}
+        return {"type": "disk", "to_world": to_world @ mi.ScalarTransform4f().scale(float(radius)), "emitter": emitter}
 
 
 def _roulette_depth(albedo: float) -> int:
@@ -189,7 +194,7 @@ def _roulette_depth(albedo: float) -> int:
     return 1 + (math.ceil(math.log(_FAINT) / math.log(albedo)) if albedo > 0.0 else 0)
 
 
-def _across(direction: Array) -> Array:
+def _perpendicular(direction: Array) -> Array:
     """A direction perpendicular to another."""
     return np.cross(direction, np.eye(3)[np.argmin(np.abs(direction))])
 

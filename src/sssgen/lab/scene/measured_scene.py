@@ -82,7 +82,7 @@ class MeasuredScene:
         """The scene from another side, for a view that no fit uses."""
         turn = np.radians(HELD_OUT)
         x, y, z = np.subtract(self.camera.position, self.camera.target)
-        if np.hypot(x, z) < 1e-6 * abs(y):  # from straight above the rotation has no effect
+        if np.hypot(x, z) < 1e-6 * abs(y):  # a rotation does not change a view from straight above
             x = 0.5 * abs(y)
         turned = np.array([np.cos(turn) * x + np.sin(turn) * z, y, np.cos(turn) * z - np.sin(turn) * x])
         x, y, z = (float(value) for value in turned + self.camera.target)
@@ -96,22 +96,22 @@ def names() -> dict[str, str]:
 
 
 def load(name: str) -> MeasuredScene:
-    """The scene of a scene file, or one of the project by name. Raises SssgenError with all errors in it."""
-    known = names()
+    """The scene of a scene file, or a scene of the project by name. Raises SssgenError with all errors in it."""
+    scenes = names()
     if not name.endswith(".toml") and "/" not in name and os.sep not in name:
-        if name not in known:
-            hint = did_you_mean(name, known) or f"give a path that ends in .toml, or one of: {', '.join(known)}"
+        if name not in scenes:
+            hint = did_you_mean(name, scenes) or f"give a path that ends in .toml, or one of: {', '.join(scenes)}"
             raise failure(f"unknown scene '{name}'", hint)
-        name = known[name]
+        name = scenes[name]
     return of_scene(load_scene(name), name)
 
 
 def of_scene(scene: Scene, path: str) -> MeasuredScene:
-    """The scene that a scene describes. Raises SssgenError for an incomplete description."""
+    """The measured scene of a scene with physical data. Raises SssgenError for an incomplete description."""
     document, shown = scene.document, posix(path)
     if not scene.measured:
         hint = 'add [medium] with preset = "marble", say; or [inlay] with depth = 0.02: docs/accuracy.md'
-        raise failure("the scene does not describe what its body is made of", hint, shown)
+        raise failure("the scene does not describe the medium of its body", hint, shown)
     if scene.geometry is None:
         raise failure("the scene has no geometry to measure", "add [geometry]", shown)
     medium = _medium(scene) if "medium" in scene.measured else None
@@ -121,7 +121,7 @@ def of_scene(scene: Scene, path: str) -> MeasuredScene:
             span = document.place("light", number, "position").value
             document.error(span, "only directional lights can be measured", "write direction = […] towards the light")
     if medium is not None and not scene.lights:
-        document.error(document.place().key, "nothing lights the scene", "add [[light]] with direction = […]")
+        document.error(document.place().key, "the scene has no light", "add [[light]] with direction = […]")
     document.reporter.check()
     width, height = scene.size
     scale = SIDE / max(width, height)
@@ -154,13 +154,13 @@ def _medium(scene: Scene) -> Medium | None:
                 table.error(key, f"a preset has its own {key}", "give a preset, or the coefficients")
         name = table.text("preset", "", media.media())
         unit = table.number("unit_mm", 10.0, POSITIVE)
-        # without the boundary: the engine computes its reflection, not these techniques
+        # without the boundary, because the engine computes its reflection
         return media.preset(name, unit).matched() if name in media.media() else None
     absorption: Any = table.vector("absorption", (0.0, 0.0, 0.0), NOT_NEGATIVE)
     scattering: Any = table.vector("scattering", (5.0, 5.0, 5.0), NOT_NEGATIVE)
     anisotropy = table.number("anisotropy", 0.0, (-0.95, 0.95))
     if not any(scattering):
-        table.error("scattering", "nothing scatters in this medium", "only unscattered light would pass through")
+        table.error("scattering", "this medium does not scatter", "a measured medium needs scattering above 0")
     if "unit_mm" in table.content:
         table.error("unit_mm", "coefficients are given per world unit", "leave unit_mm out, or name a preset")
     return Medium("custom", absorption, scattering, anisotropy, 1.0, "the scene")

@@ -42,7 +42,7 @@ class Medium:
             message = f"the medium '{self.name}' has the anisotropy {self.anisotropy:g}"
             raise failure(message, "it is between -1 and 1; 0 is isotropic scattering")
         if not 1.0 <= self.ior <= 10.0:
-            raise failure(f"the medium '{self.name}' has the refractive index {self.ior:g}", "it goes from 1 to 10")
+            raise failure(f"the medium '{self.name}' has the refractive index {self.ior:g}", "it is from 1 to 10")
 
     @property
     def extinction(self) -> Spectrum:
@@ -63,7 +63,7 @@ class Medium:
 
 @dataclass(frozen=True)
 class Measured:
-    """One medium of a file of media."""
+    """An entry of a file of media."""
 
     reduced_scattering: Spectrum
     """σs′ = σs (1 − g) per millimetre"""
@@ -84,14 +84,14 @@ def preset(name: str, unit_mm: float = 1.0, anisotropy: float = 0.0, file: str =
 
     Raises SssgenError for an unknown medium, an invalid file, a unit that is not positive, and |g| ≥ 1.
     """
-    known = media(file)
-    if name not in known:
-        raise failure(f"unknown medium '{name}'", did_you_mean(name, known) or f"media: {', '.join(known)}")
+    presets = media(file)
+    if name not in presets:
+        raise failure(f"unknown medium '{name}'", did_you_mean(name, presets) or f"media: {', '.join(presets)}")
     if not 0.0 < unit_mm < float("inf"):
         raise failure(f"a world unit cannot be {unit_mm:g} mm", "unit_mm is above 0")
     if not -1.0 < anisotropy < 1.0:
-        raise failure(f"the anisotropy cannot be {anisotropy:g}", "it lies between -1 and 1")
-    entry = known[name]
+        raise failure(f"the anisotropy cannot be {anisotropy:g}", "it is between -1 and 1")
+    entry = presets[name]
     return Medium(
         name,
         _scaled(entry.absorption, unit_mm),

@@ -85,8 +85,8 @@ def _write(geometry: Geometry, lines: list[str]) -> str:
         position = f"at - {_vector(geometry.position)}"
         matrix = ", ".join(_number(value) for value in to_object[:3, :3].T.ravel())
         lines.append(f"    vec3 p = mat3({matrix}) * ({position});" if turned else f"    vec3 p = {position};")
-    *before, result = _formula(geometry, parts)
-    lines += [f"    {line}" for line in before]
+    *statements, result = _formula(geometry, parts)
+    lines += [f"    {line}" for line in statements]
     lines += [
         f"    return {_number(geometry.scale)} * ({result});" if geometry.scale != 1.0 else f"    return {result};"
     ]
@@ -112,7 +112,7 @@ def _formula(geometry: Geometry, parts: list[str]) -> list[str]:
         lines = [f"float nearest = {parts[0]}(p);"]
         lines += [f"nearest = min(nearest, {part}(p));" for part in parts[1:]]
         return [*lines, "nearest"]
-    raise failure(f"a {type(geometry).__name__.lower()} cannot be part of a union that is measured")
+    raise failure(f"a {type(geometry).__name__.lower()} cannot be part of a union for measurements")
 
 
 def _number(value: float) -> str:
@@ -150,7 +150,7 @@ def bounds(geometry: Geometry) -> tuple[Array, Array]:
     # a cell that the surface crosses has a corner within half of its diagonal from the surface
     near = points[geometry.distance(points) < 0.87 * (at[1] - at[0])]
     if not len(near):
-        raise failure("the scene's body is empty", "its distance function is nowhere below 0 within its reach")
+        raise failure("the scene's body is empty", "its distance function has no value below 0 within its reach")
     return near.min(axis=0), near.max(axis=0)
 
 

@@ -68,16 +68,18 @@ def points(scene: MeasuredScene) -> Points:
     hits = scene.geometry.hits(origin, directions)
     keep = hits.hit & (np.abs(np.einsum("nc,nc->n", hits.normal, directions)) > GRAZING)
     if not keep.any():
-        raise failure(f"the camera of '{scene.name}' sees nothing of its body", "turn it: [camera] target = […]")
+        raise failure(
+            f"the camera of '{scene.name}' does not see its body", "change its direction: [camera] target = […]"
+        )
     position, normal, ray = hits.position[keep].T, hits.normal[keep].T, directions[keep].T
     tangent, uv = hits.tangent[keep].T, hits.uv[keep].T
     model = scene.geometry.to_world()
     to_object = scene.geometry.to_object()
-    turn = to_object[:3, :3] * scene.geometry.scale
+    rotation = to_object[:3, :3] * scene.geometry.scale
     inputs = {
         "P": position, "N": normal, "V": -ray, "T": tangent[:3], "B": np.cross(normal.T, tangent[:3].T).T * tangent[3],
         "P_object": to_object[:3, :3] @ position + to_object[:3, 3:],
-        "N_object": turn @ normal, "V_object": turn @ -ray,
+        "N_object": rotation @ normal, "V_object": rotation @ -ray,
         "uv": uv, "time": np.zeros(1),
     }  # fmt: skip
     return Points(keep.reshape(height, width), inputs, model, origin)
