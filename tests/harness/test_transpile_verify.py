@@ -320,6 +320,15 @@ def test_the_driver_gets_the_new_name_of_every_old_one() -> None:
         assert f"#define {old} {new}\n" in text
 
 
+def test_old_shadow_reads_are_defined_for_the_driver() -> None:
+    text = """
+float shadow(sampler2DShadow map, vec3 p) { return shadow2D(map, p).r + shadow2DProj(map, vec4(p, 2.0)).r; }
+float twice(float x) { return 2.0 * x; }
+"""
+    assert plain(text).for_driver("450 core").count("vec4 shadow2D(") == 1
+    assert rows(text)["twice(float)"].ok
+
+
 def test_reads_by_their_old_names_run() -> None:
     text = """
 vec4 graded(sampler2D map, vec2 p) { return texture2DGradARB(map, p, vec2(0.1, 0.0), vec2(0.0, 0.1)); }

@@ -47,13 +47,13 @@ def run(arguments: Namespace) -> int:
 
     names = _backends(arguments.backend, arguments.precision)
     chosen = subject(arguments.TECHNIQUE, inputs.bindings(arguments.bind))
-    given = inputs.read(arguments.inputs, chosen) if arguments.inputs else {}
+    values = inputs.read(arguments.inputs, chosen) if arguments.inputs else {}
     sampled = arguments.samples is not None
     if sampled:
-        given = _sampled(chosen, arguments.samples, arguments.seed) | given
+        values = _sampled(chosen, arguments.samples, arguments.seed) | values
     from sssgen.harness.evaluate.evaluation import fitted
 
-    fit = fitted(chosen, given)
+    fit = fitted(chosen, values)
     if len(names) == 1:
         return _one(chosen, fit, names[0], arguments.json, arguments.guards)
     return _several(chosen, fit, names, arguments.json, not sampled, arguments.guards)
@@ -70,13 +70,13 @@ def _sampled(chosen: Any, count: int, seed: int) -> dict[str, Any]:
     return samples(chosen, count, seed)
 
 
-def _backends(given: str, precision: str | None) -> list[str]:
-    """The back ends that are meant; the oracle comes first."""
-    names = list(BACKENDS) if given == "all" else chosen(given)
+def _backends(text: str, precision: str | None) -> list[str]:
+    """The named back ends; the oracle comes first."""
+    names = list(BACKENDS) if text == "all" else chosen(text)
     if precision is None:
         return names
     if precision == "f16":
-        return list(HALF) if given == "all" else in_half(names)
+        return list(HALF) if text == "all" else in_half(names)
     wanted = {"f64": "numpy", "f32": "numpy-f32"}[precision]
     if "numpy" in names:
         return [wanted if name == "numpy" else name for name in names if name not in ("numpy-f32", *HALF)]
@@ -107,9 +107,9 @@ def _several(subject: Any, fit: Any, names: list[str], as_json: bool, listed: bo
     here = [row for row in rows if not row.missing]
     good = bool(here) and all(row.ok for row in rows) and not (in_ci() and len(here) < len(rows))
     if as_json:
-        found = [row.as_json() for row in rows]
+        deviations = [row.as_json() for row in rows]
         plain = {key: _plain(value) for key, value in oracle.items()} if listed else {}
-        print_json({"ok": good, "lanes": fit.lanes, "goal": GOAL, "backends": found, "outputs": plain})
+        print_json({"ok": good, "lanes": fit.lanes, "goal": GOAL, "backends": deviations, "outputs": plain})
         return OK if good else CHECK_FAILED
     print(f"{subject.name}, {fit.lanes} lane{'s' * (fit.lanes != 1)}, against the oracle in float64")
     if listed:
@@ -135,8 +135,8 @@ def _print_outputs(outputs: Mapping[str, Any]) -> None:
     for name, value in outputs.items():
         lanes = value if value.ndim else value[None]
         print(f"{name}:")
-        for lane, one in enumerate(lanes[:SHOWN]):
-            shown = np.array2string(np.asarray(one), precision=7, separator=", ", suppress_small=False)
+        for lane, number in enumerate(lanes[:SHOWN]):
+            shown = np.array2string(np.asarray(number), precision=7, separator=", ", suppress_small=False)
             print(f"  {lane:4}  {shown}")
         if len(lanes) > SHOWN:
             print(f"  … {len(lanes) - SHOWN} more, of all: from {lanes.min():.7g} to {lanes.max():.7g}")

@@ -20,7 +20,7 @@ def add_options(parser: ArgumentParser) -> None:
 
 
 def run(arguments: Namespace) -> int:
-    """Prints the operations that are not proven safe; returns 1 where one of them has no guard."""
+    """Prints the operations that are not proven safe; returns 1 if one of them has no guard."""
     from sssgen.harness.lint_findings import MAY_FAIL, PROVEN, UNKNOWN, Finding, lint
 
     wrong: list[Diagnostic] = []
@@ -32,19 +32,19 @@ def run(arguments: Namespace) -> int:
             wrong += error.diagnostics
     if wrong:
         raise SssgenError(wrong)
-    unguarded = any(not one.guarded and one.verdict != PROVEN for _, found in rows for one in found)
+    unguarded = any(not finding.guarded and finding.verdict != PROVEN for _, findings in rows for finding in findings)
     if arguments.json:
-        listed = [{"name": name, "findings": [one.as_json() for one in found]} for name, found in rows]
+        listed = [{"name": name, "findings": [finding.as_json() for finding in findings]} for name, findings in rows]
         print_json({"ok": not unguarded, "results": listed})
         return CHECK_FAILED if unguarded else OK
-    for name, found in rows:
-        for one in found:
-            if one.verdict != PROVEN or arguments.all:
-                print(f"{one.render()}\n")
-        counts = Counter(one.verdict for one in found)
+    for name, findings in rows:
+        for finding in findings:
+            if finding.verdict != PROVEN or arguments.all:
+                print(f"{finding.render()}\n")
+        counts = Counter(finding.verdict for finding in findings)
         unseen = "not proven" if arguments.no_examples else UNKNOWN
         print(
-            f"{name}: {len(found)} operation{'s' * (len(found) != 1)} with a domain: {counts[PROVEN]} proven safe, "
-            f"{counts[MAY_FAIL]} may fail, {counts[UNKNOWN]} {unseen}"
+            f"{name}: {len(findings)} operation{'s' * (len(findings) != 1)} with a domain: "
+            f"{counts[PROVEN]} proven safe, {counts[MAY_FAIL]} may fail, {counts[UNKNOWN]} {unseen}"
         )
     return CHECK_FAILED if unguarded else OK

@@ -93,15 +93,15 @@ def _check_rows(rows: Sequence[str], subjects: Sequence[Specimen]) -> None:
             )
 
 
-def _backends(names_text: str, half: bool) -> list[str]:
+def _backends(text: str, half: bool) -> list[str]:
     """The named back ends. Raises SssgenError for unknown ones, and for those of the other precision."""
-    names = list(SINGLE) if names_text == "all" else chosen(names_text)
+    names = list(SINGLE) if text == "all" else chosen(text)
     if not half:
         wrong = [name for name in names if name in HALF]
         if wrong:
             raise failure(f"{wrong[0]} computes in half precision", "--precision f16 --backend numpy,webgpu")
         return names
-    return list(HALF) if names_text == "all" else in_half(names)
+    return list(HALF) if text == "all" else in_half(names)
 
 
 def _stressed(subjects: list[Specimen], names: list[str], settings: Settings) -> Report:

@@ -41,23 +41,23 @@ def _polyfill(name: str, types: tuple[Type, ...]) -> Module:
 
 
 def guard(
-    found: Guard, name: str, types: Sequence[Type], result: Type, format: Format, limits: tuple[float, float]
+    row: Guard, name: str, types: Sequence[Type], result: Type, format: Format, limits: tuple[float, float]
 ) -> tuple[Module, str]:
     """The function of a guard's text, and the letters of the arguments that it takes.
 
     `types` are those of the guarded operation's arguments, `result` that of its result. The function is called after
     the operation, `name`, and is to be called with the arguments named.
     """
-    letters = "x" if found.replaces == "result" else "xyz"[: len(types)]
-    known = {"x": result} if found.replaces == "result" else dict(zip(letters, types, strict=True))
-    given = known.get(found.replaces, result)
-    text = found.scalar if found.scalar and isinstance(given, Scalar) else found.text
+    letters = "x" if row.replaces == "result" else "xyz"[: len(types)]
+    type_of = {"x": result} if row.replaces == "result" else dict(zip(letters, types, strict=True))
+    replaced = type_of.get(row.replaces, result)
+    text = row.scalar if row.scalar and isinstance(replaced, Scalar) else row.text
     used = "".join(letter for letter in letters if re.search(rf"\b{letter}\b", text))
-    text = with_constants(text, format, limits).replace("genF", spell(given))
-    params = ", ".join(f"{spell(known[letter])} {letter}" for letter in used)
+    text = with_constants(text, format, limits).replace("genF", spell(replaced))
+    params = ", ".join(f"{spell(type_of[letter])} {letter}" for letter in used)
     body = text if text.startswith("{") else f"{{ return {text}; }}"
-    doc = f"/// {found.doc}\n" if found.doc else ""
-    return _guard(f"{doc}{spell(given)} {name}({params}) {body}", name), used
+    doc = f"/// {row.doc}\n" if row.doc else ""
+    return _guard(f"{doc}{spell(replaced)} {name}({params}) {body}", name), used
 
 
 @functools.cache

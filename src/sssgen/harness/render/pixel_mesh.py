@@ -32,20 +32,20 @@ def vertices(hits: Hits, origin: Array, directions: Array, model: Array, size: t
     return np.concatenate([placed, around], axis=1).astype(np.float32)
 
 
-def _extended(values: Array, known: Array, size: tuple[int, int], other: list[float]) -> Array:
-    """Values extended by a pixel to their unknown neighbours; pixels further away have the value `other`."""
+def _extended(values: Array, valid: Array, size: tuple[int, int], other: list[float]) -> Array:
+    """Values extended by a pixel to their invalid neighbours; pixels further away have the value `other`."""
     width, height = size
-    grown, seen = values.reshape(height, width, -1).copy(), known.reshape(height, width).copy()
+    extended, filled = values.reshape(height, width, -1).copy(), valid.reshape(height, width).copy()
     for axis in (0, 1):
         for step in (-1, 1):
-            from_neighbour = np.roll(seen, step, axis)
+            from_neighbour = np.roll(filled, step, axis)
             edge = -1 if step == -1 else 0
             from_neighbour[(edge, slice(None)) if axis == 0 else (slice(None), edge)] = False
-            new = from_neighbour & ~seen
-            grown[new] = np.roll(grown, step, axis)[new]
-            seen |= new
-    grown[~seen] = other
-    return grown.reshape(len(values), -1)
+            new = from_neighbour & ~filled
+            extended[new] = np.roll(extended, step, axis)[new]
+            filled |= new
+    extended[~filled] = other
+    return extended.reshape(len(values), -1)
 
 
 def triangles(size: tuple[int, int]) -> Array:

@@ -13,6 +13,7 @@ import re
 from typing import NamedTuple
 
 from sssgen.ir.old_names import OLD_NAMES
+from sssgen.ir.out_builtins import OUT_BUILTINS
 
 MAIN = "sssgen_written_main"
 """The new name of `main`."""
@@ -46,6 +47,9 @@ _DROPPED = frozenset(
     {"in", "out", "varying", "attribute", "flat", "smooth", "noperspective", "centroid", "sample", "invariant"}
 )
 
+_SHADOW_READS = ("shadow2D", "shadow2DLod", "shadow2DProj")
+"""Builtins of GLSL 1.20 that later versions lack: they return a vec4, so that a new name is not enough."""
+
 
 class Plain(NamedTuple):
     """A text without a stage."""
@@ -61,16 +65,18 @@ class Plain(NamedTuple):
         return self.version.endswith("es")
 
     def for_driver(self, version: str) -> str:
-        """The text with this `#version`; macros give old names of functions their new ones."""
+        """The text with this `#version`; old functions get their new names, by macros, or are defined."""
         renames = [f"#define {old} {new}" for old, (new, _) in OLD_NAMES.items() if _uses(self.text, old)]
         extensions = _EXTENSION.findall(self.text)
         text = _EXTENSION.sub("", self.text)
         precision = _ES_PRECISION if version.endswith("es") else []
-        return "\n".join([f"#version {version}", *extensions, *precision, *renames, text])
+        definitions = [OUT_BUILTINS[name].strip() for name in _SHADOW_READS if _uses(self.text, name)]
+        return "\n".join([f"#version {version}", *extensions, *precision, *definitions, *renames, text])
 
 
 _ES_PRECISION = [
-    f"precision highp {type_};" for type_ in ("float", "int", "sampler2D", "sampler3D", "samplerCube", "sampler2DArray")
+    f"precision highp {type_};"
+    for type_ in ("float", "int", "sampler2D", "sampler3D", "samplerCube", "sampler2DArray", "sampler2DShadow")
 ]
 
 
