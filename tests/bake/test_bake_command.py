@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import bake_meshes as meshes
-from bake_meshes import Made, bake, facts, write
+from bake_meshes import MeshData, bake, facts, write
 from processes import HANG, wait_until, wait_until_busy
 from sssgen.cli.main import main
 
@@ -33,10 +33,10 @@ from sssgen.support import progress
 
 pytestmark = pytest.mark.usefixtures("folder")
 
-SHEET = Made(np.array([[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1]], float), np.array([[0, 2, 1], [0, 3, 2]]))
+SHEET = MeshData(np.array([[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1]], float), np.array([[0, 2, 1], [0, 3, 2]]))
 
 
-def there() -> set[str]:
+def files_present() -> set[str]:
     return {str(path) for path in Path().rglob("*")}
 
 
@@ -57,16 +57,16 @@ def idle(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
     """The errors of an invalid bake, which writes nothing."""
-    before = there()
+    before = files_present()
     capsys.readouterr()
     status = main(["bake", *arguments])
     output = capsys.readouterr()
     assert status == 2 and "Traceback" not in output.err and output.out == "", output
-    assert there() == before
+    assert files_present() == before
     status = main(["bake", *arguments, "--json"])
     as_json = json.loads(capsys.readouterr().out)
     assert status == 2 and not as_json["ok"] and as_json["diagnostics"][0]["message"] in output.err
-    assert there() == before
+    assert files_present() == before
     return output.err
 
 
@@ -295,7 +295,7 @@ def test_a_light_that_hits_nothing_is_reported(capsys: pytest.CaptureFixture[str
 
 def test_missing_folders_are_created() -> None:
     bake("sdf", "box.obj", "-o", "new/deep/o.npy", "--resolution", "8")
-    assert {"new/deep/o.npy", "new/deep/o.npy.json"} < {path.replace(os.sep, "/") for path in there()}
+    assert {"new/deep/o.npy", "new/deep/o.npy.json"} < {path.replace(os.sep, "/") for path in files_present()}
 
 
 def test_bake_reports_its_files(capsys: pytest.CaptureFixture[str]) -> None:
@@ -323,11 +323,11 @@ def test_an_interrupt_leaves_nothing(monkeypatch: pytest.MonkeyPatch, arguments:
     def interrupt(*_: Any) -> None:
         raise KeyboardInterrupt
 
-    before = there()
+    before = files_present()
     with monkeypatch.context() as patch:
         patch.setattr(progress.ProgressBar, "__call__", interrupt)
         assert main(["bake", *arguments]) == 130
-    assert there() == before
+    assert files_present() == before
 
     def half(path: str, data: bytes) -> None:
         Path(path).write_bytes(data[: len(data) // 2])
@@ -336,7 +336,7 @@ def test_an_interrupt_leaves_nothing(monkeypatch: pytest.MonkeyPatch, arguments:
     with monkeypatch.context() as patch:
         patch.setattr("sssgen.support.file_writer._write_bytes", half)
         assert main(["bake", *arguments]) == 130
-    assert there() == before
+    assert files_present() == before
 
 
 @pytest.mark.slow
@@ -351,7 +351,7 @@ def test_an_interrupt_leaves_nothing(monkeypatch: pytest.MonkeyPatch, arguments:
 )
 def test_ctrl_c_ends_all_of_it(arguments: list[str]) -> None:
     write(Path("ball.obj"), meshes.globe(1.0, 64, 32))
-    before = there()
+    before = files_present()
     # a process of a shell in the background ignores interrupts, and so would its own
     heed = "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler); "
     command = [sys.executable, "-c", f"{heed}from sssgen.cli.main import main; sys.exit(main())", "bake", *arguments]
@@ -364,7 +364,7 @@ def test_ctrl_c_ends_all_of_it(arguments: list[str]) -> None:
             os.killpg(process.pid, signal.SIGKILL)
             raise
     assert process.returncode == 130 and message.strip() == "interrupted"
-    assert there() == before
+    assert files_present() == before
 
     def all_ended() -> bool:
         try:

@@ -65,7 +65,7 @@ def drawn(scene: Path, backend: str) -> Rendered:
     return render(dataclasses.replace(loaded, size=(48, 40), samples=1), backends.get(backend))
 
 
-def found(folder: Path, name: str) -> Path:
+def scene_path(folder: Path, name: str) -> Path:
     mesh = name.partition("_")[0]
     if mesh in NAMES and not (folder / f"{mesh}.obj").is_file():
         pytest.skip(f"{mesh}.obj is missing: it lies in ../shared/data/meshes")
@@ -76,7 +76,7 @@ def found(folder: Path, name: str) -> Path:
 @pytest.mark.parametrize("name", [*SCENES[:3], "ice_baked_scene"])
 def test_every_back_end_draws_the_same(name: str, other: str, folder: Path, backend: Callable[[str], Backend]) -> None:
     backend(other)
-    scene = found(folder, name)
+    scene = scene_path(folder, name)
     oracle = drawn(scene, "numpy")
     assert 255.0 * np.abs(drawn(scene, other).encoded - oracle.encoded).max() < 1.0
     shown = oracle.encoded[oracle.covered > 0.5]
@@ -88,7 +88,7 @@ def test_thin_parts_are_bright_and_the_three_ways_differ(
     mesh: str, folder: Path, backend: Callable[[str], Backend]
 ) -> None:
     backend("gl")
-    pictures = [drawn(found(folder, f"{mesh}_{way}"), "gl") for way in ("distance", "map", "depth")]
+    pictures = [drawn(scene_path(folder, f"{mesh}_{way}"), "gl") for way in ("distance", "map", "depth")]
     for picture in pictures:
         red, blue = picture.encoded[..., 0], picture.encoded[..., 2]
         shown = picture.covered > 0.9

@@ -10,7 +10,7 @@ import numpy.typing as npt
 import pytest
 
 import bake_meshes as meshes
-from bake_meshes import SPOT, SUZANNE, Array, Made, joined, needs_meshes, write
+from bake_meshes import SPOT, SUZANNE, Array, MeshData, joined, needs_meshes, write
 from oracle import technique
 from sssgen.support.diagnostics import SssgenError
 
@@ -43,7 +43,7 @@ def rng(seed: int = 5) -> np.random.Generator:
     return np.random.default_rng(seed)
 
 
-def solid(result: Made) -> MeshDistance:
+def solid(result: MeshData) -> MeshDistance:
     return Mesh(path=write(Path("body.ply"), result)).solid
 
 
@@ -93,7 +93,7 @@ def test_a_box_has_its_distance(size: Any, middle: Any) -> None:
     assert (exact < 0.0).mean() > 0.2
 
 
-def dent(result: Made, exact: Any) -> float:
+def dent(result: MeshData, exact: Any) -> float:
     """The distance of the triangles from the exact surface, at 66 places of each."""
     weights = np.array([(i, j, 10 - i - j) for i in range(11) for j in range(11 - i)]) / 10.0
     worst = 0.0
@@ -115,7 +115,7 @@ def test_the_error_of_a_coarse_ball_is_that_of_its_triangles(level: int) -> None
     assert error.max() > 0.3 * depth
 
 
-def normals(built: Made) -> Array:
+def normals(built: MeshData) -> Array:
     a, b, c = np.moveaxis(built.triangles, 1, 0)
     across = np.cross(b - a, c - a)
     result: Array = across / np.linalg.norm(across, axis=1, keepdims=True)
@@ -179,7 +179,7 @@ def turns(points: Array, triangles: Array) -> Array:
     return result
 
 
-def tilted(result: Made, by: float) -> Made:
+def tilted(result: MeshData, by: float) -> MeshData:
     """Turned about y and a little about x, so that no voxel's centre lies in a face."""
     y, x = np.radians([by, 0.4 * by])
     about_y = np.array([[np.cos(y), 0.0, np.sin(y)], [0.0, 1.0, 0.0], [-np.sin(y), 0.0, np.cos(y)]])
@@ -187,20 +187,20 @@ def tilted(result: Made, by: float) -> Made:
     return result._replace(vertices=result.vertices @ about_y.T @ about_x.T)
 
 
-def noisy(result: Made, by: float) -> Made:
+def noisy(result: MeshData, by: float) -> MeshData:
     return result._replace(vertices=result.vertices + rng().normal(scale=by, size=result.vertices.shape))
 
 
 CUBE = meshes.box()
-HOLLOW = joined(CUBE, meshes.box((0.5, 0.5, 0.5)).turned_out())
-FIN = Made(np.array([[-0.5, 0.5, -0.5], [0.5, 0.5, -0.5], [0.0, 0.9, -0.5]]), np.array([[0, 1, 2]]))
+HOLLOW = joined(CUBE, meshes.box((0.5, 0.5, 0.5)).inverted())
+FIN = MeshData(np.array([[-0.5, 0.5, -0.5], [0.5, 0.5, -0.5], [0.0, 0.9, -0.5]]), np.array([[0, 1, 2]]))
 BALL = meshes.icosphere(0.7, 2)
 ODD = {
     "closed": tilted(CUBE, 20.0),
     "a missing face": tilted(CUBE.without(4, 5), 20.0),
     "a missing triangle": tilted(CUBE.without(7), 20.0),
-    "inside out": tilted(CUBE, 20.0).turned_out(),
-    "open and inside out": tilted(CUBE.without(0), 20.0).turned_out(),
+    "inside out": tilted(CUBE, 20.0).inverted(),
+    "open and inside out": tilted(CUBE.without(0), 20.0).inverted(),
     "self-intersecting": noisy(meshes.icosphere(0.6, 2), 0.15),
     "two that overlap": joined(tilted(CUBE, 20.0), tilted(CUBE, 50.0).moved((0.4, 0.3, 0.2))),
     "two apart": joined(tilted(CUBE, 20.0), tilted(meshes.box((0.3, 0.3, 0.3)), 10.0).moved((1.2, 0.3, 0.2))),
@@ -251,7 +251,7 @@ def vote(result: Array, points: Array, rays: int) -> tuple[npt.NDArray[np.bool_]
     odd = np.zeros(len(points), np.int64)
     for seed in range(rays):
         ways = rng(seed).normal(size=points.shape)
-        _, met = meshes.passed(result, points, ways / np.linalg.norm(ways, axis=1, keepdims=True))
+        _, met = meshes.crossings(result, points, ways / np.linalg.norm(ways, axis=1, keepdims=True))
         odd += met.sum(axis=1) % 2
     return odd == 0, 2 * odd > rays
 
@@ -342,7 +342,7 @@ def test_the_facts_describe_the_texture() -> None:
 
 
 def test_vertices_of_no_triangle_do_not_widen_the_box() -> None:
-    stray = Made(np.array([[50.0, 0.0, 0.0]]), np.zeros((0, 3), np.int64))
+    stray = MeshData(np.array([[50.0, 0.0, 0.0]]), np.zeros((0, 3), np.int64))
     assert sdf(write(Path("body.ply"), joined(CUBE, stray)), (8,)).facts["mesh"]["box_max"] == [0.5, 0.5, 0.5]
 
 
@@ -355,7 +355,7 @@ def test_a_thin_plate_has_cubic_voxels() -> None:
 
 
 def test_a_sheet_has_the_requested_thickness() -> None:
-    square = Made(
+    square = MeshData(
         np.array([[-0.5, 0, -0.5], [-0.5, 0, 0.5], [0.5, 0, 0.5], [0.5, 0, -0.5]], float),
         np.array([[0, 1, 2], [0, 2, 3]]),
     )
@@ -374,7 +374,7 @@ def test_padding_0_still_has_a_box() -> None:
 
 
 def test_an_inverted_mesh_is_reported_and_has_the_right_sign() -> None:
-    volume = sdf(write(Path("body.obj"), CUBE.turned_out()), (12,))
+    volume = sdf(write(Path("body.obj"), CUBE.inverted()), (12,))
     assert volume.facts["mesh"]["inside_out"] and volume.facts["mesh"]["closed"]
     assert np.array_equal(volume.texels, sdf(write(Path("right.obj"), CUBE), (12,)).texels)
 

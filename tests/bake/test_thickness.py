@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import bake_meshes as meshes
-from bake_meshes import SPOT, SUZANNE, Array, Made, needs_meshes, write
+from bake_meshes import SPOT, SUZANNE, Array, MeshData, needs_meshes, write
 from oracle import technique
 from sssgen.support.diagnostics import SssgenError
 
@@ -240,7 +240,7 @@ def test_spot_has_the_integral_over_all_her_triangles() -> None:
     for at_texel, (place, normal) in enumerate(zip(places, flat, strict=True)):
         # uniform on the ball that touches the surface: weighted by the cosine about −normal
         ways = unit(unit(rng(at_texel).normal(size=(400, 3))) - normal)
-        t, met = meshes.passed(mesh.places[mesh.corners], np.tile(place, (len(ways), 1)), ways)
+        t, met = meshes.crossings(mesh.places[mesh.corners], np.tile(place, (len(ways), 1)), ways)
         met &= t > 1e-6
         crossings = np.sort(np.where(met, t, np.inf), axis=1)[:, :12]
         assert (np.isfinite(crossings).sum(axis=1) % 2 == 1).mean() > 0.99
@@ -253,7 +253,7 @@ def test_spot_has_the_integral_over_all_her_triangles() -> None:
 # Texture coordinates
 
 
-def on_edges(result: Made, count: int = 60) -> tuple[Array, Array]:
+def on_edges(result: MeshData, count: int = 60) -> tuple[Array, Array]:
     """uv on the edges of every face's triangle, (n, 2), and the faces they are of."""
     assert result.uv is not None
     along = np.linspace(0.0, 1.0, count)[:, None]

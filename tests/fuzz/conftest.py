@@ -8,6 +8,6 @@ from sssgen.support import cache
 
 
 @pytest.fixture(autouse=True)
-def _nothing_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+def _empty_store(monkeypatch: pytest.MonkeyPatch) -> None:
     """No cache on disk: each file is another, and is read once."""
     monkeypatch.setattr(cache, "folder", lambda: "")

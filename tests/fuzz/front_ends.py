@@ -267,10 +267,10 @@ def survives(front_end: FrontEnd, content: bytes, folder: Path) -> bool:
     """Whether a file of this content is taken. Fails where it is refused by anything but errors with their places."""
     path = folder / f"{NAME}{front_end.suffix}"
     path.write_bytes(content)
-    return taken(front_end, path)
+    return accepts(front_end, path)
 
 
-def taken(front_end: FrontEnd, path: Path) -> bool:
+def accepts(front_end: FrontEnd, path: Path) -> bool:
     """The same for a path."""
     COUNTED["files"] += 1
     try:

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from amounts import examples
-from front_ends import FRONT_ENDS, survives, taken
+from front_ends import FRONT_ENDS, accepts, survives
 from hostile import HOSTILE
 from mutations import mutated
 from sssgen.support import paths as data
@@ -64,4 +64,4 @@ def test_names_that_no_file_has(name: str, file: str, folder: Path) -> None:
     if file == "folder":
         path.mkdir(exist_ok=True)
     if name not in ("baked", "ci folder", "reflection", "ci table"):  # these look for their files themselves
-        assert not taken(FRONT_ENDS[name], path)
+        assert not accepts(FRONT_ENDS[name], path)

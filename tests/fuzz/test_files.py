@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from front_ends import FRONT_ENDS, NAME, taken
+from front_ends import FRONT_ENDS, NAME, accepts
 from sssgen.lang import loader
 from sssgen.lang.loader import load_file
 from sssgen.support.diagnostics import SssgenError
@@ -24,7 +24,7 @@ posix = pytest.mark.skipif(os.name != "posix", reason="there are no pipes with n
 def test_a_pipe_is_not_waited_for(name: str, tmp_path: Path) -> None:
     path = tmp_path / f"{NAME}{FRONT_ENDS[name].suffix}"
     os.mkfifo(path)
-    assert not taken(FRONT_ENDS[name], path) or name in BESIDE
+    assert not accepts(FRONT_ENDS[name], path) or name in BESIDE
 
 
 @posix
@@ -33,7 +33,7 @@ def test_a_pipe_is_not_waited_for(name: str, tmp_path: Path) -> None:
 def test_links_to_devices_and_cyclic_links(name: str, target: str, tmp_path: Path) -> None:
     path = tmp_path / f"{NAME}{FRONT_ENDS[name].suffix}"
     path.symlink_to(path if target == "itself" else target)
-    assert not taken(FRONT_ENDS[name], path) or name in BESIDE
+    assert not accepts(FRONT_ENDS[name], path) or name in BESIDE
 
 
 @pytest.mark.skipif(os.name != "posix" or os.geteuid() == 0, reason="there is nothing that root may not read")
@@ -42,7 +42,7 @@ def test_an_unreadable_file(name: str, tmp_path: Path) -> None:
     path = tmp_path / f"{NAME}{FRONT_ENDS[name].suffix}"
     path.write_bytes(FRONT_ENDS[name].seeds()[0])
     path.chmod(0)
-    assert not taken(FRONT_ENDS[name], path) or name in BESIDE
+    assert not accepts(FRONT_ENDS[name], path) or name in BESIDE
 
 
 # Includes

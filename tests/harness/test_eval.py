@@ -30,7 +30,7 @@ LOBE: dict[str, Any] = {"V": [0, 0, 1], "N": [0, 0, 1], "L": [[0, 0, -1], [0.6, 
 
 
 @pytest.fixture
-def given(tmp_path: Path) -> Callable[..., str]:
+def write_inputs(tmp_path: Path) -> Callable[..., str]:
     """Writes inputs to a file."""
 
     def write(data: object, name: str = "inputs.json") -> str:
@@ -56,26 +56,26 @@ def complaint(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
 # What it computes
 
 
-def test_outputs_of_the_oracle(capsys: pytest.CaptureFixture[str], given: Callable[..., str]) -> None:
+def test_outputs_of_the_oracle(capsys: pytest.CaptureFixture[str], write_inputs: Callable[..., str]) -> None:
     """GDC 2011: pow(dot(V, −(L + N distortion)), power) scale, and ambient, times the transmitted part."""
     values = {**LOBE, "distortion": 0.2, "power": 2.0, "scale": 3.0, "ambient": 0.1, "attenuation": 1.0}
-    report = answer(capsys, "lobe_gdc2011", "-i", given(values | {"subsurface_color": [1.0, 0.5, 0.25]}))
+    report = answer(capsys, "lobe_gdc2011", "-i", write_inputs(values | {"subsurface_color": [1.0, 0.5, 0.25]}))
     lobe = [(light[2] + 0.2) ** 2 * 3.0 for light in LOBE["L"]]
     expected = [[(each + 0.1) * 0.5 * part for part in (1.0, 0.5, 0.25)] for each in lobe]
     np.testing.assert_allclose(report["outputs"]["result"], expected, rtol=1e-6)
     assert report["lanes"] == 2 and report["backend"] == "numpy"
 
 
-def test_all_back_ends_agree(capsys: pytest.CaptureFixture[str], given: Callable[..., str]) -> None:
-    report = answer(capsys, "lobe_gdc2011", "-i", given(LOBE), "--backend", "all")
+def test_all_back_ends_agree(capsys: pytest.CaptureFixture[str], write_inputs: Callable[..., str]) -> None:
+    report = answer(capsys, "lobe_gdc2011", "-i", write_inputs(LOBE), "--backend", "all")
     rows = {row["name"]: row for row in report["backends"]}
     assert list(rows) == list(backends.BACKENDS)
     for name, row in rows.items():
         assert row.get("missing") or row["deviation"] <= (1e-3 if name.endswith("f16") else 1e-6), row
 
 
-def test_precisions(capsys: pytest.CaptureFixture[str], given: Callable[..., str]) -> None:
-    file = given(LOBE)
+def test_precisions(capsys: pytest.CaptureFixture[str], write_inputs: Callable[..., str]) -> None:
+    file = write_inputs(LOBE)
     wide, single, half = (
         np.array(answer(capsys, "lobe_gdc2011", "-i", file, "--precision", one)["outputs"]["result"])
         for one in ("f64", "f32", "f16")
@@ -83,14 +83,14 @@ def test_precisions(capsys: pytest.CaptureFixture[str], given: Callable[..., str
     assert 0.0 < np.abs(single - wide).max() < 1e-6 < np.abs(half - wide).max() < 1e-2
 
 
-def test_out_parameters_are_outputs(capsys: pytest.CaptureFixture[str], given: Callable[..., str]) -> None:
-    report = answer(capsys, "camera_orbit", "-i", given({"uv": [[0.5, 0.5], [0.25, 1.0]], "time": 0.0}))
+def test_out_parameters_are_outputs(capsys: pytest.CaptureFixture[str], write_inputs: Callable[..., str]) -> None:
+    report = answer(capsys, "camera_orbit", "-i", write_inputs({"uv": [[0.5, 0.5], [0.25, 1.0]], "time": 0.0}))
     assert list(report["outputs"]) == ["ray_origin", "ray_direction"]
     assert report["outputs"]["ray_origin"][0] == pytest.approx([3.0, 2.5, 0.0])
 
 
 def test_a_function_of_a_file_for_a_slot(
-    capsys: pytest.CaptureFixture[str], given: Callable[..., str], tmp_path: Path
+    capsys: pytest.CaptureFixture[str], write_inputs: Callable[..., str], tmp_path: Path
 ) -> None:
     """Full space is not thin, empty space is."""
     own = tmp_path / "own.sss"
@@ -98,7 +98,7 @@ def test_a_function_of_a_file_for_a_slot(
         "float full(world_position p) { return -10.0; }\nfloat empty(world_position p) { return p.y + 10.0; }\n",
         encoding="utf-8",
     )
-    file = given({"P": [[0.0, 0.0, 0.0]], "N": [0.0, 1.0, 0.0]})
+    file = write_inputs({"P": [[0.0, 0.0, 0.0]], "N": [0.0, 1.0, 0.0]})
     output = complaint(capsys, "thinness_uniform", "-i", file, "--bind", "nowhere=sphere")
     assert "has no slot 'nowhere'" in output and "body_distance" in output
     for name, wanted in (("full", 0.0), ("empty", 1.0)):
@@ -178,10 +178,10 @@ def test_deviation_is_relative_above_one_and_absolute_below() -> None:
     ],
 )
 def test_wrong_inputs(
-    capsys: pytest.CaptureFixture[str], given: Callable[..., str], change: dict[str, Any], message: str
+    capsys: pytest.CaptureFixture[str], write_inputs: Callable[..., str], change: dict[str, Any], message: str
 ) -> None:
     values = {name: value for name, value in {**LOBE, **change}.items() if value is not None}
-    assert message in complaint(capsys, "lobe_gdc2011", "-i", given(values))
+    assert message in complaint(capsys, "lobe_gdc2011", "-i", write_inputs(values))
 
 
 @pytest.mark.parametrize(
@@ -193,11 +193,13 @@ def test_wrong_inputs(
         ('{"V": [0, 0, 1],\n "N": [0, 0, 1,]}', ":2:"),
     ],
 )
-def test_wrong_json(capsys: pytest.CaptureFixture[str], given: Callable[..., str], text: str, message: str) -> None:
-    assert message in complaint(capsys, "lobe_gdc2011", "-i", given(text))
+def test_wrong_json(
+    capsys: pytest.CaptureFixture[str], write_inputs: Callable[..., str], text: str, message: str
+) -> None:
+    assert message in complaint(capsys, "lobe_gdc2011", "-i", write_inputs(text))
 
 
-def test_wrong_files(capsys: pytest.CaptureFixture[str], given: Callable[..., str], tmp_path: Path) -> None:
+def test_wrong_files(capsys: pytest.CaptureFixture[str], write_inputs: Callable[..., str], tmp_path: Path) -> None:
     assert "cannot read the inputs" in complaint(capsys, "lobe_gdc2011", "-i", str(tmp_path / "none.json"))
     assert "cannot read the inputs" in complaint(capsys, "lobe_gdc2011", "-i", str(tmp_path))
     (tmp_path / "binary.json").write_bytes(b"\xff\xfe\x00")
@@ -206,21 +208,21 @@ def test_wrong_files(capsys: pytest.CaptureFixture[str], given: Callable[..., st
     np.save(tmp_path / "bad.npy", np.full((2, 2, 3), np.nan))
     for file, said in (("volume.npy", "takes a sampler2D"), ("bad.npy", "NaN or infinity"), ("x.jpg", "'.jpg'")):
         values = {"uv": [0.5, 0.5], "base_color_texture": file}
-        assert said in complaint(capsys, "base_color", "-i", given(values))
+        assert said in complaint(capsys, "base_color", "-i", write_inputs(values))
 
 
-def test_wrong_arguments(capsys: pytest.CaptureFixture[str], given: Callable[..., str]) -> None:
-    file = given(LOBE)
+def test_wrong_arguments(capsys: pytest.CaptureFixture[str], write_inputs: Callable[..., str]) -> None:
+    file = write_inputs(LOBE)
     assert "did you mean 'webgpu'?" in complaint(capsys, "lobe_gdc2011", "-i", file, "-b", "webgpuu")
     assert "unknown technique 'lobe_gdc2012'" in complaint(capsys, "lobe_gdc2012", "-i", file)
     assert "own precision" in complaint(capsys, "lobe_gdc2011", "-i", file, "-b", "gl", "--precision", "f64")
     assert "is not a binding" in complaint(capsys, "lobe_gdc2011", "-i", file, "--bind", "a")
 
 
-def test_a_missing_back_end(given: Callable[..., str]) -> None:
+def test_a_missing_back_end(write_inputs: Callable[..., str]) -> None:
     """Requested alone it is an error with instructions; among all it is a line, and the others run."""
     environment = {**os.environ, "SSSGEN_CHROMIUM": "/nowhere/chromium", "CI": ""}
-    command = [sys.executable, "-m", "sssgen", "eval", "lobe_gdc2011", "-i", given(LOBE), "-b"]
+    command = [sys.executable, "-m", "sssgen", "eval", "lobe_gdc2011", "-i", write_inputs(LOBE), "-b"]
     alone = subprocess.run([*command, "browser"], env=environment, capture_output=True, text=True, check=False)
     assert alone.returncode == 2 and "help: chromium" in alone.stderr
     among = subprocess.run([*command, "numpy,browser,gl"], env=environment, capture_output=True, text=True, check=False)
@@ -275,11 +277,11 @@ def test_a_crashed_back_end_is_restarted(backend: Callable[[str], Backend]) -> N
 def test_a_lost_device_is_reported_and_replaced(backend: Callable[[str], Backend]) -> None:
     """As when a driver is reset. The browser's and the processes' own losses are in test_browser.py and here below."""
     gpu = backend("webgpu")
-    technique, given = subject("beer_lambert"), {"d": [0.1, 0.2], "attenuation_distance": 0.1}
+    technique, write_inputs = subject("beer_lambert"), {"d": [0.1, 0.2], "attenuation_distance": 0.1}
     gpu.gpu.destroy()  # type: ignore[attr-defined]
     with pytest.raises(SssgenError, match="webgpu: the device was lost"):
-        evaluate(technique, given, gpu)
-    assert evaluate(technique, given, gpu)["result"] == pytest.approx(np.exp([-1.0, -2.0]))
+        evaluate(technique, write_inputs, gpu)
+    assert evaluate(technique, write_inputs, gpu)["result"] == pytest.approx(np.exp([-1.0, -2.0]))
     assert compilers.get("naga").check(compilers.Source("fn f() -> f32 { return 1.0; }", "wgsl", "library")) == []
 
 

@@ -16,7 +16,7 @@ from against_numpy import (
     Array,
     arguments,
     differences,
-    drawn_beside_textures,
+    drawn_per_quad,
     textures,
     transpiled,
 )
@@ -48,7 +48,7 @@ def test_pitfalls(gpu: Backend) -> None:
     for case, function in functions:
         params = tuple(param.type for param in function.params)
         textured = any(isinstance(type_, Sampler) for type_ in params)
-        args = arguments(function, drawn_beside_textures if textured else drawn_freely, LANES)
+        args = arguments(function, drawn_per_quad if textured else drawn_freely, LANES)
         calls.append((case.source, Call(function.name, params, function.result, args)))
     failures = differences(gpu, module, calls, textures())
     assert not failures, "\n\n".join(failures)

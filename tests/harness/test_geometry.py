@@ -38,7 +38,7 @@ SOLIDS: list[Geometry] = [
 ]  # fmt: skip
 
 
-def found(shape: Geometry, width: int = 80, height: int = 60) -> tuple[Any, ...]:
+def surface_points(shape: Geometry, width: int = 80, height: int = 60) -> tuple[Any, ...]:
     """Of the rays that hit: object position, world position, directions, N, T, w, uv."""
     origin, directions = CAMERA.rays(width, height)
     hits = shape.hits(origin, directions)
@@ -79,7 +79,7 @@ def test_a_torus_along_its_axis_and_across() -> None:
 
 @pytest.mark.parametrize("shape", SOLIDS)
 def test_points_are_the_first_hits_of_their_rays(shape: Geometry) -> None:
-    local, world, directions, *_ = found(shape)
+    local, world, directions, *_ = surface_points(shape)
     assert np.abs(shape.distance(local)).max() < 1e-9
     assert np.abs(np.cross(world - CAMERA.position, directions)).max() < 1e-9
     assert (np.einsum("nc,nc->n", world - CAMERA.position, directions) > 0.0).all()
@@ -101,7 +101,7 @@ def test_rays_that_miss_stay_outside(shape: Geometry) -> None:
 
 @pytest.mark.parametrize("shape", SOLIDS)
 def test_normals_are_the_gradient_of_the_distance(shape: Geometry) -> None:
-    local, _, _, normal, *_ = found(shape)
+    local, _, _, normal, *_ = surface_points(shape)
     step = 1e-6
     outside = local + 1e-4 * normal @ shape.to_world()[:3, :3] / shape.scale  # beyond a box's edge the nearest changes
     slopes = [shape.distance(outside + step * way) - shape.distance(outside - step * way) for way in np.eye(3)]
@@ -113,7 +113,7 @@ def test_normals_are_the_gradient_of_the_distance(shape: Geometry) -> None:
     "shape", [*SOLIDS, Distance("torus"), Distance("sphere", projection="planar"), Union(PARTS, "planar")]
 )
 def test_frames_are_orthonormal_and_follow_uv(shape: Geometry) -> None:
-    _, world, directions, normal, tangent, w, uv = found(shape)
+    _, world, directions, normal, tangent, w, uv = surface_points(shape)
     assert np.abs(np.linalg.norm(normal, axis=1) - 1.0).max() < 1e-12
     assert np.abs(np.linalg.norm(tangent, axis=1) - 1.0).max() < 1e-12
     assert np.abs(np.einsum("nc,nc->n", normal, tangent)).max() < 1e-9
@@ -259,7 +259,7 @@ def test_mirrored_uv_turns_the_handedness(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("name", "centre"), [("spot.obj", (0.0, 0.0, 0.0)), ("suzanne.obj", (2.5, -1.2, -4.0))])
 def test_real_meshes(name: str, centre: tuple[float, float, float]) -> None:
     mesh = Mesh(path=str(MESHES / name), position=centre)
-    local, world, directions, normal, tangent, w, _ = found(mesh)
+    local, world, directions, normal, tangent, w, _ = surface_points(mesh)
     assert np.abs(np.cross(world - CAMERA.position, directions)).max() < 1e-9
     assert np.abs(np.einsum("nc,nc->n", normal, tangent)).max() < 1e-9
     assert set(np.unique(w)) <= {-1.0, 1.0}

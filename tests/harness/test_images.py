@@ -120,16 +120,16 @@ def test_a_transparent_colour_of_a_deep_png() -> None:
 def test_unsupported_deep_pngs_are_refused() -> None:
     row = struct.pack(">BHHH", 0, 1, 2, 3)
     Path("woven.png").write_bytes(png(1, 1, 16, 2, row, interlaced=1))
-    assert "interlaced" in wrong("woven.png")
+    assert "interlaced" in error_of("woven.png")
     Path("short.png").write_bytes(png(1, 2, 16, 2, row))
-    assert "fewer pixels" in wrong("short.png")
+    assert "fewer pixels" in error_of("short.png")
     Path("filter.png").write_bytes(png(1, 1, 16, 2, b"\5" + row[1:]))
-    assert "filter 5" in wrong("filter.png")
+    assert "filter 5" in error_of("filter.png")
     whole = png_bytes(np.random.default_rng(1).random((20, 20, 3)), bits=16)
     packed = whole.index(b"IDAT") + 4
     for altered in (whole[:packed] + b"\0" + whole[packed + 1 :], whole[: len(whole) // 2], whole[:-12]):
         Path("altered.png").write_bytes(altered)
-        assert "faulty" in wrong("altered.png")
+        assert "faulty" in error_of("altered.png")
         with pytest.raises(ValueError, match=r"truncated|checksum"):
             png16.decode(altered)
     with pytest.raises(ValueError, match="not a PNG"):
@@ -161,7 +161,7 @@ def test_srgb_at_values_of_the_standard() -> None:
     assert encode_srgb([-1.0, 9.0]) == pytest.approx([0.0, 1.0], abs=1e-12)
 
 
-def wrong(path: str) -> str:
+def error_of(path: str) -> str:
     with pytest.raises(SssgenError) as caught:
         read(path)
     return str(caught.value)
@@ -169,17 +169,17 @@ def wrong(path: str) -> str:
 
 def test_files_that_are_not_pictures_are_refused() -> None:
     for name in ("none.png", "none.exr", "none.npy"):
-        assert "cannot find the picture" in wrong(name)
-        assert name in wrong(name)
+        assert "cannot find the picture" in error_of(name)
+        assert name in error_of(name)
     Path("folder.png").mkdir()
-    assert "this is a folder" in wrong("folder.png")
-    assert "not a picture file's suffix" in wrong("map.jpg")
-    assert "did you mean '.png'" in wrong("map.pngg")
+    assert "this is a folder" in error_of("folder.png")
+    assert "not a picture file's suffix" in error_of("map.jpg")
+    assert "did you mean '.png'" in error_of("map.pngg")
     for name in ("text.png", "text.exr", "text.npy"):
         Path(name).write_text("hello " * 100, encoding="utf-8")
-        assert f"--> {name}" in wrong(name)
+        assert f"--> {name}" in error_of(name)
         Path(name).write_bytes(b"")
-        assert f"--> {name}" in wrong(name)
+        assert f"--> {name}" in error_of(name)
 
 
 @pytest.mark.parametrize("suffix", ["png", "exr", "npy"])
@@ -191,21 +191,21 @@ def test_files_that_end_early(suffix: str) -> None:
     for part in (9, len(data) // 2, len(data) - 20):
         Path(f"part.{suffix}").write_bytes(data[:part])
         if (suffix, part) != ("png", len(data) - 20):  # files that lack only their last bytes may be read
-            assert "part" in wrong(f"part.{suffix}")
+            assert "part" in error_of(f"part.{suffix}")
 
 
 def test_unsupported_pictures_are_refused() -> None:
     Path("huge.png").write_bytes(png(30000, 30000, 8, 0, b""))
-    assert "too large" in wrong("huge.png")
+    assert "too large" in error_of("huge.png")
     np.save("objects.npy", np.array([[None]]), allow_pickle=True)
-    assert "not a NumPy array" in wrong("objects.npy")
+    assert "not a NumPy array" in error_of("objects.npy")
     np.save("whole.npy", np.array([[1, 2]]))
-    assert "int64" in wrong("whole.npy")
+    assert "int64" in error_of("whole.npy")
     for shape in [(3,), (2, 2, 5), (1, 1, 1, 1, 1)]:
         np.save("shape.npy", np.zeros(shape))
-        assert "is not a texture" in wrong("shape.npy")
+        assert "is not a texture" in error_of("shape.npy")
     np.save("empty.npy", np.zeros((0, 3)))
-    assert "empty" in wrong("empty.npy")
+    assert "empty" in error_of("empty.npy")
 
 
 def test_where_nothing_can_be_written() -> None:

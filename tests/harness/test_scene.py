@@ -27,7 +27,7 @@ def read(text: str) -> Scene:
     return parse_scene(text, "scene.toml")
 
 
-def wrong(text: str) -> SssgenError:
+def error_of(text: str) -> SssgenError:
     with pytest.raises(SssgenError) as caught:
         read(text)
     return caught.value
@@ -178,14 +178,14 @@ def test_a_distance_texture_has_the_technique_s_convention() -> None:
     ],
 )
 def test_errors_are_reported_at_their_place(text: str, message: str, line: int) -> None:
-    error = wrong(text)
+    error = error_of(text)
     assert message in str(error)
     reported = next(one for one in error.diagnostics if message in f"{one.message} {one.hint}")
     assert (reported.span.file, reported.span.line) == ("scene.toml", line)
 
 
 def test_many_errors_at_once() -> None:
-    assert len(wrong("size = 3\ntime = true\n[camera]\nnear = nan\n").diagnostics) == 4
+    assert len(error_of("size = 3\ntime = true\n[camera]\nnear = nan\n").diagnostics) == 4
 
 
 def test_a_missing_scene() -> None:

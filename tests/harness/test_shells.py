@@ -131,7 +131,7 @@ HOSTILE: dict[str, tuple[Array, Shell]] = {
 
 
 @pytest.fixture
-def made(tmp_path: Path) -> Callable[[str, str], Compiled]:
+def compiled_shell(tmp_path: Path) -> Callable[[str, str], Compiled]:
     """Compiles a probe for a target."""
 
     def write(name: str, target: str) -> Compiled:
@@ -159,12 +159,12 @@ def inner(picture: Array) -> Array:
 @pytest.mark.parametrize(("name", "probe"), DRAWN)
 @pytest.mark.parametrize("case", HOSTILE)
 def test_hostile_points(
-    case: str, probe: str, name: str, backend: Callable[[str], Backend], made: Callable[[str, str], Compiled]
+    case: str, probe: str, name: str, backend: Callable[[str], Backend], compiled_shell: Callable[[str, str], Compiled]
 ) -> None:
     machine, (points, shell) = backend(name), HOSTILE[case]
     if name.startswith("numpy"):  # without triangles, and with smaller numbers: the points may be one
         points = np.where(np.abs(points) < 1e-20, 0.0, points)
-    picture = shade(machine, made(probe, machine.target.name), shell, SIZE, points)
+    picture = shade(machine, compiled_shell(probe, machine.target.name), shell, SIZE, points)
     assert_numbers(picture)
     if case != "model 0":  # which draws nothing
         assert inner(picture)[..., :3].min() > 0.05
@@ -172,20 +172,20 @@ def test_hostile_points(
 
 @pytest.mark.parametrize("name", [*PLAIN, "unity", "unity-urp"])
 def test_rays_of_a_matrix_of_0(
-    name: str, backend: Callable[[str], Backend], made: Callable[[str, str], Compiled]
+    name: str, backend: Callable[[str], Backend], compiled_shell: Callable[[str, str], Compiled]
 ) -> None:
     machine = backend(name)
     shell = dataclasses.replace(SHELL, view_projection=np.zeros((4, 4)))
-    assert_numbers(shade(machine, made("rays", machine.target.name), shell, SIZE, None))
+    assert_numbers(shade(machine, compiled_shell("rays", machine.target.name), shell, SIZE, None))
 
 
 @pytest.mark.parametrize("name", ["unity", "unity-urp"])
 def test_rays_from_the_surface(
-    name: str, backend: Callable[[str], Backend], made: Callable[[str, str], Compiled]
+    name: str, backend: Callable[[str], Backend], compiled_shell: Callable[[str, str], Compiled]
 ) -> None:
     """In Unity a ray ends on the mesh that it is drawn on."""
     machine, (points, shell) = backend(name), HOSTILE["camera at the surface"]
-    picture = shade(machine, made("rays", machine.target.name), shell, SIZE, points)
+    picture = shade(machine, compiled_shell("rays", machine.target.name), shell, SIZE, points)
     assert_numbers(picture)
     assert inner(picture)[..., :3].min() > 0.05
 
@@ -212,11 +212,15 @@ def test_a_short_normal_does_not_sharpen_the_highlight(name: str, backend: Calla
     np.testing.assert_allclose(brightest[4:], SHELL.ambient[0], rtol=1e-3)
 
 
-def test_hostile_ports_of_a_graph(backend: Callable[[str], Backend], made: Callable[[str, str], Compiled]) -> None:
+def test_hostile_ports_of_a_graph(
+    backend: Callable[[str], Backend], compiled_shell: Callable[[str, str], Compiled]
+) -> None:
     """Shader Graph's function, called with directions of 0 and in an object whose matrices are 0."""
     backend("unity-urp")
     machine = UnityHLSL("unity-shadergraph", "unity-shadergraph", "dxc")
-    (text,) = (text for file, text in made("unlit", "unity-shadergraph").files.items() if file.endswith(".hlsl"))
+    (text,) = (
+        text for file, text in compiled_shell("unlit", "unity-shadergraph").files.items() if file.endswith(".hlsl")
+    )
     ports = re.findall(r"^    float3 (\w+),$", text.partition("void Unlit_float(")[2].partition(") {")[0], re.MULTILINE)
     assert {"V", "N"} <= set(ports)
     call = f"float4 color; Unlit_float({', '.join('v' for _ in ports)}, color); return color.rgb;"
@@ -235,19 +239,19 @@ NORMALISING = re.compile(
 
 @pytest.mark.parametrize("probe", MATERIALS)
 def test_the_probes_compile(
-    probe: str, made: Callable[[str, str], Compiled], assert_compiles: Callable[[Source], None]
+    probe: str, compiled_shell: Callable[[str, str], Compiled], assert_compiles: Callable[[Source], None]
 ) -> None:
     """In all passes, the built-in pipeline's surface shader with every direction among them."""
     for target in all_targets():
-        for source in sources(made(probe, target).files):
+        for source in sources(compiled_shell(probe, target).files):
             assert_compiles(source)
 
 
 @pytest.mark.parametrize("target", [target for target in all_targets() if target != "numpy"])
-def test_no_shell_normalises_by_itself(target: str, made: Callable[[str, str], Compiled]) -> None:
+def test_no_shell_normalises_by_itself(target: str, compiled_shell: Callable[[str, str], Compiled]) -> None:
     """In no pass, those that are not drawn here among them; and the function is there just where it is called."""
     compiled = [compile(load_material(name), target) for name in examples()]
-    compiled += [made(probe, target) for probe in MATERIALS]
+    compiled += [compiled_shell(probe, target) for probe in MATERIALS]
     for one in compiled:
         for file, places in one.reflection["source_map"].items():
             lines = enumerate(one.files[file].splitlines(), 1)

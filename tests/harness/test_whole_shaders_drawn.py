@@ -9,7 +9,7 @@ import pytest
 
 from sssgen.harness import compilers
 from sssgen.harness.compilers import CompilerMissing
-from whole_shaders import whole
+from whole_shaders import emitted_shader
 
 SIZE = 16, 8
 
@@ -49,7 +49,9 @@ def by_opengl() -> Any:
     except CompilerMissing as missing:
         pytest.skip(str(missing))
     with context:
-        program = context.program(whole(VERTEX, "glsl-330"), fragment_shader=whole(FRAGMENT, "glsl-330"))
+        program = context.program(
+            emitted_shader(VERTEX, "glsl-330"), fragment_shader=emitted_shader(FRAGMENT, "glsl-330")
+        )
         program["iResolution"].value = (*SIZE, 1.0)
         frame = context.framebuffer([context.texture(SIZE, 4, dtype="f4")])
         frame.use()
@@ -63,7 +65,7 @@ def by_webgpu() -> Any:
         gpu = compilers.get("naga").gpu  # type: ignore[attr-defined]  # naga's device
     except CompilerMissing as missing:
         pytest.skip(str(missing))
-    vertex, fragment = (gpu.create_shader_module(code=whole(text, "wgsl")) for text in (VERTEX, FRAGMENT))
+    vertex, fragment = (gpu.create_shader_module(code=emitted_shader(text, "wgsl")) for text in (VERTEX, FRAGMENT))
     pipeline = gpu.create_render_pipeline(
         layout="auto",
         vertex={"module": vertex, "entry_point": "vertex_main", "buffers": []},

@@ -75,7 +75,7 @@ def number(value: float) -> ir.Expr:
     return ir.Literal(FLOAT, value, NOWHERE)
 
 
-def whole(value: int, type_: Type = INT) -> ir.Expr:
+def integer(value: int, type_: Type = INT) -> ir.Expr:
     return ir.Literal(type_, value, NOWHERE)
 
 
@@ -120,8 +120,8 @@ WRONG: dict[str, tuple[Callable[[], ir.Module], str]] = {
     "float as int": (lambda: evaluated(ir.Literal(INT, 1.0, NOWHERE)), "1.0 is not a value of type int"),
     "bool as int": (lambda: evaluated(ir.Literal(INT, True, NOWHERE)), "True is not a value of type int"),
     "int as bool": (lambda: evaluated(ir.Literal(BOOL, 1, NOWHERE)), "1 is not a value of type bool"),
-    "int too large": (lambda: evaluated(whole(2**31)), "2147483648 is not a value of type int"),
-    "uint below 0": (lambda: evaluated(whole(-1, UINT)), "-1 is not a value of type uint"),
+    "int too large": (lambda: evaluated(integer(2**31)), "2147483648 is not a value of type int"),
+    "uint below 0": (lambda: evaluated(integer(-1, UINT)), "-1 is not a value of type uint"),
     "vector literal": (lambda: evaluated(ir.Literal(VEC2, 1.0, NOWHERE)), "1.0 is not a value of type vec2"),
     # Names
     "unknown local": (lambda: evaluated(local(FLOAT)), "'p' is not declared here"),
@@ -137,7 +137,7 @@ WRONG: dict[str, tuple[Callable[[], ir.Module], str]] = {
         "'p' is not declared here"),
     "counter after its loop": (
         lambda: body(
-            ir.For(ir.Declare("p", INT, None, NOWHERE), TRUE, None, (), NOWHERE), assigned(local(INT), whole(1))),
+            ir.For(ir.Declare("p", INT, None, NOWHERE), TRUE, None, (), NOWHERE), assigned(local(INT), integer(1))),
         "'p' is not declared here"),
     "hidden": (
         lambda: body(ir.If(TRUE, (ir.Declare("p", INT, None, NOWHERE),), (), NOWHERE), params=(param(FLOAT),)),
@@ -145,7 +145,7 @@ WRONG: dict[str, tuple[Callable[[], ir.Module], str]] = {
     # Operators
     "unknown operator": (lambda: evaluated(ir.Binary(FLOAT, "**", number(1.0), number(1.0), NOWHERE)), "'**' is not"),
     "operator on mixed types": (
-        lambda: evaluated(ir.Binary(FLOAT, "+", number(1.0), whole(1), NOWHERE)),
+        lambda: evaluated(ir.Binary(FLOAT, "+", number(1.0), integer(1), NOWHERE)),
         "'+' is not defined for (float, int)"),
     "operator's result": (
         lambda: evaluated(ir.Binary(FLOAT, "<", number(1.0), number(2.0), NOWHERE)),
@@ -153,18 +153,18 @@ WRONG: dict[str, tuple[Callable[[], ir.Module], str]] = {
     "negated bool": (lambda: evaluated(ir.Unary(BOOL, "-", TRUE, NOWHERE)), "'-' is not defined for (bool)"),
     "plus sign": (lambda: evaluated(ir.Unary(FLOAT, "+", number(1.0), NOWHERE)), "'+' is not defined for (float)"),
     "arms that differ": (
-        lambda: evaluated(ir.Select(FLOAT, TRUE, number(1.0), whole(1), NOWHERE)), "a choice is not defined for"),
+        lambda: evaluated(ir.Select(FLOAT, TRUE, number(1.0), integer(1), NOWHERE)), "a choice is not defined for"),
     "choice by a number": (
-        lambda: evaluated(ir.Select(FLOAT, whole(1), number(1.0), number(1.0), NOWHERE)), "a choice is not defined"),
+        lambda: evaluated(ir.Select(FLOAT, integer(1), number(1.0), number(1.0), NOWHERE)), "a choice is not defined"),
     # Parts
     "swizzle of a scalar": (lambda: evaluated(ir.Swizzle(FLOAT, number(1.0), "x", NOWHERE)), "'.x' is not defined"),
     "swizzle out of the vector": (lambda: evaluated(ir.Swizzle(FLOAT, ONES, "z", NOWHERE)), "'.z' is not defined"),
     "swizzle by colour": (lambda: evaluated(ir.Swizzle(FLOAT, ONES, "r", NOWHERE)), "'.r' is not defined"),
     "swizzle of five": (lambda: evaluated(ir.Swizzle(VEC4, ONES, "xxxxx", NOWHERE)), "'.xxxxx' is not defined"),
     "index by a float": (lambda: evaluated(ir.Index(FLOAT, ONES, number(0.0), NOWHERE)), "an index is not defined"),
-    "index outside": (lambda: evaluated(ir.Index(FLOAT, ONES, whole(2), NOWHERE)), "index 2 is outside vec2"),
+    "index outside": (lambda: evaluated(ir.Index(FLOAT, ONES, integer(2), NOWHERE)), "index 2 is outside vec2"),
     "index of a scalar": (
-        lambda: evaluated(ir.Index(FLOAT, number(1.0), whole(0), NOWHERE)), "an index is not defined"),
+        lambda: evaluated(ir.Index(FLOAT, number(1.0), integer(0), NOWHERE)), "an index is not defined"),
     "unknown member": (
         lambda: body(ir.Declare("q", FLOAT, ir.Member(FLOAT, local(STRUCT.type), "zork", NOWHERE), NOWHERE),
                      params=(param(STRUCT.type),)),
@@ -185,12 +185,12 @@ WRONG: dict[str, tuple[Callable[[], ir.Module], str]] = {
             function(), function(ir.Evaluate(ir.Construct(FLOAT, (call_of("f()"),), NOWHERE), NOWHERE), name="g"))),
         "a call without a result is used as a value"),
     "builtin's overload": (
-        lambda: evaluated(ir.Intrinsic(FLOAT, "sin", (whole(1),), NOWHERE)), "sin is not defined for (int)"),
+        lambda: evaluated(ir.Intrinsic(FLOAT, "sin", (integer(1),), NOWHERE)), "sin is not defined for (int)"),
     "unknown builtin": (lambda: evaluated(ir.Intrinsic(FLOAT, "zork", (), NOWHERE)), "zork is not defined for ()"),
     "builtin's result": (
         lambda: evaluated(ir.Intrinsic(VEC2, "length", (ONES,), NOWHERE)), "length of (vec2) is a float, not a vec2"),
     "constructor of mixed kinds": (
-        lambda: evaluated(ir.Construct(VEC2, (number(1.0), whole(1)), NOWHERE)), "vec2 cannot be constructed"),
+        lambda: evaluated(ir.Construct(VEC2, (number(1.0), integer(1)), NOWHERE)), "vec2 cannot be constructed"),
     "constructor of too few": (
         lambda: evaluated(ir.Construct(VEC3, (number(1.0), number(1.0)), NOWHERE)), "vec3 cannot be constructed"),
     "constructor that does nothing": (
@@ -206,11 +206,11 @@ WRONG: dict[str, tuple[Callable[[], ir.Module], str]] = {
         lambda: evaluated(ir.Select(MAP, TRUE, module_global(MAP, "map"), module_global(MAP, "map"), NOWHERE)),
         "a sampler can only be named"),
     # Statements
-    "declared value": (lambda: body(ir.Declare("q", FLOAT, whole(1), NOWHERE)), "'q' is a float, but gets an int"),
+    "declared value": (lambda: body(ir.Declare("q", FLOAT, integer(1), NOWHERE)), "'q' is a float, but gets an int"),
     "variable of nothing": (lambda: body(ir.Declare("q", VOID, None, NOWHERE)), "this cannot be Void()"),
     "variable of a sampler": (lambda: body(ir.Declare("q", MAP, None, NOWHERE)), "this cannot be Sampler"),
     "assigned value": (
-        lambda: body(assigned(local(FLOAT), whole(1)), params=(param(FLOAT),)),
+        lambda: body(assigned(local(FLOAT), integer(1)), params=(param(FLOAT),)),
         "an assignment is a float, but gets an int"),
     "assigned global": (
         lambda: body(assigned(module_global(FLOAT, "density"), number(1.0))), "a Global of type float cannot be"),
@@ -239,7 +239,7 @@ WRONG: dict[str, tuple[Callable[[], ir.Module], str]] = {
     "break outside": (lambda: body(ir.Break(NOWHERE)), "break outside a loop"),
     "continue outside": (lambda: body(ir.If(TRUE, (ir.Continue(NOWHERE),), (), NOWHERE)), "continue outside a loop"),
     "returned value": (
-        lambda: body(ir.Return(whole(1), NOWHERE), result=FLOAT), "the return is a float, but gets an int"),
+        lambda: body(ir.Return(integer(1), NOWHERE), result=FLOAT), "the return is a float, but gets an int"),
     "returned nothing": (
         lambda: body(ir.Return(None, NOWHERE), result=FLOAT), "the return is a float, but gets a void"),
     "returned from nothing": (lambda: body(ir.Return(number(1.0), NOWHERE)), "the return is a void, but gets a float"),
@@ -288,7 +288,9 @@ WRONG: dict[str, tuple[Callable[[], ir.Module], str]] = {
     "default between integers": (
         lambda: ir.Module(uniforms=(UNIFORM._replace(type=INT),)), "a default that is not a value of int"),
     "constant's value": (
-        lambda: ir.Module(constants=(ir.Constant("x", FLOAT, whole(1), NOWHERE),)), "'x' is a float, but gets an int"),
+        lambda: ir.Module(constants=(ir.Constant("x", FLOAT, integer(1), NOWHERE),)),
+        "'x' is a float, but gets an int",
+    ),
     "constant of a uniform": (
         lambda: ir.Module(constants=(ir.Constant("x", FLOAT, module_global(FLOAT, "density"), NOWHERE),),
                           uniforms=(UNIFORM,)),
@@ -321,10 +323,10 @@ def test_verifier_rejects(name: str) -> None:
 
 
 def test_verifier_names_the_place() -> None:
-    problems = verify(body(ir.Return(whole(1), ir.Span("a.sss", 7, 3, 7, 9)), result=FLOAT))
+    problems = verify(body(ir.Return(integer(1), ir.Span("a.sss", 7, 3, 7, 9)), result=FLOAT))
     assert problems == ["a.sss:7:3: the return is a float, but gets an int (in wrong())"]
     with pytest.raises(InvalidIR, match=r"a\.sss:7:3"):
-        check_module(body(ir.Return(whole(1), ir.Span("a.sss", 7, 3, 7, 9)), result=FLOAT))
+        check_module(body(ir.Return(integer(1), ir.Span("a.sss", 7, 3, 7, 9)), result=FLOAT))
     check_module(SAMPLE_MODULE)
 
 

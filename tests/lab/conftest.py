@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from measured_views import SIZE, made_up, small
+from measured_views import SIZE, small, synthetic_view
 from sssgen.lab.measure import (
     scene_references as references,
 )
@@ -27,9 +27,11 @@ def no_cache() -> Iterator[None]:
 
 @pytest.fixture(scope="module")
 def cube() -> View:
-    return made_up(small("cube"))
+    return synthetic_view(small("cube"))
 
 
 @pytest.fixture(scope="module")
 def training() -> tuple[View, ...]:
-    return tuple(made_up(replace(one, size=SIZE), one.name) for one in references.training(measured_scene.load("cube")))
+    return tuple(
+        synthetic_view(replace(one, size=SIZE), one.name) for one in references.training(measured_scene.load("cube"))
+    )

@@ -33,7 +33,7 @@ from sssgen.support.progress import ProgressBar
 
 
 @pytest.fixture(autouse=True)
-def stamped_anew() -> None:
+def current_stamps() -> None:
     """Somebody may edit sssgen while its tests run; then only the test of that moment fails."""
     work.code_stamp.cache_clear()
     work._package_digest.cache_clear()
@@ -165,15 +165,15 @@ def test_an_interrupted_run_continues(tmp_path: Path, how: int) -> None:
     command = [sys.executable, "-c", code, str(notes), str(folder)]
     process = subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL, preexec_fn=heed_interrupts)
 
-    def kept() -> list[Path]:
+    def stored_files() -> list[Path]:
         return [path for path in folder.rglob("*") if path.is_file() and path.suffix != ".tmp"]
 
-    wait_until(lambda: len(kept()) == GATE or process.poll() is not None, "the items before the gate")
+    wait_until(lambda: len(stored_files()) == GATE or process.poll() is not None, "the items before the gate")
     assert process.poll() is None
     process.send_signal(how)
     open_gate(notes)
     assert process.wait(timeout=HANG) != 0
-    started, done = len(runs(notes)), len(kept())
+    started, done = len(runs(notes)), len(stored_files())
     assert GATE <= done < 12 and started <= done + 4  # its two workers had items in hand, or had just finished them
     jobs = items(notes, 12, "measure_behind_gate")
     results = run(jobs, processes=2, store=Store(str(folder)))

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from measured_views import SIZE, candidate, chain, made_up, small
+from measured_views import SIZE, candidate, chain, small, synthetic_view
 from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Ball, Box, Union
 from sssgen.harness.scenes.scene import Light
@@ -160,7 +160,7 @@ def test_light_that_meets_no_matter_asks_for_no_thickness() -> None:
 
 def test_lights_in_one_call_equal_separate_calls(cube: View, tmp_path: Path) -> None:
     scene = small("capsule")
-    fit_problem = problem.translucency_problem(scene, made_up(scene).references)
+    fit_problem = problem.translucency_problem(scene, synthetic_view(scene).references)
     assert fit_problem is not None and len(fit_problem.parts) == 2
     built = chain(candidate("exact_thickness", "beer_lambert", "lobe_gdc2011"), View("own", scene), tmp_path)
     together = fit_problem.values(built, {"power": 2.0})
@@ -178,7 +178,7 @@ def test_lights_in_one_call_equal_separate_calls(cube: View, tmp_path: Path) -> 
 
 def test_colours_of_all_lights_are_added() -> None:
     scene = small("capsule")
-    view = made_up(scene)
+    view = synthetic_view(scene)
     each, whole = (problem.material_problem(scene, view.references, summed) for summed in (False, True))
     count = points(scene).count
     by_light = (each.target / each.gain).reshape(3, 2, count)
@@ -192,7 +192,7 @@ def test_shadowed_points_get_no_light_from_the_front() -> None:
     body_of = Union((Box(size=(2.0, 0.2, 2.0)), Ball(0.4, position=(0.0, 0.9, 0.0))))  # a ball over a board
     scene = replace(small("bracket"), geometry=body_of, lights=(Light(None, (0.0, 1.0, 0.0), (1.0, 1.0, 1.0)),))
     scene = replace(scene, camera=Camera((0.0, 2.5, 3.0), (0.0, 0.0, 0.0), 40.0), size=(24, 24))
-    seen = made_up(scene).references
+    seen = synthetic_view(scene).references
     fit_problem = problem.material_problem(scene, seen, False)
     surface = points(scene)
     direction = np.array(scene.lights[0].direction)

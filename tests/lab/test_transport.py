@@ -383,13 +383,13 @@ def rendered(monkeypatch: pytest.MonkeyPatch, stop_at: int = 10**9) -> list[int]
     numbers: list[int] = []
     batch = Renderer.batch
 
-    def noted(self: Renderer, number: int, samples: int) -> Array:
+    def recorded(self: Renderer, number: int, samples: int) -> Array:
         if number == stop_at:
             raise KeyboardInterrupt
         numbers.append(number)
         return batch(self, number, samples)
 
-    monkeypatch.setattr(Renderer, "batch", noted)
+    monkeypatch.setattr(Renderer, "batch", recorded)
     return numbers
 
 

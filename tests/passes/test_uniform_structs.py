@@ -10,7 +10,7 @@ from ir_interpreter import Interpreter
 from sssgen.ir.text import read_module
 from sssgen.ir.verify import check_module
 from sssgen.passes.stage.uniform_structs import uniform_structs
-from whole_shaders import TARGETS, whole, wrong
+from whole_shaders import TARGETS, compile_errors, emitted_shader
 
 LIGHTS = """struct Fall {
     float near;
@@ -71,4 +71,4 @@ def test_a_split_struct_of_uniforms_reads_the_same(i: int, j: int) -> None:
 
 @pytest.mark.parametrize("target", TARGETS)
 def test_a_struct_of_uniforms_compiles(target: str) -> None:
-    assert wrong(whole(LIGHTS, target), target) == []
+    assert compile_errors(emitted_shader(LIGHTS, target), target) == []

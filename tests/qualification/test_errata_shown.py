@@ -36,7 +36,7 @@ PUBLISHED_FIGURES = {
 """Known from elsewhere: worked out by hand from the sources' formulas."""
 
 
-def told(erratum: Erratum, result: tuple[float, ...]) -> str:
+def description(erratum: Erratum, result: tuple[float, ...]) -> str:
     return f"{erratum.source}, {erratum.name}: {result}"
 
 
@@ -46,8 +46,8 @@ def test_the_published_techniques_have_the_predicted_errors(backend: Get, name: 
     for erratum in ERRATA:
         if erratum.everywhere:
             result = as_published(erratum, machine)
-            assert shows(erratum, result), told(erratum, result)
-            assert not holds(erratum, result), told(erratum, result)
+            assert shows(erratum, result), description(erratum, result)
+            assert not holds(erratum, result), description(erratum, result)
 
 
 @pytest.mark.parametrize("name", BACKENDS)
@@ -55,8 +55,8 @@ def test_the_corrected_techniques_hold(backend: Get, name: str) -> None:
     machine = backend(name)
     for erratum in ERRATA:
         result = as_mended(erratum, machine)
-        assert holds(erratum, result), told(erratum, result)
-        assert not erratum.everywhere or not shows(erratum, result), told(erratum, result)
+        assert holds(erratum, result), description(erratum, result)
+        assert not erratum.everywhere or not shows(erratum, result), description(erratum, result)
 
 
 def test_undefined_results_are_wrong_somewhere(backend: Get) -> None:
@@ -65,7 +65,7 @@ def test_undefined_results_are_wrong_somewhere(backend: Get) -> None:
     assert len(undefined) >= 4
     for erratum in undefined:
         result = as_published(erratum, backend("numpy-f32"))
-        assert not holds(erratum, result), told(erratum, result)
+        assert not holds(erratum, result), description(erratum, result)
 
 
 def test_predicted_errors_equal_the_published_figures() -> None:
@@ -88,7 +88,7 @@ def test_open_errata_are_not_fixed(backend: Get) -> None:
     for erratum in OPEN:
         assert shows(erratum, as_published(erratum, backend("numpy-f32")))
         result = as_mended(erratum, backend("numpy-f32"))
-        assert not holds(erratum, result), f"{told(erratum, result)} is mended: move it to its chapter"
+        assert not holds(erratum, result), f"{description(erratum, result)} is mended: move it to its chapter"
 
 
 def test_errata_are_compared_with_tolerances() -> None:

@@ -20,7 +20,7 @@ from sssgen.lang import polyfills
 LANES = 240
 
 
-def wrong(figures: dict[str, Figure]) -> str:
+def failures(figures: dict[str, Figure]) -> str:
     return "\n".join(f"{name}: {figure}" for name, figure in figures.items() if not figure.right)
 
 
@@ -29,14 +29,14 @@ def test_every_builtin_is_within_its_limits(name: str, backend: Callable[[str], 
     gpu = backend(name)
     figures = measure(gpu, cases(LANES))
     assert set(figures) == {case.name for case in cases(LANES) if supported(case, gpu)}
-    assert not wrong(figures), wrong(figures)
+    assert not failures(figures), failures(figures)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", BACKENDS)
 def test_every_builtin_is_within_its_limits_on_many_arguments(name: str, backend: Callable[[str], Backend]) -> None:
     figures = measure(backend(name), cases(FULL))
-    assert not wrong(figures), wrong(figures)
+    assert not failures(figures), failures(figures)
 
 
 def test_the_cases_cover_all_overloads_and_are_deterministic() -> None:

@@ -8,7 +8,7 @@ from sssgen.harness.compilers import Source, check, errors
 from sssgen.ir.text import read_module
 from sssgen.pipeline.compiler import transpile
 from sssgen.support.diagnostics import SssgenError
-from whole_shaders import FRAGMENT, FUNCTIONS, OLD, SEVERAL, STAGES, TARGETS, VERTEX, whole, wrong
+from whole_shaders import FRAGMENT, FUNCTIONS, OLD, SEVERAL, STAGES, TARGETS, VERTEX, compile_errors, emitted_shader
 
 
 @pytest.mark.parametrize("keep", [True, False])
@@ -16,34 +16,34 @@ from whole_shaders import FRAGMENT, FUNCTIONS, OLD, SEVERAL, STAGES, TARGETS, VE
 @pytest.mark.parametrize("name", STAGES)
 def test_a_whole_shader_compiles(name: str, target: str, keep: bool) -> None:
     stage = "vertex" if name == "vertex" else "fragment"
-    text = whole(STAGES[name], target, keep)
-    assert wrong(text, target, stage) == [], text  # type: ignore[arg-type]  # one of its two words
+    text = emitted_shader(STAGES[name], target, keep)
+    assert compile_errors(text, target, stage) == [], text  # type: ignore[arg-type]  # one of its two words
 
 
 def test_unused_colour_outputs_are_omitted() -> None:
-    assert "out vec4 FragData[2];" in whole(SEVERAL, "glsl-es-300")
-    assert "SV_Target1" in whole(SEVERAL, "hlsl")
-    assert "SV_Target2" not in whole(SEVERAL, "hlsl")
+    assert "out vec4 FragData[2];" in emitted_shader(SEVERAL, "glsl-es-300")
+    assert "SV_Target1" in emitted_shader(SEVERAL, "hlsl")
+    assert "SV_Target2" not in emitted_shader(SEVERAL, "hlsl")
 
 
 def test_the_stages_meet() -> None:
     """The outputs of the vertex shader are the inputs of the fragment shader, and the GL driver links them."""
     for target in ("glsl-330", "glsl-es-300"):
-        source = Source(whole(FRAGMENT, target), target, "fragment", companion=whole(VERTEX, target))
+        source = Source(emitted_shader(FRAGMENT, target), target, "fragment", companion=emitted_shader(VERTEX, target))
         assert [str(one) for messages in check(source).values() for one in errors(messages)] == []
-    wgsl = whole(VERTEX, "wgsl"), whole(FRAGMENT, "wgsl")
+    wgsl = emitted_shader(VERTEX, "wgsl"), emitted_shader(FRAGMENT, "wgsl")
     for place in ("@location(0) uv", "@location(1) @interpolate(flat) kind"):
         assert all(place in text for text in wgsl)
 
 
 def test_coordinates_follow_the_framebuffers_direction() -> None:
-    assert "FragCoord.y = iResolution.y - FragCoord.y;" in whole(FRAGMENT, "hlsl")
-    assert "FragCoord.w = 1.0 / FragCoord.w;" in whole(FRAGMENT, "hlsl")
-    assert "FragCoord.y = material.iResolution.y - FragCoord.y;" in whole(FRAGMENT, "wgsl")
-    assert "-uv_dy" in whole(FRAGMENT, "wgsl").replace("-value_dy", "-uv_dy")
-    assert "Position.z = (Position.z + Position.w) * 0.5;" in whole(VERTEX, "hlsl")
-    assert "dFdy(uv.y)" in whole(FRAGMENT, "glsl-330")
-    assert "-dFdy" not in whole(FRAGMENT, "glsl-330")
+    assert "FragCoord.y = iResolution.y - FragCoord.y;" in emitted_shader(FRAGMENT, "hlsl")
+    assert "FragCoord.w = 1.0 / FragCoord.w;" in emitted_shader(FRAGMENT, "hlsl")
+    assert "FragCoord.y = material.iResolution.y - FragCoord.y;" in emitted_shader(FRAGMENT, "wgsl")
+    assert "-uv_dy" in emitted_shader(FRAGMENT, "wgsl").replace("-value_dy", "-uv_dy")
+    assert "Position.z = (Position.z + Position.w) * 0.5;" in emitted_shader(VERTEX, "hlsl")
+    assert "dFdy(uv.y)" in emitted_shader(FRAGMENT, "glsl-330")
+    assert "-dFdy" not in emitted_shader(FRAGMENT, "glsl-330")
     without = FRAGMENT.replace("iResolution", "size")
     (warning,) = transpile(read_module(without), "wgsl", "x", keep=True).warnings
     assert "counts from the top" in warning.message
@@ -52,10 +52,10 @@ def test_coordinates_follow_the_framebuffers_direction() -> None:
 
 def test_glsl_is_unchanged() -> None:
     """The text is the author's, unused functions and all, in the order of its operands."""
-    text = whole(FRAGMENT + "function float unused() {\n    return (1.0 + 1.0);\n}\n", "glsl-330")
+    text = emitted_shader(FRAGMENT + "function float unused() {\n    return (1.0 + 1.0);\n}\n", "glsl-330")
     assert "float a = rand() + rand() * seed;" in text
     assert "return 1.0 + 1.0;" in text
-    assert "kind = gl_VertexID % 3;" in whole(VERTEX, "glsl-330")
+    assert "kind = gl_VertexID % 3;" in emitted_shader(VERTEX, "glsl-330")
     module = read_module(FRAGMENT + "function float unused() {\n    return (1.0 + 1.0);\n}\n")
     pruned = transpile(module, "glsl-330", "x", called=["main()"], keep=True)
     assert "unused" not in next(iter(pruned.files.values()))
@@ -72,7 +72,7 @@ def test_unsupported_stage_inputs_are_refused() -> None:
 
 def test_a_non_finite_constant_is_refused_where_required() -> None:
     text = "function float f() {\n    return (1.0 / 0.0);\n}\n"
-    assert "1.0 / 0.0" in whole(text, "glsl-330")
+    assert "1.0 / 0.0" in emitted_shader(text, "glsl-330")
     with pytest.raises(SssgenError, match="divided by 0"):
         transpile(read_module(text), "wgsl", "x", keep=True)
 
@@ -80,17 +80,17 @@ def test_a_non_finite_constant_is_refused_where_required() -> None:
 def test_a_vertex_shader_reads_textures_at_level_0() -> None:
     read = "    set $uv += texture($map, $uv).xy;\n}\n"
     text = "uniform sampler2D map\n" + VERTEX.removesuffix("}\n") + read
-    assert "texture(map, uv)" in whole(text, "glsl-330")
+    assert "texture(map, uv)" in emitted_shader(text, "glsl-330")
     for target, level in (("wgsl", "textureSampleLevel(map, map_sampler, uv, 0.0)"), ("hlsl", "SampleLevel")):
-        result = whole(text, target)
+        result = emitted_shader(text, target)
         assert level in result
-        assert wrong(result, target, "vertex") == []
+        assert compile_errors(result, target, "vertex") == []
 
 
 def test_an_unsupported_interpolation_is_reported() -> None:
     text = 'variable in vec2 uv [interpolation("noperspective")]\n' + OLD
-    assert "noperspective in vec2 uv;" in whole(text, "glsl-330")
-    assert "@interpolate(linear)" in whole(text, "wgsl")
+    assert "noperspective in vec2 uv;" in emitted_shader(text, "glsl-330")
+    assert "@interpolate(linear)" in emitted_shader(text, "wgsl")
     compiled = transpile(read_module(text), "glsl-es-300", "x", keep=True)
     assert "\nin vec2 uv;" in next(iter(compiled.files.values()))
     assert "with perspective" in compiled.warnings[0].message
@@ -115,11 +115,11 @@ function void main() {
     compiled = transpile(read_module(text), "wgsl", "x", keep=True)
     assert compiled.warnings == []
     shown = next(iter(compiled.files.values()))
-    assert wrong(shown, "wgsl") == [], shown
+    assert compile_errors(shown, "wgsl") == [], shown
 
 
 def test_variables_of_a_library() -> None:
     """Without an entry they are declared, for whoever calls its functions."""
-    assert "var<private> g: f32 = 1.0;" in whole(FUNCTIONS, "wgsl")
-    assert "static float g = 1.0;" in whole(FUNCTIONS, "hlsl")
-    assert "\nfloat g = 1.0;" in whole(FUNCTIONS, "glsl-330")
+    assert "var<private> g: f32 = 1.0;" in emitted_shader(FUNCTIONS, "wgsl")
+    assert "static float g = 1.0;" in emitted_shader(FUNCTIONS, "hlsl")
+    assert "\nfloat g = 1.0;" in emitted_shader(FUNCTIONS, "glsl-330")

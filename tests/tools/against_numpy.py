@@ -62,7 +62,7 @@ def drawn(param: Param, rng: np.random.Generator, lanes: int) -> Array:
     return rng.uniform(-2.0, 2.0, size).astype(np.float32)
 
 
-def drawn_beside_textures(param: Param, rng: np.random.Generator, lanes: int) -> Array:
+def drawn_per_quad(param: Param, rng: np.random.Generator, lanes: int) -> Array:
     """As `drawn`, but the same in a quad, so that a coordinate's derivatives are those of `uv`."""
     value = drawn(param, rng, lanes)
     return value if param.name == "uv" else value[..., pixels(lanes)[0] // 2]

@@ -22,7 +22,7 @@ needs_meshes = pytest.mark.skipif(
 )
 
 
-class Made(NamedTuple):
+class MeshData(NamedTuple):
     """A mesh: vertices (v, 3), faces (f, 3), counter-clockwise seen from outside, and uv (f, 3, 2) where it has some"""
 
     vertices: Array
@@ -35,24 +35,24 @@ class Made(NamedTuple):
         result: Array = self.vertices[self.faces]
         return result
 
-    def moved(self, by: npt.ArrayLike) -> Made:
+    def moved(self, by: npt.ArrayLike) -> MeshData:
         return self._replace(vertices=self.vertices + np.asarray(by, float))
 
-    def turned_out(self) -> Made:
+    def inverted(self) -> MeshData:
         return self._replace(faces=self.faces[:, ::-1])
 
-    def without(self, *faces: int) -> Made:
+    def without(self, *faces: int) -> MeshData:
         return self._replace(faces=np.delete(self.faces, faces, axis=0))
 
 
-def joined(*parts: Made) -> Made:
+def joined(*parts: MeshData) -> MeshData:
     """Meshes side by side, as they are."""
     offsets = np.cumsum([0, *(len(part.vertices) for part in parts)])
     faces = [part.faces + offset for part, offset in zip(parts, offsets, strict=False)]
-    return Made(np.concatenate([part.vertices for part in parts]), np.concatenate(faces))
+    return MeshData(np.concatenate([part.vertices for part in parts]), np.concatenate(faces))
 
 
-def box(size: npt.ArrayLike = (1.0, 1.0, 1.0), gap: float = 0.04) -> Made:
+def box(size: npt.ArrayLike = (1.0, 1.0, 1.0), gap: float = 0.04) -> MeshData:
     """A box about the origin; its faces are charts, three by two, that are `gap` apart. Two triangles a face."""
     vertices, faces, uv = [], [], []
     half = 0.5 * np.asarray(size, float)
@@ -67,10 +67,10 @@ def box(size: npt.ArrayLike = (1.0, 1.0, 1.0), gap: float = 0.04) -> Made:
         for turn in ((0, 1, 2), (0, 2, 3)):
             faces.append([4 * number + at for at in turn])
             uv.append(chart[list(turn)])
-    return Made(np.array(vertices), np.array(faces), np.array(uv))
+    return MeshData(np.array(vertices), np.array(faces), np.array(uv))
 
 
-def icosphere(radius: float, level: int) -> Made:
+def icosphere(radius: float, level: int) -> MeshData:
     """20 · 4^level triangles with their corners on a ball."""
     golden = 0.5 * (1.0 + np.sqrt(5.0))
     ring = [(-1, golden, 0), (1, golden, 0), (-1, -golden, 0), (1, -golden, 0)]
@@ -92,10 +92,10 @@ def icosphere(radius: float, level: int) -> Made:
         vertices = np.concatenate([vertices, middles / np.linalg.norm(middles, axis=1, keepdims=True)])
         quarters = ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
         faces = np.concatenate([np.stack(quarter, axis=1) for quarter in quarters])
-    return Made(radius * vertices, faces)
+    return MeshData(radius * vertices, faces)
 
 
-def globe(radius: float, across: int, up: int) -> Made:
+def globe(radius: float, across: int, up: int) -> MeshData:
     """A ball by longitude and latitude, which are its uv."""
     u, v = np.meshgrid(np.arange(across + 1) / across, np.arange(up + 1) / up)
     uv = np.stack([u.ravel(), v.ravel()], axis=1)
@@ -106,10 +106,10 @@ def globe(radius: float, across: int, up: int) -> Made:
     a = row * (across + 1) + column
     b, c, d = a + 1, a + across + 2, a + across + 1
     faces = np.concatenate([np.stack([a, b, c], axis=1)[row > 0], np.stack([a, c, d], axis=1)[row < up - 1]])
-    return Made(vertices, faces, uv[faces])
+    return MeshData(vertices, faces, uv[faces])
 
 
-def torus(major: float, minor: float, around: int, about: int) -> Made:
+def torus(major: float, minor: float, around: int, about: int) -> MeshData:
     """A torus about y."""
     row, column = np.mgrid[:around, :about].reshape(2, -1)
     a, b = 2.0 * np.pi * row / around, 2.0 * np.pi * column / about
@@ -121,10 +121,10 @@ def torus(major: float, minor: float, around: int, about: int) -> Made:
     faces = np.concatenate(
         [np.stack([quad[0], quad[1], quad[2]], axis=1), np.stack([quad[0], quad[2], quad[3]], axis=1)]
     )
-    return Made(vertices, faces)
+    return MeshData(vertices, faces)
 
 
-def write(path: Path, result: Made) -> str:
+def write(path: Path, result: MeshData) -> str:
     """The mesh as a file: an .obj, or without its uv a binary .ply; the path as text."""
     if path.suffix == ".ply":
         head = ["ply", "format binary_little_endian 1.0", f"element vertex {len(result.vertices)}"]
@@ -145,7 +145,9 @@ def write(path: Path, result: Made) -> str:
     return str(path)
 
 
-def passed(triangles: Array, origins: Array, ways: Array, at_once: int = 2**22) -> tuple[Array, npt.NDArray[np.bool_]]:
+def crossings(
+    triangles: Array, origins: Array, ways: Array, at_once: int = 2**22
+) -> tuple[Array, npt.NDArray[np.bool_]]:
     """How far along rays (n, 3) triangles (f, 3, 3) are met, (n, f), and whether they are (Möller, Trumbore 1997)."""
     edge, other = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
     lengths, met = [], []

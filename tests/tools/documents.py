@@ -105,9 +105,9 @@ class Reader:
         elif block.verb == "part of":
             _part(block)
         else:
-            check(block, self.made(block))
+            check(block, self.actual_text(block))
 
-    def made(self, block: Block) -> str:
+    def actual_text(self, block: Block) -> str:
         """The expected text of the block."""
         if block.verb == "file":
             return read(ROOT / block.argument)

@@ -63,7 +63,7 @@ def wrong_lanes(case: Case, actual: Array) -> str:
     expected = np.broadcast_to(oracle(case), actual.shape)
     if kind_of(case.result) != "float":
         error = np.where(actual == expected, 0.0, np.inf).reshape(-1, case.lanes).max(axis=0)
-        return _told(case, actual, expected, error, np.zeros(case.lanes))
+        return _message(case, actual, expected, error, np.zeros(case.lanes))
     each = np.abs(expected).reshape(-1, case.lanes).max(axis=0)
     size = evaluated(case.row.size, widened(case.args)) if case.row.size else each
     ulp, absolute = LIMITS.get(case.name, (case.row.ulp, case.row.absolute))
@@ -71,10 +71,10 @@ def wrong_lanes(case: Case, actual: Array) -> str:
         error = np.abs(actual - expected).reshape(-1, case.lanes).max(axis=0)
         limit = np.maximum(ulp * np.spacing(size.astype(np.float16)).astype(np.float64), absolute)
     error = np.where(each < 65504.0, error, 0.0)  # of bits that are no half
-    return _told(case, actual, expected, np.nan_to_num(error, nan=np.inf), limit)
+    return _message(case, actual, expected, np.nan_to_num(error, nan=np.inf), limit)
 
 
-def _told(case: Case, actual: Array, expected: Array, error: Array, limit: Array) -> str:
+def _message(case: Case, actual: Array, expected: Array, error: Array, limit: Array) -> str:
     beyond = np.where(error > limit, error, -1.0)
     lane = int(np.argmax(beyond))
     if beyond[lane] < 0.0:

@@ -27,7 +27,7 @@ def small(name: str) -> MeasuredScene:
     return replace(measured_scene.load(name), size=SIZE)
 
 
-def made_up(one: MeasuredScene, name: str = "own") -> View:
+def synthetic_view(one: MeasuredScene, name: str = "own") -> View:
     """A view with a synthetic reference: light that falls off with the thickness, more from the front, and noise."""
     surface = points(one)
     references: list[LightReference] = []

@@ -344,9 +344,9 @@ class _Maker:
             return self.pick(named)
         makers = [self.operation, self.builtin, self.select, self.part, self.prefix, self.called]
         result = self.pick(makers)(type_, depth - 1) if depth > 0 and self.chance(2) else None
-        return result if result is not None else self.made(type_, depth)
+        return result if result is not None else self.constructed(type_, depth)
 
-    def made(self, type_: Type, depth: int) -> ir.Expr:
+    def constructed(self, type_: Type, depth: int) -> ir.Expr:
         """A literal or a constructor."""
         if isinstance(type_, Scalar):
             if depth > 0 and self.chance(3):

@@ -96,13 +96,13 @@ STAGES = {"fragment": FRAGMENT, "vertex": VERTEX, "old": OLD, "several": SEVERAL
 TARGETS = ("glsl-330", "glsl-es-300", "hlsl", "wgsl")
 
 
-def whole(text: str, target: str, keep: bool = True) -> str:
+def emitted_shader(text: str, target: str, keep: bool = True) -> str:
     module = read_module(text)
     check_module(module)
     return next(iter(transpile(module, target, "x", keep=keep).files.values()))
 
 
-def wrong(text: str, target: str, stage: Stage = "fragment") -> list[str]:
+def compile_errors(text: str, target: str, stage: Stage = "fragment") -> list[str]:
     """The errors of other compilers in a complete shader."""
     entry = "main" if target.startswith("glsl") else f"{stage}_main"
     result = check(Source(text, target, stage, entry))
