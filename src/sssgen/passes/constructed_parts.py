@@ -46,7 +46,7 @@ def picked(value: Construct, indices: list[int], type: Type, span: Span) -> Expr
 
 
 def _piece(arg: Expr, parts: list[int], span: Span) -> Expr:
-    """Some components of a vector, or a scalar as it is."""
+    """Some components of a vector, or the scalar itself."""
     if not isinstance(arg.type, Vector) or parts == list(range(arg.type.size)):
         return arg
     value, letters = (arg.value, arg.components) if isinstance(arg, Swizzle) else (arg, "xyzw")

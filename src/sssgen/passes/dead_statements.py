@@ -96,7 +96,7 @@ class Cleaner:
         return cleaned
 
     def reads(self, key: str) -> set[str]:
-        """The uniforms, textures and constants that a function reads, itself or through what it calls."""
+        """The uniforms, textures and constants that a function and its callees read."""
         if key not in self.functions:
             return set()
         needs = self.cleaned(key).needs
@@ -111,7 +111,7 @@ class FunctionCleaner:
     """Finds and removes the statements of one function that have no effect.
 
     Variables are numbered by declaration, as sibling blocks may use one name for several. In the IR no
-    visible variable is hidden, so a name stands for its latest declaration.
+    visible variable is hidden, so a name means its latest declaration.
     """
 
     def __init__(self, cleaner: Cleaner, function: Function) -> None:
@@ -266,7 +266,7 @@ class FunctionCleaner:
             self.essential.append(unit)
 
     def store(self, target: Expr, unit: Unit) -> None:
-        """Notes that a statement writes a variable; what is no variable of the function is an effect."""
+        """Notes that a statement writes a variable; a write of a module variable is an effect."""
         variable = root(target)
         number = self.numbers.get(variable.name) if variable is not None else None
         self.acts = self.acts or variable is None

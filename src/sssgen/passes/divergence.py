@@ -1,10 +1,10 @@
-"""Finds where the pixels of a quad may go different ways, and what is not allowed there. Used by `hoist`.
+"""Finds where the pixels of a quad may take different branches, and the operations not allowed there. Used by `hoist`.
 
 A texture read that chooses its own level, or a derivative, compares a pixel with its neighbours, so all must
-reach it: control flow must be *uniform*. The analysis is that of WGSL, section 15.2, made simpler on the
-safe side. What depends on an entry's parameters, a module variable or a texture varies; uniforms and constants
-do not. After a branch that some pixels leave for good (by return, break, continue or discard), flow stays
-non-uniform to the end of the function or loop.
+reach it: control flow must be *uniform*. The analysis is a conservative simplification of that of WGSL, section 15.2.
+A value that depends on an entry's parameters, a module variable or a texture varies; uniforms and constants do not.
+After a branch in which some pixels return, break, continue or discard, flow is non-uniform to the end of the function
+or loop.
 """
 
 from __future__ import annotations
@@ -59,20 +59,20 @@ class Summary(NamedTuple):
     """What a call of a function may do."""
 
     compares: bool
-    """It, or a function that it calls, has a builtin that needs uniform flow."""
+    """The function or one of its callees has a builtin that needs uniform flow."""
     varies: bool
-    """Its result may vary even where its arguments do not."""
+    """The result may vary even where the arguments do not."""
     discards: bool
     outs: tuple[int, ...]
     """The positions of its out and inout parameters."""
     callees: tuple[str, ...]
     reads: frozenset[str] = frozenset()
     writes: frozenset[str] = frozenset()
-    """The module variables that it reads and writes, itself or through what it calls."""
+    """The module variables that the function and its callees read and write."""
 
     @property
     def pure(self) -> bool:
-        """Whether a call does nothing but give its value."""
+        """Whether a call has no effect apart from its result."""
         return not self.outs and not self.discards and not self.writes
 
 

@@ -1,12 +1,11 @@
-"""Computes what is constant: parameters that a material fixes, literals' arithmetic, branches whose condition
-is known.
+"""Computes constants: parameters that a material fixes, arithmetic of literals, branches with a known condition.
 
 Why: a fixed parameter costs nothing at run time and leaves no uniform; every target gets the same numbers;
-and WGSL computes constants itself, but refuses a module in which one is inf or NaN: such an expression is
-left as it is written.
+WGSL computes constants itself, but refuses a module in which one is inf or NaN: such an expression is not
+changed.
 Place: first after `link`, so that `prune` finds dead branches and unused uniforms.
 
-Identities are only those that hold for every float: `x * 1.0`, `x + 0.0` (but for the sign of a zero), never
+Only identities that hold for every float are used: `x * 1.0`, `x + 0.0` (but for the sign of a zero), never
 `x * 0.0`. Module constants keep their names, for the reader, unless knowing them decides a condition.
 """
 

@@ -7,7 +7,7 @@ HLSL, and WGSL refuses the module; so one rule holds for every target. In this o
 2. a texture read gets its level from derivatives taken before the branch, of the coordinates as they were
    there;
 3. a texture read gets level 0, and a derivative is taken as 0. A note reports 2 and 3 to the user.
-Place: after `prune`, so that nothing is moved that is removed later; before what is done for one target alone.
+Place: after `prune`, which removes unused operations; before the passes for one target.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Gives each call that writes something a statement of its own, and makes calls report whether they discard.
+"""Makes each call that writes a separate statement, and makes calls report whether they discard.
 
 Why: in Python a function returns what it writes, as in `d, normal = trace(p)`, so such a call cannot be
 inside an expression. A function that may discard gets a last parameter `out bool discarded`; after its call

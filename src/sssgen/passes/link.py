@@ -1,7 +1,8 @@
 """Links the techniques of a material into one module: slots are bound, uniforms get one name each, without duplicates.
 
 First of all passes: everything after it sees one closed module without slots. A function that two stages use alike
-appears once; one that they use differently (another distance function behind its slot, say) appears once for each.
+appears once; one that they use differently (for example with another distance function bound to its slot) appears once
+for each.
 """
 
 from __future__ import annotations

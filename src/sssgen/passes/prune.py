@@ -1,8 +1,8 @@
-"""Removes what a material does not use: functions, uniforms, constants, structs, and statements without effect.
+"""Removes everything that a material does not use: functions, uniforms, constants, structs, statements without effect.
 
-Why: what a material leaves out must not appear in its shader, and an artist should not read dead code.
+Why: a shader must contain only the parameters of its techniques, and a reader should not find dead code.
 Place: after `fold`, which makes branches and uniforms unused; before `hoist`, `parameters` and `names`, which
-then see only what is used, callees before callers. It may run again after a pass that leaves unused code.
+then see only used declarations, callees before callers. It may run again after a pass that leaves unused code.
 """
 
 from __future__ import annotations

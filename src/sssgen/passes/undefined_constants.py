@@ -2,7 +2,7 @@
 
 Why: WGSL refuses a module that holds one, also where it results from module constants, and every other target silently
 gives inf, NaN or an undefined value; so they are an error here, with the place in the source. Place: after `fold`,
-which leaves exactly these constant expressions as they are written.
+which leaves exactly these constant expressions unchanged.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """How uniforms are stored in a uniform block, and how they are read from there.
 
-Why: every API stores a bool in another way. An array's elements take 16 bytes each, which WGSL demands and HLSL does
-silently. WGSL packs a mat2 tighter than std140 does; and behind HLSL's smaller matrices D3D puts the next value into
+Why: every API stores a bool in another way. An array's elements take 16 bytes each, which WGSL requires and HLSL does
+silently. WGSL packs a mat2 tighter than std140 does; and after HLSL's smaller matrices D3D places the next value in
 the last row, where SPIR-V does not allow it. So a block holds an int instead of a bool, a vec4 for each smaller
 element, and a vec4 for each column of such a matrix. Used by `legalise`, and by the printers for the declarations.
 """

@@ -51,7 +51,7 @@ class Closer:
         """The new name of each function, by its old key: another overload may have the new parameter types."""
         self.keys: dict[str, str] = {}
         taken = set[str]()
-        # functions that stay as they are come first, so that the others avoid their names
+        # unchanged functions come first, so that the others avoid their names
         for key, function in sorted(self.functions.items(), key=lambda item: bool(self.read(item[0]))):
             types = [param.type for param in function.params]
             types += [parameters[name].type for name in self.read(key)]

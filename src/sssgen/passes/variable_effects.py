@@ -1,4 +1,4 @@
-"""Which module variables a function reads and writes, itself or through what it calls.
+"""The module variables that a function and its callees read and write.
 
 Used by the passes that move, drop or repeat expressions: an expression that reads a variable must not move past a call
 that writes it.

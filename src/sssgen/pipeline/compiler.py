@@ -105,7 +105,7 @@ def compile(
 
 
 def _copy(compiled: Compiled) -> Compiled:
-    """A copy for the caller, who may change it without a change of the cached one."""
+    """A copy for the caller, who may change it; the cached one stays the same."""
     return Compiled(dict(compiled.files), list(compiled.warnings))
 
 

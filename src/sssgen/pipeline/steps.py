@@ -180,7 +180,7 @@ def pass_uniforms(state: State) -> Module:
 
 def legalise_nodes(state: State) -> Module:
     capabilities = state.target.capabilities
-    if state.keep:  # kept operators mean what GLSL says, which leaves some results open
+    if state.keep:  # kept operators have the meaning of GLSL, in which some results are undefined
         capabilities = capabilities._replace(integer_division=True)
     return legalise(state.module, state.target.dialect, capabilities, polyfill)
 
@@ -208,7 +208,7 @@ def make_names_legal(state: State) -> Module:
 def _reserved(state: State, others: Names) -> ReservedNames:
     """The names that are not free: those of the target and of `others`, whose names its texts avoid, too.
 
-    A shader whose entry is the author's `main` has that name, and no shell around it.
+    A shader whose entry is the author's `main` has that name, without a shell around it.
     """
     own = state.target.names
     names, prefixes = others.exact | own.exact, others.prefixes + own.prefixes

@@ -1,4 +1,4 @@
-"""Target descriptors: what is known of a language or engine apart from its printer, read from a TOML file.
+"""Target descriptors: the properties of a language or engine, except its printer, read from a TOML file.
 
 The records below are the sections of the file, their fields its keys: a key that no record has is an error.
 """
@@ -183,7 +183,7 @@ _KEYS: dict[str, Collection[str]] = {
     "ports": CHAIN_INPUTS,
     "stage_builtins": STAGE_BUILTINS,
 }
-"""The keys of a section that is no record of its own."""
+"""The keys of the sections that have no record type."""
 
 
 def read(path: str | os.PathLike[str]) -> Target:

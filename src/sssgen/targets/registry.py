@@ -18,7 +18,7 @@ from sssgen.support.paths import place, stem
 from sssgen.targets.descriptor import Names, Target, read, table_of, target_of
 
 HALF_PRECISION = {"wgsl-f16": "sssgen.targets.printers.wgsl_half", "numpy-f16": "sssgen.targets.printers.numpy_half"}
-"""Targets for the harness only, which `names` leaves out: the module whose `target()` makes each."""
+"""Targets for the harness only, which are not in `names`: the module whose `target()` makes each."""
 
 
 @functools.cache
@@ -62,13 +62,13 @@ class ReservedNames:
 
 @functools.cache
 def reserved_everywhere() -> Names:
-    """What the project's own targets reserve together. No emitted name is among them."""
+    """The names that any of the project's own targets reserves. No emitted name is among them."""
     return _reserved([target for target in map(load, _own_names()) if target.language != "python"])
 
 
 @functools.cache
 def reserved_of(language: str) -> Names:
-    """What a language reserves by itself, without engines: its first own target, by name, declares that."""
+    """The names reserved by a language without an engine: those of its first own target, by name."""
     return _reserved([target for target in map(load, _own_names()) if target.language == language][:1])
 
 

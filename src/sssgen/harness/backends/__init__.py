@@ -63,7 +63,7 @@ def missing() -> list[tuple[str, str]]:
 
 @cache
 def _find(name: str) -> Backend | str:
-    """The back end, or how to get it. Its module is imported late: each needs packages of its own."""
+    """The back end, or how to get it. Its module is imported here, as each needs other packages."""
     record = BACKENDS[name]
     module, _, program = record.program.partition(":")
     try:

@@ -138,7 +138,7 @@ class Page:
 
 
 def _server(path: str, page: str, connections: queue.Queue[ServerConnection], ending: contextlib.ExitStack) -> Server:
-    """A server that gives the page to a GET of `path`, and puts its WebSocket into `connections`."""
+    """A server that answers a GET of `path` with the page, and adds its WebSocket to `connections`."""
     closed = threading.Event()
 
     def respond(connection: ServerConnection, request: Request) -> Response | None:
@@ -187,7 +187,7 @@ rm -rf "$0"; exit $status
 
 
 def _launch(command: list[str], folder: str, log: IO[bytes]) -> subprocess.Popen[bytes]:
-    """Starts the browser in a session of its own, so that all its processes can be ended and Ctrl-C does not reach it.
+    """Starts the browser in a new session, so that all its processes can be ended and Ctrl-C does not reach it.
 
     A shell waits for it and removes its folder, as this process may be killed before.
     """

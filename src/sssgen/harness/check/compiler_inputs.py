@@ -33,7 +33,7 @@ def sources(files: Mapping[str, str]) -> list[Source]:
 def outputs(name: str) -> list[tuple[descriptor.Target, str, descriptor.OutputFile]]:
     """(target, material, its file entry) of a file name; the longest pattern wins.
 
-    A material's stage and a whole shader's of plain GLSL are files of one name and one kind: one entry stands for both.
+    A material's stage and that of a whole shader of plain GLSL have the same file names: one entry represents both.
     """
     matches = []
     seen: set[tuple[str, str]] = set()

@@ -15,7 +15,7 @@ class Source:
     """One shader text as a compiler sees it.
 
     `language` is a target's name ("glsl-330", "hlsl", …). Stage "library" means functions without
-    an entry: each compiler calls them from an entry of its own, appended so that line numbers stay true.
+    an entry: each compiler calls them from an additional entry, appended so that line numbers stay true.
     `companion` is the text of the other stage; the GL driver links both, so that a mismatch is an error.
     """
 

@@ -111,7 +111,7 @@ def _matching_vertex(fragment: str, language: str) -> str:
 
 
 def _in_text(parsed: list[Message], text: str) -> list[Message]:
-    """Messages with columns of the text: Mesa's preprocessor puts one space for several, and counts after that."""
+    """Messages with columns of the text: Mesa's preprocessor joins spaces before it counts columns."""
     lines = text.split("\n")
     return [
         replace(m, column=_column(lines[m.line - 1], m.column)) if m.column and 0 < m.line <= len(lines) else m

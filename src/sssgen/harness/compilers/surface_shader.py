@@ -2,7 +2,7 @@
 
 The editor turns `#pragma surface` into vertex and fragment entries (docs.unity3d.com, "Writing Surface
 Shaders": the fields of `Input`, the order surface function → GI function → lighting function). That
-generator is not available outside of the editor, so this module writes entries of its own that make the same
+generator is not available outside of the editor, so this module writes entries that make the same
 calls with the same types. Like the editor's, they declare `NAME_ST` for each `uvNAME` input: a shader
 that declares it too does not compile.
 """

@@ -34,7 +34,7 @@ _URP = "Packages/com.unity.render-pipelines.universal/ShaderLibrary/"
 _CORE = "Packages/com.unity.render-pipelines.core/ShaderLibrary/"
 _GRAPH = "Packages/com.unity.shadergraph/ShaderGraphLibrary/"
 
-# The headers that the editor includes by itself: in CGPROGRAM, and around a surface function.
+# The headers that the editor includes implicitly: in CGPROGRAM, and around a surface function.
 _CG_HEADERS = ("HLSLSupport.cginc", "UnityShaderVariables.cginc", "UnityShaderUtilities.cginc")
 _SURFACE_HEADERS = ("UnityCG.cginc", "Lighting.cginc", "UnityPBSLighting.cginc", "AutoLight.cginc")
 _LIBRARY_HEADERS = {
@@ -107,7 +107,7 @@ class Unity(Compiler):
         return f"{self.headers()}, {self._glslang.version()}, {self._dxc.version()}"
 
     def headers(self) -> str:
-        """Whose headers these are."""
+        """The owner of the headers: Unity or this project."""
         return f"Unity's own headers in {self.root}" if self.real else "the project's stand-in headers"
 
     def preprocessed(self, text: str, language: str) -> str:
@@ -123,7 +123,7 @@ class Unity(Compiler):
     def forward(self, text: str, language: str, stage: Stage, keywords: Sequence[str]) -> tuple[str, str]:
         """A stage of an emitted shader's first pass, which is the forward one, preprocessed; and its entry.
 
-        `keywords` are macros, `NAME=1`; of a surface shader its pass is one. Raises ValueError with what is wrong.
+        `keywords` are macros, `NAME=1`; a surface shader's pass is one of them. Raises ValueError with the first error.
         """
         shader = shaderlab.parse(text, _TEXT)
         if shader.messages:
@@ -240,7 +240,7 @@ def _pass_job(program: shaderlab.Program, stage: Stage, keywords: tuple[str, ...
 
 
 def _check_batcher(shader: shaderlab.Shader) -> list[Message]:
-    """The SRP batcher wants the same UnityPerMaterial in every pass, with every property but the textures."""
+    """The SRP batcher requires the same UnityPerMaterial in every pass, with every property except textures."""
     buffers = {}
     for program in shader.programs:
         match = re.search(r"CBUFFER_START\s*\(UnityPerMaterial\)(.*?)CBUFFER_END", program.code, re.DOTALL)
@@ -293,7 +293,7 @@ def _preprocessor() -> Callable[[str, list[str], list[Path]], str]:
 
 
 def _preprocessing_error(log: str) -> Message:
-    """The first error of the C preprocessor, which says `file:line:column: fatal error: …`."""
+    """The first error of the C preprocessor, in the form `file:line:column: fatal error: …`."""
     match = re.search(r"^(.*?):(\d+):(\d+): (?:fatal )?error: (.*)", log, re.MULTILINE)
     if match is None:
         return Message("error", 0, 0, log)

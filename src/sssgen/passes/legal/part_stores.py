@@ -36,7 +36,7 @@ def is_dynamic_store(part: ir.Expr) -> bool:
 
 
 def base_name(place: ir.Expr) -> str:
-    """The name of the variable or member that a place is in, for names made after it."""
+    """The name of the variable or member that contains a place; names of temporaries are formed from it."""
     while isinstance(place, ir.Swizzle | ir.Index):
         place = place.value
     if isinstance(place, ir.Member):

@@ -39,7 +39,7 @@ def variables_to_parameters(module: Module, entry: str = "") -> Handed:
         module = set_at_start(module, entry, all_of_them=True)
     shared = effects(module)
     calls = Calls({function.key: function for function in module.functions}, shared)
-    # from here on a call that writes is a statement of its own, so that no variable is passed twice
+    # from here on a call that writes is a separate statement, so that no variable is passed twice
     module = module._replace(functions=tuple([lift(variable, calls) for variable in module.functions]))
     parameters = {
         variable.name: Param(variable.name, variable.type, "in", "", variable.span) for variable in module.variables
@@ -57,7 +57,7 @@ def variables_to_parameters(module: Module, entry: str = "") -> Handed:
 
 
 def _entered(function: Function, own: int, module: Module) -> Function:
-    """The entry, with parameters for the inputs and outputs of its stage, and variables of its own for the rest."""
+    """The entry, with parameters for the inputs and outputs of its stage, and local variables for the others."""
     storage = {variable.name: variable.storage for variable in module.variables}
     params: list[Param] = list(function.params[:own])
     begins: list[Stmt] = []

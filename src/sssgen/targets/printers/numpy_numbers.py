@@ -76,7 +76,7 @@ class Numbers:
                 names.add(arg.name)
 
     def plain(self, expr: ir.Expr) -> bool:
-        """Whether an expression of the function may be a plain number, as it is printed."""
+        """Whether the printed form of an expression may be a plain number."""
         if not isinstance(expr.type, Scalar):
             return False
         kind = expr.type.kind
@@ -109,7 +109,7 @@ class Numbers:
         return bound is None or bound > 0x7FFFFFFF
 
     def bound(self, expr: ir.Expr) -> int | None:
-        """The size that an integer made of literals and loop counters cannot exceed, or None."""
+        """An upper bound of the magnitude of an integer computed from literals and loop counters, or None."""
         if isinstance(expr, ir.Literal):
             return abs(int(expr.value))
         if isinstance(expr, ir.Local):

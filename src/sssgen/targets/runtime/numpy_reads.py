@@ -97,12 +97,12 @@ def _first(offset: Value) -> Value:
     return np.asarray(offset).reshape(len(offset), -1)[:, :1]
 
 
-# Layers and references as arguments of their own
+# Layers and references as separate arguments
 
 
 def textureLayer(texture: Texture, coord: Value, layer: Value, bias: Value = 0.0) -> Value:
-    whole = _with(coord, layer)
-    return texture.sample(whole, _by_derivatives(texture, whole, bias))
+    coordinates = _with(coord, layer)
+    return texture.sample(coordinates, _by_derivatives(texture, coordinates, bias))
 
 
 def textureLayerLod(texture: Texture, coord: Value, layer: Value, level: Value) -> Value:
@@ -120,8 +120,8 @@ def texelFetchLayer(texture: Texture, place: Value, layer: Value, level: Value) 
 def textureCompare(texture: Texture, coord: Value, *rest: Value) -> Value:
     """At level 0, the only one of depth textures here. `rest`: a layer where there are layers, then the reference."""
     *layer, reference = rest
-    whole = _with(coord, *layer)
-    return texture.sample(whole, 0.0, reference=np.asarray(reference, whole.dtype))[0]
+    coordinates = _with(coord, *layer)
+    return texture.sample(coordinates, 0.0, reference=np.asarray(reference, coordinates.dtype))[0]
 
 
 textureCompareLod = textureCompare
@@ -129,8 +129,8 @@ textureCompareLod = textureCompare
 
 def _with(coord: Value, *more: Value) -> Value:
     """A coordinate with more components."""
-    lanes = np.broadcast_shapes(coord.shape[-1:], *(np.shape(one)[-1:] for one in more))
-    parts = [np.broadcast_to(np.asarray(one).astype(coord.dtype), lanes) for one in (*coord, *more)]
+    lanes = np.broadcast_shapes(coord.shape[-1:], *(np.shape(component)[-1:] for component in more))
+    parts = [np.broadcast_to(np.asarray(component).astype(coord.dtype), lanes) for component in (*coord, *more)]
     return np.stack(parts)
 
 

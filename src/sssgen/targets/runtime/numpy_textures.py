@@ -129,9 +129,9 @@ class Texture:
         (0, 1), (1, 1), (1, 0), (0, 0)."""
         with np.errstate(all="ignore"):
             low = [np.floor(c * n - 0.5) for c, n in zip(coord, self.size(), strict=True)]
-        moved = np.zeros((2, 1), np.int64) if offset is None else offset
+        shift = np.zeros((2, 1), np.int64) if offset is None else offset
         corners = [
-            self._wrapped(0, [_whole(p) + bit + o for p, bit, o in zip(low, corner, moved, strict=True)], None, None)
+            self._wrapped(0, [_integers(p) + bit + o for p, bit, o in zip(low, corner, shift, strict=True)], None, None)
             for corner in ((0, 1), (1, 1), (1, 0), (0, 0))
         ]
         return np.stack([texels[channel] for texels in corners]).astype(coord.dtype)
@@ -147,7 +147,7 @@ class Texture:
         """The coordinate without its last component where that is the layer, and the layer."""
         if not self.layers:
             return coord, None
-        return coord[:-1], np.clip(_whole(np.rint(coord[-1])), 0, len(self.levels[0]) - 1)
+        return coord[:-1], np.clip(_integers(np.rint(coord[-1])), 0, len(self.levels[0]) - 1)
 
     def _texels(self, level: int, places: list[Array]) -> Array:
         """The texels at x, y, (z or face), (layer)."""
@@ -160,14 +160,14 @@ class Texture:
             face, coord = _project(coord)
         base = [c * n - (0.5 if self.filter == "linear" else 0.0) for c, n in zip(coord, size, strict=True)]
         low = [np.floor(b) for b in base]
-        moved = np.zeros((len(base), 1), np.int64) if read.offset is None else read.offset
+        shift = np.zeros((len(base), 1), np.int64) if read.offset is None else read.offset
 
         def texels(corner: tuple[int, ...]) -> Array:
-            places = [_whole(p) + bit + o for p, bit, o in zip(low, corner, moved, strict=True)]
-            found = self._wrapped(level, places, face, read.layer)
+            places = [_integers(p) + bit + o for p, bit, o in zip(low, corner, shift, strict=True)]
+            values = self._wrapped(level, places, face, read.layer)
             if read.reference is not None:
-                found = np.where(read.reference <= found[:1].astype(coord.dtype), 1.0, 0.0)
-            return found.astype(coord.dtype)
+                values = np.where(read.reference <= values[:1].astype(coord.dtype), 1.0, 0.0)
+            return values.astype(coord.dtype)
 
         if self.filter == "nearest":
             return texels((0,) * len(base))
@@ -209,7 +209,7 @@ class Texture:
         return data
 
 
-def _whole(number: Array) -> Array:
+def _integers(number: Array) -> Array:
     """Whole floats as integers; NaN gives 0."""
     return np.nan_to_num(number).astype(np.int64)
 
@@ -225,7 +225,7 @@ def _project(direction: Array) -> tuple[Array, Array]:
 def _over_edges(places: list[Array], size: int, face: Array) -> list[Array]:
     """Texels that may be one beyond an edge of their face, as x, y and face of the neighbouring texels.
 
-    The direction of the centre of a texel beyond the edge hits the neighbouring face within the texel that is meant.
+    The direction of the centre of a texel beyond the edge hits the neighbouring face inside the intended texel.
     """
     s, t = ((2.0 * p + 1.0) / size - 1.0 for p in places)
     axes = np.moveaxis(_FACES[face], 0, -1)

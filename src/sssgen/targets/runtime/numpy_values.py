@@ -151,8 +151,8 @@ def splat(size: int, value: Value) -> Value:
 
 def mat(size: int, *parts: Value) -> Value:
     """A matrix from its columns, or from its scalars column by column."""
-    whole = _stack(parts)
-    return whole.reshape(size, size, whole.shape[-1])
+    numbers = _stack(parts)
+    return numbers.reshape(size, size, numbers.shape[-1])
 
 
 def diagonal(size: int, value: Value) -> Value:
