@@ -247,7 +247,7 @@ def test_normals_of_a_line_of_texels() -> None:
 
 def test_invalid_heights_are_refused() -> None:
     flat = np.zeros((2, 2))
-    assert "no convention of green" in failing(from_height, flat, 1.0, green="up")
+    assert "not a convention of the green channel" in failing(from_height, flat, 1.0, green="up")
     assert "did you mean 'directx'" in failing(from_height, flat, 1.0, green="DirectX")
     assert "shape (2, 2, 3)" in failing(from_height, np.zeros((2, 2, 3)), 1.0)
     assert "strength is nan" in failing(from_height, flat, float("nan"))
@@ -283,7 +283,7 @@ def test_invalid_channel_sources_are_refused() -> None:
     for text in ("", "1-", ":r", "1-:r"):
         assert "names no picture" in failing(parse, text)
     for text in ("ice.png:x", "ice.png:4", "ice.png:rg", "ice.png:"):
-        assert "is no channel" in failing(parse, text)
+        assert "is not a channel" in failing(parse, text)
 
 
 def test_channels_are_packed_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -194,7 +194,7 @@ def test_unsupported_volumes_are_not_written() -> None:
     with pytest.raises(SssgenError, match="texels of type int32"):
         encoded(np.zeros((2, 2, 2), np.int32), "dds")
     for shape in [(2, 2), (2, 2, 2, 1), (0, 2, 2)]:
-        with pytest.raises(SssgenError, match="is no volume"):
+        with pytest.raises(SssgenError, match="is not a volume"):
             layout(np.zeros(shape, np.uint8), "dds")
 
 

@@ -1,1 +1,1 @@
-"""Bakes what techniques sample: distance textures, thickness maps, depth maps, cells and normals."""
+"""Bakes textures for techniques: distance textures, thickness maps, depth maps, cells and normals."""

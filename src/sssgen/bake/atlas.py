@@ -53,7 +53,7 @@ def atlas(mesh: Triangles, uv: Array, size: tuple[int, int], path: str) -> Atlas
     solid = np.flatnonzero(areas != 0.0)
     if not len(solid):
         raise failure("the texture coordinates have no area", "--unwrap makes new ones", posix(path))
-    # a ray onto the flat map finds the triangle that covers a texel's centre, or its centre on the next tile
+    # a ray onto the flat map finds the triangle that covers the centre of a texel, on this or on the next tile
     raised = np.concatenate([layout[solid], np.zeros((len(solid), 3, 1))], axis=2)
     rays = MeshRays(raised.reshape(-1, 3), np.arange(3 * len(solid)).reshape(-1, 3))
     faces = np.full(width * height, -1)
@@ -69,17 +69,16 @@ def atlas(mesh: Triangles, uv: Array, size: tuple[int, int], path: str) -> Atlas
                 faces[number] = rays.first(shown[number] - down, down)
     texels = np.flatnonzero(faces >= 0)
     if not len(texels):
-        raise failure("no texel's centre is covered by the mesh", "take a larger --size", posix(path))
+        raise failure("no texel's centre is covered by the mesh", "use a larger --size", posix(path))
     face = solid[faces[texels]]
     places = np.einsum("nv,nvc->nc", barycentric(shown[texels], raised[faces[texels]]), mesh.places[mesh.corners[face]])
-    claimed = float(np.abs(areas).sum())
-    return Atlas(texels, places, mesh.flat[face], max(0.0, 1.0 - len(texels) / claimed))
+    covered = float(np.abs(areas).sum())
+    return Atlas(texels, places, mesh.flat[face], max(0.0, 1.0 - len(texels) / covered))
 
 
 def filled(values: Array, texels: Indices, size: tuple[int, int]) -> Array:
-    """The map (height, width) of values at texels (n,); every other texel has the value of the nearest of them.
-
-    So filters and mipmaps do not mix the surface with the background.
+    """The map (height, width) of values at texels (n,); every other texel has the value of the nearest of them,
+    so that filters and mipmaps do not mix the surface with the background.
     """
     width, height = size
     nearest = need("scipy.ndimage", "scipy", "bake")

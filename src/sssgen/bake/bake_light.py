@@ -23,13 +23,14 @@ class BakeLight(NamedTuple):
     place: Array
     """(3,): the unit direction towards it, or its position"""
     afar: bool
+    """Whether it is directional"""
 
     def towards(self, points: Array) -> Array:
         """Unit directions from points (n, 3) to the light."""
         if self.afar:
             return np.broadcast_to(self.place, points.shape).copy()
-        ways = self.place - points
-        unit: Array = ways / np.maximum(np.linalg.norm(ways, axis=1, keepdims=True), 1e-300)
+        directions = self.place - points
+        unit: Array = directions / np.maximum(np.linalg.norm(directions, axis=1, keepdims=True), 1e-300)
         return unit
 
     def view(self, corners: Array, size: tuple[int, int]) -> LightView:
@@ -37,7 +38,7 @@ class BakeLight(NamedTuple):
         return directional_view(corners, self.place, size) if self.afar else point_view(corners, self.place, size)
 
     def facts(self) -> dict[str, Any]:
-        """As in its JSON file."""
+        """Its entry in a JSON file."""
         return {"direction" if self.afar else "position": [float(value) for value in self.place]}
 
 
@@ -47,7 +48,7 @@ def read(text: str) -> BakeLight:
         try:
             return _light([float(part) for part in text.split(",")], True, "")
         except ValueError:
-            raise failure(f"'{text}' is no light", "three numbers, as 0,1,0, or a .json file") from None
+            raise failure(f"'{text}' is not a light", "three numbers, such as 0,1,0, or a .json file") from None
     shown = posix(text)
     if not os.path.isfile(text):
         raise failure("cannot find the light's file", f"write {_FORMS}", shown)
@@ -61,21 +62,21 @@ def read(text: str) -> BakeLight:
             next((key for key in data if key not in ("direction", "position")), "") if isinstance(data, dict) else ""
         )
         hint = did_you_mean(unknown, ("direction", "position")) or f"write {_FORMS}"
-        raise failure("the light has a direction or a position, just one of them", hint, shown)
+        raise failure("the light needs either a direction or a position", hint, shown)
     ((key, value),) = data.items()
     return _light(value, key == "direction", shown)
 
 
 def _light(value: Any, afar: bool, shown: str) -> BakeLight:
     numbers = value if isinstance(value, list) else []
-    fit = len(numbers) == 3 and all(
+    valid = len(numbers) == 3 and all(
         isinstance(number, int | float) and not isinstance(number, bool) and math.isfinite(number) and abs(number) < 1e9
         for number in numbers
     )
-    if not fit:
+    if not valid:
         raise failure(f"a light's {'direction' if afar else 'position'} is three numbers", f"write {_FORMS}", shown)
     place = np.array(numbers, float)
     length = float(np.linalg.norm(place))
     if afar and length < 1e-6:
-        raise failure("this direction has no length", "it points towards the light", shown)
+        raise failure("the direction has no length", "give a vector towards the light", shown)
     return BakeLight(place / length if afar else place, afar)

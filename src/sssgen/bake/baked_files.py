@@ -22,24 +22,24 @@ from sssgen.version import VERSION
 PICTURES = images.SUFFIXES
 
 
-def volume_format(path: str, named: str | None) -> str:
-    """The format of a volume's file: `named`, or that of the path's suffix. Commands check it before the work.
+def volume_format(path: str, format: str | None) -> str:
+    """The format of a volume's file: `format`, or the format of the path's suffix. Commands check it before the work.
 
     Raises SssgenError for an unknown format, and for a path that cannot be written.
     """
     _check_place(path)
     suffix = os.path.splitext(path)[1].lower()
-    if named is None:
-        formats = [name for name, known in FORMATS.items() if known == suffix]
+    if format is None:
+        formats = [name for name, ending in FORMATS.items() if ending == suffix]
         if not formats:
             hint = did_you_mean(suffix, FORMATS.values()) or f"end it in {', '.join(FORMATS.values())}"
-            raise failure(f"'{suffix}' is no volume file's ending", f"{hint}, or name a --format", posix(path))
+            raise failure(f"'{suffix}' is not the suffix of a volume file", f"{hint}, or name a --format", posix(path))
         return formats[0]
-    if named not in FORMATS:
-        raise failure(f"unknown format '{named}'", did_you_mean(named, FORMATS) or f"one of: {', '.join(FORMATS)}")
-    if suffix != FORMATS[named]:
-        raise failure(f"a file of the format {named} ends in {FORMATS[named]}", "", posix(path))
-    return named
+    if format not in FORMATS:
+        raise failure(f"unknown format '{format}'", did_you_mean(format, FORMATS) or f"one of: {', '.join(FORMATS)}")
+    if suffix != FORMATS[format]:
+        raise failure(f"a file of the format {format} ends in {FORMATS[format]}", "", posix(path))
+    return format
 
 
 def write_volume(path: str, texels: npt.NDArray[Any], format: str, facts: Mapping[str, Any]) -> list[str]:
@@ -49,15 +49,15 @@ def write_volume(path: str, texels: npt.NDArray[Any], format: str, facts: Mappin
     )
 
 
-def picture_suffix(path: str, known: tuple[str, ...] = PICTURES) -> str:
+def picture_suffix(path: str, allowed: tuple[str, ...] = PICTURES) -> str:
     """The suffix of a picture's path. Commands check it before the work.
 
-    Raises SssgenError for a suffix that is not in `known`, and for a path that cannot be written.
+    Raises SssgenError for a suffix that is not in `allowed`, and for a path that cannot be written.
     """
     _check_place(path)
     suffix = images.check_suffix(path)
-    if suffix not in known:
-        raise failure(f"this is not written as '{suffix}'", f"end it in {' or '.join(known)}", posix(path))
+    if suffix not in allowed:
+        raise failure(f"the output cannot have the format '{suffix}'", f"end it in {' or '.join(allowed)}", posix(path))
     return suffix
 
 
@@ -96,7 +96,7 @@ def check_apart(path: str, sources: Iterable[str]) -> None:
     for written in (path, baked.sidecar(path), mesh_beside(path)):
         for source in sources:
             if os.path.exists(written) and os.path.exists(source) and os.path.samefile(written, source):
-                raise failure("this would overwrite what it is made from", "name another file with -o", posix(written))
+                raise failure("this would overwrite a source file", "name another file with -o", posix(written))
 
 
 def mesh_beside(path: str) -> str:
@@ -113,7 +113,7 @@ def _check_place(path: str) -> None:
     while folder and not os.path.exists(folder):
         folder = os.path.dirname(folder)
     if folder and not os.path.isdir(folder):
-        raise failure("cannot write the file: this is no folder", "choose another one, with -o", posix(folder))
+        raise failure("cannot write the file: this is not a folder", "choose another one, with -o", posix(folder))
 
 
 def _write(path: str, data: bytes, facts: Mapping[str, Any], beside: Mapping[str, str] | None = None) -> list[str]:

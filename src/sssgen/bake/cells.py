@@ -35,27 +35,28 @@ def voronoi(
 ) -> Array:
     """Voronoi cells as heights 0..1, (height, width), row 0 at the top (v = 1).
 
-    size: width and height in texels, 1..16384; sampled at the texels' centres. cells: how many lie across and up, one
-    site in each; no more than texels. Distances are in cells, so cells as wide as high want the picture's proportions.
-    jitter: 0..1, how much of its cell a site may stand in; near 1 two sites may stand close together, and both their
-    cells are low then, as F2 - F1 is small all over them. seed: 0..2³² - 1. tileable: the picture continues in itself.
+    size: width and height in texels, 1..16384; sampled at the texels' centres. cells: their numbers across and up, with
+    one site in each; at most the numbers of texels. Distances are in cells, so square cells need as many cells per
+    texel across as up. jitter: 0..1, the share of its cell's sides in which a site may lie; near 1 two sites may be so
+    close that their cells are low, because F2 - F1 is small everywhere in them. seed: 0..2³² - 1. tileable: opposite
+    edges match.
 
-    feature: "f1", the distance to the nearest site. "f2-f1", how much further the second one is, 0 on edges. Both are
-    divided by `scale`, so that nothing is cut. "faceted": level · smoothstep(0, bevel, F2 - F1) with
-    level = 1 - variation · hash(cell), as the technique voronoi_thickness: with jitter 0.6, seed 0, and not
-    tileable, its very cells. bevel: above 0, in cells; variation: 0..1.
+    feature: "f1", the distance to the nearest site; "f2-f1", the difference of the distances to the second and the
+    nearest site, 0 on edges. Both are divided by `scale`, so that no value exceeds 1. "faceted": level ·
+    smoothstep(0, bevel, F2 - F1) with level = 1 - variation · hash(cell), as the technique voronoi_thickness: the same
+    cells with jitter 0.6, seed 0, and not tileable. bevel: above 0, in cells; variation: 0..1.
 
-    The same on every platform: sites come from an integer hash, not from a generator that NumPy may change. Raises
-    SssgenError for arguments out of these ranges.
+    The result is the same on every platform: sites come from an integer hash, not from a generator that NumPy may
+    change. Raises SssgenError for arguments out of these ranges.
     """
     _check(size, cells, seed, feature)
-    for name, value, allowed, of in (
+    for name, value, allowed, limits in (
         ("jitter", jitter, 0.0 <= jitter <= 1.0, "from 0 to 1"),
         ("bevel", bevel, 0.0 < bevel < math.inf, "above 0"),
         ("variation", variation, 0.0 <= variation <= 1.0, "from 0 to 1"),
     ):
         if not allowed:
-            raise failure(f"the cells' {name} is {value}", f"a number {of}")
+            raise failure(f"the cells' {name} is {value}", f"a number {limits}")
     width, height = size
     across, up = cells
     picture = np.empty((height, width))
@@ -74,10 +75,10 @@ def voronoi(
 
 
 def scale(feature: str, jitter: float) -> float:
-    """The distance, in cells, that the value 1 of a picture means; 1 for "faceted".
+    """The distance, in cells, that a picture stores as 1; 1 for "faceted".
 
-    It is the largest possible value. F1 is largest in the corner where four cells meet with their sites at the far
-    corners. F2 is largest in a cell's middle: there the sites of the four adjacent cells are furthest, and F1 may be 0.
+    It is the largest possible value. F1 is largest at a corner of four cells whose sites lie in the opposite corners.
+    F2 - F1 is largest in a cell's middle: there the sites of the four adjacent cells are furthest, and F1 may be 0.
     """
     _check_feature(feature)
     largest = {
@@ -94,18 +95,18 @@ class Nearest(NamedTuple):
     first: Array
     """F1, the distance to the nearest site, in cells"""
     second: Array
-    """F2, that to the second one"""
+    """F2, the distance to the second nearest site"""
     owner: Bits
     """The hash of the nearest site's cell"""
 
 
 def _nearest(x: Array, y: Array, period: tuple[int, int] | None, jitter: float, seed: int) -> Nearest:
-    """The nearest sites of all places with one of the coordinates x (columns) and one of y (rows), in cells.
+    """The nearest sites of the points of a grid with the coordinates x (columns) and y (rows), in cells.
 
-    The 5 x 5 cells around a place but for their corners hold both. Say that the place lies in the upper right quarter
-    of its cell [0, 1]², no higher than it lies right: 1/2 <= y <= x <= 1. Its own cell and the one to the right hold a
-    site each, which is within √((2 - x)² + y²) <= √2.5. Sites more than two cells away are 2 away at least, and those
-    in the corners √((2 - x)² + (2 - y)²) or more, which is no less, as y <= 1.
+    The 5 x 5 cells around a point, without the corner cells, contain both sites. By symmetry assume that the point lies
+    in its cell [0, 1]² at 1/2 <= y <= x <= 1. Its cell and the cell to the right have a site each, within
+    √((2 - x)² + y²) <= √2.5. Sites more than two cells away have a distance of at least 2, and sites in the corner
+    cells of at least √((2 - x)² + (2 - y)²), which is not less than √((2 - x)² + y²), because y <= 1.
     """
     home_x, home_y = np.floor(x).astype(np.int64), np.floor(y).astype(np.int64)
     left, low = home_x.min() - 2, home_y.min() - 2
@@ -134,14 +135,14 @@ def _keys(
     if period is not None:
         columns, rows = columns % period[0], rows % period[1]
     of_seed = _hash(np.array([seed], np.uint32))
-    of_row = _hash(rows.astype(np.uint32) + of_seed + np.uint32(1))  # negative ones wrap round
+    of_row = _hash(rows.astype(np.uint32) + of_seed + np.uint32(1))  # negative numbers wrap around
     return _hash(columns.astype(np.uint32) + of_row[:, None])
 
 
 def _sites(
     keys: Bits, columns: npt.NDArray[np.int64], rows: npt.NDArray[np.int64], jitter: float
 ) -> tuple[Array, Array]:
-    """Where the sites of cells stand, x and y, each (rows, columns)."""
+    """The positions of the cells' sites, x and y, each (rows, columns)."""
     x = columns + 0.5 + jitter * (_unit(keys + np.uint32(1)) - 0.5)
     y = rows[:, None] + 0.5 + jitter * (_unit(keys + np.uint32(2)) - 0.5)
     return x, y
@@ -167,7 +168,7 @@ def _check(size: tuple[int, int], cells: tuple[int, int], seed: int, feature: st
             f"a picture of {size[0]} x {size[1]} texels cannot be baked", f"1 to {LARGEST_SIDE} along each side"
         )
     if not all(1 <= count <= side for count, side in zip(cells, size, strict=True)):
-        hint = "1 cell or more along each side, and no more than texels"
+        hint = "at least 1 cell along each side, and at most as many as texels"
         raise failure(f"{cells[0]} x {cells[1]} cells cannot be baked in {size[0]} x {size[1]} texels", hint)
     if not 0 <= seed < 2**32:
         raise failure(f"the cells' seed is {seed}", "0 to 4294967295")
@@ -175,4 +176,4 @@ def _check(size: tuple[int, int], cells: tuple[int, int], seed: int, feature: st
 
 def _check_feature(feature: str) -> None:
     if feature not in FEATURES:
-        raise failure(f"'{feature}' is no feature of cells", did_you_mean(feature, FEATURES) or ", ".join(FEATURES))
+        raise failure(f"'{feature}' is not a feature of cells", did_you_mean(feature, FEATURES) or ", ".join(FEATURES))

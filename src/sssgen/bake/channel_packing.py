@@ -49,7 +49,7 @@ def parse(text: str) -> Source:
     if not colon or set("./\\") & set(channel):  # a drive's colon, as in C:\ice.png
         file, channel = text.removeprefix("1-"), ""
     elif channel.lower() not in tuple("rgba0123"):
-        raise failure(f"'{channel}' is no channel", "r, g, b or a, or 0 to 3", posix(file))
+        raise failure(f"'{channel}' is not a channel", "r, g, b or a, or 0 to 3", posix(file))
     if not file:
         raise failure(f"'{text}' names no picture", "FILE, FILE:CHANNEL, 1-FILE, or a number from 0 to 1")
     return Source(file, channel.lower(), inverted)
@@ -80,16 +80,16 @@ def _channel(source: Source, pictures: Mapping[str, Array]) -> Array | float:
 def pack(channels: Sequence[Array | float | None]) -> Array:
     """Up to four channels in one texture, (height, width, 1, 3 or 4): arrays (height, width), or constants.
 
-    None is 0 if another channel follows. Two channels become three, the third 0, as picture files store two as gray and
-    alpha. Raises SssgenError for different sizes, no array at all, or more than four channels.
+    None is 0 if another channel follows. Two channels become three, the third 0, because picture files store two as
+    gray and alpha. Raises SssgenError for different sizes, no array at all, or more than four channels.
     """
     if len(channels) > 4:
         raise failure(f"{len(channels)} channels do not fit in a texture", "four at most")
     sized = {name: values for name, values in zip("rgba", channels, strict=False) if isinstance(values, np.ndarray)}
     if not sized:
         raise failure("no picture to pack", "at least one channel needs a picture, which determines the size")
-    (first, array), *others = sized.items()
-    for name, other in others:
+    (first, array), *remaining = sized.items()
+    for name, other in remaining:
         if other.shape != array.shape:
             hint = f"{first} is {_size(array)}, {name} is {_size(other)}"
             raise failure("pictures of different sizes do not fit in a texture", hint)

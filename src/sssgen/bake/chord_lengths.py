@@ -29,46 +29,46 @@ def _mesh(path: str, digest: str) -> Mesh:
     return Mesh(path=path)
 
 
-def along(path: str, digest: str, places: Array, ways: Array, attenuation: float) -> Chords:
-    """The length inside the mesh from points along unit `ways`, (n, 3) each; or exp(−length / attenuation)."""
-    length = thickness(_mesh(path, digest), places, ways)
+def along(path: str, digest: str, points: Array, directions: Array, attenuation: float) -> Chords:
+    """The length inside the mesh from points along unit `directions`, (n, 3) each; or exp(−length / attenuation)."""
+    length = thickness(_mesh(path, digest), points, directions)
     value = np.exp(-length / attenuation) if attenuation else length
     return Chords(value, np.zeros(len(length)), np.zeros(len(length)))
 
 
 def inward(
-    path: str, digest: str, places: Array, flat: Array, rays: int, attenuation: float, seed: tuple[int, int]
+    path: str, digest: str, points: Array, normals: Array, rays: int, attenuation: float, seed: tuple[int, int]
 ) -> Chords:
-    """The mean over inward directions, weighted by their cosine to −`flat`.
+    """The mean over inward directions, weighted by their cosine to −`normals`.
 
-    The unit square of directions has rays / 2 cells, and each cell two random rays: their difference gives an
+    The unit square of directions has rays / 2 cells with two random rays each, whose difference gives an
     unbiased standard error of the stratified mean (Cochran, Sampling Techniques, 1977, 5A.11).
     """
     cells = rays // 2
-    count, rng = len(places), np.random.Generator(np.random.Philox(key=[seed[0], seed[1]]))
-    wide = max(side for side in range(1, math.isqrt(cells) + 1) if cells % side == 0)
+    count, rng = len(points), np.random.Generator(np.random.Philox(key=[seed[0], seed[1]]))
+    columns = max(side for side in range(1, math.isqrt(cells) + 1) if cells % side == 0)
     cell = np.arange(cells)
     u, v = rng.random((2, 2, count, cells))
-    u, v = (cell % wide + u) / wide, (cell // wide + v) / (cells // wide)
+    u, v = (cell % columns + u) / columns, (cell // columns + v) / (cells // columns)
     radius, angle = np.sqrt(u), 2.0 * np.pi * v
-    side, up = _frame(flat)
+    side, up = _frame(normals)
     parts = radius * np.cos(angle), radius * np.sin(angle), -np.sqrt(np.maximum(1.0 - u, 0.0))
-    ways = sum(part[..., None] * axis[:, None] for part, axis in zip(parts, (side, up, flat), strict=True))
-    starts = np.broadcast_to(places[:, None], ways.shape)
-    length = thickness(_mesh(path, digest), starts.reshape(-1, 3), np.ascontiguousarray(ways.reshape(-1, 3)))
+    directions = sum(part[..., None] * axis[:, None] for part, axis in zip(parts, (side, up, normals), strict=True))
+    starts = np.broadcast_to(points[:, None], directions.shape)
+    length = thickness(_mesh(path, digest), starts.reshape(-1, 3), np.ascontiguousarray(directions.reshape(-1, 3)))
     length = length.reshape(2, count, cells)
-    left = length > 0.0
+    valid = length > 0.0
     value = np.exp(-length / attenuation) if attenuation else length
-    number = left.sum(axis=(0, 2))
-    mean = np.where(left, value, 0.0).sum(axis=(0, 2)) / np.maximum(number, 1)
-    pairs = left.all(axis=0)
+    number = valid.sum(axis=(0, 2))
+    mean = np.where(valid, value, 0.0).sum(axis=(0, 2)) / np.maximum(number, 1)
+    pairs = valid.all(axis=0)
     spread = np.where(pairs, (value[0] - value[1]) ** 2, 0.0).sum(axis=1)
     error = np.sqrt(spread) / (2.0 * np.maximum(pairs.sum(axis=1), 1))
     return Chords(mean, error, 1.0 - number / (2 * cells))
 
 
 def _frame(normals: Array) -> tuple[Array, Array]:
-    """Unit axes across unit normals (n, 3) (Duff et al., Building an Orthonormal Basis, Revisited, 2017)."""
+    """Unit vectors perpendicular to normals (n, 3) (Duff et al., Building an Orthonormal Basis, Revisited, 2017)."""
     x, y, z = normals.T
     sign = np.where(z < 0.0, -1.0, 1.0)
     a = -1.0 / (sign + z)

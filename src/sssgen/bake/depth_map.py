@@ -24,17 +24,17 @@ def depth_map(
     that cannot be read, and for a light inside it.
     """
     width, height = size
-    memory.check(width * height * 100.0, "take a smaller --size")
+    memory.check(width * height * 100.0, "use a smaller --size")
     mesh = Mesh(path=path)
     low, high = mesh.bounds()
     view = light.view(mesh.triangles.places, size)
     away = np.maximum(np.linalg.norm(view.origins - 0.5 * (low + high), axis=1) - np.linalg.norm(high - low), 0.0)
-    starts = view.origins + away[:, None] * view.directions  # Embree has 32-bit floats: start near the mesh
+    starts = view.origins + away[:, None] * view.directions  # near the mesh, because Embree has 32-bit floats
     depth = np.empty(len(starts))
     for start in range(0, len(starts), BLOCK):
         part = slice(start, start + BLOCK)
-        met, t = mesh.rays.nearest(starts[part], view.directions[part])
-        depth[part] = np.where(met >= 0, (away[part] + t) * view.slopes[part], view.far)
+        faces, t = mesh.rays.nearest(starts[part], view.directions[part])
+        depth[part] = np.where(faces >= 0, (away[part] + t) * view.slopes[part], view.far)
         progress(min(start + BLOCK, len(starts)), len(starts), "depths")
     reached = depth[depth < view.far]
     facts = {

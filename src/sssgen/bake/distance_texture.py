@@ -21,10 +21,10 @@ from sssgen.targets.texture_import import import_settings
 
 SHEET = 1e-5
 """A mesh whose thickness is below this share of its size is a sheet, without an inside."""
-A_POINT = 200
+POINT_BYTES = 200
 """Bytes of memory for each point of a query."""
-A_TRIANGLE = 800
-"""Bytes of memory for each triangle, in the trees."""
+TRIANGLE_BYTES = 800
+"""Bytes of memory for each triangle in the trees."""
 
 
 class Volume(NamedTuple):
@@ -61,7 +61,7 @@ def sdf(
     low, high = mesh.bounds()
     for name, value in (("range", reach), ("thin", thin)):
         if value is not None and not 1e-9 < value < 1e9:
-            raise failure(f"--{name} {value:g} is no length", "units of the mesh, more than 0")
+            raise failure(f"--{name} {value:g} is not a length", "units of the mesh, more than 0")
     places = mesh.triangles.places
     if thin is None and _is_flat(places):
         hint = "give it a thickness with --thin, in units of the mesh"
@@ -70,12 +70,12 @@ def sdf(
     grid = around(low - extra, high + extra, resolution, padding)
     across, up, deep = grid.counts
     size = np.dtype(form.dtype).itemsize
-    wanted = (
+    needed = (
         across * up * deep * (4 + 2 + 2 * size)
-        + max(4 * BLOCK, across * up) * A_POINT
-        + len(mesh.triangles.corners) * A_TRIANGLE
+        + max(4 * BLOCK, across * up) * POINT_BYTES
+        + len(mesh.triangles.corners) * TRIANGLE_BYTES
     )
-    memory.check(wanted, "take a lower --resolution")
+    memory.check(needed, "use a lower --resolution")
     solid = mesh.solid
     unsigned = distances(solid, grid, progress)
     if thin is None:
@@ -121,9 +121,9 @@ def _is_flat(places: Array) -> bool:
 def _without_inside(path: str, is_open: bool, thin: float | None, grid: Grid) -> None:
     voxel = float(grid.voxel.max())
     if is_open and thin is None:
-        hint = "give a sheet its thickness with --thin; close a body's holes, or raise --resolution for thin walls"
+        hint = "give a sheet a thickness with --thin; close the holes of a body, or raise --resolution for thin walls"
         raise failure(f"no voxel of {voxel:.3g} units lies inside the mesh, which is open", hint, posix(path))
-    hint = f"raise --resolution (a voxel is {voxel:.3g} units), or take its walls as a sheet with --thin"
+    hint = f"raise --resolution (a voxel is {voxel:.3g} units), or treat its walls as a sheet with --thin"
     raise failure("no voxel lies inside the mesh: its walls are thinner than a voxel", hint, posix(path))
 
 

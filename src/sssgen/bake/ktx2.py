@@ -19,7 +19,7 @@ from sssgen.version import VERSION
 ORIENTATION = "ruo"
 """x to the right, y up, z out of the screen: the axes ascend, and object space is right-handed, with y up.
 
-`rui` would say the same of a left-handed space; the specification recommends writers to keep to `rdi` and `ruo`.
+`rui` would be the same for a left-handed space; the specification recommends that writers use `rdi` or `ruo`.
 """
 
 _MODEL_RGBSDA, _PRIMARIES_UNSPECIFIED, _TRANSFER_LINEAR = 1, 0, 1
@@ -44,7 +44,7 @@ def ktx2_bytes(texels: npt.NDArray[Any], encoding: Encoding) -> bytes:
 
 
 def _descriptor(encoding: Encoding) -> bytes:
-    """The data format descriptor of one channel, red; a distance is no light, so it has no primaries."""
+    """The data format descriptor of one channel, red; a distance is not a colour, so it has no primaries."""
     bits = 8 * encoding.dtype.itemsize
     if np.issubdtype(encoding.dtype, np.floating):
         channel, bounds = _SAMPLE_FLOAT | _SAMPLE_SIGNED, struct.pack("<2f", -1.0, 1.0)

@@ -6,14 +6,14 @@ from sssgen.support.diagnostics import failure
 from sssgen.support.extras import need
 
 SPARE = 0.9
-"""The share of the free memory that a bake may take."""
+"""The share of the free memory that a bake may use."""
 
 
-def check(wanted: float, advice: str) -> None:
-    """Raises SssgenError if `wanted` bytes exceed the free memory."""
+def check(needed: float, advice: str) -> None:
+    """Raises SssgenError if `needed` bytes exceed the free memory."""
     free = need("psutil", extra="bake").virtual_memory().available
-    if wanted > SPARE * free:
-        raise failure(f"this needs {_text(wanted)} of memory, and {_text(free)} are free", advice)
+    if needed > SPARE * free:
+        raise failure(f"this needs {_text(needed)} of memory, and {_text(free)} are free", advice)
 
 
 def _text(size: float) -> str:

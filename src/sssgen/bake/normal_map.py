@@ -26,10 +26,12 @@ def from_height(height: Array, strength: float, tileable: bool = True, green: st
     becomes (128, 128, 255), as usual: 128 is half a step from 0.5, a constant tilt of 0.3 degrees. With 16 bits the
     tilt is 0.001 degrees.
 
-    Raises SssgenError for another shape, values that are not finite, and another green.
+    Raises SssgenError for a wrong shape, values that are not finite, and an unknown convention of green.
     """
     if green not in GREENS:
-        raise failure(f"'{green}' is no convention of green", did_you_mean(green, GREENS) or ", ".join(GREENS))
+        raise failure(
+            f"'{green}' is not a convention of the green channel", did_you_mean(green, GREENS) or ", ".join(GREENS)
+        )
     if height.ndim != 2 or 0 in height.shape:
         raise failure(f"an array of shape {height.shape} has no heights", "(height, width)")
     if not math.isfinite(strength):

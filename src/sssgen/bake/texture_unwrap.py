@@ -23,12 +23,12 @@ RESOLUTION = 1024
 def unwrapped(mesh: Triangles, progress: Progress = lambda *_: None) -> Array:
     """New texture coordinates, (f, 3, 2), in 0..1, without overlaps.
 
-    xatlas crashes on some valid meshes, so it runs in its own process. If it fails on the mesh, it gets six parts, by
-    the axis that a triangle faces most. Raises SssgenError if that fails too, and without xatlas.
+    xatlas crashes on some valid meshes, so it runs in its own process. If it fails on the mesh, the mesh is split
+    into six parts, by the axis that a triangle faces most. Raises SssgenError if that fails too, and without xatlas.
     """
     need("xatlas", extra="bake")
     low, high = mesh.places.min(axis=0), mesh.places.max(axis=0)
-    places = ((mesh.places - low) / float((high - low).max())).astype(np.float32)  # it has 32-bit floats
+    places = ((mesh.places - low) / float((high - low).max())).astype(np.float32)  # xatlas uses 32-bit floats
     axis = np.abs(mesh.flat).argmax(axis=1)
     facing = 2 * axis + (mesh.flat[np.arange(len(axis)), axis] < 0.0)
     result: Any = None
@@ -37,7 +37,7 @@ def unwrapped(mesh: Triangles, progress: Progress = lambda *_: None) -> Array:
         (result,) = run([item], processes=1, store=Store(""), progress=progress)
         if not isinstance(result, Failure):
             return np.asarray(result, np.float64)
-    hint = "give the mesh texture coordinates in a program for meshes"
+    hint = "add texture coordinates to the mesh in a modelling program"
     raise failure(f"xatlas finds no texture coordinates for this mesh: {result.message}", hint)
 
 
@@ -46,24 +46,24 @@ def charts(places: npt.NDArray[np.float32], corners: Indices, parts: Indices) ->
     xatlas = need("xatlas", extra="bake")
     atlas = xatlas.Atlas()
     faces = [np.flatnonzero(parts == part) for part in np.unique(parts)]
-    for some in faces:
-        used, own = np.unique(corners[some], return_inverse=True)
-        atlas.add_mesh(places[used], own.reshape(-1, 3).astype(np.uint32))
+    for part_faces in faces:
+        used, indices = np.unique(corners[part_faces], return_inverse=True)
+        atlas.add_mesh(places[used], indices.reshape(-1, 3).astype(np.uint32))
     pack = xatlas.PackOptions()
     pack.padding, pack.bilinear, pack.resolution = PADDING, True, RESOLUTION
     atlas.generate(xatlas.ChartOptions(), pack)
     result = np.zeros((len(corners), 3, 2), np.float32)
-    for number, some in enumerate(faces):
-        _, own, uv = atlas[number]
-        result[some] = uv[own.astype(np.int64)]
+    for number, part_faces in enumerate(faces):
+        _, indices, uv = atlas[number]
+        result[part_faces] = uv[indices.astype(np.int64)]
     return result
 
 
 def obj(mesh: Triangles, uv: Array) -> str:
     """The mesh as a Wavefront file with these texture coordinates."""
-    turns, turn_of = np.unique(uv.reshape(-1, 2), axis=0, return_inverse=True)
+    coordinates, index = np.unique(uv.reshape(-1, 2), axis=0, return_inverse=True)
     lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in mesh.places]
-    lines += [f"vt {u:.9g} {v:.9g}" for u, v in turns]
-    for face, own in zip(mesh.corners + 1, turn_of.reshape(-1, 3) + 1, strict=True):
-        lines.append("f " + " ".join(f"{place}/{turn}" for place, turn in zip(face, own, strict=True)))
+    lines += [f"vt {u:.9g} {v:.9g}" for u, v in coordinates]
+    for face, uv_face in zip(mesh.corners + 1, index.reshape(-1, 3) + 1, strict=True):
+        lines.append("f " + " ".join(f"{vertex}/{texture}" for vertex, texture in zip(face, uv_face, strict=True)))
     return "\n".join(lines) + "\n"

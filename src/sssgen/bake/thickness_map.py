@@ -22,16 +22,16 @@ from sssgen.support.paths import posix
 from sssgen.targets.texture_import import import_settings
 
 RAYS = 2**18
-"""In a block of work: some hundred megabytes."""
+"""Rays in a block of work, which takes a few hundred megabytes."""
 
 
 class Request(NamedTuple):
-    """What a thickness map is to hold."""
+    """The settings of a thickness map."""
 
     mode: str = "mean"
     """mean: over inward directions; chord: the length along −N; transmittance: the share of light that passes"""
     light: BakeLight | None = None
-    """If given, the map has the length towards this light"""
+    """The map has the length towards this light; None for the mode"""
     rays: int = 256
     """Rays per texel; even"""
     attenuation: float = 0.0
@@ -47,13 +47,13 @@ class Map(NamedTuple):
     facts: dict[str, Any]
     """For the JSON file"""
     mesh: str
-    """The mesh as a Wavefront file if it got new texture coordinates, otherwise empty"""
+    """The mesh as a Wavefront file if it has new texture coordinates, otherwise empty"""
 
 
 def thickness_map(
     path: str,
     size: tuple[int, int],
-    wanted: Request,
+    request: Request,
     unwrap: bool = False,
     processes: int | None = None,
     scheduler: str = "",
@@ -61,47 +61,47 @@ def thickness_map(
 ) -> Map:
     """The map of a mesh: lengths relative to the largest one, or transmittance.
 
-    Raises SssgenError for a mesh that cannot be read, without an inside, or with unfit texture coordinates.
+    Raises SssgenError for a mesh that cannot be read, without an inside, or with unsuitable texture coordinates.
     """
-    _check(wanted)
+    _check(request)
     width, height = size
-    memory.check(width * height * 120.0 + 4 * RAYS * 500.0, "take a smaller --size")
+    memory.check(width * height * 120.0 + 4 * RAYS * 500.0, "use a smaller --size")
     body = Mesh(path=path)
     mesh = body.triangles
-    fresh = unwrap or mesh.uv is None
-    uv = unwrapped(mesh, progress) if fresh or mesh.uv is None else mesh.uv
-    shown = atlas(mesh, uv, size, path)
+    new_uv = unwrap or mesh.uv is None
+    uv = unwrapped(mesh, progress) if new_uv or mesh.uv is None else mesh.uv
+    surface = atlas(mesh, uv, size, path)
     if body.inside_out:
-        shown = shown._replace(flat=-shown.flat)
+        surface = surface._replace(flat=-surface.flat)
     chords = [
         np.concatenate(parts)
-        for parts in zip(*_measured(path, shown, wanted, processes, scheduler, progress), strict=True)
+        for parts in zip(*_measured(path, surface, request, processes, scheduler, progress), strict=True)
     ]
     value, error, lost = chords
     if lost.min(initial=0.0) >= 1.0 or not value.any():
-        raise failure("no ray leaves the mesh: it has no inside", "is it a sheet?", posix(path))
-    passing = wanted.mode == "transmittance"
-    top = 1.0 if passing else float(value.max())
-    holds = "transmittance" if passing else "thickness"
+        raise failure("no ray leaves the mesh: it has no inside", "a flat sheet has no thickness", posix(path))
+    is_transmittance = request.mode == "transmittance"
+    largest = 1.0 if is_transmittance else float(value.max())
+    holds = "transmittance" if is_transmittance else "thickness"
     facts = {
-        "kind": holds, "holds": holds, "mode": "direction" if wanted.light else wanted.mode,
+        "kind": holds, "holds": holds, "mode": "direction" if request.light else request.mode,
         "mesh": {
-            "triangles": len(mesh.corners), "new_uv": fresh, "inside_out": body.inside_out,
-            "shared_texels": round(shown.shared, 6), "mixed_sides": mixed_sides(mesh.corners),
+            "triangles": len(mesh.corners), "new_uv": new_uv, "inside_out": body.inside_out,
+            "shared_texels": round(surface.shared, 6), "mixed_sides": mixed_sides(mesh.corners),
         },
-        "light": wanted.light.facts() if wanted.light else None,
-        "unit": "" if passing else "of the mesh", "range": [0.0, top],
-        "formula": "transmittance = texel" if passing else f"thickness = {top!r} * texel",
+        "light": request.light.facts() if request.light else None,
+        "unit": "" if is_transmittance else "of the mesh", "range": [0.0, largest],
+        "formula": "transmittance = texel" if is_transmittance else f"thickness = {largest!r} * texel",
         "texels": len(value), "mean": float(value.mean()),
         "error": {
             "mean_standard_error": float(error.mean()), "largest_standard_error": float(error.max()),
         },
-        "rays": 1 if _is_exact(wanted) else wanted.rays, "lost_rays": round(float(lost.mean()), 6),
-        "attenuation_distance": wanted.attenuation or None,
-        "parameters": {} if passing else {"thickness_factor": top},
+        "rays": 1 if _is_exact(request) else request.rays, "lost_rays": round(float(lost.mean()), 6),
+        "attenuation_distance": request.attenuation or None,
+        "parameters": {} if is_transmittance else {"thickness_factor": largest},
         "import": import_settings(),
     }  # fmt: skip
-    return Map(filled(value / top, shown.texels, size), facts, obj(mesh, uv) if fresh else "")
+    return Map(filled(value / largest, surface.texels, size), facts, obj(mesh, uv) if new_uv else "")
 
 
 def warnings(facts: dict[str, Any]) -> list[str]:
@@ -118,45 +118,45 @@ def warnings(facts: dict[str, Any]) -> list[str]:
     return messages
 
 
-def _is_exact(wanted: Request) -> bool:
-    return wanted.light is not None or wanted.mode == "chord"
+def _is_exact(request: Request) -> bool:
+    return request.light is not None or request.mode == "chord"
 
 
-def _check(wanted: Request) -> None:
-    if wanted.mode == "transmittance" and not 0.0 < wanted.attenuation < 1e9:
+def _check(request: Request) -> None:
+    if request.mode == "transmittance" and not 0.0 < request.attenuation < 1e9:
         raise failure(
             "--mode transmittance needs a length",
             "--attenuation D: the length after which 1/e of the light remains, as 0.1",
         )
-    if wanted.mode != "transmittance" and wanted.attenuation:
-        raise failure(f"--mode {wanted.mode} is a length: it has no attenuation", "take --mode transmittance")
-    if not (2 <= wanted.rays <= 65536 and wanted.rays % 2 == 0):
-        raise failure(f"{wanted.rays} is no number of rays", "an even number from 2 to 65536")
-    if not 0 <= wanted.seed < 2**32:
-        raise failure(f"{wanted.seed} is no seed", "from 0 to 4294967295")
+    if request.mode != "transmittance" and request.attenuation:
+        raise failure(f"--mode {request.mode} is a length: it has no attenuation", "use --mode transmittance")
+    if not (2 <= request.rays <= 65536 and request.rays % 2 == 0):
+        raise failure(f"{request.rays} is not a number of rays", "an even number from 2 to 65536")
+    if not 0 <= request.seed < 2**32:
+        raise failure(f"{request.seed} is not a seed", "from 0 to 4294967295")
 
 
 def _measured(
-    path: str, shown: Atlas, wanted: Request, processes: int | None, scheduler: str, progress: Progress
+    path: str, surface: Atlas, request: Request, processes: int | None, scheduler: str, progress: Progress
 ) -> list[Any]:
     """The chords of each block of texels, in order."""
     with open(path, "rb") as file:
         digest = cache.digest(file.read())
     path, items = os.path.abspath(path), list[Item]()
-    exact = _is_exact(wanted)
-    block = max(1, RAYS // (1 if exact else wanted.rays))
-    for number, start in enumerate(range(0, len(shown.texels), block)):
-        places, flat = shown.places[start : start + block], shown.flat[start : start + block]
-        name = f"{min(start + block, len(shown.texels))} texels"
+    exact = _is_exact(request)
+    block = max(1, RAYS // (1 if exact else request.rays))
+    for number, start in enumerate(range(0, len(surface.texels), block)):
+        points, flat = surface.places[start : start + block], surface.flat[start : start + block]
+        name = f"{min(start + block, len(surface.texels))} texels"
         if exact:
-            ways = wanted.light.towards(places) if wanted.light else -flat
+            directions = request.light.towards(points) if request.light else -flat
             items.append(
-                Item("sssgen.bake.chord_lengths:along", (path, digest, places, ways, wanted.attenuation), name)
+                Item("sssgen.bake.chord_lengths:along", (path, digest, points, directions, request.attenuation), name)
             )
         else:
-            sampling = (wanted.rays, wanted.attenuation, (wanted.seed, number))
-            items.append(Item("sssgen.bake.chord_lengths:inward", (path, digest, places, flat, *sampling), name))
+            sampling = (request.rays, request.attenuation, (request.seed, number))
+            items.append(Item("sssgen.bake.chord_lengths:inward", (path, digest, points, flat, *sampling), name))
     results = run(items, scheduler, processes, Store(""), progress)
-    if wrong := failures(results):
-        raise failure(f"a part of the map failed: {wrong[0].message}", file=posix(path))
+    if failed := failures(results):
+        raise failure(f"a part of the map failed: {failed[0].message}", file=posix(path))
     return results

@@ -44,7 +44,7 @@ def encoded(texels: npt.NDArray[Any], format: str) -> bytes:
 
 
 def layout(texels: npt.NDArray[Any], format: str) -> dict[str, Any]:
-    """What a reader of the file of `encoded` must know, as values for JSON.
+    """The description of a file of `encoded` for its readers, as values for JSON.
 
     `size` is in texels; `one` is the stored number for 1.0. Raises SssgenError as `encoded` does.
     """
@@ -58,9 +58,9 @@ def _encoding(texels: npt.NDArray[Any], format: str) -> Encoding:
     """Checks the arguments; returns the texels' encoding."""
     if format not in FORMATS:
         hint = did_you_mean(format, FORMATS) or f"there are {', '.join(FORMATS)}"
-        raise failure(f"'{format}' is no format of volumes", hint)
+        raise failure(f"'{format}' is not a format of volumes", hint)
     if texels.ndim != 3 or 0 in texels.shape:
-        raise failure(f"an array of shape {texels.shape} is no volume", "(depth, height, width)")
+        raise failure(f"an array of shape {texels.shape} is not a volume", "(depth, height, width)")
     dtype = texels.dtype.newbyteorder("<")
     encoding = next((encoding for encoding in ENCODINGS if encoding.dtype == dtype and encoding.channels == 1), None)
     if encoding is None:
@@ -69,7 +69,7 @@ def _encoding(texels: npt.NDArray[Any], format: str) -> Encoding:
 
 
 def _details(texels: npt.NDArray[Any], encoding: Encoding, format: str) -> dict[str, Any]:
-    """What `layout` says of one format only."""
+    """The entries of `layout` that depend on the format."""
     match format:
         case "dds":
             return {"pixel_format": encoding.dxgi_name, "one": encoding.one}

@@ -16,7 +16,7 @@ Distances: TypeAlias = npt.NDArray[np.float32]
 BLOCK = 2**18
 """Points of one query, at about a hundred bytes each."""
 TILE = 4
-"""Voxels along a side of a tile: the tiles are queried one after the other."""
+"""Voxels along a side of a tile: tiles are queried in sequence."""
 SPLIT = 3
 """The subdivision of a block's sides: odd, so that a block's centre is a voxel."""
 COARSEST = SPLIT**3
@@ -44,15 +44,15 @@ def distances(body: MeshDistance, grid: Grid, progress: Progress = lambda *_: No
 
 def _in_tiles(shape: tuple[int, int, int]) -> npt.NDArray[np.int64]:
     """The order of voxels tile by tile: neighbours visit the same branches of a tree."""
-    z, y, x = (at.ravel() // TILE for at in np.indices(shape, np.int32))
+    z, y, x = (index.ravel() // TILE for index in np.indices(shape, np.int32))
     return np.lexsort((x, y, z))
 
 
 def inside(body: MeshDistance, grid: Grid, unsigned: Distances) -> npt.NDArray[np.bool_]:
     """Which voxels are inside the mesh, by the winding number: (z, y, x).
 
-    It is evaluated at the centres of blocks, large blocks first. It holds for a whole block, or for the centres of the
-    smaller blocks in it, where it cannot cross one half on the way there: see `_change`.
+    It is evaluated at the centres of blocks, large blocks first. A block's value decides for all its voxels, or
+    for the centres of its smaller blocks, where the number cannot cross one half on the way there: see `_change`.
     """
     shape = np.array(unsigned.shape)
     size = COARSEST

@@ -14,7 +14,7 @@ from sssgen.support.diagnostics import failure
 Array: TypeAlias = npt.NDArray[np.float64]
 
 LEAST = 4
-"""Voxels along each axis: fewer have no slope to interpolate."""
+"""The least number of voxels along each axis: fewer have no slope to interpolate."""
 MOST = 2048
 """The largest number of voxels along an axis that every engine supports (WebGPU's limit)."""
 FLAT = 1e-3
@@ -41,7 +41,7 @@ class Grid(NamedTuple):
 
     @property
     def diagonal(self) -> float:
-        """The box's."""
+        """The length of the box's diagonal."""
         return float(np.linalg.norm(self.high - self.low))
 
     def centers(self, x: Array, y: Array, z: Array) -> Array:
@@ -55,12 +55,12 @@ class Grid(NamedTuple):
         centers = np.empty((end - start, up, across, 3))
         for axis, (first, last) in enumerate(((0, across), (0, up), (start, end))):
             along = self.low[axis] + (np.arange(first, last) + 0.5) * self.voxel[axis]
-            centers[..., axis] = along.reshape([-1 if axis == 2 - at else 1 for at in range(3)])
+            centers[..., axis] = along.reshape([-1 if axis == 2 - dimension else 1 for dimension in range(3)])
         return centers.reshape(-1, 3)
 
 
 def around(low: Array, high: Array, resolution: Sequence[int], padding: float) -> Grid:
-    """The grid around a box, given by two corners (3,).
+    """The grid around a box with two opposite corners (3,).
 
     `resolution` is the count along the longest side, for cubic voxels, or three counts. `padding` is the margin on
     every side relative to the longest one; if not 0, it is at least a voxel. Raises SssgenError for an invalid
@@ -70,7 +70,7 @@ def around(low: Array, high: Array, resolution: Sequence[int], padding: float) -
         text = ",".join(map(str, resolution))
         raise failure(f"'{text}' is not a resolution", f"N or X,Y,Z, each from {LEAST} to {MOST}")
     if not 0.0 <= padding <= 10.0:
-        raise failure(f"{padding:g} is no padding", "a part of the longest side, from 0 to 10, as 0.05")
+        raise failure(f"{padding:g} is not a padding", "a share of the longest side, from 0 to 10, such as 0.05")
     size, middle = high - low, 0.5 * (low + high)
     size = np.maximum(size + 2.0 * _margin(size, resolution, padding), FLAT * np.linalg.norm(size))
     if len(resolution) == 1:
@@ -82,7 +82,7 @@ def around(low: Array, high: Array, resolution: Sequence[int], padding: float) -
     grid = Grid((counts[0], counts[1], counts[2]), middle - 0.5 * size, middle + 0.5 * size)
     far = float(np.abs([grid.low, grid.high]).max() / grid.voxel.min())
     if far > FARTHEST:
-        raise failure("the mesh is too far from its origin for shaders' 32-bit numbers", "move it nearer")
+        raise failure("the mesh is too far from its origin for the 32-bit numbers of shaders", "move it nearer")
     return grid
 
 
@@ -90,7 +90,7 @@ def _margin(size: Array, resolution: Sequence[int], padding: float) -> Array | f
     """The margin on every side: the padding, at least a voxel, so that the grid has outside voxels."""
     if not padding:
         return 0.0
-    between = np.array(resolution) - 2  # voxels for the mesh
-    voxel = size / between if len(resolution) == 3 else size.max() / between[0]
+    inner = np.array(resolution) - 2  # voxels for the mesh
+    voxel = size / inner if len(resolution) == 3 else size.max() / inner[0]
     margin: Array = np.maximum(padding * size.max(), voxel)
     return margin
