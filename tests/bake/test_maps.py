@@ -145,7 +145,7 @@ def test_cells_depend_on_an_integer_hash() -> None:
     ("changed", "message"),
     [
         ({"cells": (0, 4)}, "0 x 4 cells"),
-        ({"cells": (4, 65)}, "no more than texels"),
+        ({"cells": (4, 65)}, "at most as many as texels"),
         ({"size": (0, 64)}, "0 x 64 texels"),
         ({"size": (64, 16385)}, "1 to 16384"),
         ({"jitter": 1.5}, "jitter is 1.5"),
