@@ -54,7 +54,7 @@ class Finding(NamedTuple):
 
     @property
     def severity(self) -> str:
-        """A warning where nothing guards it."""
+        """A warning if no guard covers it, otherwise a note."""
         return "note" if self.verdict == PROVEN or self.guarded else "warning"
 
     def diagnostic(self, hint: str = "") -> Diagnostic:
@@ -106,8 +106,8 @@ class Finding(NamedTuple):
 def lint(name: str, with_examples: bool = True) -> list[Finding]:
     """The findings of a technique, a material, an example or a file of functions, in the order of the source.
 
-    A material is judged as a whole, as its shader is emitted; a technique for all its inputs; a file of plain functions
-    for every argument, with no guard to help it. Raises SssgenError.
+    A material is checked as a whole, as in its emitted shader; a technique for all its inputs; a file of plain
+    functions for all arguments and without guards. Raises SssgenError.
     """
     if name.endswith(".toml") or name in examples():
         return _findings(guarded_sites(load_material(name)), _stages(name) if with_examples else [])
@@ -125,7 +125,7 @@ def lint(name: str, with_examples: bool = True) -> list[Finding]:
 
 
 def _plain(path: str, with_examples: bool) -> list[Finding]:
-    """Functions as they are: nothing guards them."""
+    """The findings of plain functions, which have no guards."""
     module = load_glsl(path, path).module
     specimens = []
     if with_examples and not any(map(endless, module.functions)):
@@ -166,7 +166,7 @@ def _findings(sites: list[Site], specimens: list[Any], guarded: bool = True) -> 
 
 
 def _example(site: Site, specimens: list[Any]) -> str:
-    """A command that shows that an operation fails; '' where none is found."""
+    """A command that shows that an operation fails; '' if none is found."""
     if not specimens:
         return ""
     from sssgen.harness.stress.guard_witness import sites, witness

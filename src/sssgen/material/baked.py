@@ -19,7 +19,7 @@ MAX_BYTES = 2**20
 LARGEST = 1e30
 """Larger than any number of a bake."""
 UNITS = "materials use metres: scale the mesh to a few units"
-"""The remedy where a baked length is out of a parameter's range."""
+"""The hint if a baked length is outside a parameter's range."""
 
 
 class Baked(NamedTuple):
@@ -28,7 +28,7 @@ class Baked(NamedTuple):
     kind: str
     """distance, thickness, transmittance, depth, cells, normal or packed"""
     holds: str
-    """The quantity of its numbers, as a material's types have it; "" where it is none"""
+    """The quantity type of its numbers; "" if they have none"""
     parameters: Mapping[str, Any]
     """The parameters of techniques that it needs, by name: TOML values, in the body's object space"""
     settings: Mapping[str, Any]
@@ -43,7 +43,7 @@ def sidecar(path: str) -> str:
 
 
 def read(path: str) -> Baked | None:
-    """The content of a texture's JSON file; None where there is none. Raises SssgenError for a faulty one."""
+    """The content of a texture's JSON file; None if there is no such file. Raises SssgenError for an invalid one."""
     file = sidecar(path)
     note(file)
     if not os.path.isfile(file):
@@ -71,7 +71,7 @@ def read(path: str) -> Baked | None:
 
 
 def check(baked_texture: Baked, uniform: Uniform, name: str) -> None:
-    """Raises SssgenError where a texture's uniform takes another quantity or shape than what was baked."""
+    """Raises SssgenError if a texture's uniform takes another quantity or dimension than the baked texture has."""
     assert isinstance(uniform.type, Sampler)
     quantity = uniform.quantity
     if quantity and baked_texture.holds != quantity:

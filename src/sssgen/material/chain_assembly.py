@@ -1,13 +1,13 @@
 """Assembles a material's chain of stages into the functions that a shell calls.
 
-- `evaluate_surface(…)` runs once a fragment and returns a `Surface` of what the engine and the lights need;
-- `evaluate_translucency(surface, …)` runs once a light and returns the factor on the light's colour;
-- `evaluate_lighting(surface, …)` is the lighting of targets that bring none;
-- `evaluate_color(…)` is the whole of an unlit material;
+- `evaluate_surface(…)` runs once per fragment and returns a `Surface` with the values for the engine and the lights;
+- `evaluate_translucency(surface, …)` runs once per light and returns the factor on the light's colour;
+- `evaluate_lighting(surface, …)` is the lighting of targets without their own;
+- `evaluate_color(…)` is a complete unlit material;
 - `evaluate_output(color)` encodes for the display.
 
-Parameters are matched to values by name, scalar quantities by what they measure. A value that nothing writes comes
-from the shell (an input) or is the standard default. Second of all passes: it needs the linked functions' signatures.
+Parameters are matched to values by name, scalar quantities by type. A value that no stage writes comes from the shell
+(an input) or is the standard default. This is the second pass: it needs the signatures of the linked functions.
 """
 
 from __future__ import annotations
@@ -85,11 +85,11 @@ class ChainStage(NamedTuple):
     function: Function
     span: Span
     glows: bool = False
-    """Whether its light needs no lamp, so that no lamp's colour multiplies it"""
+    """Whether its result is added once and not multiplied by a light's colour"""
 
 
 class Entry(NamedTuple):
-    """An assembled function and the shell inputs that it takes, in order (a leading `surface` aside)."""
+    """An assembled function and the shell inputs that it takes, in order (without a leading `surface`)."""
 
     function: Function
     inputs: tuple[str, ...]
@@ -118,7 +118,7 @@ def assemble(module: Module, stages: Sequence[ChainStage], lit: bool, opaque: bo
     late_stages = [stage for stage, late in zip(chained, per_light, strict=True) if late]
     lighting = [stage for stage in stages if stage.role == "lighting"]
     light = _Body("evaluate_translucency", surface, lit=True)
-    if "translucency" in surface.values:  # the same for every light: each multiplies it by its colour
+    if "translucency" in surface.values:  # the same for every light; each multiplies it by its colour
         light.take_over("translucency")
     for stage in late_stages:
         light.add(stage)
@@ -179,7 +179,7 @@ def _value_name(param: Param) -> str:
 
 
 def _color_entry(stages: Sequence[ChainStage], opaque: bool) -> Entry:
-    """The one entry of an unlit material: everything in order, what follows a hit inside its `if`."""
+    """The entry of an unlit material: all stages in order; those that need a hit are inside its `if`."""
     body = _Body("evaluate_color")
     for stage in stages:
         body.add(stage)
@@ -270,12 +270,12 @@ class _Body:
         raise LinkError(_missing(name, param, stage), span)
 
     def hands_over(self, name: str) -> bool:
-        """Whether the lights read this value from the surface, where it was computed or changed."""
+        """Whether the lights read this value from the surface because a stage computed or changed it."""
         is_computed = name in self.values and name not in ("N", *PER_LIGHT)
         return is_computed and (name not in self.inputs or name in self.changed())
 
     def changed(self) -> set[str]:
-        """The inputs that a stage has written over."""
+        """The inputs that a stage has overwritten."""
         return {
             stmt.target.name
             for stmt in self.statements
@@ -283,7 +283,7 @@ class _Body:
         }
 
     def store(self, name: str, value: Expr, target: list[Stmt], waits: bool, span: Span) -> None:
-        """Sets a value, declaring it where it is new."""
+        """Sets a value; declares it if it is new."""
         if name in self.values:
             target.append(Assign(Local(value.type, name, span), "", value, span))
         elif waits and name in DEFAULTS:  # needed after the `if` too
@@ -305,7 +305,7 @@ class _Body:
             target.append(Declare(name, VEC3, value, span))
 
     def take_over(self, name: str) -> None:
-        """Starts with a value of the surface, to which more can be added."""
+        """Starts with a value of the surface, to which later stages add."""
         assert self.surface is not None
         self.span = span = self.surface.span
         self.crossing[name] = None
@@ -327,7 +327,7 @@ class _Body:
         return Entry(self.function(struct, body, doc, None), tuple(self.inputs))
 
     def finish(self, name: str, type_: Type, struct: Struct | None) -> Entry:
-        """Returns one value; where its declaration is the last statement, the value itself."""
+        """The entry that returns one value; if the last statement only sets that value, it returns the expression."""
         value: Expr = Local(type_, name, self.span)
         statements = self.statements
         assigned = _assigned_value(statements[-1], name)
@@ -359,7 +359,7 @@ class _Body:
 
 
 def _assigned_value(last: Stmt, name: str) -> Expr | None:
-    """The value that a statement assigns to the variable `name`, if it does nothing else."""
+    """The value that a statement assigns to the variable `name`; None if it does anything else."""
     if isinstance(last, Declare) and last.name == name:
         return last.value
     if isinstance(last, Assign) and last.op == "" and isinstance(last.target, Local) and last.target.name == name:

@@ -108,7 +108,7 @@ def _read_technique(path: str) -> Technique:
     module = load_file(path, shown, (TECHNIQUES,))
     function = next((f for f in reversed(module.functions) if f.name == name and f.body is not None), None)
     if function is None:
-        raise failure(f"the file has no function '{name}'", "a technique is named like its file", shown)
+        raise failure(f"the file has no function '{name}'", "a technique has the name of its file", shown)
     doc = attributes.sections(function.doc, shown)
     role = doc.get("role", folder_of(path))
     if "role" not in doc and role not in ROLES:

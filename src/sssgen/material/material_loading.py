@@ -25,8 +25,7 @@ _materials: dict[str, CachedResult] = {}
 def load_material(path_or_name: str | os.PathLike[str]) -> Material:
     """The material of a TOML file, or of an example by its name.
 
-    It is the same object as before where no file that it is made of has changed. Raises SssgenError with all that
-    is wrong with it.
+    The object is cached until a file that it depends on changes. Raises SssgenError with all errors of the material.
     """
     text = os.fspath(path_or_name)
     if not text.endswith(".toml") and "/" not in text and "\\" not in text and not os.path.isfile(text):
@@ -49,7 +48,7 @@ def _remembered(path: str, shown: str) -> Material:
 def parse_material(text: str, path: str | os.PathLike[str], shown: str = "") -> Material:
     """The material that a TOML text describes.
 
-    Files that it names are looked for beside `path`; `shown` is its name in messages. Raises SssgenError with
-    all that is wrong with it.
+    File names in it are relative to the folder of `path`; `shown` is its name in messages. Raises SssgenError with all
+    errors of the material.
     """
     return read_material(text, os.fspath(path), shown or posix(path))

@@ -22,7 +22,7 @@ _CHOICES = {
 
 
 class _Shared(NamedTuple):
-    """What a stage states about a parameter that several stages share."""
+    """The value that a stage gives to a parameter shared by several stages."""
 
     value: object
     technique: str
@@ -145,7 +145,7 @@ class _Reader:
         return stages
 
     def stage(self, section: str, path: tuple[str | int, ...], table: dict[str, Any]) -> Stage | None:
-        """One stage; None where its technique is not known."""
+        """One stage; None if its technique is unknown."""
         technique = self.technique(section, path, table)
         if technique is None:
             return None
@@ -266,7 +266,7 @@ class _Reader:
         return stage
 
     def baked(self, stage: Stage, uniforms: list[Uniform], path: tuple[str | int, ...], table: dict[str, Any]) -> Stage:
-        """The stage with the parameters of its baked textures, where it does not set them itself."""
+        """The stage with the parameters of its baked textures, except those that it sets itself."""
         for uniform in uniforms:
             if uniform.name not in stage.textures:
                 continue
@@ -355,7 +355,7 @@ class _Reader:
         return bindings
 
     def binding(self, slot: Function, raw: object, span: Span) -> Binding | None:
-        """The function that a slot is bound to; None where there is an error."""
+        """The function that a slot is bound to; None after an error."""
         if not isinstance(raw, str):
             self.document.error(span, "a slot is bound to the name of a function", f'write {slot.name} = "…"')
             return None
@@ -393,7 +393,7 @@ def _section_hint(key: str, sections: tuple[str, ...]) -> str:
 
 
 def _cycle(bindings: dict[str, Binding]) -> list[str]:
-    """A slot whose function calls the slot again, directly or through others, if there is one."""
+    """The first slot whose function calls the slot again, directly or through others; [] if there is none."""
     calls = {
         name: [slot.name for slot in slots.needs(binding.module, binding.function)[1]]
         for name, binding in bindings.items()

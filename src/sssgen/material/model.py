@@ -28,11 +28,11 @@ class Stage(NamedTuple):
     fixed: frozenset[str]
     """The uniforms that become constants in the emitted text."""
     textures: dict[str, str]
-    """Texture uniform → picture file, relative to the material, that it suggests for renders and previews."""
+    """Texture uniform → picture file, relative to the material, for renders and previews."""
     bindings: dict[str, Binding]
     """Slot name → the function bound to it."""
     span: Span
-    """The place of the stage's `technique = …` line."""
+    """The position of the stage's `technique = …` line."""
 
 
 class Material(NamedTuple):
@@ -48,7 +48,7 @@ class Material(NamedTuple):
     file: str
     """The path of its file."""
     alpha_mode: str = "opaque"
-    """opaque, mask or blend, as in glTF: what the engine does with the alpha that techniques write"""
+    """opaque, mask or blend, as in glTF: how the engine uses the alpha that techniques write"""
 
     @property
     def path(self) -> Path:
@@ -67,7 +67,7 @@ _DEVICES = {"con", "prn", "aux", "nul", *(f"{port}{n}" for port in ("com", "lpt"
 
 
 def wrong_name(name: str) -> tuple[str, str] | None:
-    """The error of a material's name and its remedy; None for a valid name."""
+    """The error message for a material's name and its hint; None for a valid name."""
     if not _NAME.fullmatch(name):
         near = re.sub(r"\W+", "_", name, flags=re.ASCII).strip("_").lower()
         offer = f": '{near}'" if _NAME.fullmatch(near) else ""

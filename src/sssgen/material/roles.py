@@ -1,6 +1,6 @@
 """The roles of a chain: what techniques of each role return and may read, and the check of a whole chain.
 
-A parameter is matched to a value of the chain by its name, a scalar quantity by what it measures.
+A parameter is matched to a value of the chain by its name, a scalar quantity by its type.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ VALUE_QUANTITIES = {
     **dict.fromkeys(("N", "V", "T", "B", "L", "ray_direction"), "world_direction"),
     **dict.fromkeys(("N_object", "V_object", "L_object"), "object_direction"),
 }
-"""The quantity types of the chain's values; those that are not named here are plain."""
+"""The quantity types of the chain's values; all others have none."""
 
 Report = Callable[[Span, str, str], None]
 
 
 class Link(NamedTuple):
-    """A stage, for the check of the chain."""
+    """A stage, as the check of the chain needs it."""
 
     technique: Technique
     span: Span
@@ -91,7 +91,7 @@ def check_chain(links: Sequence[Link], shading: str, report: Report) -> None:
 
 
 def wrong_result(technique: Technique) -> str:
-    """The error of a technique's result for its role, or ''."""
+    """The error message if a technique's result does not fit its role, or ''."""
     function, role = technique.function, technique.role
     wanted: dict[str, tuple[tuple[Type, ...], str]] = {
         "geometry": ((BOOL, VOID), "bool or void"),

@@ -53,7 +53,7 @@ def _needs(module: Module, function: Function) -> Needs:
 
 
 def signature(function: Function) -> str:
-    """A function's declaration as it is written: `float sphere(world_position p)`."""
+    """A function's declaration as in the source: `float sphere(world_position p)`."""
     params = []
     for param in function.params:
         direction = "" if param.direction == "in" else f"{param.direction} "
@@ -62,7 +62,7 @@ def signature(function: Function) -> str:
 
 
 def fits(slot: Function, function: Function) -> bool:
-    """Whether calls of the slot may go to the function: the same types; quantities may only be dropped."""
+    """Whether a function can be bound to the slot: the types are equal; quantities may only be dropped."""
 
     def drops(source: str, target: str) -> bool:
         return target in ("", source)
@@ -87,7 +87,7 @@ def find(text: str, slot: Function, folder: str) -> tuple[Module, Function]:
 
     A file is relative to `folder`, or to the technique library.
 
-    Raises SssgenError where there is none or it does not fit the slot.
+    Raises SssgenError if there is none or it does not fit the slot.
     """
     source, _, name = text.rpartition(":") if text.rpartition(":")[2].isidentifier() else (text, "", "")
     if not source:
@@ -130,7 +130,7 @@ def candidates(slot: Function) -> list[str]:
     for name, path in library.index().items():
         if library.folder_of(path) != "distance":
             continue
-        with contextlib.suppress(SssgenError):  # a faulty file is reported where it is used
+        with contextlib.suppress(SssgenError):  # a file with errors is reported when it is used
             module = library.load_path(path).module
             own = [one for one in module.functions if one.span.file == library.shown_name(path) and fits(slot, one)]
             offered = [one.name for one in own if one.name == name or any(param.quantity for param in one.params)]

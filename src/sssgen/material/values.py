@@ -1,4 +1,4 @@
-"""The values that a material gives to parameters: TOML values → a uniform's components, checked."""
+"""The values of parameters in a material: TOML values → the components of a uniform, checked."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _HEX = re.compile(r"#(?:[0-9a-fA-F]{3}|[0-9a-fA-F]{6}|[0-9a-fA-F]{8})")
 
 
 class WrongValue(Exception):
-    """A value that does not fit; `index` is that of the faulty element in a list, else None."""
+    """A value that does not fit; `index` is the index of the wrong element in a list, or None."""
 
     def __init__(self, message: str, hint: str = "", index: int | None = None) -> None:
         super().__init__(message)

@@ -1,7 +1,7 @@
 """How far a back end deviates from the oracle, and how far float32 itself must deviate.
 
-Where a technique decides (a ray that just hits, the edge of a cell) or subtracts nearly equal numbers, two correct
-float32 machines differ by more than rounding: such lanes are ill-conditioned. The *rounding deviation* of a lane
+Where a technique branches (a ray that just hits, the edge of a cell) or subtracts nearly equal numbers, two correct
+float32 implementations differ by more than rounding: such lanes are ill-conditioned. The *rounding deviation* of a lane
 measures this without any back end: how far the oracle's result moves when its inputs move by one unit in the last
 place, and how far the same formulas in NumPy's float32 deviate there. A lane beyond the goal is *excluded* while its
 deviation is at most `MARGIN` times its rounding deviation. Reports give the number of excluded lanes.
@@ -22,7 +22,7 @@ from sssgen.harness.evaluate.probes import Subject
 from sssgen.support.diagnostics import SssgenError
 
 GOAL = 1e-5
-"""The largest deviation that a technique in float32 is meant to have."""
+"""The largest deviation that a technique in float32 should have."""
 
 
 MARGIN = 4.0
@@ -58,7 +58,7 @@ class Row(NamedTuple):
 
     @property
     def ok(self) -> bool:
-        """Whether it agrees, or is missing, or computes in half precision, to which the goal does not apply."""
+        """Whether it agrees, is missing, or computes in half precision, to which the goal does not apply."""
         if self.missing or self.name in HALF:
             return True
         return self.deviation is not None and self.deviation.largest <= GOAL

@@ -1,10 +1,10 @@
 """Evaluates a technique on arrays of inputs, on one back end or on several.
 
-    found = evaluate(subject("lobe_gdc2011"), {"V": v, "N": n, "L": l, "through": 0.5}, backends.get("gl"))
-    found["result"]                                                      # (lanes, 3)
+    outputs = evaluate(subject("lobe_gdc2011"), {"V": v, "N": n, "L": l, "through": 0.5}, backends.get("gl"))
+    outputs["result"]                                                      # (lanes, 3)
 
-Here arrays are as people write them: lanes first, (lanes,) for a float, (lanes, 3) for a vec3, and for a matrix (lanes,
-column, row). The back ends have lanes last.
+Arrays of users have lanes first: (lanes,) for a float, (lanes, 3) for a vec3, (lanes, column, row) for a matrix. Arrays
+of back ends have lanes last.
 """
 
 from __future__ import annotations
@@ -40,9 +40,9 @@ class Inputs(NamedTuple):
 def evaluate(subject: Subject, values: Mapping[str, Any], backend: Backend, guards: str = "auto") -> dict[str, Array]:
     """The outputs by name (`result` is the return value), lanes first.
 
-    `given` has numbers, arrays and `Texture`s by the name of the technique's parameter or uniform; uniforms left out
-    have their defaults; `guards` as in `compile`. Raises SssgenError for inputs that do not fit and for a back end that
-    refuses.
+    `values` has numbers, arrays and `Texture`s by the name of the technique's parameter or uniform; other uniforms have
+    their defaults; `guards` as in `compile`. Raises SssgenError for inputs that do not fit, and if the back end rejects
+    the program.
     """
     return run(subject, fitted(subject, values), backend, guards)
 
@@ -54,7 +54,7 @@ def run(
     guards: str = "auto",
     guard_change: Callable[[Site], str] | None = None,
 ) -> dict[str, Array]:
-    """The outputs, lanes first; `at` is that of `passes.guards.guard`."""
+    """The outputs, lanes first; `guard_change` is the `at` of `passes.guards.guard`."""
     text, names = _emitted(subject, backend.target.name, guards, guard_change)
     calls = [
         Call(
@@ -98,9 +98,9 @@ def _emitted(
 
 
 def fitted(subject: Subject, raw: Mapping[str, Any]) -> Inputs:
-    """Inputs as the subject's parameters want them, in float32's numbers, which all back ends share.
+    """Inputs in the form of the subject's parameters, rounded to float32, which all back ends share.
 
-    Raises SssgenError for a name it does not have, a missing one, a wrong shape, NaN and infinity.
+    Raises SssgenError for an unknown or a missing name, a wrong shape, NaN and infinity.
     """
     params = subject.params
     for name in raw:
@@ -190,7 +190,7 @@ def default_texture(type_: str, color: str) -> Texture:
 
 
 def _texture(subject: Subject, name: str, type_: Sampler, raw: Any) -> Texture:
-    """A texture in float16's numbers, which all back ends share; one texel of the default where none is given."""
+    """A texture rounded to float16, which all back ends share; one texel of the default if `raw` is None."""
     if raw is None:
         hints = [hint.removeprefix("default_") for hint, _ in subject.uniforms[name].hints]
         raw = default_texture(spell(type_), next((hint for hint in hints if hint in _DEFAULTS), "white"))
@@ -208,7 +208,7 @@ def _texture(subject: Subject, name: str, type_: Sampler, raw: Any) -> Texture:
 
 @lru_cache(64)
 def half(texture: Texture) -> Texture:
-    """The texture in float16's numbers. Raises SssgenError where these do not hold it."""
+    """The texture rounded to float16. Raises SssgenError for texels beyond the range of float16."""
     with np.errstate(over="ignore"):
         levels = [level.astype(np.float16) for level in texture.levels]
     if not all(np.isfinite(level).all() for level in levels):

@@ -33,10 +33,10 @@ def bindings(texts: Sequence[str]) -> dict[str, str]:
 def read(path: str, subject: Subject) -> dict[str, Any]:
     """The inputs of a JSON file, or of the standard input for `-`.
 
-    They are name → number, list or, for a texture, a `Texture` from a file beside it.
+    They are name → number, list or, for a texture, a `Texture` from a file next to it.
 
-    A texture is `"wood.png"`, or `{"file": "wood.png", "wrap": "clamp", "filter": "nearest"}`; a .png of colours, which
-    the technique calls `source_color`, is decoded. Raises SssgenError with the place of what is wrong.
+    A texture is `"wood.png"`, or `{"file": "wood.png", "wrap": "clamp", "filter": "nearest"}`; the colours of a
+    .png for a uniform with the hint `source_color` are decoded from sRGB. Raises SssgenError with the position.
     """
     file = Path(path)
     try:

@@ -1,7 +1,7 @@
 """Functions of one result each, generated from a technique, for back ends that map arrays to arrays.
 
-A technique may return a value, write `out` and `inout` parameters, or all of that. A probe calls it and returns one of
-these. Uniforms become parameters, as in the functions form of every target.
+A technique may return a value, write `out` and `inout` parameters, or both. A probe calls it and returns one of these
+values. Uniforms become parameters, as in the functions form of every target.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class Subject(NamedTuple):
 def subject(name: str, bind: Mapping[str, str] | None = None) -> Subject:
     """A technique (a library name, a .sss file, or FILE:FUNCTION) with functions bound to its slots.
 
-    `bind` has slot → FUNCTION, FILE or FILE:FUNCTION; a slot left out has the library's first function that fits.
+    `bind` has slot → FUNCTION, FILE or FILE:FUNCTION; other slots get the library's first function that fits.
     Raises SssgenError for unknown names and functions that do not fit.
     """
     module, function, role = _technique(name)
@@ -113,7 +113,7 @@ def _technique(name: str) -> tuple[Module, Function, str]:
 def _bound(
     name: str, module: Module, function: Function, bind: Mapping[str, str]
 ) -> dict[str, tuple[Module, Function]]:
-    """Each slot with its function, and the slots of what is bound likewise."""
+    """Each slot with its function, including the slots of the bound functions."""
     bindings: dict[str, tuple[Module, Function]] = {}
     waiting = list(needs(module, function)[1])
     while waiting:

@@ -1,9 +1,9 @@
 """Random inputs for a technique, in the declared meaning of each of its parameters.
 
-Each parameter has numbers of its own, which depend on its name and the seed alone: directions are unit vectors (some
-lie nearly along or against one another), a scalar quantity is in its range (with exactly 0 and 1 among it), a uniform
-goes over its `sample_range` (where another technique has declared it, its `bound_range`), its `hint_range`, or around
-its default where it has neither. Textures hold float16 numbers, smooth on one half and hard on the other; 3-D ones are
+The numbers of each parameter depend only on its name and the seed: directions are unit vectors (some nearly parallel or
+opposite to one another), a scalar quantity is in its range (including exactly 0 and 1), a uniform is in its
+`sample_range` (its `bound_range` if another technique's file declares it), its `hint_range`, or around its default if
+it has neither. Textures hold float16 numbers, smooth in one half and random steps in the other; 3-D textures are
 distance fields.
 """
 
@@ -39,7 +39,7 @@ RANGES = {
 
 
 def samples(subject: Subject, count: int, seed: int = 0) -> dict[str, Any]:
-    """`count` inputs, lanes first, as `evaluate.fitted` takes them; what it does not take (arrays) is left out."""
+    """`count` inputs, lanes first, as `evaluation.fitted` takes them; arrays, which it does not take, are left out."""
     inputs: dict[str, Any] = {}
     for name, param in subject.params.items():
         if isinstance(param.type, Sampler):
@@ -51,7 +51,7 @@ def samples(subject: Subject, count: int, seed: int = 0) -> dict[str, Any]:
 
 
 def texture(dim: str, rng: np.random.Generator) -> Texture:
-    """A texture of float16's numbers: a smooth half and a hard one; in 3-D the distance field of a ball."""
+    """A float16 texture: one half smooth, the other with random steps; in 3-D the distance field of a ball."""
     centers = (np.arange(TEXELS) + 0.5) / TEXELS
     if dim == "3D":
         z, y, x = np.meshgrid(centers, centers, centers, indexing="ij")
@@ -76,7 +76,7 @@ def _parameter(param: Param, count: int, seed: int) -> Array:
 
 
 def _direction(name: str, quantity: str, size: tuple[int, ...], seed: int) -> Array:
-    """Unit vectors. T and B stand about square to N, as a mesh has them; a normal in tangent space looks outwards."""
+    """Unit vectors. T and B are nearly perpendicular to N, as in a mesh; a tangent-space normal points outwards."""
     rng, each = _rng(name, seed), (size[0], 1)
     if name in ("T", "B"):
         normal = _direction("N", quantity, size, seed)
@@ -108,7 +108,7 @@ def _uniform(subject: Subject, uniform: Uniform, count: int, seed: int) -> Array
     if kind == "bool":
         return rng.random(size) < 0.5
     if kind != "float":
-        # twice the steps cost twice as much; more than that shows nothing new
+        # more than twice the default steps only takes longer
         most = max(low, min(high, 2.0 * float(default.max()))) if ends else 9.0
         return rng.integers(int(low) if ends else 0, int(most) + 1, size)
     if ends or "source_color" in hints:
