@@ -154,7 +154,7 @@ def test_cells_depend_on_an_integer_hash() -> None:
         ({"bevel": float("inf")}, "bevel is inf"),
         ({"variation": -0.1}, "variation is -0.1"),
         ({"seed": -1}, "seed is -1"),
-        ({"feature": "f2"}, "no feature of cells"),
+        ({"feature": "f2"}, "not a feature of cells"),
         ({"feature": "facetted"}, "did you mean 'faceted'"),
     ],
 )
