@@ -30,7 +30,7 @@ def run(arguments: Namespace) -> int:
     techniques = {technique.name for role in settings.roles for technique in candidates.of_role(role)}
     for name in sorted(wanted - techniques):
         hint = did_you_mean(name, techniques) or f"techniques: {', '.join(sorted(techniques))}"
-        raise failure(f"no translucency technique is called '{name}'", hint)
+        raise failure(f"unknown technique '{name}'", hint)
     points = chart.charted([scene], settings)["points"]
     points = [point for point in points if point["name"] != "none" and (not wanted or point["name"] in wanted)]
     if arguments.json:

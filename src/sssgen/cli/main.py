@@ -41,7 +41,7 @@ COMMANDS = {
     "ci": Command("ci", "check a folder: compile its materials, compare its scenes with golden pictures", "render"),
     "chart": Command("chart", "chart error against cost of every technique and published baseline", "chart"),
     "pick": Command("pick", "pick the cheapest chain of techniques that is good enough for a scene", "chart"),
-    "fit": Command("fit", "fit a material's parameters to a scene's medium", "chart"),
+    "fit": Command("fit", "fit the parameters of techniques to a scene's medium", "chart"),
     "bake": Command("bake", "bake textures: distances, thickness, depth, cells, normals", "bake"),
     "new": Command("new", "write a commented material to start from"),
 }

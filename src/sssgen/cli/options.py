@@ -47,7 +47,7 @@ def add_targets(parser: argparse.ArgumentParser, required: bool = False, default
 
 def add_guards(parser: argparse.ArgumentParser, default: str = "auto") -> None:
     """Which operations are guarded: `--guards`."""
-    help = "guard operations that may fail: auto where safety is not proven, all everywhere, none nowhere"
+    help = "which operations that can fail get a guard: auto, those not proven safe; all; or none"
     choices = ("auto", "all", "none")
     parser.add_argument("--guards", choices=choices, default=default, help=f"{help} (default: {default})")
 

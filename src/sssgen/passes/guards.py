@@ -1,8 +1,8 @@
 """Inserts guards around operations that the range pass could not prove safe, and removes the author's assumptions.
 
 The intrinsic table has the guards. A guard replaces an argument, the result, or the whole call.
-Place: after `hoist`, on whose result the ranges are computed; before `parameters` and `legalise`, which treat guards as
-ordinary code.
+Place: after `hoist`, on whose result the ranges are computed; before `uniform_parameters` and `legalise`, which
+treat guards as ordinary code.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Removes everything that a material does not use: functions, uniforms, constants, structs, statements without effect.
 
 Why: a shader must contain only the parameters of its techniques, and a reader should not find dead code.
-Place: after `fold`, which makes branches and uniforms unused; before `hoist`, `parameters` and `names`, which
+Place: after `fold`, which makes branches and uniforms unused; before `hoist`, `uniform_parameters` and `names`, which
 then see only used declarations, callees before callers. It may run again after a pass that leaves unused code.
 """
 

@@ -1,9 +1,8 @@
 """Quantity types: what a number or vector measures, so that thickness and transmittance are not mixed by mistake.
 
 A quantity is a name over a plain type. A quantity value may be used as its plain type anywhere; a plain value
-becomes a quantity only through the constructor of that name; one quantity never becomes another but by a
-named conversion. The idea of spaces as types is Gator's ("Geometry types for graphics programming", OOPSLA
-2020).
+becomes a quantity only through the constructor of that name; only a named conversion makes another quantity of it. The
+idea of spaces as types is Gator's ("Geometry types for graphics programming", OOPSLA 2020).
 """
 
 from __future__ import annotations
