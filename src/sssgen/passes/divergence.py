@@ -131,7 +131,7 @@ def _summary(function: Function, visit: Any, shared: Effects) -> Summary:
     )
 
 
-class Site(NamedTuple):
+class CallContext(NamedTuple):
     """How a function is called, all its calls taken together."""
 
     uniform: bool
@@ -139,9 +139,9 @@ class Site(NamedTuple):
     """The parameters that vary."""
 
 
-def joined(one: Site | None, other: Site) -> Site:
+def joined(one: CallContext | None, other: CallContext) -> CallContext:
     """Both sites taken together."""
-    return other if one is None else Site(one.uniform and other.uniform, one.varying | other.varying)
+    return other if one is None else CallContext(one.uniform and other.uniform, one.varying | other.varying)
 
 
 class Divergence:
@@ -150,7 +150,7 @@ class Divergence:
     def __init__(
         self,
         function: Function,
-        site: Site,
+        site: CallContext,
         summaries: Mapping[str, Summary],
         functions: Mapping[str, Function],
     ) -> None:
@@ -161,7 +161,7 @@ class Divergence:
         """The statements, by id, that are reached uniformly and in which flow diverges."""
         self.after: set[int] = set()
         """The statements, by id, that are reached uniformly and not left so."""
-        self.sites: dict[str, Site] = {}
+        self.sites: dict[str, CallContext] = {}
         """How the functions are called that need uniform flow."""
         self.shared = summaries.get(function.key, _UNKNOWN).reads
         self.flow = site.uniform
@@ -312,7 +312,7 @@ class Divergence:
         if summary.compares:
             self.compare(expr)
             params = self.functions[expr.function].params
-            site = Site(self.flow, frozenset(param.name for param, arg in zip(params, args, strict=True) if arg))
+            site = CallContext(self.flow, frozenset(param.name for param, arg in zip(params, args, strict=True) if arg))
             self.sites[expr.function] = joined(self.sites.get(expr.function), site)
         for index in summary.outs:
             target = root(expr.args[index])

@@ -47,7 +47,7 @@ from sssgen.ir.walk import (
     with_operands,
     written_root,
 )
-from sssgen.passes.divergence import Divergence, Site, Summary, implicit, joined, summaries
+from sssgen.passes.divergence import CallContext, Divergence, Summary, implicit, joined, summaries
 from sssgen.passes.scopes import declared, fresh, qualified_name
 
 _LARGEST = 64
@@ -70,10 +70,10 @@ def hoist(module: Module, entries: Iterable[str]) -> tuple[Module, list[Note]]:
         return module, []
     summary_of = summaries(module)
     functions = {function.key: function for function in module.functions}
-    sites: dict[str, Site] = {}
+    sites: dict[str, CallContext] = {}
     for key in entries:
         if summary_of[key].compares:
-            sites[key] = Site(True, frozenset(param.name for param in functions[key].params))
+            sites[key] = CallContext(True, frozenset(param.name for param in functions[key].params))
     notes: dict[Note, None] = {}
     for key in _callers_first(sites, summary_of):
         function = functions[key]
@@ -136,7 +136,7 @@ class _Hoister(Transformer):
     def __init__(
         self,
         function: Function,
-        site: Site,
+        site: CallContext,
         flow: Divergence,
         known: Mapping[str, Summary],
         notes: dict[Note, None],

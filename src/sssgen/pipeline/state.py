@@ -33,7 +33,7 @@ class State:
     """Whether the text stays as its author wrote it, except what the target cannot express."""
     called: Sequence[str] | None = None
     """The keys of the functions that are called from outside, where only some are."""
-    fate: Callable[[Site], str] | None = None
+    guard_action: Callable[[Site], str] | None = None
     """What becomes of a single guard; see `at` of `passes.guards.guard`."""
     chained: bool = False
     """Whether the functions are techniques, whose parameters have the ranges of their names."""

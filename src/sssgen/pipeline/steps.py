@@ -146,7 +146,7 @@ def insert_guards(state: State) -> Module:
         remaining = {function.key for function in state.module.functions}
         called += [function.key for function in state.linked if function.key in remaining]
     state.guarded = guard(
-        state.module, called, state.guards, guard_source, polyfill, state.format, state.fate,
+        state.module, called, state.guards, guard_source, polyfill, state.format, state.guard_action,
         state.chained or state.material is not None,
     )  # fmt: skip
     return state.guarded.module

@@ -92,7 +92,7 @@ ROWS = (
     DangerousRow("hit-offset", "a hit a little inside", "at least 0, as on the surface", field.hit_offset),
     DangerousRow("grazing-march", "a march from the surface itself, grazing", "no jump", field.grazing_march),
     DangerousRow(
-        "flat-box", "a flat bounding box, or one above 0", "padded; its lowest corner taken off", field.flat_box,
+        "flat-box", "a flat bounding box, or one above 0", "padded; its lowest corner subtracted", field.flat_box,
     ),
     DangerousRow(
         "meshes", "open, non-manifold, self-intersecting, inverted meshes", "signed by winding, or refused", None,

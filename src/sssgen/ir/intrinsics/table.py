@@ -38,9 +38,9 @@ class Guard(NamedTuple):
     ordered: tuple[int, int] | None = None
     """Two arguments: the call is also safe if the first is known to be no larger than the second."""
     argument: Callable[[Format, Range], Range] | None = None
-    """The range of the replaced argument behind the guard, where the row's range function needs it."""
+    """The range of the replaced argument after the guard, where the row's range function needs it."""
     result: Callable[[Format, Range], Range] = lambda F, range: clip(range, -F.largest, F.largest)
-    """The range of the call's result behind the guard: by default it is finite."""
+    """The range of the call's result after the guard: by default it is finite."""
 
 
 def with_constants(text: str, format: Format, limits: Interval, shown: Callable[[float], str] = repr) -> str:

@@ -14,7 +14,7 @@ import numpy as np
 from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
 from sssgen.harness.scenes.placed import Array
 
-ROOTS = 80
+BISECTION_STEPS = 80
 """Bisection steps: enough for the last bit."""
 
 
@@ -199,7 +199,7 @@ def _(geometry: Distance, origins: Array, directions: Array) -> Array:
 def _bisected(geometry: Geometry, origins: Array, directions: Array, low: Array, high: Array) -> Array:
     """The position of the sign change between low and high, along each ray."""
     negative = geometry.distance(origins + low[:, None] * directions) < 0.0
-    for _ in range(ROOTS):
+    for _ in range(BISECTION_STEPS):
         middle = 0.5 * (low + high)
         same = (geometry.distance(origins + middle[:, None] * directions) < 0.0) == negative
         low, high = np.where(same, middle, low), np.where(same, high, middle)

@@ -1,4 +1,4 @@
-"""Shortens the code that `predicate` leaves: joins assignments, and inlines or removes the variables it made."""
+"""Shortens the code that `predicate` leaves: joins assignments, and inlines or removes the variables it generated."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ _NUMBER = re.compile(r"_\d+$")
 class _Uses(NamedTuple):
     """The uses of a function's variables."""
 
-    made: Set[str]
+    generated: Set[str]
     single: Set[str]
-    """Those of `made` that are set once and read at most once."""
+    """Those of `generated` that are assigned once and read at most once."""
     reads: dict[str, int]
     functions: Functions
 
 
-def tidy(body: Block, made: Set[str], functions: Functions) -> Block:
-    """Joins the assignments of two arms where possible, and removes or inlines variables of `made` used once."""
+def tidy(body: Block, generated: Set[str], functions: Functions) -> Block:
+    """Joins the assignments of two arms where possible, and removes or inlines variables of `generated` used once."""
     body = _join_arms(body, functions)
     while True:
         reads: dict[str, int] = {}
@@ -36,8 +36,8 @@ def tidy(body: Block, made: Set[str], functions: Functions) -> Block:
             for name in own_reads(stmt):
                 reads[name] = reads.get(name, 0) + 1
             written.update(own_writes(stmt, functions))
-        single = {name for name in made - written if reads.get(name, 0) <= 1}
-        new = _inline(body, _Uses(made, single, reads, functions))
+        single = {name for name in generated - written if reads.get(name, 0) <= 1}
+        new = _inline(body, _Uses(generated, single, reads, functions))
         if new is body:
             return body
         body = new
@@ -62,7 +62,7 @@ def _inline(block: Block, uses: _Uses) -> Block:
             previous = block[index - 1]
             if (
                 isinstance(previous, Assign)
-                and stmt.value.name in uses.made
+                and stmt.value.name in uses.generated
                 and is_local(previous.target, stmt.value.name)
             ):
                 return (*block[: index - 1], Return(previous.value, stmt.span), *block[index + 1 :])
@@ -136,12 +136,12 @@ def _other_arm(done: list[Stmt], name: str, mask: str, functions: Functions) -> 
     return None
 
 
-def renumber(body: Block, made: Set[str], taken: Set[str]) -> Block:
-    """Numbers the names in `made` without gaps: `tidy` removed some of them."""
+def renumber(body: Block, generated: Set[str], taken: Set[str]) -> Block:
+    """Numbers the names in `generated` without gaps: `tidy` removed some of them."""
     names: dict[str, str] = {}
-    used = set(taken) - made
+    used = set(taken) - generated
     for stmt in statements(body):
-        if isinstance(stmt, Declare) and stmt.name in made and stmt.name not in names:
+        if isinstance(stmt, Declare) and stmt.name in generated and stmt.name not in names:
             names[stmt.name] = fresh(_NUMBER.sub("", stmt.name), used)
             used.add(names[stmt.name])
 

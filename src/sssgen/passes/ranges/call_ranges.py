@@ -75,7 +75,7 @@ class CallRanges(AnalysisState):
     def guarded(
         self, node: ir.Intrinsic, row: Builtin, args: tuple[Value, ...]
     ) -> tuple[tuple[Value, ...], Guard | None]:
-        """Checks a builtin's domain: the arguments behind the guard that it needs, and that guard, if any."""
+        """Checks a builtin's domain: the arguments after the guard that it needs, and that guard, if any."""
         guards = [guard for guard in row.guards if guard.replaces != "y" or len(args) > 1]  # atan may have one
         if not guards or kind_of(node.type) not in ("float", ""):
             return args, None
