@@ -116,7 +116,12 @@ PAIRS = {
     "normals as a colour": ("base_color", "base_color_texture", ["normal", "cells.png"], "takes colours"),
     "cells as normals": ("normal_map", "normal_texture", ["voronoi"], "takes normals"),
     "normals with green down": ("normal_map", "normal_texture", ["normal", "cells.png", "--green", "directx"], "green"),
-    "a thickness as a view": ("depth_map_thickness", "light_depth_map", ["voronoi"], "what a view of the body sees"),
+    "a thickness as a view": (
+        "depth_map_thickness",
+        "light_depth_map",
+        ["voronoi"],
+        "takes an image of the body from one view",
+    ),
     "normals as a height": ("normal_from_height", "height_texture", ["normal", "cells.png"], "takes other numbers"),
 }
 
@@ -151,5 +156,5 @@ def test_a_fixed_parameter_is_the_baked_one(tmp_path: Path) -> None:
     for wrong in ("1" + 400 * "0", '"a"', "[[1]]", "NaN"):
         message = f'"holds": "thickness", "parameters": {{"thickness_factor": {wrong}}}'
         (tmp_path / "t.png.json").write_text(f'{{"format": 1, "kind": "thickness", {message}}}', encoding="utf-8")
-        with pytest.raises(SssgenError, match="not made of numbers"):
+        with pytest.raises(SssgenError, match="must be a number or a list of numbers"):
             compile(tmp_path / "m.toml", "wgsl")

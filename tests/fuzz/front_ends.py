@@ -253,12 +253,13 @@ FRONT_ENDS = {
 
 
 WHOLE = re.compile(
-    "the file (is too large|is empty|has no function)|the technique .* has no role|unknown role|no such file"
-    "|no file can|this is not a (file|reflection)|cannot read|cannot find the (picture|mesh|light)"
+    "the file (is too large|is empty|has no function)|no such file"
+    "|this is not a (file|reflection|valid file name)|cannot read|cannot find the (picture|mesh|light)"
     "|no technique is named|nothing to compile|there is nothing to check|the lists are nested"
     "|a number has thousands|the inputs are no"
     "|this is of another format|'parameters' and|the light has|a light's|this direction"
-    "|'.*' is no |'samples' is|unknown key|texture '.*' is given"
+    "|'.*' is not a picture file's suffix|the format is not 1|the light needs"
+    "|'samples' is|unknown key|texture '.*' is given"
 )
 """The errors of texts that are about the whole file, or about a JSON value, whose place json does not tell."""
 

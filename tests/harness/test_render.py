@@ -305,5 +305,5 @@ def test_a_texture_too_large_for_the_driver(
 def test_a_texture_with_no_numbers_in_it(scene: Callable[..., str], tmp_path: Path, texel: float) -> None:
     np.save(tmp_path / "none.npy", np.full((2, 2, 3), texel))
     path = scene(f'material = "resin_inlay"\n{BALL}[textures]\nbase_color_texture = "none.npy"\n')
-    with pytest.raises(SssgenError, match="a texture has NaN, infinity or numbers beyond 65504"):
+    with pytest.raises(SssgenError, match="a texture contains NaN, infinity or numbers beyond 65504"):
         render(load(path), backends.get("numpy"), SIZE)

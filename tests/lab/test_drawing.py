@@ -24,7 +24,7 @@ from sssgen.harness.backends.browser_page import find
 from sssgen.lab.chart import drawing
 from sssgen.lab.chart.drawing import figure
 from sssgen.lab.chart.drawing.panels import COLORS, charts_of, label_texts, medians, number, styles
-from sssgen.lab.chart.record import checked, front, hypervolume, measures, to_csv, to_json
+from sssgen.lab.chart.record import LEAST, checked, front, hypervolume, measures, to_csv, to_json
 from sssgen.support.diagnostics import SssgenError
 
 SCENES = {"slab": "A slab <b>&", "ball": "Ball, lit from behind", "cube": "Marble $x^2$ cube"}
@@ -85,9 +85,13 @@ NUMBERS = st.sampled_from([0.0, 1e-7, 0.1, 0.25, 1.0, 3.0, 40.0])
 def test_the_front_has_the_points_that_none_dominates(given_points: list[tuple[float, float, bool]]) -> None:
     points = [point(cost, error, failed="NaN" if failed else "") for cost, error, failed in given_points]
 
+    def rounded(one: dict[str, Any]) -> tuple[float, float]:
+        cost, error = measures(one)
+        return cost, max(error, LEAST)
+
     def beaten(one: dict[str, Any]) -> bool:
-        x, y = measures(one)
-        remaining = [measures(other) for other in points if not other["failed"]]
+        x, y = rounded(one)
+        remaining = [rounded(other) for other in points if not other["failed"]]
         return any(cost <= x and error <= y and (cost, error) != (x, y) for cost, error in remaining)
 
     expected = [id(one) for one in points if not one["failed"] and not beaten(one)]

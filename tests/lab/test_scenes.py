@@ -110,7 +110,7 @@ def test_the_held_out_view_is_turned_about_the_vertical_through_the_target() -> 
         (UNION + '[[geometry.part]]\nkind = "capsule"\nmajor = 1\n', "unknown key 'major'", 7),
         (UNION + '[[geometry.part]]\nkind = "capsule"\nlength = -1\n', "'length' cannot be -1", 7),
         (UNION + 'projection = "sperical"\n[[geometry.part]]\nkind = "ball"\n', "unknown projection", 5),
-        ('title = ["a"]\n[inlay]\n' + BALL, "'title' takes a text", 1),
+        ('title = ["a"]\n[inlay]\n' + BALL, "'title' takes one line of text", 1),
         ("[medum]\n" + BALL, "did you mean 'medium'", 1),
         ('[medium]\npreset = "marbel"\n' + BALL + LIT, "did you mean 'marble'", 2),
         ('[medium]\npreset = "marble"\nabsorption = [1, 1, 1]\n' + BALL + LIT, "a preset has its own absorption", 3),

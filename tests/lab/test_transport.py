@@ -350,8 +350,8 @@ def test_volumes_are_those_of_the_shapes() -> None:
     [
         ({"medium": preset("marble")}, "medium.matched()"),
         ({"light_direction": (0.0, 0.0, 2.0)}, "divide it by its length"),
-        ({"light_direction": Light((0.0, 0.0, 1.0), radius=90.0)}, "below 90"),
-        ({"samples": 0}, "cannot be 0 samples"),
+        ({"light_direction": Light((0.0, 0.0, 1.0), radius=90.0)}, "less than 90"),
+        ({"samples": 0}, "0 samples are too few"),
         ({"camera": Camera(position=(0.2, 0.1, 0.3))}, "move the camera out"),
     ],
 )

@@ -21,6 +21,17 @@ def source_line(span: Span) -> str:
     return lines[span.line - 1] if 0 < span.line <= len(lines) else ""
 
 
+def line_before(span: Span, pattern: str) -> Span | None:
+    """The last line before a span of a loaded file that matches a regular expression."""
+    lines = _lines.get(span.file, [])
+    for number in range(min(span.line - 1, len(lines)), 0, -1):
+        text = lines[number - 1]
+        if re.search(pattern, text):
+            start = len(text) - len(text.lstrip(" \t/*")) + 1
+            return Span(span.file, number, start, number, len(text) + 1)
+    return None
+
+
 def comments_before(file: str, line: int) -> list[str]:
     """The `//` comments alone on the lines directly before a line of a loaded file, without their marks."""
     lines = _lines.get(file, [])

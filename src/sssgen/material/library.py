@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import functools
 import os
+import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
 from sssgen.ir.nodes import Function, Module, Uniform
 from sssgen.lang.loader import load_file
+from sssgen.lang.source_lines import line_before, source_line
 from sssgen.material import attributes
 from sssgen.material.attributes import Attributes
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
@@ -109,16 +111,29 @@ def _read_technique(path: str) -> Technique:
     function = next((f for f in reversed(module.functions) if f.name == name and f.body is not None), None)
     if function is None:
         raise failure(f"the file has no function '{name}'", "a technique has the name of its file", shown)
-    doc = attributes.sections(function.doc, shown)
-    role = doc.get("role", folder_of(path))
-    if "role" not in doc and role not in ROLES:
-        hint = "write, for example, `role: translucency` in the doc comment directly before the function"
-        raise failure(f"the technique '{name}' has no role", hint, shown)
-    if role not in ROLES:
-        raise failure(f"unknown role '{role}'", did_you_mean(role, ROLES) or f"roles: {', '.join(ROLES)}", shown)
-    declared = attributes.read(doc, shown)
-    _check_attributes(declared, module, function, shown)
+    try:
+        doc = attributes.sections(function.doc, shown)
+        role = doc.get("role", folder_of(path))
+        if "role" not in doc and role not in ROLES:
+            hint = "write, for example, `role: translucency` in the doc comment directly before the function"
+            raise failure(f"the technique '{name}' has no role", hint, shown)
+        if role not in ROLES:
+            raise failure(f"unknown role '{role}'", did_you_mean(role, ROLES) or f"roles: {', '.join(ROLES)}", shown)
+        declared = attributes.read(doc, shown)
+        _check_attributes(declared, module, function, shown)
+    except SssgenError as error:
+        raise _placed(error, function) from None
     return Technique(name, role, path, module, function, doc, declared)
+
+
+def _placed(error: SssgenError, function: Function) -> SssgenError:
+    """Errors of a doc comment with their places: the attribute's line, or the function where no line names it."""
+    placed = []
+    for diagnostic in error.diagnostics:
+        words = [re.escape(word) for word in re.findall(r"[a-z_]\w*", diagnostic.message)]
+        span = line_before(function.span, rf"^[\s/*]*(?:{'|'.join(words)})\s*:") or function.span
+        placed.append(diagnostic._replace(span=span, source_line=source_line(span)))
+    return SssgenError(placed)
 
 
 def _check_attributes(declared: Attributes, module: Module, function: Function, shown: str) -> None:

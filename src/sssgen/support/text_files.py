@@ -31,7 +31,7 @@ def read_text(path: str | os.PathLike[str], shown: str) -> str:
     except OSError as error:
         raise failure(f"cannot read the file: {error.strerror}", file=shown) from None
     except ValueError:  # a zero byte or a lone surrogate in its name
-        raise failure("no file can have this name", file=shown) from None
+        raise failure("this is not a valid file name", file=shown) from None
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -16,8 +16,6 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import pytest
 
-from sssgen.harness.backend_registry import PREFERRED
-
 if TYPE_CHECKING:
     from sssgen.harness.backends import Array, Backend
     from sssgen.harness.render.scene_render import Rendered
@@ -33,7 +31,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group = parser.getgroup("sssgen", "shaders of sssgen")
     group.addoption(
         "--sssgen-backend", metavar="NAME", action="append", default=[],
-        help=f"the back end that runs and draws; several, with commas, run each test on each (default: {PREFERRED})",
+        help="the back end that runs and draws; several, with commas, run each test on each (default: OpenGL)",
     )  # fmt: skip
     group.addoption("--sssgen-update", action="store_true", help="write golden pictures instead of comparing")
     group.addoption(
@@ -222,6 +220,8 @@ def _run(
 
 def _names(config: pytest.Config) -> list[str]:
     """The back ends of the options without duplicates; the pictures of the first are the golden ones."""
+    from sssgen.harness.backend_registry import PREFERRED
+
     listed = ",".join(config.getoption("sssgen_backend") or [PREFERRED])
     return list(dict.fromkeys(name.strip() for name in listed.split(",")))
 
