@@ -2,7 +2,7 @@
 
     for erratum in ERRATA:
         as_published(erratum, backends.get("gl"))       # wrong, as theory predicts
-        as_mended(erratum, backends.get("gl"))          # within the bounds of `erratum.right`
+        as_corrected(erratum, backends.get("gl"))          # within the bounds of `erratum.right`
 
 docs/errata.md says it in words, docs/stability.md shows it; `UNSHOWN` has what no number can show,
 `OPEN` what ours does not keep either.
@@ -12,14 +12,14 @@ from __future__ import annotations
 
 from qualification.errata.absorption import ABSORPTION
 from qualification.errata.distance_fields import CHEAP_SSS, OPEN
-from qualification.errata.erratum import Erratum, Measure, Right, as_mended, as_published, holds, shows
+from qualification.errata.erratum import Erratum, Measure, Right, as_corrected, as_published, holds, shows
 from qualification.errata.lobes import ALISAVAKIS, UNITY_ICE
 from qualification.errata.marches import DISTANCE_FIELDS
 from qualification.errata.parallax import SUBSURFACE_PARALLAX
 from qualification.errata.unshown import UNSHOWN, Unshown
 
 __all__ = [
-    "BACKENDS", "CHAPTERS", "ERRATA", "OPEN", "UNSHOWN", "Erratum", "Measure", "Right", "Unshown", "as_mended",
+    "BACKENDS", "CHAPTERS", "ERRATA", "OPEN", "UNSHOWN", "Erratum", "Measure", "Right", "Unshown", "as_corrected",
     "as_published", "holds", "shows",
 ]  # fmt: skip
 

@@ -73,7 +73,7 @@ def as_published(erratum: Erratum, backend: Backend) -> Figures:
     return _figures(erratum.published, backend, "none")
 
 
-def as_mended(erratum: Erratum, backend: Backend) -> Figures:
+def as_corrected(erratum: Erratum, backend: Backend) -> Figures:
     """The figures of ours, as it is emitted. Raises SssgenError where the back end refuses."""
     return _figures(erratum.mended, backend, "auto")
 

@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
-from qualification.errata import BACKENDS, CHAPTERS, OPEN, UNSHOWN, Erratum, Right, as_mended, as_published, maps
+from qualification.errata import BACKENDS, CHAPTERS, OPEN, UNSHOWN, Erratum, Right, as_corrected, as_published, maps
 from sssgen.harness import backends
 from sssgen.harness.backends import Backend
 from sssgen.harness.render.scene_render import render
@@ -269,7 +269,7 @@ def row(erratum: Erratum) -> str:
         erratum.shown,
         figures_text(erratum.theory) if erratum.theory else "undefined",
         _by_backend({one.name: figures_text(as_published(erratum, one)) for one in present()}),
-        _by_backend({one.name: figures_text(as_mended(erratum, one)) for one in present()}),
+        _by_backend({one.name: figures_text(as_corrected(erratum, one)) for one in present()}),
         _bounds(erratum.right),
     ]
     return f"| {' | '.join(cells)} |"

@@ -1,10 +1,10 @@
 """Describe a translucent material once; get it, proven and measured, in every engine.
 
 >>> import sssgen
->>> made = sssgen.compile("resin_inlay", "wgsl")
->>> list(made.files)
+>>> shader = sssgen.compile("resin_inlay", "wgsl")
+>>> list(shader.files)
 ['resin_inlay.wgsl', 'resin_inlay.wgsl.reflection.json']
->>> [texture["name"] for texture in made.reflection["textures"]]
+>>> [texture["name"] for texture in shader.reflection["textures"]]
 ['base_color_texture']
 
 What is public: `compile`, `load_material`, `load_technique`, `all_targets`, `Compiled`, `Material`, `SssgenError`.

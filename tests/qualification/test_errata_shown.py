@@ -15,7 +15,7 @@ from qualification.errata import (
     UNSHOWN,
     Erratum,
     Right,
-    as_mended,
+    as_corrected,
     as_published,
     holds,
     shows,
@@ -54,7 +54,7 @@ def test_the_published_techniques_have_the_predicted_errors(backend: Get, name: 
 def test_the_corrected_techniques_hold(backend: Get, name: str) -> None:
     machine = backend(name)
     for erratum in ERRATA:
-        result = as_mended(erratum, machine)
+        result = as_corrected(erratum, machine)
         assert holds(erratum, result), description(erratum, result)
         assert not erratum.everywhere or not shows(erratum, result), description(erratum, result)
 
@@ -87,7 +87,7 @@ def test_every_published_source_has_errata() -> None:
 def test_open_errata_are_not_fixed(backend: Get) -> None:
     for erratum in OPEN:
         assert shows(erratum, as_published(erratum, backend("numpy-f32")))
-        result = as_mended(erratum, backend("numpy-f32"))
+        result = as_corrected(erratum, backend("numpy-f32"))
         assert not holds(erratum, result), f"{description(erratum, result)} is mended: move it to its chapter"
 
 

@@ -13,7 +13,7 @@ import pytest
 from PIL import Image
 
 from folders import DOCS
-from qualification.errata import ERRATA, OPEN, UNSHOWN, as_mended, as_published
+from qualification.errata import ERRATA, OPEN, UNSHOWN, as_corrected, as_published
 from qualification.pages import stability
 from sssgen.harness.backends import Backend
 from sssgen.harness.pictures import images
@@ -63,7 +63,7 @@ def test_the_figures_are_current(backend: Get, name: str) -> None:
         assert cells[2] == (script()["figures_text"](erratum.theory) if erratum.theory else "undefined")
         assert cells[5] == script()["_bounds"](erratum.right)
         close = {"rel": 1e-3, "abs": 2e-6, "nan_ok": True}
-        assert figures(cells[4], name) == pytest.approx(as_mended(erratum, machine), **close), erratum.name
+        assert figures(cells[4], name) == pytest.approx(as_corrected(erratum, machine), **close), erratum.name
         if erratum.everywhere or name == "numpy-f32":
             assert figures(cells[3], name) == pytest.approx(as_published(erratum, machine), **close), erratum.name
 

@@ -43,7 +43,7 @@ class Compiled(NamedTuple):
 
     @property
     def reflection(self) -> dict[str, Any]:
-        """The reflection, parsed anew at each access; the caller may change it."""
+        """The reflection, parsed at each access; the caller may change it."""
         import json
 
         reflection: dict[str, Any] = json.loads(list(self.files.values())[-1])

@@ -41,7 +41,7 @@ def _off_integer_quotients(rt: Any, x: Any, y: Any, rounding: float = 2.0**-20) 
 _REMAINDER = Guard(
     lambda F, x, y: not y.has_zero(), "a remainder of division by 0", NONZERO, "y", function="nonzero",
     argument=lambda F, y: Range(y.low, y.high, max(y.gap, F.divisor)),
-    result=lambda F, found: found,  # not finite, where the quotient overflows
+    result=lambda F, range: range,  # not finite, where the quotient overflows
 )  # fmt: skip
 
 

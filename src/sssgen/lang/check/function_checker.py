@@ -94,7 +94,7 @@ class FunctionChecker:
             self.defined.add(function.span)
 
     def define_zeros(self, function: ir.Function) -> ir.Function:
-        """A body of zeros for a function that the file expects from whoever includes it, with a warning."""
+        """A body of zeros for a function that the including file must define, with a warning."""
         span = function.span
         message = f"'{function.name}' is declared and called, but has no body in this file: it returns zeros"
         hint = "write its body in the translation, or include the file that defines it"

@@ -51,14 +51,14 @@ class Numbers:
     def sum(self, op: str, left: int, right: int, kind: str, slack: float) -> int:
         """The number of a sum or difference, which rounds by `slack` at most (infinite where an integer may wrap)."""
         number = self.of(op, *(sorted((left, right)) if op == "+" else (left, right)), kind)
-        one, two = self.sum_of(left), self.sum_of(right)
+        left_sum, right_sum = self.sum_of(left), self.sum_of(right)
         sign = 1.0 if op == "+" else -1.0
-        slack += one.slack + two.slack
+        slack += left_sum.slack + right_sum.slack
         earlier = self.sums.get(number)
         if earlier is None:
-            terms = _added(one.terms, two.terms, sign)
+            terms = _added(left_sum.terms, right_sum.terms, sign)
             if len(terms) <= _TERMS:
-                self.sums[number] = Sum(terms, one.constant + sign * two.constant, slack)
+                self.sums[number] = Sum(terms, left_sum.constant + sign * right_sum.constant, slack)
         elif slack > earlier.slack:
             self.sums[number] = Sum(earlier.terms, earlier.constant, slack)
         return number
@@ -72,8 +72,9 @@ class Numbers:
 
     def difference(self, left: int, right: int) -> Sum:
         """`left - right` as a sum."""
-        one, two = self.sum_of(left), self.sum_of(right)
-        return Sum(_added(one.terms, two.terms, -1.0), one.constant - two.constant, one.slack + two.slack)
+        left_sum, right_sum = self.sum_of(left), self.sum_of(right)
+        terms = _added(left_sum.terms, right_sum.terms, -1.0)
+        return Sum(terms, left_sum.constant - right_sum.constant, left_sum.slack + right_sum.slack)
 
 
 def _added(one: Terms, two: Terms, sign: float) -> Terms:
@@ -102,8 +103,8 @@ class Facts(NamedTuple):
 
     def learn(self, numbers: Numbers, number: int, range: Range) -> None:
         """Adds that a number lies in a range, and what follows for the operands that it was computed from."""
-        known = self.ranges.get(number)
-        range = range if known is None else known.met(range)
+        earlier = self.ranges.get(number)
+        range = range if earlier is None else earlier.met(range)
         self.ranges[number] = range
         key = numbers.definitions[number]
         if key[0] == "abs":

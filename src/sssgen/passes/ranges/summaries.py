@@ -69,14 +69,14 @@ class CallSummaries(LoopRanges):
     def summary(self, function: ir.Function, args: Sequence[Value]) -> Summary:
         """A function's summary, widened if it does not cover the arguments yet."""
         key = function.key, *[arg.texel for arg in args]
-        known = self.summaries.get(key)
-        if known is not None and known.covers(args):
-            return known
-        widenings = 0 if known is None else known.widenings + 1
-        if known is not None:
+        summary = self.summaries.get(key)
+        if summary is not None and summary.covers(args):
+            return summary
+        widenings = 0 if summary is None else summary.widenings + 1
+        if summary is not None:
             args = [
                 self.wider_value(scalar_kinds(param.type), old, arg, widenings) if arg.parts else arg
-                for param, old, arg in zip(function.params, known.args, args, strict=True)
+                for param, old, arg in zip(function.params, summary.args, args, strict=True)
             ]
         args = [self.unrelated(arg) for arg in args]
         outer = self.state
@@ -87,7 +87,7 @@ class CallSummaries(LoopRanges):
         return self.summaries[key]
 
     def unrelated(self, value: Value) -> Value:
-        """A value of the same ranges, of which no relation to other values is known."""
+        """A value of the same ranges, of which no relation to other values is summary."""
         return value._replace(numbers=tuple([self.numbers.fresh() for _ in value.parts]))
 
     def wider_value(self, kinds: Sequence[str], old: Value, new: Value, widenings: int) -> Value:
