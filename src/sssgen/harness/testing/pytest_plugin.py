@@ -62,9 +62,10 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """Runs a test once for each back end."""
-    names = _names(metafunc.config)
-    if "sssgen_backend" in metafunc.fixturenames and len(names) > 1:
-        metafunc.parametrize("sssgen_backend", names, indirect=True, scope="session")
+    if "sssgen_backend" in metafunc.fixturenames:
+        names = _names(metafunc.config)
+        if len(names) > 1:
+            metafunc.parametrize("sssgen_backend", names, indirect=True, scope="session")
 
 
 @pytest.fixture(scope="session")
