@@ -12,14 +12,21 @@ from pathlib import Path
 import pytest
 
 from folders import ROOT
-from sssgen.harness.backends import Backend
+from sssgen.harness.backends import Backend, missing
 
-# pytester forgets the modules that a run was the first to import, and their classes would then be there twice
+# pytester forgets the modules that a run was the first to import: their classes and contexts would then exist twice.
+# So the renderer is imported here, and `_start_back_ends` starts every back end.
 from sssgen.harness.render import scene_render as render  # noqa: F401
 
 pytest.importorskip("flip_evaluator", reason="flip-evaluator is missing: pip install 'sssgen[render]'")
 
 pytest_plugins = ["pytester"]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _start_back_ends() -> None:
+    missing()
+
 
 SCENE = """\
 material = "lamp.toml"
