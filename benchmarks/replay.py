@@ -18,6 +18,10 @@ import sys
 import tarfile
 import tempfile
 from pathlib import Path
+from typing import Any
+
+EXTRACTION: dict[str, Any] = {"filter": "data"} if hasattr(tarfile, "data_filter") else {}
+"""Python before 3.11.4 has no extraction filters."""
 
 ROOT = Path(__file__).resolve().parent.parent
 FORMS = ("shader", "functions")
@@ -33,7 +37,7 @@ def checkout(state: str, place: Path) -> Path:
     archive = place.with_suffix(".tar")
     subprocess.run(["git", "-C", str(ROOT), "archive", "--output", str(archive), state], check=True)
     with tarfile.open(archive) as files:
-        files.extractall(place, filter="data")
+        files.extractall(place, **EXTRACTION)
     return place
 
 
