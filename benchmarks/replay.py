@@ -13,6 +13,7 @@ import argparse
 import difflib
 import json
 import os
+import re
 import subprocess
 import sys
 import tarfile
@@ -84,6 +85,29 @@ def texts_of_this_state() -> dict[str, str]:
     return texts
 
 
+def renamed(text: str, old: str, new: str) -> str:
+    """A text with a name replaced in the spellings of all targets."""
+    for spelled in (str, str.upper, lambda name: "".join(part.capitalize() for part in name.split("_"))):
+        text = text.replace(spelled(old), spelled(new))
+    return text
+
+
+def code(name: str, text: str) -> str:
+    """A text without comments and spaces, a reflection without documentation and places in sources."""
+    if name.endswith(".json"):
+        return json.dumps(_without_places(json.loads(text)), indent=1)
+    text = re.sub(r"/\*.*?\*/|//[^\n]*", "", text, flags=re.DOTALL)
+    if name.endswith(".py"):
+        text = re.sub(r'""".*?"""|#[^\n]*', "", text, flags=re.DOTALL)
+    return re.sub(r"([;{}])", "\\1\n", "".join(text.split()))
+
+
+def _without_places(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _without_places(item) for key, item in value.items() if key not in ("doc", "source_map", "at")}
+    return [_without_places(item) for item in value] if isinstance(value, list) else value
+
+
 def main() -> int:
     """Compares; returns the exit status."""
     if sys.argv[1:2] == ["--emit"]:  # in the process of one state
@@ -92,11 +116,17 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("OLD")
     parser.add_argument("NEW", nargs="?", default=str(ROOT))
+    parser.add_argument("--code", action="store_true", help="ignore comments, documentation, spaces and source places")
+    parser.add_argument("--rename", metavar="OLD=NEW", action="append", default=[], help="a name that NEW renamed")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         work = Path(folder)
         old, new = checkout(arguments.OLD, work / "old"), checkout(arguments.NEW, work / "new")
         before, after = emitted(old, old, work / "before.json"), emitted(new, old, work / "after.json")
+    for old_name, _, new_name in (rename.partition("=") for rename in arguments.rename):
+        before = {renamed(name, old_name, new_name): renamed(text, old_name, new_name) for name, text in before.items()}
+    if arguments.code:
+        before, after = ({name: code(name, text) for name, text in texts.items()} for texts in (before, after))
     names = sorted(before.keys() | after.keys())
     differing = [name for name in names if before.get(name) != after.get(name)]
     for name in differing:
