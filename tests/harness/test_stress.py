@@ -73,7 +73,7 @@ def planted(tmp_path: Path) -> Callable[..., str]:
     return write
 
 
-def told(specimen: Specimen, result: Machines, settings: Settings) -> list[Fault]:
+def faults_in(specimen: Specimen, result: Machines, settings: Settings) -> list[Fault]:
     """The faults that count."""
     (column,) = stress(specimen, result, settings).columns
     assert not column.error
@@ -94,7 +94,7 @@ def test_dangerous_row(row: str, name: str, machines: Callable[[str], Machines])
             concerned += 1
             faults += [
                 (specimen.title, *fault[:3], fault.command)
-                for fault in told(specimen, result, Settings(1, rows=(row,)))
+                for fault in faults_in(specimen, result, Settings(1, rows=(row,)))
             ]
     assert concerned
     assert not faults
@@ -148,7 +148,7 @@ def test_a_planted_nan_is_caught_and_shrunk(
 
     The square root of a negative number is undefined in a shader: a driver may give a number.
     """
-    faults = told(technique(planted()), machines(name), Settings(2000, guards="none"))
+    faults = faults_in(technique(planted()), machines(name), Settings(2000, guards="none"))
     if name != "numpy-f32" and not faults:
         pytest.skip(f"{name} has a number for sqrt(-7)")
     fault = next(fault for fault in faults if fault.kind == "non-finite")
@@ -164,7 +164,7 @@ def test_the_printed_line_shows_the_fault(
     text = (
         "/**\n * Light below 0.\n * role: translucency\n */\nvec3 planted(float a) { return vec3(-1.5 - 0.0 * a); }\n"
     )
-    result = told(technique(planted(text)), machines("numpy-f32"), Settings(100))
+    result = faults_in(technique(planted(text)), machines("numpy-f32"), Settings(100))
     fault = next(fault for fault in result if fault.kind == "out of range")
     before, _, command = fault.command.partition(" | sssgen ")
     (tmp_path / "in.json").write_text(shlex.split(before)[1], encoding="utf-8")
@@ -183,7 +183,9 @@ def test_other_planted_faults(
     body: str, kind: str, counts: bool, planted: Callable[..., str], machines: Callable[[str], Machines]
 ) -> None:
     head, _, _ = PLANTED.partition("    return")
-    faults = told(technique(planted(f"{head}    {body}\n}}\n")), machines("numpy-f32"), Settings(500, guards="none"))
+    faults = faults_in(
+        technique(planted(f"{head}    {body}\n}}\n")), machines("numpy-f32"), Settings(500, guards="none")
+    )
     assert kind in {fault.kind for fault in faults} and all(fault.counts == counts for fault in faults)
 
 
@@ -290,7 +292,7 @@ def test_a_row_skips_what_a_material_fixes(machines: Callable[[str], Machines]) 
     (resin,) = [one for one in specimens(["resin_inlay"]) if one.technique == "parallax_refracted"]
     assert not list(dangerous.trials(resin, ("critical-angle",)))
     assert list(dangerous.trials(technique("parallax_refracted"), ("critical-angle",)))
-    assert not told(resin, machines("numpy-f32"), Settings(100))
+    assert not faults_in(resin, machines("numpy-f32"), Settings(100))
 
 
 def test_non_finite_numbers_are_recognized_by_their_bits() -> None:
@@ -343,8 +345,8 @@ def test_the_report_in_markdown(capsys: pytest.CaptureFixture[str], tmp_path: Pa
     written = tmp_path / "report.md"
     row = ("--row", "black-attenuation", "-b", "numpy-f32", "-o", str(written), "--guards", "none")
     assert main(["stress", "gltf_volume", "beer_lambert", *row]) == 1
-    told = capsys.readouterr().out
-    assert "published baseline" in told and "black-attenuation: non-finite" in told and "wrote" in told
+    printed = capsys.readouterr().out
+    assert "published baseline" in printed and "black-attenuation: non-finite" in printed and "wrote" in printed
     text = written.read_text(encoding="utf-8")
     assert "| gltf_volume | FAIL |" in text and "published baseline" in text
 
@@ -412,5 +414,5 @@ def test_half_precision_has_its_own_limits(capsys: pytest.CaptureFixture[str]) -
 def test_random_inputs_in_number(name: str, machines: Callable[[str], Machines]) -> None:
     """A million of each technique's; the full sweep is in docs/harness.md."""
     for specimen in specimens([]):
-        faults = [fault for fault in told(specimen, machines(name), Settings(1_000_000)) if fault.trial == RANDOM]
+        faults = [fault for fault in faults_in(specimen, machines(name), Settings(1_000_000)) if fault.trial == RANDOM]
         assert not faults, (specimen.title, faults[0].command)

@@ -182,8 +182,8 @@ def test_an_interrupted_run_continues(tmp_path: Path, how: int) -> None:
 
 
 def test_the_bar_is_silent_without_a_terminal(capfd: pytest.CaptureFixture[str]) -> None:
-    with ProgressBar() as told:
-        run([Item("executor_items:echo", (1,))], processes=0, store=Store(""), progress=told)
+    with ProgressBar() as progress_bar:
+        run([Item("executor_items:echo", (1,))], processes=0, store=Store(""), progress=progress_bar)
     assert capfd.readouterr() == ("", "")
 
 

@@ -96,8 +96,8 @@ def test_a_literal_beyond_the_halves_is_an_error_at_its_place() -> None:
     assert "65500.0h" in text_of("float f(float x) { return x + 65519.0; }")
     with pytest.raises(SssgenError) as caught:
         text_of("float f(float x) {\n    return x * 65520.0;\n}\n")
-    (told,) = caught.value.diagnostics
-    assert told.message == "65520 is beyond the largest half, 65504" and told.span[1:3] == (2, 16)
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.message == "65520 is beyond the largest half, 65504" and diagnostic.span[1:3] == (2, 16)
 
 
 def test_whole_shaders_are_refused(capsys: pytest.CaptureFixture[str], backend: Get, tmp_path: Path) -> None:

@@ -44,8 +44,8 @@ def test_every_signature_has_a_case() -> None:
 def test_every_case_compiles(target: str, assert_compiles: Callable[[Source], None]) -> None:
     """All cases in one library, in every compiler that reads the target."""
     functions = []
-    for number, (source, told) in enumerate(ALL.items()):
-        refused = [name for name, text in told.items() if text.startswith("error:")]
+    for number, (source, expected) in enumerate(ALL.items()):
+        refused = [name for name, text in expected.items() if text.startswith("error:")]
         if {"unity-shadergraph": "urp"}.get(target, target) not in refused:
             (function,) = module_of(source).functions
             functions.append(function._replace(name=f"case_{number}"))

@@ -120,7 +120,7 @@ def test_uniforms_are_documented() -> None:
             failures.append(f"{name}: no sentence: {uniform.doc!r}")
         if isinstance(uniform.type, Sampler):
             if not any(hint.startswith("default_") for hint in hints):
-                failures.append(f"{name}: nothing is said of what is read where no texture is bound")
+                failures.append(f"{name}: it does not state the value that is read where no texture is bound")
         elif isinstance(uniform.type, Scalar):
             whole = uniform.type.kind == "int"
             if "hint_range" not in hints or ("unit" not in hints and not whole):

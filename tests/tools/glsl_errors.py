@@ -31,7 +31,7 @@ LONG = {
     "this macro expands to more than": "\n".join(f"#define A{n} A{n + 1} A{n + 1}" for n in range(60)) + "\nA0\n",
     "'##' makes a token of more than": "#define J(a, b) a ## b\n#define D(a) J(a, a)\nD(" + "x" * 100_000 + ")\n",
 }
-"""What is said of texts that are too long to be shown."""
+"""The errors of texts that are too long to be shown."""
 
 
 def errors_of(source: str) -> SssgenError:

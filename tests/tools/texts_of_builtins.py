@@ -469,15 +469,15 @@ for name in SAMPLERS:
     read = f"{size}(textureDimensions({name}, i))"
     if name.endswith(("layers", "cubes", "shades")):
         read = f"vec3i(vec3u(textureDimensions({name}, i), textureNumLayers({name})))"
-    told = {"glsl": f"textureSize({name}, i)", "wgsl": read, "hlsl": sized(name), **refusals("textureSize", "dx9")}
+    expected = {"glsl": f"textureSize({name}, i)", "wgsl": read, "hlsl": sized(name), **refusals("textureSize", "dx9")}
     if SAMPLERS[name] in load("unity-urp").types:
-        told["urp"] = told["hlsl"]
+        expected["urp"] = expected["hlsl"]
     else:
-        told["urp"] = f"error: Unity, Universal Render Pipeline has no {SAMPLERS[name]}"
+        expected["urp"] = f"error: Unity, Universal Render Pipeline has no {SAMPLERS[name]}"
     if name == "cubes":
-        told["glsl"] = "error: GLSL 3.30 (OpenGL 3.3 core) has no samplerCubeArray"
-        told["glsl-es"] = "error: GLSL ES 3.00 (WebGL 2, OpenGL ES 3.0) has no samplerCubeArray"
-    CASES[f"textureSize({name}, i)"] = told
+        expected["glsl"] = "error: GLSL 3.30 (OpenGL 3.3 core) has no samplerCubeArray"
+        expected["glsl-es"] = "error: GLSL ES 3.00 (WebGL 2, OpenGL ES 3.0) has no samplerCubeArray"
+    CASES[f"textureSize({name}, i)"] = expected
 for name in "map", "volume", "cube", "layers":
     refused = refusals("textureQueryLevels", "glsl", "glsl-es", "hlsl", "dx9", "urp")
     CASES[f"textureQueryLevels({name})"] = {"wgsl": f"i32(textureNumLevels({name}))", **refused}
