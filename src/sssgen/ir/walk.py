@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import cast
+from collections.abc import Callable, Iterator
+from operator import itemgetter
+from typing import Any, TypeVar
 
 from sssgen.ir.nodes import (
     Assign,
@@ -33,24 +34,30 @@ from sssgen.ir.nodes import (
     While,
 )
 
+_Part = TypeVar("_Part", bound=Call | Intrinsic)
+
+_LEAVES = frozenset({Literal, Local, Global})
+_LEAF = itemgetter(slice(0, 0))
+_OPERANDS: dict[type, Callable[[Any], tuple[Expr, ...]]] = {
+    Literal: _LEAF,
+    Local: _LEAF,
+    Global: _LEAF,
+    Unary: itemgetter(slice(2, 3)),
+    Binary: itemgetter(slice(2, 4)),
+    Select: itemgetter(slice(1, 4)),
+    Call: itemgetter(2),
+    Intrinsic: itemgetter(2),
+    Construct: itemgetter(1),
+    Swizzle: itemgetter(slice(1, 2)),
+    Index: itemgetter(slice(1, 3)),
+    Member: itemgetter(slice(1, 2)),
+}
+"""Where the operands of each class are in its tuple: finding them is most of the work of a pass that changes little."""
+
 
 def operands(expr: Expr) -> tuple[Expr, ...]:
     """The expressions directly inside `expr`."""
-    kind = type(expr)
-    if kind is Literal or kind is Local or kind is Global:
-        return ()
-    if kind is Call or kind is Intrinsic or kind is Construct:
-        return expr.args  # type: ignore[union-attr]  # the three classes with args
-    if kind is Binary:
-        return (expr.left, expr.right)  # type: ignore[union-attr]  # it is a Binary
-    if kind is Swizzle or kind is Member:
-        return (expr.value,)  # type: ignore[union-attr, return-value]  # one of the two
-    if isinstance(expr, Unary):
-        return (expr.operand,)
-    if isinstance(expr, Select):
-        return (expr.condition, expr.yes, expr.no)
-    index = cast(Index, expr)
-    return (index.value, index.index)
+    return _OPERANDS[expr.__class__](expr)
 
 
 def with_operands(expr: Expr, new: tuple[Expr, ...]) -> Expr:
@@ -129,43 +136,35 @@ def all_expressions(block: Block) -> Iterator[Expr]:
 
 def builtins_of(module: Module) -> set[str]:
     """The names of the builtins that the functions of a module call."""
-    names: set[str] = set()
-    for function in module.functions:
-        for stmt in statements(function.body or ()):
-            stack = list(expressions(stmt))
-            while stack:
-                node = stack.pop()
-                kind = type(node)
-                if kind is Local or kind is Literal or kind is Global:
-                    continue
-                if isinstance(node, Intrinsic):
-                    names.add(node.name)
-                stack += operands(node)
-    return names
+    return {part.name for function in module.functions for part in inner_parts(function.body or (), Intrinsic)}
 
 
-def calls_of(stmt: Stmt) -> list[Call]:
-    """The calls in a statement's own expressions, in the order of the text."""
-    calls: list[Call] = []
-    stack = list(reversed(expressions(stmt)))
-    while stack:
-        node = stack.pop()
-        kind = type(node)
-        if kind is Local or kind is Literal or kind is Global:
-            continue
-        if isinstance(node, Call):
-            calls.append(node)
-        stack += operands(node)[::-1]
-    return calls
+def calls_of(block: Block) -> list[Call]:
+    """The calls in the expressions of a block, those of inner statements too, in the order of the text."""
+    return inner_parts(block, Call)
+
+
+def inner_parts(block: Block, kind: type[_Part]) -> list[_Part]:
+    """The expressions of one class in a block, those of inner statements too, in the order of the text."""
+    parts: list[_Part] = []
+    leaves = _LEAVES
+    inside = _OPERANDS
+    for stmt in statements(block):
+        stack: list[Expr] = [*expressions(stmt)[::-1]]
+        while stack:
+            node = stack.pop()
+            class_ = node.__class__
+            if class_ in leaves:
+                continue
+            if class_ is kind:
+                parts.append(node)  # type: ignore[arg-type]  # narrowed by its exact class
+            stack += inside[class_](node)[::-1]
+    return parts
 
 
 def callees(function: Function) -> list[str]:
     """The keys of the functions that `function` calls, each once, in the order of first call."""
-    keys: dict[str, None] = {}
-    for stmt in statements(function.body or ()):
-        for call in calls_of(stmt):
-            keys[call.function] = None
-    return list(keys)
+    return list(dict.fromkeys([call.function for call in calls_of(function.body or ())]))
 
 
 def root(target: Expr) -> Local | None:

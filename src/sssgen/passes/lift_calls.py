@@ -85,6 +85,10 @@ class Calls:
             changes = self.known[key] = by_parameter or bool(self.shared.get(key, NONE).writes)
         return changes
 
+    def changing(self, function: Function) -> bool:
+        """Whether any call in a function has an effect apart from its result."""
+        return any(self.change(call.function) for call in calls_of(function.body or ()))
+
     def writing(self, expr: Expr) -> bool:
         """Whether a call inside an expression has an effect apart from its result."""
         stack = [expr]
@@ -162,14 +166,11 @@ class _Lifter(Transformer):
         """All names of the function, once a new name is chosen."""
 
     def run(self) -> Function:
-        return self.function(self.source) if self.writes_in(self.source.body or ()) else self.source
+        return self.function(self.source) if self.calls.changing(self.source) else self.source
 
     def writes(self, expr: Expr | None) -> bool:
         """Whether a call inside the expression has an effect apart from its result."""
         return expr is not None and self.calls.writing(expr)
-
-    def writes_in(self, body: Block) -> bool:
-        return any(self.calls.change(call.function) for stmt in statements(body) for call in calls_of(stmt))
 
     def local(self, type: Type, name: str, span: Span) -> Local:
         self.names = self.names or set(declared(self.source))

@@ -69,12 +69,10 @@ def assigned(function: Function, outs: Mapping[str, tuple[int, ...]]) -> set[str
 
     `outs` is the result of `outs_of` for the module's functions.
     """
-    targets: list[Expr] = []
-    for stmt in statements(function.body or ()):
-        if type(stmt) is Assign:
-            targets.append(stmt.target)
-        for call in calls_of(stmt) if outs else ():
-            targets += [call.args[index] for index in outs.get(call.function, ())]
+    body = function.body or ()
+    targets: list[Expr] = [stmt.target for stmt in statements(body) if type(stmt) is Assign]
+    for call in calls_of(body) if outs else ():
+        targets += [call.args[index] for index in outs.get(call.function, ())]
     return {variable.name for variable in map(root, targets) if variable is not None}
 
 

@@ -73,9 +73,9 @@ class _Checker:
             return None
         if isinstance(expr, Global):
             return self.constants.get(expr.name)
-        parts = [self.numbers(operand) for operand in operands(expr)]
         if isinstance(expr, Binary):
-            return self.binary(expr, parts[0], parts[1])
+            return self.binary(expr, self.numbers(expr.left), self.numbers(expr.right))
+        parts = [self.numbers(operand) for operand in operands(expr)]
         constants = [part for part in parts if part is not None]
         if len(constants) < len(parts):
             return None
@@ -90,12 +90,14 @@ class _Checker:
         return None
 
     def binary(self, expr: Binary, left: Numbers | None, right: Numbers | None) -> Numbers | None:
+        if right is None:
+            return None
         op, kind = expr.op, kind_of(expr.right.type)
-        if right is not None and op in ("/", "%") and kind != "float" and 0 in right:
+        if op in ("/", "%") and kind != "float" and 0 in right:
             return self.wrong(f"'{op}' by the constant 0 is undefined", expr)
-        if right is not None and op in ("<<", ">>") and not all(0 <= count < 32 for count in right):
+        if op in ("<<", ">>") and not all(0 <= count < 32 for count in right):
             return self.wrong("a shift by as many bits as there are, or more, is undefined", expr)
-        if left is None or right is None:
+        if left is None:
             return None
         result = arithmetic.binary(op, left, right, kind)
         if result is not None:

@@ -13,7 +13,7 @@ from sssgen.ir.types import INT, UINT, Struct
 from sssgen.lang.check.access_checker import AccessChecker
 from sssgen.lang.check.assignment_checker import AssignmentChecker
 from sssgen.lang.check.call_checker import CallChecker
-from sssgen.lang.check.call_graph import callees_first, report_deep_calls, report_recursion
+from sssgen.lang.check.call_graph import callees_first, calls_in, report_deep_calls, report_recursion
 from sssgen.lang.check.context import AlreadyReported, CheckContext
 from sssgen.lang.check.declared_names import declare_struct
 from sssgen.lang.check.expression_checker import ExpressionChecker
@@ -100,13 +100,12 @@ class ModuleChecker:
                 self.external(external)
             except AlreadyReported:
                 context.faulty.update(_declared_names(external))
-        functions = self.functions
-        report_recursion(functions, context.reporter)
-        if context.plain:
-            functions = self.added | functions
-            if not context.reporter.diagnostics:
-                functions = callees_first(functions, self.function_checker.define_zeros)
-        report_deep_calls(functions, context.reporter)
+        functions = self.added | self.functions if context.plain else self.functions
+        calls = calls_in(functions)
+        report_recursion(functions, calls, context.reporter)
+        if context.plain and not context.reporter.diagnostics:
+            functions = callees_first(functions, calls, self.function_checker.define_zeros)
+        report_deep_calls(functions, calls, context.reporter)
         return ir.Module(
             tuple(context.struct_declarations),
             tuple(self.globals.constants),

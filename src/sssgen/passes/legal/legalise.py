@@ -91,7 +91,7 @@ class _Legaliser(Transformer):
             raise Unsupported(
                 "a function cannot return an array for this target: give it an out parameter", function.span
             )
-        if not self.writing:
+        if not self.writing or not self.calls.changing(function):
             return self.lifted(function)
         if not self.capabilities.out_parameters:
             return self.lifted(lift(function, self.calls))

@@ -170,14 +170,13 @@ class LoopRanges(ExpressionRanges):
         for stmt in statements(block):
             if isinstance(stmt, ir.Assign) and (variable := root(stmt.target)) is not None:
                 names.add(variable.name)
-            names |= self.written_by_calls(stmt)
-        return names
+        return names | self.written_by_calls(block)
 
-    def written_by_calls(self, stmt: ir.Stmt) -> set[str]:
-        """The variables that a statement's calls write through out parameters."""
+    def written_by_calls(self, block: ir.Block) -> set[str]:
+        """The variables that the calls in a block write through out parameters."""
         return {
             variable.name
-            for call in calls_of(stmt)
+            for call in calls_of(block)
             for param, arg in zip(self.functions[call.function].params, call.args, strict=True)
             if param.direction != "in" and (variable := root(arg)) is not None
         }
@@ -193,9 +192,7 @@ class LoopRanges(ExpressionRanges):
                     if not plain:
                         return ""
                     kind = kind_of(variable.type)
-            if name in self.written_by_calls(stmt):
-                return ""
-        return kind
+        return "" if kind and name in self.written_by_calls(block) else kind
 
     def trips(self, stmt: ir.For | ir.While) -> float:
         """The largest number of iterations that a loop's header allows; infinite if it states none."""

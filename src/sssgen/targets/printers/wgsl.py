@@ -55,8 +55,7 @@ class WgslPrinter(Printer):
 
     def intrinsic(self, call: ir.Intrinsic) -> tuple[str, int]:
         text, binding = super().intrinsic(call)
-        typed = any(isinstance(part, _TYPED) for part in subexpressions(call))
-        if "wgsl" in BUILTINS[call.name].explicit_type and not typed:
+        if "wgsl" in BUILTINS[call.name].explicit_type and not _has_type(call):
             first = self.expr(call.args[0])
             text = text.replace(first, f"f32({first})", 1)
         return text, binding
@@ -141,6 +140,11 @@ class WgslPrinter(Printer):
 
     def binding(self, index: int) -> dict[str, int | str]:
         return {"group": self.target.material_group, "texture": 1 + 2 * index, "sampler": 2 + 2 * index}
+
+
+def _has_type(call: ir.Intrinsic) -> bool:
+    """Whether something in the call is no literal, so that its numbers are not abstract."""
+    return any(isinstance(part, _TYPED) for part in subexpressions(call))
 
 
 def _has_open_less(text: str) -> bool:
