@@ -100,8 +100,8 @@ def number(module: Module) -> object:
         ("q.zyx.x", "q.z"),
         ("vec3(sin(x), y, 0.0)[0]", "sin(x)"),
         ("float[2](x, y)[1]", "y"),
-        ("float[2](x, x)[int(1.5 + 2.0)]", "x"),
-        ("q[int(1.0 - 2.0)]", "q[0]"),
+        ("float[2](x, x)[int(c && false) + 3]", "x"),
+        ("q[int(c && false) - 1]", "q[0]"),
         ("mat2(p, vec2(x, y))[1].y", "y"),
     ],
 )

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from math import copysign
 
+from sssgen.ir import constant_arithmetic as arithmetic
+from sssgen.ir.constant_arithmetic import Number, Numbers
 from sssgen.ir.nodes import Construct, Expr, Literal, Span
 from sssgen.ir.types import Array, Matrix, Scalar, Type, Vector, components, kind_of
-from sssgen.passes import constant_arithmetic as arithmetic
-from sssgen.passes.constant_arithmetic import Number, Numbers
 
 
 def uniform_value(type: Type, numbers: tuple[float, ...], span: Span) -> Expr:

@@ -14,6 +14,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from sssgen.ir import constant_arithmetic as arithmetic
+from sssgen.ir.constant_arithmetic import Numbers
 from sssgen.ir.nodes import (
     Assign,
     Assume,
@@ -43,8 +45,6 @@ from sssgen.ir.rules import element_type
 from sssgen.ir.transform import Transformer, rewrite
 from sssgen.ir.types import BOOL, Matrix, Scalar, Struct, Vector, kind_of
 from sssgen.ir.walk import operands
-from sssgen.passes import constant_arithmetic as arithmetic
-from sssgen.passes.constant_arithmetic import Numbers
 from sssgen.passes.constant_expressions import constant_numbers, literal, placed_at, same_number, uniform_value
 from sssgen.passes.constructed_parts import calls, only_argument, picked
 from sssgen.passes.scopes import separate

@@ -10,6 +10,8 @@ from __future__ import annotations
 from math import isfinite
 from typing import NamedTuple
 
+from sssgen.ir import constant_arithmetic as arithmetic
+from sssgen.ir.constant_arithmetic import Numbers
 from sssgen.ir.nodes import (
     Assign,
     Binary,
@@ -27,8 +29,6 @@ from sssgen.ir.nodes import (
 from sssgen.ir.rules import FLOAT_MAX
 from sssgen.ir.types import Scalar, Vector, kind_of
 from sssgen.ir.walk import expressions, operands, statements
-from sssgen.passes import constant_arithmetic as arithmetic
-from sssgen.passes.constant_arithmetic import Numbers
 from sssgen.passes.constant_expressions import constant_numbers
 
 

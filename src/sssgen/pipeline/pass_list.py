@@ -13,6 +13,7 @@ from typing import NamedTuple
 from sssgen.ir.nodes import Module
 from sssgen.lang.source_lines import source_line
 from sssgen.passes.link import LinkError
+from sssgen.passes.stage.stage_interface import entry_of
 from sssgen.passes.unsupported import Unsupported
 from sssgen.pipeline import steps
 from sssgen.pipeline.state import State
@@ -39,6 +40,10 @@ class Pass(NamedTuple):
 
 
 _SHADER = Condition("it is a whole shader", lambda state: state.whole_shader)
+_NO_MAIN = Condition(
+    "there are module variables and no main()",
+    lambda state: bool(state.module.variables) and entry_of(state.module) is None,
+)
 _Y_DOWN = Condition("it is a whole shader and y counts down", lambda state: state.whole_shader and state.y_down)
 _NO_VERTEX_LEVELS = Condition(
     "it is a vertex shader and the target has no implicit levels there",
@@ -118,6 +123,12 @@ KEPT: tuple[Pass, ...] = (
 """The same, where the text stays as its author wrote it."""
 
 TARGET: tuple[Pass, ...] = (
+    Pass(
+        "computed_variables",
+        steps.compute_variables_in_functions,
+        "declare variables in the functions that read them",
+        _NO_MAIN,
+    ),
     Pass(
         "variable_parameters", steps.pass_variables, "pass module variables to functions as parameters", _NO_VARIABLES
     ),

@@ -20,7 +20,7 @@ from sssgen.passes.names import rename
 from sssgen.passes.numpy.predicate import predicate
 from sssgen.passes.prune import prune
 from sssgen.passes.reachable import only, used
-from sssgen.passes.stage.initial_values import set_at_start
+from sssgen.passes.stage.initial_values import set_at_start, set_in_functions
 from sssgen.passes.stage.stage_interface import ENTRY, colors_in_use, entry_of, interface, remarks, turned_derivatives
 from sssgen.passes.stage.uniform_structs import uniform_structs
 from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
@@ -160,6 +160,11 @@ def count_cost(state: State) -> Module:
 
 
 # For one target
+
+
+def compute_variables_in_functions(state: State) -> Module:
+    capabilities = state.target.capabilities
+    return set_in_functions(state.module, capabilities.module_variables, capabilities.variable_values)
 
 
 def pass_variables(state: State) -> Module:

@@ -6,7 +6,7 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.rules import element_type, swizzle_type
 from sssgen.ir.types import INT, UINT, Array, Scalar, Struct, Vector, spell
 from sssgen.lang.check import quantities as q
-from sssgen.lang.check.constant_integers import constant_int
+from sssgen.lang.check.constant_values import constant_int, integer
 from sssgen.lang.check.context import Typed
 from sssgen.lang.check.expression_checker import ExpressionChecker
 from sssgen.lang.check.wording import a_type
@@ -38,7 +38,7 @@ class AccessChecker:
         if element is None:
             raise self.context.fail(index.span, f"{a_type(type_)} has no elements to index")
         result, length = element
-        constant = constant_int(self.context, index.index)
+        constant = integer(self.context, position.expr)
         if constant is not None and not 0 <= constant < length:
             raise self.context.fail(index.index.span, f"index {constant} is outside {spell(type_)}: 0 to {length - 1}")
         quantity = value.quantity if isinstance(type_, Array) else ""

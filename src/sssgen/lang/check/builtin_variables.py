@@ -41,7 +41,8 @@ def builtin_variable(context: CheckContext, name: s.Name) -> GlobalValue | None:
     if not context.plain:
         return None
     if text in _LIMITS:
-        return GlobalValue(INT, "", _LIMITS[text], True)
+        limit = context.globals[text] = GlobalValue(INT, "", (_LIMITS[text],), True)
+        return limit
     if text not in BUILTIN_VARIABLES:
         return None
     type_, storage = BUILTIN_VARIABLES[text]

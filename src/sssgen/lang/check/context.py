@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.types import FLOAT, VOID, Struct, Type
 from sssgen.lang import shadertoy
 from sssgen.lang.check.name_scope import GlobalValue, Scopes, Signature
+from sssgen.lang.syntax import tree as s
 from sssgen.support.diagnostics import Reporter, did_you_mean
 
 
@@ -67,6 +69,8 @@ class CheckContext:
         self.reporter = reporter
         self.plain = plain
         self.function = FunctionContext()
+        self.check_expression: Callable[[s.Expression], Typed]
+        """Checks an expression; the checker of expressions sets it."""
         self.structs: dict[str, Struct] = {}
         self.struct_declarations: list[ir.StructDecl] = []
         self.functions: dict[str, list[Signature]] = {}

@@ -18,7 +18,7 @@ from sssgen.ir.signatures import candidates
 from sssgen.ir.types import BOOL, FLOAT, INT, UINT, Array, Struct, Type, kind_of
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.builtin_variables import builtin_variable
-from sssgen.lang.check.constant_integers import integer_value
+from sssgen.lang.check.constant_values import integer, integer_value
 from sssgen.lang.check.context import AlreadyReported, CheckContext, Typed
 from sssgen.lang.check.evaluation_order import depends, writes_of
 from sssgen.lang.check.implicit_conversions import as_kind, converts, wrapped
@@ -38,6 +38,7 @@ class ExpressionChecker:
 
     def __init__(self, context: CheckContext) -> None:
         self.context = context
+        context.check_expression = self.check
         self.methods: dict[type, Callable[[Any], Typed]] = {
             s.Name: self.name,
             s.Number: self.number,
@@ -155,9 +156,10 @@ class ExpressionChecker:
             return Typed(ir.Local(variable.type, variable.ir_name, name.span), variable.quantity)
         value = context.globals.get(name.text) or builtin_variable(context, name)
         if value is not None:
+            reference = ir.Global(value.type, name.text, name.span)
             if value.constant and name.text.startswith("gl_"):
-                return Typed(ir.Literal(INT, value.value or 0, name.span))
-            return Typed(ir.Global(value.type, name.text, name.span), value.quantity)
+                return Typed(ir.Literal(INT, integer(context, reference) or 0, name.span))
+            return Typed(reference, value.quantity)
         if name.text in context.blocks:
             raise context.fail(name.span, f"'{name.text}' is a block; write the name of a member behind it")
         if name.text in context.functions or candidates(name.text):

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.types import INT, UINT, VOID, Array, Matrix, Sampler, Struct, Type, components, kind_of
+from sssgen.ir.types import VOID, Array, Matrix, Sampler, Struct, Type, components, kind_of
 from sssgen.ir.walk import subexpressions
-from sssgen.lang.check.constant_integers import constant_int
+from sssgen.lang.check.constant_values import constant_value
 from sssgen.lang.check.declared_names import check_global_name, declare_struct
 from sssgen.lang.check.expression_checker import ExpressionChecker
 from sssgen.lang.check.name_scope import GlobalValue
@@ -103,8 +103,7 @@ class GlobalChecker:
         if not all(self.is_constant(part) for part in subexpressions(value)):
             message = f"the value of const '{name.text}' is not constant"
             raise context.fail(declarator.value.span, message, "use literals, other constants and builtins")
-        number = constant_int(context, declarator.value) if type_ in (INT, UINT) else None
-        context.globals[name.text] = GlobalValue(type_, quantity, number, True)
+        context.globals[name.text] = GlobalValue(type_, quantity, constant_value(context, value), True)
         self.constants.append(ir.Constant(name.text, type_, value, name.span))
 
     def is_constant(self, part: ir.Expr) -> bool:

@@ -9,11 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.types import INT, UINT, Struct
+from sssgen.ir.types import Struct
 from sssgen.lang.check.access_checker import AccessChecker
 from sssgen.lang.check.assignment_checker import AssignmentChecker
 from sssgen.lang.check.call_checker import CallChecker
 from sssgen.lang.check.call_graph import callees_first, calls_in, report_deep_calls, report_recursion
+from sssgen.lang.check.constant_values import constant_value
 from sssgen.lang.check.context import AlreadyReported, CheckContext
 from sssgen.lang.check.declared_names import declare_struct
 from sssgen.lang.check.expression_checker import ExpressionChecker
@@ -76,7 +77,9 @@ class ModuleChecker:
             assert isinstance(struct.type, Struct)
             context.structs[struct.type.name] = struct.type
         for constant in module.constants:
-            context.globals[constant.name] = GlobalValue(constant.type, "", _int_value(constant.value), True)
+            context.globals[constant.name] = GlobalValue(
+                constant.type, "", constant_value(context, constant.value), True
+            )
         for uniform in module.uniforms:
             context.globals[uniform.name] = GlobalValue(uniform.type, uniform.quantity)
         for function in module.functions:
@@ -135,7 +138,3 @@ def _declared_names(external: s.External) -> Iterator[str]:
         yield from (declarator.name.text for declarator in external.declaration.declarators)
     else:
         yield external.name.text
-
-
-def _int_value(value: ir.Expr) -> int | None:
-    return int(value.value) if isinstance(value, ir.Literal) and value.type in (INT, UINT) else None

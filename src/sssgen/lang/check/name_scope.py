@@ -17,16 +17,16 @@ class Variable(NamedTuple):
     writable: bool
     faulty: bool = False
     """Its declaration has an error. Its uses are not reported."""
-    value: int | None = None
-    """The value of a constant integer."""
+    value: tuple[object, ...] | None = None
+    """The value of a constant, as in `constant_values`."""
 
 
 class GlobalValue(NamedTuple):
-    """A uniform, texture, constant or module variable; `value` is the value of a constant integer."""
+    """A uniform, texture, constant or module variable; `value` is that of a constant, as in `constant_values`."""
 
     type: Type
     quantity: str
-    value: int | None = None
+    value: tuple[object, ...] | None = None
     constant: bool = False
     writable: bool = False
 
@@ -84,7 +84,13 @@ class Scopes:
         return None
 
     def declare(
-        self, name: str, type: Type, quantity: str, writable: bool, faulty: bool = False, value: int | None = None
+        self,
+        name: str,
+        type: Type,
+        quantity: str,
+        writable: bool,
+        faulty: bool = False,
+        value: tuple[object, ...] | None = None,
     ) -> Variable | None:
         """Adds a variable to the innermost scope; None if this scope has the name already."""
         if name in self.stack[-1]:

@@ -8,7 +8,7 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.types import VOID, Sampler, Type
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check.builtin_variables import BUILTIN_VARIABLES, builtin_variable
-from sssgen.lang.check.constant_integers import constant_int
+from sssgen.lang.check.constant_values import constant_int
 from sssgen.lang.check.context import Typed
 from sssgen.lang.check.declared_names import check_global_name, unused_global_name
 from sssgen.lang.check.expression_checker import ExpressionChecker

@@ -11,10 +11,10 @@ from typing import Any
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.rules import element_type
-from sssgen.ir.types import BOOL, FLOAT, INT, UINT, VOID, Array, Sampler, Scalar, Struct, Type, kind_of
+from sssgen.ir.types import BOOL, FLOAT, VOID, Array, Sampler, Scalar, Struct, Type, kind_of
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check.assignment_checker import AssignmentChecker
-from sssgen.lang.check.constant_integers import constant_int
+from sssgen.lang.check.constant_values import constant_value
 from sssgen.lang.check.context import AlreadyReported
 from sssgen.lang.check.declared_names import check_not_reserved, declare_struct
 from sssgen.lang.check.type_names import array_type, named_type
@@ -113,14 +113,14 @@ class StatementChecker:
             name = declarator.name
             check_not_reserved(context, name)
             declared = self.expressions.declared_type(type_, declaration.type, declarator)
-            value, number = None, None
+            value, constant = None, None
             if declarator.value is not None:
                 value = self.expressions.check_as(declarator.value, declared, quantity, f"'{name.text}'")
-                if const and declared in (INT, UINT):
-                    number = constant_int(context, declarator.value)
+                if const:
+                    constant = constant_value(context, value)
             elif const:
                 raise context.fail(name.span, f"const '{name.text}' needs a value")
-            variable = function.scopes.declare(name.text, declared, quantity, not const, value=number)
+            variable = function.scopes.declare(name.text, declared, quantity, not const, value=constant)
             if variable is None:
                 raise context.fail(name.span, f"'{name.text}' is already declared in this block")
             span = ir.Span(name.span.file, declaration.span.line, declaration.span.column, *name.span[3:])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from sssgen.ir import nodes as ir
 from sssgen.ir.types import BOOL, INT, UINT
 from sssgen.ir.walk import statements
-from sssgen.lang.check.constant_integers import constant_int
+from sssgen.lang.check.constant_values import constant_int
 from sssgen.lang.check.evaluation_order import depends, writes_of
 from sssgen.lang.check.statement_checker import StatementChecker
 from sssgen.lang.check.switch_cases import cases_of, has_break

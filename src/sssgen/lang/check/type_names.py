@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from sssgen.ir.types import BY_NAME, Array, Sampler, Type, Void, spell
 from sssgen.lang.check import quantities as q
-from sssgen.lang.check.constant_integers import constant_int
+from sssgen.lang.check.constant_values import constant_int
 from sssgen.lang.check.context import CheckContext
 from sssgen.lang.check.wording import why_not
 from sssgen.lang.syntax import tree as s

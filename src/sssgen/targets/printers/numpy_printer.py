@@ -36,6 +36,8 @@ class NumpyPrinter(NumpyExpressions):
     def __init__(self, target: Target, module: ir.Module) -> None:
         super().__init__(target, module)
         self.constants = {constant.name: constant for constant in module.constants}
+        self.sharing: dict[str, bool] = {}
+        """The results of `shared`."""
         self.commented: set[tuple[str, int]] = set()
 
     # Statements
@@ -172,9 +174,15 @@ class NumpyPrinter(NumpyExpressions):
 
     def shared(self, constant: ir.Constant) -> bool:
         """Whether a constant is the same in every precision, so that it can be a global of the module."""
-        return isinstance(constant.type, Scalar) and (
-            constant.type.kind != "float" or self.numbers.plain(constant.value)
-        )
+        result = self.sharing.get(constant.name)
+        if result is None:
+            used = [part.name for part in subexpressions(constant.value) if isinstance(part, ir.Global)]
+            result = self.sharing[constant.name] = (
+                isinstance(constant.type, Scalar)
+                and (constant.type.kind != "float" or self.numbers.plain(constant.value))
+                and all(self.shared(self.constants[name]) for name in used if name in self.constants)
+            )
+        return result
 
     def print_constant(self, constant: ir.Constant) -> list[Line]:
         if not self.shared(constant):
