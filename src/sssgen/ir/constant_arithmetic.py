@@ -64,6 +64,14 @@ def binary(op: str, left: Numbers, right: Numbers, kind: str) -> Numbers | None:
     return _each(compute, (left, right), kind) if compute is not None else None
 
 
+def unbounded(op: str, left: Numbers, right: Numbers) -> list[Number] | None:
+    """`left op right` of integers, as if they had any number of bits."""
+    try:
+        return [_INTEGER[op](*parts) for parts in _by_component((left, right))]
+    except ArithmeticError:
+        return None
+
+
 def unary(op: str, value: Numbers, kind: str) -> Numbers | None:
     """`op value`."""
     if op == "!":
@@ -132,17 +140,13 @@ def _rounded(values: Sequence[Number], kind: str) -> Numbers | None:
 
 
 def _quotient(x: int, y: int) -> int:
-    if (x, y) == (-0x80000000, -1):
-        raise ArithmeticError
     quotient = abs(x) // abs(y)
     return quotient if (x < 0) == (y < 0) else -quotient
 
 
 def _remainder(x: int, y: int) -> int:
-    # of negative numbers it is undefined in GLSL ES 3.00, section 5.9
-    if x < 0 or y < 0:
-        raise ArithmeticError
-    return x % y
+    # of negative numbers it is undefined in GLSL, section 5.9; WGSL and HLSL truncate
+    return x - y * _quotient(x, y)
 
 
 def _shift(shift: Callable[[int, int], int]) -> Callable[[int, int], int]:

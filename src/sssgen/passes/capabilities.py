@@ -10,6 +10,8 @@ class Capabilities(NamedTuple):
 
     array_constructors: bool = False
     """An array constructor is an expression, and a function may return an array."""
+    bool_conversions: bool = False
+    """`bool(x)` of a number is 0 or 1 also where it is converted again; if not, it is compared with 0."""
     bool_uniforms: bool = False
     """A uniform block may hold a bool; if not, it holds an int in its place."""
     dynamic_stores: bool = False
@@ -22,6 +24,8 @@ class Capabilities(NamedTuple):
     """Integer `/`, `%`, `<<` and `>>` are defined for a divisor of 0, negative operands and shifts by 32 or more."""
     lane_control_flow: bool = False
     """Each lane branches for itself; if not, control flow becomes masks."""
+    loop_scope: bool = False
+    """A variable of a loop's head can be declared again behind the loop."""
     mat2_uniforms: bool = False
     """A uniform block may hold a mat2; if not, it holds a vec4 for each column."""
     mat3_uniforms: bool = False
@@ -66,3 +70,5 @@ class Capabilities(NamedTuple):
     """A module variable may be initialised with an expression that is not constant."""
     whole_equality: bool = False
     """`==` and `!=` of vectors, matrices, structs and arrays give one bool."""
+    wrapping_constants: bool = False
+    """Constant expressions of ints wrap at 32 bits; if not, a part that would differ is replaced by its value."""

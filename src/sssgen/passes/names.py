@@ -44,16 +44,18 @@ def rename(
     mangle_overloads: bool,
     reserved_folded: Container[str] = frozenset(),
     matrix_overloads: bool = True,
+    loop_scope: bool = True,
 ) -> tuple[Module, dict[str, str]]:
     """The module with legal names, and what was renamed, as old → new.
 
     `reserved` holds the target's reserved names, `reserved_folded` those reserved in any case, in lower case.
     `uniform_name` gives a uniform's name in the target's style. With `mangle_overloads` each function of an
     overloaded name gets its parameters' types into its name; without `matrix_overloads` those of a name whose overloads
-    differ in a vec4 and a mat2 alone. In the result, overloads that got different names are listed under their key (as
-    in `box(vec3)`), local names under `function.name`, members under `struct.name`.
+    differ in a vec4 and a mat2 alone; `loop_scope` as in `rename_locals`. In the result, overloads that got different
+    names are listed under their key (as in `box(vec3)`), local names under `function.name`, members under
+    `struct.name`.
     """
-    return _Namer(module, reserved, uniform_name, mangle_overloads, reserved_folded, matrix_overloads).run()
+    return _Namer(module, reserved, uniform_name, mangle_overloads, reserved_folded, matrix_overloads, loop_scope).run()
 
 
 class _Namer:
@@ -65,12 +67,13 @@ class _Namer:
         mangle_overloads: bool,
         reserved_folded: Container[str],
         matrix_overloads: bool,
+        loop_scope: bool,
     ) -> None:
         self.module = module
         self.keyed = [(function.key, function) for function in module.functions]
         self.reserved, self.reserved_folded = reserved, reserved_folded
         self.uniform_name, self.mangle_overloads = uniform_name, mangle_overloads
-        self.matrix_overloads = matrix_overloads
+        self.matrix_overloads, self.loop_scope = matrix_overloads, loop_scope
         self.legality: dict[str, bool] = {}
         """Whether a name is legal."""
         self.renamed: dict[str, str] = {}
@@ -246,7 +249,7 @@ class _Namer:
         bad += self.hidden(function, names)
         if self.structs:
             function = self.retyped_function(function)
-        new, renamed = rename_locals(function, bad, self.choose, self.globals, self.keys)
+        new, renamed = rename_locals(function, bad, self.choose, self.globals, self.keys, self.loop_scope)
         for old, local in renamed.items():
             self.renamed[f"{function.name}.{old}"] = local
         return new if name == new.name else new._replace(name=name)

@@ -9,7 +9,22 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Container, Iterable, Mapping
 from typing import Any
 
-from sssgen.ir.nodes import Assign, Binary, Call, Declare, Expr, For, Function, Global, If, Literal, Local, Stmt, While
+from sssgen.ir.nodes import (
+    Assign,
+    Binary,
+    Block,
+    Call,
+    Declare,
+    Expr,
+    For,
+    Function,
+    Global,
+    If,
+    Literal,
+    Local,
+    Stmt,
+    While,
+)
 from sssgen.ir.transform import Transformer
 from sssgen.ir.walk import calls_of, expressions, inner_statements, operands, root, statements
 
@@ -100,15 +115,17 @@ def rename_locals(
     choose: Callable[[str, Container[str]], str],
     globals: Mapping[str, str] = _NONE,
     calls: Mapping[str, str] = _NONE,
+    loop_scope: bool = True,
 ) -> tuple[Function, dict[str, str]]:
     """Renames variables whose name is `bad`, or visible already where they are declared; returns old name → new name.
 
     `choose` gives a new name that is not among those taken. The module's declarations that the function uses are
-    renamed with them: uniforms and constants by `globals`, the keys of functions by `calls`.
+    renamed with them: uniforms and constants by `globals`, the keys of functions by `calls`. Without `loop_scope` the
+    variable of a loop's head is visible behind the loop for declarations of its block.
     """
     names = declared(function)
     if bad or len(set(names)) < len(names):
-        renamer = Renamer(globals, calls, bad, choose, set(names))
+        renamer = Renamer(globals, calls, bad, choose, set(names), loop_scope)
     elif globals or calls:
         renamer = Renamer(globals, calls)
     else:
@@ -126,10 +143,14 @@ class Renamer(Transformer):
         bad: Container[str] = (),
         choose: Callable[[str, Container[str]], str] | None = None,
         taken: Iterable[str] = (),
+        loop_scope: bool = True,
     ) -> None:
         super().__init__()
         self.globals, self.calls = globals, calls
         self.bad, self.choose, self.taken = bad, choose, set(taken)
+        self.loop_scope = loop_scope
+        self.heads: set[str] = set()
+        """The variables of the loops before the current statement of a block."""
         self.renamed: dict[str, str] = {}
         """The variables renamed so far: old name → new name."""
 
@@ -147,10 +168,24 @@ class Renamer(Transformer):
 
     def new_name(self, name: str) -> str:
         """The name of a variable that is declared here."""
-        if self.choose is None or (name not in self.scope and name not in self.bad):
+        if self.choose is None or not (name in self.scope or name in self.bad or name in self.heads):
             return name
         new = self.renamed[name] = self.choose(name, self.taken)
         self.taken.add(new)
+        return new
+
+    def block(self, block: Block) -> Block:
+        outer, self.heads = self.heads, set()
+        new = super().block(block)
+        self.heads = outer
+        return new
+
+    def for_loop(self, stmt: For) -> Stmt | None:
+        outer, self.heads = self.heads, set()  # heads may have the same variable
+        new = super().for_loop(stmt)
+        self.heads = outer
+        if not self.loop_scope and isinstance(new, For) and isinstance(new.init, Declare):
+            self.heads.add(new.init.name)
         return new
 
     def declare(self, stmt: Declare) -> Stmt:

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from sssgen.ir import constant_arithmetic as arithmetic
 from sssgen.ir.constant_arithmetic import Numbers
+from sssgen.ir.constant_evaluation import Value, combined
 from sssgen.ir.nodes import (
     Assign,
     Binary,
@@ -23,11 +24,9 @@ from sssgen.ir.nodes import (
     Local,
     Module,
     Span,
-    Swizzle,
-    Unary,
 )
 from sssgen.ir.rules import FLOAT_MAX
-from sssgen.ir.types import Scalar, Vector, kind_of
+from sssgen.ir.types import Matrix, kind_of, with_article
 from sssgen.ir.walk import expressions, operands, statements
 from sssgen.passes.constant_expressions import constant_numbers
 
@@ -43,17 +42,17 @@ def undefined_constants(module: Module) -> list[Undefined]:
     """The constant expressions of a folded module that have no finite value, each once."""
     checker = _Checker()
     for constant in module.constants:
-        checker.constants[constant.name] = checker.numbers(constant.value)
+        checker.constants[constant.name] = checker.value(constant.value)
     for variable in module.variables:
         if variable.value is not None:
-            checker.numbers(variable.value)
+            checker.value(variable.value)
     for function in module.functions:
         for stmt in statements(function.body or ()):
             for expr in expressions(stmt):
-                checker.numbers(expr)
+                checker.value(expr)
             if isinstance(stmt, Assign) and stmt.op:
                 checked = Binary(stmt.target.type, stmt.op, stmt.target, stmt.value, stmt.span)
-                checker.binary(checked, None, checker.numbers(stmt.value))
+                checker.binary(checked, None, checker.value(stmt.value))
     return list(checker.found.values())
 
 
@@ -61,11 +60,11 @@ class _Checker:
     """Computes the constant parts of expressions, and records those without a value."""
 
     def __init__(self) -> None:
-        self.constants: dict[str, Numbers | None] = {}
+        self.constants: dict[str, Value | None] = {}
         self.found: dict[Span, Undefined] = {}
 
-    def numbers(self, expr: Expr) -> Numbers | None:
-        """The components of a constant scalar or vector; None for anything else."""
+    def value(self, expr: Expr) -> Value | None:
+        """The value of a constant; None for anything else."""
         kind = type(expr)
         if kind is Literal:
             return constant_numbers(expr)
@@ -74,22 +73,19 @@ class _Checker:
         if isinstance(expr, Global):
             return self.constants.get(expr.name)
         if isinstance(expr, Binary):
-            return self.binary(expr, self.numbers(expr.left), self.numbers(expr.right))
-        parts = [self.numbers(operand) for operand in operands(expr)]
+            return self.binary(expr, self.value(expr.left), self.value(expr.right))
+        parts = [self.value(operand) for operand in operands(expr)]
         constants = [part for part in parts if part is not None]
         if len(constants) < len(parts):
             return None
         if isinstance(expr, Intrinsic):
             return self.builtin(expr, constants)
-        if isinstance(expr, Construct):
-            return _constructed(expr, constants)
-        if isinstance(expr, Unary):
-            return arithmetic.unary(expr.op, constants[0], kind_of(expr.type))
-        if isinstance(expr, Swizzle):
-            return tuple([constants[0]["xyzw".index(letter)] for letter in expr.components])
-        return None
+        value = combined(expr, constants) if constants else None
+        if value is None and isinstance(expr, Construct) and kind_of(expr.type) in ("int", "uint"):
+            return self.wrong(f"this constant does not fit in {with_article(kind_of(expr.type))}", expr)
+        return value
 
-    def binary(self, expr: Binary, left: Numbers | None, right: Numbers | None) -> Numbers | None:
+    def binary(self, expr: Binary, left: Value | None, right: Value | None) -> Value | None:
         if right is None:
             return None
         op, kind = expr.op, kind_of(expr.right.type)
@@ -99,37 +95,24 @@ class _Checker:
             return self.wrong("a shift by as many bits as there are, or more, is undefined", expr)
         if left is None:
             return None
-        result = arithmetic.binary(op, left, right, kind)
-        if result is not None:
+        result = combined(expr, (left, right))
+        if result is not None or Matrix in (type(expr.left.type), type(expr.right.type)):
             return result
         if op == "/" and kind == "float" and 0.0 in right:
             return self.wrong("a constant divided by 0 is not a number", expr)
         if kind == "float" and not all(map(_is_float, _exactly(op, left, right))):
             return self.wrong("this constant is too large for a float", expr)
-        if op == "/" and kind == "int":
-            return self.wrong("this constant is too large for an int", expr)
         return None
 
-    def builtin(self, expr: Intrinsic, args: list[Numbers]) -> Numbers | None:
+    def builtin(self, expr: Intrinsic, args: list[Value]) -> Value | None:
         if args and arithmetic.outside(expr.name, args):
             expected = "a finite number" if kind_of(expr.type) == "float" else "defined"
             return self.wrong(f"{expr.name} of these constants is not {expected}", expr)
         return arithmetic.builtin(expr.name, args, [arg.type for arg in expr.args], expr.type)
 
-    def wrong(self, message: str, expr: Expr) -> Numbers | None:
+    def wrong(self, message: str, expr: Expr) -> Value | None:
         self.found.setdefault(expr.span, Undefined(message, expr.span))
         return None
-
-
-def _constructed(expr: Construct, args: list[Numbers]) -> Numbers | None:
-    if not isinstance(expr.type, Scalar | Vector):
-        return None
-    flat = [arithmetic.converted(value, expr.type.kind) for arg in args for value in arg]
-    values = tuple([value for value in flat if value is not None])
-    if len(values) < len(flat):
-        return None
-    size = expr.type.size if isinstance(expr.type, Vector) else 1
-    return values * size if len(values) == 1 else values[:size]
 
 
 def _exactly(op: str, left: Numbers, right: Numbers) -> list[float]:

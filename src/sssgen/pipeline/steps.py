@@ -204,6 +204,7 @@ def make_names_legal(state: State) -> Module:
         not target.capabilities.overloads,
         others.folded | target.names.folded,
         target.capabilities.matrix_overloads,
+        target.capabilities.loop_scope,
     )
     names = zip(module.uniforms, state.module.uniforms, strict=True)
     state.source_names = {new.name: old.name for new, old in names}

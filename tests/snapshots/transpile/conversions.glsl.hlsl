@@ -42,7 +42,7 @@ float arguments(int n) {
 }
 
 float constructors(bool b, int n, uint u, float x) {
-    return float(b) + float(u) + float(int(x)) + float(uint(abs(n))) + float(bool(n))
+    return float(b) + float(u) + float(int(x)) + float(uint(abs(n))) + float(n != 0)
         + float2(float(b), float(n)).x + float(int2(int(x), n).x);
 }
 

@@ -60,7 +60,7 @@ def _choice(scalar: str, vector: str) -> str:
 # fmt: off
 ROWS = (
     Builtin("abs", _PLAIN, "Absolute value.",
-        fold=lambda x: checked(x != -0x80000000 or isinstance(x, float), abs(x)), relation="abs",
+        fold=abs, relation="abs",
         same_quantity=3, quantity="argument", range=lambda F, x: absolute(x),
         inside=lambda rt, x: x != -2147483648,
         domain="for an int: x > -2147483648",

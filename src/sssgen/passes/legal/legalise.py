@@ -10,16 +10,19 @@ from collections.abc import Callable, Sequence
 
 from sssgen.ir import nodes as ir
 from sssgen.ir import signatures
+from sssgen.ir.constant_evaluation import combined
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.transform import Transformer, rewrite
 from sssgen.ir.types import BOOL, FLOAT, UINT, Array, Matrix, Scalar, Struct, Type, Vector, components, kind_of
-from sssgen.ir.walk import subexpressions
+from sssgen.ir.walk import calls_of, subexpressions
 from sssgen.passes import uniform_blocks as blocks
 from sssgen.passes.capabilities import Capabilities
+from sssgen.passes.constant_expressions import literal
 from sssgen.passes.legal.integer_operators import counts_up, with_result
 from sssgen.passes.legal.legal_operators import is_integer_division, legal_operator, widened
 from sssgen.passes.legal.matrix_columns import by_whole_columns, matrix_from, needs_columns
 from sssgen.passes.legal.part_stores import is_dynamic_store, is_swizzle_store, parts_of, whole_store
+from sssgen.passes.legal.wide_constants import ConstantIntegers, is_wider
 from sssgen.passes.lift_calls import Calls, awkward, lift
 from sssgen.passes.scopes import assigned, declared, fresh, outs_of
 from sssgen.passes.substitute import inlined, is_cheap
@@ -64,10 +67,12 @@ class _Legaliser(Transformer):
         self.outs = outs_of(module.functions)
         self.writing = bool(self.shared or self.outs)
         """Whether any call can write anything."""
+        self.integers = None if capabilities.wrapping_constants else ConstantIntegers()
         self.ordered: set[int] = set()
         """The ids of the statements of which no part may be computed before them."""
 
     def run(self) -> ir.Module:
+        constants = tuple([self.constant(constant) for constant in self.module.constants])
         functions, errors = list[ir.Function](), list[Unsupported]()
         for function in self.module.functions:
             try:
@@ -77,10 +82,16 @@ class _Legaliser(Transformer):
         if errors:
             raise Unsupported(errors[0].message, errors[0].span, errors[1:])
         self.current = None
-        constants = tuple(constant._replace(value=self.initial(constant.value)) for constant in self.module.constants)
         variables = tuple([self.variable(variable) for variable in self.module.variables])
         functions = [*self.helpers.values(), *functions]
         return self.module._replace(constants=constants, functions=tuple(functions), variables=variables)
+
+    def constant(self, constant: ir.Constant) -> ir.Constant:
+        value = self.initial(constant.value)
+        numbers = self.integers.value(value) if self.integers is not None else None
+        if self.integers is not None and numbers is not None:
+            self.integers.constants[constant.name] = numbers
+        return constant if value is constant.value else constant._replace(value=value)
 
     def variable(self, variable: ir.Variable) -> ir.Variable:
         value = self.initial(variable.value) if variable.value is not None else None
@@ -96,7 +107,8 @@ class _Legaliser(Transformer):
         if not self.capabilities.out_parameters:
             return self.lifted(lift(function, self.calls))
         stmts = awkward(function, self.calls)
-        if stmts and (not self.capabilities.operand_order or awkward(function, Calls(self.functions))):
+        lifts = stmts and (not self.capabilities.operand_order or awkward(function, Calls(self.functions)))
+        if lifts or self.writes_parts(function):
             return self.lifted(lift(function, self.calls))
         self.ordered = {id(stmt) for stmt in stmts}
         out, counters = self.out, list(self.counters)
@@ -105,6 +117,15 @@ class _Legaliser(Transformer):
         except _OutOfOrder:
             self.ordered, self.out, self.counters = set(), out, counters
             return self.lifted(lift(function, self.calls))
+
+    def writes_parts(self, function: ir.Function) -> bool:
+        """Whether a call writes a part of a variable into which the target has no store."""
+        return any(
+            self.refused(part)
+            for call in calls_of(function.body or ())
+            for index in self.outs.get(call.function, ())
+            for part in parts_of(call.args[index])
+        )
 
     def lifted(self, function: ir.Function) -> ir.Function:
         """A function whose writing calls are where the target can have them."""
@@ -263,22 +284,42 @@ class _Legaliser(Transformer):
         if isinstance(expr, ir.Binary):
             left, right = self.expression(expr.left), self.expression(expr.right)
             same = left is expr.left and right is expr.right
-            return self.binary(expr if same else ir.Binary(expr.type, expr.op, left, right, expr.span))
+            expr = expr if same else ir.Binary(expr.type, expr.op, left, right, expr.span)
+            is_variable = type(left) is ir.Local or type(right) is ir.Local
+            return self.binary(expr) if is_variable else self.legal(expr)
         if isinstance(expr, ir.Select) and not self.chooses(expr):
             return self.select(expr)
         if isinstance(expr, ir.Index) and isinstance(expr.value, ir.Global) and expr.value.name in self.uniforms:
             return blocks.element(expr._replace(index=self.expression(expr.index)), self.capabilities)
-        new = super().expression(expr)
-        if isinstance(new, ir.Intrinsic):
-            return self.intrinsic(new)
-        return self.construct(new) if isinstance(new, ir.Construct) else self.node(new)
+        return self.legal(super().expression(expr))
+
+    def legal(self, expr: ir.Expr) -> ir.Expr:
+        """A node whose operands are legal already."""
+        if self.integers is None or kind_of(expr.type) not in ("int", "uint"):
+            return self.expressible(expr)
+        parts = self.integers.parts(expr)
+        numbers = combined(expr, parts) if parts else None
+        if numbers is None:
+            return self.expressible(expr)
+        wider = is_wider(expr, parts, numbers)
+        legal = literal(expr.type, numbers, expr.span) if wider else self.expressible(expr)
+        self.integers.note(legal, numbers)
+        return legal
+
+    def expressible(self, expr: ir.Expr) -> ir.Expr:
+        """A node whose operands are legal already, as the target can express it."""
+        if isinstance(expr, ir.Binary):
+            return self.binary(expr)
+        if isinstance(expr, ir.Intrinsic):
+            return self.intrinsic(expr)
+        return self.construct(expr) if isinstance(expr, ir.Construct) else self.node(expr)
 
     def place(self, place: ir.Expr) -> ir.Expr:
         """The target of an assignment: only its indices are expressions."""
         if isinstance(place, ir.Swizzle | ir.Member):
-            return place._replace(value=self.place(place.value))
+            return self.node(place._replace(value=self.place(place.value)))
         if isinstance(place, ir.Index):
-            return place._replace(value=self.place(place.value), index=self.expression(place.index))
+            return self.node(place._replace(value=self.place(place.value), index=self.expression(place.index)))
         return place
 
     def node(self, expr: ir.Expr) -> ir.Expr:
@@ -303,6 +344,10 @@ class _Legaliser(Transformer):
         if isinstance(expr, ir.Swizzle) and isinstance(expr.value, ir.Swizzle):
             letters = "".join([expr.value.components["xyzw".index(letter)] for letter in expr.components])
             return expr._replace(value=expr.value.value, components=letters)
+        if isinstance(expr, ir.Index) and isinstance(expr.value, ir.Swizzle) and isinstance(expr.index, ir.Literal):
+            # a store into `v.zyx[1]` is lost by DXC
+            letter = expr.value.components[int(expr.index.value)]
+            return ir.Swizzle(expr.type, expr.value.value, letter, expr.span)
         return expr
 
     def intrinsic(self, call: ir.Intrinsic) -> ir.Expr:
@@ -357,6 +402,8 @@ class _Legaliser(Transformer):
 
     def construct(self, construct: ir.Construct) -> ir.Expr:
         type_, args, span = construct.type, construct.args, construct.span
+        if kind_of(type_) == "bool" and not self.capabilities.bool_conversions:
+            return self.bools(construct)
         if isinstance(type_, Matrix) and len(args) == 1 and not self.capabilities.matrix_conversions:
             return matrix_from(type_, args[0], self.keep_expensive, span)
         if isinstance(type_, Matrix) and needs_columns(type_, args) and not self.capabilities.mixed_columns:
@@ -367,6 +414,23 @@ class _Legaliser(Transformer):
         if isinstance(type_, Array) and not self.capabilities.array_constructors:
             return self.keep(construct, "values")
         return construct
+
+    def bools(self, construct: ir.Construct) -> ir.Expr:
+        """A constructor of bools without conversions of numbers: `x != 0`."""
+        args = tuple([self.compared(arg) for arg in construct.args])
+        if len(args) == 1 and args[0].type == construct.type:
+            return args[0]
+        return construct._replace(args=args)
+
+    def compared(self, value: ir.Expr) -> ir.Expr:
+        """The bools of numbers; bools themselves."""
+        type_, span = value.type, value.span
+        if kind_of(type_) == "bool" or not isinstance(type_, Scalar | Vector):
+            return value
+        zero = literal(type_, (0.0 if type_.kind == "float" else 0,), span)
+        if isinstance(type_, Scalar):
+            return ir.Binary(BOOL, "!=", value, zero, span)
+        return self.intrinsic(ir.Intrinsic(Vector("bool", type_.size), "notEqual", (value, zero), span))
 
     def binary(self, binary: ir.Binary) -> ir.Expr:
         if is_integer_division(binary) and not self.capabilities.integer_division and self.current is not None:
@@ -383,12 +447,13 @@ class _Legaliser(Transformer):
         span = select.span
         condition = self.expression(select.condition)
         if self.current is None:
-            return ir.Select(select.type, condition, self.expression(select.yes), self.expression(select.no), span)
+            yes, no = self.expression(select.yes), self.expression(select.no)
+            return self.legal(ir.Select(select.type, condition, yes, no, span))
         arms = (select.yes, select.no)
         if not self.branches(select):
             (yes, before_yes), (no, before_no) = self.apart(select.yes), self.apart(select.no)
             if not before_yes and not before_no:
-                return ir.Select(select.type, condition, yes, no, span)
+                return self.legal(ir.Select(select.type, condition, yes, no, span))
         if place is None:
             place = ir.Local(select.type, self.new_name("chosen"), span)
             self.out.append(ir.Declare(place.name, select.type, None, span))

@@ -10,8 +10,10 @@ transposed where it is read.
 
 from __future__ import annotations
 
+from collections import Counter
+
 from sssgen.ir import nodes as ir
-from sssgen.ir.types import Array, Matrix, Scalar, Struct, Vector, kind_of
+from sssgen.ir.types import FLOAT, INT, Array, Matrix, Scalar, Struct, Vector, kind_of
 from sssgen.passes.uniform_blocks import block_type
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers import hlsl_sizes
@@ -32,6 +34,7 @@ class HlslPrinter(Printer):
     def __init__(self, target: Target, module: ir.Module) -> None:
         super().__init__(target, module)
         self.sized: set[str] = set()
+        self.overloads = Counter([function.name for function in module.functions])
 
     @property
     def engine_matrices(self) -> bool:
@@ -46,6 +49,20 @@ class HlslPrinter(Printer):
             # a bare literal would take the count's type, and shift in zeros in place of the sign
             binary = binary._replace(left=ir.Construct(left, (binary.left,), binary.left.span))
         return super().binary(binary)
+
+    def intrinsic(self, call: ir.Intrinsic) -> tuple[str, int]:
+        """A builtin; DXC takes negative ints for uints where all arguments are literals."""
+        first = call.args[0]
+        if first.type == INT and all(map(_is_untyped, call.args)):
+            call = call._replace(args=(ir.Construct(INT, (first,), first.span), *call.args[1:]))
+        return super().intrinsic(call)
+
+    def call(self, call: ir.Call) -> str:
+        """A call; literals do not choose between overloads."""
+        if any(map(_is_untyped, call.args)) and self.overloads[self.by_key[call.function].name] > 1:
+            args = [ir.Construct(arg.type, (arg,), arg.span) if _is_untyped(arg) else arg for arg in call.args]
+            call = call._replace(args=tuple(args))
+        return super().call(call)
 
     def construct(self, construct: ir.Construct) -> tuple[str, int]:
         type_, args = construct.type, construct.args
@@ -129,3 +146,14 @@ class HlslPrinter(Printer):
         if not self.target.bindings.material_block:
             return {}
         return {"texture": f"t{index}", "sampler": f"s{index}"}
+
+
+def _is_untyped(expr: ir.Expr) -> bool:
+    """Whether it consists of number literals, which have types of their own: literal int, literal float."""
+    if isinstance(expr, ir.Literal):
+        return expr.type in (FLOAT, INT)
+    if isinstance(expr, ir.Unary):
+        return _is_untyped(expr.operand)
+    if isinstance(expr, ir.Binary):
+        return expr.type in (FLOAT, INT) and _is_untyped(expr.left) and _is_untyped(expr.right)
+    return isinstance(expr, ir.Select) and _is_untyped(expr.yes) and _is_untyped(expr.no)

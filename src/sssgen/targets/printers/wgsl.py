@@ -57,7 +57,7 @@ class WgslPrinter(Printer):
         text, binding = super().intrinsic(call)
         if "wgsl" in BUILTINS[call.name].explicit_type and not _has_type(call):
             first = self.expr(call.args[0])
-            text = text.replace(first, f"f32({first})", 1)
+            text = text.replace(first, f"{self.type(call.args[0].type)}({first})", 1)
         return text, binding
 
     def select(self, select: ir.Select) -> tuple[str, int]:

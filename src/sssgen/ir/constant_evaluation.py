@@ -1,0 +1,82 @@
+"""The value of a constant expression from those of its operands: one rule for the checker and the passes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, TypeAlias
+
+from sssgen.ir import constant_arithmetic as arithmetic
+from sssgen.ir import nodes as ir
+from sssgen.ir.constant_arithmetic import Number
+from sssgen.ir.types import BOOL, Array, Matrix, Struct, Type, Vector, components, kind_of
+
+Value: TypeAlias = tuple[Any, ...]
+"""The numbers of a scalar, vector or matrix (column after column); the values of an array's or struct's parts."""
+
+
+def combined(expr: ir.Expr, values: Sequence[Value]) -> Value | None:
+    """The value of an expression of constants; None where it is not constant, or not defined."""
+    if isinstance(expr, ir.Construct):
+        return tuple(values) if isinstance(expr.type, Array | Struct) else _constructed(expr, values)
+    if isinstance(expr, ir.Unary):
+        return arithmetic.unary(expr.op, values[0], kind_of(expr.type))
+    if isinstance(expr, ir.Binary):
+        left, right = expr.left.type, expr.right.type
+        if expr.op in ("==", "!=") and expr.type == BOOL:
+            return ((values[0] == values[1]) == (expr.op == "=="),)
+        is_product = expr.op == "*" and Matrix in (type(left), type(right)) and components(left) > 1 < components(right)
+        return None if is_product else arithmetic.binary(expr.op, values[0], values[1], kind_of(left))
+    if isinstance(expr, ir.Intrinsic):
+        return arithmetic.builtin(expr.name, values, [arg.type for arg in expr.args], expr.type)
+    if isinstance(expr, ir.Select):
+        return values[1] if values[0][0] else values[2]
+    return _part(expr, values)
+
+
+def _part(expr: ir.Expr, values: Sequence[Value]) -> Value | None:
+    """A part of a constant."""
+    whole: Value = values[0]
+    if isinstance(expr, ir.Swizzle):
+        return tuple([whole["xyzw".index(letter)] for letter in expr.components])
+    part: Value
+    if isinstance(expr, ir.Member):
+        assert isinstance(expr.value.type, Struct)
+        part = whole[[field.name for field in expr.value.type.fields].index(expr.field)]
+        return part
+    if not isinstance(expr, ir.Index):
+        return None
+    index, type_ = int(values[1][0]), expr.value.type
+    size = components(expr.type) if isinstance(type_, Vector | Matrix) else 1
+    if not 0 <= index < len(whole) // size:
+        return None
+    part = whole[index] if isinstance(type_, Array) else whole[index * size : (index + 1) * size]
+    return part
+
+
+def _constructed(construct: ir.Construct, values: Sequence[Value]) -> Value | None:
+    """A scalar, vector or matrix made of these values."""
+    type_, numbers = construct.type, [number for value in values for number in value]
+    converted = [arithmetic.converted(number, kind_of(type_)) for number in numbers]
+    if isinstance(type_, Matrix) and len(values) == 1:
+        return _matrix(type_.size, construct.args[0].type, converted)
+    if len(converted) == 1:
+        converted *= components(type_)
+    result: list[Number] = [number for number in converted[: components(type_)] if number is not None]
+    return tuple(result) if len(result) == components(type_) else None
+
+
+def _matrix(size: int, source: Type, numbers: list[Number | None]) -> Value | None:
+    """A matrix of a number (its diagonal) or of another matrix, with the rest as in the identity matrix."""
+    given = source.size if isinstance(source, Matrix) else 0
+    result: list[Number] = []
+    for column in range(size):
+        for row in range(size):
+            number: Number | None = float(row == column)
+            if max(row, column) < given:
+                number = numbers[column * given + row]
+            elif not given and row == column:
+                number = numbers[0]
+            if number is None:
+                return None
+            result.append(number)
+    return tuple(result)
