@@ -12,8 +12,10 @@ from typing import NamedTuple
 
 from sssgen.ir.nodes import Call, Constant, Expr, Function, Global, Module, Span, StructDecl, Uniform
 from sssgen.ir.transform import rewrite, rewrite_function
-from sssgen.ir.types import Struct
+from sssgen.ir.types import Struct, spell
 from sssgen.ir.walk import all_expressions, subexpressions
+from sssgen.passes.scopes import fresh
+from sssgen.passes.struct_types import rename_structs
 
 Bound = tuple[Module, Function]
 
@@ -56,7 +58,7 @@ class LinkError(Exception):
 
 
 def link(stages: Sequence[LinkStage], taken: Collection[str] = ()) -> Linked:
-    """Links the stages; no uniform, constant or function gets a name that is `taken`.
+    """Links the stages; no struct, uniform, constant or function gets a name that is `taken`.
 
     Raises LinkError for an unbound slot or two structs of one name.
     """
@@ -83,6 +85,8 @@ class _Linker:
         self.settings: dict[str, list[tuple[int, str]]] = {}
         self.instances: dict[object, Function] = {}
         self.global_names: dict[object, str] = {}
+        self.modules: dict[int, tuple[Module, Module]] = {}
+        """By its id: a module with structs of taken names, and the same without."""
 
     def stage(self, index: int, stage: LinkStage) -> Function:
         return self.function(stage.function, stage.module, index, stage)
@@ -92,6 +96,9 @@ class _Linker:
         if module.variables:
             variable = module.variables[0]
             raise LinkError(f"a technique has no variables outside its functions, as '{variable.name}'", variable.span)
+        if any(spell(struct.type) in self.taken for struct in module.structs):
+            module = self.with_free_structs(module)
+            function = next(other for other in module.functions if other.span == function.span)
         if function.body is None:
             bound = stage.bindings.get(function.name)
             if bound is None:
@@ -116,6 +123,17 @@ class _Linker:
         linked = rewrite_function(function._replace(name=name), _renaming(calls, names))
         self.instances[identity] = self.functions[linked.key] = linked
         return linked
+
+    def with_free_structs(self, module: Module) -> Module:
+        """A module without structs of taken names; the same for each stage that has it."""
+        key = id(module)
+        if key not in self.modules:
+            names = {spell(struct.type) for struct in module.structs}
+            new: dict[str, str] = {}
+            for name in names & set(self.taken):
+                new[name] = fresh(f"{name}_2", names | set(self.taken))
+            self.modules[key] = module, rename_structs(module, new)
+        return self.modules[key][1]
 
     def struct(self, struct: StructDecl) -> None:
         assert isinstance(struct.type, Struct)

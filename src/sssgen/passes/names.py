@@ -16,7 +16,6 @@ from collections.abc import Callable, Container, Mapping
 
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import (
-    Block,
     Call,
     Constant,
     Construct,
@@ -25,16 +24,15 @@ from sssgen.ir.nodes import (
     Function,
     Global,
     Intrinsic,
-    Member,
     Module,
-    Stmt,
     Variable,
     function_key,
 )
-from sssgen.ir.transform import rewrite, rewrite_block
+from sssgen.ir.transform import rewrite
 from sssgen.ir.types import VEC4, Array, Field, Matrix, Struct, Type, spell
 from sssgen.ir.walk import all_expressions, statements
 from sssgen.passes.scopes import Renamer, declared, rename_locals
+from sssgen.passes.struct_types import Retyper
 
 
 def rename(
@@ -80,6 +78,7 @@ class _Namer:
         self.structs: dict[Type, Type] = {}
         self.members: dict[tuple[str, str], str] = {}
         """New names of members, by the struct's new name and the member's old one."""
+        self.retyper = Retyper(self.structs, self.members)
         self.globals: dict[str, str] = {}
         self.keys: dict[str, str] = {}
         self.function_names: dict[str, str] = {}
@@ -92,7 +91,7 @@ class _Namer:
         module = self.module
         structs, constants = module.structs, module.constants
         if self.structs:
-            structs = tuple([struct._replace(type=self.retype(struct.type)) for struct in structs])
+            structs = tuple([struct._replace(type=self.retyper.type(struct.type)) for struct in structs])
         if self.structs or self.globals:
             constants = tuple([self.constant(constant) for constant in constants])
         uniforms, variables = module.uniforms, module.variables
@@ -172,7 +171,7 @@ class _Namer:
             new = names["key", key] if key in mangled else names["function", function.name]
             self.function_names[key] = new
             if new != function.name or self.structs:
-                types = [self.retype(param.type) for param in function.params]
+                types = [self.retyper.type(param.type) for param in function.params]
                 self.keys[key] = function_key(new, types)
 
     def mangled(self) -> dict[str, str]:
@@ -213,7 +212,7 @@ class _Namer:
                     new = self.member(new, members)
                     self.renamed[f"{struct.name}.{field.name}"] = new
                     self.members[names["struct", struct.name], field.name] = new
-                fields.append(Field(new, self.retype(field.type), field.quantity))
+                fields.append(Field(new, self.retyper.type(field.type), field.quantity))
             changed = Struct(names["struct", struct.name], tuple(fields))
             if changed != struct:
                 self.structs[struct] = changed
@@ -229,16 +228,16 @@ class _Namer:
 
     def constant(self, constant: Constant) -> Constant:
         name = self.globals.get(constant.name, constant.name)
-        return Constant(name, self.retype(constant.type), self.value(constant.value), constant.span)
+        return Constant(name, self.retyper.type(constant.type), self.value(constant.value), constant.span)
 
     def variable(self, variable: Variable) -> Variable:
         name = self.globals.get(variable.name, variable.name)
         value = self.value(variable.value) if variable.value is not None else None
-        return variable._replace(name=name, type=self.retype(variable.type), value=value)
+        return variable._replace(name=name, type=self.retyper.type(variable.type), value=value)
 
     def value(self, value: Expr) -> Expr:
         """A declaration's value with the new names."""
-        value = rewrite(value, self.retyped) if self.structs else value
+        value = rewrite(value, self.retyper.node) if self.structs else value
         renamed: Expr = Renamer(self.globals, self.keys).expression(value)
         return renamed
 
@@ -248,7 +247,7 @@ class _Namer:
         bad = [local for local in names if not self.legal(local)]
         bad += self.hidden(function, names)
         if self.structs:
-            function = self.retyped_function(function)
+            function = self.retyper.function(function)
         new, renamed = rename_locals(function, bad, self.choose, self.globals, self.keys, self.loop_scope)
         for old, local in renamed.items():
             self.renamed[f"{function.name}.{old}"] = local
@@ -277,34 +276,8 @@ class _Namer:
             while isinstance(type_, Array):
                 type_ = type_.element
             if isinstance(type_, Struct):
-                used.add(spell(self.retype(type_)))
+                used.add(spell(self.retyper.type(type_)))
         return used
-
-    # New structs, which are in the type of every node; this is rare
-
-    def retype(self, type: Type) -> Type:
-        """A type with the new structs."""
-        if isinstance(type, Array):
-            element = self.retype(type.element)
-            return type if element is type.element else Array(element, type.length)
-        return self.structs.get(type, type)
-
-    def retyped(self, node: Expr) -> Expr:
-        """A node with the new structs, after those inside it."""
-        if isinstance(node, Member):
-            node = node._replace(field=self.members.get((spell(node.value.type), node.field), node.field))
-        type_ = self.retype(node.type)
-        return node if type_ is node.type else node._replace(type=type_)
-
-    def retyped_function(self, function: Function) -> Function:
-        """A function with the new structs; its calls keep their old keys."""
-        params = tuple([param._replace(type=self.retype(param.type)) for param in function.params])
-
-        def restate(stmt: Stmt) -> Block | None:
-            return (stmt._replace(type=self.retype(stmt.type)),) if isinstance(stmt, Declare) else None
-
-        body = rewrite_block(function.body, self.retyped, restate) if function.body is not None else None
-        return function._replace(params=params, result=self.retype(function.result), body=body)
 
 
 def _word(type: Type) -> str:

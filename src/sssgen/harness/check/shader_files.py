@@ -6,10 +6,11 @@ import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any, NamedTuple, cast, get_args
 
 from sssgen.harness.check.compiler_inputs import outputs, sources
 from sssgen.harness.check.handwritten import LANGUAGES_OF, hand_written, language_of
-from sssgen.harness.compilers import Source, readers
+from sssgen.harness.compilers import Source, Stage, readers
 from sssgen.material.material_loading import load_material
 from sssgen.pipeline.compiler import FORMS, compile
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
@@ -18,6 +19,7 @@ from sssgen.support.text_files import read_text
 from sssgen.targets import registry
 
 REFLECTION = "reflection.json"
+STAGES = frozenset(get_args(Stage))
 
 
 @dataclass(frozen=True)
@@ -81,8 +83,11 @@ def of_files(files: Mapping[str, str], named: set[str], targets: Sequence[str]) 
     problems: list[Diagnostic] = []
     handwritten: list[Source] = []
     for path, text in files.items():
-        target = _emitted_for(path, text)
-        if target and (not targets or target in targets):
+        own = transpiled(path)
+        target = own.target if own is not None else _emitted_for(path, text)
+        if own is not None and (not targets or target in targets):
+            handwritten += own.sources(text, path)
+        elif target and (not targets or target in targets):
             emitted[path] = text
         elif target:
             if path in named:
@@ -166,23 +171,69 @@ def _language(path: str, text: str, named: bool, targets: Sequence[str]) -> str:
 
 def _origins(path: str) -> dict[str, str]:
     """The source map of an emitted file, from the reflection next to it; empty where there is none."""
+    own = transpiled(path)
+    if own is not None:
+        return own.origins
     folder, base = os.path.split(path)
-    names = [f"{base}.{REFLECTION}"]  # the name that `sssgen transpile` uses
-    for target, material, _ in outputs(path):
-        names += [f"{material}.{target.name}.{form}{REFLECTION}" for form in ("", "functions.")]
+    names = [
+        f"{material}.{target.name}.{form}{REFLECTION}"
+        for target, material, _ in outputs(path)
+        for form in ("", "functions.")
+    ]
     for name in dict.fromkeys(names):
         if os.path.isfile(reflection := os.path.join(folder, name)):
-            maps = _source_map(reflection)
+            maps = _reflection(reflection)["source_map"]
             if base in maps:
-                return maps[base]
-            if name == names[0] and len(maps) == 1:
-                return next(iter(maps.values()))
+                origins: dict[str, str] = maps[base]
+                return origins
     return {}
 
 
-def _source_map(path: str) -> dict[str, dict[str, str]]:
+class Transpiled(NamedTuple):
+    """What the reflection next to a file states that `sssgen transpile` wrote under any name."""
+
+    target: str
+    stages: dict[str, str]
+    """Stage → its entry point."""
+    origins: dict[str, str]
+    reflection: dict[str, Any]
+
+    def sources(self, text: str, name: str) -> list[Source]:
+        """The file's sources."""
+        return [
+            Source(text, self.target, cast(Stage, stage), entry or "main", name) for stage, entry in self.stages.items()
+        ]
+
+
+def transpiled(path: str) -> Transpiled | None:
+    """The reflection `FILE.reflection.json`; None where there is none."""
+    name = f"{path}.{REFLECTION}"
+    if not os.path.isfile(name):
+        return None
+    reflection = _reflection(name)
     try:
-        maps = json.loads(read_text(path, posix(path)))["source_map"]
-        return {str(file): {str(line): str(span) for line, span in lines.items()} for file, lines in maps.items()}
+        base = os.path.basename(path)
+        (file,) = [file for file in reflection["files"] if file["name"] == base] or reflection["files"]
+        stages = {str(stage): str(entry) for stage, entry in file["stages"].items()}
+        maps: dict[str, dict[str, str]] = reflection["source_map"]
+        origins = maps[file["name"]]
+        if reflection["target"] in registry.names() and stages.keys() <= STAGES:
+            return Transpiled(reflection["target"], stages, origins, reflection)
+    except (ValueError, KeyError, TypeError, AttributeError):
+        pass
+    raise _no_reflection(name)
+
+
+def _reflection(path: str) -> dict[str, Any]:
+    """A reflection file, with a source map of texts."""
+    try:
+        reflection: dict[str, Any] = json.loads(read_text(path, posix(path)))
+        maps = reflection["source_map"]
+        shown = {str(file): {str(line): str(span) for line, span in lines.items()} for file, lines in maps.items()}
+        return {**reflection, "source_map": shown}
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        raise failure("this is not a reflection file of sssgen", "emit it again, or remove it", posix(path)) from None
+        raise _no_reflection(path) from None
+
+
+def _no_reflection(path: str) -> SssgenError:
+    return failure("this is not a reflection file of sssgen", "emit it again, or remove it", posix(path))

@@ -42,7 +42,7 @@ def functions(text: str, wgsl: bool = False) -> list[Function]:
 def glsl_entry(text: str) -> str:
     """`text` with a `main` that calls each of its functions, for a fragment stage."""
     body, opaque = _c_calls(functions(text), "uniform highp {1} {0};", {})
-    entry = "layout(location = 0) out highp vec4 sssgen_check_color;"
+    entry = "out highp vec4 sssgen_check_color;"
     return _append(text, [*opaque, entry, "void main() {", *body, "    sssgen_check_color = vec4(0.0);", "}"])
 
 
@@ -138,5 +138,5 @@ def _c_parameter(text: str) -> tuple[str, str, str]:
 
 
 def _wgsl_parameter(text: str) -> tuple[str, str, str]:
-    name, _, kind = text.partition(":")
+    name, _, kind = " ".join(text.split()).partition(":")
     return kind.strip(), name.strip(), ""
