@@ -184,7 +184,8 @@ def _drawn(row: Builtin, params: tuple[Type, ...], lanes: int) -> tuple[Array, .
 
 def inside(row: Builtin, args: tuple[Array, ...]) -> Array:
     """The lanes in which the parity of a row is measured."""
-    return evaluated(row.inside, widened(args)) if row.inside else np.ones(args[0].shape[-1], bool)
+    domain = row.inside or (row.defined if row.kind != "fetch" else None)
+    return evaluated(domain, widened(args)) if domain else np.ones(args[0].shape[-1], bool)
 
 
 def _column(row: Builtin, index: int, type_: Type, count: int, rng: np.random.Generator) -> Array:

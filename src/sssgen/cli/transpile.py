@@ -68,7 +68,7 @@ def add_options(parser: ArgumentParser) -> None:
         type=int,
         default=1000,
         metavar="N",
-        help="the number of random inputs for --verify (default: 1000)",
+        help="the number of inputs for --verify (default: 1000)",
     )
     add_seed(parser, "the seed of these inputs")
     add("--as", dest="as_", choices=("technique",), help="write a function as the start of a technique's file")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Collection, Mapping
+from itertools import count
 from time import perf_counter
 from typing import Any
 
@@ -96,11 +97,17 @@ class OpenGL(DrawingBackend):
             kind = "f4" if drawing.floats else "u4"
             frame = keep(context.framebuffer([keep(context.texture(drawing.size, 4, dtype=kind))]))
             textures = {name: keep(self.upload(bound.data)) for name, bound in drawing.textures.items()}
-            for unit, member in enumerate(name for name in program if is_loose(program[name])):
+            unit = count()
+            for member in [name for name in program if is_loose(program[name])]:
                 name = self.owner(member, textures)
-                if name:
-                    textures[name].use(unit)
-                    program[member].value = unit
+                elements = [f"{member}[{index}]" for index in range(program[member].array_length)]
+                some = next((element for element in elements if element in textures), "")
+                bound = [name] if name else [one if one in textures else some for one in elements] if some else []
+                if bound:
+                    units = [next(unit) for _ in bound]
+                    for number, one in zip(units, bound, strict=True):
+                        textures[one].use(number)
+                    program[member].value = units[0] if name else tuple(units)
                 elif member in drawing.values:
                     _write(program[member], drawing.values[member])
             self.bind_blocks(program, drawing.blocks, keep)

@@ -17,7 +17,15 @@ from sssgen.passes.variable_effects import NONE, effects
 MAX_INPUTS = 64
 """The largest number of inputs (numbers, vectors, matrices): drivers do not support many more."""
 MAX_OUTPUTS = 16
-TEXTURES = [Sampler(dim) for dim in ("2D", "3D", "Cube")]
+TEXTURES = [
+    Sampler("Cube"),
+    Sampler("2D", shadow=True),
+    *(
+        Sampler(dim, kind, array)
+        for kind in ("float", "int", "uint")
+        for dim, array in (("2D", False), ("2D", True), ("3D", False))
+    ),
+]
 """The textures that back ends support as inputs."""
 
 

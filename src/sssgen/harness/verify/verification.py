@@ -1,15 +1,16 @@
 """`sssgen transpile --verify`: a file's functions as the driver reads them, compared with their translations.
 
-Each function runs on random inputs (`plain_inputs`): the author's own text in OpenGL's driver, and its translations to
-GLSL, HLSL, WGSL and NumPy in float64, the oracle. A deviation is the difference from the author's text, relative to the
-larger of the value's size and 1. Ill-conditioned lanes, where the result depends on the last bits of the inputs (at the
-edge of a cell, in a hash), are excluded and counted: `evaluate.deviation` describes the measurement, but inputs move by
-up to `STEPS` units in the last place here, as nothing is known of the functions. Lanes where the author's text or the
-oracle gives infinity or NaN are excluded, too: the languages guarantee nothing there.
+Each function runs on inputs that reach its branches (`input_search`): the author's own text in OpenGL's driver, and its
+translations to GLSL, HLSL, WGSL and NumPy in float64, the oracle. A deviation is the difference from the author's text,
+relative to the larger of the value's size and 1. Two kinds of lanes are excluded and counted:
 
-WGSL and the oracle do not run in the driver that runs the author's text. Where a function calls builtins whose
-precision differs between drivers, these two may deviate by the error that the table of builtins grants; the report
-says so. A uniform has one value in each of a few rounds. Functions that cannot be run are listed with the reason.
+- undefined ones, where the function meets an operation that GLSL leaves undefined (`lane_interpreter`), or where the
+  author's text gives infinity or NaN: the languages guarantee nothing there;
+- ill-conditioned ones, where rounding explains the deviation (`rounding_noise`): at the edge of a cell, in a hash. The
+  translation to GLSL runs in the driver that runs the author's text, so its builtins have the same errors; for the
+  others, builtins have the errors that their rows grant.
+
+A uniform has one value in each of several rounds. Functions that cannot be run are listed with the reason.
 """
 
 from __future__ import annotations
@@ -18,8 +19,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from functools import cache, partial
-from time import monotonic
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -27,15 +27,18 @@ import numpy as np
 from sssgen.harness.backends import Array, Bound, Call, CompilerMissing, Place, Stage, Text
 from sssgen.harness.backends import call_program as calls
 from sssgen.harness.backends.isolated import Isolated, isolated
-from sssgen.harness.evaluate.deviation import DRAWS, GOAL, MARGIN, errors
-from sssgen.harness.verify.plain_inputs import numbers, picture
+from sssgen.harness.evaluate.deviation import GOAL, MARGIN, errors
+from sssgen.harness.verify.branch_outcomes import Outcomes, branches
+from sssgen.harness.verify.input_search import Search, chosen
+from sssgen.harness.verify.lane_interpreter import Program, Run
+from sssgen.harness.verify.loop_inputs import loop_inputs
+from sssgen.harness.verify.plain_inputs import Source, picture, taken
 from sssgen.harness.verify.plain_probes import TEXTURES, Leaf, Probe, Probed, probed
+from sssgen.harness.verify.rounding_noise import noise
 from sssgen.harness.verify.stage_variables import MAIN, Plain, plain
-from sssgen.harness.verify.verification_report import BACKENDS, Comparison, Report, Row
-from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.nodes import Function, Intrinsic, Module, Param
+from sssgen.harness.verify.verification_report import BACKENDS, Comparison, Coverage, Report, Row
+from sssgen.ir.nodes import Function, Module, Param, Span
 from sssgen.ir.types import Sampler
-from sssgen.ir.walk import all_expressions
 from sssgen.lang import shadertoy
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.passes.reachable import only
@@ -47,14 +50,14 @@ from sssgen.targets import registry
 from sssgen.targets.runtime.numpy_textures import Texture
 
 SAMPLES = 1000
-ROUNDS = 4
+ROUNDS = 16
 """How many values a uniform has."""
-STEPS = 8
-"""How far inputs move, in units in the last place."""
-OTHER_DRIVERS = {"wgsl", "oracle"}
-"""The translations that do not run in the driver that runs the author's text."""
+SAME_TEXT = {"glsl"}
+"""The translations whose builtins are those of the author's text."""
 SECONDS = 30.0
-"""The time limit of one function on one back end, and of measuring how ill-conditioned it is."""
+"""The time limit of one function on one back end."""
+DRAWS_EACH = (16, 128)
+"""How many runs with errors a deviation is compared with; the second number for what the first does not explain."""
 _SCREEN = "void main() { gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0); }"
 VERSIONS = ("450 core", "330 core", "300 es")
 """The versions to try, where the text has no `#version` or one before 3.30."""
@@ -73,7 +76,7 @@ def verify(
     text: str, shown: str, samples: int = SAMPLES, seed: int = 0, entry: str = "",
     read: Callable[[str, str], Module] | None = None,
 ) -> Report:  # fmt: skip
-    """Runs every function of a text without `#include` (see `inline_includes`) on `samples` random inputs.
+    """Runs every function of a text without `#include` (see `inline_includes`) on `samples` inputs.
 
     `shown` is the text's name in messages; `entry` as in `load_glsl`; `read(text, shown)` parses it. Raises SssgenError
     where the front end refuses the text, and without OpenGL, which runs the reference.
@@ -111,7 +114,7 @@ def _machines() -> Iterator[tuple[dict[str, Isolated], dict[str, str]]]:
         except CompilerMissing as reason:
             missing[name] = str(reason)
 
-    names = ("numpy-f32", *BACKENDS.values())
+    names = tuple(BACKENDS.values())
     try:
         with ThreadPoolExecutor(len(names)) as pool:
             list(pool.map(start, names))
@@ -156,71 +159,155 @@ class _Case:
         self.module = module._replace(variables=variables)
         closed = {function.name: function.params for function in uniforms_to_parameters(self.module).functions}
         self.params: dict[str, tuple[Param, ...]] = {name: closed[name] for name in names if name in closed}
-        rounds = ROUNDS if self.uniforms() else 1
-        lanes = -(-samples // rounds // 4) * 4  # derivatives need whole quads
-        self.inputs = [self.draw(lanes, number) for number in range(rounds)] if case.probes else []
+        self.inputs: list[_Inputs] = []
+        if case.probes:
+            self.program = Program(self.module)
+            self.key = self.keys[case.probes[0].name]
+            self.textures = self.drawn_textures()
+            self.inputs = self.search(samples)
 
     def uniforms(self) -> dict[str, Param]:
         """The uniforms of the text that the function reads."""
         own = {leaf.name for probe in self.case.probes for leaf in probe.leaves}
         return {param.name: param for params in self.params.values() for param in params if param.name not in own}
 
-    def draw(self, lanes: int, number: int) -> _Inputs:
-        """The random inputs of one round."""
-        seed = self.seed * ROUNDS + number
-        values, textures = {}, {}
+    def drawn_textures(self) -> dict[str, Texture]:
+        """A picture for each texture."""
         leaves = [leaf for probe in self.case.probes[:1] for leaf in probe.leaves]
-        uniforms = [Leaf(name, name, param.type) for name, param in self.uniforms().items()]
-        for leaf in [*leaves, *uniforms]:
-            if isinstance(leaf.type, Sampler):
-                if leaf.type in TEXTURES:
-                    textures[leaf.name] = picture(leaf.path, leaf.type, seed)
-                continue
-            count = 1 if leaf in uniforms else lanes
-            drawn = numbers(leaf.path.removeprefix("local_"), leaf.type, count, seed)
-            values[leaf.name] = np.broadcast_to(drawn, (*drawn.shape[:-1], lanes))
-        return _Inputs(values, textures)
+        leaves += [Leaf(name, name, param.type) for name, param in self.uniforms().items()]
+        return {
+            leaf.name: picture(leaf.path, leaf.type, self.seed)
+            for leaf in leaves
+            if isinstance(leaf.type, Sampler) and leaf.type in TEXTURES
+        }
+
+    def search(self, samples: int) -> list[_Inputs]:
+        """The inputs of all rounds."""
+        bounding = loop_inputs(self.program.module, self.key)
+        leaves = [leaf for leaf in self.case.probes[0].leaves if not isinstance(leaf.type, Sampler)]
+        sources = [
+            Source(leaf.name, leaf.path.removeprefix("local_"), leaf.type, leaf.name in bounding) for leaf in leaves
+        ]
+        uniforms = [
+            Source(name, name, param.type, name in bounding, True)
+            for name, param in self.uniforms().items()
+            if not isinstance(param.type, Sampler)
+        ]
+        search = Search(self.program, self.key, [*sources, *uniforms], self.textures, self.seed)
+        sampled = search.found(samples)
+        rounds = ROUNDS if uniforms else 1
+        lanes = -(-samples // rounds // 4) * 4  # derivatives need whole quads
+        picked = [
+            taken(round_, chosen(search.run(round_), lanes, self.seed)) if rounds > 1 else round_
+            for round_ in search.rounds(sampled, rounds, lanes)
+        ]
+        return [_Inputs(values, self.textures) for values in picked if next(iter(values.values())).shape[-1]]
 
     def row(self) -> Row:
         """The comparison of all translations."""
-        function = self.case.function
-        row = Row(_title(function), function.span.line, reason=self.case.reason)
-        for name, param in self.uniforms().items():
-            if isinstance(param.type, Sampler) and param.type not in TEXTURES:
-                row = row._replace(reason=f"it reads {name}, a texture of a type that is not supported here")
-        if row.reason:
-            return row
+        row = Row(_title(self.case.function), self.case.function.span.line)
+        if self.case.reason or not self.case.probes:
+            return row._replace(reason=self.case.reason)
+        if not self.inputs:
+            return row._replace(reason="its loops do not end")
+        undefined, coverage = self.analysis()
+        row = row._replace(branches=coverage)
         try:
             original = self.all_rounds(self.original)
         except SssgenError as error:
             return row._replace(reason=f"the driver refuses it as written: {error.diagnostics[0].message}")
-        return self.compared(row, original)
-
-    def compared(self, row: Row, original: Mapping[str, Array]) -> Row:
-        """The row with the deviation of each translation from the original."""
         names = [name for name, backend in BACKENDS.items() if backend in self.machines]
         with ThreadPoolExecutor(len(names)) as pool:  # each waits for its own process
             results = dict(zip(names, pool.map(self.result, names), strict=True))
-        oracle = results.get("oracle")
-        finite = _finite(original)
-        if isinstance(oracle, dict):
-            finite &= _finite(oracle)
-        noise = cache(lambda: self.noise(oracle) if isinstance(oracle, dict) else dict[str, Array]())
+        defined = _finite(original) & ~undefined
         comparisons = {
             name: Comparison(None, error=outputs)
             if isinstance(outputs, str)
-            else _comparison(outputs, original, finite, noise)
+            else self.comparison(name, outputs, original, defined)
             for name, outputs in results.items()
         }
-        inexact, granted = _inexact(self.module)
-        for name in OTHER_DRIVERS & comparisons.keys():
-            comparisons[name] = comparisons[name]._replace(inexact=inexact, limit=max(GOAL, MARGIN * granted))
         reason = ""
-        if not finite.any():
-            reason = "every result is infinity or NaN"
+        if not defined.any():
+            reason = "GLSL leaves every result undefined"
         elif all(comparison.deviation is None and not comparison.error for comparison in comparisons.values()):
             reason = "every result is ill-conditioned: it depends on rounding"
-        return row._replace(lanes=len(finite), undefined=int((~finite).sum()), comparisons=comparisons, reason=reason)
+        return row._replace(lanes=len(defined), undefined=int((~defined).sum()), comparisons=comparisons, reason=reason)
+
+    def analysis(self) -> tuple[Array, Coverage]:
+        """The undefined lanes of all rounds, and which branches the function's own text takes."""
+        undefined: list[Array] = []
+        reached: set[tuple[int, bool]] = set()
+        for inputs in self.inputs:
+            lanes = next(iter(inputs.values.values())).shape[-1]
+            outcomes = Outcomes(lanes)
+            everything = {**inputs.values, **inputs.textures}
+            run = Run(self.program, lanes, everything, outcomes)
+            run.result(self.key, everything)
+            undefined.append(run.undefined | run.endless)
+            reached |= {key for key, mask in outcomes.branches.items() if mask.any()}
+        own = branches(self.program.module, self.case.function.key)
+        never = tuple([f"line {one.line} ({one.what})" for one in own if one.key not in reached])
+        return np.concatenate(undefined), Coverage(len(own) - len(never), len(own), never)
+
+    def comparison(
+        self, name: str, got: Mapping[str, Array], wanted: Mapping[str, Array], defined: Array
+    ) -> Comparison:
+        """The largest deviation of the defined lanes, without those whose deviation is explained by rounding."""
+        each = {output: np.where(defined, errors(got[output], right), 0.0) for output, right in wanted.items()}
+        beyond = np.any([error > GOAL for error in each.values()], axis=0)
+        unexplained = beyond.copy()
+        for draws in DRAWS_EACH:
+            if not unexplained.any():
+                break
+            lanes = np.flatnonzero(unexplained)
+            limits = self.noise(lanes, draws, name not in SAME_TEXT)
+            wrong = [
+                (error[lanes] > GOAL) & ~(error[lanes] <= MARGIN * limits[output]) for output, error in each.items()
+            ]
+            unexplained[lanes] = np.any(wrong, axis=0)
+        excluded = beyond & ~unexplained
+        left = defined & ~excluded
+        if not left.any():
+            return Comparison(None, int(excluded.sum()))
+        comparison = Comparison(0.0, int(excluded.sum()))
+        for output, error in each.items():
+            lane = int(np.argmax(np.where(left, error, 0.0)))
+            if left[lane] and error[lane] > (comparison.deviation or 0.0):
+                shown = f"{_shown(got[output][lane])}, the author's text gives {_shown(wanted[output][lane])}"
+                at = f"{output}[{lane}]: {shown}{self.shown_inputs(lane)}"
+                comparison = comparison._replace(deviation=float(error[lane]), at=at)
+        return comparison
+
+    def shown_inputs(self, lane: int) -> str:
+        """The inputs of a lane."""
+        for inputs in self.inputs:
+            count = next(iter(inputs.values.values())).shape[-1]
+            if lane < count:
+                names = {leaf.name: leaf.path.removeprefix("local_") for leaf in self.case.probes[0].leaves}
+                shown = [
+                    f"{names.get(name, name)} = {_shown(value[..., lane])}"
+                    for name, value in inputs.values.items()
+                    if names.get(name, name)
+                ]
+                return f" for {', '.join(shown)}" if shown else ""
+            lane -= count
+        return ""
+
+    def noise(self, lanes: Array, draws: int, granted: bool) -> dict[str, Array]:
+        """The largest movement that rounding explains, of each output in these lanes."""
+        keys = [self.keys[probe.name] for probe in self.case.probes]
+        parts: list[list[Array]] = []
+        start = 0
+        for inputs in self.inputs:
+            count = next(iter(inputs.values.values())).shape[-1]
+            own = lanes[(lanes >= start) & (lanes < start + count)] - start
+            if len(own):
+                parts.append(noise(self.program, keys, inputs.values, inputs.textures, own, draws, granted, draws))
+            start += count
+        return {
+            probe.output: np.concatenate([part[index] for part in parts])
+            for index, probe in enumerate(self.case.probes)
+        }
 
     def result(self, name: str) -> dict[str, Array] | str:
         """The outputs of one translation, or why it does not run."""
@@ -260,6 +347,7 @@ class _Case:
         drawing, layout = calls.drawing(target, text, probe_calls, inputs.textures)
         uniforms = self.uniforms()
         bound = {name: Bound(inputs.textures[name], Place(0, 0)) for name in uniforms if name in inputs.textures}
+        bound |= {shown: bound[name] for name, shown in _elements(self.module).items() if name in bound}
         values = {name: inputs.values[name][..., 0] for name in uniforms if name in inputs.values}
         vertex = Stage(Text(f"#version {version}\n{_SCREEN}"))
         drawing = drawing._replace(vertex=vertex, textures={**drawing.textures, **bound}, values=values)
@@ -302,55 +390,22 @@ class _Case:
         args = tuple([inputs.values.get(param, param) for param in params])
         return Call(name, tuple([types[param] for param in params]), probe.result, args)
 
-    def noise(self, oracle: Mapping[str, Array]) -> dict[str, Array]:
-        """The largest error that rounding explains, of each lane of each output: (lanes,)."""
-        rounded = self.all_rounds(partial(self.transpiled, "numpy-f32"))
-        largest = {name: errors(value, oracle[name]) for name, value in rounded.items()}
-        rng = np.random.default_rng(0)
-        end = monotonic() + SECONDS
-        for _ in range(DRAWS):
-            if monotonic() > end:
-                break
-            near = [_near(inputs, rng) for inputs in self.inputs]
-            exact = self.all_rounds(partial(self.transpiled, "numpy"), near)
-            rounded = self.all_rounds(partial(self.transpiled, "numpy-f32"), near)
-            for name, value in exact.items():
-                error = np.maximum(errors(value, oracle[name]), errors(rounded[name], value))
-                largest[name] = np.maximum(largest[name], error)
-        return largest
 
+def _elements(module: Module) -> dict[str, str]:
+    """The author's name of each texture that is an element of an array, as `maps[1]`, by its name in the IR.
 
-def _near(inputs: _Inputs, rng: np.random.Generator) -> _Inputs:
-    return inputs._replace(values={name: _moved(value, rng) for name, value in inputs.values.items()})
-
-
-def _moved(value: Array, rng: np.random.Generator) -> Array:
-    """Numbers moved up or down by up to `STEPS` units in float32's last place; whole numbers stay, and 0."""
-    if value.dtype.kind != "f":
-        return value
-    moved: Array = value + rng.integers(-STEPS, STEPS + 1, value.shape) * np.spacing(np.abs(value).astype(np.float32))
-    return moved
-
-
-def _comparison(
-    got: Mapping[str, Array], wanted: Mapping[str, Array], counted: Array, noise: Callable[[], dict[str, Array]]
-) -> Comparison:
-    """The largest deviation of the `counted` lanes, without those whose deviation is explained by noise."""
-    each = {name: np.where(counted, errors(got[name], right), 0.0) for name, right in wanted.items()}
-    beyond = np.any([error > GOAL for error in each.values()], axis=0)
-    limit = noise() if beyond.any() else {}
-    wrong = [(error > GOAL) & ~(error <= MARGIN * limit.get(name, 0.0)) for name, error in each.items()]
-    excluded = beyond & ~np.any(wrong, axis=0)
-    left = counted & ~excluded
-    if not left.any():
-        return Comparison(None, int(excluded.sum()))
-    comparison = Comparison(0.0, int(excluded.sum()))
-    for name, error in each.items():
-        lane = int(np.argmax(np.where(left, error, 0.0)))
-        if left[lane] and error[lane] > (comparison.deviation or 0.0):
-            at = f"{name}[{lane}]: {_shown(got[name][lane])}, the author's text gives {_shown(wanted[name][lane])}"
-            comparison = comparison._replace(deviation=float(error[lane]), at=at)
-    return comparison
+    The elements of an array have the place of its declaration, and the names `maps_0`, `maps_1`, …
+    """
+    arrays: dict[Span, list[str]] = {}
+    for uniform in module.uniforms:
+        if isinstance(uniform.type, Sampler):
+            arrays.setdefault(uniform.span, []).append(uniform.name)
+    return {
+        name: f"{names[0].partition('_0')[0]}[{index}]"
+        for names in arrays.values()
+        for index, name in enumerate(names)
+        if "_0" in names[0]
+    }
 
 
 def _shown(value: Array) -> str:
@@ -362,17 +417,6 @@ def _finite(outputs: Mapping[str, Array]) -> Array:
     each = [np.isfinite(value).reshape(len(value), -1).all(axis=1) for value in outputs.values()]
     finite: Array = np.all(each, axis=0)
     return finite
-
-
-def _inexact(module: Module) -> tuple[tuple[str, ...], float]:
-    """The builtins in a module whose granted error is above the goal, and the largest of these errors."""
-    used = {
-        part.name: BUILTINS[part.name].absolute
-        for function in module.functions
-        for part in all_expressions(function.body or ())
-        if isinstance(part, Intrinsic) and BUILTINS[part.name].absolute > GOAL
-    }
-    return tuple(sorted(used)), max(used.values(), default=0.0)
 
 
 def _title(function: Function) -> str:

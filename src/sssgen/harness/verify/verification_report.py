@@ -21,27 +21,28 @@ class Comparison(NamedTuple):
     excluded: int = 0
     """The number of ill-conditioned lanes, where rounding explains the deviation."""
     at: str = ""
-    """The place of the largest deviation, the value there, and that of the author's text."""
+    """The place of the largest deviation, the value there, that of the author's text, and the inputs."""
     error: str = ""
-    inexact: tuple[str, ...] = ()
-    """The function's builtins whose granted error is above the goal, where another driver computes."""
-    limit: float = GOAL
-    """The largest deviation that passes: the goal, or what such builtins explain."""
-
-    @property
-    def close(self) -> bool:
-        """Whether it is within the goal, or no lane is left."""
-        return self.deviation is None or self.deviation <= GOAL
 
     @property
     def ok(self) -> bool:
-        """Whether it ran within its limit, or no lane is left."""
-        return not self.error and (self.deviation is None or self.deviation <= self.limit)
+        """Whether it ran, and is within the goal, or no lane is left."""
+        return not self.error and (self.deviation is None or self.deviation <= GOAL)
 
     @property
     def cell(self) -> str:
         """The deviation as text."""
         return "failed" if self.error else "–" if self.deviation is None else f"{self.deviation:.2g}"
+
+
+class Coverage(NamedTuple):
+    """Which branches of a function the inputs take."""
+
+    taken: int = 0
+    outcomes: int = 0
+    """Each `if`, `?:` and loop counts twice."""
+    never: tuple[str, ...] = ()
+    """Such as `line 12 (else)`."""
 
 
 class Row(NamedTuple):
@@ -52,11 +53,12 @@ class Row(NamedTuple):
     line: int
     lanes: int = 0
     undefined: int = 0
-    """The number of lanes where the author's text or the oracle gives infinity or NaN."""
+    """The number of lanes in which GLSL leaves an operation undefined."""
     comparisons: Mapping[str, Comparison] = {}
     """By the keys of `BACKENDS`."""
     reason: str = ""
     """Why it was not run; '' where it was."""
+    branches: Coverage = Coverage()
 
     @property
     def ok(self) -> bool:
@@ -64,14 +66,16 @@ class Row(NamedTuple):
         return not self.reason and all(comparison.ok for comparison in self.comparisons.values())
 
     def cells(self, names: list[str]) -> str:
-        """The deviations of these translations, and the number of lanes, as text."""
+        """The deviations of these translations, the number of lanes, and that of branches, as text."""
         cells = [self.comparisons[name].cell if name in self.comparisons else "" for name in names]
         excluded = [f"{self.undefined} undefined"] * bool(self.undefined)
         excluded += [
             f"{one.excluded} ill-conditioned in {name}" for name, one in self.comparisons.items() if one.excluded
         ]
         row = "".join([f"{cell:>9}" for cell in cells])
-        return f"{row}   {self.lanes}" + (f" but for {', '.join(excluded)}" if excluded else "")
+        lanes = f"{self.lanes}" + (f" but for {', '.join(excluded)}" if excluded else "")
+        branches = f"; branches {self.branches.taken} of {self.branches.outcomes}" if self.branches.outcomes else ""
+        return f"{row}   {lanes}{branches}"
 
     def as_json(self) -> dict[str, Any]:
         """The row for programs."""
@@ -88,7 +92,9 @@ class Row(NamedTuple):
             | ({"error": one.error} if one.error else {})
             for name, one in self.comparisons.items()
         }
-        return row | {"lanes": self.lanes, "undefined": self.undefined, "texts": texts}
+        taken, outcomes, never = self.branches
+        branches = {"outcomes": outcomes, "taken": taken, "never": list(never)}
+        return row | {"lanes": self.lanes, "undefined": self.undefined, "branches": branches, "texts": texts}
 
 
 class Report(NamedTuple):
@@ -122,9 +128,9 @@ class Report(NamedTuple):
             for name, comparison in row.comparisons.items():
                 if comparison.error:
                     yield f"    {name} does not run: {comparison.error}"
-                elif not comparison.close and not row.reason:
-                    builtins = ", ".join(comparison.inexact)
-                    inexact = f" (the precision of {builtins} differs between drivers)" if comparison.ok else ""
-                    yield f"    {name} {comparison.at}{inexact}"
+                elif not comparison.ok and not row.reason:
+                    yield f"    {name} {comparison.at}"
+            if row.branches.never:
+                yield f"    never taken: {', '.join(row.branches.never)}"
         for name, how in self.missing.items():
             yield f"{name} is missing: {how}"

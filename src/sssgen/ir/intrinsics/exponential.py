@@ -30,6 +30,7 @@ ROWS = (
             Guard(lambda F, x, y: (y * rising(math.log2, maximum(x, F.tiny))).high < F.exponent, "a power that overflows", "exp2(min(y * log2(max(x, TINY)), EXPONENT))", result=_below_overflow),
             Guard(lambda F, x, y: x.low > 0.0 or (x.low >= 0.0 and y.low >= 0.25), "a power of less than 0, or one of 0 near the power 0", "max(x, TINY)", "x", result=_below_overflow),
         ),
+        defined=lambda rt, x, y: (x > 0.0) | (x == 0.0) & (y > 0.0),
         inside=lambda rt, x, y: (x > 0.0) & (abs(y) <= 64.0) & (abs(y * rt.log2(rt.max(x, 1e-38))) < 126.0),
         domain="x > 0, or x = 0 and y > 0, where WGSL may miss 0; accurate for |y| <= 64", kind="transcendental", cost=9, ulp=600.0,
         clause="WGSL, Vulkan: that of exp2(y·log2(x)); taken at |y| = 64 and |y·log2(x)| = 126",

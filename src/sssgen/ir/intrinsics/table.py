@@ -161,6 +161,9 @@ class Builtin(NamedTuple):
     """The absolute error allowed instead, where that is larger."""
     clause: str = ""
     """Where a specification allows more than 4 ulp: which one, and what it says."""
+    defined: Callable[..., Any] | None = None
+    """Where GLSL defines a result that is finite in any case, as `inside` from `rt` and the arguments; `transpile
+    --verify` excludes the other inputs. None: wherever the result is finite."""
     inside: Callable[..., Any] | None = None
     """Where the parity is measured: for each component, from the module `rt` of the NumPy runtime and the arguments. It
     leaves out where intermediate results overflow or underflow. None: every finite number."""

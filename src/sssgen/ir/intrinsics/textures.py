@@ -10,6 +10,8 @@ printer emits a function for that, `texture_size`. There is no such function yet
 
 from __future__ import annotations
 
+from typing import Any
+
 from sssgen.ir import vector_ranges
 from sssgen.ir.intrinsics.table import Builtin, Level, Samples
 from sssgen.ir.vector_ranges import all_within, any_numbers, texels
@@ -31,6 +33,11 @@ def _params(signature: str) -> str:
 def _offsets(extra: str = "") -> tuple[str, ...]:
     """Signatures with an offset in texels after `extra`."""
     return tuple(f"{read}{extra}, ivec{size})" for read, size in zip(_FLAT, (2, 3), strict=True))
+
+
+def _exists(rt: Any, texture: Any, place: Any, level: Any, offset: Any = 0) -> Any:
+    """Whether a texel of level 0 exists."""
+    return (level == 0) & (place + offset >= 0) & (place + offset < rt.textureSize(texture, 0))
 
 
 # A table: several fields to a line.
@@ -191,7 +198,7 @@ vec4 textureGrad(samplerCubeArray map, vec4 P, vec3 dx, vec3 dy) { return textur
     Builtin("texelFetch",
         tuple(f"{kind}vec4({kind}sampler{place}, int)" for kind in _KINDS for place in ("2D, ivec2", "3D, ivec3", "2DArray, ivec3")),
         "The texel at y of level z, unfiltered.",
-        componentwise=False, range=texels,
+        componentwise=False, range=texels, defined=_exists,
         domain="the texel and the level exist",
         texts={
             "hlsl": "{texture}.Load(int3({1}, {2}))", "hlsl-dx9": "",
@@ -208,7 +215,7 @@ vec4 textureGrad(samplerCubeArray map, vec4 P, vec3 dx, vec3 dy) { return textur
     ),
     Builtin("texelFetchOffset", ("vec4(sampler2D, ivec2, int, ivec2)", "vec4(sampler3D, ivec3, int, ivec3)"),
         "As texelFetch, at y + w.",
-        componentwise=False, range=texels, constant=(3,), domain="the texel and the level exist",
+        componentwise=False, range=texels, constant=(3,), defined=_exists, domain="the texel and the level exist",
         texts={"hlsl": "", "wgsl": ""},
         polyfill="""
 vec4 texelFetchOffset(sampler2D map, ivec2 P, int level, ivec2 offset) { return texelFetch(map, P + offset, level); }

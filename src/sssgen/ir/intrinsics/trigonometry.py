@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from sssgen.ir.component_ranges import inverse_hyperbolic_tangent, scaled, within
 from sssgen.ir.intervals import Range, absolute, clip, maximum, rising
@@ -19,6 +20,12 @@ _ATAN = "WGSL, Vulkan: 4096 ulp"
 _BY_LOG = "WGSL, Vulkan: that of the formula with log, whose own error is absolute"
 _ACOSH = "WGSL, Vulkan: that of log(x + sqrt(x·x - 1)), which cancels near 1"
 
+
+def _reduced(rt: Any, x: Any) -> Any:
+    """Where drivers reduce an angle to [-pi, pi]; larger ones have no meaning in float32."""
+    return abs(x) <= 2.0**15
+
+
 # A table: several fields to a line.
 # fmt: off
 ROWS = (
@@ -32,20 +39,20 @@ ROWS = (
     ),
     Builtin("sin", F1, "Sine of an angle in radians.",
         fold=math.sin, samples=Samples(floats=((-_PI32, _PI32),)), range=within(-1.0, 1.0),
-        inside=lambda rt, x: abs(x) <= 3.1415928,
+        defined=_reduced, inside=lambda rt, x: abs(x) <= 3.1415928,
         domain="accurate for |x| <= pi", kind="transcendental", cost=4, absolute=2.0**-11, clause=_TRIG,
         vectors=(((1.0,), 0.8414709848078965), ((0.0,), 0.0), ((-0.5,), -0.479425538604203)),
     ),
     Builtin("cos", F1, "Cosine of an angle in radians.",
         fold=math.cos, samples=Samples(floats=((-_PI32, _PI32),)), range=within(-1.0, 1.0),
-        inside=lambda rt, x: abs(x) <= 3.1415928,
+        defined=_reduced, inside=lambda rt, x: abs(x) <= 3.1415928,
         domain="accurate for |x| <= pi", kind="transcendental", cost=4, absolute=2.0**-11, clause=_TRIG,
         vectors=(((1.0,), 0.5403023058681398), ((0.0,), 1.0), ((2.5,), -0.8011436155469337)),
     ),
     Builtin("tan", F1, "Tangent of an angle in radians.",
         fold=math.tan, samples=Samples(floats=((-1.0, 1.0),)), range=within(-1e7, 1e7),
         guards=(Guard(lambda F, x: absolute(x).high <= 1.5, "a tangent near 90 degrees", "clamp(tan(x), -1.0e7, 1.0e7)"),),
-        inside=lambda rt, x: abs(x) <= 1.0,
+        defined=_reduced, inside=lambda rt, x: abs(x) <= 1.0,
         domain="cos(x) != 0; accurate for |x| <= 1", kind="transcendental", cost=12, ulp=8192.0,
         absolute=2.0**-10, clause="WGSL, Vulkan: that of sin(x)/cos(x)",
         vectors=(((1.0,), 1.5574077246549023), ((0.0,), 0.0), ((-0.5,), -0.5463024898437905)),
@@ -70,6 +77,7 @@ ROWS = (
         range=lambda F, x, y=None: Range(-3.1416, 3.1416) if y else Range(-1.5708, 1.5708),
         guards=(Guard(lambda F, x, y: not x.has_zero() or not y.has_zero(), "the angle of (0, 0)", "y + step(abs(x) + abs(y), genF(0.0))", "y"),),
         domain="with two arguments: x != 0 or y != 0, and x != -0, whose sign may be lost; accurate for y != 0 and |y| < 2^126",
+        defined=lambda rt, x, y=1.0: ((x != 0.0) & (y == 0.0)) | (abs(y) >= 2.0**-126) & (abs(y) <= 2.0**126),
         inside=lambda rt, x, y=1.0: (rt.floatBitsToInt(x) != -2**31) & (abs(y) >= 2.0**-126) & (abs(y) <= 2.0**126),
         texts={"hlsl/genF,genF": "atan2", "wgsl/genF,genF": "atan2"}, kind="transcendental", cost=16,
         ulp=4096.0, clause=_ATAN,

@@ -1,0 +1,278 @@
+"""Inputs that reach what a function can do: its branches, the cases of its comparisons, and their boundaries.
+
+Random inputs (`plain_inputs`) are run on the interpreter. Then, for each comparison: where two inputs lie on both sides
+of it, bisection finds neighbouring numbers on both sides; where only one side was reached, inputs that come near are
+changed at random, step by step. Of all inputs, some are chosen for each outcome, the others as they were drawn.
+
+The search is bounded by the number of operations that it runs, not by time: the same seed gives the same inputs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from sssgen.harness.backends import Array
+from sssgen.harness.verify.branch_outcomes import Outcomes, Site
+from sssgen.harness.verify.lane_interpreter import ROUNDS, Program, Run
+from sssgen.harness.verify.plain_inputs import Numbers, Source, as_integers, drawn, joined, suggested, taken
+from sssgen.ir.types import kind_of
+
+WORK = 60_000
+"""How many operations on 2000 lanes a search runs at most, after the first run."""
+SITES, BRACKETS = 64, 3
+"""How many comparisons are searched, and from how many pairs of inputs."""
+FEW = 200
+"""Inputs that bound loops may be large where the loops still take no more rounds, or no more than twice those of small
+numbers."""
+STEPS = 34
+"""Steps of a bisection: a float has 32 bits."""
+CLIMBS, CLIMBERS = 6, 16
+"""Rounds of changing inputs that come near, and how many for each comparison."""
+UNDEFINED = 0.05
+"""The largest share of inputs for which the result is undefined."""
+EACH = 6
+"""How many inputs are chosen for each outcome."""
+
+
+class Sampled(NamedTuple):
+    """Inputs with what is known of them."""
+
+    values: dict[str, Array]
+    run: Run
+    outcomes: Outcomes
+
+
+class Search:
+    """The search for one function."""
+
+    def __init__(
+        self, program: Program, key: str, sources: Sequence[Source], textures: Mapping[str, Any], seed: int
+    ) -> None:
+        self.program, self.key, self.sources, self.textures, self.seed = program, key, sources, textures, seed
+        self.numbers: Numbers = suggested(program.module)
+        self.rng = np.random.default_rng([seed, 1])
+        self.spent = 0.0
+        self.limit = ROUNDS
+
+    def found(self, samples: int) -> Sampled:
+        """Many inputs, those of the search included."""
+        values = drawn(self.sources, 2 * samples, self.numbers, self.seed)
+        first = self.run(values)
+        self.limit = max(FEW, 2 * first.run.rounds)
+        if any(source.bounds_loops for source in self.sources):
+            free = [source._replace(bounds_loops=False) for source in self.sources]
+            large = self.run(drawn(free, samples, self.numbers, self.seed))
+            values = joined([values, taken(large.values, ~large.run.endless)])
+            first = self.run(values)
+        self.spent = 0.0
+        parts = [values]
+        for search in (self.boundaries, self.nearer):
+            if self.spent < WORK and first.outcomes.distances:
+                parts.append(search(first))
+        parts = [part for part in parts if part]
+        if len(parts) == 1:
+            return first
+        return self.run(joined(parts))
+
+    def run(self, values: dict[str, Array]) -> Sampled:
+        """Runs inputs."""
+        lanes = next(value.shape[-1] for value in values.values())
+        outcomes = Outcomes(lanes)
+        run = Run(self.program, lanes, {**self.textures, **values}, outcomes, limit=self.limit)
+        run.result(self.key, {**self.textures, **values})
+        self.spent += run.work * (1.0 + lanes / 2000.0) / 2.0
+        return Sampled(values, run, outcomes)
+
+    def rounds(self, sampled: Sampled, count: int, lanes: int) -> list[dict[str, Array]]:
+        """The inputs of each round: in one round, all lanes have the same uniforms.
+
+        With several rounds each has four times as many lanes as requested, of which some may be chosen.
+        """
+        order = chosen(sampled, max(lanes, 4 * count) if count > 1 else lanes, self.seed)
+        if count == 1 or not len(order):
+            return [taken(sampled.values, order)]
+        rounds = []
+        for number in range(count):
+            others = np.resize(np.roll(order, -number * lanes), 4 * lanes)
+            values = taken(sampled.values, others)
+            for source in self.sources:
+                if source.uniform:
+                    value = values[source.name]
+                    same = sampled.values[source.name][..., order[number * len(order) // count], None]
+                    values[source.name] = np.broadcast_to(same, value.shape).copy()
+            rounds.append(values)
+        return rounds
+
+    # Boundaries
+
+    def boundaries(self, first: Sampled) -> dict[str, Array]:
+        """Neighbouring inputs on both sides of each comparison."""
+        usable = ~(first.run.undefined | first.run.endless)
+        starts: list[tuple[Site, int, int]] = []
+        for site, distance in list(first.outcomes.distances.items())[:SITES]:
+            below, above = (np.flatnonzero(usable & side) for side in (distance < 0.0, distance > 0.0))
+            if len(below) and len(above):
+                pairs = zip(self.rng.choice(below, BRACKETS), self.rng.choice(above, BRACKETS), strict=True)
+                starts += [(site, int(one), int(other)) for one, other in pairs]
+        if not starts:
+            return {}
+        sites, low, high = self.narrowed(first.values, starts)
+        low, high = self.coded(low), self.coded(high)
+        far = high
+        for _ in range(STEPS):
+            middle = {name: value + (high[name] - value) // 2 for name, value in low.items()}
+            if self.spent > WORK or all((middle[name] == value).all() for name, value in low.items()):
+                break
+            sampled = self.run(self.decoded(middle))
+            distances = self.at(sampled, sites)
+            under = distances < 0.0
+            low = {name: np.where(under, middle[name], value) for name, value in low.items()}
+            high = {name: np.where(under, value, middle[name]) for name, value in high.items()}
+        beyond = {name: value + np.sign(far[name] - value) for name, value in high.items()}
+        before = {name: value - np.sign(far[name] - value) for name, value in low.items()}
+        return joined([self.decoded(part) for part in (low, high, beyond, before)])
+
+    def narrowed(
+        self, values: dict[str, Array], starts: list[tuple[Site, int, int]]
+    ) -> tuple[list[Site], dict[str, Array], dict[str, Array]]:
+        """For each pair of lanes, one that differs in a single source where that suffices: (sites, low, high)."""
+        names = [source.name for source in self.sources]
+        sites = [site for site, *_ in starts]
+        below, above = (np.array([start[index] for start in starts]) for index in (1, 2))
+        low, high = taken(values, below), taken(values, above)
+        if len(names) == 1:
+            return sites, low, high
+        tried = [self.rng.permutation(len(names))[:6] for _ in starts]
+        count = max(map(len, tried))
+        for attempt in range(count):
+            for from_low in (True, False):
+                base, other = (low, high) if from_low else (high, low)
+                mixed = {
+                    name: np.where([names[t[attempt % len(t)]] == name for t in tried], other[name], base[name])
+                    for name in names
+                }
+                distances = self.at(self.run(mixed), sites)
+                if from_low:
+                    better = distances > 0.0
+                    high = {name: np.where(better, mixed[name], value) for name, value in high.items()}
+                else:
+                    better = distances < 0.0
+                    low = {name: np.where(better, mixed[name], value) for name, value in low.items()}
+            if self.spent > WORK / 2:
+                break
+        return sites, low, high
+
+    def at(self, sampled: Sampled, sites: list[Site]) -> Array:
+        """The distance of each lane at its own comparison; positive where it does not reach it."""
+        result = np.full(len(sites), np.inf)
+        for index, site in enumerate(sites):
+            distance = sampled.outcomes.distances.get(site)
+            if distance is not None and not np.isnan(distance[index]):
+                result[index] = distance[index]
+        return result
+
+    # Sides that are not reached
+
+    def nearer(self, first: Sampled) -> dict[str, Array]:
+        """Inputs that come nearer to the other side of comparisons of which only one was reached."""
+        usable = ~(first.run.undefined | first.run.endless)
+        sites: list[Site] = []
+        lanes: list[int] = []
+        for site, distance in list(first.outcomes.distances.items())[:SITES]:
+            reached = distance[usable & ~np.isnan(distance)]
+            if len(reached) and ((reached > 0.0).all() or (reached < 0.0).all()):
+                order = np.argsort(np.where(usable & ~np.isnan(distance), np.abs(distance), np.inf), kind="stable")
+                sites += [site] * CLIMBERS
+                lanes += [int(lane) for lane in np.resize(order[: min(CLIMBERS, len(reached))], CLIMBERS)]
+        if not sites:
+            return {}
+        best = taken(first.values, np.array(lanes))
+        nearest = np.abs(self.at(self.run(best), sites))
+        for number in range(CLIMBS):
+            if self.spent > WORK:
+                break
+            changed = self.changed(best, number)
+            distances = self.at(self.run(changed), sites)
+            better = np.abs(distances) < nearest
+            nearest = np.where(better, np.abs(distances), nearest)
+            best = {name: np.where(better, changed[name], value) for name, value in best.items()}
+        return best
+
+    def changed(self, values: dict[str, Array], number: int) -> dict[str, Array]:
+        """Inputs with one source changed: another random one, or a step of any size."""
+        lanes = next(value.shape[-1] for value in values.values())
+        fresh = drawn(self.sources, lanes, self.numbers, self.seed + 1000 + number)
+        chosen = self.rng.integers(0, len(self.sources), lanes)
+        coded = self.coded(values)
+        result = {}
+        for position, source in enumerate(self.sources):
+            value = values[source.name]
+            step = self.rng.choice([-1, 1], value.shape) * (1 << self.rng.integers(0, 30, value.shape))
+            stepped = self.decoded({source.name: coded[source.name] + step})[source.name]
+            new = np.where(self.rng.random(value.shape) < 0.5, fresh[source.name], stepped)
+            if source.bounds_loops:
+                new = fresh[source.name]
+            result[source.name] = np.where(chosen == position, new, value)
+        return result
+
+    # Numbers as integers in the same order
+
+    def coded(self, values: dict[str, Array]) -> dict[str, Array]:
+        """Neighbouring floats as neighbouring integers; integers as they are."""
+        return {source.name: _coded(values[source.name]) for source in self.sources}
+
+    def decoded(self, codes: dict[str, Array]) -> dict[str, Array]:
+        """The numbers of `coded`."""
+        kinds = {source.name: kind_of(source.type) for source in self.sources}
+        return {name: _decoded(value, kinds[name]) for name, value in codes.items()}
+
+
+def _coded(value: Array) -> Array:
+    if value.dtype.kind != "f":
+        return value.astype(np.int64)
+    bits = value.astype(np.float32).view(np.int32).astype(np.int64)
+    return np.where(bits < 0, -(bits & 0x7FFFFFFF), bits)
+
+
+def _decoded(code: Array, kind: str) -> Array:
+    if kind == "bool":
+        return np.not_equal(code, 0)
+    if kind in ("int", "uint"):
+        low, high = (-(2**31), 2**31 - 1) if kind == "int" else (0, 2**32 - 1)
+        return as_integers(np.clip(code, low, high), kind)
+    largest, smallest = 0x7F7FFFFF, 0x00800000
+    code = np.clip(code, -largest, largest)
+    code = np.where(np.abs(code) < smallest, np.where(2 * np.abs(code) < smallest, 0, np.sign(code) * smallest), code)
+    bits = np.where(code < 0, -code | 0x80000000, code).astype(np.uint32)
+    floats: Array = bits.view(np.float32).astype(np.float64)
+    return floats
+
+
+def chosen(sampled: Sampled, count: int, seed: int) -> Array:
+    """The lanes of `count` inputs: for each outcome some, then others as they were drawn."""
+    rng = np.random.default_rng([seed, 2])
+    lanes = sampled.outcomes.lanes
+    defined = ~(sampled.run.undefined | sampled.run.endless)
+    reached = [*sampled.outcomes.branches.values(), *sampled.outcomes.cases.values()]
+    each = max(1, min(EACH, count // (2 * max(len(reached), 1))))
+    order = rng.permutation(lanes)
+    picked: dict[int, None] = {}
+    for mask in sorted(reached, key=lambda one: int((one & defined).sum())):
+        for lane in order[(mask & defined)[order]][:each]:
+            picked[int(lane)] = None
+    picked = dict.fromkeys(list(picked)[:count])
+    rest = [int(lane) for lane in range(lanes) if defined[lane] and lane not in picked]
+    undefined = [int(lane) for lane in np.flatnonzero(sampled.run.undefined & ~sampled.run.endless)]
+    room = count - len(picked)
+    result = [*picked, *rest[:room]]
+    if not defined.any():
+        result = undefined[:count]
+    elif len(result) + 0 < count or undefined:
+        few = undefined[: max(0, min(int(UNDEFINED * count), count - len(picked)))]
+        result = [*result[: count - len(few)], *few]
+    if not result:
+        return np.zeros(0, np.int64)
+    return np.resize(np.array(result, np.int64), count) if len(result) < count else np.array(result[:count], np.int64)
