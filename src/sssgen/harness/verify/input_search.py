@@ -69,13 +69,10 @@ class Search:
             first = self.run(values)
         self.spent = 0.0
         parts = [values]
-        for search in (self.boundaries, self.nearer):
-            if self.spent < WORK and first.outcomes.distances:
-                parts.append(search(first))
+        if first.outcomes.distances:
+            parts += [self.boundaries(first), self.nearer(first)]
         parts = [part for part in parts if part]
-        if len(parts) == 1:
-            return first
-        return self.run(joined(parts))
+        return self.run(joined(parts)) if len(parts) > 1 else first
 
     def run(self, values: dict[str, Array]) -> Sampled:
         """Runs inputs."""
