@@ -188,8 +188,22 @@ KNOWN = [
 PLACES = [("exact", "e"), ("int", "k"), ("uint", "w"), ("vec3", "v"), ("vec4", "q"), ("mat2", "m"), ("Pair", "pair")]
 
 
+CHANGES = [
+    "k += {int};", "k -= {int};", "k *= {int};", "k /= {INT};", "k %= {INT};", "k &= {int};", "k ^= {int};",
+    "k |= {int};", "k <<= {INT};", "k >>= {INT};", "w += {uint};", "w ^= {uint};", "w >>= {UINT};", "k++;",
+    "--k;", "w--;", "v.zx *= vec2(0.5, -0.5);", "q *= 0.5;", "m *= 0.5;", "q.yw -= 0.25 * q.zx;", "g += {ivec2};",
+    "g.y++;", "list[{int} & 3] *= -0.5;", "v = TURN[0].x * v;", "m[1] *= HALF[{int} & 1];", "pair.count ^= {int};",
+]  # fmt: skip
+COUNTS = [
+    "int {0} = 0; {0} < 3; {0}++", "int {0} = 2; {0} >= 0; {0}--", "int {0} = -1; {0} <= 3; {0} += 2",
+    "int {0} = 0; {0} < TWO && f; ++{0}", "int {0} = 0; {0} < (n & 3); {0}++", "uint {0} = 0u; {0} < 3u; {0}++",
+]  # fmt: skip
+
+
 class ShaderPrograms:
     """Makes the text of one function of `PARAMETERS`, which stands behind `HELPERS`."""
+
+    rules, changes, counts = RULES, CHANGES, COUNTS
 
     def __init__(self, random: Random, size: int = 4) -> None:
         self.random = random
@@ -256,20 +270,7 @@ class ShaderPrograms:
         return f"{pad}{self.filled(place)} = {self.kept(type_)};\n"
 
     def changed(self, pad: str, indent: int, size: int) -> str:
-        return pad + self.filled(
-            self.random.choice(
-                [
-                    "k += {int};", "k -= {int};", "k *= {int};", "k /= {INT};", "k %= {INT};", "k &= {int};",
-                    "k ^= {int};",
-                    "k |= {int};", "k <<= {INT};", "k >>= {INT};", "w += {uint};", "w ^= {uint};", "w >>= {UINT};",
-                    "k++;",
-                    "--k;", "w--;", "v.zx *= vec2(0.5, -0.5);", "q *= 0.5;", "m *= 0.5;", "q.yw -= 0.25 * q.zx;",
-                    "g += {ivec2};",
-                    "g.y++;", "list[{int} & 3] *= -0.5;", "v = TURN[0].x * v;", "m[1] *= HALF[{int} & 1];",
-                    "pair.count ^= {int};",
-                ]
-            )
-        ) + "\n"  # fmt: skip
+        return f"{pad}{self.filled(self.random.choice(self.changes))}\n"
 
     def call(self, pad: str, indent: int, size: int) -> str:
         call = self.random.choice(
@@ -280,7 +281,7 @@ class ShaderPrograms:
         return f"{pad}{self.filled(call)}\n"
 
     def declaration(self, pad: str, indent: int, size: int) -> str:
-        type_ = self.random.choice(list(RULES))
+        type_ = self.random.choice(list(self.rules))
         self.names += 1
         name, spelled = f"x{self.names}", "float" if type_ == "exact" else type_
         text = f"{pad}{spelled} {name} = {self.kept(type_)};\n"
@@ -311,11 +312,7 @@ class ShaderPrograms:
     def counting_for(self, pad: str, indent: int, size: int) -> str:
         self.names += 1
         name = f"i{self.names}"
-        head = self.random.choice(
-            ["int {0} = 0; {0} < 3; {0}++", "int {0} = 2; {0} >= 0; {0}--", "int {0} = -1; {0} <= 3; {0} += 2",
-             "int {0} = 0; {0} < TWO && f; ++{0}", "int {0} = 0; {0} < (n & 3); {0}++",
-             "uint {0} = 0u; {0} < 3u; {0}++"]
-        ).format(name)  # fmt: skip
+        head = self.random.choice(self.counts).format(name)
         return self.loop(f"{pad}for ({head}) {{\n", f"{pad}}}\n", (name, head.split()[0]), True, indent, size)
 
     def counting_while(self, pad: str, indent: int, size: int) -> str:

@@ -36,7 +36,7 @@ def linear_blend(F: Format, x: Range, y: Range, z: Range) -> Range:
     Between two numbers of the same sign the sign stays, and a power of two as the larger of them is not exceeded.
     """
     most = max(x.size, y.size)
-    if most == INF or z.size == INF:
+    if (x.size + y.size) * (1.0 + z.size) > F.largest:  # a term may overflow
         return ANY
     low = exact_low = INF
     high = exact_high = -INF
@@ -71,7 +71,7 @@ def truncated_remainder(F: Format, x: Range, y: Range) -> Range:
 
 def _with_wrapped(exact_range: Range, F: Format, x: Range, y: Range) -> Range:
     """The range of a remainder whose x/y may round to the next integer (not if y is a power of two), or overflow."""
-    if x.size > 1e30 * y.gap:
+    if x.size > 1e30 * y.gap or x.size * (1.0 + 4.0 * F.epsilon) + y.size > F.largest:
         return ANY
     exact = y.low == y.high and abs(math.frexp(y.low)[0]) == 0.5
     opposite = max(x.high, y.high) > 0.0 > min(x.low, y.low)
@@ -89,6 +89,8 @@ def inverse_hyperbolic_tangent(F: Format, x: Range) -> Range:
 
 def fused_product_sum(F: Format, x: Range, y: Range, z: Range) -> Range:
     """fma, rounded once or twice."""
+    if (x * y).size > F.largest:
+        return ANY
     return x * y + z + hull(-1.0, 1.0) * (F.epsilon * (x * y).size + F.tiny)
 
 

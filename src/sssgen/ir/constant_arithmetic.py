@@ -12,6 +12,8 @@ import operator
 from collections.abc import Callable, Iterator, Sequence
 from struct import Struct
 
+from sssgen.ir.formats import FLOAT32
+from sssgen.ir.intervals import Range
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import Type, components, kind_of
 
@@ -97,6 +99,35 @@ def outside(name: str, args: Sequence[Numbers]) -> bool:
         return any(not abs(value) <= _LARGEST for value in _values(name, args) or ())
     except (ArithmeticError, ValueError):
         return True
+
+
+def reason(name: str, args: Sequence[Numbers], kind: str) -> str:
+    """Why a builtin of constants that are `outside` has no value: what its row says, or an overflow."""
+    row = BUILTINS[name]
+    points = list(_by_component(args)) if row.componentwise else [tuple([math.hypot(*arg) for arg in args])]
+    shown = (
+        [", ".join(map(_spelled, point)) for point in points] if row.componentwise else [", ".join(map(_whole, args))]
+    )
+    for point, text in zip(points, shown, strict=True):
+        ranges = [Range(float(value), float(value)) for value in point]
+        # the last guard of a row with several is that of the domain; an overflow matters inside of it
+        for guard in reversed(row.guards):
+            if (guard.replaces != "y" or len(args) > 1) and guard.safe and not guard.safe(FLOAT32, *ranges):
+                return f"{name}({text}) has no value: {guard.problem}"
+    return f"the value of {name}({shown[0] if len(shown) == 1 else '…'}) is too large for {_ARTICLES[kind]}"
+
+
+_ARTICLES = {"float": "a float", "int": "an int", "uint": "a uint"}
+
+
+def _spelled(value: Number) -> str:
+    text = f"{value:g}" if isinstance(value, float) else str(value)
+    return f"{text}.0" if isinstance(value, float) and text.lstrip("-").isdigit() else text
+
+
+def _whole(value: Numbers) -> str:
+    text = ", ".join(map(_spelled, value))
+    return text if len(value) == 1 else f"({text})"
 
 
 def _values(name: str, args: Sequence[Numbers]) -> Sequence[Number] | None:

@@ -68,6 +68,7 @@ class Range:
         low, high = max(self.low, other.low), min(self.high, other.high)
         if low > high:
             low = high = min(max(self.low, other.low), self.high)
+            return Range(low, high)
         return Range(low, high, max(self.gap, other.gap))
 
     def __neg__(self) -> Range:
@@ -89,13 +90,10 @@ class Range:
         """The quotient by a divisor that is not 0."""
         if other.gap == 0.0:
             return ANY
-        inverse = Range(
-            1.0 / other.low if other.low > 0.0 else -1.0 / other.gap,
-            1.0 / other.high if other.high < 0.0 else 1.0 / other.gap,
-            1.0 / other.size if other.size < INF else 0.0,
-        )
         if other.low > 0.0 or other.high < 0.0:
             inverse = Range(1.0 / other.high, 1.0 / other.low)
+        else:
+            inverse = Range(-1.0 / other.gap, 1.0 / other.gap, 1.0 / other.size if other.size < INF else 0.0)
         return self * inverse
 
 
@@ -219,7 +217,7 @@ def rounded(x: Range, format: Format) -> Range:
 
 def widened(x: Range, relative: float, absolute: float = 0.0) -> Range:
     """A range after a computation with a `relative` error (below 1) and an `absolute` error."""
-    low = x.low - _times(abs(x.low), relative) - absolute
-    high = x.high + _times(abs(x.high), relative) + absolute
+    low = x.low - _times(abs(x.low), relative) - absolute if x.low < INF else INF
+    high = x.high + _times(abs(x.high), relative) + absolute if x.high > -INF else -INF
     gap = max(x.gap * (1.0 - relative) - absolute, 0.0)
     return Range(low, high, gap)

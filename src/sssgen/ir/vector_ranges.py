@@ -53,7 +53,8 @@ def length_of(parts: Sequence[Range]) -> Range:
     largest = max(sizes)
     if largest == INF:
         return Range(low, INF)
-    return Range(low, largest * math.sqrt(sum([(size / largest) ** 2 for size in sizes])) if largest else 0.0)
+    high = largest * math.sqrt(sum([(size / largest) ** 2 for size in sizes])) if largest else 0.0
+    return Range(min(low, high), high)
 
 
 def exact_dot(x: Value, y: Value) -> Range:
@@ -75,6 +76,17 @@ def total_length(x: Range, y: Range) -> Range:
 
 def _length_product(x: Value, y: Value) -> float:
     return x.length.high * y.length.high if x.length.high and y.length.high else 0.0
+
+
+def _terms(x: Value, y: Value) -> float:
+    """The greatest size of a sum of some of the terms of a dot product, in any order."""
+    products = [a.size * b.size if a.size and b.size else 0.0 for a, b in zip(x.parts, y.parts, strict=True)]
+    return min(sum(products), _length_product(x, y))
+
+
+def _overflow(format: Format, *sizes: float) -> bool:
+    """Whether an intermediate result of one of these sizes may overflow, though the sum that follows may not."""
+    return not max(sizes) * (1.0 + 2.0 * _slack(format)) <= format.largest
 
 
 # Builtins
@@ -112,7 +124,7 @@ def distance(format: Format, x: Value, y: Value) -> Result:
 def _rounded_length(format: Format, length: Range) -> Result:
     # the squares in it may overflow, or be too small
     low = length.low if length.low > format.tiny**0.5 else 0.0
-    high = length.high if length.high < format.largest**0.5 else INF
+    high = INF if _overflow(format, length.high * length.high) else length.high
     return [widened(Range(low, high), _slack(format))], ANY
 
 
@@ -123,8 +135,8 @@ def dot(format: Format, x: Value, y: Value) -> Result:
     products = [a * b for a, b in zip(x.parts, y.parts, strict=True)]
     if all(part.low >= 0.0 for part in products) or len(products) == 1:
         return [widened(total, slack)], ANY
-    size = min(sum(part.size for part in products), x.length.high * y.length.high if x.length.high else 0.0)
-    return [widened(total, 0.0, slack * size + format.tiny) if size < INF else ANY], ANY
+    size = _terms(x, y)
+    return [ANY if _overflow(format, size) else widened(total, 0.0, slack * size + format.tiny)], ANY
 
 
 def cross(format: Format, x: Value, y: Value) -> Result:
@@ -132,17 +144,17 @@ def cross(format: Format, x: Value, y: Value) -> Result:
     most = _length_product(x, y)
     parts = [a[i] * b[j] - a[j] * b[i] for i, j in ((1, 2), (2, 0), (0, 1))]
     length = Range(0.0, most)
-    if most == INF:
-        return parts, length
+    if _overflow(format, *[a[i].size * b[j].size for i in range(3) for j in range(3) if i != j]):
+        return [ANY] * 3, ANY
     error = _slack(format) * most + format.tiny
     parts = [widened(part.met(Range(-most, most)), 0.0, error) for part in parts]
-    return parts, widened(length, _slack(format))
+    return parts, widened(length, _slack(format), format.tiny)
 
 
 def normalize(format: Format, x: Value) -> Result:
     slack = 2.0 * _slack(format)
     # beyond these limits the result is that of the guard, which may be shorter
-    sure = x.length.low > format.square**0.5 and x.length.high < format.largest**0.5
+    sure = x.length.low > format.square**0.5 and not _overflow(format, x.length.high * x.length.high)
     least = x.length.low if sure else 0.0
     parts = []
     for part in x.parts:
@@ -161,9 +173,9 @@ def reflect(format: Format, x: Value, y: Value) -> Result:
     factor = exact_dot(y, x) * 2.0
     parts = [a - factor * b for a, b in zip(x.parts, y.parts, strict=True)]
     slack = 2.0 * _slack(format)
-    if INF in (x.length.high, y.length.high):
-        return [ANY for _ in parts], ANY
     terms = x.length.high * (1.0 + 2.0 * y.length.high * y.length.high)
+    if _overflow(format, terms, 2.0 * _length_product(x, y)):
+        return [ANY for _ in parts], ANY
     most = x.length.high if y.length.high <= 1.0 + slack else terms
     error = slack * terms + format.tiny
     return [widened(part.met(hull(-most, most)), 0.0, error) for part in parts], hull(0.0, most + 2.0 * error)
@@ -172,8 +184,9 @@ def reflect(format: Format, x: Value, y: Value) -> Result:
 def refract(format: Format, x: Value, y: Value, z: Value) -> Result:
     eta = absolute(z.parts[0]).high
     cosine = absolute(exact_dot(y, x)).high
-    if not eta * cosine < format.largest**0.5 or x.length.high == INF or y.length.high == INF:
-        return [ANY for _ in x.parts], ANY  # its square overflows
+    terms = [_terms(x, y), cosine * cosine, eta * eta, eta * eta * (1.0 + cosine * cosine)]
+    if _overflow(format, *terms):  # the square of the cosine, though times a small eta, as well
+        return [ANY for _ in x.parts], ANY
     root = math.sqrt(1.0 + eta * eta * cosine * cosine)
     most = eta * x.length.high + (eta * cosine + root) * y.length.high
     if eta <= 1.0 and x.length.high <= LENGTH and y.length.high <= LENGTH:
@@ -196,6 +209,16 @@ def determinant(format: Format, x: Value) -> Result:
     largest = max(part.size for part in x.parts)
     most = math.factorial(size) * largest**size if largest < 1e60 else INF
     return [widened(hull(-most, most), 4.0 * _slack(format))], ANY
+
+
+def inverse(format: Format, x: Value) -> Result:
+    """Behind its guard: the cofactors, divided by a determinant that is not nearer to 0 than a guarded divisor."""
+    size = math.isqrt(len(x.parts))
+    largest = min(max(part.size for part in x.parts), 1e60)
+    most = math.factorial(size - 1) * largest ** (size - 1)
+    if _overflow(format, most / format.divisor, most * size * largest):
+        return [ANY] * size**2, ANY
+    return [widened(hull(-most, most) * (1.0 / format.divisor), 4.0 * _slack(format))] * size**2, ANY
 
 
 def normal_of_texel(format: Format, x: Value) -> Result:

@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 
 from sssgen.ir.formats import Format
-from sssgen.ir.intrinsics import BUILTINS, Guard, with_constants
+from sssgen.ir.intrinsics import BUILTINS, Guard, by_column, with_constants
 from sssgen.ir.nodes import Module
 from sssgen.ir.signatures import instantiate, overload
 from sssgen.ir.types import Matrix, Scalar, Type, components, spell
@@ -53,7 +53,10 @@ def guard(
     replaced = type_of.get(row.replaces, result)
     text = row.scalar if row.scalar and isinstance(replaced, Scalar) else row.text
     used = "".join(letter for letter in letters if re.search(rf"\b{letter}\b", text))
-    text = with_constants(text, format, limits).replace("genF", spell(replaced))
+    text = with_constants(text, format, limits)
+    if isinstance(replaced, Matrix):
+        text = by_column(text, replaced, "".join(key for key, type_ in type_of.items() if isinstance(type_, Matrix)))
+    text = text.replace("genF", spell(replaced))
     params = ", ".join(f"{spell(type_of[letter])} {letter}" for letter in used)
     body = text if text.startswith("{") else f"{{ return {text}; }}"
     doc = f"/// {row.doc}\n" if row.doc else ""

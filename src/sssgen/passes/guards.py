@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.formats import FLOAT32, Format
-from sssgen.ir.intrinsics import Guard, with_constants
+from sssgen.ir.intrinsics import Guard, by_column, with_constants
 from sssgen.ir.transform import Transformer, rewrite_function
 from sssgen.ir.types import BOOL, FLOAT, UINT, Matrix, Type, components, kind_of, spell, vector_of
 from sssgen.ir.walk import operands, with_operands
@@ -187,7 +187,11 @@ def remedy(site: Site, format: Format) -> str:
     """What replaces the argument, the result or the call, for people."""
     guard = guard_of(site)
     text = guard.text or guard.doc
-    text = with_constants(text, format, site.limits, "{:g}".format).replace("genF", spell(site.node.type))
+    text = with_constants(text, format, site.limits, "{:g}".format)
+    replaced = operands(site.node)["xyz".index(guard.replaces)] if guard.replaces in ("x", "y", "z") else site.node
+    if isinstance(replaced.type, Matrix) and guard.text:
+        text = by_column(text, replaced.type, guard.replaces if replaced is not site.node else "x")
+    text = text.replace("genF", spell(site.node.type))
     if guard.replaces == "result":
         return f"{text}, x its result"
     return f"{text} in place of {guard.replaces or 'the call'}"

@@ -106,8 +106,7 @@ class _Checker:
 
     def builtin(self, expr: Intrinsic, args: list[Value]) -> Value | None:
         if args and arithmetic.outside(expr.name, args):
-            expected = "a finite number" if kind_of(expr.type) == "float" else "defined"
-            return self.wrong(f"{expr.name} of these constants is not {expected}", expr)
+            return self.wrong(arithmetic.reason(expr.name, args, kind_of(expr.type)), expr)
         return arithmetic.builtin(expr.name, args, [arg.type for arg in expr.args], expr.type)
 
     def wrong(self, message: str, expr: Expr) -> Value | None:

@@ -109,7 +109,7 @@ def fold_constants(state: State) -> Module:
 def refuse_undefined_constants(state: State) -> Module:
     wrong = undefined_constants(state.module)
     if wrong:
-        hint = "WGSL refuses it, and the others compute inf or NaN"
+        hint = "WGSL refuses it, and the others compute inf, NaN or any value"
         raise SssgenError([Diagnostic("error", message, span, hint, source_line(span)) for message, span in wrong])
     return state.module
 

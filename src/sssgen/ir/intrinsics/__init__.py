@@ -50,9 +50,9 @@ from sssgen.ir.intrinsics import (
 from sssgen.ir.intrinsics import (
     geometric as geometry,
 )
-from sssgen.ir.intrinsics.table import FINITE, NONZERO, Builtin, Guard, Level, Samples, with_constants
+from sssgen.ir.intrinsics.table import FINITE, NONZERO, Builtin, Guard, Level, Samples, by_column, with_constants
 
-__all__ = ["BUILTINS", "FINITE", "NONZERO", "Builtin", "Guard", "Level", "Samples", "with_constants"]
+__all__ = ["BUILTINS", "FINITE", "NONZERO", "Builtin", "Guard", "Level", "Samples", "by_column", "with_constants"]
 
 CHAPTERS = (
     trigonometry, exponential, common, packing, geometry, matrices, relations, integers, textures, derivatives,

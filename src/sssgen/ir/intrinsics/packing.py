@@ -72,7 +72,7 @@ vec2 unpackSnorm2x16(uint x) {
     ),
     Builtin("unpackHalf2x16", ("vec2(uint)",), "Two numbers from float16.",
         float32_bits=True, componentwise=False, range=all_within(-65504.0, 65504.0),
-        guards=(NOT_FINITE_BITS,),
+        guards=(NOT_FINITE_BITS._replace(text=NOT_FINITE_BITS.text.replace("LARGEST", "65504.0")),),
         inside=lambda rt, x: abs(rt.unpackHalf2x16(x)) < 1e5,
         domain="both are finite",
         texts={

@@ -11,6 +11,7 @@ from typing import Any, Literal, NamedTuple
 from sssgen.ir import component_ranges, vector_ranges
 from sssgen.ir.formats import Format
 from sssgen.ir.intervals import INF, Range, clip
+from sssgen.ir.types import Matrix, spell
 
 Interval = tuple[float, float]
 
@@ -59,6 +60,13 @@ def with_constants(text: str, format: Format, limits: Interval, shown: Callable[
         return str(int(limits[1])) if name == "LAST" else shown(float(factor or 1.0) * numbers[name])
 
     return re.sub(rf"(?:([\d.]+) \* )?\b({'|'.join(numbers)}|LAST)\b", number, text)
+
+
+def by_column(text: str, matrix: Matrix, letters: str) -> str:
+    """A guard's text, which is one of vectors, for matrices: of each column of the `letters`, as no builtin of guards
+    takes a matrix."""
+    columns = [re.sub(rf"\b([{letters}])\b", rf"\1[{column}]", text) for column in range(matrix.size)]
+    return f"{spell(matrix)}({', '.join(columns)})".replace("genF", f"vec{matrix.size}")
 
 
 class Samples(NamedTuple):

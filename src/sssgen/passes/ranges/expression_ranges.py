@@ -82,7 +82,9 @@ class ExpressionRanges(CallRanges):
             return self.comparison(node, left, right)
         if op == "*" and (isinstance(node.left.type, Matrix) or isinstance(node.right.type, Matrix)):
             slack = 8.0 * self.format.epsilon
-            product = matrix_product(node.left.type, left.parts, node.right.type, right.parts, slack)
+            product = matrix_product(
+                node.left.type, left.parts, node.right.type, right.parts, slack, self.format.largest
+            )
             if product is not None:
                 return self.computed(node, product, [self.numbers.fresh() for _ in product])
         if op in ("%", "<<", ">>", "&", "|", "^") or (op == "/" and kind != "float"):
@@ -156,6 +158,8 @@ class ExpressionRanges(CallRanges):
                 gap = max(b.gap, smallest)
                 b = Range(gap if b.low >= 0.0 else min(b.low, -gap), max(b.high, gap), gap)
             part = widened(a / b, 3.0 * self.format.epsilon)
+            if b.size * self.format.tiny > 1.0:  # the divisor's inverse may be flushed to 0
+                part = part.joined(as_range(0.0))
             if b.low > 0.0 and (slack := self.ratio(a, m, b, n)) is not None:
                 part = part.met(Range(-INF, slack))
             parts.append(part)

@@ -119,7 +119,7 @@ class Facts(NamedTuple):
                 self.learn(numbers, _number(operand), Range(range.low, INF))
         elif key[0] == "squares":
             # a little wider, for the rounding of the sum
-            low, high = max(range.low, 0.0) ** 0.5 * 0.999, max(range.high, numbers.tiny) ** 0.5 * 1.001
+            low, high = max(range.low, 0.0) ** 0.5 * 0.999, (max(range.high, 0.0) + numbers.tiny) ** 0.5 * 1.001
             self.learn(numbers, numbers.of("length", *key[1:]), Range(low, high))
 
     def compare(

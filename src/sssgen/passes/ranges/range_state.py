@@ -11,7 +11,7 @@ from sssgen.ir.contracts import INTEGERS
 from sssgen.ir.formats import Format
 from sssgen.ir.intervals import ANY, INF, Range, clip, rounded
 from sssgen.ir.intrinsics import BUILTINS, FINITE
-from sssgen.ir.types import Matrix, Sampler, Type, kind_of
+from sssgen.ir.types import Matrix, Sampler, Scalar, Type, kind_of
 from sssgen.ir.vector_ranges import Contract, Value, length_of
 from sssgen.passes.ranges.facts import Facts, Numbers
 from sssgen.passes.ranges.scalar_parts import innermost, scalar_kinds, scalars
@@ -24,7 +24,10 @@ SUMS = OVERFLOW._replace(text=FINITE, doc="A finite number in place of infinity;
 def _is_sum(node: ir.Expr) -> bool:
     if isinstance(node, ir.Intrinsic):
         return BUILTINS[node.name].overflow_is_nan
-    return isinstance(node, ir.Binary) and node.op == "*" and Matrix in (type(node.left.type), type(node.right.type))
+    if not isinstance(node, ir.Binary) or node.op != "*":
+        return False
+    types = {type(node.left.type), type(node.right.type)}
+    return Matrix in types and Scalar not in types
 
 
 class State(NamedTuple):
@@ -123,9 +126,15 @@ class AnalysisState:
         return self.value(value.parts, value.numbers, value.length)
 
     def length_fact(self, numbers: tuple[int, ...]) -> Range | None:
-        """The fact about the length of a vector, if any."""
+        """The fact about the length of a vector, if any, from one about its rounded length."""
         facts = self.state.facts.ranges
-        return facts.get(self.numbers.existing.get(("length", *numbers), -1)) if facts and numbers else None
+        fact = facts.get(self.numbers.existing.get(("length", *numbers), -1)) if facts and numbers else None
+        if fact is None:
+            return None
+        slack = 16.0 * self.format.epsilon
+        # the squares of small components may be flushed to 0
+        high = max(fact.high, 0.0) + self.format.tiny**0.5
+        return Range(max(fact.low, 0.0) * (1.0 - slack), high * (1.0 + slack))
 
     def computed(self, node: ir.Expr, parts: Sequence[Range], numbers: Sequence[int], length: Range = ANY) -> Value:
         """The result of an operation: rounded, and checked for overflow."""

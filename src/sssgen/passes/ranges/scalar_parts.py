@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import cast
 
-from sssgen.ir.intervals import ANY, INF, Range, widened
+from sssgen.ir.intervals import ANY, Range, widened
 from sssgen.ir.types import Array, Matrix, Scalar, Struct, Type, components, kind_of
 
 
@@ -45,9 +45,12 @@ def field_at(type_: Struct, name: str) -> tuple[int, int]:
 
 
 def matrix_product(
-    left: Type, a: tuple[Range, ...], right: Type, b: tuple[Range, ...], slack: float
+    left: Type, a: tuple[Range, ...], right: Type, b: tuple[Range, ...], slack: float, largest: float
 ) -> list[Range] | None:
-    """The components of a matrix product, whose sums round by `slack` of their terms; None if a factor is a scalar."""
+    """The components of a matrix product, whose sums round by `slack` of their terms; None if a factor is a scalar.
+
+    A sum whose terms may together exceed `largest` can be any number, as one part of them may overflow.
+    """
     if isinstance(left, Scalar) or isinstance(right, Scalar):
         return None
     size = left.size if isinstance(left, Matrix) else cast(Matrix, right).size
@@ -60,7 +63,7 @@ def matrix_product(
             total, terms = Range(0.0, 0.0), 0.0
             for product in products:
                 total, terms = total + product, terms + product.size
-            parts.append(widened(total, 0.0, slack * terms) if terms < INF else total)
+            parts.append(widened(total, 0.0, slack * terms) if terms * (1.0 + slack) <= largest else ANY)
     return parts
 
 
