@@ -167,9 +167,17 @@ class Interpreter:
 
     def called(self, call: ir.Call) -> Value:
         function = self.functions[call.function]
-        pairs = list(zip(call.args, function.params, strict=True))
-        arguments = [self.value(arg) for arg, param in pairs if param.direction != "out"]
-        outs = [self.pinned(arg) for arg, param in pairs if param.direction != "in"]
+        directions = [param.direction for param in function.params]
+        parts = [  # from left to right: values, and places, which are read at the call
+            self.value(arg) if direction == "in" else self.pinned(arg)
+            for arg, direction in zip(call.args, directions, strict=True)
+        ]
+        arguments = [
+            self.value(part) if direction == "inout" else part
+            for part, direction in zip(parts, directions, strict=True)
+            if direction != "out"
+        ]
+        outs = [part for part, direction in zip(parts, directions, strict=True) if direction != "in"]
         results = self.call(call.function, *arguments)
         for place, value in zip(outs, results[len(results) - len(outs) :], strict=True):
             self.store(place, value)

@@ -113,6 +113,12 @@ def is_out_builtin(name: str) -> bool:
     return name in OUT_BUILTINS
 
 
+def out_positions(name: str) -> set[int]:
+    """The positions of the out parameters of the function `name`; empty for other names."""
+    definition = next(iter(_DEFINITION.findall(OUT_BUILTINS.get(name, ""))), "()")
+    return {index for index, param in enumerate(_listed(definition)) if param.split()[0:1] == ["out"]}
+
+
 def out_builtin(name: str, types: Sequence[Type]) -> str | None:
     """The text of the function `name` for arguments of exactly these types, or None."""
     return _definition_text(name, tuple(types))
@@ -138,5 +144,8 @@ def _definition_text(name: str, types: tuple[Type, ...]) -> str | None:
 
 def _parameters(definition: str) -> list[str]:
     """The types of a definition's parameters, as spelled in it."""
-    listed = definition[definition.index("(") + 1 : definition.index(")")]
-    return [param.split()[-2] for param in listed.split(",")]
+    return [param.split()[-2] for param in _listed(definition)]
+
+
+def _listed(definition: str) -> list[str]:
+    return definition[definition.index("(") + 1 : definition.index(")")].split(",")

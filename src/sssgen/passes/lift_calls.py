@@ -49,6 +49,7 @@ from sssgen.ir.walk import (
     with_operands,
     written_root,
 )
+from sssgen.passes.places import may_overlap
 from sssgen.passes.scopes import declared, fresh, qualified_name
 from sssgen.passes.variable_effects import NONE, Effects
 
@@ -109,17 +110,19 @@ def lift(function: Function, calls: Calls) -> Function:
 
 
 def awkward(function: Function, calls: Calls) -> list[Stmt]:
-    """The statements in which a writing call is inside a larger expression.
+    """The statements in which a writing call is inside a larger expression, or is passed one variable twice.
 
     Languages differ there in the order of evaluation, and in whether the right side of `&&` and both arms of a choice
-    are always evaluated; and values that other passes compute before the statement would be computed too early.
+    are always evaluated; and values that other passes compute before the statement would be computed too early. Some
+    languages pass references to variables where others copy them.
     """
     lifter = _Lifter(function, calls)
     stmts = []
     for stmt in statements(function.body or ()):
         for expr in expressions(stmt):
             whole_statement = isinstance(expr, Call) and not (isinstance(stmt, Assign) and lifter.meets(stmt))
-            if any(map(lifter.writes, operands(expr) if whole_statement else (expr,))):
+            inner = operands(expr) if whole_statement else (expr,)
+            if any(map(lifter.writes, inner)) or (isinstance(expr, Call) and lifter.overlaps(expr)):
                 stmts.append(stmt)
     return stmts
 
@@ -233,6 +236,28 @@ class _Lifter(Transformer):
     def writes_itself(self, call: Call) -> bool:
         return self.calls.change(call.function)
 
+    def places(self, call: Call) -> list[Expr]:
+        """The out arguments of a call."""
+        params = self.functions[call.function].params
+        return [arg for arg, param in zip(call.args, params, strict=False) if param.direction != "in"]
+
+    def written_places(self, call: Call) -> set[str]:
+        """The variables that the out arguments of a call are parts of, the module's as `$name`."""
+        return {qualified_name(place) for place in map(written_root, self.places(call)) if place is not None}
+
+    def meet_each_other(self, call: Call) -> bool:
+        """Whether two out arguments of a call may share a component."""
+        places = self.places(call)
+        return any(may_overlap(one, other) for index, one in enumerate(places) for other in places[:index])
+
+    def overlaps(self, call: Call) -> bool:
+        """Whether an out argument may be read or written in another way, too, during the call."""
+        if not self.writes_itself(call):
+            return False
+        effect = self.shared.get(call.function, NONE)
+        used = {f"${name}" for name in effect.reads | effect.writes}
+        return self.meet_each_other(call) or not used.isdisjoint(self.written_places(call) if used else ())
+
     def meets(self, stmt: Assign) -> bool:
         """Whether an assignment's value also writes what the assignment writes."""
         target = written_root(stmt.target)
@@ -260,9 +285,7 @@ class _Lifter(Transformer):
         names: set[str] = set()
         for part in subexpressions(expr) if self.writes(expr) else ():
             if isinstance(part, Call):
-                params = self.functions[part.function].params
-                outs = [arg for arg, param in zip(part.args, params, strict=False) if param.direction != "in"]
-                names.update(qualified_name(place) for place in map(written_root, outs) if place is not None)
+                names.update(self.written_places(part))
                 names.update(map("${}".format, self.shared.get(part.function, NONE).writes))
         return names
 
@@ -302,17 +325,20 @@ class _Lifter(Transformer):
         """A call with variables for its out arguments, and the statements to be executed after it."""
         function = self.functions[call.function]
         args: list[Expr] = []
+        copies: list[Stmt] = []
         after: list[Stmt] = []
+        copied = self.meet_each_other(call)
         for index, (arg, param) in enumerate(zip(call.args, function.params, strict=False)):
             if param.direction == "in":
                 arg = self.before(arg, call.args[index + 1 :])
-            elif not isinstance(arg, Local):
+            elif copied or not isinstance(arg, Local):
                 place = self.expression(self.pinned(arg))
                 arg = self.local(arg.type, param.name, arg.span)
                 value = place if param.direction == "inout" else None
-                self.out.append(Declare(arg.name, arg.type, value, arg.span))
+                copies.append(Declare(arg.name, arg.type, value, arg.span))
                 after.append(Assign(place, "", arg, arg.span))
             args.append(arg)
+        self.out += copies
         if discards(function) and len(args) < len(function.params):
             discarded = self.local(BOOL, DISCARDED, call.span)
             self.out.append(Declare(discarded.name, BOOL, None, call.span))

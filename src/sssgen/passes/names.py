@@ -157,12 +157,12 @@ class _Namer:
                 wanted["function", function.name] = function.name
         names: dict[tuple[str, str], str] = {}
         for old, name in wanted.items():
-            if self.free(name, ()):
+            if self.free(name, BUILTINS):
                 names[old] = name
                 self.taken.add(name)
         for old, name in wanted.items():
             if old not in names:
-                names[old] = self.choose(name, ())
+                names[old] = self.choose(name, BUILTINS)
                 self.taken.add(names[old])
         self.renamed = {old[1]: new for old, new in names.items() if old[1] != new}
         self.globals = {old[1]: new for old, new in names.items() if old[0] == "global" and old[1] != new}

@@ -116,16 +116,18 @@ def rename_locals(
     globals: Mapping[str, str] = _NONE,
     calls: Mapping[str, str] = _NONE,
     loop_scope: bool = True,
+    taken: Iterable[str] = (),
 ) -> tuple[Function, dict[str, str]]:
     """Renames variables whose name is `bad`, or visible already where they are declared; returns old name → new name.
 
-    `choose` gives a new name that is not among those taken. The module's declarations that the function uses are
-    renamed with them: uniforms and constants by `globals`, the keys of functions by `calls`. Without `loop_scope` the
-    variable of a loop's head is visible behind the loop for declarations of its block.
+    `choose` gives a new name that is not among those taken: the function's own, and those in `taken`. The module's
+    declarations that the function uses are renamed with them: uniforms and constants by `globals`, the keys of
+    functions by `calls`. Without `loop_scope` the variable of a loop's head is visible behind the loop for declarations
+    of its block.
     """
     names = declared(function)
     if bad or len(set(names)) < len(names):
-        renamer = Renamer(globals, calls, bad, choose, set(names), loop_scope)
+        renamer = Renamer(globals, calls, bad, choose, {*names, *taken}, loop_scope)
     elif globals or calls:
         renamer = Renamer(globals, calls)
     else:

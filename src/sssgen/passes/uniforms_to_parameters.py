@@ -84,7 +84,7 @@ class Closer:
             return function
         hidden = set(names) & set(declared(function))
         if hidden:
-            function, _ = rename_locals(function, hidden, fresh)
+            function, _ = rename_locals(function, hidden, fresh, taken=names)
 
         def change(node: Expr) -> Expr:
             if type(node) is Global and node.name in self.parameters:

@@ -10,7 +10,7 @@ from sssgen.ir.rules import operator_type
 from sssgen.ir.types import BOOL, FLOAT, Matrix, Sampler, Scalar, Vector, kind_of
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check.context import CheckContext, Typed
-from sssgen.lang.check.evaluation_order import depends, root_name, writes_of
+from sssgen.lang.check.evaluation_order import root_name, writes_of
 from sssgen.lang.check.expression_checker import ExpressionChecker
 from sssgen.lang.check.implicit_conversions import as_kind, converts
 from sssgen.lang.check.operator_checker import combined_quantity
@@ -105,18 +105,10 @@ class AssignmentChecker:
         """
         if not isinstance(target, ir.Index | ir.Swizzle | ir.Member):
             return target
-        inner = self.fixed_place(target.value, value, start)
-        if inner is not target.value:
-            target = target._replace(value=inner)
-        if not isinstance(target, ir.Index) or isinstance(target.index, ir.Literal):
-            return target
-        function = self.context.function
         calls = [part for part in subexpressions(value) if isinstance(part, ir.Call)]
-        written, has_calls = writes_of(function.prelude[start:])
+        written, has_calls = writes_of(self.context.function.prelude[start:], self.context.out_arguments)
         written |= {root_name(arg) for call in calls for arg in self.context.out_arguments(call)}
-        if not depends(target.index, written, has_calls or bool(calls)):
-            return target
-        return target._replace(index=function.temporary("place", target.index, start))
+        return self.expressions.fixed_place(target, written, has_calls or bool(calls), start)
 
 
 def check_writable(context: CheckContext, target: ir.Expr, span: ir.Span) -> None:

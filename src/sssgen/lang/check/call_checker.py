@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 from sssgen.ir import nodes as ir
 from sssgen.ir import old_names, out_builtins
@@ -43,9 +43,9 @@ class CallChecker:
         name = callee.text
         if name in context.structs and name not in context.functions:
             return self.constructors.construct_parts(context.structs[name], call)
-        args = self.expressions.operands(call.args)
-        types = tuple([arg.expr.type for arg in args])
         overloads = context.functions.get(name, ())
+        args = self.expressions.operands(call.args, self.outs(name, overloads, len(call.args)))
+        types = tuple([arg.expr.type for arg in args])
         exact = next((signature for signature in overloads if signature.types == types), None)
         if exact is not None:
             return self.call_function(name, exact, args, call)
@@ -61,6 +61,13 @@ class CallChecker:
                 return result
         known = [*context.functions, *context.structs, *(() if context.plain else q.QUANTITIES), *BUILTINS]
         raise context.unknown(callee.span, "function", name, known)
+
+    def outs(self, name: str, overloads: Sequence[Signature], count: int) -> set[int]:
+        """The positions of the out arguments in a call with this number of arguments."""
+        if not overloads:
+            return out_builtins.out_positions(name) if self.context.plain else set()
+        directions = [signature.directions for signature in overloads if len(signature.directions) == count]
+        return {index for index, each in enumerate(zip(*directions, strict=True)) if "in" not in each}
 
     def glsl_builtin(self, name: str, args: list[Typed], call: s.CallOf) -> Typed | None:
         """A builtin that only plain GLSL has: one with a name of an old version, or with out parameters; else None."""

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.types import FLOAT, VOID, Struct, Type
+from sssgen.ir.walk import statements
 from sssgen.lang import shadertoy
 from sssgen.lang.check.name_scope import GlobalValue, Scopes, Signature
 from sssgen.lang.syntax import tree as s
@@ -42,17 +43,21 @@ class FunctionContext:
         """Whether a statement was left out because of an error."""
 
     def temporary(
-        self, name: str, value: ir.Expr | None, position: int | None = None, type_: Type | None = None
+        self,
+        name: str,
+        value: ir.Expr | None,
+        position: int | None = None,
+        type_: Type | None = None,
+        before: ir.Block = (),
     ) -> ir.Local:
         """A new variable with this value, declared in the prelude (at its end, or at `position`).
 
-        Its name is `name`, with a number where that is taken.
+        Its name is `name`, with a number where that is taken, also inside the statements `before` which it is declared.
         """
         declared_type = type_ if type_ is not None else value.type if value is not None else FLOAT
         span = value.span if value is not None else ir.NOWHERE
-        scopes, label, count = self.scopes, name, 2
-        while scopes.find(label) is not None or (variable := scopes.declare(label, declared_type, "", True)) is None:
-            label, count = f"{name}_{count}", count + 1
+        inner = {stmt.name for stmt in statements(before) if isinstance(stmt, ir.Declare)}
+        variable = self.scopes.invent(name, declared_type, inner)
         declaration = ir.Declare(variable.ir_name, declared_type, value, span)
         self.prelude.insert(len(self.prelude) if position is None else position, declaration)
         return ir.Local(declared_type, variable.ir_name, span)
@@ -77,6 +82,8 @@ class CheckContext:
         self.globals: dict[str, GlobalValue] = {}
         self.variables: dict[str, ir.Variable] = {}
         """The inputs, outputs and private variables of a whole shader."""
+        self.file_names: set[str] = set()
+        """The names that the file declares at file scope, also later."""
         self.faulty: set[str] = set()
         """Names whose declaration has an error. Their uses are not reported."""
         self.blocks: dict[str, dict[str, Typed]] = {}

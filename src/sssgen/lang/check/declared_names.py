@@ -49,11 +49,29 @@ def check_global_name(context: CheckContext, name: s.Name, overloads: bool = Fal
 
 
 def unused_global_name(context: CheckContext, name: str) -> str:
-    """`name`, with a number where it is taken."""
+    """`name`, with a number where the file uses it at file scope, also later."""
     count, candidate = 2, name
-    while candidate in context.globals or candidate in context.functions or candidate in context.structs:
+    while candidate in context.globals or candidate in context.file_names:
         candidate, count = f"{name}_{count}", count + 1
     return candidate
+
+
+def names_of_file(file: s.File) -> set[str]:
+    """The names that a file declares at file scope."""
+    names: set[str] = set()
+    for external in file.externals:
+        declarations: tuple[s.Declaration, ...] = ()
+        if isinstance(external, s.GlobalSyntax):
+            declarations = (external.declaration,)
+        else:
+            names.add(external.name.text)
+        if isinstance(external, s.BlockSyntax):
+            declarations = external.members if external.instance is None else ()
+        for declaration in declarations:
+            names.update([declarator.name.text for declarator in declaration.declarators])
+            if declaration.type.struct is not None:
+                names.add(declaration.type.struct.name.text)
+    return names
 
 
 def declare_struct(context: CheckContext, struct: s.StructSyntax) -> None:

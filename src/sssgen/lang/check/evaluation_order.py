@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.walk import all_expressions, statements, subexpressions
+from sssgen.ir.walk import all_expressions, statements, subexpressions, written_root
+
+OutArguments = Callable[[ir.Call], Iterable[ir.Expr]]
+"""Gives the arguments that a call writes to."""
 
 
 def root_name(target: ir.Expr) -> str:
@@ -15,7 +18,7 @@ def root_name(target: ir.Expr) -> str:
     return target.name if isinstance(target, ir.Local | ir.Global) else "value"
 
 
-def writes_of(stmts: Iterable[ir.Stmt]) -> tuple[set[str], bool]:
+def writes_of(stmts: Iterable[ir.Stmt], out_arguments: OutArguments) -> tuple[set[str], bool]:
     """The variables that statements write, and whether they call functions, which may write more."""
     block = tuple(stmts)
     written = {root_name(stmt.target) for stmt in statements(block) if isinstance(stmt, ir.Assign)}
@@ -23,7 +26,7 @@ def writes_of(stmts: Iterable[ir.Stmt]) -> tuple[set[str], bool]:
     for expr in all_expressions(block):
         if isinstance(expr, ir.Call):
             calls = True
-            written |= {root_name(arg) for arg in expr.args if isinstance(arg, ir.Local | ir.Global)}
+            written |= {place.name for place in map(written_root, out_arguments(expr)) if place is not None}
     return written, calls
 
 

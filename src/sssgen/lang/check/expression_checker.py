@@ -9,7 +9,7 @@ change, are stored in variables first.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Container, Sequence
 from typing import Any, TypeVar
 
 from sssgen.ir import nodes as ir
@@ -90,24 +90,44 @@ class ExpressionChecker:
         parts = [self.check_as(item, part, "", what) for item, part in zip(listed.items, types, strict=True)]
         return ir.Construct(type_, tuple(parts), listed.span)
 
-    def operands(self, parts: Sequence[s.Expression]) -> list[Typed]:
-        """Checks expressions that are evaluated in this order."""
+    def operands(self, parts: Sequence[s.Expression], outs: Container[int] = ()) -> list[Typed]:
+        """Checks expressions that are evaluated in this order; those at the positions `outs` are places to write to."""
         function, values = self.context.function, list[Typed]()
         for part in parts:
             before = len(function.prelude)
             values.append(self.check(part))
             if len(function.prelude) > before:
-                self.store_earlier(values, before)
+                self.store_earlier(values, before, outs)
         return values
 
-    def store_earlier(self, values: list[Typed], start: int) -> None:
-        """Stores those of the values in variables that the prelude from `start` on would change; not the last value."""
+    def store_earlier(self, values: list[Typed], start: int, outs: Container[int] = ()) -> None:
+        """Stores those of the values in variables that the prelude from `start` on would change; not the last value.
+
+        Of the places at the positions `outs` only the indices are stored.
+        """
         function = self.context.function
-        written, calls = writes_of(function.prelude[start:])
+        written, calls = writes_of(function.prelude[start:], self.context.out_arguments)
         for index, typed in enumerate(values[:-1]):
-            if depends(typed.expr, written, calls):
+            count = len(function.prelude)
+            if index in outs:
+                values[index] = typed._replace(expr=self.fixed_place(typed.expr, written, calls, start))
+            elif depends(typed.expr, written, calls):
                 values[index] = Typed(function.temporary("before", typed.expr, start), typed.quantity)
-                start += 1
+            start += len(function.prelude) - count
+
+    def fixed_place(self, target: ir.Expr, written: set[str], calls: bool, start: int) -> ir.Expr:
+        """A place to write to, with every index stored in a variable that later statements change.
+
+        `written` and `calls` are the effects of those statements, which begin at `start` in the prelude.
+        """
+        if not isinstance(target, ir.Index | ir.Swizzle | ir.Member):
+            return target
+        inner = self.fixed_place(target.value, written, calls, start)
+        if inner is not target.value:
+            target = target._replace(value=inner)
+        if isinstance(target, ir.Index) and depends(target.index, written, calls):
+            return target._replace(index=self.context.function.temporary("place", target.index, start))
+        return target
 
     def with_prelude(self, expression: s.Expression, check: Callable[[s.Expression], _T]) -> tuple[_T, list[ir.Stmt]]:
         """The result of `check` for an expression, and the prelude of this expression alone."""

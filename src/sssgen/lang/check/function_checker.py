@@ -60,12 +60,15 @@ class FunctionChecker:
         type_ = array_type(context, type_, param.lengths)
         if type_ == VOID or (isinstance(type_, Sampler) and param.direction != "in"):
             raise context.fail(param.type.span, f"a parameter cannot be '{param.direction} {spell(type_)}'")
-        name = param.name or s.Name(f"unnamed_{index + 1}", param.type.span)
+        name, scopes = param.name, context.function.scopes
+        if name is None:
+            variable = scopes.invent(f"unnamed_{index + 1}", type_)
+            return ir.Param(variable.ir_name, type_, param.direction, quantity, param.type.span)
         check_not_reserved(context, name)
-        writable = not (param.const and context.plain)
-        if context.function.scopes.declare(name.text, type_, quantity, writable) is None:
+        declared = scopes.declare(name.text, type_, quantity, not (param.const and context.plain))
+        if declared is None:
             raise context.fail(name.span, f"parameter '{name.text}' is declared twice")
-        return ir.Param(name.text, type_, param.direction, quantity, name.span)
+        return ir.Param(declared.ir_name, type_, param.direction, quantity, name.span)
 
     def declare(self, function: ir.Function, has_body: bool) -> None:
         """Declares a function. A prototype and the definition must agree in everything but parameter names."""

@@ -45,7 +45,7 @@ class LoopChecker:
         before, init = _split(before, counters)
         others, step = _split(steps, counters) if all(map(_fits_in_head, steps)) else (steps, None)
         if others:
-            body = (*_before_continues(body, others), *others)
+            body = _at_every_end(body, others)
         if tested:
             assert condition is not None
             body, condition = (*tested, _break_unless(condition), *body), None
@@ -72,8 +72,11 @@ class LoopChecker:
 
     def do(self, statement: s.DoStatement) -> list[ir.Stmt]:
         """`do body while (test);` is `while (true) { body; if (!test) break; }`; each `continue` tests first, too."""
-        body = self.loop_body(statement.body)
+        scopes = self.context.function.scopes
+        scopes.push()  # the condition's variables are in the scope of the body in the IR
+        body = self.loop_body(statement.body, dissolve=True)
         condition, tested = self.expressions.with_prelude(statement.condition, self.statements.condition)
+        scopes.pop()
         if condition is None:
             return []
         if not self.context.plain:
@@ -83,14 +86,14 @@ class LoopChecker:
             last = tested if condition.value else [*tested, ir.Break(condition.span)]
         else:
             last = [*tested, _break_unless(condition)]
-        body = (*_before_continues(body, last), *last)
+        body = _at_every_end(body, last)
         return [ir.While(ir.Literal(BOOL, True, statement.span), body, statement.span)]
 
-    def loop_body(self, statement: s.Statement) -> ir.Block:
+    def loop_body(self, statement: s.Statement, dissolve: bool = False) -> ir.Block:
         function = self.context.function
         outer, function.switches = function.switches, []
         function.loop_depth += 1
-        body = self.statements.body(statement)
+        body = self.statements.body(statement, dissolve)
         function.loop_depth -= 1
         function.switches = outer
         return body
@@ -115,19 +118,26 @@ def _split(statements: list[ir.Stmt], counters: set[str]) -> tuple[list[ir.Stmt]
         return statements, None
     for stmt in simple:
         others = [other for other in statements if other is not stmt]
-        independent = not any(_written(stmt) & _used(other) or _written(other) & _used(stmt) for other in others)
-        if independent and _written(stmt) & counters:
+        if _written(stmt) & counters and not any(_conflict(stmt, other) for other in others):
             return others, stmt
     if statements[-1] in simple:
         return statements[:-1], statements[-1]
     return statements, None
 
 
+def _conflict(one: ir.Stmt, other: ir.Stmt) -> bool:
+    """Whether the order of two statements matters. A call may read and write any module variable."""
+    if _written(one) & _used(other) or _written(other) & _used(one):
+        return True
+    kinds = [{type(part) for part in all_expressions((stmt,))} & {ir.Call, ir.Global} for stmt in (one, other)]
+    return all(kinds) and ir.Call in kinds[0] | kinds[1]
+
+
 def _written(stmt: ir.Stmt) -> set[str]:
     """The variables that a statement writes."""
     if isinstance(stmt, ir.Declare):
         return {stmt.name}
-    return writes_of([stmt])[0]
+    return writes_of([stmt], lambda call: call.args)[0]
 
 
 def _used(stmt: ir.Stmt) -> set[str]:
@@ -136,15 +146,20 @@ def _used(stmt: ir.Stmt) -> set[str]:
     return names | _written(stmt)
 
 
+def _at_every_end(body: ir.Block, added: list[ir.Stmt]) -> ir.Block:
+    """A loop's body with statements at its end and before each `continue`."""
+    body = _before_continues(body, added)
+    is_left = bool(body) and isinstance(body[-1], ir.Break | ir.Continue | ir.Return | ir.Discard)
+    return body if is_left else (*body, *added)
+
+
 def _before_continues(body: ir.Block, added: list[ir.Stmt]) -> ir.Block:
     """A loop's body with statements before each `continue` of the loop; if they end with `break`, instead of it."""
     result: list[ir.Stmt] = []
     for stmt in body:
-        if isinstance(stmt, ir.Continue):
-            result += added
-            if added and isinstance(added[-1], ir.Break):
-                continue
-        elif isinstance(stmt, ir.If):
+        if isinstance(stmt, ir.Continue):  # what follows is not executed
+            return (*result, *added) if added and isinstance(added[-1], ir.Break) else (*result, *added, stmt)
+        if isinstance(stmt, ir.If):
             then, otherwise = _before_continues(stmt.then, added), _before_continues(stmt.otherwise, added)
             stmt = stmt._replace(then=then, otherwise=otherwise)
         result.append(stmt)

@@ -16,7 +16,7 @@ from sssgen.lang.check.call_checker import CallChecker
 from sssgen.lang.check.call_graph import callees_first, calls_in, report_deep_calls, report_recursion
 from sssgen.lang.check.constant_values import constant_value
 from sssgen.lang.check.context import AlreadyReported, CheckContext
-from sssgen.lang.check.declared_names import declare_struct
+from sssgen.lang.check.declared_names import declare_struct, names_of_file
 from sssgen.lang.check.expression_checker import ExpressionChecker
 from sssgen.lang.check.function_checker import FunctionChecker
 from sssgen.lang.check.global_checker import GlobalChecker
@@ -89,15 +89,21 @@ class ModuleChecker:
         self.globals.uniforms += module.uniforms
 
     def add_function(self, name: str, source: str) -> None:
-        """Checks and declares the function that replaces the builtin `name`."""
+        """Checks and declares the function that replaces the builtin `name`; it does not see the file's functions."""
+        context = self.context
+        own, context.functions = context.functions, {}
         for external in parse(source, f"intrinsics/{name}").externals:
             assert isinstance(external, s.FunctionSyntax)
             function = self.function_checker.function(external)
             self.added[function.key] = function
+        for added, signatures in context.functions.items():
+            own.setdefault(added, []).extend(signatures)
+        context.functions = own
 
     def module(self, file: s.File) -> ir.Module:
         """Checks a file. A function may call only functions that are declared before it."""
         context = self.context
+        context.file_names = names_of_file(file)
         for external in file.externals:
             try:
                 self.external(external)

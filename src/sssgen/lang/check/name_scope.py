@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
 from typing import NamedTuple
 
 from sssgen.ir.nodes import Span
@@ -66,11 +67,11 @@ class Scopes:
 
         `loop`: it is the scope of a loop's head.
         """
-        scope = self.stack.pop()
+        self.stack.pop()
         names = self.taken.pop()
         self.counters.pop()
         if loop:
-            self.counters[-1] |= {variable.ir_name: variable.type for variable in scope.values()}
+            self.counters[-1] |= {name: self.visible[name].type for name in names}
         if dissolve:
             self.taken[-1] += names
         else:
@@ -95,12 +96,28 @@ class Scopes:
         """Adds a variable to the innermost scope; None if this scope has the name already."""
         if name in self.stack[-1]:
             return None
-        ir_name, count = name, 2
-        while ir_name in self.visible or self.counters[-1].get(ir_name, type) != type:
-            ir_name, count = f"{name}_{count}", count + 1
-        variable = Variable(ir_name, type, quantity, writable, faulty, value)
-        self.stack[-1][name] = self.visible[ir_name] = variable
-        self.taken[-1].append(ir_name)
+        variable = Variable(self.unused(name, type), type, quantity, writable, faulty, value)
+        self.stack[-1][name] = variable
+        return self.add(variable)
+
+    def invent(self, name: str, type: Type, taken: Container[str] = ()) -> Variable:
+        """Adds a variable of the compiler to the innermost scope: no name that the author writes refers to it.
+
+        `taken` are names of variables that will be in its scope in the IR.
+        """
+        return self.add(Variable(self.unused(name, type, taken), type, "", True))
+
+    def unused(self, name: str, type: Type, taken: Container[str] = ()) -> str:
+        """`name`, with a number where the IR has a visible variable of that name."""
+        unused, count = name, 2
+        while unused in self.visible or unused in taken or self.counters[-1].get(unused, type) != type:
+            unused, count = f"{name}_{count}", count + 1
+        return unused
+
+    def add(self, variable: Variable) -> Variable:
+        """Makes a variable's IR name visible in the innermost scope."""
+        self.visible[variable.ir_name] = variable
+        self.taken[-1].append(variable.ir_name)
         return variable
 
     def names(self) -> list[str]:

@@ -68,14 +68,14 @@ class StatementChecker:
         finally:
             function.prelude = outer
 
-    def body(self, statement: s.Statement) -> ir.Block:
-        """Checks the body of a branch or loop in its own scope."""
+    def body(self, statement: s.Statement, dissolve: bool = False) -> ir.Block:
+        """Checks the body of a branch or loop in its own scope; `dissolve` as in `block`."""
         if isinstance(statement, s.Compound):
-            return self.block(statement)
+            return self.block(statement, dissolve)
         scopes = self.context.function.scopes
         scopes.push()
         result = tuple(self.statement(statement))
-        scopes.pop()
+        scopes.pop(dissolve)
         return result
 
     def condition(self, condition: s.Expression) -> ir.Expr | None:

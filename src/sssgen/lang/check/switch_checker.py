@@ -36,16 +36,17 @@ class SwitchChecker:
         outer, function.switches = function.switches, [*function.switches, flag]
         bodies = [self.statements.block(s.Compound(case.body, span, 0)) for case in cases]
         function.switches = outer
-        written, calls = writes_of([stmt for body in bodies for stmt in body])
+        inside = tuple([stmt for body in bodies for stmt in body])
+        written, calls = writes_of(inside, context.out_arguments)
         if len(cases) > 1 and (not isinstance(value, ir.Local) or depends(value, written, calls)):
-            value = function.temporary("selected", value, position)
+            value = function.temporary("selected", value, position, before=inside)
         chain: ir.Block = ()
         for case, body in zip(reversed(cases), reversed(bodies), strict=True):
             test = self.matches(value, case.labels)
             chain = body if test is None else (ir.If(test, body, chain, case.span),)
         if not is_loop:
             return list(chain)
-        counter = function.temporary("once", ir.Literal(INT, 0, span))
+        counter = function.temporary("once", ir.Literal(INT, 0, span), before=inside)
         init = function.prelude.pop()
         test = ir.Binary(BOOL, "<", counter, ir.Literal(INT, 1, span), span)
         step = ir.Assign(counter, "+", ir.Literal(INT, 1, span), span)

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-
 from sssgen.ir import nodes as ir
 from sssgen.ir.types import INT, UINT
 from sssgen.ir.walk import all_expressions, root, statements, subexpressions
-
-OutArgs = Callable[[ir.Call], Iterable[ir.Expr]]
-"""Gives the arguments that a call writes to."""
+from sssgen.lang.check.evaluation_order import OutArguments
 
 
-def ends(condition: ir.Expr, steps: ir.Block, body: ir.Block, out_args: OutArgs) -> bool:
+def ends(condition: ir.Expr, steps: ir.Block, body: ir.Block, out_args: OutArguments) -> bool:
     """Whether the condition must become false: every iteration steps an integer counter once, towards a constant bound.
 
     `steps` are the statements that run in every iteration, `body` the others.
@@ -57,7 +53,7 @@ def skips(block: ir.Block) -> bool:
     )
 
 
-def writes(block: ir.Block, out_args: OutArgs) -> list[str]:
+def writes(block: ir.Block, out_args: OutArguments) -> list[str]:
     """The variables that a block writes, with an entry for each write."""
     targets = [stmt.target for stmt in statements(block) if isinstance(stmt, ir.Assign)]
     for expr in all_expressions(block):
