@@ -43,17 +43,22 @@ def rename(
     reserved_folded: Container[str] = frozenset(),
     matrix_overloads: bool = True,
     loop_scope: bool = True,
+    reserved_at_file_scope: Container[str] = (),
 ) -> tuple[Module, dict[str, str]]:
     """The module with legal names, and what was renamed, as old → new.
 
-    `reserved` holds the target's reserved names, `reserved_folded` those reserved in any case, in lower case.
+    `reserved` holds the target's reserved names, `reserved_folded` those reserved in any case, in lower case,
+    `reserved_at_file_scope` those that only local names may have.
     `uniform_name` gives a uniform's name in the target's style. With `mangle_overloads` each function of an
     overloaded name gets its parameters' types into its name; without `matrix_overloads` those of a name whose overloads
     differ in a vec4 and a mat2 alone; `loop_scope` as in `rename_locals`. In the result, overloads that got different
     names are listed under their key (as in `box(vec3)`), local names under `function.name`, members under
     `struct.name`.
     """
-    return _Namer(module, reserved, uniform_name, mangle_overloads, reserved_folded, matrix_overloads, loop_scope).run()
+    return _Namer(
+        module, reserved, uniform_name, mangle_overloads, reserved_folded, matrix_overloads, loop_scope,
+        reserved_at_file_scope,
+    ).run()  # fmt: skip
 
 
 class _Namer:
@@ -66,10 +71,12 @@ class _Namer:
         reserved_folded: Container[str],
         matrix_overloads: bool,
         loop_scope: bool,
+        reserved_at_file_scope: Container[str],
     ) -> None:
         self.module = module
         self.keyed = [(function.key, function) for function in module.functions]
         self.reserved, self.reserved_folded = reserved, reserved_folded
+        self.reserved_at_file_scope = reserved_at_file_scope
         self.uniform_name, self.mangle_overloads = uniform_name, mangle_overloads
         self.matrix_overloads, self.loop_scope = matrix_overloads, loop_scope
         self.legality: dict[str, bool] = {}
@@ -157,12 +164,12 @@ class _Namer:
                 wanted["function", function.name] = function.name
         names: dict[tuple[str, str], str] = {}
         for old, name in wanted.items():
-            if self.free(name, BUILTINS):
+            if self.free(name, self.reserved_at_file_scope):
                 names[old] = name
                 self.taken.add(name)
         for old, name in wanted.items():
             if old not in names:
-                names[old] = self.choose(name, BUILTINS)
+                names[old] = self.choose(name, self.reserved_at_file_scope)
                 self.taken.add(names[old])
         self.renamed = {old[1]: new for old, new in names.items() if old[1] != new}
         self.globals = {old[1]: new for old, new in names.items() if old[0] == "global" and old[1] != new}

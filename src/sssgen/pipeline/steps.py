@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Module
 from sssgen.lang.polyfills import guard as guard_source
 from sssgen.lang.polyfills import polyfill
@@ -205,6 +206,7 @@ def make_names_legal(state: State) -> Module:
         others.folded | target.names.folded,
         target.capabilities.matrix_overloads,
         target.capabilities.loop_scope,
+        BUILTINS if target.names.builtins else (),
     )
     names = zip(module.uniforms, state.module.uniforms, strict=True)
     state.source_names = {new.name: old.name for new, old in names}

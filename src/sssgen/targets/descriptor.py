@@ -50,6 +50,8 @@ class Names(NamedTuple):
     """Reserved in any case, as some of HLSL's words are."""
     prefixes: tuple[str, ...] = ()
     """Every name that starts with one of these is reserved."""
+    builtins: bool = False
+    """Whether declarations at file scope, too, must avoid the names of builtins, which are GLSL's here."""
 
     @property
     def exact(self) -> frozenset[str]:
