@@ -226,6 +226,43 @@ def test_extensions_pragmas_and_lines() -> None:
     assert [token.span[1:3] for token in result.tokens] == [(6, 1)]
 
 
+NUMBERED = {
+    "#line 10\n__LINE__\n__LINE__": "10 11",
+    "#version 330\n#line 10\n__LINE__": "10",
+    "#version 460 core\n\n#line 7 3\n\n__LINE__ __FILE__": "8 3",
+    "#version 300 es\n#line 10\n__LINE__": "10",
+    "#version 100\n#line 10\n__LINE__": "10",
+    "#version 110\n#line 10\n__LINE__": "11",
+    "#version 150\n#line 10 2\n__LINE__ __FILE__\n#line 20\n__LINE__ __FILE__": "11 2 21 2",
+    "#define N 30\n#line N + 2\n__LINE__": "32",
+    "#define N 30\n#line (N * 2) 4\n__LINE__ __FILE__": "60 4",
+    "#line 5 /* a\n b */ \\\n 6\n__LINE__ __FILE__": "5 6",
+    '#line 5 "main.glsl"\n__LINE__ __FILE__': "5 0",
+    "#define L __LINE__ +\n#line 100\nL\nL": "100 + 101 +",
+    "#line 100\n#if __LINE__ == 101\nno\n#endif\n#line 50\n#if __LINE__ == 50\nyes\n#endif": "yes",
+    "#line 9\n#ifdef NO\n#line 90\n#endif\n__LINE__": "12",
+}
+
+
+@pytest.mark.parametrize("text", NUMBERED)
+def test_numbered_lines(text: str) -> None:
+    assert words(text) == spaced(NUMBERED[text])
+
+
+def test_an_included_file_has_lines_of_its_own() -> None:
+    files = {"a": "__LINE__\n#line 70 7\n__LINE__ __FILE__\n"}
+    result = run('#line 10 1\n__LINE__\n#include "a"\n__LINE__ __FILE__', files)
+    assert [token.text for token in result.tokens] == ["10", "1", "70", "7", "12", "1"]
+    assert [token.span.line for token in result.tokens] == [2, 1, 3, 3, 4, 4]
+
+
+@pytest.mark.parametrize("rest", ["", "here", "-5", "4 5 6", "99999999999", "1 / 0"])
+def test_faulty_lines(rest: str) -> None:
+    assert faults(f"\n#line {rest}\n@") == [
+        ("#line needs the number of a line", "main", 2, 1), ("unknown character '@'", "main", 3, 1)
+    ]  # fmt: skip
+
+
 def test_error_directives_and_malformed_directives() -> None:
     assert faults(
         "#error no // really\n @\n#foo\n#elseif\n#define\n#define f(a\n#define g(a,a) a\n#define 1\n#undef A B"

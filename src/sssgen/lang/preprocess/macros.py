@@ -49,15 +49,18 @@ class Macro(NamedTuple):
 _LINE = Macro("__LINE__", None, ())
 """The builtin macro that expands to the number of the line that uses it."""
 
+_FILE = Macro("__FILE__", None, ())
+"""The builtin macro that expands to the number that `#line` gave to the text that uses it."""
+
 
 def builtin_macros(version: int, profile: str) -> dict[str, Macro]:
     """The macros that the language defines, for the arguments of #version (0 and '' without one)."""
     profile = profile or ("core" if version == 0 or version >= 150 else "")
-    values = {"__FILE__": 0, "__VERSION__": version or 450, "GL_FRAGMENT_PRECISION_HIGH": 1}
+    values = {"__VERSION__": version or 450, "GL_FRAGMENT_PRECISION_HIGH": 1}
     values |= {"GL_ES": 1} if profile == "es" else {}
     values |= {f"GL_{profile}_profile": 1} if profile else {}
     macros = {name: Macro(name, None, (Token("INT", str(value), NOWHERE),)) for name, value in values.items()}
-    return {**macros, _LINE.name: _LINE}
+    return {**macros, _LINE.name: _LINE, _FILE.name: _FILE}
 
 
 def definition(tokens: Sequence[Token], place: Span) -> Macro:
@@ -87,6 +90,13 @@ def _params(tokens: Sequence[Token]) -> tuple[str, ...]:
     raise Fault(tokens[0].span, "these parameters are not closed")
 
 
+class Numbering(NamedTuple):
+    """What `#line` sets: how much larger a line's number is than that in the file, and the number of the text."""
+
+    shift: int = 0
+    text: int = 0
+
+
 class TooMuch(Fault):
     """An expansion that exceeds a limit."""
 
@@ -105,6 +115,7 @@ class Expander:
         self.joined: set[str] = set()
         self.join = join
         self.report = report
+        self.numbering = Numbering()
         self.count = 0
         self.limit = 0
         self.held: _Item | None = None  # a macro's name at the end of the last tokens: its arguments may follow
@@ -237,8 +248,9 @@ class Expander:
         self, macro: Macro, arguments: list[list[_Item]], hidden: frozenset[str], place: Span, depth: int
     ) -> list[_Item]:
         """The body with its arguments, which are expanded on their own, except next to `##`."""
-        if macro is _LINE:
-            return [(Token("INT", str(place.line), place), hidden)]
+        if macro is _LINE or macro is _FILE:
+            number = place.line + self.numbering.shift if macro is _LINE else self.numbering.text
+            return [(Token("INT", str(number), place), hidden)]
         if not arguments and not macro.pastes:
             return [(tuple.__new__(Token, (token[0], token[1], place)), hidden) for token in macro.body]
         raw = dict(zip(macro.params or (), arguments, strict=True))

@@ -11,13 +11,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from typing import NamedTuple
 
 from sssgen.ir.spans import Span
 from sssgen.lang.preprocess.directives import BLANK, Branch, SourceFile, directives, plain
 from sssgen.lang.preprocess.if_conditions import Fault, evaluate
 from sssgen.lang.preprocess.kept_constants import KeptConstants
-from sssgen.lang.preprocess.macros import MAX_TOKENS, Expander, TooMuch, builtin_macros, definition
+from sssgen.lang.preprocess.macros import MAX_TOKENS, Expander, Numbering, TooMuch, builtin_macros, definition
 from sssgen.lang.syntax.lexer import KEYWORDS, Lexer
 from sssgen.lang.syntax.tokens import Comment, Token
 from sssgen.support.diagnostics import Diagnostic, Reporter, SssgenError, did_you_mean
@@ -64,8 +65,8 @@ def preprocess(text: str, file: str, find: Find, defines: Mapping[str, str] | No
     """Executes the directives of a text and of all that it includes, and expands its macros.
 
     `defines` are macros without parameters, defined before the first line. A token has the place where it is written; a
-    token from a macro's body has the place of the macro's use. `#line` is accepted and ignored: messages show the real
-    files. Macros that are names of numbers become constants (kept_constants.py).
+    token from a macro's body has the place of the macro's use. `#line` sets `__LINE__` and `__FILE__` alone: messages
+    show the real lines. Macros that are names of numbers become constants (kept_constants.py).
 
     Raises SssgenError with every error found, also where a limit is exceeded (those here and in macros.py).
     """
@@ -84,6 +85,8 @@ def preprocess(text: str, file: str, find: Find, defines: Mapping[str, str] | No
     return run.result(run.tokens, [])
 
 
+_QUOTED = re.compile(rf'"[^"\n]*"{BLANK}$')
+"""The file's name that some tools write behind `#line 10`."""
 _INCLUDED = re.compile(rf'{BLANK}(?:"(?P<quoted>[^"\n]+)"|<(?P<angled>[^>\n]+)>)')
 
 _KNOWN = (
@@ -150,6 +153,7 @@ class _Run:
         self.texts[shown] = text
         self.characters += len(text)
         self.chain.append(file)
+        outer, self.expander.numbering = self.expander.numbering, Numbering()
         start = 0
         for match in directives(text):
             if file.live:
@@ -161,6 +165,7 @@ class _Run:
         for branch in file.branches:
             self.error(branch.place, "this condition is not closed", "an #endif is missing")
         self.chain.pop()
+        self.expander.numbering = outer
 
     def code(self, file: SourceFile, start: int, end: int) -> None:
         """Reads the code between directives."""
@@ -213,6 +218,10 @@ class _Run:
                 self.undefine(macro.text)
         elif name == "include":
             self.include(file, rest, place, match.start("rest"))
+        elif name == "line":
+            self.set_line(
+                self.tokens_of(file, _QUOTED.sub("", rest), place), place, place.end_line + rest.count("\n") + 1
+            )
         elif name == "error":
             self.error(place, f"#error {plain(rest)}".rstrip())
         elif name == "version":
@@ -223,7 +232,7 @@ class _Run:
             self.pragmas.append(plain(rest))
             if self.pragmas[-1] == "once":
                 self.once.add(file.shown)
-        elif name not in ("", "line") or (not name and plain(rest)):
+        elif name or plain(rest):
             self.error(place, f"there is no directive '#{name}'", did_you_mean(name, _KNOWN))
 
     def tokens_of(self, file: SourceFile, rest: str, place: Span) -> list[Token]:
@@ -307,6 +316,32 @@ class _Run:
         if self.included > MAX_INCLUDES or self.characters + len(text) > MAX_CHARACTERS:
             self.stop(where, "too much is included", "write #pragma once in a file to include it only once")
         self.read(text, shown)
+
+    def set_line(self, tokens: list[Token], place: Span, following: int) -> None:
+        """Executes `#line LINE` or `#line LINE TEXT`, whose next line is `following` in the file."""
+        numbers = self.numbers(tokens, place)
+        if numbers is None:
+            self.error(place, "#line needs the number of a line", "write #line 10, or #line 10 2 for the text 2")
+            return
+        line, text = numbers
+        is_old = 0 < self.version < 330 and self.profile != "es"  # there it is the number of the directive's own line
+        self.expander.numbering = Numbering(line + is_old - following, text)
+
+    def numbers(self, tokens: list[Token], place: Span) -> tuple[int, int] | None:
+        """The line and the text's number that `#line` is given; None where they are none."""
+        defined = self.expander.macros.__contains__
+        try:
+            tokens = self.expander.condition(tokens)
+        except TooMuch as fault:
+            self.stop(*fault.details)
+        if any(token.text.isidentifier() for token in tokens):
+            return None
+        for line, text in ((tokens, ()), (tokens[:-1], tokens[-1:])):  # both may be expressions; the second rarely is
+            with suppress(Fault):
+                first = evaluate(line, defined, place)
+                second = evaluate(text, defined, place) if text else self.expander.numbering.text
+                return (first, second) if 0 <= first < 1 << 31 and 0 <= second < 1 << 31 else None
+        return None
 
     def set_version(self, arguments: str, place: Span) -> None:
         match = re.fullmatch(r"(\d{3})(?: (core|compatibility|es))?", arguments)
