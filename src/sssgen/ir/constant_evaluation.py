@@ -10,6 +10,11 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.constant_arithmetic import Number
 from sssgen.ir.types import BOOL, Array, Matrix, Struct, Type, Vector, components, kind_of
 
+_RELATIONS = {
+    "<": "lessThan", "<=": "lessThanEqual", ">": "greaterThan", ">=": "greaterThanEqual", "==": "equal",
+    "!=": "notEqual",
+}  # fmt: skip
+
 Value: TypeAlias = tuple[Any, ...]
 """The numbers of a scalar, vector or matrix (column after column); the values of an array's or struct's parts."""
 
@@ -24,13 +29,36 @@ def combined(expr: ir.Expr, values: Sequence[Value]) -> Value | None:
         left, right = expr.left.type, expr.right.type
         if expr.op in ("==", "!=") and expr.type == BOOL:
             return ((values[0] == values[1]) == (expr.op == "=="),)
-        is_product = expr.op == "*" and Matrix in (type(left), type(right)) and components(left) > 1 < components(right)
-        return None if is_product else arithmetic.binary(expr.op, values[0], values[1], kind_of(left))
+        if expr.op == "*" and Matrix in (type(left), type(right)) and components(left) > 1 < components(right):
+            return _product(left, right, values)
+        if isinstance(expr.type, Vector) and expr.type.kind == "bool" and expr.op in _RELATIONS:  # in WGSL and HLSL
+            return arithmetic.builtin(_RELATIONS[expr.op], values, [left, right], expr.type)
+        return arithmetic.binary(expr.op, values[0], values[1], kind_of(left))
     if isinstance(expr, ir.Intrinsic):
         return arithmetic.builtin(expr.name, values, [arg.type for arg in expr.args], expr.type)
     if isinstance(expr, ir.Select):
         return values[1] if values[0][0] else values[2]
     return _part(expr, values)
+
+
+def _product(left: Type, right: Type, values: Sequence[Value]) -> Value | None:
+    """A product with a matrix, by its columns."""
+    rows = left.size if isinstance(left, Matrix) else 1
+    inner = left.size if isinstance(left, Matrix) else components(left)
+    numbers: list[Number] = []
+    for column in range(components(right) // inner):
+        for row in range(rows):
+            total: Number = 0.0
+            for index in range(inner):
+                term = arithmetic.binary(
+                    "*", (values[0][index * rows + row],), (values[1][column * inner + index],), "float"
+                )
+                added = None if term is None else arithmetic.binary("+", (total,), term, "float")
+                if added is None:
+                    return None
+                total = added[0]
+            numbers.append(total)
+    return tuple(numbers)
 
 
 def _part(expr: ir.Expr, values: Sequence[Value]) -> Value | None:

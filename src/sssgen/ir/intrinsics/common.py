@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import struct
 from typing import Any
 
 from sssgen.ir.component_ranges import (
@@ -29,6 +30,14 @@ def _blend(x: float, y: float, z: float | bool) -> float:
 def _smoothstep(x: float, y: float, z: float) -> float:
     t = min(max((z - x) / (y - x), 0.0), 1.0)
     return float(checked(x < y, t * t * (3.0 - 2.0 * t)))
+
+
+def _bits(x: float) -> int:
+    return int.from_bytes(struct.pack("<f", x), "little")
+
+
+def _from_bits(x: int) -> float:
+    return float(struct.unpack("<f", (x & 0xFFFFFFFF).to_bytes(4, "little"))[0])
 
 
 def _off_integer_quotients(rt: Any, x: Any, y: Any, rounding: float = 2.0**-20) -> Any:
@@ -85,11 +94,11 @@ ROWS = (
     ),
     Builtin("round", F1,
         "Nearest integer; of two, the even one (undefined in GLSL, where roundEven is used).",
-        fold=round, range=lambda F, x: rising(round, x), defined=lambda rt, x: abs(x - rt.trunc(x)) != 0.5, inside=lambda rt, x: x == x,
+        not_constant=("hlsl",), fold=round, range=lambda F, x: rising(round, x), defined=lambda rt, x: abs(x - rt.trunc(x)) != 0.5, inside=lambda rt, x: x == x,
         texts={"glsl": "roundEven"}, ulp=0.0, vectors=(((1.75,), 2.0), ((0.5,), 0.0), ((-1.5,), -2.0), ((2.5,), 2.0)),
     ),
     Builtin("roundEven", F1, "Nearest integer; of two, the even one.",
-        fold=round, range=lambda F, x: rising(round, x),
+        not_constant=("hlsl",), fold=round, range=lambda F, x: rising(round, x),
         texts={"hlsl": "round", "wgsl": "round"},
         ulp=0.0, vectors=(((1.25,), 1.0), ((0.5,), 0.0), ((1.5,), 2.0), ((-2.5,), -2.0)),
     ),
@@ -165,7 +174,7 @@ vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
     Builtin("mix",
         ("genF(genF, genF, genF)", "genF(genF, genF, float)", *(f"gen{k}(gen{k}, gen{k}, genB)" for k in "FIUB")),
         "Linear blend x·(1 - z) + y·z; with a bool, z ? y : x, and the number that is not chosen may be infinite or NaN.",
-        fold=_blend, samples=Samples(floats=((-LARGEST, LARGEST), (-LARGEST, LARGEST), (0.0, 1.0))),
+        not_constant=("wgsl",), fold=_blend, samples=Samples(floats=((-LARGEST, LARGEST), (-LARGEST, LARGEST), (0.0, 1.0))),
         same_quantity=2, quantity="blend", overflow_is_nan=True, range=linear_blend,
         inside=lambda rt, x, y, z: (z.dtype == bool) | (rt.max(abs(x), abs(y)) * rt.max(abs(z), 1.0) < 1e38), size=lambda rt, x, y, z: rt.max(abs(x), abs(y)) * rt.max(abs(z), 1.0),
         domain="x and y finite, unless z is a bool",
@@ -187,7 +196,7 @@ vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
     ),
     Builtin("smoothstep", ("genF(genF, genF, genF)", "genF(float, float, genF)"),
         "Cubic step t·t·(3 - 2·t) with t = clamp((z - x)/(y - x), 0, 1).",
-        fold=_smoothstep, same_quantity=3, range=within(0.0, 1.0),
+        not_constant=("wgsl",), fold=_smoothstep, same_quantity=3, range=within(0.0, 1.0),
         guards=(Guard(lambda F, x, y, z: (y - x).low > 0.0 and (y - x).high <= F.largest, "edges in the wrong order, or equal", "{ genF t = clamp((z - x) / clamp(y - x, DIVISOR, LARGEST), 0.0, 1.0); return t * t * (3.0 - 2.0 * t); }",
             doc="smoothstep; a step if the edges are equal or in the wrong order."),),
         defined=lambda rt, x, y, z: x < y, inside=lambda rt, x, y, z: (x < y) & (y - x < 1e30),
@@ -197,7 +206,7 @@ vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
     ),
     Builtin("isnan", ("genB(genF)",),
         "Whether x is not a number, from its bits, as compilers may assume that there is no NaN.",
-        samples=Samples(special=True), range=within(0.0, 1.0),
+        not_constant=("wgsl",), samples=Samples(special=True), range=within(0.0, 1.0),
         texts={"glsl": "", "hlsl": "", "wgsl": ""},
         polyfill="""
 bool isnan(float x) { return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u; }
@@ -206,7 +215,7 @@ vecB isnan(vecF x) { return greaterThan(floatBitsToUint(x) & vecU(0x7fffffffu), 
         cost=2, vectors=(((NAN,), True), ((INF,), False), ((0.0,), False), (((1.0, NAN),), (False, True))),
     ),
     Builtin("isinf", ("genB(genF)",), "Whether x is infinite, from its bits, as isnan.",
-        samples=Samples(special=True), range=within(0.0, 1.0),
+        not_constant=("wgsl",), samples=Samples(special=True), range=within(0.0, 1.0),
         texts={"glsl": "", "hlsl": "", "wgsl": ""},
         polyfill="""
 bool isinf(float x) { return (floatBitsToUint(x) & 0x7fffffffu) == 0x7f800000u; }
@@ -216,17 +225,17 @@ vecB isinf(vecF x) { return equal(floatBitsToUint(x) & vecU(0x7fffffffu), vecU(0
         vectors=(((-INF,), True), ((NAN,), False), ((2.0**127,), False), (((1.0, INF),), (False, True))),
     ),
     Builtin("floatBitsToInt", ("genI(genF)",), "The float32's bits, as an int.",
-        float32_bits=True, range=any_number,
+        fold=_bits, float32_bits=True, not_constant=("wgsl",), range=any_number,
         texts={"hlsl": "asint", "wgsl": "bitcast<{type}>({0})"},
         vectors=(((1.0,), 0x3F800000), ((-2.0,), -0x40000000), ((0.0,), 0)),
     ),
     Builtin("floatBitsToUint", ("genU(genF)",), "The float32's bits, as a uint.",
-        float32_bits=True, range=any_number,
+        fold=_bits, float32_bits=True, not_constant=("wgsl",), range=any_number,
         texts={"hlsl": "asuint", "wgsl": "bitcast<{type}>({0})"},
         vectors=(((1.0,), 0x3F800000), ((-2.0,), 0xC0000000), ((0.0,), 0)),
     ),
     Builtin("intBitsToFloat", ("genF(genI)",), "The float32 with these bits.",
-        float32_bits=True, range=any_number,
+        fold=_from_bits, float32_bits=True, not_constant=("wgsl",), range=any_number,
         guards=(NOT_FINITE_BITS,),
         inside=lambda rt, x: abs(rt.intBitsToFloat(x)) < 1e39,
         domain="the bits are those of a finite float",
@@ -234,7 +243,7 @@ vecB isinf(vecF x) { return equal(floatBitsToUint(x) & vecU(0x7fffffffu), vecU(0
         ulp=0.0, vectors=(((0x3F800000,), 1.0), ((-0x40000000,), -2.0), ((0,), 0.0)),
     ),
     Builtin("uintBitsToFloat", ("genF(genU)",), "The float32 with these bits.",
-        float32_bits=True, range=any_number,
+        fold=_from_bits, float32_bits=True, not_constant=("wgsl",), range=any_number,
         guards=(NOT_FINITE_BITS,),
         inside=lambda rt, x: abs(rt.uintBitsToFloat(x)) < 1e39,
         domain="the bits are those of a finite float",
@@ -242,7 +251,7 @@ vecB isinf(vecF x) { return equal(floatBitsToUint(x) & vecU(0x7fffffffu), vecU(0
         ulp=0.0, vectors=(((0x3F800000,), 1.0), ((0xC0000000,), -2.0), ((0,), 0.0)),
     ),
     Builtin("fma", ("genF(genF, genF, genF)",), "x·y + z, rounded once or twice.",
-        range=fused_product_sum,
+        fold=lambda x, y, z: x * y + z, range=fused_product_sum,
         inside=lambda rt, x, y, z: abs(x * y) + abs(z) < 1e38, size=lambda rt, x, y, z: rt.max(abs(x * y), abs(z)),
         texts={"glsl": "", "hlsl": "mad"},
         polyfill="genF fma(genF x, genF y, genF z) { return x * y + z; }", cost=2,
@@ -251,7 +260,7 @@ vecB isinf(vecF x) { return equal(floatBitsToUint(x) & vecU(0x7fffffffu), vecU(0
         ),
     ),
     Builtin("ldexp", ("genF(genF, genI)",), "x·2^y.",
-        samples=Samples(integers={1: (-126, 127)}), range=power_of_two_product,
+        not_constant=("wgsl",), fold=math.ldexp, samples=Samples(integers={1: (-126, 127)}), range=power_of_two_product,
         guards=(
             Guard(lambda F, x, y: y.low >= -126.0 and y.high <= 127.0 and (absolute(x) * rising(math.exp2, y)).high < F.largest, "the power is beyond the exponents of a float, or the product overflows",
                 "clamp(ldexp(x, clamp(y, -126, 127)), -LARGEST, LARGEST)"),

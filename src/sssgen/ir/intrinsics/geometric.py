@@ -21,6 +21,12 @@ def _length(x: Sequence[float]) -> float:
     return math.sqrt(_dot(x, x))
 
 
+def _refracted(x: Sequence[float], y: Sequence[float], z: Sequence[float]) -> list[float]:
+    eta, cosine = z[0], _dot(y, x)
+    k = 1.0 - eta * eta * (1.0 - cosine * cosine)
+    return [0.0 if k < 0.0 else eta * a - (eta * cosine + math.sqrt(k)) * b for a, b in zip(x, y)]
+
+
 def _signed_dot(rt: Any, x: Any, y: Any, z: Any, rounding: float = 1e-6) -> Any:
     """Where the sign of dot(z, y) does not depend on rounding."""
     terms = rt.dot(abs(z), abs(y))
@@ -88,7 +94,7 @@ ROWS = (
     ),
     Builtin("faceforward", ("vecF(vecF, vecF, vecF)", "float(float, float, float)"),
         "x where dot(z, y) < 0, else -x: the normal x turned against the direction of incidence y.",
-        quantity="direction", componentwise=False, range=vector_ranges.faceforward,
+        not_constant=("wgsl",), fold=lambda x, y, z: [a if _dot(z, y) < 0.0 else -a for a in x], quantity="direction", componentwise=False, range=vector_ranges.faceforward,
         inside=_signed_dot,
         texts={"hlsl/float,float,float": "", "wgsl": "faceForward", "wgsl/float,float,float": ""},
         polyfill="float faceforward(float x, float y, float z) { return z * y < 0.0 ? x : -x; }", cost=4,
@@ -100,7 +106,7 @@ ROWS = (
     ),
     Builtin("reflect", ("vecF(vecF, vecF)", "float(float, float)"),
         "x - 2·dot(y, x)·y: direction x mirrored at the unit normal y.",
-        samples=Samples(unit=(1,)), overflow_is_nan=True, quantity="direction",
+        not_constant=("wgsl",), fold=lambda x, y: [a - 2.0 * _dot(y, x) * b for a, b in zip(x, y)], samples=Samples(unit=(1,)), overflow_is_nan=True, quantity="direction",
         componentwise=False, range=vector_ranges.reflect,
         inside=lambda rt, x, y, rounding=1e-6: (abs(rt.dot(y, y) - 1.0) < rounding) & (abs(x) < 1e38), size=lambda rt, x, y: rt.max(abs(x), 2.0 * rt.dot(abs(x), abs(y)) * abs(y)),
         domain="dot(y, y) = 1", texts={"hlsl/float,float": "", "wgsl/float,float": ""},
@@ -113,7 +119,7 @@ ROWS = (
     ),
     Builtin("refract", ("vecF(vecF, vecF, float)", "float(float, float, float)"),
         "Direction x refracted at the unit normal y, z = n_from/n_into; 0 on total internal reflection.",
-        samples=Samples(floats=((-1.0, 1.0), (-1.0, 1.0), (0.0, 4.0)), unit=(0, 1)), overflow_is_nan=True,
+        not_constant=("wgsl",), fold=_refracted, samples=Samples(floats=((-1.0, 1.0), (-1.0, 1.0), (0.0, 4.0)), unit=(0, 1)), overflow_is_nan=True,
         quantity="direction", componentwise=False, range=vector_ranges.refract,
         inside=_away_from_total_reflection, size=lambda rt, x, y, z: rt.max(z * z, 1.0),
         domain="dot(x, x) = dot(y, y) = 1 and z > 0",

@@ -92,7 +92,7 @@ gen{kind} bitfieldReverse(gen{kind} x) {{
     ),
     Builtin("bitfieldExtract", ("genI(genI, int, int)", "genU(genU, int, int)"),
         "The z bits of x from bit y on, in the low bits; of an int, with the sign of the highest of them.",
-        samples=Samples(integers={1: (0, 32), 2: (0, 32)}), range=any_number,
+        not_constant=("wgsl",), samples=Samples(integers={1: (0, 32), 2: (0, 32)}), range=any_number,
         defined=lambda rt, x, y, z: (y >= 0) & (z >= 0) & (y <= 32) & (z <= 32) & (y + z <= 32), domain=_FIELD,
         texts={"glsl": "", "hlsl": "", "wgsl": "extractBits({0}, u32({1}), u32({2}))"},
         polyfill="""
@@ -110,6 +110,7 @@ genU bitfieldExtract(genU x, int y, int z) {
     ),
     Builtin("bitfieldInsert", ("genI(genI, genI, int, int)", "genU(genU, genU, int, int)"),
         "x with its w bits from bit z on replaced by the low ones of y.",
+        not_constant=("wgsl",), fold=lambda x, y, z, w: (x & ~(((1 << w) - 1) << z)) | ((y & ((1 << w) - 1)) << z),
         samples=Samples(integers={2: (0, 32), 3: (0, 32)}), range=any_number,
         defined=lambda rt, x, y, z, w: (z >= 0) & (w >= 0) & (z <= 32) & (w <= 32) & (z + w <= 32), domain="z >= 0, w >= 0, and z + w <= 32",
         texts={"glsl": "", "hlsl": "", "wgsl": "insertBits({0}, {1}, u32({2}), u32({3}))"},

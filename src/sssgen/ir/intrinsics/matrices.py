@@ -2,8 +2,25 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+
 from sssgen.ir import vector_ranges
 from sssgen.ir.intrinsics.table import Builtin, Guard, Samples
+
+
+def _transposed(matrix: Sequence[float]) -> list[float]:
+    size = math.isqrt(len(matrix))
+    return [matrix[size * row + column] for column in range(size) for row in range(size)]
+
+
+def _determinant(matrix: Sequence[float]) -> float:
+    size = math.isqrt(len(matrix))
+    if size == 1:
+        return matrix[0]
+    minors = [[n for i, n in enumerate(matrix[size:]) if i % size != row] for row in range(size)]
+    return math.fsum((-1.0) ** row * matrix[row] * _determinant(minors[row]) for row in range(size))
+
 
 # A table: several fields to a line.
 # fmt: off
@@ -40,7 +57,7 @@ mat4 outerProduct(vec4 x, vec4 y) { return mat4(x * y.x, x * y.y, x * y.z, x * y
         ),
     ),
     Builtin("transpose", ("mat(mat)",), "Rows for columns.",
-        componentwise=False, range=vector_ranges.transpose,
+        not_constant=("wgsl",), fold=_transposed, componentwise=False, range=vector_ranges.transpose,
         cost=0,
         ulp=0.0, vectors=(
             ((((1.0, 2.0), (3.0, 4.0)),), ((1.0, 3.0), (2.0, 4.0))),
@@ -49,7 +66,7 @@ mat4 outerProduct(vec4 x, vec4 y) { return mat4(x * y.x, x * y.y, x * y.z, x * y
         ),
     ),
     Builtin("determinant", ("float(mat)",), "Determinant.",
-        samples=Samples(invertible=True), overflow_is_nan=True, componentwise=False, range=vector_ranges.determinant,
+        not_constant=("wgsl",), fold=lambda x: [_determinant(x)], samples=Samples(invertible=True), overflow_is_nan=True, componentwise=False, range=vector_ranges.determinant,
         cost=8, ulp=32.0, clause="WGSL: no bound",
         vectors=(
             ((((1.0, 2.0), (3.0, 4.0)),), -2.0), ((((1.0, 2.0), (2.0, 4.0)),), 0.0),

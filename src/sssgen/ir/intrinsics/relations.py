@@ -23,6 +23,7 @@ def _relation(name: str, op: str, fold: Callable[..., bool], below: bool, same: 
         tuple(f"vecB(vec{k}, vec{k})" for k in kinds),
         f"Componentwise x {op} y.",
         fold=fold,
+        not_constant=("hlsl",) if op not in ("==", "!=") else (),
         range=within(0.0, 1.0),
         texts={"hlsl": f"op:{op}", "wgsl": f"op:{op}"},
         vectors=vectors,

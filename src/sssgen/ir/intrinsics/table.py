@@ -138,6 +138,8 @@ class Builtin(NamedTuple):
     """Languages in which a scalar among vectors must be widened to a vector first."""
     explicit_type: tuple[str, ...] = ()
     """Languages in which a call of literals alone is constant only if one of them has an explicit type."""
+    not_constant: tuple[str, ...] = ()
+    """Languages of which some compiler does not compute it in a constant at file scope."""
     float32_bits: bool = False
     """It converts from or to the bits of a number, which WGSL has for float32 only."""
     # What it costs

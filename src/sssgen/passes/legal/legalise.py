@@ -18,6 +18,7 @@ from sssgen.ir.walk import calls_of, subexpressions
 from sssgen.passes import uniform_blocks as blocks
 from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.constant_expressions import literal
+from sssgen.passes.legal.constant_calls import ConstantCalls, as_literals
 from sssgen.passes.legal.integer_operators import counts_up, with_result
 from sssgen.passes.legal.legal_operators import is_integer_division, legal_operator, widened
 from sssgen.passes.legal.matrix_columns import by_whole_columns, matrix_from, needs_columns
@@ -35,6 +36,9 @@ Polyfill = Callable[[str, Sequence[Type]], ir.Module]
 
 class _OutOfOrder(Exception):
     """A value would be computed before a call that precedes it in the source."""
+
+
+_NOT_CONSTANT = "this cannot be expressed in a constant for this target"
 
 
 def legalise(module: ir.Module, dialect: str, capabilities: Capabilities, polyfill: Polyfill) -> ir.Module:
@@ -67,6 +71,8 @@ class _Legaliser(Transformer):
         self.outs = outs_of(module.functions)
         self.writing = bool(self.shared or self.outs)
         """Whether any call can write anything."""
+        self.constant_calls: ConstantCalls | None = None
+        """Once it is needed."""
         self.integers = None if capabilities.wrapping_constants else ConstantIntegers()
         self.ordered: set[int] = set()
         """The ids of the statements of which no part may be computed before them."""
@@ -87,15 +93,27 @@ class _Legaliser(Transformer):
         return self.module._replace(constants=constants, functions=tuple(functions), variables=variables)
 
     def constant(self, constant: ir.Constant) -> ir.Constant:
-        value = self.initial(constant.value)
+        value = self.known_initially(constant.value)
         numbers = self.integers.value(value) if self.integers is not None else None
         if self.integers is not None and numbers is not None:
             self.integers.constants[constant.name] = numbers
         return constant if value is constant.value else constant._replace(value=value)
 
     def variable(self, variable: ir.Variable) -> ir.Variable:
-        value = self.initial(variable.value) if variable.value is not None else None
+        value = self.known_initially(variable.value) if variable.value is not None else None
         return variable if value is variable.value else variable._replace(value=value)
+
+    def known_initially(self, value: ir.Expr) -> ir.Expr:
+        """The value of a declaration at file scope; its numbers where the target cannot compute it there."""
+        try:
+            return self.initial(value)
+        except Unsupported:
+            if self.constant_calls is None:
+                self.constant_calls = ConstantCalls(self.module, self.polyfill)
+            numbers = self.constant_calls.value(value)
+            if numbers is None:
+                raise
+            return self.initial(as_literals(value.type, numbers, value.span))
 
     def function(self, function: ir.Function) -> ir.Function:
         if isinstance(function.result, Array) and not self.capabilities.array_constructors:
@@ -260,7 +278,7 @@ class _Legaliser(Transformer):
     def keep(self, value: ir.Expr, name: str) -> ir.Expr:
         """Computes a value before the statement, into a variable."""
         if self.current is None:
-            raise Unsupported("this cannot be expressed in a constant for this target", value.span)
+            raise Unsupported(_NOT_CONSTANT, value.span)
         name = self.new_name(name)
         self.out.append(ir.Declare(name, value.type, value, value.span))
         return ir.Local(value.type, name, value.span)
@@ -354,6 +372,8 @@ class _Legaliser(Transformer):
         types = [arg.type for arg in call.args]
         text = self.text(call.name, tuple(types))
         row = BUILTINS[call.name]
+        if self.current is None and self.language in row.not_constant:
+            raise Unsupported(_NOT_CONSTANT, call.span)
         if text.startswith("op:"):
             if len(call.args) == 1:
                 return ir.Unary(call.type, text[3:], call.args[0], call.span)
@@ -387,6 +407,8 @@ class _Legaliser(Transformer):
         placed = inlined(module, call.args, call.span)
         if placed is not None:
             return self.expression(placed)
+        if self.current is None:
+            raise Unsupported(_NOT_CONSTANT, call.span)
         for helper in module.functions:
             if helper.key not in self.helpers:
                 self.functions[helper.key] = helper

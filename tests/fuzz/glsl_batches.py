@@ -1,0 +1,211 @@
+"""Runs random programs on the targets, many in one text, and compares the results with the interpreter's."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections import Counter, defaultdict
+from collections.abc import Callable, Sequence
+from functools import cache
+from random import Random
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from glsl_interpreter import Interpreter
+from glsl_programs import INPUTS
+from glsl_tree import Program, source
+from glsl_values import Undefined, kind, matrix_size, vector_size
+from sssgen.harness.backends import Backend, Call, Text
+from sssgen.harness.backends.isolated import isolated
+from sssgen.ir.nodes import Module
+from sssgen.ir.types import BY_NAME
+from sssgen.lang.plain_glsl import load_glsl_text
+from sssgen.passes.reachable import only
+from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
+from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
+from sssgen.pipeline.compiler import transpile
+from sssgen.support.diagnostics import SssgenError
+
+LANES = 16
+SECONDS = 120.0
+TOLERANCE = 1e-3
+"""For results that may be rounded, relative to the larger of their size and 1."""
+TARGETS = ("numpy", "gl", "gl-es", "webgpu", "hlsl")
+"""The back ends of the five targets."""
+EXTREMES = {
+    "int": (0, 1, -1, 2, 3, 7, -8, 31, 32, 100, 255, -256, 65535, 65536, 1 << 24, (1 << 24) + 1, -(1 << 30), 1 << 30,
+            0x55555555, 2147483646, 2147483647, -2147483647, -2147483648),
+    "uint": (0, 1, 2, 3, 7, 8, 31, 32, 100, 255, 65535, 65536, 1 << 30, 0x7FFFFFFF, 0x80000000, 0x80000001, 0xAAAAAAAA,
+             0xFFFFFFFE, 0xFFFFFFFF),
+}  # fmt: skip
+
+Value = Any
+
+
+class Failure(NamedTuple):
+    """What is wrong with one program."""
+
+    target: str
+    kind: str
+    """`wrong`, `invalid` (a compiler refuses the text), `refused` (the transpiler does), `crash`."""
+    message: str
+
+
+def drawn(type_: str, random: Random) -> Value:
+    """A random value of a scalar, vector or matrix type."""
+    if size := matrix_size(type_):
+        return tuple(tuple(random.randrange(-4, 5) / 2.0 for _ in range(size)) for _ in range(size))
+    if size := vector_size(type_):
+        return tuple(drawn(kind(type_), random) for _ in range(size))
+    if type_ == "bool":
+        return random.random() < 0.5
+    if type_ == "float":
+        return random.choice((random.randrange(-64, 65) / 8.0, float(random.randrange(-9, 10))))
+    if random.random() < 0.5:
+        return random.choice(EXTREMES[type_])
+    return random.getrandbits(32) - (0x80000000 if type_ == "int" else 0)
+
+
+@cache
+def arguments() -> list[list[Value]]:
+    """The arguments of every entry: a list of lanes for each parameter."""
+    random = Random(7)
+    return [[drawn(type_, random) for _ in range(LANES)] for type_ in INPUTS]
+
+
+def lanes_last(type_: str, lanes: Sequence[Value]) -> np.ndarray[Any, Any]:
+    """Values of lanes in the layout of the back ends."""
+    dtypes = {"int": np.int32, "uint": np.uint32, "bool": np.bool_, "float": np.float64}
+    return np.moveaxis(np.array(lanes, dtypes[kind(type_)]), 0, -1)
+
+
+class Case:
+    """A program with its expected results."""
+
+    def __init__(self, program: Program) -> None:
+        self.program = program
+        self.text = source(program)
+        random = Random(11)
+        self.uniforms = {
+            variable.name: [drawn(variable.type, random) for _ in range(LANES)]
+            for variable in program.variables
+            if variable.qualifier == "uniform"
+        }
+        self.valid = np.zeros(LANES, np.bool_)
+        self.expected = np.zeros((LANES, 4), np.float64)
+        self.reasons: Counter[str] = Counter()
+        interpreter = Interpreter(program)
+        for lane in range(LANES):
+            values = {name: lanes[lane] for name, lanes in self.uniforms.items()}
+            try:
+                self.expected[lane] = interpreter.run([one[lane] for one in arguments()], values)
+                self.valid[lane] = True
+            except Undefined as reason:
+                self.reasons[str(reason)] += 1
+
+    @property
+    def is_useful(self) -> bool:
+        """Whether most lanes are defined."""
+        return int(self.valid.sum()) >= LANES // 2
+
+    def difference(self, result: np.ndarray[Any, Any]) -> str:
+        """Where a result is not the expected one; '' where it is."""
+        result = np.moveaxis(result, -1, 0).astype(np.float64)
+        if result.shape != self.expected.shape:
+            return f"a result of the shape {result.shape}"
+        limit = TOLERANCE * np.maximum(1.0, np.abs(self.expected)) if self.program.smooth else 0.0
+        wrong = ~(np.abs(result - self.expected) <= limit) & self.valid[:, None]
+        if not wrong.any():
+            return ""
+        lane = int(np.argmax(wrong.any(axis=1)))
+        values = [one[lane] for one in arguments()]
+        return f"lane {lane} {values}: {result[lane].tolist()}, expected {self.expected[lane].tolist()}"
+
+
+class Runner:
+    """The back ends, each in its own process."""
+
+    def __init__(self, targets: Sequence[str] = TARGETS) -> None:
+        self.backends: dict[str, Backend] = {}
+        self.targets = targets
+        self.seconds: defaultdict[str, float] = defaultdict(float)
+
+    def backend(self, name: str) -> Backend:
+        if name not in self.backends:
+            self.backends[name] = isolated(name, SECONDS)
+        return self.backends[name]
+
+    def close(self) -> None:
+        for backend in self.backends.values():
+            backend.close()  # type: ignore[attr-defined]
+
+    def timed(self, stage: str, function: Callable[..., Any], *args: Any) -> Any:
+        start = time.perf_counter()
+        try:
+            return function(*args)
+        finally:
+            self.seconds[stage] += time.perf_counter() - start
+
+    def failures(self, cases: Sequence[Case]) -> list[tuple[Case, Failure]]:
+        """What is wrong with programs that can stand in one text."""
+        found: list[tuple[Case, Failure]] = []
+        try:
+            module = self.timed("parse", load_glsl_text, "".join(case.text for case in cases), "fuzzed.glsl").module
+        except Exception as error:
+            if len(cases) == 1:
+                return [(cases[0], self.failure("front end", error))]
+            half = (len(cases) + 1) // 2
+            return self.failures(cases[:half]) + self.failures(cases[half:])
+        for target in self.targets:
+            found += self.of_target(target, module, cases)
+        return found
+
+    def failure(self, target: str, error: Exception) -> Failure:
+        if isinstance(error, SssgenError):
+            message = "; ".join(one.message for one in error.diagnostics[:2])
+            driver = re.match(r"(?:gl|gl-es|webgpu|hlsl|browser)\S*: ", message)
+            return Failure(target, "invalid" if driver else "refused", message)
+        return Failure(target, "crash", f"{type(error).__name__}: {error}")
+
+    def of_target(self, target: str, module: Module, cases: Sequence[Case]) -> list[tuple[Case, Failure]]:
+        try:
+            results = self.results(target, module, cases)
+        except Exception as error:
+            if len(cases) == 1:
+                return [(cases[0], self.failure(target, error))]
+            half = (len(cases) + 1) // 2
+            return [one for part in (cases[:half], cases[half:]) for one in self.of_target(target, module, part)]
+        found = []
+        for case, result in zip(cases, results, strict=True):
+            if difference := case.difference(result):
+                found.append((case, Failure(target, "wrong", difference)))
+        return found
+
+    def results(self, target: str, module: Module, cases: Sequence[Case]) -> list[np.ndarray[Any, Any]]:
+        backend = self.backend(target)
+        if target == "numpy" and any(case.program.has_state for case in cases) and len(cases) > 1:
+            return [self.results(target, module, [case])[0] for case in cases]
+        keys = {function.name: function.key for function in module.functions}
+        called = [keys[case.program.entry] for case in cases]
+        module = only(module, called)
+        if target == "numpy" and module.variables:
+            module = variables_to_parameters(module, called[0]).module
+        closed = {function.name: function.params for function in uniforms_to_parameters(module).functions}
+        compiled = self.timed(
+            f"transpile {target}", lambda: transpile(module, backend.target.name, "fuzzed", keep=True, called=called)
+        )
+        text = next(text for name, text in compiled.files.items() if not name.endswith(".json"))
+        renames = compiled.reflection["renames"]
+        calls = [self.call(case, closed[case.program.entry], renames) for case in cases]
+        results: list[np.ndarray[Any, Any]] = self.timed(f"run {target}", backend.run, Text(text), calls)
+        return results
+
+    def call(self, case: Case, params: Sequence[Any], renames: dict[str, str]) -> Call:
+        args = [lanes_last(type_, lanes) for type_, lanes in zip(INPUTS, arguments(), strict=True)]
+        for param in params[len(INPUTS) :]:
+            type_ = next(one.type for one in case.program.variables if one.name == param.name)
+            args.append(lanes_last(type_, case.uniforms[param.name]))
+        entry = case.program.entry
+        result = BY_NAME["vec4" if case.program.smooth else "ivec4"]
+        return Call(renames.get(entry, entry), tuple(param.type for param in params), result, tuple(args))
