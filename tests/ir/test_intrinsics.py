@@ -118,7 +118,7 @@ def test_missing_fields_of_a_row_are_named() -> None:
 @pytest.mark.parametrize("row", BUILTINS.values(), ids=lambda row: row.name)
 def test_functions_of_a_row_accept_the_arguments_of_every_overload(row: Builtin) -> None:
     for params in signatures.overloads(row.name):
-        for taken, also in ((row.range, 1), (row.inside, 1), (row.size, 1), (row.fold, 0)):
+        for taken, also in ((row.range, 1), (row.inside, 1), (row.size, 1), (row.fold, 0), (row.fold_uint, 0)):
             if taken not in (None, min, max, math.log):  # these have no signature
                 inspect.signature(taken).bind(*range(also + len(params)))
         for guard in row.guards:

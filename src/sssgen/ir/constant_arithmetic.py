@@ -86,17 +86,17 @@ def unary(op: str, value: Numbers, kind: str) -> Numbers | None:
 def builtin(name: str, args: Sequence[Numbers], types: Sequence[Type], result: Type) -> Numbers | None:
     """A builtin of constant arguments; None where it is not folded, or the arguments are outside of its domain."""
     try:
-        values = _values(name, args)
+        values = _values(name, args, kind_of(result))
     except (ArithmeticError, ValueError):
         return None
     result_values = _rounded(values, kind_of(result)) if values is not None else None
     return result_values if result_values is not None and len(result_values) == components(result) else None
 
 
-def outside(name: str, args: Sequence[Numbers]) -> bool:
+def outside(name: str, args: Sequence[Numbers], result: Type) -> bool:
     """Whether constant arguments lie outside a builtin's domain, or its result outside the floats."""
     try:
-        return any(not abs(value) <= _LARGEST for value in _values(name, args) or ())
+        return any(not abs(value) <= _LARGEST for value in _values(name, args, kind_of(result)) or ())
     except (ArithmeticError, ValueError):
         return True
 
@@ -114,10 +114,9 @@ def reason(name: str, args: Sequence[Numbers], kind: str) -> str:
         for guard in reversed(row.guards):
             if (guard.replaces != "y" or len(args) > 1) and guard.safe and not guard.safe(FLOAT32, *ranges):
                 return f"{name}({text}) has no value: {guard.problem}"
-    return f"the value of {name}({shown[0] if len(shown) == 1 else '…'}) is too large for {_ARTICLES[kind]}"
-
-
-_ARTICLES = {"float": "a float", "int": "an int", "uint": "a uint"}
+    if kind != "float":  # integers wrap
+        return f"{name}({shown[0] if len(shown) == 1 else '…'}) has no value: it needs {row.domain}"
+    return f"the value of {name}({shown[0] if len(shown) == 1 else '…'}) is too large for a float"
 
 
 def _spelled(value: Number) -> str:
@@ -130,15 +129,16 @@ def _whole(value: Numbers) -> str:
     return text if len(value) == 1 else f"({text})"
 
 
-def _values(name: str, args: Sequence[Numbers]) -> Sequence[Number] | None:
-    """The unrounded components of a builtin's result; None where the table has no `fold` for it."""
+def _values(name: str, args: Sequence[Numbers], kind: str) -> Sequence[Number] | None:
+    """The unrounded components of a builtin's result of a kind; None where the table has no `fold` for it."""
     row = BUILTINS[name]
-    if row.fold is None:
+    fold = row.fold_uint if kind == "uint" and row.fold_uint is not None else row.fold
+    if fold is None:
         return None
     if not row.componentwise:
-        values: Sequence[Number] = row.fold(*args)
+        values: Sequence[Number] = fold(*args)
         return values
-    return [row.fold(*parts) for parts in _by_component(args)]
+    return [fold(*parts) for parts in _by_component(args)]
 
 
 def _by_component(args: Sequence[Numbers]) -> Iterator[tuple[Number, ...]]:

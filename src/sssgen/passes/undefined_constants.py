@@ -105,7 +105,7 @@ class _Checker:
         return None
 
     def builtin(self, expr: Intrinsic, args: list[Value]) -> Value | None:
-        if args and arithmetic.outside(expr.name, args):
+        if args and arithmetic.outside(expr.name, args, expr.type):
             return self.wrong(arithmetic.reason(expr.name, args, kind_of(expr.type)), expr)
         return arithmetic.builtin(expr.name, args, [arg.type for arg in expr.args], expr.type)
 

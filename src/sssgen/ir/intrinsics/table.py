@@ -115,6 +115,8 @@ class Builtin(NamedTuple):
     fold: Callable[..., Any] | None = None
     """The result for constants, in float64: a number (not componentwise: a sequence of them) from numbers (sequences).
     It may raise ArithmeticError or ValueError outside of the domain. None: constants are not folded."""
+    fold_uint: Callable[..., Any] | None = None
+    """The same where the result is a uint, if that differs."""
     vectors: tuple[tuple[tuple[object, ...], object], ...] = ()
     """At least three test vectors: (arguments, result); vectors are tuples, matrices tuples of columns."""
     # Value ranges and guards

@@ -21,6 +21,7 @@ from sssgen.targets.printers.hlsl_entry import print_entry
 from sssgen.targets.printers.printer import POSTFIX, PRIMARY, UNARY, Line, Printer, documented
 from sssgen.targets.uniform_layout import Member
 
+_SHIFTS = ("<<", ">>")
 LONGEST_UNROLLED = 8
 """Loops with more rounds than this are not unrolled."""
 
@@ -45,7 +46,7 @@ class HlslPrinter(Printer):
         linear = isinstance(left, Matrix | Vector) and isinstance(right, Matrix | Vector)
         if binary.op == "*" and linear and (isinstance(left, Matrix) or isinstance(right, Matrix)):
             return f"mul({self.expr(binary.right)}, {self.expr(binary.left)})", PRIMARY
-        if binary.op in ("<<", ">>") and isinstance(binary.left, ir.Literal) and kind_of(left) != kind_of(right):
+        if binary.op in _SHIFTS and kind_of(left) != kind_of(right) and _is_untyped(binary.left):
             # a bare literal would take the count's type, and shift in zeros in place of the sign
             binary = binary._replace(left=ir.Construct(left, (binary.left,), binary.left.span))
         return super().binary(binary)
@@ -155,5 +156,6 @@ def _is_untyped(expr: ir.Expr) -> bool:
     if isinstance(expr, ir.Unary):
         return _is_untyped(expr.operand)
     if isinstance(expr, ir.Binary):
-        return expr.type in (FLOAT, INT) and _is_untyped(expr.left) and _is_untyped(expr.right)
+        alone = expr.op in _SHIFTS or _is_untyped(expr.right)
+        return alone and expr.type in (FLOAT, INT) and _is_untyped(expr.left)
     return isinstance(expr, ir.Select) and _is_untyped(expr.yes) and _is_untyped(expr.no)
