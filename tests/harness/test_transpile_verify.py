@@ -350,3 +350,15 @@ def test_includes_are_written_out_once(tmp_path: Path) -> None:
     assert expanded(text, path, [tmp_path / "lib"]) == '\nfloat b;\n\nfloat a;\n\n// #include "none"\n\nfloat c;\n'
     with pytest.raises(SssgenError, match=r"cannot find 'lost\.glsl'"):
         expanded('#include "lost.glsl"', path)
+
+
+def test_probes_do_not_capture_names_of_the_text() -> None:
+    text = (
+        "float sssgen_result = 2.0;\nfloat sssgen_0 = 3.0;\nconst float sssgen_of_x = 5.0;\n"
+        "struct sssgen_1 { float a; };\nfloat sssgen_probe_0(float x) { return x; }\n"
+        "float f(float x) { return x * sssgen_result + sssgen_0 + sssgen_of_x; }\n"
+        "void g(float result, float lane, out float of_x) { of_x = result + sssgen_of_x + lane; }\n"
+    )
+    results = rows(text)
+    assert list(results) == ["sssgen_probe_0(float)", "f(float)", "g(float,float,float)"]
+    assert all(row.ok and row.comparisons for row in results.values())

@@ -37,6 +37,8 @@ class Leaf(NamedTuple):
     path: str
     """The part that it sets, such as `local_light.color` or `weights[2]`; '' for none."""
     type: Type
+    shown: str
+    """The same for the author: without the prefix."""
 
 
 class Probe(NamedTuple):
@@ -58,8 +60,11 @@ class Probed(NamedTuple):
     reason: str = ""
 
 
-def probed(module: Module, functions: list[Function]) -> list[Probed]:
-    """The probes of each function."""
+def probed(module: Module, functions: list[Function], text: str) -> list[Probed]:
+    """The probes of each function; every name that they declare begins with letters that are nowhere in the text."""
+    prefix, count = "sssgen_", 2
+    while prefix in text:
+        prefix, count = f"sssgen{count}_", count + 1
     effect_of = effects(module)
     variables = {variable.name: variable.type for variable in module.variables}
     probes = []
@@ -67,7 +72,7 @@ def probed(module: Module, functions: list[Function]) -> list[Probed]:
         effect = effect_of.get(function.key, NONE)
         read = {name: variables[name] for name in sorted(effect.reads)}
         written = {name: variables[name] for name in sorted(effect.writes)}
-        probes.append(_probed(function, f"sssgen_probe_{number}", read, written))
+        probes.append(_probed(function, prefix, f"{prefix}probe_{number}", read, written))
     return probes
 
 
@@ -92,22 +97,32 @@ def declared(type_: Type, name: str) -> str:
     return f"{spell(type_)} {name}{lengths}"
 
 
-def _probed(function: Function, name: str, read: Mapping[str, Type], written: Mapping[str, Type]) -> Probed:
-    local = {param.name: f"local_{param.name}" for param in function.params}
+def _probed(
+    function: Function, prefix: str, name: str, read: Mapping[str, Type], written: Mapping[str, Type]
+) -> Probed:
+    local = {param.name: f"{prefix}of_{param.name}" for param in function.params}
+    result = f"{prefix}result"
     arguments = [(local[param.name], param.type) for param in function.params if param.direction != "out"]
     inputs = [*read.items(), *arguments]
     outs = [param for param in function.params if param.direction != "in"]
-    outputs = [] if function.result == VOID else [("returned", "result", function.result)]
+    outputs = [] if function.result == VOID else [(result, "result", function.result)]
     outputs += [(local[param.name], param.name, param.type) for param in outs]
     outputs += [(variable, variable, type_) for variable, type_ in written.items()]
     if reason := _unfit([type_ for _, type_ in inputs], [type_ for *_, type_ in outputs]):
         return Probed(function, reason=reason)
     parts = [leaf for path, type_ in inputs for leaf in leaves(type_, path)]
-    named = tuple([Leaf(f"given_{index}", path, type_) for index, (path, type_) in enumerate(parts)])
+    named = tuple(
+        [
+            Leaf(f"{prefix}{index}", path, type_, path.removeprefix(f"{prefix}of_"))
+            for index, (path, type_) in enumerate(parts)
+        ]
+    )
     if not any(not isinstance(leaf.type, Sampler) for leaf in named):
-        named += (Leaf("given_lane", "", FLOAT),)  # one number at least is needed: its shape gives the number of lanes
+        named += (
+            Leaf(f"{prefix}lane", "", FLOAT, ""),
+        )  # one number at least is needed: its shape gives the number of lanes
     head = ", ".join([f"{spell(leaf.type)} {leaf.name}" for leaf in named])
-    body = _body(function, local, named)
+    body = _body(function, local, named, result)
     probes: list[Probe] = []
     for value, shown, output_type in outputs:
         for suffix, type_ in leaves(output_type):
@@ -117,14 +132,14 @@ def _probed(function: Function, name: str, read: Mapping[str, Type], written: Ma
     return Probed(function, tuple(probes))
 
 
-def _body(function: Function, local: Mapping[str, str], named: tuple[Leaf, ...]) -> list[str]:
-    """The statements before `return`: they put the function's result into `returned`."""
+def _body(function: Function, local: Mapping[str, str], named: tuple[Leaf, ...], result: str) -> list[str]:
+    """The statements before `return`: they put the function's result into the variable `result`."""
     textures = {leaf.path: leaf.name for leaf in named if isinstance(leaf.type, Sampler)}
     values = [param for param in function.params if not isinstance(param.type, Sampler)]
     lines = [f"    {declared(param.type, local[param.name])};" for param in values]
     lines += [f"    {leaf.path} = {leaf.name};" for leaf in named if leaf.path and leaf.path not in textures]
     args = ", ".join([textures.get(path, path) for path in local.values()])
-    target = "" if function.result == VOID else f"{declared(function.result, 'returned')} = "
+    target = "" if function.result == VOID else f"{declared(function.result, result)} = "
     return [*lines, f"    {target}{function.name}({args});"]
 
 

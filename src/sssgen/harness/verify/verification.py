@@ -85,7 +85,7 @@ def verify(
     read = read or partial(load, version=written.version)
     module = read(written.text, shown)
     functions = [part for part in module.functions if part.body is not None and part.span.file == shown]
-    cases = probed(module, functions)
+    cases = probed(module, functions, written.text)
     probes = "\n".join(probe.text for case in cases for probe in case.probes)
     with_probes = read(written.text + probes, shown)
     with _machines() as (machines, missing):
@@ -174,9 +174,9 @@ class _Case:
     def drawn_textures(self) -> dict[str, Texture]:
         """A picture for each texture."""
         leaves = [leaf for probe in self.case.probes[:1] for leaf in probe.leaves]
-        leaves += [Leaf(name, name, param.type) for name, param in self.uniforms().items()]
+        leaves += [Leaf(name, name, param.type, name) for name, param in self.uniforms().items()]
         return {
-            leaf.name: picture(leaf.path, leaf.type, self.seed)
+            leaf.name: picture(leaf.shown, leaf.type, self.seed)
             for leaf in leaves
             if isinstance(leaf.type, Sampler) and leaf.type in TEXTURES
         }
@@ -185,9 +185,7 @@ class _Case:
         """The inputs of all rounds."""
         bounding = loop_inputs(self.program.module, self.key)
         leaves = [leaf for leaf in self.case.probes[0].leaves if not isinstance(leaf.type, Sampler)]
-        sources = [
-            Source(leaf.name, leaf.path.removeprefix("local_"), leaf.type, leaf.name in bounding) for leaf in leaves
-        ]
+        sources = [Source(leaf.name, leaf.shown, leaf.type, leaf.name in bounding) for leaf in leaves]
         uniforms = [
             Source(name, name, param.type, name in bounding, True)
             for name, param in self.uniforms().items()
@@ -283,7 +281,7 @@ class _Case:
         for inputs in self.inputs:
             count = next(iter(inputs.values.values())).shape[-1]
             if lane < count:
-                names = {leaf.name: leaf.path.removeprefix("local_") for leaf in self.case.probes[0].leaves}
+                names = {leaf.name: leaf.shown for leaf in self.case.probes[0].leaves}
                 shown = [
                     f"{names.get(name, name)} = {_shown(value[..., lane])}"
                     for name, value in inputs.values.items()
