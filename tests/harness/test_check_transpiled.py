@@ -76,3 +76,45 @@ def test_a_wrapped_pointer_is_called(kind: str) -> None:
     for broken in (f"ptr<function,\n    {kind}>", f"ptr<function, {kind}>".replace(", ", ",\n        ")):
         (function,) = functions(f"fn f(a: {broken}, b:\n    f32) {{\n}}\n", wgsl=True)
         assert [parameter[0] for parameter in function.parameters] == [f"ptr<function, {kind}>", "f32"]
+
+
+@pytest.mark.parametrize("target", ["wgsl", "hlsl", "glsl-330"])
+def test_two_stages_are_compared(target: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """The fragment shader reads the second output of three."""
+    vertex = "#version 330\nout vec3 a, b, c; void main() { a = b = c = vec3(1.0); gl_Position = vec4(1.0); }"
+    Path("a.vert").write_text(vertex, "utf-8")
+    Path("b.frag").write_text("#version 330\nin vec3 b; out vec4 x; void main() { x = vec4(b, 1.0); }", "utf-8")
+    Path("c.frag").write_text("#version 330\nin vec2 b; out vec4 x; void main() { x = vec4(b, b); }", "utf-8")
+    Path("d.frag").write_text("#version 330\nin vec3 d; out vec4 x; void main() { x = vec4(d, 1.0); }", "utf-8")
+
+    def messages(name: str, *options: str) -> list[str]:
+        assert cli.main(["transpile", "a.vert", "--target", target, "-o", "v.out"]) == 0
+        assert cli.main(["transpile", name, "--target", target, "-o", "f.out", *options]) == 0
+        capsys.readouterr()
+        cli.main(["check", "v.out", "f.out", "--target", target, "--json"])
+        rows = json.loads(capsys.readouterr().out)["results"]
+        (row,) = [row for row in rows if row["compiler"] == "interface"]
+        assert row["file"] == "f.out"
+        return [message["text"] for message in row["messages"]]
+
+    alone = {
+        "wgsl": ["'b' has location 0 here, but 1 in the vertex shader: transpile this file --with the other"],
+        "hlsl": ["the inputs are fewer than the outputs of v.out: transpile this file --with the other"],
+        "glsl-330": [],
+    }
+    assert messages("b.frag") == alone[target]
+    assert messages("b.frag", "--with", "a.vert") == []
+    assert messages("c.frag") == ["'b' is vec2 here, but vec3 in the vertex shader"]
+    assert messages("d.frag") == ["the vertex shader has no output 'd'"]
+
+
+def test_stages_are_paired_by_their_names(capsys: pytest.CaptureFixture[str]) -> None:
+    for name in ("one", "two"):
+        transpiled(f"{name}.vert", VERTEX, "wgsl", f"{name}.vert.wgsl")
+        transpiled(f"{name}.frag", FRAGMENT, "wgsl", f"{name}.frag.wgsl")
+    transpiled("three.frag", FRAGMENT, "wgsl", "three.wgsl")
+    names = [f"{name}.{stage}.wgsl" for name in ("one", "two") for stage in ("frag", "vert")]
+    capsys.readouterr()
+    assert cli.main(["check", *names, "three.wgsl", "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)["results"]
+    assert [row["file"] for row in rows if row["compiler"] == "interface"] == ["one.frag.wgsl", "two.frag.wgsl"]

@@ -32,7 +32,7 @@ def test_the_stages_meet() -> None:
         source = Source(emitted_shader(FRAGMENT, target), target, "fragment", companion=emitted_shader(VERTEX, target))
         assert [str(one) for messages in check(source).values() for one in errors(messages)] == []
     wgsl = emitted_shader(VERTEX, "wgsl"), emitted_shader(FRAGMENT, "wgsl")
-    for place in ("@location(0) uv", "@location(1) @interpolate(flat) kind"):
+    for place in ("@location(0) @interpolate(flat) kind", "@location(1) uv"):
         assert all(place in text for text in wgsl)
 
 
@@ -45,7 +45,8 @@ def test_coordinates_follow_the_framebuffers_direction() -> None:
     assert "dFdy(uv.y)" in emitted_shader(FRAGMENT, "glsl-330")
     assert "-dFdy" not in emitted_shader(FRAGMENT, "glsl-330")
     without = FRAGMENT.replace("iResolution", "size")
-    (warning,) = transpile(read_module(without), "wgsl", "x", keep=True).warnings
+    numbered, warning = transpile(read_module(without), "wgsl", "x", keep=True).warnings
+    assert "are numbered by name" in numbered.message
     assert "counts from the top" in warning.message
     assert transpile(read_module(without), "glsl-330", "x", keep=True).warnings == []
 
@@ -65,7 +66,8 @@ def test_unsupported_stage_inputs_are_refused() -> None:
     point = 'variable in vec2 gl_PointCoord [builtin("gl_PointCoord")]\n' + OLD
     with pytest.raises(SssgenError, match="is given no gl_PointCoord"):
         transpile(read_module(point), "wgsl", "x", keep=True)
-    loose = "uniform float u = (1.0)\nvariable private float g = $u\nfunction float f() {\n    return $g;\n}\n"
+    function = "function float f() {\n    set $g *= 2.0;\n    return $g;\n}\n"
+    loose = f"uniform float u = (1.0)\nvariable private float g = $u\n{function}"
     with pytest.raises(SssgenError, match="the value of 'g' is not constant"):
         transpile(read_module(loose), "wgsl", "x", keep=True)
 
@@ -113,7 +115,7 @@ function void main() {
 }
 """
     compiled = transpile(read_module(text), "wgsl", "x", keep=True)
-    assert compiled.warnings == []
+    assert [warning.message[:14] for warning in compiled.warnings] == ["the input 'uv'"]
     shown = next(iter(compiled.files.values()))
     assert compile_errors(shown, "wgsl") == [], shown
 

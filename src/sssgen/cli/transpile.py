@@ -35,6 +35,7 @@ def add_options(parser: ArgumentParser) -> None:
         "  sssgen transpile noise.glsl --target wgsl -o noise.wgsl\n"
         "  sssgen transpile scene.glsl --entry shadertoy --target hlsl\n"
         "  sssgen transpile library/fbm.glsl -I library -D OCTAVES=5 --prune --target unity-urp\n"
+        "  sssgen transpile water.frag --with water.vert --target wgsl\n"
         "  sssgen transpile noise.glsl --verify\n"
         "  sssgen transpile noise.glsl --as technique --function snoise\n"
         "The accepted language: docs/transpile.md. Exit status 1: --verify found a difference."
@@ -52,6 +53,12 @@ def add_options(parser: ArgumentParser) -> None:
     )
     add("--define", "-D", metavar="NAME[=VALUE]", action="append", default=[], help="define a macro; repeatable")
     add("--entry", choices=("shadertoy",), default="", help="the file's entry point: mainImage instead of main")
+    add(
+        "--with",
+        dest="partner",
+        metavar="FILE",
+        help="the other stage: what the vertex shader passes to the fragment shader then agrees in both",
+    )
     add("--prune", action="store_true", help="omit functions that the file itself never calls")
     add_guards(parser, default="none")
     add("-o", "--output", metavar="FILE", help="the file to write; its reflection is written next to it")
@@ -82,16 +89,20 @@ def run(arguments: Namespace) -> int:
     path = Path(arguments.FILE)
     if arguments.output == "-":
         arguments.output = None  # the text is printed
-    module, loaded = None, None
+    module, loaded, partner = None, None, None
     try:
         if path.suffix == ".sss":
             module = load_file(path, path.as_posix(), (TECHNIQUES,))
         else:
             loaded = load_glsl(path, path.as_posix(), arguments.include, _macros(arguments.define), arguments.entry)
             module = loaded.module
+            if arguments.partner is not None:
+                partner = _other_stage(arguments)
     except SssgenError as error:
         wrong += error.diagnostics
-    for read in (path, *map(Path, loaded.paths if loaded is not None else ())):
+    inputs = [path, *map(Path, loaded.paths if loaded is not None else ())]
+    inputs += [Path(arguments.partner)] if arguments.partner is not None else []
+    for read in inputs:
         if arguments.output is not None and os.path.realpath(arguments.output) == os.path.realpath(read):
             message = "the output file is also an input file"
             wrong += failure(message, "give -o another name", read.as_posix()).diagnostics
@@ -102,7 +113,13 @@ def run(arguments: Namespace) -> int:
         return _verify(arguments, path)
     if arguments.as_ == "technique":
         return _technique(arguments, module, path)
-    return _translate(arguments, module, loaded, names[0], path)
+    return _translate(arguments, module, loaded, names[0], path, partner)
+
+
+def _other_stage(arguments: Namespace) -> Module:
+    """The module of `--with FILE`. Raises SssgenError."""
+    path = Path(arguments.partner)
+    return load_glsl(path, path.as_posix(), arguments.include, _macros(arguments.define), arguments.entry).module
 
 
 def _targets(arguments: Namespace, wrong: list[Diagnostic]) -> list[str]:
@@ -141,7 +158,9 @@ def _macros(definitions: list[str]) -> dict[str, str]:
     return macros
 
 
-def _translate(arguments: Namespace, module: Module, loaded: Loaded | None, target: str, path: Path) -> int:
+def _translate(
+    arguments: Namespace, module: Module, loaded: Loaded | None, target: str, path: Path, partner: Module | None
+) -> int:
     called = None
     if arguments.prune:
         called = [function.key for function in module.functions if function.span.file == path.as_posix()]
@@ -149,6 +168,8 @@ def _translate(arguments: Namespace, module: Module, loaded: Loaded | None, targ
     options: dict[str, Any] = {"called": called} if called else {}
     if loaded is not None:  # the text of a technique is simplified, that of plain GLSL is kept
         options |= {"keep": True, "head": loaded.head}
+    if partner is not None:
+        options["partner"] = partner
     trace = Trace(f"{os.path.basename(arguments.output)}.trace") if arguments.trace else None
     try:
         compiled = transpile(module, target, _title(path), arguments.guards, trace=trace, **options)

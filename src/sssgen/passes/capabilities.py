@@ -44,6 +44,8 @@ class Capabilities(NamedTuple):
     """Modules have mutable variables; if not, these become parameters."""
     mutable_parameters: bool = False
     """A function may assign to its `in` parameters; if not, it copies them."""
+    named_varyings: bool = False
+    """What the vertex shader passes to the fragment shader is matched by names; if not, by locations."""
     noperspective: bool = False
     """Stage inputs can be interpolated without perspective."""
     operand_order: bool = False
@@ -56,6 +58,8 @@ class Capabilities(NamedTuple):
     """`?:` chooses between structs and between arrays, too."""
     struct_constructors: bool = False
     """A struct constructor is an expression."""
+    subset_varyings: bool = False
+    """A fragment shader may have fewer inputs than the vertex shader has outputs."""
     swizzle_store: bool = False
     """A swizzle of several components may be assigned: `a.xy = b`."""
     ternary: bool = False
@@ -68,6 +72,8 @@ class Capabilities(NamedTuple):
     """A uniform's declaration may give it a value."""
     variable_values: bool = False
     """A module variable may be initialised with an expression that is not constant."""
+    varying_locations: bool = False
+    """What the vertex shader passes to the fragment shader may have a location."""
     whole_equality: bool = False
     """`==` and `!=` of vectors, matrices, structs and arrays give one bool."""
     wrapping_constants: bool = False

@@ -163,8 +163,13 @@ class _Namer:
             else:
                 wanted["function", function.name] = function.name
         names: dict[tuple[str, str], str] = {}
+        # another stage must choose the same names for the interface
+        passed = [variable for variable in module.variables if variable.storage != "private" and not variable.builtin]
+        for name in sorted([variable.name for variable in passed], key=lambda name: (not self.legal(name), name)):
+            names["global", name] = self.choose(name, self.reserved_at_file_scope)
+            self.taken.add(names["global", name])
         for old, name in wanted.items():
-            if self.free(name, self.reserved_at_file_scope):
+            if old not in names and self.free(name, self.reserved_at_file_scope):
                 names[old] = name
                 self.taken.add(name)
         for old, name in wanted.items():

@@ -25,8 +25,11 @@ def only(module: Module, roots: Iterable[str]) -> Module:
     return module._replace(functions=tuple([one for key, one in functions.items() if key in reached]))
 
 
-def used(module: Module) -> Module:
-    """The module with only the declarations that its functions mention, directly or indirectly."""
+def used(module: Module, is_stage: bool) -> Module:
+    """The module with only the declarations that its functions mention, directly or indirectly.
+
+    A stage keeps its inputs and outputs: other stages depend on them.
+    """
     names: set[str] = set()
     pending = [expr for function in module.functions for expr in all_expressions(function.body or ())]
     values = {constant.name: constant.value for constant in module.constants}
@@ -47,7 +50,13 @@ def used(module: Module) -> Module:
         structs=tuple([struct for struct in module.structs if struct.type in structs]),
         constants=tuple([constant for constant in module.constants if constant.name in names]),
         uniforms=tuple([uniform for uniform in module.uniforms if uniform.name in names]),
-        variables=tuple([variable for variable in module.variables if variable.name in names]),
+        variables=tuple(
+            [
+                variable
+                for variable in module.variables
+                if variable.name in names or (is_stage and variable.storage != "private")
+            ]
+        ),
     )
 
 

@@ -112,7 +112,7 @@ def _copy(compiled: Compiled) -> Compiled:
 def transpile(
     module: Module, target: str, name: str, guards: str = "none", called: Sequence[str] | None = None,
     at: Callable[[Site], str] | None = None, chained: bool = False, keep: bool = False, head: Sequence[str] = (),
-    trace: Trace | None = None,
+    trace: Trace | None = None, partner: Module | None = None,
 ) -> Compiled:  # fmt: skip
     """The functions form of a module of plain functions (no chain), or a whole shader where it has a `void main()`.
 
@@ -121,7 +121,8 @@ def transpile(
 
     `called` are the keys of the functions that are called from outside, with any argument that their types allow; None
     means all. `chained` means that they are techniques, whose parameters have the meaning of their names. `at` is the
-    parameter of `passes.guards.guard`.
+    parameter of `passes.guards.guard`. `partner` is the other stage of a whole shader: the two then agree on what the
+    vertex shader passes to the fragment shader, also where the latter declares less.
     """
     from sssgen.pipeline.programs import make_library
 
@@ -129,7 +130,7 @@ def transpile(
     chosen = registry.load(target)
     about = About(name, name, head=tuple(head))
     with paused():
-        program = make_library(module, chosen, guards, called, at, chained, keep, trace)._replace(about=about)
+        program = make_library(module, chosen, guards, called, at, chained, keep, trace, partner)._replace(about=about)
         return _finish(program, chosen, program.stage.kind if program.stage else "functions", None)
 
 

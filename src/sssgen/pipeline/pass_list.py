@@ -44,6 +44,10 @@ _NO_MAIN = Condition(
     "there are module variables and no main()",
     lambda state: bool(state.module.variables) and entry_of(state.module) is None,
 )
+_PARTNER = Condition(
+    "it is a whole shader and the other stage is given",
+    lambda state: state.whole_shader and state.partner is not None,
+)
 _Y_DOWN = Condition("it is a whole shader and y counts down", lambda state: state.whole_shader and state.y_down)
 _NO_VERTEX_LEVELS = Condition(
     "it is a vertex shader and the target has no implicit levels there",
@@ -97,6 +101,7 @@ _SHADER_INPUT: tuple[Pass, ...] = (
     Pass("color_outputs", steps.shorten_color_outputs, "shorten gl_FragData to the elements in use", _SHADER),
     Pass("vertical_derivatives", steps.negate_vertical_derivatives, "negate dFdy, which keeps its sign", _Y_DOWN),
     Pass("vertex_levels", steps.read_level_zero, "read textures at level 0, as GLSL does there", _NO_VERTEX_LEVELS),
+    Pass("partner", steps.match_partner, "check that the other stage fits, and interpolate as it does", _PARTNER),
     Pass("differences", steps.note_differences, "report what the target's stage cannot have", _SHADER),
 )
 

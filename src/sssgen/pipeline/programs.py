@@ -17,7 +17,7 @@ from sssgen.passes.stage.stage_interface import stage_kind
 from sssgen.pipeline import pass_list
 from sssgen.pipeline.state import State
 from sssgen.pipeline.trace import Trace
-from sssgen.support.diagnostics import Diagnostic
+from sssgen.support.diagnostics import Diagnostic, failure
 from sssgen.targets.assemble import About, Program, print_parts
 from sssgen.targets.descriptor import Target
 
@@ -41,20 +41,31 @@ def make(
 def make_library(
     module: Module, target: Target, guards: str, called: Sequence[str] | None,
     at: Callable[[Site], str] | None = None, chained: bool = False, keep: bool = False, trace: Trace | None = None,
+    partner: Module | None = None,
 ) -> Program:  # fmt: skip
     """The program of a module of plain functions, or of a whole shader. Raises SssgenError.
 
     `called` are the keys of the functions that are called from outside; None means all of them. `at` and `chained` are
     those of `guard`. With `keep` the text stays as its author wrote it, except what the target cannot express: then
-    `called` only leaves out the functions that these do not call.
+    `called` only leaves out the functions that these do not call. `partner` is the other stage of a whole shader.
     """
     kind = stage_kind(module)
+    if partner is not None:
+        _check_partner(kind, stage_kind(partner))
     form = kind if kind in target.files else "functions"
-    state = State(module, form, guards, target, keep, called, at, chained)
+    state = State(module, form, guards, target, keep, called, at, chained, partner)
     if trace is not None:
         trace.start(module)
     pass_list.run(pass_list.KEPT if keep else pass_list.PLAIN, state, trace)
     return _finish(state, trace)
+
+
+def _check_partner(kind: str, other: str) -> None:
+    """Raises SssgenError where these are not two stages of one program."""
+    if {kind, other} != {"vertex", "fragment"}:
+        kinds = [f"a {one} shader" if one else "no whole shader" for one in (kind, other)]
+        hint = "give a vertex shader with a fragment shader, each with a main()"
+        raise failure(f"these are not two stages of one program: {kinds[0]} and {kinds[1]}", hint)
 
 
 def sites_of(material: Material, target: Target, form: str) -> list[Site]:

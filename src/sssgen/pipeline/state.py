@@ -37,6 +37,8 @@ class State:
     """What becomes of a single guard; see `at` of `passes.guards.guard`."""
     chained: bool = False
     """Whether the functions are techniques, whose parameters have the ranges of their names."""
+    partner: Module | None = None
+    """The other stage of a whole shader, where it is given."""
     material: Material | None = None
 
     roots: list[str] = field(default_factory=list)
@@ -59,6 +61,8 @@ class State:
     source_names: Mapping[str, str] = field(default_factory=dict)
     """A uniform's final name → its name before."""
     renames: Mapping[str, str] = field(default_factory=dict)
+    variable_names: Mapping[str, str] = field(default_factory=dict)
+    """A module variable's final name → its name in the source."""
     stage: Stage | None = None
     """The interface of a whole shader."""
 

@@ -22,12 +22,22 @@ from sssgen.passes.numpy.predicate import predicate
 from sssgen.passes.prune import prune
 from sssgen.passes.reachable import only, used
 from sssgen.passes.stage.initial_values import set_at_start, set_in_functions
-from sssgen.passes.stage.stage_interface import ENTRY, colors_in_use, entry_of, interface, remarks, turned_derivatives
+from sssgen.passes.stage.stage_interface import (
+    ENTRY,
+    Matching,
+    colors_in_use,
+    entry_of,
+    interface,
+    remarks,
+    turned_derivatives,
+)
 from sssgen.passes.stage.uniform_structs import uniform_structs
 from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
+from sssgen.passes.stage.varyings import interpolated_alike, mismatches
 from sssgen.passes.stage.vertex_reads import with_levels
 from sssgen.passes.undefined_constants import undefined_constants
 from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
+from sssgen.passes.unsupported import Unsupported
 from sssgen.pipeline.material_stages import slot_functions, stages_for
 from sssgen.pipeline.state import State
 from sssgen.support.diagnostics import Diagnostic, SssgenError
@@ -85,14 +95,26 @@ def read_level_zero(state: State) -> Module:
     return with_levels(state.module)
 
 
+def match_partner(state: State) -> Module:
+    assert state.partner is not None
+    is_vertex = state.form == "vertex"
+    vertex, fragment = (state.module, state.partner) if is_vertex else (state.partner, state.module)
+    errors = [Unsupported(*mismatch) for mismatch in mismatches(vertex, fragment)]
+    if errors:
+        raise Unsupported(errors[0].message, errors[0].span, errors[1:])
+    return interpolated_alike(vertex, fragment) if is_vertex else fragment
+
+
 def note_differences(state: State) -> Module:
-    differences = remarks(state.module, state.stage_builtins, state.y_down, state.target.capabilities)
+    differences = remarks(
+        state.module, state.form, state.stage_builtins, state.y_down, state.target.capabilities, state.partner is None
+    )
     state.notes += [Note(*remark) for remark in differences]
     return state.module
 
 
 def drop_uncalled(state: State) -> Module:
-    return used(only(state.module, state.called or ()))
+    return used(only(state.module, state.called or ()), state.whole_shader)
 
 
 def find_roots(state: State) -> Module:
@@ -210,6 +232,8 @@ def make_names_legal(state: State) -> Module:
     )
     names = zip(module.uniforms, state.module.uniforms, strict=True)
     state.source_names = {new.name: old.name for new, old in names}
+    variables = zip(module.variables, state.module.variables, strict=True)
+    state.variable_names = {new.name: old.name for new, old in variables}
     return module
 
 
@@ -233,5 +257,6 @@ def _uniform_style(style: str) -> Callable[[str], str]:
 
 def find_interface(state: State) -> Module:
     main = state.renames.get(ENTRY) or state.renames.get("main", "main")
-    state.stage = interface(state.module, state.form, f"{main}()", state.stage_builtins, state.y_down)
+    matching = Matching(state.variable_names, state.partner, state.target.capabilities.subset_varyings)
+    state.stage = interface(state.module, state.form, f"{main}()", state.stage_builtins, state.y_down, matching)
     return state.module

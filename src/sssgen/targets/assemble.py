@@ -196,6 +196,7 @@ def _context(target: Target, program: Program, printer: Printer, form: str, code
         "inputs": inputs,
         "surface_fields": [{"name": f.name, "type": printer.type(f.type)} for f in surface.fields] if surface else [],
         "library": [function.name for function in program.module.functions],
+        "varying_locations": program.stage is not None and program.stage.passes_locations,
     }
 
 

@@ -90,7 +90,7 @@ def _stage(program: Program) -> dict[str, Any]:
         name: [
             {"name": slot.variable.name, "builtin": slot.variable.builtin or None}
             | {"path": list(slot.path), "type": spell(slot.type)}
-            | {"location": slot.location if slot.location >= 0 else None}
+            | {"location": slot.location if slot.location >= 0 else None, "link": slot.link or None}
             for slot in slots
         ]
         for name, slots in sides.items()

@@ -50,14 +50,14 @@ struct FragmentOutput {
     float FragDepth : SV_Depth;
 };
 
-FragmentOutput fragment_main(float2 uv_in : TEXCOORD0, nointerpolation int kind_in : TEXCOORD1,
-    centroid float3 normal_in : TEXCOORD2, noperspective float along_in : TEXCOORD3, float4 shade_in
-    : TEXCOORD4, float4 FragCoord_in : SV_Position, bool FrontFacing_in : SV_IsFrontFace) {
-    uv = uv_in;
+FragmentOutput fragment_main(noperspective float along_in : ALONG, nointerpolation int kind_in : KIND,
+    centroid float3 normal_in : NORMAL, float4 shade_in : SHADE, float2 uv_in : UV, float4 FragCoord_in
+    : SV_Position, bool FrontFacing_in : SV_IsFrontFace) {
+    along = along_in;
     kind = kind_in;
     normal = normal_in;
-    along = along_in;
     shade = shade_in;
+    uv = uv_in;
     FragCoord = FragCoord_in;
     FrontFacing = FrontFacing_in;
     FragCoord.w = 1.0 / FragCoord.w;

@@ -53,15 +53,16 @@ struct FragmentOutput {
 }
 
 @fragment
-fn fragment_main(@location(0) uv_in: vec2f, @location(1) @interpolate(flat) kind_in: i32,
-    @location(2) @interpolate(perspective, centroid) normal_in: vec3f,
-    @location(3) @interpolate(linear) along_in: f32, @location(4) shade_in: vec4f,
-    @builtin(position) FragCoord_in: vec4f, @builtin(front_facing) FrontFacing_in: bool) -> FragmentOutput {
-    uv = uv_in;
+fn fragment_main(@location(0) @interpolate(linear) along_in: f32,
+    @location(1) @interpolate(flat) kind_in: i32,
+    @location(2) @interpolate(perspective, centroid) normal_in: vec3f, @location(3) shade_in: vec4f,
+    @location(4) uv_in: vec2f, @builtin(position) FragCoord_in: vec4f,
+    @builtin(front_facing) FrontFacing_in: bool) -> FragmentOutput {
+    along = along_in;
     kind = kind_in;
     normal = normal_in;
-    along = along_in;
     shade = shade_in;
+    uv = uv_in;
     FragCoord = FragCoord_in;
     FrontFacing = FrontFacing_in;
     main_();

@@ -34,9 +34,9 @@ void main_() {
     FragColor.a *= lines;
 }
 
-float4 fragment_main(float2 v_uv_in : TEXCOORD0, float3 v_normal_in : TEXCOORD1) : SV_Target0 {
-    v_uv = v_uv_in;
+float4 fragment_main(float3 v_normal_in : V__NORMAL, float2 v_uv_in : V__UV) : SV_Target0 {
     v_normal = v_normal_in;
+    v_uv = v_uv_in;
     main_();
     return FragColor;
 }

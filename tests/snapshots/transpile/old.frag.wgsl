@@ -36,9 +36,9 @@ fn main_() {
 }
 
 @fragment
-fn fragment_main(@location(0) v_uv_in: vec2f, @location(1) v_normal_in: vec3f) -> @location(0) vec4f {
-    v_uv = v_uv_in;
+fn fragment_main(@location(0) v_normal_in: vec3f, @location(1) v_uv_in: vec2f) -> @location(0) vec4f {
     v_normal = v_normal_in;
+    v_uv = v_uv_in;
     main_();
     return FragColor;
 }

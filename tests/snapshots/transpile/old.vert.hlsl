@@ -17,7 +17,7 @@ void main_() {
 }
 
 struct VertexOutput {
-    float2 v_uv : TEXCOORD0;
+    float2 v_uv : V__UV;
     float4 Position : SV_Position;
 };
 

@@ -80,7 +80,7 @@ void main_() {
     color = sum;
 }
 
-float4 fragment_main(float3 place_in : TEXCOORD0, float4 FragCoord_in : SV_Position) : SV_Target0 {
+float4 fragment_main(float3 place_in : PLACE, float4 FragCoord_in : SV_Position) : SV_Target0 {
     place = place_in;
     FragCoord = FragCoord_in;
     FragCoord.w = 1.0 / FragCoord.w;

@@ -64,9 +64,9 @@ void main_() {
     color = float4(sum * exposure, 1.0) * shading_base * albedo.Sample(albedo_sampler, uv);
 }
 
-float4 fragment_main(float3 v_position_in : TEXCOORD0, float3 v_normal_in : TEXCOORD1) : SV_Target0 {
-    v_position = v_position_in;
+float4 fragment_main(float3 v_normal_in : V__NORMAL, float3 v_position_in : V__POSITION) : SV_Target0 {
     v_normal = v_normal_in;
+    v_position = v_position_in;
     main_();
     return color;
 }

@@ -67,9 +67,9 @@ fn main_() {
 }
 
 @fragment
-fn fragment_main(@location(0) v_position_in: vec3f, @location(1) v_normal_in: vec3f) -> @location(0) vec4f {
-    v_position = v_position_in;
+fn fragment_main(@location(0) v_normal_in: vec3f, @location(1) v_position_in: vec3f) -> @location(0) vec4f {
     v_normal = v_normal_in;
+    v_position = v_position_in;
     main_();
     return color;
 }

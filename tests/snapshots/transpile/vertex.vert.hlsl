@@ -29,8 +29,8 @@ void main_() {
 }
 
 struct VertexOutput {
-    float2 uv : TEXCOORD0;
-    nointerpolation int kind : TEXCOORD1;
+    nointerpolation int kind : KIND;
+    float2 uv : UV;
     float4 Position : SV_Position;
 };
 
@@ -48,8 +48,8 @@ VertexOutput vertex_main(float3 position_in : ATTR0, float2 texcoord_in : ATTR1,
     main_();
     Position.z = (Position.z + Position.w) * 0.5;
     VertexOutput made;
-    made.uv = uv;
     made.kind = kind;
+    made.uv = uv;
     made.Position = Position;
     return made;
 }

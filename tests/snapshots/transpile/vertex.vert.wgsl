@@ -30,8 +30,8 @@ fn main_() {
 }
 
 struct VertexOutput {
-    @location(0) uv: vec2f,
-    @location(1) @interpolate(flat) kind: i32,
+    @location(0) @interpolate(flat) kind: i32,
+    @location(1) uv: vec2f,
     @builtin(position) Position: vec4f,
 }
 
@@ -50,5 +50,5 @@ fn vertex_main(@location(0) position_in: vec3f, @location(1) texcoord_in: vec2f,
     InstanceID = i32(InstanceID_in);
     main_();
     Position.z = (Position.z + Position.w) * 0.5;
-    return VertexOutput(uv, kind, Position);
+    return VertexOutput(kind, uv, Position);
 }

@@ -11,6 +11,7 @@ from threading import Event
 from typing import Any
 
 from sssgen.harness.check.shader_files import Shader
+from sssgen.harness.check.stage_pairs import disagreements, pairs
 from sssgen.harness.compilers import COMPILERS, CompilerMissing, Message, Source, errors, readers
 from sssgen.harness.compilers import unity_compiler as unity
 from sssgen.harness.compilers.compiler_process import Worker
@@ -18,6 +19,9 @@ from sssgen.material.library import TECHNIQUES
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.paths import place, posix
 from sssgen.support.text_files import read_text
+
+INTERFACE = "interface"
+"""In place of a compiler: whether two stages agree."""
 
 
 @dataclass(frozen=True)
@@ -100,6 +104,9 @@ def run(shaders: Sequence[Shader], names: Sequence[str] = (), unity_includes: st
         )
     order = {id(shader): number for number, shader in enumerate(shaders)}
     results = [result for _, _, compiler_results in outcomes.values() for result in compiler_results]
+    for vertex, fragment in pairs(shaders):
+        messages = [Message("error", 0, 0, text) for text in disagreements(vertex, fragment)]
+        results.append(Result(fragment, fragment.sources[0], INTERFACE, messages))
     return Report(
         {name: text for name, (text, available, _) in outcomes.items() if available},
         missing,

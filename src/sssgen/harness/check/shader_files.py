@@ -6,6 +6,7 @@ import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any, NamedTuple, cast, get_args
 
 from sssgen.harness.check.compiler_inputs import outputs, sources
@@ -30,6 +31,8 @@ class Shader:
     text: str
     sources: tuple[Source, ...]
     origins: Mapping[str, str] = field(default_factory=dict)
+    reflection: Mapping[str, Any] = field(default_factory=dict)
+    """Of a file of `sssgen transpile`; else empty."""
 
 
 def read(arguments: Sequence[str], targets: Sequence[str]) -> list[Shader]:
@@ -82,11 +85,13 @@ def of_files(files: Mapping[str, str], named: set[str], targets: Sequence[str]) 
     emitted: dict[str, str] = {}
     problems: list[Diagnostic] = []
     handwritten: list[Source] = []
+    reflections: dict[str, dict[str, Any]] = {}
     for path, text in files.items():
         own = transpiled(path)
         target = own.target if own is not None else _emitted_for(path, text)
         if own is not None and (not targets or target in targets):
             handwritten += own.sources(text, path)
+            reflections[path] = own.reflection
         elif target and (not targets or target in targets):
             emitted[path] = text
         elif target:
@@ -100,17 +105,25 @@ def of_files(files: Mapping[str, str], named: set[str], targets: Sequence[str]) 
             problems += failure("the language of the file cannot be determined", hint, path).diagnostics
     if problems:
         raise SssgenError(problems)
-    return _shaders(files, [*sources(emitted), *handwritten], {path: _origins(path) for path in files})
+    origins = {path: _origins(path) for path in files}
+    return _shaders(files, [*sources(emitted), *handwritten], origins, reflections)
 
 
 def _shaders(
-    files: Mapping[str, str], sources: Sequence[Source], origins: Mapping[str, Mapping[str, str]]
+    files: Mapping[str, str],
+    sources: Sequence[Source],
+    origins: Mapping[str, Mapping[str, str]],
+    reflections: Mapping[str, Mapping[str, Any]] = MappingProxyType({}),
 ) -> list[Shader]:
     """One for each file that has sources."""
     by_name: dict[str, list[Source]] = {}
     for source in sources:
         by_name.setdefault(source.name, []).append(source)
-    return [Shader(name, files[name], tuple(by_name[name]), origins.get(name, {})) for name in files if name in by_name]
+    return [
+        Shader(name, files[name], tuple(by_name[name]), origins.get(name, {}), reflections.get(name, {}))
+        for name in files
+        if name in by_name
+    ]
 
 
 def _is_material(argument: str) -> bool:

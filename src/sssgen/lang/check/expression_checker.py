@@ -174,9 +174,10 @@ class ExpressionChecker:
             if variable.faulty:
                 raise AlreadyReported
             return Typed(ir.Local(variable.type, variable.ir_name, name.span), variable.quantity)
-        value = context.globals.get(name.text) or builtin_variable(context, name)
+        text = context.aliases.get(name.text, name.text)
+        value = context.globals.get(text) or builtin_variable(context, name)
         if value is not None:
-            reference = ir.Global(value.type, name.text, name.span)
+            reference = ir.Global(value.type, text, name.span)
             if value.constant and name.text.startswith("gl_"):
                 return Typed(ir.Literal(INT, integer(context, reference) or 0, name.span))
             return Typed(reference, value.quantity)

@@ -120,12 +120,14 @@ class ShaderInterface:
         if block.name.text == "gl_PerVertex":
             return []
         members: list[s.GlobalSyntax] = []
+        # both stages of a program know the names of the block and of its members
+        head = block.name if {"in", "out"} & set(keywords) else block.instance
         for member in block.members:
             renamed = []
             for declarator in member.declarators:
                 label = declarator.name
-                if block.instance is not None:
-                    name = unused_global_name(context, f"{block.instance.text}_{label.text}")
+                if head is not None:
+                    name = unused_global_name(context, f"{head.text}_{label.text}")
                     label = replace(label, text=name)
                 renamed.append(replace(declarator, name=label))
             own = [keyword for keyword in member.qualifiers.keywords if keyword not in keywords]
@@ -136,13 +138,16 @@ class ShaderInterface:
         return members
 
     def name_instance(self, block: s.BlockSyntax, members: list[s.GlobalSyntax]) -> None:
-        """Makes the members of a block, which are declared by now, accessible by the block's instance name."""
-        if block.instance is None or not members:
-            return
+        """Makes the members of a block, which are declared by now, accessible by the block's instance name, if it has
+        one, or by their own."""
         context = self.context
-        instance = context.blocks[block.instance.text] = {}
-        for written, member in zip(block.members, members, strict=True):
+        instance: dict[str, Typed] = {}
+        if block.instance is not None and members:
+            context.blocks[block.instance.text] = instance
+        for written, member in zip(block.members if members else (), members, strict=True):
             for declarator, renamed in zip(written.declarators, member.declaration.declarators, strict=True):
                 label = renamed.name
                 value = ir.Global(context.globals[label.text].type, label.text, label.span)
                 instance[declarator.name.text] = Typed(value)
+                if block.instance is None and label.text != declarator.name.text:
+                    context.aliases[declarator.name.text] = label.text

@@ -2,23 +2,23 @@
 
 A module with a function `void main()` is a whole shader: a vertex shader if it writes gl_Position, else a fragment
 shader.
-A location that the author wrote is kept; the other variables get the lowest free ones in the order of their
-declaration, so that a vertex shader's outputs meet a fragment shader's inputs where both are declared alike.
+A location that the author wrote is kept; the other variables get the lowest free ones. What the vertex shader passes on
+is numbered by `varyings`, so that both stages agree; attributes and colours are in the order of their declaration.
 Place: what depends on the framebuffer before `hoist`, the interface last, as the names are final there.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
 
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Expr, Function, Global, Index, Intrinsic, Literal, Module, Span, Unary, Variable
-from sssgen.ir.rules import element_type
 from sssgen.ir.transform import rewrite_module
-from sssgen.ir.types import VOID, Array, Matrix, Struct, Type, Vector
+from sssgen.ir.types import VOID, Array, Type, Vector
 from sssgen.ir.walk import all_expressions, builtins_of, operands
 from sssgen.passes.capabilities import Capabilities
+from sssgen.passes.stage.varyings import locations, output_of, parts, varyings
 from sssgen.passes.unsupported import Unsupported
 from sssgen.passes.variable_effects import effects
 
@@ -41,6 +41,12 @@ class Slot(NamedTuple):
     type: Type
     location: int
     """-1 for a builtin."""
+    link: str = ""
+    """The name by which the next or the previous stage matches the variable; '' where nothing is matched by name."""
+    part: int = 0
+    """How many parts of the variable precede this one."""
+    is_declared: bool = True
+    """False: the module does not have the variable; it is only an output of the vertex shader."""
 
 
 class Stage(NamedTuple):
@@ -55,6 +61,12 @@ class Stage(NamedTuple):
     """Those with a location first, in its order."""
     resolution: str
     """The uniform from whose y gl_FragCoord.y is subtracted; '' where y is not flipped."""
+
+    @property
+    def passes_locations(self) -> bool:
+        """Whether the source states locations for what the vertex shader passes to the fragment shader."""
+        passed = self.outputs if self.kind == "vertex" else self.inputs
+        return any(slot.variable.location >= 0 for slot in passed)
 
 
 def entry_of(module: Module) -> Function | None:
@@ -76,7 +88,20 @@ def stage_kind(module: Module) -> str:
     return "fragment" if all(map(positions.isdisjoint, written)) else "vertex"
 
 
-def interface(module: Module, kind: str, function: str, builtins: Collection[str], turned: bool) -> Stage:
+class Matching(NamedTuple):
+    """What the matching of a stage with the other one depends on."""
+
+    names: Mapping[str, str]
+    """A variable's name in the module → its name in the source."""
+    partner: Module | None
+    """The other stage's module before any pass, if it is given."""
+    subsets: bool
+    """Whether a fragment shader may have fewer inputs than the vertex shader has outputs."""
+
+
+def interface(
+    module: Module, kind: str, function: str, builtins: Collection[str], turned: bool, matching: Matching
+) -> Stage:
     """The interface of a module with its final names. Raises Unsupported for an input that the target lacks.
 
     `function` is the key of its main function, `builtins` are those that the target has; any other
@@ -91,7 +116,57 @@ def interface(module: Module, kind: str, function: str, builtins: Collection[str
         output for output in outputs if not output.builtin or output.builtin in builtins or output.builtin in COLORS
     ]
     resolution = resolution_of(module) if turned and kind == "fragment" else ""
-    return Stage(kind, function, _slots(inputs), _slots(outputs), resolution)
+    if kind == "vertex":
+        return Stage(kind, function, _slots(inputs), _matched_slots(outputs, kind, matching), resolution)
+    return Stage(kind, function, _matched_slots(inputs, kind, matching), _slots(outputs), resolution)
+
+
+def _slots(variables: Sequence[Variable]) -> tuple[Slot, ...]:
+    """The slots of attributes or colours: those with a location, then the builtins."""
+    numbered = [variable for variable in variables if not variable.builtin or variable.builtin in COLORS]
+    stated = [variable._replace(location=0) if variable.builtin in COLORS else variable for variable in numbered]
+    placed = locations(stated, {}, by_name=False)
+    return _in_order(variables, [slot for one in numbered for slot in _slots_of(one, placed[one.name])])
+
+
+def _matched_slots(variables: Sequence[Variable], kind: str, matching: Matching) -> tuple[Slot, ...]:
+    """The slots of what the vertex shader passes to the fragment shader: those with a location, then the builtins."""
+    names, partner = matching.names, matching.partner
+    own = [variable for variable in variables if not variable.builtin]
+    named = [variable._replace(name=names.get(variable.name, variable.name)) for variable in own]
+    others = varyings(partner, "vertex") if kind == "fragment" and partner is not None else []
+    places = locations(others, {}, by_name=True)
+    placed = locations(named, places, by_name=True)
+    slots: list[Slot] = []
+    received = list[Variable]()
+    for variable, source in zip(own, named, strict=True):
+        link = "" if source.location >= 0 else source.name
+        if kind == "fragment" and partner is not None:
+            output = output_of(source, others)
+            if output is None:
+                continue  # it is not read, or `mismatches` reports it
+            received.append(output)
+        slots += _slots_of(variable, placed[source.name], link)
+    if kind == "fragment" and not matching.subsets:
+        for output in others:
+            if output not in received:
+                link = "" if output.location >= 0 else output.name
+                slots += [slot._replace(is_declared=False) for slot in _slots_of(output, places[output.name], link)]
+    return _in_order(variables, slots)
+
+
+def _slots_of(variable: Variable, places: range, link: str = "") -> list[Slot]:
+    return [Slot(variable, path, type_, places[part], link, part) for part, (path, type_) in enumerate(parts(variable))]
+
+
+def _in_order(variables: Sequence[Variable], slots: Sequence[Slot]) -> tuple[Slot, ...]:
+    """The slots in the order of their locations, then the builtins."""
+    builtins = [
+        Slot(variable, (), variable.type, -1)
+        for variable in variables
+        if variable.builtin and variable.builtin not in COLORS
+    ]
+    return (*sorted(slots, key=lambda slot: slot.location), *builtins)
 
 
 def resolution_of(module: Module) -> str:
@@ -144,10 +219,13 @@ def colors_in_use(module: Module) -> Module:
 
 
 def remarks(
-    module: Module, builtins: Collection[str], turned: bool, capabilities: Capabilities
+    module: Module, kind: str, builtins: Collection[str], turned: bool, capabilities: Capabilities, alone: bool
 ) -> list[tuple[str, Span]]:
-    """What differs from the source in a target's whole shader, with its place."""
-    differences = []
+    """What differs from the source in a target's whole shader, with its place.
+
+    `alone`: the other stage is not given.
+    """
+    differences = _unmatched(module, kind, capabilities) if alone else []
     for variable in module.variables:
         if variable.interpolation == "noperspective" and not capabilities.noperspective:
             differences.append(
@@ -166,41 +244,15 @@ def remarks(
     return differences
 
 
-def _slots(variables: Sequence[Variable]) -> tuple[Slot, ...]:
-    """The slots of the variables: those with a location, then the builtins."""
-    placed: list[Slot] = []
-    builtins: list[Slot] = []
-    taken: set[int] = set()
-    written = {variable.name: variable.location if variable.builtin not in COLORS else 0 for variable in variables}
-    parts = {variable.name: _parts(variable, variable.type) for variable in variables}
-    for name, location in written.items():
-        if location >= 0:
-            taken.update(range(location, location + len(parts[name])))
-    for variable in variables:
-        own_parts = parts[variable.name]
-        if variable.builtin and variable.builtin not in COLORS:
-            builtins.append(Slot(variable, (), variable.type, -1))
-            continue
-        first = written[variable.name]
-        if first < 0:
-            first = next(
-                candidate
-                for candidate in range(len(taken) + 1)
-                if taken.isdisjoint(range(candidate, candidate + len(own_parts)))
-            )
-            taken.update(range(first, first + len(own_parts)))
-        placed += [Slot(variable, path, type_, first + index) for index, (path, type_) in enumerate(own_parts)]
-    return (*sorted(placed, key=lambda slot: slot.location), *builtins)
-
-
-def _parts(variable: Variable, type_: Type, path: tuple[int, ...] = ()) -> list[tuple[tuple[int, ...], Type]]:
-    """The scalars and vectors of a variable, with the indices that lead to each."""
-    inner = type_.element if isinstance(type_, Array) else type_
-    if isinstance(inner, Struct):
-        raise Unsupported(f"'{variable.name}' contains structs, which cannot be passed between stages", variable.span)
-    if not isinstance(type_, Array | Matrix):
-        return [(path, type_)]
-    elements = element_type(type_)
-    assert elements is not None
-    element, count = elements
-    return [part for index in range(count) for part in _parts(variable, element, (*path, index))]
+def _unmatched(module: Module, kind: str, capabilities: Capabilities) -> list[tuple[str, Span]]:
+    """What only the other stage can tell."""
+    passed = varyings(module, kind)
+    named = sorted([variable for variable in passed if variable.location < 0], key=lambda variable: variable.name)
+    if named and kind == "fragment" and not capabilities.named_varyings:
+        names = ", ".join([f"'{variable.name}'" for variable in named])
+        are = f"the inputs {names} are numbered" if len(named) > 1 else f"the input {names} is numbered"
+        return [(f"{are} by name: give the vertex shader (--with FILE) if it has other outputs", named[0].span)]
+    if capabilities.varying_locations:
+        return []
+    message = "has a location, but is matched by its name here: the other stage must have the same name"
+    return [(f"'{variable.name}' {message}", variable.span) for variable in passed if variable.location >= 0]

@@ -36,10 +36,13 @@ class GlslPrinter(Printer):
         return self.with_comments(variable, [Line(f"{self.layout(variable)}{text};", variable.span)])
 
     def layout(self, variable: ir.Variable) -> str:
-        """The location of a variable where the version has a text for it: vertex attributes and fragment colours."""
+        """The location of a variable where the version has a text for it; vertex attributes and fragment colours do."""
         stage = self.stage
-        if stage is None or (stage.kind, variable.storage) not in (("vertex", "in"), ("fragment", "out")):
+        if stage is None:
             return ""
+        if (stage.kind, variable.storage) not in (("vertex", "in"), ("fragment", "out")):
+            stated = variable.location >= 0 and self.target.capabilities.varying_locations
+            return f"layout(location = {variable.location}) " if stated else ""
         slots = [slot for slot in stage.inputs + stage.outputs if slot.variable is variable]
         colors = {slot.variable.name for slot in stage.outputs if slot.location >= 0}
         stated = variable.location >= 0 or (variable.storage == "out" and len(colors) > 1)

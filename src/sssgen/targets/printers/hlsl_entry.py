@@ -1,10 +1,12 @@
 """The entry function of a stage in HLSL: semantics for locations and builtins, a struct for several outputs.
 
-A vertex shader's attributes are ATTR0, ATTR1, …, the values between stages TEXCOORD0, …, colours SV_Target0, …, each
-numbered by its location.
+A vertex shader's attributes are ATTR0, ATTR1, …, colours SV_Target0, …, each numbered by its location. A value between
+stages has a semantic of its name, as D3D matches these: NORMAL for `normal`; one with a location is TEXCOORDn.
 """
 
 from __future__ import annotations
+
+import re
 
 from sssgen.ir.nodes import NOWHERE
 from sssgen.ir.types import INT, kind_of
@@ -26,6 +28,20 @@ _INPUT_SEMANTICS = {"vertex": "ATTR", "fragment": "TEXCOORD"}
 _OUTPUT_SEMANTICS = {"vertex": "TEXCOORD", "fragment": "SV_Target"}
 
 
+def semantic(slot: Slot) -> str:
+    """The semantic of a value between stages that is matched by name.
+
+    Semantics ignore case, and digits at their end are an index. So an upper-case letter gets `_` in front, `_` is
+    doubled, and a name that ends in a digit gets `_` at its end; no two names have the same semantic.
+    """
+    name = re.sub(r"([A-Z_])", r"_\1", slot.link).upper()
+    if name.startswith("SV_") or name == "TEXCOORD":
+        name = f"_0{name}"
+    if name[-1].isdecimal():
+        name += "_"
+    return f"{name}{slot.part}" if slot.path else name
+
+
 def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> list[Line]:
     """The lines of the entry `name`; `resolution` is how that uniform is read."""
     taken = names_of(printer.module) | {name}
@@ -33,14 +49,19 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
     entry_parameters = parameters(stage, taken)
 
     def declared(slot: Slot, name: str, semantics: str) -> str:
-        semantic = f"{semantics}{slot.location}" if slot.location >= 0 else builtins[slot.variable.builtin]
+        if slot.link:
+            place = semantic(slot)
+        else:
+            place = f"{semantics}{slot.location}" if slot.location >= 0 else builtins[slot.variable.builtin]
         word = "flat" if kind_of(slot.type) in ("int", "uint") else slot.variable.interpolation
         sampled = _INTERPOLATION[word] if semantics == "TEXCOORD" and slot.location >= 0 and word else ""
-        return f"{sampled}{printer.variable(parameter_type(slot), name)} : {semantic}"
+        return f"{sampled}{printer.variable(parameter_type(slot), name)} : {place}"
 
     params = ", ".join([declared(slot, name, _INPUT_SEMANTICS[stage.kind]) for name, slot in entry_parameters])
     body = []
     for parameter, slot in entry_parameters:
+        if not slot.is_declared:
+            continue
         value = f"{printer.type(INT)}({parameter})" if is_count(slot) else parameter
         body.append(f"{place_text(slot)} = {value};")
     body += [
@@ -51,8 +72,8 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
     lines: list[Line] = []
     if len(stage.outputs) == 1:
         (slot,) = stage.outputs
-        head, _, semantic = declared(slot, "result", _OUTPUT_SEMANTICS[stage.kind]).partition(" result : ")
-        signature = f"{head} {name}({params}) : {semantic} {{"
+        head, _, place = declared(slot, "result", _OUTPUT_SEMANTICS[stage.kind]).partition(" result : ")
+        signature = f"{head} {name}({params}) : {place} {{"
         body.append(f"return {place_text(slot)};")
     elif stage.outputs:
         struct, result = f"{stage.kind.capitalize()}Output", "made"

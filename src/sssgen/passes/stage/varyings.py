@@ -1,0 +1,103 @@
+"""What a vertex shader passes to a fragment shader: how two stages that are translated apart agree on it.
+
+GLSL matches outputs and inputs by their location where both state one, else by their name. A language that matches by
+location needs numbers for the names: those without a location are numbered in the order of their names, which both
+stages know, if they declare the same. A fragment shader may declare fewer; then it needs its vertex shader, the
+partner, whose numbers it takes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from sssgen.ir.nodes import Module, Span, Variable
+from sssgen.ir.rules import element_type
+from sssgen.ir.types import Array, Matrix, Struct, Type, spell, with_article
+from sssgen.passes.scopes import mentions
+from sssgen.passes.unsupported import Unsupported
+
+Part = tuple[tuple[int, ...], Type]
+"""A scalar or vector of a variable, after the indices that lead to it."""
+
+
+def varyings(module: Module, kind: str) -> list[Variable]:
+    """The outputs of a vertex shader, or the inputs of a fragment shader, without builtins."""
+    storage = "out" if kind == "vertex" else "in"
+    return [variable for variable in module.variables if variable.storage == storage and not variable.builtin]
+
+
+def locations(variables: Sequence[Variable], partner: Mapping[str, range], by_name: bool) -> dict[str, range]:
+    """The locations of each variable, by its name: those that it states, those of the partner, or the lowest free
+    ones, in the order of the names or of the declarations."""
+    placed: dict[str, range] = {}
+    counts = {variable.name: len(parts(variable)) for variable in variables}
+    for variable in variables:
+        if variable.location >= 0:
+            placed[variable.name] = range(variable.location, variable.location + counts[variable.name])
+        elif variable.name in partner:
+            placed[variable.name] = partner[variable.name]
+    taken = {location for places in (*placed.values(), *partner.values()) for location in places}
+    names = [variable.name for variable in variables if variable.name not in placed]
+    for name in sorted(names) if by_name else names:
+        candidates = (range(first, first + counts[name]) for first in range(len(taken) + 1))
+        placed[name] = next(candidate for candidate in candidates if taken.isdisjoint(candidate))
+        taken.update(placed[name])
+    return placed
+
+
+def parts(variable: Variable) -> list[Part]:
+    """The scalars and vectors of a variable. Raises Unsupported for a struct."""
+    return _parts(variable, variable.type, ())
+
+
+def _parts(variable: Variable, type_: Type, path: tuple[int, ...]) -> list[Part]:
+    inner = type_.element if isinstance(type_, Array) else type_
+    if isinstance(inner, Struct):
+        raise Unsupported(f"'{variable.name}' contains structs, which cannot be passed between stages", variable.span)
+    if not isinstance(type_, Array | Matrix):
+        return [(path, type_)]
+    elements = element_type(type_)
+    assert elements is not None
+    element, count = elements
+    return [part for index in range(count) for part in _parts(variable, element, (*path, index))]
+
+
+def output_of(given: Variable, outputs: Sequence[Variable]) -> Variable | None:
+    """The output of the vertex shader that a fragment shader's input receives."""
+    for output in outputs:
+        same = output.name == given.name if given.location < 0 else output.location == given.location
+        if same and (output.location < 0) == (given.location < 0):
+            return output
+    return None
+
+
+def interpolated_alike(vertex: Module, fragment: Module) -> Module:
+    """The vertex shader with the interpolation of the fragment shader, which decides on it in GLSL 4.40."""
+    words = {}
+    outputs = varyings(vertex, "vertex")
+    for given in varyings(fragment, "fragment"):
+        output = output_of(given, outputs)
+        if output is not None:
+            words[output.name] = given.interpolation
+    variables = [
+        variable._replace(interpolation=words.get(variable.name, variable.interpolation))
+        for variable in vertex.variables
+    ]
+    return vertex._replace(variables=tuple(variables))
+
+
+def mismatches(vertex: Module, fragment: Module) -> list[tuple[str, Span]]:
+    """Where the inputs that a fragment shader reads are not the outputs of the vertex shader, with their places."""
+    outputs = varyings(vertex, "vertex")
+    read = set[str]().union(*[mentions(function)[0] for function in fragment.functions])
+    wrong = []
+    for given in varyings(fragment, "fragment"):
+        output = output_of(given, outputs)
+        if output is None and given.name in read:
+            message = f"the vertex shader does not write '{given.name}', which the fragment shader reads"
+            wrong.append((message, given.span))
+        elif output is not None and output.type != given.type:
+            written, expected = (with_article(spell(variable.type)) for variable in (output, given))
+            message = f"the vertex shader writes '{given.name}' as {written}, but the fragment shader reads {expected}"
+            wrong.append((message, given.span))
+    return wrong
