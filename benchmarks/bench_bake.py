@@ -1,9 +1,9 @@
-"""Speed and accuracy of baked distance textures, compared with other tools: `make bench`, or see --help.
+"""Compares the speed and accuracy of baked distance textures with other tools: `make bench`, or see --help.
 
-All tools get the same triangles and the same voxel centres, in turns; the time is from triangles to signed
-float32 distances, the building of trees included. Tools that are not installed are named and left out: `pip install
-open3d mesh-to-sdf` brings them. Errors are those against brute force, at some of the voxels. --growth runs the command
-itself, each time in a process of its own, and prints how time and memory grow.
+All tools get the same triangles and the same voxel centres, and take turns. The time is from triangles to signed
+float32 distances; it includes building trees. Tools that are not installed are reported and skipped: `pip install
+open3d mesh-to-sdf` installs them. The errors are relative to brute force, at a sample of the voxels. --growth runs the
+command in separate processes and prints how its time and memory grow.
 """
 
 from __future__ import annotations
@@ -36,9 +36,9 @@ Bake: TypeAlias = Callable[[Array, Indices, Grid, Array], npt.NDArray[np.float32
 
 SPOT = Path(__file__).resolve().parent.parent.parent / "shared/data/meshes/spot.obj"
 SAMPLE = 2000
-"""Voxels that are compared with brute force, fewer where there are many triangles:"""
+"""The number of voxels that are compared with brute force; it is smaller for many triangles."""
 PAIRS = 2**25
-"""Distances to a triangle that brute force may take."""
+"""The largest number of distances between a point and a triangle that brute force computes."""
 GROWTH = (64, 128, 256)
 
 
@@ -71,7 +71,7 @@ def by_open3d() -> Bake:
 
 def by_mesh_to_sdf(surface: str, sign: str) -> Bake:
     if sys.platform == "linux" and "DISPLAY" not in os.environ:
-        os.environ.setdefault("PYOPENGL_PLATFORM", "egl")  # it renders its scans
+        os.environ.setdefault("PYOPENGL_PLATFORM", "egl")  # mesh_to_sdf renders its scans
     import mesh_to_sdf
     import trimesh
 
@@ -123,7 +123,7 @@ def true_distances(points: Array, triangles: Array) -> Array:
 
 
 def rounds(first: float) -> int:
-    """How often a tool runs that took so many seconds."""
+    """The number of rounds for a tool whose first round took `first` seconds."""
     return 5 if first < 3.0 else 3 if first < 60.0 else 1
 
 
@@ -189,7 +189,8 @@ PEAK = (
     "import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL); "
     "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)"
 )
-"""Runs a command and prints its peak memory; in a process between, as a child's peak begins with its parent's size."""
+"""Runs a command and prints its peak memory. It is a separate process because a child's peak includes the size of its
+parent."""
 
 
 def command(mesh: Path, resolution: int, output: Path) -> tuple[float, float]:
@@ -218,18 +219,20 @@ def measure_growth(name: str, places: Array, corners: Indices) -> None:
                 print(f"| {len(shape[1]):31} | {resolution:13} | {seconds:7.2f} | {seconds / before[0]:5.2f} ", end="")
                 print(f"| {memory:4.0f} | {memory / before[1]:5.2f} |", flush=True)
                 before = seconds, memory
-    print("each a process of its own, with all that it imports; ratios to the line above")
+    print("each line is a separate process, imports included; ratios to the line above")
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description="The speed of `sssgen bake sdf` beside other tools, as ratios.")
-    parser.add_argument("--mesh", type=Path, default=SPOT, help="default: Spot, beside the repository")
+    parser = argparse.ArgumentParser(description="Compares the speed of `sssgen bake sdf` with other tools.")
+    parser.add_argument("--mesh", type=Path, default=SPOT, help="default: Spot, in shared/ next to the repository")
     parser.add_argument("--resolutions", default="64,128", help="voxels along the longest side (64,128)")
-    parser.add_argument("--hole", action="store_true", help="the mesh with a hole, too")
-    parser.add_argument("--growth", action="store_true", help="instead: time and memory of the command up to 256")
+    parser.add_argument("--hole", action="store_true", help="also measure the mesh with a hole")
+    parser.add_argument(
+        "--growth", action="store_true", help="measure only the time and memory of the command, up to 256 voxels"
+    )
     chosen = parser.parse_args()
     if not chosen.mesh.is_file():
-        print(f"bench_bake: no mesh at {chosen.mesh}: nothing measured; name one with --mesh")
+        print(f"bench_bake: no mesh at {chosen.mesh}: nothing was measured; set --mesh")
         return
     print(f"{platform.machine()}, {os.cpu_count()} cores, {platform.system()}, Python {platform.python_version()}")
     solid = Mesh(path=str(chosen.mesh)).solid

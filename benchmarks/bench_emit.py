@@ -1,9 +1,10 @@
-"""Speed of emitting, as ratios measured in one run: `make bench`, or python benchmarks/bench_emit.py [MATERIAL…].
+"""Measures the speed of emitting: `make bench`, or python benchmarks/bench_emit.py [MATERIAL…].
 
-Everything is compared with one `glslangValidator` process on the emitted fragment shader, in turn, medians
-of the rounds. Cold is a whole process of `sssgen emit` of one material to all targets: with nothing changed since the
-last one; with the value of a parameter changed each time; with a parameter folded to a new constant each time, so that
-every pass runs again; with an empty cache folder. Warm is one process, the materials loaded, changed in the same ways.
+Each time is the median of several rounds, divided by the time of a `glslangValidator` process on the emitted fragment
+shader. The cases take turns in each round. A cold case is a process of `sssgen emit` that emits a material for all
+targets: nothing has changed since the last process; the value of a parameter has changed; a parameter is folded to
+another constant, so that every pass runs again; the cache folder is empty. The warm cases make the same changes in one
+process, with materials that are already loaded.
 """
 
 from __future__ import annotations
@@ -56,7 +57,7 @@ def process(command: list[str], cache: Path) -> None:
 
 
 def cold(name: str, folder: Path) -> dict[str, Case]:
-    """The cases in processes of their own."""
+    """The cases that start a process."""
     out, cache = folder / "out", folder / "cache"
 
     def emit(case: str, text: str, stored: Path = cache) -> None:
@@ -64,7 +65,7 @@ def cold(name: str, folder: Path) -> dict[str, Case]:
         source.write_text(text, "utf-8")
         process([sys.executable, "-m", "sssgen", "emit", str(source), "--target", "all", "-o", str(out)], stored)
 
-    for case in ("same", "changed", "rebuilt"):  # bytecode and caches
+    for case in ("same", "changed", "rebuilt"):  # fills the caches, that of the bytecode too
         emit(case, variant(name, 0))
     shader = folder / "shader.frag"
     shader.write_bytes((out / f"{name}.glsl-330.frag").read_bytes())
@@ -86,20 +87,21 @@ def warm(name: str) -> dict[str, Case]:
     def materials(text: Callable[[str, int], str], first: int) -> list[Material]:
         return [parse_material(text(name, first + index), path) for index in range(ROUNDS + 1)]
 
-    one, every, other = materials(variant, 1000), materials(variant, 2000), materials(rebuilt, 1000)
-    known = sssgen.load_material(path)
+    for_wgsl, for_all = materials(variant, 1000), materials(variant, 2000)
+    with_new_constants = materials(rebuilt, 1000)
+    loaded = sssgen.load_material(path)
     for target in targets:
-        sssgen.compile(known, target)
+        sssgen.compile(loaded, target)
     return {
-        "warm, a parameter changed, one target": lambda index: sssgen.compile(one[index], "wgsl"),
+        "warm, a parameter changed, one target": lambda index: sssgen.compile(for_wgsl[index], "wgsl"),
         f"warm, a parameter changed, all {len(targets)}": lambda index: [
-            sssgen.compile(every[index], t) for t in targets
+            sssgen.compile(for_all[index], t) for t in targets
         ],
         f"warm, a constant changed, all {len(targets)}": lambda index: [
-            sssgen.compile(other[index], t) for t in targets
+            sssgen.compile(with_new_constants[index], t) for t in targets
         ],
         "unchanged, by its path": lambda _: sssgen.compile(path, "wgsl"),
-        "unchanged, a loaded material": lambda _: sssgen.compile(known, "wgsl"),
+        "unchanged, a loaded material": lambda _: sssgen.compile(loaded, "wgsl"),
     }
 
 

@@ -1,9 +1,9 @@
-"""The cost of the harness: `make bench`, or python benchmarks/bench_harness.py [COUNT].
+"""Measures the cost of the harness: `make bench`, or python benchmarks/bench_harness.py [COUNT].
 
-Each technique is evaluated COUNT times (10,000) in one draw, on every back end, and the table has evaluations a second,
-the share of the time that is spent outside the draw, and the time of the first call, which compiles, over that of the
-later ones. Then each example's scene, at 640×360 with one sample a pixel: the share of the time that its draw takes,
-and the draw's time beside that of the first scene. On a software driver that is the CPU's.
+The first table evaluates each technique COUNT times (default: 10,000) in one draw on every back end. It shows the
+evaluations per second, the share of the time outside the draw, and the ratio of the first call, which compiles, to a
+later call. The second table renders the scene of each example at 640×360 with one sample per pixel. It shows the share
+of the time inside the draw, and the ratio of the draw to that of the first scene. A software driver draws on the CPU.
 """
 
 from __future__ import annotations
@@ -38,52 +38,54 @@ def median(work: Callable[[], object], rounds: int = ROUNDS) -> float:
 
 
 def evaluations(count: int) -> None:
-    """The table of techniques."""
-    print(f"{count} evaluations of a technique in one draw")
+    """Prints the table of techniques."""
+    print(f"{count} evaluations of each technique in one draw")
     print(f"{'':14} " + "  ".join(f"{name:>34}" for name in TECHNIQUES))
-    print(f"{'':14} " + "  ".join(f"{'a second    outside  first/later':>34}" for _ in TECHNIQUES))
+    print(f"{'':14} " + "  ".join(f"{'per second    outside  first/later':>34}" for _ in TECHNIQUES))
     for backend in backends.available():
         cells = [cell(backend, name, count) for name in TECHNIQUES]
-        print(f"{backend.name:14} " + "  ".join(f"{one:>34}" for one in cells))
+        print(f"{backend.name:14} " + "  ".join(f"{text:>34}" for text in cells))
     for name, how in backends.missing():
         print(f"{name:14} missing: {how}")
 
 
 def cell(backend: backends.Backend, name: str, count: int) -> str:
-    """One technique on one back end."""
+    """The cell of a technique and a back end."""
     chosen = subject(name)
     inputs = evaluate.fitted(chosen, samples(chosen, count, 1))
     first = median(lambda: evaluate.run(chosen, inputs, backend), 1)
     outside = []
 
-    def once() -> None:
+    def evaluation() -> None:
         start = time.perf_counter()
         evaluate.run(chosen, inputs, backend)
         if isinstance(backend, DrawingBackend):
             outside.append(1.0 - backend.drew / (time.perf_counter() - start))
 
-    later = median(once)
+    later = median(evaluation)
     share = f"{statistics.median(outside):8.0%}" if outside else f"{'–':>8}"
     return f"{count / later:12,.0f}   {share}     {first / later:6.1f} ×"
 
 
 def frames(names: list[str]) -> None:
-    """The scenes, one frame each."""
-    print(f"\none frame of {SIZE[0]}×{SIZE[1]}: the draw's share of it, and the draw over that of the first scene")
-    machines = [one for one in backends.available() if isinstance(one, DrawingBackend) and one.name in names]
-    print(f"{'':14} " + "  ".join(f"{one.name:>16}" for one in machines))
+    """Prints the table of scenes, each drawn once."""
+    print(f"\nA frame of {SIZE[0]}×{SIZE[1]}: the share of the draw, and its ratio to the draw of the first scene")
+    machines = [
+        backend for backend in backends.available() if isinstance(backend, DrawingBackend) and backend.name in names
+    ]
+    print(f"{'':14} " + "  ".join(f"{machine.name:>16}" for machine in machines))
     first: dict[str, float] = {}
     for name in examples():
-        shown = render.with_samples(scene_loading.load(name), 1)
+        scene = render.with_samples(scene_loading.load(name), 1)
         cells = []
         for machine in machines:
-            render.render(shown, machine, size=(64, 36))  # compiles
+            render.render(scene, machine, size=(64, 36))  # compiles
             start = time.perf_counter()
-            render.render(shown, machine, size=SIZE)
+            render.render(scene, machine, size=SIZE)
             share = machine.drew / (time.perf_counter() - start)
             first.setdefault(machine.name, machine.drew)
             cells.append(f"{share:5.0%}  {machine.drew / first[machine.name]:6.1f} ×")
-        print(f"{name:14} " + "  ".join(f"{one:>16}" for one in cells))
+        print(f"{name:14} " + "  ".join(f"{text:>16}" for text in cells))
 
 
 if __name__ == "__main__":

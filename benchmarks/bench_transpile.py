@@ -1,13 +1,14 @@
-"""How much public shader code `sssgen transpile` accepts, and how fast.
+"""Measures how much public shader code `sssgen transpile` accepts, and its speed.
 
     python benchmarks/bench_transpile.py --kind library=FOLDER --kind scenes=FOLDER [--jobs 2] [--json FILE]
     python benchmarks/bench_transpile.py --speed
 
-A file counts where glslang takes it (see `public_code`). It passes where it comes out in every target and every
-compiler takes that: WGSL in naga and Tint, HLSL in glslang and DXC, GLSL in glslang. The table has the shares for each
-kind; below it stand the commonest reasons, with names and numbers blanked out. `--naga` asks naga's own front end for
-GLSL about the same files, preprocessed and freed from what Vulkan wants of uniforms; it has no combined samplers.
-`--speed` times the stages on a text of our own (see `transpile_speed`). The code itself is none of this project's.
+A file counts if glslang accepts it (see `public_code`). It passes if it can be emitted for every target and every
+compiler accepts the result: naga and Tint for WGSL, glslang and DXC for HLSL, glslang for GLSL. The table shows the
+share of files that pass, for each kind; the most frequent problems follow, without names and numbers. With `--naga`,
+naga's own GLSL front end reads the same files, preprocessed and without the declarations that Vulkan does not accept;
+it does not support combined samplers. `--speed` measures the stages on a generated text (see `transpile_speed`). The
+public code is not part of this project.
 """
 
 from __future__ import annotations
@@ -22,41 +23,53 @@ from pathlib import Path
 from queue import Queue
 from typing import Any, NamedTuple
 
-from public_code import BATCHED, COMPILERS, Code, Made, accepted, blank, glslang, naga_glsl, preprocessed, read
+from public_code import (
+    BATCHED,
+    COMPILERS,
+    Code,
+    TargetResult,
+    accepted,
+    blank,
+    glslang,
+    naga_glsl,
+    preprocessed,
+    read,
+    target_results,
+)
 
 from sssgen.support.worker_process import LostError, Process
 
 SECONDS = 60.0
-"""How long one file may take."""
+"""The time limit of a file."""
 REASONS = 10
 READ = "read"
-"""The name of the step before any target."""
+"""The name of the step before the targets."""
 
 
 class Verdict(NamedTuple):
-    """What came of a file that counts."""
+    """The result of a file that counts."""
 
     kind: str
     path: Path
     problems: dict[str, str]
-    """Target, or `read` → what is wrong; empty where it passes."""
+    """Target, or `read` → the problem; empty if the file passes."""
     naga: str | None = None
-    """What naga's own front end says; None where it was not asked."""
+    """The message of naga's own front end, '' if it accepts the file; None if it did not read the file."""
 
 
 class Pool:
-    """Processes that answer for files; one that crashes or hangs costs the answer for one file."""
+    """Worker processes. If one crashes or hangs, only the result of its file is lost."""
 
     def __init__(self, jobs: int) -> None:
         self.free: Queue[Process] = Queue()
-        self.all = [Process("public_code", "", seconds=SECONDS) for _ in range(jobs)]
-        for one in self.all:
-            self.free.put(one)
+        self.processes = [Process("public_code", "", seconds=SECONDS) for _ in range(jobs)]
+        for process in self.processes:
+            self.free.put(process)
         self.threads = ThreadPoolExecutor(jobs)
 
-    def ask(self, what: str, inputs: Sequence[tuple[object, ...]]) -> list[Any]:
-        """The answers, in order; an item that ended its process has a LostError."""
-        return list(self.threads.map(lambda one: self._ask((what, one)), inputs))
+    def ask(self, function: str, inputs: Sequence[tuple[object, ...]]) -> list[Any]:
+        """The results of a function of `public_code`, in order; a LostError where the process was lost."""
+        return list(self.threads.map(lambda arguments: self._ask((function, arguments)), inputs))
 
     def _ask(self, question: object) -> Any:
         process = self.free.get()
@@ -69,8 +82,8 @@ class Pool:
 
     def close(self) -> None:
         """Ends the processes."""
-        for one in self.all:
-            one.close()
+        for process in self.processes:
+            process.close()
         self.threads.shutdown()
 
 
@@ -78,32 +91,37 @@ def judged(
     kind: str, codes: Sequence[Code], folders: Sequence[Path], targets: Sequence[str], pool: Pool
 ) -> list[Verdict]:
     """The verdict on each file."""
-    answers: list[dict[str, Made] | LostError] = pool.ask("made", [(code, folders, targets) for code in codes])
-    reported = [{"": Made(None, f"the process {one}")} if isinstance(one, LostError) else one for one in answers]
+    answers: list[dict[str, TargetResult] | LostError] = pool.ask(
+        target_results.__name__, [(code, folders, targets) for code in codes]
+    )
+    results = [
+        {"": TargetResult(None, f"the process {answer}")} if isinstance(answer, LostError) else answer
+        for answer in answers
+    ]
     sources = [
         result.source
-        for one in reported
-        for target, result in one.items()
+        for by_target in results
+        for target, result in by_target.items()
         if result.source is not None and ("glslang", target) in BATCHED
     ]
     messages = iter(glslang(sources))
-    results = []
-    for code, one in zip(codes, reported, strict=True):
-        problems = {target or READ: result.problem for target, result in one.items() if result.problem}
-        for target, result in one.items():
+    verdicts = []
+    for code, by_target in zip(codes, results, strict=True):
+        problems = {target or READ: result.problem for target, result in by_target.items() if result.problem}
+        for target, result in by_target.items():
             if result.source is not None and ("glslang", target) in BATCHED and (message := next(messages)):
                 problems.setdefault(target, f"glslang: {message}")
-        results.append(Verdict(kind, code.path, problems))
-    return results
+        verdicts.append(Verdict(kind, code.path, problems))
+    return verdicts
 
 
-def asked_naga(verdicts: Sequence[Verdict], folders: Sequence[Path], pool: Pool) -> list[Verdict]:
-    """The verdicts with naga's messages for the unchanged files."""
+def with_naga_messages(verdicts: Sequence[Verdict], folders: Sequence[Path], pool: Pool) -> list[Verdict]:
+    """The verdicts with the messages of naga's own front end."""
     codes = [read(verdict.path, folders) for verdict in verdicts]
     texts = [(preprocessed(code), code.stage) for code in codes]
     answers = pool.ask(naga_glsl.__name__, texts)
-    messages = [f"the process {one}" if isinstance(one, LostError) else str(one) for one in answers]
-    return [verdict._replace(naga=one) for verdict, one in zip(verdicts, messages, strict=True)]
+    messages = [f"the process {answer}" if isinstance(answer, LostError) else str(answer) for answer in answers]
+    return [verdict._replace(naga=message) for verdict, message in zip(verdicts, messages, strict=True)]
 
 
 def files_of(folder: Path, endings: Sequence[str]) -> list[Path]:
@@ -112,7 +130,7 @@ def files_of(folder: Path, endings: Sequence[str]) -> list[Path]:
 
 
 def share(verdicts: Sequence[Verdict], target: str = "") -> str:
-    """How many pass, or pass for one target."""
+    """The number and share of files that pass, for all targets or for one."""
     good = sum(
         not verdict.problems if not target else not {READ, target} & verdict.problems.keys() for verdict in verdicts
     )
@@ -120,51 +138,53 @@ def share(verdicts: Sequence[Verdict], target: str = "") -> str:
 
 
 def report(verdicts: Sequence[Verdict], skipped: Counter[str], targets: Sequence[str], reasons: int) -> None:
-    """Prints the shares and the commonest reasons."""
+    """Prints the shares and the most frequent problems."""
     kinds = list(dict.fromkeys(verdict.kind for verdict in verdicts))
-    columns = ["passes", *targets, *(["naga's own"] if any(one.naga is not None for one in verdicts) else [])]
+    columns = ["passes", *targets, *(["naga's own"] if any(verdict.naga is not None for verdict in verdicts) else [])]
     print(f"{'':14}" + "".join(f"{column:>18}" for column in columns) + "   do not count")
     for kind in [*kinds, *(["all"] if len(kinds) > 1 else [])]:
-        chosen = [one for one in verdicts if kind in (one.kind, "all")]
+        chosen = [verdict for verdict in verdicts if kind in (verdict.kind, "all")]
         cells = [share(chosen), *(share(chosen, target) for target in targets)]
         if len(columns) > len(cells):
-            good = sum(one.naga == "" for one in chosen)
+            good = sum(verdict.naga == "" for verdict in chosen)
             cells.append(f"{good}/{len(chosen)} {100.0 * good / max(1, len(chosen)):.1f} %")
-        left = sum(skipped.values()) if kind == "all" else skipped[kind]
-        print(f"{kind:14}" + "".join(f"{cell:>18}" for cell in cells) + f"   {left}")
-    counted = Counter(f"{step}: {blank(said)}" for one in verdicts for step, said in one.problems.items())
-    examples = {f"{step}: {blank(said)}": one for one in verdicts for step, said in one.problems.items()}
-    print(f"\nThe commonest of {len(counted)} reasons, and a file for each")
+        uncounted = sum(skipped.values()) if kind == "all" else skipped[kind]
+        print(f"{kind:14}" + "".join(f"{cell:>18}" for cell in cells) + f"   {uncounted}")
+    counted = Counter(f"{step}: {blank(problem)}" for verdict in verdicts for step, problem in verdict.problems.items())
+    examples = {
+        f"{step}: {blank(problem)}": verdict for verdict in verdicts for step, problem in verdict.problems.items()
+    }
+    print(f"\nThe most frequent of {len(counted)} problems, each with a file")
     for reason, count in counted.most_common(reasons):
         print(f"{count:6}  {reason}\n        {examples[reason].path}")
 
 
 def as_json(verdicts: Sequence[Verdict], skipped: Counter[str]) -> dict[str, Any]:
-    """Everything, for programs."""
+    """All results, for JSON."""
     files = [
-        {"kind": one.kind, "file": str(one.path), "problems": one.problems}
-        | ({} if one.naga is None else {"naga": one.naga})
-        for one in verdicts
+        {"kind": verdict.kind, "file": str(verdict.path), "problems": verdict.problems}
+        | ({} if verdict.naga is None else {"naga": verdict.naga})
+        for verdict in verdicts
     ]
     return {"files": files, "do_not_count": dict(skipped)}
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("FOLDER", nargs="*", help="a kind of its own, called after the folder")
+    parser.add_argument("FOLDER", nargs="*", help="a folder of shaders; its name is its kind")
     parser.add_argument("--kind", action="append", default=[], metavar="NAME=FOLDER")
-    parser.add_argument("--target", action="append", choices=COMPILERS, help="wgsl, hlsl, glsl-330 where none is named")
+    parser.add_argument("--target", action="append", choices=COMPILERS, help="default: wgsl, hlsl, glsl-330")
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--ext", action="append", default=[], help=".glsl, .frag, .vert where none is named")
+    parser.add_argument("--ext", action="append", default=[], help="default: .glsl, .frag, .vert")
     parser.add_argument("--include-dir", action="append", default=[], type=Path)
-    parser.add_argument("--every", type=int, default=1, help="only each Nth file")
+    parser.add_argument("--every", type=int, default=1, help="read only every Nth file")
     parser.add_argument("--reasons", type=int, default=REASONS)
     parser.add_argument("--naga", action="store_true")
     parser.add_argument("--json", type=Path)
     parser.add_argument("--speed", action="store_true")
     options = parser.parse_args()
     kinds = {Path(folder).name: Path(folder) for folder in options.FOLDER}
-    kinds |= {name: Path(folder) for name, _, folder in (one.partition("=") for one in options.kind)}
+    kinds |= {name: Path(folder) for name, _, folder in (option.partition("=") for option in options.kind)}
     targets = options.target or ["wgsl", "hlsl", "glsl-330"]
     if options.speed:
         from transpile_speed import report as speed
@@ -189,7 +209,7 @@ def measure(kinds: dict[str, Path], targets: Sequence[str], inputs: argparse.Nam
             counting = [code for code, refusal in zip(codes, refusals, strict=True) if not refusal]
             skipped[kind] = len(codes) - len(counting)
             result = judged(kind, counting, inputs.include_dir, targets, pool)
-            verdicts += asked_naga(result, inputs.include_dir, pool) if inputs.naga else result
+            verdicts += with_naga_messages(result, inputs.include_dir, pool) if inputs.naga else result
             print(f"{kind}: {len(codes)} files", file=sys.stderr)
     finally:
         pool.close()

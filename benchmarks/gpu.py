@@ -1,10 +1,11 @@
-"""The cost of emitted shaders on a GPU against hand-written ones: make bench-gpu, or python benchmarks/gpu.py.
+"""Compares the cost of emitted and handwritten shaders on a GPU: make bench-gpu, or python benchmarks/gpu.py.
 
     python benchmarks/gpu.py --size 320x180 --rounds 5 --json out.json --markdown out.md
 
-First 42yeah's scene as published against jelly_cubes with the same camera and glow, and how far apart their pictures
-are. Then each technique with its defaults against its formula in benchmarks/by_hand. Last the examples' materials in
-their scenes. Emitted and written by hand take turns in the same run; below 1 the emitted one is the faster.
+The first table compares 42yeah's published scene with jelly_cubes, with the same camera and glow, and shows the
+difference of their pictures. The second table compares each technique, with default parameters, with its formula in
+benchmarks/by_hand. The third table shows the materials of the examples in their scenes. Emitted and handwritten
+programs take turns in the same run; a ratio below 1 means that the emitted program is faster.
 """
 
 from __future__ import annotations
@@ -27,13 +28,13 @@ from sssgen.material.slots import needs
 
 BY_HAND = Path(__file__).parent / "by_hand"
 TIME = 1.2
-"""Where both cubes and the shadow are seen."""
+"""A time at which both cubes and the shadow are visible, in seconds."""
 BODY = {"body_distance": "sphere", "scene_distance": "sphere", "distance_at": "distance_texture"}
-"""What the techniques' slots are bound to; by_hand has the same."""
+"""Slot → the function that is bound to it; the programs in by_hand use the same functions."""
 REACH = 1.5
-"""Of thinness: on the far side of the ball the taps come out again."""
+"""The reach of the thinness techniques; with it the last taps leave the ball on the far side."""
 EVALUATIONS = 32
-"""Of a technique at each pixel: one alone is hidden behind the reading of its inputs."""
+"""Evaluations of a technique per pixel; reading the inputs would hide the cost of one evaluation."""
 
 
 class Table(NamedTuple):
@@ -43,44 +44,45 @@ class Table(NamedTuple):
 
 
 def published(aspect: float) -> Program:
-    """42yeah's scene, by hand."""
+    """42yeah's scene as published, written by hand."""
     return Program(
         "jelly_cubes published", (BY_HAND / "jelly_cubes_published.glsl").read_text(), {"time": TIME, "aspect": aspect}
     )
 
 
 def emitted(aspect: float) -> Program:
-    """The same, emitted: its image has the other's width."""
+    """The same scene, emitted, with the same field of view."""
     compiled = sssgen.compile("jelly_cubes", "glsl-330")
-    values = {one["name"]: one["default"] for one in compiled.reflection["uniforms"]}
-    # 0.9 of a mean that was never more than 0.38667
+    values = {uniform["name"]: uniform["default"] for uniform in compiled.reflection["uniforms"]}
+    # 0.9 of the largest value of the mean in the published scene, 0.38667
     values |= {"time": [TIME], "aspect": [aspect], "glow_strength": [0.9 * 0.38667]}
     return Program("jelly_cubes emitted", compiled.files["jelly_cubes.glsl-330.frag"], values)
 
 
 def hand_written() -> dict[str, str]:
-    """Technique → the text that has it by hand."""
+    """Technique → the file text that contains its handwritten form."""
     texts = [path.read_text() for path in sorted(BY_HAND.glob("*.glsl"))]
     results = {name: text for text in texts for name in re.findall(r"^\w+ (\w+)\(", text, re.MULTILINE)}
     return {name: text for name, text in results.items() if name in library.index()}
 
 
 def techniques(points: gpu_programs.Points, evaluations: int) -> list[tuple[Program, Program]]:
-    """Each technique, as emitted and by hand."""
+    """Pairs of programs for each technique: emitted, handwritten."""
     pairs = []
     for name, text in hand_written().items():
         technique = library.load(name)
         bind = {slot.name: BODY[slot.name] for slot in needs(technique.module, technique.function)[1]}
         values = {"reach": REACH} if bind and name.startswith("thinness_") else {}
         result = [
-            gpu_programs.of_technique(name, points, bind, evaluations, text=one, values=values) for one in ("", text)
+            gpu_programs.of_technique(name, points, bind, evaluations, text=source, values=values)
+            for source in ("", text)
         ]
         pairs.append((result[0], result[1]))
     return pairs
 
 
 def frame(spread: Spread, software: bool) -> str:
-    """Milliseconds; a software rasteriser's are not shown."""
+    """A time in milliseconds; a dash for a software rasteriser."""
     return "–" if software else f"{spread.median:.4g} ({spread.low:.4g}–{spread.high:.4g})"
 
 
@@ -89,45 +91,53 @@ def times(spread: Spread) -> str:
 
 
 def jelly_cubes(size: tuple[int, int], rounds: int) -> tuple[Table, Measured, dict[str, Any]]:
-    """42yeah's scene."""
+    """The table of 42yeah's scene."""
     pair = published(size[0] / size[1]), emitted(size[0] / size[1])
-    pictures = [gpu_cost.picture(one, size)[::-1, :, :3] for one in pair]
+    pictures = [gpu_cost.picture(program, size)[::-1, :, :3] for program in pair]
     flip = compare(pictures[1], pictures[0]).flip
     result = gpu_cost.measure(pair, size, rounds)
     rows = [
-        [one.name, frame(result.raw(one.name), result.device.software), times(result.ratio(one.name, pair[0].name))]
-        for one in pair
+        [
+            program.name,
+            frame(result.raw(program.name), result.device.software),
+            times(result.ratio(program.name, pair[0].name)),
+        ]
+        for program in pair
     ]
     title = f"42yeah's scene; FLIP between the two pictures {flip:.4f}"
-    return Table(title, ["", "ms a frame", "× published"], rows), result, {"flip": flip}
+    return Table(title, ["", "ms per frame", "× published"], rows), result, {"flip": flip}
 
 
 def by_technique(size: tuple[int, int], rounds: int, evaluations: int) -> tuple[Table, Measured, dict[str, Any]]:
-    """Each technique, and the ratio to its hand-written twin."""
+    """The table of the techniques, with the ratio to the handwritten form."""
     pairs = techniques(gpu_programs.ball_points(size), evaluations)
-    result = gpu_cost.measure([one for pair in pairs for one in pair], size, rounds)
+    result = gpu_cost.measure([program for pair in pairs for program in pair], size, rounds)
     rows, ratios = [], {}
-    for one, other in pairs:
-        ratio = result.ratio(one.name, other.name)
-        ratios[one.name] = [round(value, 4) for value in ratio]
-        cells = [frame(result.net(name), result.device.software) for name in (one.name, other.name)]
-        rows.append([one.name, *cells, times(ratio)])
+    for program, reference in pairs:
+        ratio = result.ratio(program.name, reference.name)
+        ratios[program.name] = [round(value, 4) for value in ratio]
+        cells = [frame(result.net(name), result.device.software) for name in (program.name, reference.name)]
+        rows.append([program.name, *cells, times(ratio)])
     title = (
-        f"Each technique, {evaluations} evaluations a pixel; ms of one at every pixel, less the reading of its inputs"
+        f"Techniques, {evaluations} evaluations per pixel; ms per evaluation at all pixels, without reading the inputs"
     )
     return Table(title, ["", "emitted", "by hand", "emitted / by hand"], rows), result, {"ratios": ratios}
 
 
 def by_example(size: tuple[int, int], rounds: int) -> tuple[Table, Measured, dict[str, Any]]:
-    """The examples' materials in their scenes."""
+    """The table of the examples' materials in their scenes."""
     scenes = {name: scene_loading.load(name) for name in examples()}
-    chosen = [gpu_programs.TimedMaterial(name, one.material, one) for name, one in scenes.items()]
+    chosen = [gpu_programs.TimedMaterial(name, scene.material, scene) for name, scene in scenes.items()]
     timing = gpu_programs.costs(chosen, size, rounds)
     rows = [
-        [one.name, frame(timing.net(one.name), timing.device.software), times(timing.ratio(one.name, chosen[0].name))]
-        for one in chosen
+        [
+            material.name,
+            frame(timing.net(material.name), timing.device.software),
+            times(timing.ratio(material.name, chosen[0].name)),
+        ]
+        for material in chosen
     ]
-    return Table("The examples' materials", ["", "ms a frame", f"× {chosen[0].name}"], rows), timing, {}
+    return Table("The examples' materials", ["", "ms per frame", f"× {chosen[0].name}"], rows), timing, {}
 
 
 def as_markdown(table: Table) -> str:
@@ -151,7 +161,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--size", default="1920x1080", help="width and height in pixels")
     parser.add_argument("--rounds", type=int, default=gpu_cost.ROUNDS)
-    parser.add_argument("--evaluations", type=int, default=EVALUATIONS, help="of a technique at each pixel")
+    parser.add_argument("--evaluations", type=int, default=EVALUATIONS, help="evaluations of a technique per pixel")
     parser.add_argument("--json", help="a file for all numbers")
     parser.add_argument("--markdown", help="a file for the tables")
     options = parser.parse_args()
@@ -170,7 +180,7 @@ def main() -> None:
     device = (
         f"{result.device.renderer}, {result.device.version}; {width} × {height}, medians of {options.rounds} rounds"
     )
-    message = f"{device}, with what 8 of 10 rounds lie between."
+    message = f"{device}, with the 10th and 90th percentiles."
     print(message + (" Software: ratios only." if result.device.software else ""))
     if options.json:
         Path(options.json).write_text(json.dumps(record, indent=1) + "\n")

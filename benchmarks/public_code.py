@@ -1,8 +1,9 @@
-"""One file of public shader code: whether it counts, and its result in every target and every compiler.
+"""Compiles files of public shader code: whether a file counts, and its result for every target and compiler.
 
-A file counts where glslang accepts it. One without `#version` is read as 4.50 of the compatibility profile, which
-knows `varying`, `texture2D` and `gl_FragColor` too; one with a version as it is, or, where that fails, as 4.50. A file
-of functions gets an empty `main`, a Shadertoy scene the uniforms and the `main` that the site gives it.
+A file counts if glslang accepts it. A file without `#version` is read as version 4.50 of the compatibility profile,
+which also has `varying`, `texture2D` and `gl_FragColor`. A file with a version is read as that version and, if that
+fails, as 4.50. A file without `main` gets an empty `main`; a Shadertoy scene gets the uniforms and the `main` of the
+site.
 """
 
 from __future__ import annotations
@@ -28,9 +29,9 @@ from sssgen.support.diagnostics import SssgenError
 from sssgen.support.text_files import read_text
 
 BATCH = 40
-"""Texts to a process of glslang."""
+"""The number of texts that a process of glslang compiles."""
 SECONDS = 60.0
-"""How long one process of glslang may take."""
+"""The time limit of a glslang process."""
 
 COMPILERS = {
     "wgsl": ("naga", "tint"),
@@ -38,9 +39,9 @@ COMPILERS = {
     "glsl-330": ("glslang",),
     "glsl-es-300": ("glslang",),
 }
-"""Target → the compilers that must take it."""
+"""Target → the compilers that must accept it."""
 BATCHED = {("glslang", "glsl-330"), ("glslang", "glsl-es-300")}
-"""What is asked for many texts at once."""
+"""(compiler, target) pairs that are checked in batches, outside of the worker processes."""
 
 _STAGES = {"vertex": "vert", "fragment": "frag", "library": "frag"}
 _COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
@@ -53,11 +54,11 @@ class Code(NamedTuple):
 
     path: Path
     text: str
-    """With its includes in it."""
+    """The text, with its includes expanded."""
 
     @property
     def is_scene(self) -> bool:
-        """Whether it is one of Shadertoy's: `mainImage` and no `main`."""
+        """Whether it is a Shadertoy scene: it has `mainImage` and no `main`."""
         bare = _COMMENT.sub(" ", self.text)
         return re.search(r"\bvoid\s+mainImage\s*\(", bare) is not None and not _has_main(bare)
 
@@ -66,17 +67,17 @@ class Code(NamedTuple):
         return "vert" if self.path.suffix in (".vert", ".vs") else "frag"
 
 
-class Made(NamedTuple):
+class TargetResult(NamedTuple):
     """The result of one target for a file."""
 
     source: Source | None
-    """The text, with the entry that it has; None where there is none."""
+    """The emitted text with its entry; None if there is none."""
     problem: str
-    """Why not, or what a compiler that is not asked in batches says, as `who: message`; '' where all is well."""
+    """Why there is no text, or the error of a compiler outside of the batches (`compiler: message`); '' if none."""
 
 
 def read(path: Path, folders: Sequence[Path]) -> Code:
-    """A file with its includes, which are also searched in `folders`; without one of them it does not compile."""
+    """A file with its includes, which are also searched in `folders`. A file with a missing include cannot compile."""
     try:
         return Code(path, expanded(read_text(path, path.as_posix()), path, folders))
     except SssgenError as error:
@@ -84,7 +85,7 @@ def read(path: Path, folders: Sequence[Path]) -> Code:
 
 
 def accepted(codes: Sequence[Code]) -> list[str]:
-    """glslang's error for each file: '' where it counts."""
+    """The error of glslang for each file; '' if the file counts."""
     reported = _in_batches([(code.stage, _whole(code, own_version=True)) for code in codes])
     again = [index for index, message in enumerate(reported) if message and _VERSION.search(codes[index].text)]
     for index, message in zip(
@@ -95,7 +96,7 @@ def accepted(codes: Sequence[Code]) -> list[str]:
 
 
 def glslang(sources: Sequence[Source]) -> list[str]:
-    """glslang's error for each emitted GLSL text: '' where it is accepted."""
+    """The error of glslang for each emitted GLSL text; '' if glslang accepts it."""
     return _in_batches([(_STAGES[source.stage], _with_entry(source)) for source in sources])
 
 
@@ -105,25 +106,25 @@ def _with_entry(source: Source) -> str:
 
 
 def preprocessed(code: Code) -> str:
-    """The whole program without directives, as 4.50, for a front end of Vulkan's GLSL.
+    """The whole program without directives, as version 4.50, for a front end that reads Vulkan's GLSL.
 
-    What Vulkan wants of an interface is no part of the code: what a stage is given and gives, and uniforms but for
-    textures, become variables.
+    Inputs, outputs, and uniforms other than textures become variables, because Vulkan requires layouts that the code
+    does not have.
     """
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"whole.{code.stage}"
         path.write_text(_whole(code, own_version=False), "utf-8")
         command = ["glslangValidator", "-E", str(path)]
-        done = subprocess.run(command, capture_output=True, encoding="utf-8", errors="replace", timeout=SECONDS)
-    body = "\n".join(line for line in done.stdout.splitlines() if not line.lstrip().startswith("#"))
+        process = subprocess.run(command, capture_output=True, encoding="utf-8", errors="replace", timeout=SECONDS)
+    body = "\n".join(line for line in process.stdout.splitlines() if not line.lstrip().startswith("#"))
     body = re.sub(r"\buniform\s+(?!(?:(?:low|medium|high)p\s+)?[iu]?sampler)", "", without_interface(body))
-    color = "vec4 color_given;\n" if "gl_FragColor" in body else ""
-    body = re.sub(r"\bgl_FragColor\b", "color_given", body)
+    color = "vec4 pixel_color;\n" if "gl_FragColor" in body else ""
+    body = re.sub(r"\bgl_FragColor\b", "pixel_color", body)
     return f"#version 450\n{color}{body}\n"
 
 
 def _whole(code: Code, own_version: bool) -> str:
-    """The program that glslang is asked about."""
+    """The whole program that glslang compiles."""
     version = _VERSION.search(code.text) if own_version else None
     head = version[0] if version else "#version 450 compatibility\n"
     text = _VERSION.sub("\n", code.text, count=1)
@@ -133,7 +134,7 @@ def _whole(code: Code, own_version: bool) -> str:
 
 
 def _scene_uniforms(text: str) -> str:
-    """Those that a scene names and does not declare."""
+    """Declarations of the uniforms that a scene uses and does not declare."""
     named = [line for name, line in UNIFORMS.items() if re.search(rf"\b{name}\b", text)]
     lines = [line.split(";")[0] for line in named]
     return "".join(f"{line};\n" for line in lines if not re.search(rf"{re.escape(line)}\s*;", text))
@@ -144,7 +145,7 @@ def _has_main(bare: str) -> bool:
 
 
 def _in_batches(programs: Sequence[tuple[str, str]]) -> list[str]:
-    """The first complaint about each (stage, text)."""
+    """The first error of each (stage, text); '' if there is none."""
     results: list[str] = []
     for start in range(0, len(programs), BATCH):
         results += _batch(programs[start : start + BATCH])
@@ -152,25 +153,25 @@ def _in_batches(programs: Sequence[tuple[str, str]]) -> list[str]:
 
 
 def _batch(programs: Sequence[tuple[str, str]]) -> list[str]:
-    """One process; where it fails, one for each text, so that only one has no answer."""
+    """The errors from one process. If it crashes, each text gets its own process."""
     with tempfile.TemporaryDirectory() as folder:
         paths = [Path(folder) / f"{number}.{stage}" for number, (stage, _) in enumerate(programs)]
         for path, (_, text) in zip(paths, programs, strict=True):
             path.write_text(text, "utf-8")
         command = ["glslangValidator", *map(str, paths)]
         try:
-            done = subprocess.run(command, capture_output=True, encoding="utf-8", errors="replace", timeout=SECONDS)
+            process = subprocess.run(command, capture_output=True, encoding="utf-8", errors="replace", timeout=SECONDS)
         except subprocess.TimeoutExpired:
-            done = None
-    if done is None or done.returncode < 0:
+            process = None
+    if process is None or process.returncode < 0:
         if len(programs) == 1:
-            return ["glslang crashed or did not end"]
-        return [message for one in programs for message in _batch([one])]
-    if done.returncode == 0:
+            return ["glslang crashed or exceeded its time"]
+        return [message for program in programs for message in _batch([program])]
+    if process.returncode == 0:
         return [""] * len(programs)
-    messages = ["glslang says nothing of it"] * len(programs)
+    messages = ["glslang reported nothing"] * len(programs)
     number = -1
-    for line in done.stdout.splitlines():
+    for line in process.stdout.splitlines():
         if number + 1 < len(paths) and line.strip() == str(paths[number + 1]):
             number += 1
             messages[number] = ""
@@ -180,7 +181,7 @@ def _batch(programs: Sequence[tuple[str, str]]) -> list[str]:
 
 
 Question = tuple[str, tuple[object, ...]]
-"""What is asked, `made` or `naga_glsl`, and its arguments."""
+"""The name of a function, `target_results` or `naga_glsl`, and its arguments."""
 
 
 def naga_glsl(text: str, stage: str) -> str:
@@ -196,32 +197,32 @@ def naga_glsl(text: str, stage: str) -> str:
 
 
 def serve(_: str) -> tuple[str, Callable[[Question], object]]:
-    """For `harness.process`: a process that transpiles files and has the compilers which stay started."""
+    """The entry of a worker process. It transpiles files and keeps the compilers loaded."""
 
     def answer(question: Question) -> object:
-        what, given = question
-        return _ANSWERS[what](*given)
+        function, arguments = question
+        return _FUNCTIONS[function](*arguments)
 
     return "ready", answer
 
 
-def made(code: Code, folders: Sequence[Path], targets: Sequence[str]) -> dict[str, Made]:
-    """Each target's text and the messages of the compilers in this process; {"": …} where the file cannot be read."""
+def target_results(code: Code, folders: Sequence[Path], targets: Sequence[str]) -> dict[str, TargetResult]:
+    """Target → its text, and the errors of the compilers in this process; {"": …} if the file cannot be read."""
     try:
         entry = "shadertoy" if code.is_scene else ""
         module = load_glsl(code.path, code.path.name, tuple(folders), entry=entry).module
     except Exception as error:
-        return {"": Made(None, _reason(error))}
+        return {"": TargetResult(None, _reason(error))}
     results = {}
     for target in targets:
         try:
             files = transpile(module, target, "file", keep=True).files
         except Exception as error:
-            results[target] = Made(None, _reason(error))
+            results[target] = TargetResult(None, _reason(error))
             continue
         text = "\n".join(text for name, text in files.items() if not name.endswith(".json"))
-        source = hand_written(text, target, "made")[0]
-        results[target] = Made(source, next(_complaints(source), ""))
+        source = hand_written(text, target, "file")[0]
+        results[target] = TargetResult(source, next(_complaints(source), ""))
     return results
 
 
@@ -233,20 +234,20 @@ def _complaints(source: Source) -> Iterator[str]:
 
 
 def _reason(error: Exception) -> str:
-    """A readable message, or the exception where there is none."""
+    """The message of an error that sssgen reports, or a description of any other exception."""
     if isinstance(error, SssgenError):
         return error.diagnostics[0].message
     trace = error.__traceback__
     while trace is not None and trace.tb_next is not None:
         trace = trace.tb_next
-    where = f" in {Path(trace.tb_frame.f_code.co_filename).name}" if trace is not None else ""
-    return f"BROKEN: {type(error).__name__}{where}: {error}"
+    place = f" in {Path(trace.tb_frame.f_code.co_filename).name}" if trace is not None else ""
+    return f"BROKEN: {type(error).__name__}{place}: {error}"
 
 
 def blank(message: str) -> str:
-    """A message without its names and numbers, so that equal reasons are counted together."""
+    """A message without its names and numbers, so that equal problems are counted together."""
     message = re.sub(r"'[^']*'|\"[^\"]*\"|`[^`]*`", "'…'", message.splitlines()[0] if message else "")
     return re.sub(r"\d+", "N", message)[:150]
 
 
-_ANSWERS: dict[str, Callable[..., object]] = {"made": made, "naga_glsl": naga_glsl}
+_FUNCTIONS: dict[str, Callable[..., object]] = {function.__name__: function for function in (target_results, naga_glsl)}

@@ -2,9 +2,9 @@
 
     python benchmarks/replay.py OLD [NEW]
 
-OLD and NEW are folders of the project or git commits; NEW is this folder if it is not given. For every target, without
-a cache, both emit the examples of OLD in both forms, and each technique of their own library alone, with guards and
-without. Exit status: 0 the same, 1 something differs.
+OLD and NEW are folders of the project or git commits; the default of NEW is this folder. Both states emit, for every
+target and without a cache, the examples of OLD in both forms, and each technique of their own library, with and
+without guards. Exit status: 0 if all texts are equal, 1 if a text differs.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ EXTRACTION: dict[str, Any] = {"filter": "data"} if hasattr(tarfile, "data_filter
 ROOT = Path(__file__).resolve().parent.parent
 FORMS = ("shader", "functions")
 GUARDS = ("auto", "none")
-SHOWN = 40
-"""How many lines of each difference are printed."""
+DIFFERENCE_LINES = 40
+"""The number of lines that are printed of each difference."""
 
 
 def checkout(state: str, place: Path) -> Path:
-    """The folder of a state of the project: itself, or a commit's files in `place`."""
+    """The folder of a state of the project. The files of a commit are extracted to `place`."""
     if Path(state).is_dir():
         return Path(state).resolve()
     archive = place.with_suffix(".tar")
@@ -59,7 +59,7 @@ def texts_of_this_state() -> dict[str, str]:
         from sssgen.harness.evaluate import probes
         from sssgen.material import library
         from sssgen.pipeline import compiler
-    except ImportError:  # a state with its modules in fewer folders
+    except ImportError:  # the folders of earlier states
         from sssgen import compiler, library
         from sssgen.harness import probes
 
@@ -109,7 +109,7 @@ def _without_places(value: Any) -> Any:
 
 
 def main() -> int:
-    """Compares; returns the exit status."""
+    """Compares the two states; returns the exit status."""
     if sys.argv[1:2] == ["--emit"]:  # in the process of one state
         Path(sys.argv[2]).write_text(json.dumps(texts_of_this_state()), encoding="utf-8")
         return 0
@@ -132,7 +132,8 @@ def main() -> int:
     for name in differing:
         texts = [result.get(name, "").splitlines() for result in (before, after)]
         lines = list(difflib.unified_diff(*texts, f"old/{name}", f"new/{name}", lineterm="", n=1))
-        print("\n".join(lines[:SHOWN]), f"\n… {len(lines) - SHOWN} more lines\n" if len(lines) > SHOWN else "\n")
+        more = len(lines) - DIFFERENCE_LINES
+        print("\n".join(lines[:DIFFERENCE_LINES]), f"\n… {more} more lines\n" if more > 0 else "\n")
     print(f"{len(differing)} of {len(names)} texts differ")
     return 1 if differing else 0
 

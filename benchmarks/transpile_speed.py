@@ -1,8 +1,8 @@
-"""Speed of the stages of `sssgen transpile` on a synthetic text, and whether it is linear in the length.
+"""Measures the speed of the stages of `sssgen transpile` on a generated text, and how the time grows with its length.
 
-The text is functions as people write them for effects: hashes, noise and its sums, distances, colours; with comments,
-macros, loops and swizzles, each with a number in its name. 100 kB of it are timed, then ten times as much: a growth of
-10 is a time that goes with the length.
+The text repeats functions that are typical for effects (hashes, sums of noise, distances, colours), with comments,
+macros, loops and swizzles; each copy has its number in its names. The stages run on 100 kB and on ten times as much: a
+growth of 10 means that the time is proportional to the length.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from sssgen.pipeline.compiler import transpile
 from sssgen.support.diagnostics import Reporter
 from sssgen.support.gc_pause import paused
 
-Made = TypeVar("Made")
+Result = TypeVar("Result")
 
 FILE = "speed.glsl"
 SIZE = 100_000
@@ -67,17 +67,17 @@ vec3 tint_@(float share, const in vec3 base, inout float brightness) {
 
 
 def text_of(size: int) -> str:
-    """At least `size` characters of GLSL."""
+    """GLSL with at least `size` characters."""
     count = -(-size // len(_PART))
     return _HEAD + "".join(_PART.replace("@", str(number)) for number in range(count))
 
 
 def stages(text: str, targets: Sequence[str]) -> dict[str, float]:
-    """Stage → seconds; of several rounds the shortest."""
+    """Stage → its shortest time of several rounds, in seconds."""
     results: dict[str, float] = {}
 
-    def timed(name: str, work: Callable[[], Made]) -> Made:
-        with paused():  # as for users
+    def timed(name: str, work: Callable[[], Result]) -> Result:
+        with paused():  # as in the command
             start = time.perf_counter()
             result = work()
         results[name] = min(results.get(name, float("inf")), time.perf_counter() - start)
@@ -94,15 +94,15 @@ def stages(text: str, targets: Sequence[str]) -> dict[str, float]:
 
 
 def report(targets: Sequence[str]) -> None:
-    """Prints the speed of each stage and of the way to each target, and the growth."""
+    """Prints the speed and the growth of each stage, and of all stages for each target."""
     small, large = text_of(SIZE), text_of(10 * SIZE)
     first, second = stages(small, targets), stages(large, targets)
     front = [name for name in first if name not in targets]
     print(f"{len(small) / 1000:.0f} kB of GLSL, then {len(large) / 1000:.0f} kB")
     print(f"{'':30}{'kB/s':>8}{'growth':>8}")
     for name in first:
-        shown = name if name in front else f"passes and print {name}"
-        print(f"{shown:30}{len(small) / 1000 / first[name]:8.0f}{second[name] / first[name]:8.1f}")
+        title = name if name in front else f"passes and print {name}"
+        print(f"{title:30}{len(small) / 1000 / first[name]:8.0f}{second[name] / first[name]:8.1f}")
     for target in targets:
         whole = [sum(times[name] for name in [*front, target]) for times in (first, second)]
         print(f"{f'source to {target}':30}{len(small) / 1000 / whole[0]:8.0f}{whole[1] / whole[0]:8.1f}")

@@ -1,4 +1,4 @@
-"""How the time of the range pass grows with nested calls: chains of functions, and a library of noise functions.
+"""Measures how the time of the range pass grows with nested calls: chains of functions, a library of noise functions.
 
 python benchmarks/value_ranges.py
 """
@@ -13,12 +13,12 @@ from sssgen.lang.loader import load_file, load_text
 from sssgen.passes.ranges.range_pass import RangeAnalysis
 
 LEVELS = (8, 15, 30, 60)
-"""The checker allows 64."""
+"""The numbers of nested functions; the checker allows 64."""
 NOISE = Path(__file__).parent / "noise_library.sss"
 
 
 def chain_of_calls(levels: int) -> str:
-    """Functions of which each calls the one before twice, with different arguments."""
+    """Functions that each call the previous function twice, with different arguments."""
     functions = ["float f0(float x) { return sqrt(abs(x)) + x * 0.5; }"] + [
         f"float f{level}(float x) {{ float a = f{level - 1}(x * 0.5); float b = f{level - 1}(a + {level}.0);"
         " return x > 0.0 ? a - b : b / (1.0 + a * a); }"
@@ -28,7 +28,7 @@ def chain_of_calls(levels: int) -> str:
 
 
 def measured(module: Module, rounds: int = 3) -> tuple[float, int]:
-    """The shortest CPU time of the analysis of the last function, in seconds, and its interpretations of functions."""
+    """The shortest CPU time to analyse the last function, in seconds, and the number of interpreted functions."""
     shortest, count = float("inf"), 0
     for _ in range(rounds):
         start = process_time()

@@ -24,15 +24,15 @@ from sssgen.lab.scene import measured_scene
 from sssgen.support.file_writer import write_files
 from sssgen.support.progress import ProgressBar
 
-HERE = Path(__file__).parent
-FOLDER = HERE / "accuracy"
-PAGE = HERE / "accuracy.md"
+DOCS = Path(__file__).parent
+FOLDER = DOCS / "accuracy"
+PAGE = DOCS / "accuracy.md"
 GPU_CHART = "gpu_chart.json"
 BY_HAND = "gpu_jelly_cubes.json"
 TIMED = ("cube", "torus", "inlay_plate", "inlay_ball")
 """The scenes whose chains are timed, in one or two minutes each."""
 SPOT = FOLDER / "spot.toml"
-MESHES = HERE.parent.parent / "shared" / "data" / "meshes"
+MESHES = DOCS.parent.parent / "shared" / "data" / "meshes"
 
 ROLES = {
     "material": "Whole materials",
@@ -53,9 +53,9 @@ def main() -> int:
     arguments = options.parse_args()
     if arguments.gpu:
         return timed()
-    settings = Settings(scheduler=arguments.scheduler, processes=arguments.processes, shown=ProgressBar)
-    record = chart.charted([measured_scene.load(name) for name in scenes()], settings)
-    trial = pick_trial.tried(settings)
+    settings = Settings(scheduler=arguments.scheduler, processes=arguments.processes, progress_bar=ProgressBar)
+    record = chart.chart_record([measured_scene.load(name) for name in scenes()], settings)
+    trial = pick_trial.trial_rows(settings)
     page(record, trial)
     return 0
 
@@ -67,18 +67,18 @@ def scenes() -> list[str]:
 
 def page(record: Record, trial: Sequence[Mapping[str, Any]]) -> None:
     """Writes the pictures and the page."""
-    drawn = drawing.drawn(record)
-    files = {name: data for name, data in drawn.items() if name.endswith((".png", ".csv", ".json"))}
+    chart_files = drawing.chart_files(record)
+    files = {name: data for name, data in chart_files.items() if name.endswith((".png", ".csv", ".json"))}
     if (FOLDER / GPU_CHART).is_file():
-        timed_there = chart_gpu.by_gpu(json.loads((FOLDER / GPU_CHART).read_text(encoding="utf-8")))
+        gpu_record = chart_gpu.by_gpu(json.loads((FOLDER / GPU_CHART).read_text(encoding="utf-8")))
         files |= {
-            name: data for name, data in drawing.drawn(timed_there, "gpu").items() if name.endswith("material.png")
+            name: data for name, data in drawing.chart_files(gpu_record, "gpu").items() if name.endswith("material.png")
         }
     write_files(str(FOLDER), files)
     text = (FOLDER / "page.md.in").read_text(encoding="utf-8")
     parts: dict[str, Callable[[], str]] = {
         "scenes": lambda: scene_table(record), "fronts": lambda: fronts(record), "volumes": lambda: volumes(record),
-        "known": lambda: known_answers(record), "losses": lambda: losses(record),
+        "known": lambda: expected_results(record), "losses": lambda: losses(record),
         "implementation": lambda: implementation(record), "gpu": gpu, "by_hand": by_hand,
         "pick": lambda: pick_trial.table(trial),
     }  # fmt: skip
@@ -94,13 +94,13 @@ def timed() -> int:
     """Times the chains on the fronts of the stored chart, and the baselines, on the local GPU."""
     record = json.loads((FOLDER / "chart.json").read_text(encoding="utf-8"))
     points = [point for point in record["points"] if point["front"] or point["baseline"] or point["role"] != "material"]
-    wanted = [scene["name"] for scene in record["scenes"] if scene["name"] in TIMED]
-    shortened = {**record, "points": [point for point in points if point["scene"] in wanted]}
+    names = [scene["name"] for scene in record["scenes"] if scene["name"] in TIMED]
+    shortened = {**record, "points": [point for point in points if point["scene"] in names]}
 
-    def progress(done: int, of: int, name: str) -> None:
-        print(f"{done} of {of}: {name}", file=sys.stderr, flush=True)
+    def progress(completed: int, total: int, name: str) -> None:
+        print(f"{completed} of {total}: {name}", file=sys.stderr, flush=True)
 
-    timed_record = chart_gpu.with_gpu_cost(shortened, [measured_scene.load(name) for name in wanted], progress=progress)
+    timed_record = chart_gpu.with_gpu_cost(shortened, [measured_scene.load(name) for name in names], progress=progress)
     write_files(str(FOLDER), {GPU_CHART: drawing.record.to_json(timed_record)})
     print(timed_record["record"]["device"], timed_record["record"]["rank_correlation"])
     return 0
@@ -117,7 +117,7 @@ def scene_table(record: Record) -> str:
     return "\n".join(rows)
 
 
-def of(record: Record, scene: str, role: str) -> list[Point]:
+def points_of(record: Record, scene: str, role: str) -> list[Point]:
     """The points of a scene and role, by cost."""
     points = [point for point in record["points"] if point["scene"] == scene and point["role"] == role]
     return sorted(points, key=lambda point: float(point["cost"]["value"]))
@@ -127,7 +127,7 @@ def fronts(record: Record) -> str:
     """The fronts of whole materials."""
     rows = ["| scene | cost | relative error | FLIP | chain |", "|---|---:|---|---:|---|"]
     for scene in record["scenes"]:
-        for point in of(record, scene["name"], "material"):
+        for point in points_of(record, scene["name"], "material"):
             if point["front"]:
                 published = " (published)" if point["baseline"] else ""
                 rows.append(
@@ -147,39 +147,39 @@ def volumes(record: Record) -> str:
     """The hypervolumes."""
     rows = ["| scene | role | library | all baselines together |", "|---|---|---:|---:|"]
     rows += [
-        f"| {one['scene']} | {one['role']} | {one['ours']:.3f} | {one['baselines']:.3f} |"
-        for one in record["hypervolume"]
+        f"| {entry['scene']} | {entry['role']} | {entry['ours']:.3f} | {entry['baselines']:.3f} |"
+        for entry in record["hypervolume"]
     ]
     return "\n".join(rows)
 
 
-def known_answers(record: Record) -> str:
-    """Known answers, and the measured figures."""
+def expected_results(record: Record) -> str:
+    """The table of results that theory predicts, with the measured figures."""
     rows = ["| known answer | measured |", "|---|---|"]
-    for scene in (one["name"] for one in record["scenes"] if "medium" in one):
-        by_label = {point["label"]: point for point in of(record, scene, "material")}
+    for scene in (entry["name"] for entry in record["scenes"] if "medium" in entry):
+        by_label = {point["label"]: point for point in points_of(record, scene, "material")}
         ice, gdc = by_label["Unity ice"], by_label["GDC 2011"]
         rows.append(
             "| the Unity ice lobe adds nothing to its ambient light, so its fit does not change power, scale and "
             f"distortion ({scene}) | {untouched(ice)}; error {error(ice)}, with a correct lobe {error(gdc)} |"
         )
-        thickness = {point["label"]: point for point in of(record, scene, "thickness")}
-        cheap = min((one for one in thickness.values() if one["name"] == "cheap_sss_thinness"), key=value)
+        thickness = {point["label"]: point for point in points_of(record, scene, "thickness")}
+        cheap = min((point for point in thickness.values() if point["name"] == "cheap_sss_thinness"), key=value)
         best = min(thickness.values(), key=value)
         rows.append(
             f"| Cheap SSS does not measure the thickness towards the light ({scene}) | {value(cheap):.3f}, "
             f"where {best['label']} has an error of {value(best):.4f} |"
         )
-    for scene in (one["name"] for one in record["scenes"] if "medium" not in one):
-        named = {point["name"]: point for point in of(record, scene, "coordinates")}
+    for scene in (entry["name"] for entry in record["scenes"] if "medium" not in entry):
+        named = {point["name"]: point for point in points_of(record, scene, "coordinates")}
         on_plane = value(named["parallax_refracted"]) < 1e-6
-        known = (
+        statement = (
             "corrected Subsurface Parallax is exact on a plane"
             if on_plane
             else "corrected Subsurface Parallax is not exact on a curved body"
         )
         rows.append(
-            f"| {known} ({scene}) | {value(named['parallax_refracted']):.2g}; "
+            f"| {statement} ({scene}) | {value(named['parallax_refracted']):.2g}; "
             f"without refraction {value(named['parallax_straight']):.3g} |"
         )
     return "\n".join(rows)
@@ -203,16 +203,18 @@ def losses(record: Record) -> str:
     ]
     for scene in record["scenes"]:
         for role in ROLES:
-            points = of(record, scene["name"], role)
+            points = points_of(record, scene["name"], role)
             for point in points:
                 if not point["front"] or not point["baseline"]:
                     continue
                 as_good = [
-                    one
-                    for one in points
-                    if not one["baseline"] and not one["failed"] and value(one) <= 1.001 * max(value(point), 1e-6)
+                    candidate
+                    for candidate in points
+                    if not candidate["baseline"]
+                    and not candidate["failed"]
+                    and value(candidate) <= 1.001 * max(value(point), 1e-6)
                 ]
-                ours = min(as_good, key=lambda one: float(one["cost"]["value"]), default=None)
+                ours = min(as_good, key=lambda candidate: float(candidate["cost"]["value"]), default=None)
                 nearest = f"{ours['label']} | {ours['cost']['value']:.0f}" if ours else "none | "
                 rows.append(
                     f"| {scene['name']} | {role} | {point['label']} | {point['cost']['value']:.0f} | "
@@ -222,7 +224,7 @@ def losses(record: Record) -> str:
 
 
 def implementation(record: Record) -> str:
-    """The errors of float32 and of the counts, without that of the model."""
+    """The errors of float32 and of finite counts, without the error of the model."""
     errors: dict[str, dict[str, list[float]]] = {}
     for point in record["points"]:
         if point["role"] in ("thickness", "translucency", "coordinates") and not point["failed"]:
@@ -231,8 +233,8 @@ def implementation(record: Record) -> str:
                     errors.setdefault(point["label"], {}).setdefault(kind, []).append(float(apart))
     rows = ["| technique | float32 | counts |", "|---|---:|---:|"]
     for label, kinds in sorted(errors.items()):
-        shown = [f"{max(kinds[kind]):.1e}" if kind in kinds else "" for kind in ("float32", "counts")]
-        rows.append(f"| {label} | {' | '.join(shown)} |")
+        cells = [f"{max(kinds[kind]):.1e}" if kind in kinds else "" for kind in ("float32", "counts")]
+        rows.append(f"| {label} | {' | '.join(cells)} |")
     return "\n".join(rows)
 
 
@@ -252,11 +254,11 @@ def gpu() -> str:
         "", "<details>", "<summary>The cube's chains</summary>", "",
         "| technique | static cost | ms (10th to 90th percentile) |", "|---|---:|---|",
     ]  # fmt: skip
-    shown = {}
+    chosen = {}
     for point in record["points"]:
         if point["scene"] == "cube" and point["cost"].get("gpu_ms") is not None and not point["failed"]:
-            shown[point["role"], point["label"]] = point
-    for (_, label), point in shown.items():
+            chosen[point["role"], point["label"]] = point
+    for (_, label), point in chosen.items():
         cost = point["cost"]
         if math.isfinite(cost["gpu_ms"]):
             low, high = cost["gpu_ms_low"], cost["gpu_ms_high"]
@@ -268,11 +270,11 @@ def by_hand() -> str:
     """Emitted shaders compared with handwritten ones, as recorded by `make bench-gpu`."""
     record = json.loads((FOLDER / BY_HAND).read_text(encoding="utf-8"))
     scene_record = record["jelly_cubes"]
-    scene = {name: one["net_ms"]["median"] for name, one in scene_record["programs"].items()}
+    scene = {name: program["net_ms"]["median"] for name, program in scene_record["programs"].items()}
     published, emitted = scene["jelly_cubes published"], scene["jelly_cubes emitted"]
-    taken = {name: one["net_ms"]["median"] for name, one in record["techniques"]["programs"].items()}
-    shown = [name for name in taken if f"{name} by hand" in taken and taken[name] > 1e-4]  # some compile to nothing
-    ratios = {name: taken[name] / taken[f"{name} by hand"] for name in shown}
+    ms = {name: program["net_ms"]["median"] for name, program in record["techniques"]["programs"].items()}
+    compared = [name for name in ms if f"{name} by hand" in ms and ms[name] > 1e-4]  # some compile to nothing
+    ratios = {name: ms[name] / ms[f"{name} by hand"] for name in compared}
     slower = sorted((ratio, name) for name, ratio in ratios.items() if ratio > 1.01)
     rows = [
         f"{scene_record['device']}, {scene_record['driver']}: the scene of 42yeah as published takes {published:.2f} "
@@ -281,7 +283,7 @@ def by_hand() -> str:
         "handwritten formula or faster. The slower ones have a guard or a numerically stable form that the handwritten "
         "code lacks:",
         "", "| technique | emitted / handwritten | ms emitted |", "|---|---:|---:|",
-        *(f"| `{name}` | {ratio:.2f} | {taken[name]:.4f} |" for ratio, name in slower),
+        *(f"| `{name}` | {ratio:.2f} | {ms[name]:.4f} |" for ratio, name in slower),
     ]  # fmt: skip
     return "\n".join(rows)
 

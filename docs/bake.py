@@ -26,10 +26,10 @@ from sssgen.support.extras import need
 from sssgen.support.file_writer import write_files
 from sssgen.targets.runtime.numpy_textures import Texture
 
-HERE = Path(__file__).parent
-PAGE, FOLDER = HERE / "bake.md", HERE / "bake"
-WORK = HERE.parent / "build" / "bake" / "page"
-MESHES = HERE.parent.parent / "shared" / "data" / "meshes"
+DOCS = Path(__file__).parent
+PAGE, FOLDER = DOCS / "bake.md", DOCS / "bake"
+WORK = DOCS.parent / "build" / "bake" / "page"
+MESHES = DOCS.parent.parent / "shared" / "data" / "meshes"
 NAMES = {"spot": "Spot", "suzanne": "Suzanne"}
 WAYS = {
     "distance": ("distance texture, marched", "deep"),
@@ -54,10 +54,10 @@ def main() -> int:
         print(f"$ {command}", flush=True)
         if sssgen(in_folder(shlex.split(command)[1:])):
             return 1
-    drawn = {"slices.png": slices(), "maps.png": maps(), "cells.png": cells()}
-    rows, drawn["renders.png"] = renders()
-    ice, drawn["ice.png"] = ice_row()
-    write_files(FOLDER, drawn)
+    pictures = {"slices.png": slices(), "maps.png": maps(), "cells.png": cells()}
+    rows, pictures["renders.png"] = renders()
+    ice, pictures["ice.png"] = ice_row()
+    write_files(FOLDER, pictures)
     text = (FOLDER / "page.md.in").read_text(encoding="utf-8")
     parts = {"facts": facts(), "renders": rows, "ice": ice, "json": sidecar()}
     for name, part in parts.items():
@@ -71,8 +71,8 @@ def main() -> int:
 def copy(meshes: Path) -> None:
     """Copies the examples and the meshes into the work folder."""
     shutil.rmtree(WORK.parent, ignore_errors=True)
-    shutil.copytree(HERE.parent / "examples" / "bake", WORK)
-    shutil.copytree(HERE.parent / "examples" / "ice", WORK.parent / "ice")
+    shutil.copytree(DOCS.parent / "examples" / "bake", WORK)
+    shutil.copytree(DOCS.parent / "examples" / "ice", WORK.parent / "ice")
     for name in NAMES:
         shutil.copy(meshes / f"{name}.obj", WORK)
     shutil.copy(FOLDER / "exact_thickness.sss", WORK)
@@ -97,17 +97,17 @@ def facts_of(name: str) -> dict[str, Any]:
 def facts() -> str:
     """The table of the baked textures and their errors."""
     rows = ["| | texels | range | error, as in the JSON file |", "|---|---|---|---|"]
-    for name, shown in NAMES.items():
+    for name, title in NAMES.items():
         volume, chord, depth = facts_of(f"{name}.npy"), facts_of(f"{name}_thickness.png"), facts_of(f"{name}_depth.exr")
         x, y, z = volume["texels"]
         fine, spread, size = volume["error"], chord["error"], depth["file"]["size"]
         rows += [
-            f"| {shown}, distance texture | {x} × {y} × {z} | ±{volume['range']:.3g} | {fine['at_texels']:.1e} at "
+            f"| {title}, distance texture | {x} × {y} × {z} | ±{volume['range']:.3g} | {fine['at_texels']:.1e} at "
             f"texels, ≤ {fine['between_texels']:.2g} between (a texel is {volume['voxel'][0]:.2g}) |",
-            f"| {shown}, thickness map | {chord['texels']} | 0 to {chord['range'][1]:.3g} | mean standard error "
+            f"| {title}, thickness map | {chord['texels']} | 0 to {chord['range'][1]:.3g} | mean standard error "
             f"{spread['mean_standard_error']:.1e}, ≤ {spread['largest_standard_error']:.1e}; "
             f"{chord['rays']} rays per texel, {chord['lost_rays']:.2%} lost in holes |",
-            f"| {shown}, depth map | {size['x']} × {size['y']} | {depth['range'][0]:.3g} to {depth['range'][1]:.3g} | "
+            f"| {title}, depth map | {size['x']} × {size['y']} | {depth['range'][0]:.3g} to {depth['range'][1]:.3g} | "
             "only the rounding to float32 |",
         ]
     return "\n".join(rows)
@@ -123,7 +123,7 @@ def slices() -> bytes:
     plots = need("matplotlib.pyplot", "matplotlib", "chart")
     plots.switch_backend("agg")
     figure, axes = plots.subplots(len(NAMES), 3, figsize=(11, 7.4), layout="constrained")
-    for row, (name, shown) in zip(axes, NAMES.items(), strict=True):
+    for row, (name, title) in zip(axes, NAMES.items(), strict=True):
         baked_facts = facts_of(f"{name}.npy")
         low, high, voxel = np.array(baked_facts["box_min"]), np.array(baked_facts["box_max"]), baked_facts["voxel"][0]
         texture = Texture(images.read(WORK / f"{name}.npy"), wrap="clamp")
@@ -134,11 +134,11 @@ def slices() -> bytes:
         exact = Mesh(path=str(WORK / f"{name}.obj")).distance(places).reshape(y.shape)
         window = {"origin": "lower", "extent": (low[2], high[2], low[1], high[1])}
         limit = float(np.abs(exact).max())
-        for axis, values, title in ((row[0], baked, "baked"), (row[1], exact, "exact")):
+        for axis, values, kind in ((row[0], baked, "baked"), (row[1], exact, "exact")):
             picture = axis.imshow(values, cmap="RdBu", vmin=-limit, vmax=limit, **window)
             axis.contour(z, y, values, np.arange(-1.0, 2.0, 0.1), colors="black", linewidths=0.35)
             axis.contour(z, y, values, [0.0], colors="black", linewidths=1.6)
-            axis.set_title(f"{shown}: {title} distance")
+            axis.set_title(f"{title}: {kind} distance")
             figure.colorbar(picture, ax=axis, shrink=0.8)
         apart = np.abs(baked - exact) / voxel
         picture = row[2].imshow(apart, cmap="magma", vmin=0.0, vmax=0.5, **window)
@@ -153,14 +153,14 @@ def slices() -> bytes:
 
 def maps() -> bytes:
     """The thickness and depth maps, in false colours."""
-    shown = []
+    pictures = []
     for name in NAMES:
         chord = images.upright(WORK / f"{name}_thickness.png")[..., 0]
         depth = images.upright(WORK / f"{name}_depth.exr")[..., 0]
         low, nothing = depth.min(), facts_of(f"{name}_depth.exr")["nothing"]
         high = depth[depth < nothing].max()
-        shown += [colored(chord), colored(np.where(depth < nothing, 1.0 - (depth - low) / (high - low), 0.0))]
-    return joined([shown])
+        pictures += [colored(chord), colored(np.where(depth < nothing, 1.0 - (depth - low) / (high - low), 0.0))]
+    return joined([pictures])
 
 
 def colored(values: Any) -> Any:
@@ -171,22 +171,22 @@ def colored(values: Any) -> Any:
 
 def cells() -> bytes:
     """Tileable cells with their normals, repeated twice each way, and the other features."""
-    shown = []
+    pictures = []
     for feature in ("faceted", "f1", "f2-f1"):
         file = str(WORK / f"tile_{feature}.png")
         options = ["--size", "192", "--cells", "6", "--jitter", "0.8", "--feature", feature]
         sssgen(["bake", "voronoi", "-o", file, *options])
-        shown.append(np.tile(images.upright(file), (2, 2, 3)))
+        pictures.append(np.tile(images.upright(file), (2, 2, 3)))
     file = str(WORK / "tile_normal.png")
     sssgen(["bake", "normal", str(WORK / "tile_faceted.png"), "-o", file, "--strength", "0.03"])
-    shown.insert(1, np.tile(images.upright(file), (2, 2, 1)))
-    return joined([shown])
+    pictures.insert(1, np.tile(images.upright(file), (2, 2, 1)))
+    return joined([pictures])
 
 
 def renders() -> tuple[str, bytes]:
     """A table of the differences from the exact references, and the pictures of each mesh with each technique."""
     rows, pictures = ["| | mean FLIP relative to exact thickness |", "|---|---:|"], []
-    for name, shown in NAMES.items():
+    for name, title in NAMES.items():
         exact = {}
         for way in dict.fromkeys(reference for _, reference in WAYS.values()):
             base = WORK / f"{name}_{'distance' if way == 'deep' else 'depth'}.toml"
@@ -195,8 +195,8 @@ def renders() -> tuple[str, bytes]:
         pictures.append(
             [exact["deep"], pictures_of["distance"], pictures_of["depth"], exact["light"], pictures_of["map"]]
         )
-        for way, (title, reference) in WAYS.items():
-            rows.append(f"| {shown}, {title} | {compare(pictures_of[way], exact[reference]).flip:.3f} |")
+        for way, (technique, reference) in WAYS.items():
+            rows.append(f"| {title}, {technique} | {compare(pictures_of[way], exact[reference]).flip:.3f} |")
     return "\n".join(rows), joined([[picture[:, 50:450] for picture in row] for row in pictures], 0.75)
 
 

@@ -59,22 +59,22 @@ def write(scene_file: Path, name: str, deep: bool) -> Path:
 
 
 def _deep(mesh: Mesh, places: Any, ways: Any, light: Any) -> Any:
-    """The mean path through the body: in from the light, out along the view."""
+    """The mean length of the light's path in the body, from the light to a point and on along the view ray."""
     inwards = mesh.to_object()
     local, along = places @ inwards[:3, :3].T + inwards[:3, 3], ways @ inwards[:3, :3].T * mesh.scale
     parts = intervals(mesh, local, along) * mesh.scale
     lengths = parts[..., 1] - parts[..., 0]
-    seen = lengths.sum(axis=1)
+    visible = lengths.sum(axis=1)
     before = np.cumsum(lengths, axis=1) - lengths
     total = np.zeros(len(places))
     for step in range(STEPS):
-        inside = (step + 0.5) / STEPS * seen
+        inside = (step + 0.5) / STEPS * visible
         last = np.maximum((before <= inside[:, None]).sum(axis=1) - 1, 0)
         rows = np.arange(len(places))
         way = parts[rows, last, 0] + inside - before[rows, last]
         total += inside + thickness(mesh, places + way[:, None] * ways, light)
     mean = total / STEPS
-    return np.where(seen > 1e-6, mean, thickness(mesh, places, light))
+    return np.where(visible > 1e-6, mean, thickness(mesh, places, light))
 
 
 def _scene_file(scene: Scene, scene_file: Path, name: str) -> Path:

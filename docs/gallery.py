@@ -48,7 +48,7 @@ CAPTIONS = {
 }
 """A caption for the picture of each example, in the order of the page."""
 
-SHOWN = {
+ALTERNATIVE_TEXTS = {
     "jelly_cubes": "Two red cubes of jelly on a checkered floor, their edges lit by the evening sky behind them",
     "paper_lantern": "A round paper lantern with dark wooden hoops and a red tassel, lit from inside, at dusk",
     "wax_mouse": "A sitting mouse of amber wax with large round ears that glow in the light behind it",
@@ -97,7 +97,9 @@ def page(
         f"| Scene | {' | '.join(f'`{backend.name}`' for backend in present)} |",
         f"|---|{'---|' * len(present)}",
     ]
-    lines += [_row(name, [f"{one.worst:.3f}" for one in far]) for name, far in small.items()]
+    lines += [
+        _row(name, [f"{difference.worst:.3f}" for difference in differences]) for name, differences in small.items()
+    ]
     lines += [
         "",
         *_paragraph(
@@ -108,8 +110,14 @@ def page(
         f"| Scene | {' | '.join(f'`{backend.name}`' for backend in present)} |",
         f"|---|{'---|' * len(present)}",
     ]
-    lines += [_row(name, [f"{one.beyond}" for one in far]) for name, far in large.items()]
-    lines += ["", *(f"- `{one.name}`: {backends.BACKENDS[one.name].description}; {one.device()}" for one in present)]
+    lines += [_row(name, [f"{difference.beyond}" for difference in differences]) for name, differences in large.items()]
+    lines += [
+        "",
+        *(
+            f"- `{backend.name}`: {backends.BACKENDS[backend.name].description}; {backend.device()}"
+            for backend in present
+        ),
+    ]
     return "\n".join(lines) + "\n"
 
 
@@ -122,7 +130,7 @@ def _entry(material: Material, caption: str) -> list[str]:
     return [
         f"## {material.title}",
         "",
-        f"![{SHOWN[name]}](gallery/{name}.png)",
+        f"![{ALTERNATIVE_TEXTS[name]}](gallery/{name}.png)",
         "",
         *_paragraph(caption),
         f"`sssgen render {name} -o {name}.png`",
@@ -179,7 +187,7 @@ def main() -> None:
     with ProgressBar() as progress:
         results = run(items(), arguments.scheduler, processes, Store(""), progress)
     if failed := failures(results):
-        raise SystemExit("\n".join(f"{one.name}: {one.message}" for one in failed))
+        raise SystemExit("\n".join(f"{failure.name}: {failure.message}" for failure in failed))
     count = len(CAPTIONS)
     pictures, small, large = (
         dict(zip(CAPTIONS, results[start : start + count], strict=True)) for start in range(0, 3 * count, count)

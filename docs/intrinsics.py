@@ -74,7 +74,7 @@ def _domain(row: Builtin) -> str:
 
 def _signatures(row: Builtin) -> str:
     declared = [signature.replace("(", f" {row.name}(", 1) for signature in row.signatures]
-    return "<br>".join(f"`{one}`" for one in declared) + f"<br>{_escaped(row.doc)}"
+    return "<br>".join(f"`{text}`" for text in declared) + f"<br>{_escaped(row.doc)}"
 
 
 def _has(row: Builtin, dialect: str) -> bool:
@@ -86,14 +86,14 @@ def _text(row: Builtin, language: str) -> str:
     """The text of the builtin in a language, with the signatures that have another text."""
     texts = {"": row.texts[language]} if language in row.texts else {"": row.name} if language in LANGUAGES else {}
     texts |= {key.partition("/")[2]: text for key, text in row.texts.items() if key.startswith(f"{language}/")}
-    shown = []
+    cells = []
     for params, text in texts.items():
         if text.startswith("op:"):
             cell = f"`op {_escaped(text[3:])}`"
         else:
             cell = f"`{_escaped(text)}`" if text else ("*polyfill*" if row.polyfill else "*refused*")
-        shown.append(f"({params}) {cell}" if params else cell)
-    return "<br>".join(shown)
+        cells.append(f"({params}) {cell}" if params else cell)
+    return "<br>".join(cells)
 
 
 def _escaped(text: str) -> str:

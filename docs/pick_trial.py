@@ -33,7 +33,7 @@ TRUE_SEED, TIMES = 1001, 2
 Row = Mapping[str, Any]
 
 
-def drawn(number: int) -> MeasuredScene:
+def random_scene(number: int) -> MeasuredScene:
     """A random scene."""
     rng = np.random.default_rng([20, number])
     turn = tuple(float(angle) for angle in rng.uniform(-60.0, 60.0, 3))
@@ -53,7 +53,7 @@ def drawn(number: int) -> MeasuredScene:
 
 
 def shapes(rng: np.random.Generator, turn: Any) -> list[Geometry]:
-    """One of each kind."""
+    """A shape of each kind."""
     a, b, c = (float(side) for side in rng.uniform(0.3, 1.1, 3))
     tube = float(rng.uniform(0.12, 0.25))
     offset = float(rng.uniform(0.3, 0.5))
@@ -64,10 +64,10 @@ def shapes(rng: np.random.Generator, turn: Any) -> list[Geometry]:
     ]  # fmt: skip
 
 
-def tried(settings: Settings) -> list[Row]:
+def trial_rows(settings: Settings) -> list[Row]:
     """A row for each scene and limit."""
-    scenes = [drawn(number) for number in range(SCENES)]
-    record = chart.charted(scenes, settings._replace(roles=("thickness", "material")))
+    scenes = [random_scene(number) for number in range(SCENES)]
+    record = chart.chart_record(scenes, settings._replace(roles=("thickness", "material")))
     truth = settings._replace(samples=TIMES * settings.samples, seed=TRUE_SEED)
     true = chart.remeasured(record, scenes, truth)
     rows: list[Row] = []

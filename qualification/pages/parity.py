@@ -48,7 +48,10 @@ def page() -> str:
         "",
         "The devices:",
         "",
-        *(f"- `{one.name}`: {backends.BACKENDS[one.name].description}; {one.device()}" for one in present),
+        *(
+            f"- `{backend.name}`: {backends.BACKENDS[backend.name].description}; {backend.device()}"
+            for backend in present
+        ),
         "",
         "A figure is the largest error in ulp (units in the last place) of the float32 result; for a vector, of its",
         "largest component; if terms can cancel, as in `dot`, of the terms (`size` in the table). If a result exceeds",

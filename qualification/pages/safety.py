@@ -75,17 +75,21 @@ def counts(rows: list[Safety]) -> list[str]:
 
 
 def guards(removed: list[Mutant]) -> list[str]:
-    """Each guard, the input that needs it, and the failure without it."""
-    seen = sum(any(mutant.seen.values()) for mutant in removed)
+    """The table of guards: the input that needs each, and the failure without it."""
+    failing = sum(any(mutant.seen.values()) for mutant in removed)
     needed = sum(mutant.witness is not None for mutant in removed)
-    letter = [mutant for mutant in removed if mutant.witness and not any(mutant.seen.values())]
+    by_specification = [mutant for mutant in removed if mutant.witness and not any(mutant.seen.values())]
     lines = [
         "## Each guard removed",
         "",
         *_paragraph(
             f"Of {len(removed)} guards {needed} have an input that needs them: if an undefined result is taken as "
-            f"NaN, the technique returns NaN. On the devices below, {seen} fail without the guard"
-            + (f"; {len(letter)} are undefined only by the language's specification." if letter else ".")
+            f"NaN, the technique returns NaN. On the devices below, {failing} fail without the guard"
+            + (
+                f"; {len(by_specification)} are undefined only by the language's specification."
+                if by_specification
+                else "."
+            )
         ),
         f"| Operation | Technique | Problem | Input | {' | '.join(BACKENDS)} |",
         "|---" * (4 + len(BACKENDS)) + "|",
@@ -109,8 +113,8 @@ def dangers(chosen: list[Specimen], machines: Machines) -> list[str]:
     names = tuple(row.name for row in dangerous.ROWS if row.trials is not None)
     for specimen in chosen:
         trials = list(dangerous.trials(specimen))
-        lanes.update({name: sum(one.inputs.lanes for one in trials if one.name == name) for name in names})
-        tried.update({one.name for one in trials})
+        lanes.update({name: sum(trial.inputs.lanes for trial in trials if trial.name == name) for name in names})
+        tried.update({trial.name for trial in trials})
         for column in stress(specimen, machines, Settings(1, rows=names)).columns:
             failed.update((fault.trial, column.backend) for fault in column.faults if fault.counts)
     lines = [

@@ -55,7 +55,7 @@ class Picture(NamedTuple):
     """Pictures side by side."""
 
     panels: tuple[Panel, ...]
-    shown: str
+    alternative_text: str
     """The alternative text."""
     caption: str
 
@@ -226,14 +226,18 @@ def errata() -> list[str]:
         lines += [f"## {chapter.title}", "", *_paragraph(chapter.text)]
         for picture in chapter.pictures:
             picture_row = PICTURES[picture]
-            lines += [f"![{picture_row.shown}](stability/{picture}.png)", "", *_paragraph(picture_row.caption)]
+            lines += [
+                f"![{picture_row.alternative_text}](stability/{picture}.png)",
+                "",
+                *_paragraph(picture_row.caption),
+            ]
         lines += table(CHAPTERS[name])
     return lines
 
 
-def unshown() -> list[str]:
+def without_figures() -> list[str]:
     """The errata that cannot be measured."""
-    rows = (f"| {one.source} | {one.said} | {one.reason} |" for one in UNSHOWN)
+    rows = (f"| {erratum.source} | {erratum.said} | {erratum.reason} |" for erratum in UNSHOWN)
     return ["## Errata without figures", "", "| Source | Erratum | Reason |", "|---|---|---|", *rows, ""]
 
 
@@ -245,11 +249,11 @@ def still_open() -> list[str]:
 
 def machines() -> list[str]:
     """The back ends and their devices."""
-    items = (_item(f"`{one.name}`: {one.device()}") for one in present())
+    items = (_item(f"`{backend.name}`: {backend.device()}") for backend in present())
     return ["## Measured on", "", *(line for item in items for line in item), ""]
 
 
-SECTIONS: tuple[Callable[[], list[str]], ...] = (introduction, errata, unshown, still_open, machines)
+SECTIONS: tuple[Callable[[], list[str]], ...] = (introduction, errata, without_figures, still_open, machines)
 """The page's sections, in order."""
 
 
@@ -259,7 +263,7 @@ def table(chapter: tuple[Erratum, ...]) -> list[str]:
         "| Erratum | Measurement | In theory | As published | In `sssgen` | Required |",
         "|---|---|---|---|---|---|",
     ]
-    return [*head, *(row(one) for one in chapter), ""]
+    return [*head, *(row(erratum) for erratum in chapter), ""]
 
 
 def row(erratum: Erratum) -> str:
@@ -268,8 +272,8 @@ def row(erratum: Erratum) -> str:
         f"{erratum.source}: {erratum.name}",
         erratum.shown,
         figures_text(erratum.theory) if erratum.theory else "undefined",
-        _by_backend({one.name: figures_text(as_published(erratum, one)) for one in present()}),
-        _by_backend({one.name: figures_text(as_corrected(erratum, one)) for one in present()}),
+        _by_backend({backend.name: figures_text(as_published(erratum, backend)) for backend in present()}),
+        _by_backend({backend.name: figures_text(as_corrected(erratum, backend)) for backend in present()}),
         _bounds(erratum.right),
     ]
     return f"| {' | '.join(cells)} |"
@@ -299,10 +303,10 @@ def _by_backend(figures: dict[str, str]) -> str:
 
 def _bounds(right: tuple[Right, ...]) -> str:
     """The required figures: values with a tolerance, or ranges."""
-    if any(one.high - one.low > 0.1 for one in right):
-        return " · ".join(f"{_number(one.low)} to {_number(one.high)}" for one in right)
-    tolerance = max(0.5 * (one.high - one.low) for one in right)
-    values = figures_text(tuple(0.5 * (one.low + one.high) for one in right))
+    if any(limits.high - limits.low > 0.1 for limits in right):
+        return " · ".join(f"{_number(limits.low)} to {_number(limits.high)}" for limits in right)
+    tolerance = max(0.5 * (limits.high - limits.low) for limits in right)
+    values = figures_text(tuple(0.5 * (limits.low + limits.high) for limits in right))
     return f"{values} (± {_number(tolerance)})" if tolerance else values
 
 

@@ -33,5 +33,6 @@ def cube() -> View:
 @pytest.fixture(scope="module")
 def training() -> tuple[View, ...]:
     return tuple(
-        synthetic_view(replace(one, size=SIZE), one.name) for one in references.training(measured_scene.load("cube"))
+        synthetic_view(replace(scene, size=SIZE), scene.name)
+        for scene in references.training(measured_scene.load("cube"))
     )

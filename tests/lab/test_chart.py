@@ -50,12 +50,12 @@ def in_cache(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture(autouse=True)
-def few(monkeypatch: pytest.MonkeyPatch) -> None:
+def few_candidates(monkeypatch: pytest.MonkeyPatch) -> None:
     """Small pictures, two thickness techniques, and of the materials those that follow from them."""
     monkeypatch.setattr(references, "TRAINING_SIDE", 8)
     monkeypatch.setattr(measured_scene, "SIDE", 8)
     lengths, lights, whole = candidates.thickness, candidates.translucency, candidates.materials
-    some = ("constant_thickness", "march_light, 4 steps", "march_light, 6 steps")
+    stored_lengths = ("constant_thickness", "march_light, 4 steps", "march_light, 6 steps")
     stored = (
         "none",
         "Unity ice",
@@ -63,9 +63,15 @@ def few(monkeypatch: pytest.MonkeyPatch) -> None:
         "march_light → absorption_tint",
         "constant_thickness → absorption_tint",
     )
-    monkeypatch.setattr(candidates, "thickness", lambda: [one for one in lengths() if one.label in some])
-    monkeypatch.setattr(candidates, "translucency", lambda: [one for one in lights() if one.name in stored])
-    monkeypatch.setattr(candidates, "materials", lambda inputs: [one for one in whole(inputs) if one.name in stored])
+    monkeypatch.setattr(
+        candidates, "thickness", lambda: [candidate for candidate in lengths() if candidate.label in stored_lengths]
+    )
+    monkeypatch.setattr(
+        candidates, "translucency", lambda: [candidate for candidate in lights() if candidate.name in stored]
+    )
+    monkeypatch.setattr(
+        candidates, "materials", lambda inputs: [candidate for candidate in whole(inputs) if candidate.name in stored]
+    )
 
 
 def settings(**more: Any) -> Settings:
@@ -81,9 +87,9 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     ran: list[str] = []
     real = executor.execute
 
-    def execute(one: Any) -> bytes:
-        ran.append(one.name)
-        return real(one)
+    def execute(task: Any) -> bytes:
+        ran.append(task.name)
+        return real(task)
 
     monkeypatch.setattr(executor, "execute", execute)
     return ran
@@ -91,55 +97,55 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 def test_measurements_are_cached(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     ran = counted(monkeypatch)
-    one = cube()
-    first = chart.charted([one], settings())
+    scene = cube()
+    first = chart.chart_record([scene], settings())
     assert len(ran) > 20
     del ran[:]
-    assert to_json(chart.charted([one], settings())) == to_json(first)
+    assert to_json(chart.chart_record([scene], settings())) == to_json(first)
     assert not ran
     # without the scene's file the items' results make it again
     (stored,) = (tmp_path / "cache").glob("chart-*.json")
     stored.unlink()
-    assert to_json(chart.charted([one], settings())) == to_json(first)
+    assert to_json(chart.chart_record([scene], settings())) == to_json(first)
     assert not ran
     # and a damaged one is no harm
     stored.write_bytes(b"{")
-    assert to_json(chart.charted([one], settings())) == to_json(first)
+    assert to_json(chart.chart_record([scene], settings())) == to_json(first)
     assert not ran
     # an interrupted run continues
     stored.unlink()
     lost = sorted((tmp_path / "cache" / "lab" / "results").glob("*/*"))[::5]
     for path in lost:
         path.unlink()
-    assert to_json(chart.charted([one], settings())) == to_json(first)
+    assert to_json(chart.chart_record([scene], settings())) == to_json(first)
     assert 0 < len(ran) <= len(lost)
     # another seed is another chart
-    chart.charted([one], settings(seed=1))
+    chart.chart_record([scene], settings(seed=1))
     assert len(ran) > 20
 
 
 def test_roles_without_light_need_no_reference(monkeypatch: pytest.MonkeyPatch) -> None:
     ran = counted(monkeypatch)
-    alone = chart.charted([cube()], settings(roles=("thickness",)))["points"]
+    points = chart.chart_record([cube()], settings(roles=("thickness",)))["points"]
     assert ran and not any("reference" in title for title in ran)
-    chart.charted([cube()], settings(roles=("thickness", "translucency")))
+    chart.chart_record([cube()], settings(roles=("thickness", "translucency")))
     assert sum("reference" in title for title in ran) == 2 + 14  # own views, and what is fitted to: a light each
-    assert [point["label"] for point in alone] == [one.label for one in candidates.thickness()]
+    assert [point["label"] for point in points] == [candidate.label for candidate in candidates.thickness()]
 
 
 @pytest.mark.slow
 def test_results_do_not_depend_on_processes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     scenes, roles = [cube(), measured_scene.load("inlay_ball")], ("coordinates", "translucency")
-    here = to_json(chart.charted(scenes, settings(roles=roles)))
+    expected = to_json(chart.chart_record(scenes, settings(roles=roles)))
     in_cache(tmp_path / "other", monkeypatch)
     measure._problems.clear()
-    assert to_json(chart.charted(scenes, settings(roles=roles, processes=2))) == here
-    assert json.loads(here)["points"]
+    assert to_json(chart.chart_record(scenes, settings(roles=roles, processes=2))) == expected
+    assert json.loads(expected)["points"]
 
 
 def test_a_record_is_valid_and_complete() -> None:
     scenes = [cube(), measured_scene.load("inlay_plate")]
-    record = chart.charted(scenes, settings())
+    record = chart.chart_record(scenes, settings())
     assert checked(record) == record == json.loads(to_json(record))
     assert [scene["name"] for scene in record["scenes"]] == ["cube", "inlay_plate"]
     assert record["scenes"][0]["medium"]["name"] == "marble" and "medium" not in record["scenes"][1]
@@ -160,16 +166,18 @@ def test_a_record_is_valid_and_complete() -> None:
     assert len(to_csv(record).splitlines()) == 1 + len(record["points"])
     # fronts, by asking of each point whether another beats it
     for point in record["points"]:
-        rivals = [one for one in record["points"] if (one["scene"], one["role"]) == (point["scene"], point["role"])]
+        rivals = [
+            other for other in record["points"] if (other["scene"], other["role"]) == (point["scene"], point["role"])
+        ]
         cost, error = point["cost"]["value"], point["error"]["value"]
         beaten = any(
-            one["cost"]["value"] <= cost and one["error"]["value"] <= error
-            and (one["cost"]["value"], one["error"]["value"]) != (cost, error)
-            for one in rivals
+            rival["cost"]["value"] <= cost and rival["error"]["value"] <= error
+            and (rival["cost"]["value"], rival["error"]["value"]) != (cost, error)
+            for rival in rivals
         )  # fmt: skip
         assert point["front"] == (not beaten), point["label"]
     # known answers: without a chain it costs least; steps buy accuracy; the wrong slide is off, none is off by more
-    error = {(one["role"], one["label"]): one["error"]["value"] for one in record["points"]}
+    error = {(entry["role"], entry["label"]): entry["error"]["value"] for entry in record["points"]}
     assert error["thickness", "march_light, 6 steps"] < error["thickness", "constant_thickness"]
     assert error["coordinates", "parallax_refracted"] < 1e-6
     assert error["coordinates", "parallax_straight"] > 0.01
@@ -197,14 +205,14 @@ def test_hypervolumes_are_of_ours_and_of_the_baselines() -> None:
 
 def test_costlier_settings_are_tried_while_the_error_falls(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.undo()  # the library's own list
-    chains = {one.label: list(one.techniques) for one in candidates.thickness()}
+    chains = {candidate.label: list(candidate.techniques) for candidate in candidates.thickness()}
     errors = {"march_light, 1 steps": 0.5, "march_light, 2 steps": 0.46, "march_light, 4 steps": 0.3,
               "march_light, 8 steps": 0.31, "march_light, 16 steps": 0.2, "constant_thickness": 0.9}  # fmt: skip
     points = [
         {"label": label, "chain": chains[label], "training_error": error, "cost": {"value": cost}}
         for cost, (label, error) in enumerate(errors.items())
     ]
-    labels = [one.label for one in chart.worthwhile(points)]
+    labels = [candidate.label for candidate in chart.worthwhile(points)]
     assert labels == ["march_light, 1 steps", "march_light, 4 steps", "march_light, 16 steps", "constant_thickness"]
 
 
@@ -216,7 +224,7 @@ def test_failures_are_named() -> None:
     again = [executor.Item("executor_items:fail", ("said",), name) for name in names]
     with pytest.raises(SssgenError) as caught:
         chart._results([*again, executor.Item("executor_items:fail", ("x",), "that")], settings())
-    messages = [one.message for one in caught.value.diagnostics]
+    messages = [diagnostic.message for diagnostic in caught.value.diagnostics]
     assert len(messages) == 2 and messages[0].startswith("one and 2 more: the scene has no light")
     assert messages[1].startswith("that: ValueError: no such thing")
     assert isinstance(executor.run([executor.Item("executor_items:fail", ("x",), "that")], processes=0)[0], Failure)
@@ -225,7 +233,7 @@ def test_failures_are_named() -> None:
 def test_equal_scenes_are_measured_once(monkeypatch: pytest.MonkeyPatch) -> None:
     ran = counted(monkeypatch)
     plate = measured_scene.load("inlay_plate")
-    chart.charted([plate, replace(plate)], settings())
+    chart.chart_record([plate, replace(plate)], settings())
     assert ran and len(set(ran)) == len(ran)
 
 
@@ -235,22 +243,24 @@ def test_equal_scenes_are_measured_once(monkeypatch: pytest.MonkeyPatch) -> None
 def test_every_technique_that_has_a_reference_is_charted(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.undo()
     lengths = candidates.thickness()
-    whole = candidates.materials([one for one in lengths if not one.settings or one.settings[0][1] == 4])
+    whole = candidates.materials([length for length in lengths if not length.settings or length.settings[0][1] == 4])
     for role, result in (("thickness", lengths), ("translucency", candidates.translucency()),
                         ("coordinates", candidates.coordinates())):  # fmt: skip
-        assert {one.name for one in result} - {"none"} == {technique.name for technique in candidates.of_role(role)}
-        assert len({(one.techniques, one.settings) for one in result}) == len(result)
-        assert len({one.label for one in result}) == len(result)
-        for one in result:
-            assert one.baseline == any(candidates.load(name).baseline for name in one.techniques)
-    assert {one.name for one in whole if one.baseline} == set(candidates.published())
-    assert len({one.label for one in whole}) == len(whole)
-    for one in whole:
+        assert {candidate.name for candidate in result} - {"none"} == {
+            technique.name for technique in candidates.of_role(role)
+        }
+        assert len({(candidate.techniques, candidate.settings) for candidate in result}) == len(result)
+        assert len({candidate.label for candidate in result}) == len(result)
+        for candidate in result:
+            assert candidate.baseline == any(candidates.load(name).baseline for name in candidate.techniques)
+    assert {candidate.name for candidate in whole if candidate.baseline} == set(candidates.published())
+    assert len({candidate.label for candidate in whole}) == len(whole)
+    for candidate in whole:
         # each stage reads the result of the previous one
         inputs = ""
-        for name in one.techniques:
+        for name in candidate.techniques:
             technique = candidates.load(name)
-            assert candidates.quantity_taken(technique) in ("", inputs), one.label
+            assert candidates.quantity_read(technique) in ("", inputs), candidate.label
             inputs = technique.function.quantity or inputs
 
 
@@ -280,7 +290,7 @@ def test_a_users_scene_is_timed(tmp_path: Path, backend: Callable[[str], Backend
     text = '[inlay]\ndepth = 0.1\n[geometry]\nkind = "box"\n[camera]\nposition = [0.5, 1.0, 3.0]\n'
     (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
     scene = measured_scene.load(str(tmp_path / "mine.toml"))
-    record = chart.charted([scene], settings())
+    record = chart.chart_record([scene], settings())
     timed = chart_gpu.with_gpu_cost(record, [scene], (32, 32), 2)
     assert timed["record"]["device"] and timed["record"]["size"] == [32, 32]
     for before, after in zip(record["points"], timed["points"], strict=True):
@@ -354,11 +364,11 @@ def test_errors_have_readable_messages(
 def test_materials_select_their_thickness_technique(monkeypatch: pytest.MonkeyPatch) -> None:
     requests: list[Settings] = []
 
-    def charted(_: Any, inputs: Settings) -> dict[str, Any]:
+    def chart_record(_: Any, inputs: Settings) -> dict[str, Any]:
         requests.append(inputs)
         return {"points": [], "hypervolume": []}
 
-    monkeypatch.setattr(chart, "charted", charted)
+    monkeypatch.setattr(chart, "chart_record", chart_record)
     for role in ("material", "coordinates,material", "translucency"):
         assert main(["chart", "cube", "--role", role]) == 0
     assert [inputs.roles for inputs in requests] == [

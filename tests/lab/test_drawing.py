@@ -42,7 +42,7 @@ def record(roles: tuple[str, ...] = ("thickness",), scenes: tuple[str, ...] = tu
     points: list[dict[str, Any]] = []
     volumes = []
     for role, scene in itertools.product(roles, scenes):
-        here = []
+        scene_points = []
         for name in (*OURS, *BASELINES):
             draw = random.Random(f"{role} {name}")
             cost, error = 10.0 ** draw.uniform(0.8, 2.0), 10.0 ** draw.uniform(-1.5, 0.3)
@@ -58,15 +58,15 @@ def record(roles: tuple[str, ...] = ("thickness",), scenes: tuple[str, ...] = tu
                 built["cost"] |= {"operations": round(cost), "gpu_ms": None}
                 if not failed:
                     built["error"] |= {"low": 0.8 * result, "high": 1.3 * result, "bias": -result / 3.0}
-                here.append(built)
-        best = {id(one) for one in front(here)}
-        for one in here:
-            one["front"] = id(one) in best
+                scene_points.append(built)
+        best = {id(entry) for entry in front(scene_points)}
+        for entry in scene_points:
+            entry["front"] = id(entry) in best
         corner = (1e4, 10.0)
-        ours, baselines = ([one for one in here if one["baseline"] is kind] for kind in (False, True))
+        ours, baselines = ([entry for entry in scene_points if entry["baseline"] is kind] for kind in (False, True))
         volumes.append({"scene": scene, "role": role, "reference_point": list(corner)})
         volumes[-1] |= {"ours": hypervolume(ours, corner), "baselines": hypervolume(baselines, corner)}
-        points += here
+        points += scene_points
     return {
         "format": 1,
         "record": {"commit": "0123456789abcdef", "seed": 0, "samples": 4096, "software": False, "versions": {"a": "1"}},
@@ -82,22 +82,22 @@ NUMBERS = st.sampled_from([0.0, 1e-7, 0.1, 0.25, 1.0, 3.0, 40.0])
 
 
 @given(st.lists(st.tuples(NUMBERS, NUMBERS, st.booleans()), max_size=12))
-def test_the_front_has_the_points_that_none_dominates(given_points: list[tuple[float, float, bool]]) -> None:
-    points = [point(cost, error, failed="NaN" if failed else "") for cost, error, failed in given_points]
+def test_the_front_has_the_points_that_none_dominates(values: list[tuple[float, float, bool]]) -> None:
+    points = [point(cost, error, failed="NaN" if failed else "") for cost, error, failed in values]
 
-    def rounded(one: dict[str, Any]) -> tuple[float, float]:
-        cost, error = measures(one)
+    def rounded(entry: dict[str, Any]) -> tuple[float, float]:
+        cost, error = measures(entry)
         return cost, max(error, LEAST)
 
-    def beaten(one: dict[str, Any]) -> bool:
-        x, y = rounded(one)
+    def beaten(entry: dict[str, Any]) -> bool:
+        x, y = rounded(entry)
         remaining = [rounded(other) for other in points if not other["failed"]]
         return any(cost <= x and error <= y and (cost, error) != (x, y) for cost, error in remaining)
 
-    expected = [id(one) for one in points if not one["failed"] and not beaten(one)]
+    expected = [id(entry) for entry in points if not entry["failed"] and not beaten(entry)]
     result = front(points)
-    assert sorted(id(one) for one in result) == sorted(expected)
-    assert [measures(one)[0] for one in result] == sorted(measures(one)[0] for one in result)
+    assert sorted(id(entry) for entry in result) == sorted(expected)
+    assert [measures(entry)[0] for entry in result] == sorted(measures(entry)[0] for entry in result)
 
 
 def test_hypervolume_in_closed_form() -> None:
@@ -112,8 +112,8 @@ def test_hypervolume_in_closed_form() -> None:
 
 
 @given(st.lists(st.tuples(NUMBERS, NUMBERS), max_size=8), NUMBERS, NUMBERS)
-def test_one_point_more_is_no_less_hypervolume(some: list[tuple[float, float]], cost: float, error: float) -> None:
-    points = [point(*one) for one in some]
+def test_one_point_more_is_no_less_hypervolume(measured: list[tuple[float, float]], cost: float, error: float) -> None:
+    points = [point(*values) for values in measured]
     assert hypervolume([*points, point(cost, error)], (50.0, 2.0)) >= hypervolume(points, (50.0, 2.0))
 
 
@@ -154,16 +154,16 @@ def test_csv_has_every_number() -> None:
     result = record()
     rows = list(csv.DictReader(io.StringIO(to_csv(result))))
     assert len(rows) == len(result["points"])
-    for row, one in zip(rows, result["points"], strict=True):
-        assert row["label"] == one["label"] and float(row["cost_value"]) == one["cost"]["value"]
-        error = one["error"]["value"]
-        assert row["error_value"] == ("" if error is None else repr(error)) and row["failed"] == one["failed"]
-        assert json.loads(row["settings"]) == one["settings"]
+    for row, entry in zip(rows, result["points"], strict=True):
+        assert row["label"] == entry["label"] and float(row["cost_value"]) == entry["cost"]["value"]
+        error = entry["error"]["value"]
+        assert row["error_value"] == ("" if error is None else repr(error)) and row["failed"] == entry["failed"]
+        assert json.loads(row["settings"]) == entry["settings"]
 
 
 def test_json_does_not_depend_on_the_order_of_entries() -> None:
     result = record()
-    turned = {**dict(reversed(result.items())), "points": [dict(reversed(one.items())) for one in result["points"]]}
+    turned = {**dict(reversed(result.items())), "points": [dict(reversed(entry.items())) for entry in result["points"]]}
     assert to_json(result) == to_json(turned) and json.loads(to_json(result)) == result
 
 
@@ -173,9 +173,9 @@ def test_medians() -> None:
 
     points = [on("slab", 1.0, 0.1), on("ball", 3.0, 0.3), on("cube", 9.0, None)]
     points += [on("slab", 2.0, None, "b"), on("ball", 2.0, None, "b"), on("cube", 2.0, 0.1, "b")]
-    one, other = medians({"points": points}, "thickness")
-    assert measures(one) == (3.0, 0.3) and one["front"] and not one["failed"]
-    assert other["failed"] == "fails on 2 of 3 scenes" and not other["front"]
+    median, failing = medians({"points": points}, "thickness")
+    assert measures(median) == (3.0, 0.3) and median["front"] and not median["failed"]
+    assert failing["failed"] == "fails on 2 of 3 scenes" and not failing["front"]
 
 
 def test_numbers_are_formatted() -> None:
@@ -206,18 +206,18 @@ def test_texts_overlap_nothing(name: str) -> None:
     pytest.importorskip("textalloc")
     for chart in CHARTS[name]():
         with figure.settings():
-            drawn = figure.figure_of(chart)
-            drawn.draw_without_rendering()
-            texts = [text for text in visible_texts(drawn) if text.get_text()]
+            picture = figure.figure_of(chart)
+            picture.draw_without_rendering()
+            texts = [text for text in visible_texts(picture) if text.get_text()]
             boxes = [text.get_window_extent() for text in texts]
-            edge = drawn.bbox
+            edge = picture.bbox
             for text, box in zip(texts, boxes, strict=True):
                 inside = edge.x0 <= box.x0 and box.x1 <= edge.x1 and edge.y0 <= box.y0 and box.y1 <= edge.y1
                 assert inside, text.get_text()
-            for (one, box), (other, other_box) in itertools.combinations(zip(texts, boxes, strict=True), 2):
-                assert not box.shrunk(0.98, 0.9).overlaps(other_box), (one.get_text(), other.get_text())
-            assert len(drawn.axes) == len(chart.panels)
-            for axes, panel in zip(drawn.axes, chart.panels, strict=True):
+            for (text, box), (other, other_box) in itertools.combinations(zip(texts, boxes, strict=True), 2):
+                assert not box.shrunk(0.98, 0.9).overlaps(other_box), (text.get_text(), other.get_text())
+            assert len(picture.axes) == len(chart.panels)
+            for axes, panel in zip(picture.axes, chart.panels, strict=True):
                 markers = axes.transData.transform([measures(point) for point in panel.points])
                 labels = axes.texts[1:]
                 for label in labels:
@@ -229,10 +229,10 @@ def test_texts_overlap_nothing(name: str) -> None:
                 assert len(labels) >= 0.8 * len(front_points) > 0
 
 
-def visible_texts(drawn: Any) -> list[Any]:
+def visible_texts(picture: Any) -> list[Any]:
     """All texts of a figure, without ticks outside the limits."""
-    texts = [drawn._suptitle, *drawn.legends[0].get_texts(), drawn.legends[0].get_title()]
-    for axes in drawn.axes:
+    texts = [picture._suptitle, *picture.legends[0].get_texts(), picture.legends[0].get_title()]
+    for axes in picture.axes:
         texts += [axes.title, axes._left_title, axes.xaxis.label, axes.yaxis.label, *axes.texts]
         for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
             texts += [tick.label1 for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high]
@@ -243,14 +243,14 @@ def test_axes_show_every_point() -> None:
     pytest.importorskip("textalloc")
     for chart in [chart for make in CHARTS.values() for chart in make()]:
         with figure.settings():
-            drawn = figure.figure_of(chart)
-        for axes, panel in zip(drawn.axes, chart.panels, strict=True):
+            picture = figure.figure_of(chart)
+        for axes, panel in zip(picture.axes, chart.panels, strict=True):
             (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
             finite = [measures(point) for point in panel.points if not point["failed"]]
             assert all(left < cost < right and low < error < high for cost, error in finite)
             assert panel.points == sorted(panel.points, key=measures)
             assert axes.get_xscale() == "log" and axes.get_yscale() in ("log", "symlog")
-        names = [text.get_text() for text in drawn.legends[0].get_texts()]
+        names = [text.get_text() for text in picture.legends[0].get_texts()]
         assert names == list(chart.styles)
 
 

@@ -40,10 +40,10 @@ def current_stamps() -> None:
 
 
 def test_a_worker_with_other_code_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    one = task_of(Item("executor_items:echo", (1,), "the item"))
-    assert decoded(execute(one)) == (1, 1)
+    task = task_of(Item("executor_items:echo", (1,), "the item"))
+    assert decoded(execute(task)) == (1, 1)
     monkeypatch.setattr(work, "code_stamp", lambda module: "another")
-    refused = decoded(execute(one))
+    refused = decoded(execute(task))
     assert isinstance(refused, Failure) and "another version of sssgen" in refused.message
 
 
@@ -54,9 +54,9 @@ def as_bytes(results: list[Any]) -> list[bytes]:
 
 def test_results_do_not_depend_on_processes(tmp_path: Path) -> None:
     jobs = items(tmp_path, 6)
-    here = run(jobs, processes=0, store=Store(""))
-    assert [result.name for result in here] == [f"item {number}" for number in range(6)]
-    assert as_bytes(run(jobs, processes=2, store=Store(""))) == as_bytes(here)
+    results = run(jobs, processes=0, store=Store(""))
+    assert [result.name for result in results] == [f"item {number}" for number in range(6)]
+    assert as_bytes(run(jobs, processes=2, store=Store(""))) == as_bytes(results)
     assert runs(tmp_path) == sorted([*range(6)] * 2)
 
 
@@ -76,11 +76,11 @@ def test_bytes_depend_on_values_alone() -> None:
 
 
 def test_keys() -> None:
-    one = Item("executor_items:echo", (1,), "one")
-    assert task_of(one).key == task_of(one._replace(name="another name")).key
-    remaining = [one._replace(arguments=(2,)), one._replace(function="executor_items:fail")]
-    remaining += [one._replace(function="sssgen.support.progress:ProgressBar")]
-    assert len({task_of(other).key for other in [one, *remaining]}) == 4
+    item = Item("executor_items:echo", (1,), "one")
+    assert task_of(item).key == task_of(item._replace(name="another name")).key
+    remaining = [item._replace(arguments=(2,)), item._replace(function="executor_items:fail")]
+    remaining += [item._replace(function="sssgen.support.progress:ProgressBar")]
+    assert len({task_of(other).key for other in [item, *remaining]}) == 4
 
 
 def test_duplicates_run_once(tmp_path: Path) -> None:
@@ -95,7 +95,7 @@ def test_stored_results_are_not_recomputed(tmp_path: Path) -> None:
     notes.mkdir()
     first = run(items(notes, 3), processes=0, store=store)
     messages: list[tuple[int, int, str]] = []
-    again = run(items(notes, 4), processes=0, store=store, progress=lambda *what: messages.append(what))
+    again = run(items(notes, 4), processes=0, store=store, progress=lambda *event: messages.append(event))
     assert runs(notes) == [0, 1, 2, 3]
     assert as_bytes(again[:3]) == as_bytes(first)
     assert messages == [(number + 1, 4, f"item {number}") for number in range(4)]
@@ -126,7 +126,7 @@ def test_a_failure_concerns_its_item_alone(processes: int) -> None:
     store = Store("")
     *failed, good = run(jobs, processes=processes, store=store)
     assert good == (1, 1)
-    assert [one.name for one in failed] == ["said", "raised", "exit", "missing", "module"]
+    assert [failure.name for failure in failed] == ["said", "raised", "exit", "missing", "module"]
     assert failed[0].message == "the scene has no light"
     assert failed[1].message.startswith("ValueError: no such thing (executor_items.py:")
     assert "no_such_module" in failed[4].message
@@ -173,11 +173,13 @@ def test_an_interrupted_run_continues(tmp_path: Path, how: int) -> None:
     process.send_signal(how)
     open_gate(notes)
     assert process.wait(timeout=HANG) != 0
-    started, done = len(runs(notes)), len(stored_files())
-    assert GATE <= done < 12 and started <= done + 4  # its two workers had items in hand, or had just finished them
+    started, finished = len(runs(notes)), len(stored_files())
+    assert (
+        GATE <= finished < 12 and started <= finished + 4
+    )  # its two workers had items in hand, or had just finished them
     jobs = items(notes, 12, "measure_behind_gate")
     results = run(jobs, processes=2, store=Store(str(folder)))
-    assert len(runs(notes)) == started + 12 - done  # no worker went on alone
+    assert len(runs(notes)) == started + 12 - finished  # no worker went on alone
     assert as_bytes(results) == as_bytes(run(jobs, processes=0, store=Store(str(folder))))
 
 
@@ -193,8 +195,8 @@ def test_bar_on_a_terminal(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captu
     monkeypatch.setenv("TERM", "xterm")
     with ProgressBar() as progress:
         progress(3, 4, "cube [one]")
-    shown = capsys.readouterr()
-    assert not shown.out and "3/4" in shown.err and "cube [one]" in shown.err
+    output = capsys.readouterr()
+    assert not output.out and "3/4" in output.err and "cube [one]" in output.err
 
 
 def test_no_bar_without_rich(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
@@ -236,8 +238,8 @@ def test_results_on_dask_survive_a_dead_worker(tmp_path: Path, dask: Any) -> Non
     jobs = [*items(remote, 12, name="measure_behind_gate"), Item("executor_items:fail", ("said",), "said")]
     store, killed = Store(str(tmp_path / "store")), []
 
-    def kill(done: int, total: int, name: str) -> None:
-        if done == 3:
+    def kill(finished: int, total: int, name: str) -> None:
+        if finished == 3:
             killed.append(next(iter(dask.workers.values())).pid)
             os.kill(killed[0], signal.SIGKILL)
             open_gate(remote)
@@ -262,15 +264,15 @@ def test_an_item_that_kills_every_dask_worker_is_named(tmp_path: Path, dask: Any
 @pytest.mark.filterwarnings("default")
 @pytest.mark.parametrize("where", ["processes", "dask"])
 def test_distributed_stress_gives_the_same_results(
-    where: str, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
+    runner: str, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    scheduler = request.getfixturevalue("dask").scheduler_address if where == "dask" else ""
-    missing = ["browser"] if where == "processes" else []
+    scheduler = request.getfixturevalue("dask").scheduler_address if runner == "dask" else ""
+    missing = ["browser"] if runner == "processes" else []
     monkeypatch.setenv("SSSGEN_CHROMIUM", "/nowhere/chromium")
     chosen, names = specimens(["resin_inlay", "ice_shader_lobe"]), ["numpy-f32", *missing]
     settings = Settings(samples=500)
     with Machines(names) as machines:
-        rows = [stress(one, machines, settings) for one in chosen]
+        rows = [stress(specimen, machines, settings) for specimen in chosen]
         alone = Report(settings, {"numpy-f32": machines.here["numpy-f32"].device()}, machines.missing, rows)
     shared = run_stress(chosen, names, settings, scheduler, None if scheduler else 2)
     assert without_times(shared) == without_times(alone)
@@ -306,6 +308,6 @@ def test_the_command_shares_out(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_distributed_rendering_gives_the_same_differences() -> None:
     jobs = [Item("sssgen.lab.jobs.render_items:compare_backends", ("resin_inlay", ("numpy-f32", "numpy"), (32, 24), 1))]
-    [[single, same]] = here = run(jobs, processes=0, store=Store(""))
+    [[single, same]] = results = run(jobs, processes=0, store=Store(""))
     assert 0.0 < single.worst < 1.0 and single.beyond == 0 and same == (0.0, 0)
-    assert as_bytes(run(jobs, processes=1, store=Store(""))) == as_bytes(here)
+    assert as_bytes(run(jobs, processes=1, store=Store(""))) == as_bytes(results)

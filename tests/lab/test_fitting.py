@@ -69,7 +69,7 @@ def test_the_fit_recovers_the_parameters_of_synthetic_light(
     chosen = candidate("exact_thickness", "beer_lambert", *names, role="translucency")
     values = {**values, "attenuation_distance": 0.6}
     chains = [chain(chosen, view, tmp_path) for view in training[:2]]
-    requests = [synthetic(view, made, values, np.array(scale)) for view, made in zip(training, chains, strict=False)]
+    requests = [synthetic(view, built, values, np.array(scale)) for view, built in zip(training, chains, strict=False)]
     result = fit.fit(chains, requests)
     assert result.error < 1e-4
     assert result.factor == "subsurface_color"
@@ -95,13 +95,13 @@ def test_scale_and_matte_are_not_negative(training: tuple[View, ...], tmp_path: 
     fit_problem = measure.problem_of("material", view, summed=False)
     assert fit_problem is not None
     lambert = np.maximum(fit_problem.lambert, 1e-3)
-    both = [
+    targets = [
         replace(
             fit_problem, target=np.maximum(0.8 * lambert - 0.2 * fit_problem.values(built, {}), 0.0), lambert=lambert
         ),
         replace(fit_problem, target=0.3 * fit_problem.values(built, {"scale": 3.0}) - 0.01 * lambert, lambert=lambert),
     ]
-    less_lobe, less_matte = (fit.fit([built], [wanted]) for wanted in both)
+    less_lobe, less_matte = (fit.fit([built], [target]) for target in targets)
     for result in (less_lobe, less_matte):
         assert min(*result.scale, *result.matte) >= 0.0
         assert np.isfinite(result.error)
@@ -163,8 +163,8 @@ CHAINS = {
 }
 
 
-def picked(one: MeasuredScene, point: Mapping[str, Any]) -> Pick:
-    return Pick(one.name, point, None, (), None, None, True)
+def picked(scene: MeasuredScene, point: Mapping[str, Any]) -> Pick:
+    return Pick(scene.name, point, None, (), None, None, True)
 
 
 @pytest.mark.parametrize("names", CHAINS.values(), ids=CHAINS)
@@ -180,7 +180,7 @@ def test_the_emitted_material_gives_the_measured_light(
     point = measure.measure_candidate(chosen, result, [cube])
     fit_problem = measure.problem_of("material", cube)
     assert fit_problem is not None
-    shown = result.apply(
+    picture = result.apply(
         fit_problem.values(chain(chosen, cube, tmp_path), fit.chain_values(result.parameters)), fit_problem
     )
 
@@ -191,7 +191,7 @@ def test_the_emitted_material_gives_the_measured_light(
     albedo = emitted.surface(fit_problem.parts[0].inputs, "albedo")
     # its parameters are in its text; only those of the scene's body are set
     light = fit_problem.values(emitted, {}) + albedo * fit_problem.lambert
-    assert light == pytest.approx(shown, rel=1e-4, abs=1e-6)
+    assert light == pytest.approx(picture, rel=1e-4, abs=1e-6)
     assert albedo[:, 0] == pytest.approx(result.matte, rel=1e-5)
 
 
@@ -214,18 +214,18 @@ def test_the_emitted_material_compiles_for_every_target(
 
 def test_every_translucency_technique_has_a_scale_parameter(training: tuple[View, ...], tmp_path: Path) -> None:
     # else the emitted material could not be as bright as the measured one
-    for one in candidates.translucency():
-        if one.techniques and not candidates.is_published(candidates.load(one.name)):
+    for option in candidates.translucency():
+        if option.techniques and not candidates.is_published(candidates.load(option.name)):
             fit_problem = measure.problem_of("translucency", training[0], summed=False)
             assert fit_problem is not None
-            built = chain(one, training[0], tmp_path)
+            built = chain(option, training[0], tmp_path)
             names = {name for part in fit_problem.parts for name in part.values}
-            assert fit.free_parameters(built, names, fit_problem)[1] is not None, one.label
+            assert fit.free_parameters(built, names, fit_problem)[1] is not None, option.label
 
 
 def test_the_parallax_of_an_inlay_has_the_scenes_parameters(tmp_path: Path) -> None:
     scene = small("inlay_plate")
-    requests = [each for each in candidates.coordinates() if each.name == "parallax_refracted"]
+    requests = [option for option in candidates.coordinates() if option.name == "parallax_refracted"]
     plate = View("plate", replace(references.plate(scene), size=SIZE))
     point = measure.measure_candidate(requests[0], measure.fit_candidate(requests[0], [plate]), [View("own", scene)])
     files = material_files(scene, Pick(scene.name, None, point, (), None, None, True), "mine")

@@ -115,7 +115,7 @@ def test_without_opengl(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_technique_is_computed() -> None:
     points = gpu_programs.ball_points(SIZE)
-    shown = gpu_cost.picture(gpu_programs.of_technique("lobe_normalized", points), SIZE)[..., 0].ravel()
+    measured = gpu_cost.picture(gpu_programs.of_technique("lobe_normalized", points), SIZE)[..., 0].ravel()
     place, normal = points.position[..., :3].reshape(-1, 3), points.normal[..., :3].reshape(-1, 3)
     uv = np.stack([points.position[..., 3], points.normal[..., 3]], axis=-1).reshape(-1, 2)
     view, light = (np.array(at) - place for at in (gpu_programs.EYE, gpu_programs.LIGHT))
@@ -124,7 +124,7 @@ def test_a_technique_is_computed() -> None:
     expected = evaluate.evaluate(
         subject("lobe_normalized"), {**values, "through": (uv @ [3.0, 5.0]) % 1.0}, backends.get("numpy")
     )
-    np.testing.assert_allclose(shown, expected["result"][:, 0], atol=2e-4)
+    np.testing.assert_allclose(measured, expected["result"][:, 0], atol=2e-4)
 
 
 def test_values_of_a_technique() -> None:
@@ -148,20 +148,20 @@ def test_evaluations_add_up() -> None:
 
 def test_a_material_has_its_scene_s_colours(opengl: Backend) -> None:
     """The pass over points stretches what the camera sees, so that only the mean is that of the picture."""
-    shown = render.with_samples(scene_loading.load("paper_lantern"), 1)
-    points = gpu_programs.surface_points(shown, SIZE)
-    result = gpu_cost.picture(gpu_programs.of_material("lantern", shown.material, shown, points), SIZE)[..., :3]
-    picture = render.render(shown, opengl, size=SIZE)
-    mean = picture.linear[picture.covered == 1.0].mean(axis=0) / shown.exposure
+    scene = render.with_samples(scene_loading.load("paper_lantern"), 1)
+    points = gpu_programs.surface_points(scene, SIZE)
+    result = gpu_cost.picture(gpu_programs.of_material("lantern", scene.material, scene, points), SIZE)[..., :3]
+    picture = render.render(scene, opengl, size=SIZE)
+    mean = picture.linear[picture.covered == 1.0].mean(axis=0) / scene.exposure
     np.testing.assert_allclose(result.mean(axis=(0, 1)), mean, rtol=0.25)
 
 
 def test_a_material_with_its_own_camera_is_rendered(opengl: Backend) -> None:
-    shown = dataclasses.replace(render.with_samples(scene_loading.load("jelly_cubes"), 1), size=SIZE)
-    points = gpu_programs.surface_points(shown, SIZE)
-    result = gpu_cost.picture(gpu_programs.of_material("cubes", shown.material, shown, points), SIZE)[::-1, :, :3]
-    picture = render.render(shown, opengl)
-    np.testing.assert_allclose(decode_srgb(result) * shown.exposure, picture.linear, atol=0.01)
+    scene = dataclasses.replace(render.with_samples(scene_loading.load("jelly_cubes"), 1), size=SIZE)
+    points = gpu_programs.surface_points(scene, SIZE)
+    result = gpu_cost.picture(gpu_programs.of_material("cubes", scene.material, scene, points), SIZE)[::-1, :, :3]
+    picture = render.render(scene, opengl)
+    np.testing.assert_allclose(decode_srgb(result) * scene.exposure, picture.linear, atol=0.01)
 
 
 def test_costs_of_materials() -> None:
@@ -173,20 +173,20 @@ def test_costs_of_materials() -> None:
 
 
 def test_a_camera_that_sees_nothing() -> None:
-    shown = scene_loading.load("wax_mouse")
-    away = Camera(position=shown.camera.position, target=(0.0, 100.0, 0.0), field_of_view=1.0)
+    scene = scene_loading.load("wax_mouse")
+    away = Camera(position=scene.camera.position, target=(0.0, 100.0, 0.0), field_of_view=1.0)
     with pytest.raises(SssgenError, match="sees nothing"):
-        gpu_programs.surface_points(dataclasses.replace(shown, camera=away), SIZE)
+        gpu_programs.surface_points(dataclasses.replace(scene, camera=away), SIZE)
 
 
 def test_emitted_techniques_equal_those_written_by_hand(benchmark: ModuleType) -> None:
     """What is compared must compute the same: every technique that benchmarks/by_hand has."""
     pairs = benchmark.techniques(gpu_programs.ball_points(SIZE), 1)
     assert len(pairs) > 40
-    for one, other in pairs:
-        emitted, by_hand = gpu_cost.picture(one, SIZE), gpu_cost.picture(other, SIZE)
+    for program, reference in pairs:
+        emitted, by_hand = gpu_cost.picture(program, SIZE), gpu_cost.picture(reference, SIZE)
         scale = np.abs(emitted).max() + 1e-3
-        assert np.abs(emitted - by_hand).max() < 1e-3 * scale, one.name
+        assert np.abs(emitted - by_hand).max() < 1e-3 * scale, program.name
 
 
 def test_the_published_seed_0_equals_the_emitted_one(benchmark: ModuleType) -> None:

@@ -37,7 +37,7 @@ BODIES: list[Geometry] = [
 ]
 
 
-def one(shape: Geometry, origin: npt.ArrayLike, way: npt.ArrayLike) -> float:
+def chord(shape: Geometry, origin: npt.ArrayLike, way: npt.ArrayLike) -> float:
     """The thickness along one ray."""
     direction = np.array(way, float)
     return float(thickness(shape, np.array([origin], float), direction[None] / np.linalg.norm(direction))[0])
@@ -66,9 +66,9 @@ def sampled(shape: Geometry, origins: Array, ways: Array, reach: float, count: i
     step = reach / count
     inwards = shape.to_object()
     total = np.zeros(len(origins))
-    for some in np.array_split((np.arange(count) + 0.5) * step, max(count // 200, 1)):
-        places = (origins + some[:, None, None] * ways).reshape(-1, 3) @ inwards[:3, :3].T + inwards[:3, 3]
-        total += (shape.distance(places) < 0.0).reshape(len(some), -1).sum(axis=0)
+    for steps in np.array_split((np.arange(count) + 0.5) * step, max(count // 200, 1)):
+        places = (origins + steps[:, None, None] * ways).reshape(-1, 3) @ inwards[:3, :3].T + inwards[:3, 3]
+        total += (shape.distance(places) < 0.0).reshape(len(steps), -1).sum(axis=0)
     return total * step
 
 
@@ -81,8 +81,8 @@ def test_a_ball_has_twice_its_radius_times_the_cosine() -> None:
     origins = np.tile([0.0, 0.0, 0.7], (5, 1))
     assert thickness(Ball(0.7), origins, ways) == pytest.approx(2.0 * 0.7 * np.cos(angle), abs=1e-12)
     assert thickness(Ball(0.7), origins, -ways) == pytest.approx(np.zeros(5), abs=1e-12)  # away from it
-    assert one(Ball(0.7), (0.0, 0.0, 0.2), Z) == pytest.approx(0.5)  # from inside: the remaining length
-    assert one(Ball(0.7), (0.7001, 0.0, -3.0), Z) == 0.0
+    assert chord(Ball(0.7), (0.0, 0.0, 0.2), Z) == pytest.approx(0.5)  # from inside: the remaining length
+    assert chord(Ball(0.7), (0.7001, 0.0, -3.0), Z) == 0.0
 
 
 def test_a_slab_has_its_thickness_over_the_cosine() -> None:
@@ -95,22 +95,22 @@ def test_a_slab_has_its_thickness_over_the_cosine() -> None:
 
 def test_the_thickness_of_a_box() -> None:
     box = Box(size=(1.0, 2.0, 4.0))
-    assert [one(box, -3.0 * axis, axis) for axis in np.eye(3)] == pytest.approx([1.0, 2.0, 4.0])
-    assert one(box, (-2.0, -2.0, 0.0), (1.0, 1.0, 0.0)) == pytest.approx(np.sqrt(2.0))
-    assert one(box, (-2.0, -2.4, 0.3), (1.0, 1.0, 0.0)) == pytest.approx(np.sqrt(2.0))  # in at the front, out above
-    assert one(box, (0.4, -1.9, 0.0), (1.0, 1.0, 0.0)) == 0.0  # past the edge
-    assert one(Box(size=(1.0, 1.0, 1.0)), (-5.0, -5.0, -5.0), (1.0, 1.0, 1.0)) == pytest.approx(np.sqrt(3.0))
+    assert [chord(box, -3.0 * axis, axis) for axis in np.eye(3)] == pytest.approx([1.0, 2.0, 4.0])
+    assert chord(box, (-2.0, -2.0, 0.0), (1.0, 1.0, 0.0)) == pytest.approx(np.sqrt(2.0))
+    assert chord(box, (-2.0, -2.4, 0.3), (1.0, 1.0, 0.0)) == pytest.approx(np.sqrt(2.0))  # in at the front, out above
+    assert chord(box, (0.4, -1.9, 0.0), (1.0, 1.0, 0.0)) == 0.0  # past the edge
+    assert chord(Box(size=(1.0, 1.0, 1.0)), (-5.0, -5.0, -5.0), (1.0, 1.0, 1.0)) == pytest.approx(np.sqrt(3.0))
     # along a pair of faces: inside of them, and outside
-    assert one(box, (0.49, -9.0, 0.0), (0.0, 1.0, 0.0)) == pytest.approx(2.0)
-    assert one(box, (0.51, -9.0, 0.0), (0.0, 1.0, 0.0)) == 0.0
+    assert chord(box, (0.49, -9.0, 0.0), (0.0, 1.0, 0.0)) == pytest.approx(2.0)
+    assert chord(box, (0.51, -9.0, 0.0), (0.0, 1.0, 0.0)) == 0.0
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.1, 0.29])
 def test_a_torus_along_its_axis(offset: float) -> None:
     torus, half = Torus(0.8, 0.3), np.sqrt(0.3**2 - offset**2)
     for x in (0.8 + offset, -0.8 + offset):
-        assert one(torus, (x, 5.0, 0.0), (0.0, -1.0, 0.0)) == pytest.approx(2.0 * half, abs=1e-7)
-    assert one(torus, (0.0, 5.0, 0.0), (0.0, -1.0, 0.0)) == 0.0  # through its hole
+        assert chord(torus, (x, 5.0, 0.0), (0.0, -1.0, 0.0)) == pytest.approx(2.0 * half, abs=1e-7)
+    assert chord(torus, (0.0, 5.0, 0.0), (0.0, -1.0, 0.0)) == 0.0  # through its hole
 
 
 @pytest.mark.parametrize("height", [0.0, 0.15, -0.25])
@@ -120,43 +120,45 @@ def test_a_torus_across(height: float, aside: float) -> None:
     half = np.sqrt(0.3**2 - height**2)
     outer, inner = 0.8 + half, 0.8 - half
     expected = 2.0 * (np.sqrt(max(outer**2 - aside**2, 0.0)) - np.sqrt(max(inner**2 - aside**2, 0.0)))
-    assert one(Torus(0.8, 0.3), (aside, height, -5.0), Z) == pytest.approx(expected, abs=1e-9)
+    assert chord(Torus(0.8, 0.3), (aside, height, -5.0), Z) == pytest.approx(expected, abs=1e-9)
 
 
 def test_a_torus_along_its_tube() -> None:
     # from the ring's middle line, along it: a chord of the outer circle
-    assert one(Torus(0.8, 0.3), (0.8, 0.0, 0.0), Z) == pytest.approx(np.sqrt(1.1**2 - 0.8**2))
+    assert chord(Torus(0.8, 0.3), (0.8, 0.0, 0.0), Z) == pytest.approx(np.sqrt(1.1**2 - 0.8**2))
     # askew through the centre: the tube twice, the gap between not counted
     turned = np.radians(15.0)
     way = (np.cos(turned), np.sin(turned), 0.0)
-    chord = 2.0 * np.sqrt(0.3**2 - (0.8 * np.sin(turned)) ** 2)
-    assert one(Torus(0.8, 0.3), -4.0 * np.array(way), way) == pytest.approx(2.0 * chord)
+    expected = 2.0 * np.sqrt(0.3**2 - (0.8 * np.sin(turned)) ** 2)
+    assert chord(Torus(0.8, 0.3), -4.0 * np.array(way), way) == pytest.approx(2.0 * expected)
 
 
 def test_a_capsule() -> None:
     capsule = Capsule(0.3, 1.0)
-    assert one(capsule, (0.0, -4.0, 0.0), (0.0, 1.0, 0.0)) == pytest.approx(1.6)
-    assert one(capsule, (0.2, -4.0, 0.0), (0.0, 1.0, 0.0)) == pytest.approx(1.0 + 2.0 * np.sqrt(0.05))
-    assert one(capsule, (0.0, 0.3, -4.0), Z) == pytest.approx(0.6)
-    assert one(capsule, (0.1, 0.3, -4.0), Z) == pytest.approx(2.0 * np.sqrt(0.08))
-    assert one(capsule, (0.0, 0.7, -4.0), Z) == pytest.approx(2.0 * np.sqrt(0.05))  # through the upper end
-    assert one(capsule, (0.0, 0.81, -4.0), Z) == 0.0
+    assert chord(capsule, (0.0, -4.0, 0.0), (0.0, 1.0, 0.0)) == pytest.approx(1.6)
+    assert chord(capsule, (0.2, -4.0, 0.0), (0.0, 1.0, 0.0)) == pytest.approx(1.0 + 2.0 * np.sqrt(0.05))
+    assert chord(capsule, (0.0, 0.3, -4.0), Z) == pytest.approx(0.6)
+    assert chord(capsule, (0.1, 0.3, -4.0), Z) == pytest.approx(2.0 * np.sqrt(0.08))
+    assert chord(capsule, (0.0, 0.7, -4.0), Z) == pytest.approx(2.0 * np.sqrt(0.05))  # through the upper end
+    assert chord(capsule, (0.0, 0.81, -4.0), Z) == 0.0
     turned = np.radians(60.0)  # through the middle, out at the sides
-    assert one(capsule, (0.0, 0.0, 0.0), (np.sin(turned), np.cos(turned), 0.0)) == pytest.approx(0.3 / np.sin(turned))
-    assert one(Capsule(0.3, 0.0), (0.1, -4.0, 0.0), (0.0, 1.0, 0.0)) == pytest.approx(2.0 * np.sqrt(0.08))  # a ball
+    assert chord(capsule, (0.0, 0.0, 0.0), (np.sin(turned), np.cos(turned), 0.0)) == pytest.approx(0.3 / np.sin(turned))
+    assert chord(Capsule(0.3, 0.0), (0.1, -4.0, 0.0), (0.0, 1.0, 0.0)) == pytest.approx(2.0 * np.sqrt(0.08))  # a ball
 
 
 def test_a_union_counts_overlaps_once_and_no_gaps() -> None:
     apart = Union((Ball(0.5, position=(-1.0, 0.0, 0.0)), Ball(0.25, position=(1.0, 0.0, 0.0))))
-    assert one(apart, (-5.0, 0.0, 0.0), (1.0, 0.0, 0.0)) == pytest.approx(1.5)
-    assert one(apart, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)) == pytest.approx(0.5)  # matter behind the origin does not count
+    assert chord(apart, (-5.0, 0.0, 0.0), (1.0, 0.0, 0.0)) == pytest.approx(1.5)
+    assert chord(apart, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)) == pytest.approx(
+        0.5
+    )  # matter behind the origin does not count
     overlapping = Union((Ball(0.5), Ball(0.5, position=(0.5, 0.0, 0.0)), Box(size=(0.1, 0.1, 0.1))))
-    assert one(overlapping, (-5.0, 0.0, 0.0), (1.0, 0.0, 0.0)) == pytest.approx(1.5)
+    assert chord(overlapping, (-5.0, 0.0, 0.0), (1.0, 0.0, 0.0)) == pytest.approx(1.5)
     touching = Union((Box(size=(1.0, 1.0, 1.0)), Box(size=(1.0, 1.0, 1.0), position=(1.0, 0.0, 0.0))))
-    assert one(touching, (-5.0, 0.2, 0.1), (1.0, 0.0, 0.0)) == pytest.approx(2.0)
+    assert chord(touching, (-5.0, 0.2, 0.1), (1.0, 0.0, 0.0)) == pytest.approx(2.0)
     # a part in a part's place, scaled with it
     nested = Union((Union((Ball(0.5, scale=2.0),), scale=0.5, position=(0.0, 3.0, 0.0)),), scale=3.0)
-    assert one(nested, (0.0, 9.0, -9.0), Z) == pytest.approx(3.0)
+    assert chord(nested, (0.0, 9.0, -9.0), Z) == pytest.approx(3.0)
 
 
 def test_merged_intervals_are_disjoint_sorted_and_cover_the_same() -> None:
@@ -180,9 +182,9 @@ def test_thickness_follows_rotation_scale_and_translation(shape: Geometry) -> No
     placed = replace(shape, **ASKEW)
     matrix = placed.to_world()
     moved = thickness(placed, origins @ matrix[:3, :3].T + matrix[:3, 3], ways @ matrix[:3, :3].T / 1.7)
-    here = thickness(shape, origins, ways)
-    assert (here > 0.05).sum() > 20
-    assert moved == pytest.approx(1.7 * here, abs=1e-6)
+    lengths = thickness(shape, origins, ways)
+    assert (lengths > 0.05).sum() > 20
+    assert moved == pytest.approx(1.7 * lengths, abs=1e-6)
 
 
 @pytest.mark.parametrize("shape", [*BODIES, *(replace(body, **ASKEW) for body in BODIES)], ids=repr)
@@ -270,9 +272,9 @@ def test_a_mesh_of_a_box_is_the_box(tmp_path: Path) -> None:
         deep = expected > 0.1
         assert thickness(placed, inside[deep], ways[deep]) == pytest.approx(0.7 * expected[deep], abs=2e-4)
     # straight through the diagonal that two triangles share: once in and once out
-    assert one(box, (0.0, 0.0, -3.0), Z) == pytest.approx(0.7, abs=1e-5)
-    assert one(box, (0.0, 0.0, -0.35), Z) == pytest.approx(0.7, abs=1e-5)  # from the surface
-    assert one(box, (0.0, 0.0, 0.35), Z) == 0.0  # away from it
+    assert chord(box, (0.0, 0.0, -3.0), Z) == pytest.approx(0.7, abs=1e-5)
+    assert chord(box, (0.0, 0.0, -0.35), Z) == pytest.approx(0.7, abs=1e-5)  # from the surface
+    assert chord(box, (0.0, 0.0, 0.35), Z) == 0.0  # away from it
 
 
 def test_a_mesh_of_a_ball_is_nearly_the_ball(tmp_path: Path) -> None:

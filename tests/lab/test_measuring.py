@@ -53,7 +53,7 @@ pytestmark = pytest.mark.usefixtures("no_cache")
 
 def test_a_chain_computes_its_formula(tmp_path: Path) -> None:
     names = (("thickness", "constant_thickness"), ("thickness", "beer_lambert"), ("translucency", "lobe_gdc2011"))
-    built = Chain(material_of([Stage(*one) for one in names], str(tmp_path)))
+    built = Chain(material_of([Stage(*section) for section in names], str(tmp_path)))
     surface = points(small("torus"))
     light = surface.light((0.6, 0.0, -0.8))
     color = np.array([0.9, 0.5, 0.2])
@@ -125,18 +125,18 @@ def test_the_mean_chord_of_a_ball_is_four_thirds_of_its_radius() -> None:
 
 def test_each_point_reads_its_own_texel() -> None:
     scene = small("bracket")
-    given, chord = scene_inputs.of_scene(scene), scene_inputs.mean_chord(scene)
-    uv = given.inputs["uv"]
-    read = {name: given.textures[name].sample(uv)[0] for name in given.textures if name.endswith("_texture")}
+    scene_data, chord = scene_inputs.of_scene(scene), scene_inputs.mean_chord(scene)
+    uv = scene_data.inputs["uv"]
+    read = {name: scene_data.textures[name].sample(uv)[0] for name in scene_data.textures if name.endswith("_texture")}
     assert read["thickness_texture"] == pytest.approx(chord / chord.max())
     assert read["thinness_texture"] == pytest.approx(1.0 - chord / chord.max())
     assert read["transmittance_texture"] == pytest.approx(np.exp(-chord / np.median(chord)))
 
 
-def thickness_error(one: MeasuredScene, *names: str, **settings: int) -> float:
+def thickness_error(scene: MeasuredScene, *names: str, **settings: int) -> float:
     """The error of a thickness technique on a scene, with its own parameters as they are."""
     requests = candidate(*names, "shown_thickness", role="thickness", settings=tuple(settings.items()))
-    point = measure.measure_candidate(requests, Fitted({}, (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), 0.0), [View("own", one)])
+    point = measure.measure_candidate(requests, Fitted({}, (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), 0.0), [View("own", scene)])
     return float(point["error"]["value"])
 
 
@@ -170,18 +170,18 @@ def test_lights_in_one_call_equal_separate_calls(cube: View, tmp_path: Path) -> 
         alone.append(built.run(part.inputs, [part.light])[0])
     assert together == pytest.approx(np.concatenate(alone, axis=1)[:, fit_problem.keep] * fit_problem.gain)
     # thinned: the same lanes' values, fewer of them
-    few = fit_problem.thinned(10)
-    assert few.target.shape == (3, 10)
-    chosen = [int(np.flatnonzero((fit_problem.target == lane[:, None]).all(axis=0))[0]) for lane in few.target.T]
-    assert few.values(built, {"power": 2.0}) == pytest.approx(together[:, chosen])
+    thinned = fit_problem.thinned(10)
+    assert thinned.target.shape == (3, 10)
+    chosen = [int(np.flatnonzero((fit_problem.target == lane[:, None]).all(axis=0))[0]) for lane in thinned.target.T]
+    assert thinned.values(built, {"power": 2.0}) == pytest.approx(together[:, chosen])
 
 
 def test_colours_of_all_lights_are_added() -> None:
     scene = small("capsule")
     view = synthetic_view(scene)
-    each, whole = (problem.material_problem(scene, view.references, summed) for summed in (False, True))
+    separate, whole = (problem.material_problem(scene, view.references, summed) for summed in (False, True))
     count = points(scene).count
-    by_light = (each.target / each.gain).reshape(3, 2, count)
+    by_light = (separate.target / separate.gain).reshape(3, 2, count)
     colors = np.array([light.color for light in scene.lights]).T[..., None]
     assert whole.target / whole.gain == pytest.approx((by_light * colors).sum(axis=1))
     assert np.percentile(whole.target.max(axis=0), 99.0) == pytest.approx(problem.WHITE)
@@ -192,8 +192,8 @@ def test_shadowed_points_get_no_light_from_the_front() -> None:
     body_of = Union((Box(size=(2.0, 0.2, 2.0)), Ball(0.4, position=(0.0, 0.9, 0.0))))  # a ball over a board
     scene = replace(small("bracket"), geometry=body_of, lights=(Light(None, (0.0, 1.0, 0.0), (1.0, 1.0, 1.0)),))
     scene = replace(scene, camera=Camera((0.0, 2.5, 3.0), (0.0, 0.0, 0.0), 40.0), size=(24, 24))
-    seen = synthetic_view(scene).references
-    fit_problem = problem.material_problem(scene, seen, False)
+    references = synthetic_view(scene).references
+    fit_problem = problem.material_problem(scene, references, False)
     surface = points(scene)
     direction = np.array(scene.lights[0].direction)
     facing = surface.inputs["N"].T @ direction > 0.05
@@ -228,8 +228,8 @@ def test_a_chain_with_nan_has_failed(cube: View, monkeypatch: pytest.MonkeyPatch
 def test_the_published_seed_3_is_ambient_light_times_transmittance(
     cube: View, training: tuple[View, ...], tmp_path: Path
 ) -> None:
-    (one,) = (each for each in candidates.materials([]) if each.name == "Unity ice")
-    built = chain(one, cube, tmp_path)
+    (ice,) = (item for item in candidates.materials([]) if item.name == "Unity ice")
+    built = chain(ice, cube, tmp_path)
     fit_problem = measure.problem_of("material", cube)
     assert fit_problem is not None
     values = {"distortion": 0.3, "power": 2.0, "ambient": 0.2, "attenuation": 0.7}
@@ -240,9 +240,9 @@ def test_the_published_seed_3_is_ambient_light_times_transmittance(
     # each light's colour, added up: there is one
     assert silent == pytest.approx(fit_problem.gain * part.color * (0.2 * 0.7 * through), rel=1e-6)
     # and so is its point on the chart
-    result = measure.fit_candidate(one, training)
+    result = measure.fit_candidate(ice, training)
     mute = result._replace(parameters={**result.parameters, "scale": (0.0,)})
-    with_lobe, without = (measure.measure_candidate(one, each, [cube]) for each in (result, mute))
+    with_lobe, without = (measure.measure_candidate(ice, fitted, [cube]) for fitted in (result, mute))
     assert with_lobe["error"] == without["error"]
     # the source that it follows has a lobe there
     other = chain(candidate("transmittance_map", "lobe_gdc2011"), cube, tmp_path)
@@ -252,14 +252,14 @@ def test_the_published_seed_3_is_ambient_light_times_transmittance(
 def test_seed_0_mistakes_a_cube_and_a_march_to_the_light_does_not() -> None:
     # each is fitted to balls and slabs alone
     cube = small("cube")
-    fitted_to = [View(one.name, replace(one, size=SIZE)) for one in references.training(cube)]
+    fitted_to = [View(scene.name, replace(scene, size=SIZE)) for scene in references.training(cube)]
     error: dict[str, float] = {}
-    for one in candidates.thickness():
-        if one.name == "cheap_sss_thinness" or one.label == "march_light, 16 steps":
-            result = measure.measure_candidate(one, measure.fit_candidate(one, fitted_to), [View("own", cube)])[
+    for option in candidates.thickness():
+        if option.name == "cheap_sss_thinness" or option.label == "march_light, 16 steps":
+            result = measure.measure_candidate(option, measure.fit_candidate(option, fitted_to), [View("own", cube)])[
                 "error"
             ]["value"]
-            error[one.name] = min(error.get(one.name, np.inf), result)
+            error[option.name] = min(error.get(option.name, np.inf), result)
     assert error["march_light"] < 0.2
     assert error["cheap_sss_thinness"] > 0.6
 
@@ -269,9 +269,9 @@ def slides(name: str) -> dict[str, float]:
     scene = small(name)
     plate = View("plate", replace(references.plate(scene), size=SIZE))
     results = {}
-    for each in candidates.coordinates():
-        point = measure.measure_candidate(each, measure.fit_candidate(each, [plate]), [View("own", scene)])
-        results[each.name] = point["error"]["max"]
+    for option in candidates.coordinates():
+        point = measure.measure_candidate(option, measure.fit_candidate(option, [plate]), [View("own", scene)])
+        results[option.name] = point["error"]["max"]
     return results
 
 
@@ -297,7 +297,7 @@ def test_light_transport_ranks_the_techniques() -> None:
         )
 
     fitted_to, own = [view(scene) for scene in references.training(cube)], [view(cube)]
-    listed = [each for each in candidates.materials([]) if each.name in ("none", "Unity ice")]
+    listed = [candidate for candidate in candidates.materials([]) if candidate.name in ("none", "Unity ice")]
     listed.append(candidate("exact_thickness", "absorption_tint"))
     error = {
         scene.name: measure.measure_candidate(scene, measure.fit_candidate(scene, fitted_to), own)["error"]["value"]
@@ -312,8 +312,8 @@ def test_a_view_keeps_the_size_and_the_lanes_of_its_pixels() -> None:
     picture = surface.picture(surface.inputs["P"], -9.0)
     assert picture.shape == (10, 20, 3)
     assert (picture != -9.0).all(axis=2).sum() == surface.count
-    shown = picture[::-1][surface.valid].T
-    assert (shown == surface.inputs["P"]).all()
+    values = picture[::-1][surface.valid].T
+    assert (values == surface.inputs["P"]).all()
     heights = [row[row[:, 1] != -9.0, 1].mean() for row in picture if (row[:, 1] != -9.0).any()]
     assert len(heights) > 4 and heights == sorted(heights, reverse=True)  # row 0 is on top
     away = np.array([[0.0], [0.0], [3.4]]) - surface.inputs["P"]
@@ -364,9 +364,9 @@ def test_cost_counts_steps_and_no_output(tmp_path: Path) -> None:
         built = chain(candidate(*names, role="thickness", settings=tuple(counts.items())), view, tmp_path)
         return float(measure.static_cost(built).weight)
 
-    few, some, more = (cost("march_light", "shown_thickness", steps=steps) for steps in (4, 8, 12))
-    assert 0.0 <= cost("exact_thickness", "shown_thickness") < 0.2 * few
-    assert more - some == some - few > 0.0
+    four, eight, twelve = (cost("march_light", "shown_thickness", steps=steps) for steps in (4, 8, 12))
+    assert 0.0 <= cost("exact_thickness", "shown_thickness") < 0.2 * four
+    assert twelve - eight == eight - four > 0.0
     assert measure.static_cost(None).weight == 0.0
     march = chain(candidate("march_light", "shown_thickness", settings=(("steps", 8),)), view, tmp_path)
     assert 8 <= measure.static_cost(march).distance_evaluations <= 12

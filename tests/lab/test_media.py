@@ -59,16 +59,16 @@ def test_absorption_of_ice_follows_from_its_refractive_index() -> None:
 
 
 def test_coefficients_scale_with_the_world_unit() -> None:
-    one, ten = preset("marble"), preset("marble", unit_mm=10.0)
-    assert np.allclose(np.multiply(one.absorption, 10.0), ten.absorption)
-    assert np.allclose(np.multiply(one.scattering, 10.0), ten.scattering)
-    assert one.albedo == pytest.approx(ten.albedo)
+    in_mm, in_cm = preset("marble"), preset("marble", unit_mm=10.0)
+    assert np.allclose(np.multiply(in_mm.absorption, 10.0), in_cm.absorption)
+    assert np.allclose(np.multiply(in_mm.scattering, 10.0), in_cm.scattering)
+    assert in_mm.albedo == pytest.approx(in_cm.albedo)
 
 
 def test_similar_media_have_the_same_reduced_scattering() -> None:
-    alike, forward = preset("wholemilk"), preset("wholemilk", anisotropy=0.75)
-    assert np.allclose(np.multiply(forward.scattering, 1.0 - 0.75), alike.scattering)
-    assert forward.absorption == alike.absorption
+    isotropic, forward = preset("wholemilk"), preset("wholemilk", anisotropy=0.75)
+    assert np.allclose(np.multiply(forward.scattering, 1.0 - 0.75), isotropic.scattering)
+    assert forward.absorption == isotropic.absorption
     assert forward.anisotropy == 0.75
 
 

@@ -46,7 +46,9 @@ def trials(apart: float, noise: float, count: int = 1500, lanes: int = 400) -> t
     for _ in range(count):
         noisy = truth + sigma * generator.normal(size=truth.shape)
         results.append({**compare(values, noisy, sigma), "plain": compare(values, noisy)["relmse"]})
-    return right, np.array([[one[name] for name in ("relmse", "low", "high", "value", "plain")] for one in results])
+    return right, np.array(
+        [[result[name] for name in ("relmse", "low", "high", "value", "plain")] for result in results]
+    )
 
 
 @pytest.mark.parametrize(("apart", "noise"), [(0.1, 0.02), (0.1, 0.05), (0.3, 0.02), (0.03, 0.02)])

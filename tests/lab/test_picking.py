@@ -40,11 +40,11 @@ WRAP = point(("wrap_lighting",), 20.0, 0.7)
 PLAIN = point(("constant_thickness", "beer_lambert", "lobe_exp2"), 50.0, 0.5)
 MAP = point(("thickness_map", "beer_lambert", "lobe_exp2"), 60.0, 0.3)
 MARCH = point(("march_light", "beer_lambert", "lobe_gdc2011"), 400.0, 0.1)
-DEAR = point(("march_light", "beer_lambert", "lobe_normalized"), 500.0, 0.2)
+EXPENSIVE = point(("march_light", "beer_lambert", "lobe_normalized"), 500.0, 0.2)
 PUBLISHED = point(("transmittance_map", "ice_shader_lobe"), 5.0, 0.01)
 BROKEN = point(("thinness_map", "lobe_exp2"), 6.0, 0.01, failed="4 of 72 points are not finite")
 ELSEWHERE = point(("wrap_lighting",), 2.0, 0.001, scene="torus")
-RECORD = {"points": [DEAR, PUBLISHED, MARCH, BROKEN, NONE, ELSEWHERE, MAP, WRAP, PLAIN]}
+RECORD = {"points": [EXPENSIVE, PUBLISHED, MARCH, BROKEN, NONE, ELSEWHERE, MAP, WRAP, PLAIN]}
 
 
 def picked(max_error: float | None = None, max_cost: float | None = None) -> Pick:
@@ -82,7 +82,7 @@ def test_the_next_cheaper_and_better_chains() -> None:
 
 
 def test_published_forms_and_failed_points_are_never_picked() -> None:
-    assert [one for one in RECORD["points"] if not allowed(one)] == [PUBLISHED, BROKEN]
+    assert [point for point in RECORD["points"] if not allowed(point)] == [PUBLISHED, BROKEN]
     for limit in (0.001, 0.02, 0.3, 0.7, 2.0):
         for result in (picked(limit), picked(None, 100.0 * limit)):
             assert PUBLISHED not in result and BROKEN not in result and ELSEWHERE not in result
@@ -150,7 +150,7 @@ def test_a_scene_without_points() -> None:
 
 
 @pytest.fixture
-def charted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+def stored_chart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     """A small chart of a plate in a cache of its own; the cache's folder."""
     from sssgen.support import cache
 
@@ -158,7 +158,7 @@ def charted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     monkeypatch.setenv("SSSGEN_CACHE", str(folder))
     monkeypatch.setattr(cache, "_folder", None)
     monkeypatch.setattr(measured_scene, "SIDE", 12)
-    chart.charted([measured_scene.load("inlay_plate")], Settings(8, processes=0))
+    chart.chart_record([measured_scene.load("inlay_plate")], Settings(8, processes=0))
     return str(folder)
 
 
@@ -175,7 +175,7 @@ def run(*arguments: str) -> int:
 
 
 def test_a_cached_chart_is_not_measured_again(
-    charted: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    stored_chart: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(chart, "run", lambda *_, **__: pytest.fail("it measures"))
     assert run("--max-error", "0.01", "--json") == 0
@@ -193,7 +193,7 @@ def test_a_cached_chart_is_not_measured_again(
     assert json.loads(capsys.readouterr().out)["ok"] is False
 
 
-def test_another_number_of_samples_is_another_chart(charted: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_another_number_of_samples_is_another_chart(stored_chart: str, monkeypatch: pytest.MonkeyPatch) -> None:
     calls = []
     real = executor.run
     monkeypatch.setattr(
@@ -203,7 +203,7 @@ def test_another_number_of_samples_is_another_chart(charted: str, monkeypatch: p
     assert calls
 
 
-def test_the_picked_chain_is_emitted(charted: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_picked_chain_is_emitted(stored_chart: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
     assert run("--max-error", "0.01", "--emit", str(out), "--target", "wgsl,glsl-330") == 0
     names = sorted(path.name for path in out.iterdir())
@@ -231,7 +231,7 @@ def test_the_picked_chain_is_emitted(charted: str, tmp_path: Path, capsys: pytes
     ],
 )
 def test_wrong_arguments(
-    charted: str, arguments: list[str], message: str, tmp_path: Path,
+    stored_chart: str, arguments: list[str], message: str, tmp_path: Path,
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
     monkeypatch.chdir(tmp_path)
@@ -240,13 +240,13 @@ def test_wrong_arguments(
     assert not Path("out").exists()
 
 
-def test_another_process_uses_the_cache(charted: str) -> None:
+def test_another_process_uses_the_cache(stored_chart: str) -> None:
     code = (
         "from sssgen.cli.main import main; from sssgen.lab.scene import measured_scene; measured_scene.SIDE = 12; "
         "raise SystemExit(main())"
     )
     arguments = ["pick", "inlay_plate", "--samples", "8", "--max-error", "0.01"]
-    environment = {**os.environ, "SSSGEN_CACHE": charted}
+    environment = {**os.environ, "SSSGEN_CACHE": stored_chart}
     result = subprocess.run(
         [sys.executable, "-X", "importtime", "-c", code, *arguments],
         capture_output=True, text=True, check=False, timeout=HANG, env=environment,

@@ -35,7 +35,7 @@ def test_the_planes_offsets_are_the_published_ones(n: float) -> None:
 @pytest.mark.parametrize("n", [1.0, 1.33, 1.5, 2.4])
 def test_refracted_rays_keep_snells_law(n: float) -> None:
     generator = np.random.default_rng(5)
-    V, N = (one / np.linalg.norm(one, axis=0) for one in generator.normal(size=(2, 3, 200)))
+    V, N = (vectors / np.linalg.norm(vectors, axis=0) for vectors in generator.normal(size=(2, 3, 200)))
     N = N * np.sign((N * V).sum(axis=0))
     inside = refracted(V, N, 1.0 / n)
     assert np.linalg.norm(inside, axis=0) == pytest.approx(np.ones(200))
@@ -108,8 +108,8 @@ def test_on_a_ball_it_is_the_construction_in_two_dimensions(depth: float, n: flo
     assert np.isfinite(result.offset).all()
     # the offset is away from the eye: along the frame, against V
     towards = np.stack([(surface.inputs["V"] * surface.inputs[name]).sum(axis=0) for name in ("T", "B")])
-    same = (result.offset * towards).sum(axis=0) / np.maximum(length * np.linalg.norm(towards, axis=0), 1e-12)
-    assert same[result.hit & (length > 1e-3)] == pytest.approx(-1.0, abs=1e-6)
+    cosines = (result.offset * towards).sum(axis=0) / np.maximum(length * np.linalg.norm(towards, axis=0), 1e-12)
+    assert cosines[result.hit & (length > 1e-3)] == pytest.approx(-1.0, abs=1e-6)
 
 
 def test_a_ray_may_pass_the_layer_at_a_curved_edge() -> None:

@@ -72,10 +72,15 @@ def test_a_situation_describes_its_scene() -> None:
 
 def test_situations_are_compared_by_value(tmp_path: Path) -> None:
     text = '[medium]\npreset = "marble"\n' + BALL + LIT
-    one, same = measured(text), measured(text + "\n# the same\n")
-    assert one is not same and one == same and hash(one) == hash(same)
-    for other in (replace(one, size=(8, 8)), replace(one, geometry=Ball(1.1)), one.held_out(), replace(one, name="b")):
-        assert other != one
+    scene, equal_scene = measured(text), measured(text + "\n# the same\n")
+    assert scene is not equal_scene and scene == equal_scene and hash(scene) == hash(equal_scene)
+    for other in (
+        replace(scene, size=(8, 8)),
+        replace(scene, geometry=Ball(1.1)),
+        scene.held_out(),
+        replace(scene, name="b"),
+    ):
+        assert other != scene
     # of a file the content counts
     file = tmp_path / "figure.sss"
     scene = '[inlay]\n[geometry]\nkind = "distance"\ntechnique = "figure.sss"\n'
@@ -89,7 +94,7 @@ def test_situations_are_compared_by_value(tmp_path: Path) -> None:
 def test_the_held_out_view_is_turned_about_the_vertical_through_the_target() -> None:
     scene = measured_scene.load("bracket")
     aside = scene.held_out()
-    before, after = (np.subtract(each.camera.position, scene.camera.target) for each in (scene, aside))
+    before, after = (np.subtract(view.camera.position, scene.camera.target) for view in (scene, aside))
     assert after[1] == pytest.approx(before[1])
     assert np.linalg.norm(after) == pytest.approx(np.linalg.norm(before))
     turned = np.degrees(np.arctan2(after[0], after[2]) - np.arctan2(before[0], before[2]))
@@ -134,7 +139,9 @@ def test_the_held_out_view_is_turned_about_the_vertical_through_the_target() -> 
 def test_errors_are_reported_at_their_place(text: str, message: str, line: int) -> None:
     with pytest.raises(SssgenError) as caught:
         measured(text)
-    results = [one for one in caught.value.diagnostics if message in f"{one.message} {one.hint}"]
+    results = [
+        diagnostic for diagnostic in caught.value.diagnostics if message in f"{diagnostic.message} {diagnostic.hint}"
+    ]
     assert results, caught.value
     if line:
         assert (results[0].span.file, results[0].span.line) == ("my_scene.toml", line)
@@ -175,7 +182,7 @@ def evaluated(text: str, folder: Path) -> Callable[[npt.NDArray[np.float64]], np
     return Distance(f"{body.FILE}:body", folder=str(folder)).distance
 
 
-@pytest.mark.parametrize("shape", [*SOLIDS, *(replace(one, **ASKEW) for one in SOLIDS)], ids=repr)
+@pytest.mark.parametrize("shape", [*SOLIDS, *(replace(solid, **ASKEW) for solid in SOLIDS)], ids=repr)
 def test_the_text_of_a_body_computes_its_distance(shape: Geometry, tmp_path: Path) -> None:
     at = np.random.default_rng(4).uniform(-3.0, 3.0, (400, 3))
     inwards = shape.to_object()
@@ -236,11 +243,11 @@ def test_training_sizes_are_powers_of_two() -> None:
     scene = replace(measured('[medium]\npreset = "cream"\n' + BALL + LIT))
     sizes = [references.training(replace(scene, geometry=Ball(radius)))[0].geometry for radius in (0.9, 1.0, 1.1, 2.0)]
     assert sizes == [Ball(1.0), Ball(1.0), Ball(1.0), Ball(2.0)]
-    trained = references.training(scene)
-    assert [each.name for each in trained] == ["ball", "slab", "ball", "slab"]
-    for each in trained:
-        assert each.medium == scene.medium
-        surface = points(replace(each, size=(16, 16)))
+    training_scenes = references.training(scene)
+    assert [training_scene.name for training_scene in training_scenes] == ["ball", "slab", "ball", "slab"]
+    for training_scene in training_scenes:
+        assert training_scene.medium == scene.medium
+        surface = points(replace(training_scene, size=(16, 16)))
         # each is lit from behind and from the front
-        facing = [float((surface.inputs["V"].mean(axis=1) * light.direction).sum()) for light in each.lights]
+        facing = [float((surface.inputs["V"].mean(axis=1) * light.direction).sum()) for light in training_scene.lights]
         assert min(facing) < -0.4 and max(facing) > 0.4

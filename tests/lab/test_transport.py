@@ -143,9 +143,9 @@ def slab_agrees(depth: float, albedo: float, anisotropy: float, samples: int, ti
     conserving = iadpython.Sample(a=1.0, b=depth, g=anisotropy, n=1.0, quad_pts=16).rt()
     assert conserving[0] + conserving[1] == pytest.approx(1.0, abs=1e-4)
     reflected, through, _, _ = iadpython.Sample(a=albedo, b=depth, g=anisotropy, n=1.0, quad_pts=16).rt()
-    for (got, error), want in zip(fluxes, (reflected, through - unscattered(depth, 1.0)), strict=True):
+    for (flux, error), want in zip(fluxes, (reflected, through - unscattered(depth, 1.0)), strict=True):
         assert error < tightest * want
-        assert abs(got - want) < 3.0 * error, f"{(got - want) / error:.2f} standard errors: {got} {want}"
+        assert abs(flux - want) < 3.0 * error, f"{(flux - want) / error:.2f} standard errors: {flux} {want}"
 
 
 @pytest.mark.parametrize(
@@ -292,7 +292,9 @@ def test_numbers_do_not_depend_on_threads() -> None:
             results.append(radiance(SHAPES[0], grey(0.9, 3.0), (0.0, 0.6, -0.8), CAMERA, (20, 15), 128))
     finally:
         drjit.set_thread_count(threads)
-    assert all((one.mean == results[0].mean).all() and (one.error == results[0].error).all() for one in results)
+    assert all(
+        (result.mean == results[0].mean).all() and (result.error == results[0].error).all() for result in results
+    )
     other = radiance(SHAPES[0], grey(0.9, 3.0), (0.0, 0.6, -0.8), CAMERA, (20, 15), 128, seed=1)
     assert (other.mean != results[0].mean).any()
 
@@ -395,17 +397,17 @@ def rendered(monkeypatch: pytest.MonkeyPatch, stop_at: int = 10**9) -> list[int]
 
 def test_cached_pictures_are_not_rendered_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     numbers = rendered(monkeypatch)
-    few = render(128)
+    small_render = render(128)
     assert numbers == list(range(8))
     again = render(128)
     assert numbers == list(range(8))
-    many = render(200)
+    large_render = render(200)
     assert numbers == list(range(13))
     monkeypatch.setenv("SSSGEN_CACHE", "")
     monkeypatch.setattr(cache, "_folder", None)
-    for kept, fresh in ((few, render(128)), (again, render(128)), (many, render(200))):
-        assert (kept.mean == fresh.mean).all() and (kept.error == fresh.error).all()
-        assert kept.samples == fresh.samples
+    for cached, fresh in ((small_render, render(128)), (again, render(128)), (large_render, render(200))):
+        assert (cached.mean == fresh.mean).all() and (cached.error == fresh.error).all()
+        assert cached.samples == fresh.samples
 
 
 def test_an_interrupted_render_continues(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

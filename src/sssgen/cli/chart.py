@@ -54,7 +54,7 @@ def run(arguments: Namespace) -> int:
     for name in names:
         if names.count(name) > 1:
             raise failure(f"two scenes are called '{name}'", "a scene is called as its file: rename one")
-    record = chart.charted(scenes, settings)
+    record = chart.chart_record(scenes, settings)
     if arguments.cost == "gpu":
         from sssgen.lab.gpu.chart_times import by_gpu, with_gpu_cost
 

@@ -31,7 +31,7 @@ def run(arguments: Namespace) -> int:
     for name in sorted(wanted - techniques):
         hint = did_you_mean(name, techniques) or f"techniques: {', '.join(sorted(techniques))}"
         raise failure(f"unknown technique '{name}'", hint)
-    points = chart.charted([scene], settings)["points"]
+    points = chart.chart_record([scene], settings)["points"]
     points = [point for point in points if point["name"] != "none" and (not wanted or point["name"] in wanted)]
     if arguments.json:
         print_json({"ok": True, "scene": scene.name, "points": points})

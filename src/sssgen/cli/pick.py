@@ -49,7 +49,7 @@ def run(arguments: Namespace) -> int:
     from sssgen.lab.scene import measured_scene
 
     scene = measured_scene.load(arguments.SCENE)
-    record = chart.charted([scene], settings)
+    record = chart.chart_record([scene], settings)
     picked = pick(record, scene.name, arguments.max_error, arguments.max_cost)
     files = _emitted(scene, picked, arguments.emit, arguments.target) if arguments.emit else []
     if arguments.json:

@@ -11,7 +11,7 @@ from sssgen.passes.link import LinkStage
 from sssgen.targets.descriptor import Target
 
 
-class MaterialStage(NamedTuple):
+class TargetStage(NamedTuple):
     """One stage of a chain."""
 
     link: LinkStage
@@ -23,17 +23,17 @@ class MaterialStage(NamedTuple):
     """Whether its technique is documented to glow: its light needs no lamp."""
 
 
-def stages_for(material: Material, target: Target) -> list[MaterialStage]:
+def stages_for(material: Material, target: Target) -> list[TargetStage]:
     """The material's stages without what the engine does, with the lighting that the target adds."""
     stages = [
-        MaterialStage(_link_stage(stage), stage.span, number, stage.technique.attributes.glows)
+        TargetStage(_link_stage(stage), stage.span, number, stage.technique.attributes.glows)
         for number, stage in enumerate(material.stages)
     ]
     lit = material.shading == "lit"
     if lit and target.lighting and all(stage.link.role != "lighting" for stage in stages):
         technique = library.load(target.lighting)
         added = LinkStage(technique.name, "lighting", technique.module, technique.function, {}, {}, frozenset())
-        stages.append(MaterialStage(added, technique.function.span, len(stages)))
+        stages.append(TargetStage(added, technique.function.span, len(stages)))
     engine = {"lighting"} if lit and not target.lighting else set()
     engine |= {"output"} if target.engine_encodes else set()
     return [stage for stage in stages if stage.link.role not in engine]

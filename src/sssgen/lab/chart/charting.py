@@ -1,6 +1,6 @@
 """Fits and measures every candidate on every scene, and returns a chart's record, to draw or to pick from.
 
-    record = charted([measured_scene.load("cube")], Settings())
+    record = chart_record([measured_scene.load("cube")], Settings())
 
 The cache folder keeps the points of a scene and the results of an interrupted run.
 """
@@ -50,7 +50,7 @@ class Settings(NamedTuple):
     roles: tuple[str, ...] = candidates.ROLES
     scheduler: str = ""
     processes: int | None = None
-    shown: Callable[[], AbstractContextManager[Progress]] = lambda: nullcontext(lambda *_: None)
+    progress_bar: Callable[[], AbstractContextManager[Progress]] = lambda: nullcontext(lambda *_: None)
     """Returns the progress bar of a stage of the work, as a context"""
 
     def cache_name(self, scene: MeasuredScene) -> str:
@@ -59,7 +59,7 @@ class Settings(NamedTuple):
         return f"chart-{cache.digest(key)}.json"
 
 
-def charted(scenes: Sequence[MeasuredScene], settings: Settings) -> dict[str, Any]:
+def chart_record(scenes: Sequence[MeasuredScene], settings: Settings) -> dict[str, Any]:
     """The record of a chart: all points of these scenes, from the cache or measured.
 
     Raises SssgenError for scenes that cannot be measured, and for missing packages.
@@ -237,7 +237,7 @@ def _training(candidate: Candidate, views: _Views) -> tuple[View, ...]:
 
 def _results(items: Sequence[Item], settings: Settings) -> list[Any]:
     """The items' results. Raises SssgenError with all failures."""
-    with settings.shown() as progress:
+    with settings.progress_bar() as progress:
         results = run(items, settings.scheduler, settings.processes, progress=progress)
     failed: dict[str, dict[str, None]] = {}
     for result in results:

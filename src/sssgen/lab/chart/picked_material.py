@@ -12,7 +12,7 @@ from sssgen.ir.types import components, kind_of
 from sssgen.lab.chart.charting import candidate_of
 from sssgen.lab.chart.picking import Pick
 from sssgen.lab.measure.candidates import load
-from sssgen.lab.measure.measured_chain import Stage, material_text
+from sssgen.lab.measure.measured_chain import MaterialSection, material_text
 from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.lab.scene.scene_body import Body, body
 from sssgen.material import library
@@ -22,7 +22,7 @@ from sssgen.material.slots import needs
 def material_files(scene: MeasuredScene, picked: Pick, name: str) -> dict[str, str]:
     """The material's file and the files that it refers to, for the same folder: name → text."""
     shape = body(scene.geometry)
-    stages: list[Stage] = []
+    stages: list[MaterialSection] = []
     if picked.coordinates is not None and picked.coordinates["name"] != "none":
         stages += _coordinates(scene, picked.coordinates, shape)
     if picked.chain is not None:
@@ -35,20 +35,20 @@ def material_files(scene: MeasuredScene, picked: Pick, name: str) -> dict[str, s
     return {f"{name}.toml": material_text(name, stages, scene.title, doc), **files}
 
 
-def _surface(name: str, value: object) -> Stage:
+def _surface(name: str, value: object) -> MaterialSection:
     """The stage that sets a value of the surface; a colour has an opacity as its fourth component."""
     technique, uniform = library.setter(name)
-    return Stage("surface", technique, ((uniform, value),))
+    return MaterialSection("surface", technique, ((uniform, value),))
 
 
-def stages_of(point: Mapping[str, Any], shape: Body) -> list[Stage]:
+def stages_of(point: Mapping[str, Any], shape: Body) -> list[MaterialSection]:
     """The stages of a point with its fitted parameters; counts are constants, all others are adjustable."""
     candidate = candidate_of(point)
     stages = zip(candidate.techniques, candidate.stages(shape), strict=True)
     return [_with_values(stage, _fitted(load(name), point)) for name, stage in stages]
 
 
-def _coordinates(scene: MeasuredScene, point: Mapping[str, Any], shape: Body) -> list[Stage]:
+def _coordinates(scene: MeasuredScene, point: Mapping[str, Any], shape: Body) -> list[MaterialSection]:
     assert scene.inlay is not None
     stages = []
     for stage in stages_of(point, shape)[:1]:
@@ -58,7 +58,7 @@ def _coordinates(scene: MeasuredScene, point: Mapping[str, Any], shape: Body) ->
     return stages
 
 
-def _with_values(stage: Stage, values: Mapping[str, object]) -> Stage:
+def _with_values(stage: MaterialSection, values: Mapping[str, object]) -> MaterialSection:
     """The stage with these parameters too; those that it has already are unchanged."""
     present = dict(stage.values)
     return stage._replace(

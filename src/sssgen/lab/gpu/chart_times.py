@@ -19,7 +19,7 @@ from sssgen.lab.chart.picked_material import stages_of
 from sssgen.lab.gpu import gpu_timing as gpu_cost
 from sssgen.lab.gpu import timed_programs as gpu_programs
 from sssgen.lab.gpu.gpu_timing import Measured
-from sssgen.lab.measure.measured_chain import Stage, material_of
+from sssgen.lab.measure.measured_chain import MaterialSection, material_of
 from sssgen.lab.scene import scene_body as body
 from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.material import library
@@ -50,7 +50,7 @@ def with_gpu_cost(
     """
     points = [dict(point) for point in record["points"]]
     about = dict(record["record"])
-    done = 0
+    finished = 0
     for measured in scenes:
         scene_points = [point for point in points if point["scene"] == measured.name and not point["failed"]]
         for start in range(0, len(scene_points), AT_ONCE):
@@ -60,8 +60,8 @@ def with_gpu_cost(
                 net = times.net_times[str(number)] - times.net_times[EMPTY]
                 low, median, high = (float(value) for value in np.percentile(net, [10.0, 50.0, 90.0]))
                 point["cost"] = {**point["cost"], **_cost(low, median, high, times)}
-            done += len(batch)
-            progress(done, len(points), measured.name)
+            finished += len(batch)
+            progress(finished, len(points), measured.name)
             about |= {"device": times.device.renderer, "driver": times.device.version}
             about |= {"software": times.device.software, "size": list(size), "rounds": rounds}
     about["rank_correlation"] = correlations(points)
@@ -101,9 +101,9 @@ def _timed(
         for name, text in shape.files.items():
             with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
                 file.write(text)
-        chains: list[tuple[str, Sequence[Stage]]] = [(EMPTY, ())]
+        chains: list[tuple[str, Sequence[MaterialSection]]] = [(EMPTY, ())]
         chains += [(str(number), stages_of(point, shape)) for number, point in enumerate(points)]
-        plain = Stage("surface", library.setter("albedo")[0])
+        plain = MaterialSection("surface", library.setter("albedo")[0])
         for name, stages in chains:
             surface = [] if any(stage.section == "surface" for stage in stages) else [plain]
             material = material_of([*stages, *surface], folder)

@@ -107,10 +107,10 @@ class Measured:
         """
         return _spread(self.net_times[name])
 
-    def ratio(self, name: str, other: str) -> Spread:
+    def ratio(self, name: str, reference: str) -> Spread:
         """The net time of `name` divided by that of `other`, round by round."""
         # the floor's noise may exceed a cheap program's time, so that its net time is negative
-        return _spread(np.maximum(self.net_times[name], 0.0) / np.maximum(self.net_times[other], 1e-9))
+        return _spread(np.maximum(self.net_times[name], 0.0) / np.maximum(self.net_times[reference], 1e-9))
 
     def record(self) -> dict[str, Any]:
         """The measurement for JSON. If `software`, only ratios of the times are meaningful."""

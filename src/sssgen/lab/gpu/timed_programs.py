@@ -159,16 +159,16 @@ def of_material(
     material = material if isinstance(material, Material) else load_material(material)
     compiled = compile(material, TARGET, guards=guards)
     height, width = points.position.shape[:2]
-    drawn = drawing(compiled, shell_of(scene, material, compiled.reflection), (width, height), None, None)
-    text = drawn.fragment.text.text
+    program = drawing(compiled, shell_of(scene, material, compiled.reflection), (width, height), None, None)
+    text = program.fragment.text.text
     varyings = [varying for varying in _VARYINGS if re.search(rf"^in \w+ {varying};$", text, re.MULTILINE)]
     text = re.sub(r"^(?:in|out) (\w+ (?:v_\w+|fragment_color);)$", r"\1", text, flags=re.MULTILINE)
     text = re.sub(r"^void main\(\)", "void shade()", text, flags=re.MULTILINE)
     text = text.replace("discard;", "return;")  # discarding would shorten the time
-    textures = {name: bound.data for name, bound in drawn.textures.items()}
+    textures = {name: bound.data for name, bound in program.textures.items()}
     sum_of_reads = _sum((_VARYINGS[varying][0], varying) for varying in varyings)
     floor = f"#version 330 core\n{_declared(varyings)}void shade() {{\n    fragment_color = {sum_of_reads};\n}}\n"
-    uniforms = {**drawn.values, "timing_evaluations": evaluations}
+    uniforms = {**program.values, "timing_evaluations": evaluations}
     main = _main(varyings)
     return Program(name, text + main, uniforms, {**textures, **_bound(points)}, floor + main, evaluations)
 

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler, kind_of
-from sssgen.lab.measure.measured_chain import Stage
+from sssgen.lab.measure.measured_chain import MaterialSection
 from sssgen.lab.scene.scene_body import Body
 from sssgen.lang.check.quantities import SCALARS
 from sssgen.material import library, slots
@@ -45,11 +45,11 @@ class Candidate(NamedTuple):
     """The chain's techniques, in order; empty for a chart's point without the role"""
     baseline: bool = False
 
-    def stages(self, body: Body) -> tuple[Stage, ...]:
+    def stages(self, body: Body) -> tuple[MaterialSection, ...]:
         """The chain's stages, bound to a scene's body."""
         return tuple(self._stage(name, body) for name in self.techniques)
 
-    def _stage(self, name: str, body: Body) -> Stage:
+    def _stage(self, name: str, body: Body) -> MaterialSection:
         technique = load(name)
         section = "thickness" if technique.role == "conversion" else technique.role
         uniforms = {uniform.name for uniform in technique.uniforms}
@@ -63,7 +63,7 @@ class Candidate(NamedTuple):
         values: dict[str, object] = dict(fixed)
         for key, value in body_values:
             values.setdefault(key, value)
-        return Stage(section, path_of(name), tuple(values.items()), tuple(values), tuple(bind))
+        return MaterialSection(section, path_of(name), tuple(values.items()), tuple(values), tuple(bind))
 
 
 def load(name: str) -> Technique:
@@ -108,7 +108,7 @@ def translucency() -> list[Candidate]:
     """The techniques of translucency, after the exact thickness, and the candidate without one."""
     result = [Candidate("translucency", "none", "none", (), ())]
     for technique in of_role("translucency"):
-        needed = quantity_taken(technique)
+        needed = quantity_read(technique)
         for route in routes("thickness", needed) if needed else [()]:
             thickness_chain = ("exact_thickness", *route) if needed else ()
             chain, baseline = (*thickness_chain, technique.name), technique.baseline
@@ -124,7 +124,7 @@ def materials(lengths: Sequence[Candidate]) -> list[Candidate]:
     for light in of_role("translucency"):
         if is_published(light):
             continue
-        needed = quantity_taken(light)
+        needed = quantity_read(light)
         if not needed:
             result.append(Candidate("material", light.name, light.name, (), (light.name,)))
             continue
@@ -167,7 +167,7 @@ def routes(quantity: str, needed: str) -> list[tuple[str, ...]]:
     return [
         (technique.name,)
         for technique in of_role("conversion")
-        if quantity_taken(technique) == quantity and technique.function.quantity == needed
+        if quantity_read(technique) == quantity and technique.function.quantity == needed
     ]
 
 
@@ -191,7 +191,7 @@ def is_constant(technique: Technique) -> bool:
     return technique.role == "thickness" and not technique.function.params and not needs(technique)
 
 
-def quantity_taken(technique: Technique) -> str:
+def quantity_read(technique: Technique) -> str:
     """The scalar quantity that a technique reads, or ''."""
     return next((param.quantity for param in technique.function.params if param.quantity in SCALARS), "")
 
@@ -199,8 +199,8 @@ def quantity_taken(technique: Technique) -> str:
 def of_role(role: str) -> list[Technique]:
     """The charted techniques of a role, the published ones last."""
     loaded = [library.load(name) for name in library.index()]
-    charted = [technique for technique in loaded if technique.role == role and not technique.attributes.uncharted]
-    return sorted(charted, key=lambda technique: is_published(technique))
+    techniques = [technique for technique in loaded if technique.role == role and not technique.attributes.uncharted]
+    return sorted(techniques, key=lambda technique: is_published(technique))
 
 
 def is_published(technique: Technique) -> bool:

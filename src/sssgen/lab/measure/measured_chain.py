@@ -22,7 +22,7 @@ from sssgen.targets.runtime.numpy_values import grid, precision
 NAME = "measured"
 
 
-class Stage(NamedTuple):
+class MaterialSection(NamedTuple):
     """A stage of a chain, as in a material file."""
 
     section: str
@@ -35,7 +35,7 @@ class Stage(NamedTuple):
     """Slot → function"""
 
 
-def material_text(name: str, stages: Sequence[Stage], title: str = "", doc: str = "") -> str:
+def material_text(name: str, stages: Sequence[MaterialSection], title: str = "", doc: str = "") -> str:
     """The material file of a chain."""
     lines = ["[material]", f"name = {_value(name)}"]
     lines += [f"title = {_value(title)}"] if title else []
@@ -45,8 +45,8 @@ def material_text(name: str, stages: Sequence[Stage], title: str = "", doc: str 
         if stage.bind:
             lines.append(f"bind = {{ {', '.join(f'{slot} = {_value(to)}' for slot, to in stage.bind)} }}")
         for key, value in stage.values:
-            shown = _value(value)
-            lines.append(f"{key} = {{ value = {shown}, fixed = true }}" if key in stage.fixed else f"{key} = {shown}")
+            text = _value(value)
+            lines.append(f"{key} = {{ value = {text}, fixed = true }}" if key in stage.fixed else f"{key} = {text}")
     return "\n".join(lines) + "\n"
 
 
@@ -60,8 +60,8 @@ def _value(value: Any) -> str:
     if isinstance(value, int | np.integer):
         return str(int(value))
     if isinstance(value, float | np.floating):
-        shown = f"{float(value):.6g}"
-        return shown if any(mark in shown for mark in ".en") else f"{shown}.0"
+        text = f"{float(value):.6g}"
+        return text if any(mark in text for mark in ".en") else f"{text}.0"
     return f"[{', '.join(_value(part) for part in value)}]"
 
 
@@ -151,6 +151,6 @@ def _shaped(type_name: str, data: Any, dtype: Any) -> Any:
     return value
 
 
-def material_of(stages: Sequence[Stage], folder: str, name: str = NAME) -> Material:
+def material_of(stages: Sequence[MaterialSection], folder: str, name: str = NAME) -> Material:
     """The material of a chain; paths in it are relative to `folder`. Raises SssgenError."""
     return parse_material(material_text(name, stages), os.path.join(folder, f"{name}.toml"))

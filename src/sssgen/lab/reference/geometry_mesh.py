@@ -138,8 +138,8 @@ def _volume(vertices: Array, faces: Indices) -> float:
 def _check_closed(vertices: Array, faces: Indices, path: str) -> None:
     """Raises SssgenError unless each edge has equally many triangles in both directions."""
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    there = edges[:, 0] * len(vertices) + edges[:, 1]
-    back = edges[:, 1] * len(vertices) + edges[:, 0]
-    if not np.array_equal(np.sort(there), np.sort(back)):
+    forward = edges[:, 0] * len(vertices) + edges[:, 1]
+    backward = edges[:, 1] * len(vertices) + edges[:, 0]
+    if not np.array_equal(np.sort(forward), np.sort(backward)):
         message = "the mesh has a hole, or triangles with different orientations: light transport needs an inside"
         raise failure(message, "close it, and make all its triangles counter-clockwise seen from outside", path)

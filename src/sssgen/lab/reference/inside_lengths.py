@@ -201,8 +201,8 @@ def _bisected(geometry: Geometry, origins: Array, directions: Array, low: Array,
     negative = geometry.distance(origins + low[:, None] * directions) < 0.0
     for _ in range(BISECTION_STEPS):
         middle = 0.5 * (low + high)
-        same = (geometry.distance(origins + middle[:, None] * directions) < 0.0) == negative
-        low, high = np.where(same, middle, low), np.where(same, high, middle)
+        same_sign = (geometry.distance(origins + middle[:, None] * directions) < 0.0) == negative
+        low, high = np.where(same_sign, middle, low), np.where(same_sign, high, middle)
     return high
 
 

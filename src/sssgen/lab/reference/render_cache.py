@@ -28,7 +28,7 @@ class Batches(NamedTuple):
     squares: Array
     """The sum of their squares"""
 
-    def and_another(self, batch: Array) -> Batches:
+    def with_batch(self, batch: Array) -> Batches:
         return Batches(self.number + 1, self.total + batch, self.squares + batch * batch)
 
     def mean(self) -> Array:

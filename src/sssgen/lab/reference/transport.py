@@ -125,8 +125,8 @@ def radiance_along(
     # each channel separately: free paths sampled for one channel have a far larger variance in another
     for channel in dict.fromkeys(channels):
         state = _converge(body, channel, light, rays, batches, seed, scatterings)
-        same = [index for index, candidate in enumerate(channels) if candidate == channel]
-        mean[:, same], error[:, same] = state.mean()[:, None], state.error()[:, None]
+        equal_channels = [index for index, candidate in enumerate(channels) if candidate == channel]
+        mean[:, equal_channels], error[:, equal_channels] = state.mean()[:, None], state.error()[:, None]
     return Transport(mean, error, batches * BATCH)
 
 
@@ -144,7 +144,7 @@ def _converge(
     renderer = Renderer(body, channel, light, rays, base, scatterings)
     written_batches, written = 0, time.monotonic()
     while state.number < count:
-        state = state.and_another(renderer.batch(state.number, BATCH))
+        state = state.with_batch(renderer.batch(state.number, BATCH))
         if state.number < count and time.monotonic() - written > _SECONDS_BETWEEN_WRITES:
             store(key, state, instead_of=written_batches)
             written_batches, written = state.number, time.monotonic()

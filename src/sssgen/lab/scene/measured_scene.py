@@ -108,12 +108,12 @@ def load(name: str) -> MeasuredScene:
 
 def of_scene(scene: Scene, path: str) -> MeasuredScene:
     """The measured scene of a scene with physical data. Raises SssgenError for an incomplete description."""
-    document, shown = scene.document, posix(path)
+    document, file = scene.document, posix(path)
     if not scene.measured:
         hint = 'add [medium] with preset = "marble", say; or [inlay] with depth = 0.02: docs/accuracy.md'
-        raise failure("the scene does not describe the medium of its body", hint, shown)
+        raise failure("the scene does not describe the medium of its body", hint, file)
     if scene.geometry is None:
-        raise failure("the scene has no geometry to measure", "add [geometry]", shown)
+        raise failure("the scene has no geometry to measure", "add [geometry]", file)
     medium = _medium(scene) if "medium" in scene.measured else None
     inlay = _inlay(scene) if "inlay" in scene.measured else None
     for number, light in enumerate(scene.lights):

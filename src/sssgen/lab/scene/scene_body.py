@@ -116,10 +116,10 @@ def _formula(geometry: Geometry, parts: list[str]) -> list[str]:
 
 
 def _number(value: float) -> str:
-    shown = repr(float(np.float32(value)))
+    text = repr(float(np.float32(value)))
     short = f"{value:.7g}"
-    shown = short if np.float32(short) == np.float32(value) else shown
-    return shown if any(mark in shown for mark in ".e") else f"{shown}.0"
+    text = short if np.float32(short) == np.float32(value) else text
+    return text if any(mark in text for mark in ".e") else f"{text}.0"
 
 
 def _vector(values: Any) -> str:

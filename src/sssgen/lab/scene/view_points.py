@@ -55,10 +55,6 @@ class Points:
         picture[self.valid] = np.asarray(values).T
         return picture[::-1]
 
-    def some(self, most: int) -> Array:
-        """At most `most` lanes, evenly spaced, the same in every run."""
-        return np.unique(np.linspace(0, self.count - 1, min(most, self.count)).astype(int))
-
 
 @lru_cache(64)
 def points(scene: MeasuredScene) -> Points:

@@ -15,10 +15,10 @@ def write(record: Any, folder: str | os.PathLike[str], stem: str = "chart") -> l
     Either all files are written or none. The same JSON file always gives the same files. Raises SssgenError for an
     invalid record (see record.py), a record without points, a missing library, and a folder that cannot be written.
     """
-    return [written.path for written in write_files(folder, drawn(record, stem))]
+    return [written.path for written in write_files(folder, chart_files(record, stem))]
 
 
-def drawn(record: Any, stem: str = "chart") -> dict[str, str | bytes]:
+def chart_files(record: Any, stem: str = "chart") -> dict[str, str | bytes]:
     """The files that `write` writes, by name."""
     from sssgen.lab.chart.drawing import figure, page
     from sssgen.lab.chart.drawing.panels import charts_of
@@ -28,11 +28,11 @@ def drawn(record: Any, stem: str = "chart") -> dict[str, str | bytes]:
     if not record["points"]:
         raise failure("there is nothing to draw: the record has no points")
     charts = charts_of(record)
-    pictures = {chart.role: figure.drawn(chart) for chart in charts}
+    pictures = {chart.role: figure.picture_of(chart) for chart in charts}
     files: dict[str, str | bytes] = {}
     for role, picture in pictures.items():
         files |= {f"{stem}_{role}.png": picture.png, f"{stem}_{role}.svg": picture.svg}
-    files[f"{stem}.html"] = page.written(record, charts, [picture.svg for picture in pictures.values()])
+    files[f"{stem}.html"] = page.html_page(record, charts, [picture.svg for picture in pictures.values()])
     files[f"{stem}.csv"] = to_csv(record)
     files[f"{stem}.json"] = to_json(record)
     return files

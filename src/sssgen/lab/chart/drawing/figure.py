@@ -44,7 +44,7 @@ class Picture(NamedTuple):
     """Each marker is a link to #rowN, N being its row in the page's table, and has a tooltip."""
 
 
-def drawn(chart: Chart) -> Picture:
+def picture_of(chart: Chart) -> Picture:
     """The chart as files. Raises SssgenError where matplotlib or textalloc is missing."""
     with settings():
         figure = figure_of(chart)

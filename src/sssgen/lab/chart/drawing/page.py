@@ -26,7 +26,7 @@ class Cell(NamedTuple):
     key: float | str
 
 
-def written(record: Record, charts: Sequence[Chart], pictures: Sequence[str]) -> str:
+def html_page(record: Record, charts: Sequence[Chart], pictures: Sequence[str]) -> str:
     """The page of a checked record, its charts and their SVGs."""
     titles = {scene["name"]: str(scene.get("title") or scene["name"]) for scene in record["scenes"]}
     rows = [_row(point, titles) for chart in charts for panel in chart.panels for point in panel.points]
