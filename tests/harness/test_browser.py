@@ -1,4 +1,4 @@
-"""The back end `browser`: draws in Chromium, and its messages where it cannot draw."""
+"""The back end `browser`: it draws in Chromium, and reports why it cannot draw."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def browser(backend: Callable[[str], Backend]) -> Browser:
 
 
 def drawing(text: str, size: tuple[int, int] = (65, 3), **more: Any) -> Drawing:
-    """A draw of floats; 65 pixels are a row whose bytes must be padded."""
+    """A drawing of float32 pixels. The bytes of a row of 65 pixels need padding."""
     return Drawing(size, Stage(Text(text), "pixel"), Stage(Text(text), "corner"), floats=True, **more)
 
 
@@ -85,23 +85,23 @@ def test_textures_wrap_and_have_levels(browser: Browser, wrap: str) -> None:
     uv = np.array([[-0.9375, 0.1875, 0.25, 1.0625, 2.3125], [0.125, -0.375, 1.125, 2.625, 0.5]])
     level = np.array([0.0, 0.0, 1.0, 0.0, 2.0])
     call = Call("look", (BY_NAME["sampler2D"], VEC2, FLOAT), VEC4, ("image", uv, level))
-    (seen,) = browser.run(Text(text), [call], {"image": texture})
-    assert seen == pytest.approx(texture.sample(uv, level), abs=1e-3)
+    (result,) = browser.run(Text(text), [call], {"image": texture})
+    assert result == pytest.approx(texture.sample(uv, level), abs=1e-3)
 
 
 def test_implicit_levels_in_a_function(browser: Browser) -> None:
-    """Several calls, each in a branch of its own: Tint alone would call that non-uniform."""
+    """Several calls, each in its own branch, which Tint would report as non-uniform."""
     texture = Texture(np.arange(4 * 4 * 3).reshape(4, 4, 3) / 64.0, mipmaps=True)
     text = code(load_text("vec4 look(sampler2D t, vec2 uv) { return texture(t, uv); }", "t"), "wgsl")
     uv = np.full((2, 6), 0.375)
     call = Call("look", (BY_NAME["sampler2D"], VEC2), VEC4, ("image", uv))
-    for seen in browser.run(Text(text), [call, call], {"image": texture}):
-        assert seen == pytest.approx(texture.sample(uv, 0.0), abs=1e-3)
+    for result in browser.run(Text(text), [call, call], {"image": texture}):
+        assert result == pytest.approx(texture.sample(uv, 0.0), abs=1e-3)
 
 
 def test_vertices_and_blocks(browser: Browser) -> None:
     vertices = np.zeros((3, 12), np.float32)
-    vertices[:, :2] = [[-1, 1], [3, 1], [-1, -3]]  # the whole picture, its first row at the top
+    vertices[:, :2] = [[-1, 1], [3, 1], [-1, -3]]  # covers the whole picture; the first row is at the top
     vertices[:, 9] = -1.0
     vertices[:, 10:] = [[0, 0], [2, 0], [0, 2]]
     gain = {"gain": Block(np.array([1, 2, 3, 4], np.float32).tobytes(), Place(1, 2))}
@@ -152,7 +152,7 @@ def test_a_browser_that_is_lost_is_started_again(browser: Browser, monkeypatch: 
     threading.Timer(0.3, os.killpg, (first.pid, signal.SIGKILL)).start()
     assert "crashed, or was ended by another program" in refusal(browser, drawing(ENDLESS))
     assert_draws(browser)
-    os.killpg(browser.page.process.pid, signal.SIGKILL)  # between two draws
+    os.killpg(browser.page.process.pid, signal.SIGKILL)  # after the first draw
     browser.page.process.wait()
     assert_draws(browser)
     with monkeypatch.context() as patch:
@@ -172,7 +172,7 @@ def test_a_lost_device(browser: Browser) -> None:
     for folder in Path("/proc").glob("[0-9]*"):
         try:
             ours = session(folder) == browser.page.process.pid and b"=gpu-process" in (folder / "cmdline").read_bytes()
-        except OSError:  # it ended meanwhile
+        except OSError:  # the process has ended
             continue
         if ours:
             os.kill(int(folder.name), signal.SIGKILL)
@@ -187,7 +187,7 @@ def short_folder() -> Iterator[Path]:
         yield Path(folder)
 
 
-def test_a_killed_python_leaves_nothing(browser: Browser, short_folder: Path) -> None:
+def test_a_killed_python_leaves_no_browser(browser: Browser, short_folder: Path) -> None:
     """The folder is removed when the browser has ended."""
     script = "from sssgen.harness import backends; print(backends.get('browser').device(), flush=True); input()"
     python = subprocess.Popen(
@@ -205,20 +205,20 @@ def test_a_killed_python_leaves_nothing(browser: Browser, short_folder: Path) ->
 def test_a_missing_browser() -> None:
     script = "from sssgen.harness import backends; backends.get('browser')"
     environment = os.environ | {"SSSGEN_CHROMIUM": "/nowhere/chromium", "PYTHONIOENCODING": "utf-8"}
-    done = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, encoding="utf-8")
-    assert "CompilerMissing: chromium (Debian: chromium · elsewhere: Chrome; or set SSSGEN_CHROMIUM)" in done.stderr
+    process = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, encoding="utf-8")
+    assert "CompilerMissing: chromium (Debian: chromium · elsewhere: Chrome; or set SSSGEN_CHROMIUM)" in process.stderr
 
 
 def test_a_missing_package() -> None:
     script = (
         "import sys; sys.modules['websockets'] = None; from sssgen.harness import backends; backends.get('browser')"
     )
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, encoding="utf-8")
-    assert "CompilerMissing: the Python package websockets" in done.stderr
-    assert "pip install 'sssgen[browser]' and Chromium or Chrome" in done.stderr
+    process = subprocess.run([sys.executable, "-c", script], capture_output=True, encoding="utf-8")
+    assert "CompilerMissing: the Python package websockets" in process.stderr
+    assert "pip install 'sssgen[browser]' and Chromium or Chrome" in process.stderr
 
 
-def test_a_program_that_is_no_browser(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_program_that_is_not_a_browser(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SSSGEN_CHROMIUM", sys.executable)
     with pytest.raises(CompilerMissing, match=r"ended as it started \(exit status 2\)"):
         Browser("browser", "wgsl")

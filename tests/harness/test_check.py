@@ -1,4 +1,4 @@
-"""`sssgen check`: what it accepts, its messages, and the places in the technique that they name."""
+"""`sssgen check`: the files that it accepts, its messages, and their places in the technique."""
 
 from __future__ import annotations
 
@@ -76,17 +76,17 @@ def emitted(target: str, form: str = "shader") -> dict[str, str]:
 
 
 def program(name: str, script: str) -> str:
-    """A program that imitates a compiler that misbehaves."""
+    """Writes a program that imitates a faulty compiler."""
     path = Path(name)
     path.write_text(f"#!/bin/sh\n{script}\n", encoding="utf-8")
     path.chmod(path.stat().st_mode | stat.S_IXUSR)
     return str(path.resolve())
 
 
-# What compiles
+# Correct files
 
 
-def test_files_by_hand_in_every_language(run: Run, compiler: Callable[[str], Compiler]) -> None:
+def test_handwritten_files_in_every_language(run: Run, compiler: Callable[[str], Compiler]) -> None:
     for name in ("gl", "glslang", "dxc", "naga", "tint"):
         compiler(name)
     write({"a.frag": FRAGMENT, "a.hlsl": HLSL, "a.wgsl": WGSL, "f.glsl": "float f(float x) { return x; }\n"})
@@ -115,7 +115,7 @@ def test_a_material_in_both_forms(run: Run, compiler: Callable[[str], Compiler])
     assert all(row["ok"] and row["messages"] == [] for row in ran.data["results"])
 
 
-def test_a_material_means_every_target_that_a_compiler_reads() -> None:
+def test_a_material_is_checked_for_every_target_with_a_compiler() -> None:
     results = {source.language for shader in of_material("ice", ()) for source in shader.sources}
     assert results == {language for record in COMPILERS.values() for language in record.languages}
 
@@ -141,7 +141,7 @@ def test_languages_by_text_and_by_target() -> None:
     }
 
     def languages(*targets: str) -> dict[str, str]:
-        return {one.name: one.sources[0].language for one in of_files(files, set(), targets)}
+        return {shader_file.name: shader_file.sources[0].language for shader_file in of_files(files, set(), targets)}
 
     builtin = {"s.shader": "unity-builtin", "c.cginc": "unity-builtin"}
     assert languages() == {"a.frag": "glsl-330", "e.frag": "glsl-es-300", "u.hlsl": "unity-urp", **builtin}
@@ -149,7 +149,7 @@ def test_languages_by_text_and_by_target() -> None:
     assert of_files({"x.txt": FRAGMENT}, {"x.txt"}, ["glsl-es-300"])[0].sources[0].language == "glsl-es-300"
 
 
-# What does not compile
+# Files with errors
 
 
 @pytest.mark.parametrize(
@@ -207,17 +207,17 @@ def test_an_error_in_an_edited_file_leads_to_the_technique(
     message = next(m for row in ran.data["results"] for m in row["messages"])
     assert message["line"] == number
     assert message["source"].startswith("conversion/beer_lambert.sss:")
-    shown = run(f"out/{name}", "--compiler", compiler_name).out
-    assert f"--> out/{name}:{number}" in shown
-    assert f"from {message['source']}" in shown
-    assert "return transmittance(exp(" in shown
+    output = run(f"out/{name}", "--compiler", compiler_name).out
+    assert f"--> out/{name}:{number}" in output
+    assert f"from {message['source']}" in output
+    assert "return transmittance(exp(" in output
 
 
 def test_a_material_leads_to_the_technique_without_files(compiler: Callable[[str], Compiler]) -> None:
     from dataclasses import replace
 
     compiler("glslang")
-    shader = next(one for one in of_material("ice", ["glsl-330"]) if one.name.endswith(".frag"))
+    shader = next(shader_file for shader_file in of_material("ice", ["glsl-330"]) if shader_file.name.endswith(".frag"))
     text = shader.text.replace("return exp(-min(", "return nowhere(-min(")
     broken = replace(shader, text=text, sources=tuple(source.with_text(text) for source in shader.sources))
     (result,) = check.run([broken], ["glslang"]).results
@@ -236,7 +236,7 @@ def test_an_error_in_the_other_stage_names_that_stage(run: Run, compiler: Callab
     }
 
 
-def test_an_error_outside_of_the_file_has_no_line_of_it(compiler: Callable[[str], Compiler]) -> None:
+def test_an_error_outside_of_the_file_has_no_line(compiler: Callable[[str], Compiler]) -> None:
     unity = compiler("unity")
     text = (UNITY_SAMPLES / "surface.shader").read_text(encoding="utf-8")
     assert not unity.check(Source(text, "unity-builtin", name='a "quoted": name.shader'))
@@ -245,7 +245,7 @@ def test_an_error_outside_of_the_file_has_no_line_of_it(compiler: Callable[[str]
     assert all(not message.line for message in result)
 
 
-# Compilers that are missing or misbehave
+# Missing and faulty compilers
 
 
 def test_a_missing_compiler_is_reported(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -254,9 +254,9 @@ def test_a_missing_compiler_is_reported(run: Run, monkeypatch: pytest.MonkeyPatc
     ran = run("a.wgsl", "--json")
     assert [row["name"] for row in ran.data["missing"]][-1] == "tint"
     assert "webgpu" in ran.data["missing"][-1]["how"] or "node" in ran.data["missing"][-1]["how"]
-    shown = run("a.wgsl")
-    assert "tint     not found: " in shown.out
-    assert shown.status == ran.status
+    result_without = run("a.wgsl")
+    assert "tint     not found: " in result_without.out
+    assert result_without.status == ran.status
     monkeypatch.setenv("CI", "true")
     assert run("a.wgsl").status == 1
     named = run("a.wgsl", "--compiler", "tint")
@@ -342,12 +342,12 @@ def test_wrong_input(arguments: list[str], message: str, run: Run) -> None:
 
 
 @pytest.mark.skipif(os.name != "posix", reason="there are no pipes with names")
-def test_a_pipe_is_not_waited_for(run: Run) -> None:
+def test_a_pipe_is_refused(run: Run) -> None:
     os.mkfifo("pipe.frag")
     assert "this is not a file" in run("pipe.frag").err
 
 
-def test_which_headers_of_unity(run: Run, compiler: Callable[[str], Compiler]) -> None:
+def test_the_headers_of_unity_are_reported(run: Run, compiler: Callable[[str], Compiler]) -> None:
     compiler("unity")
     text = (UNITY_SAMPLES / "surface.shader").read_text(encoding="utf-8")
     write({"a.shader": text})

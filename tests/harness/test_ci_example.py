@@ -1,4 +1,4 @@
-"""examples/ci as a user runs it: copied, run, changed, updated; with pytest and with `sssgen ci`, each as a program."""
+"""A user copies examples/ci, runs it, changes it and updates it, with pytest and with `sssgen ci`."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ GL = ("--backend", "gl")
 
 @pytest.fixture(autouse=True)
 def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, backend: Callable[[str], Backend]) -> Path:
-    """A copy of the example, which is the current folder."""
+    """A copy of the example; it is the current folder."""
     backend("gl")
     folder = shutil.copytree(EXAMPLE, tmp_path / "project")
     monkeypatch.chdir(folder)
@@ -35,12 +35,12 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, backend: Callable[[
 
 
 def run(*arguments: str, **variables: str) -> tuple[int, str]:
-    """The exit status of a Python module, and all that it printed."""
+    """The exit status of a Python module, and its output."""
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
     environment.pop("CI", None)
     command = [sys.executable, "-m", *arguments]
-    done = subprocess.run(command, env={**environment, **variables}, capture_output=True, text=True, check=False)
-    return done.returncode, done.stdout + done.stderr
+    process = subprocess.run(command, env={**environment, **variables}, capture_output=True, text=True, check=False)
+    return process.returncode, process.stdout + process.stderr
 
 
 def run_pytest(*arguments: str, **variables: str) -> tuple[int, str]:
@@ -65,7 +65,7 @@ def failures() -> list[str]:
 
 
 def report(path: str = "report.xml") -> tuple[dict[str, str], dict[str, ET.Element]]:
-    """The suite's counts, and its test cases by kind."""
+    """The counts of the test suite, and its test cases by kind."""
     (suite,) = ET.parse(path).getroot().findall("testsuite")
     return suite.attrib, {case.attrib["classname"]: case for case in suite.findall("testcase")}
 
@@ -150,6 +150,6 @@ def test_the_workflow_runs_the_commands_of_the_example() -> None:
     assert "\t" not in text
 
 
-def test_the_folder_is_no_example_material() -> None:
+def test_the_folder_is_not_an_example_material() -> None:
     assert "ci" not in examples()
-    assert not list(EXAMPLE.glob("*.toml"))  # the makefile takes such files for materials
+    assert not list(EXAMPLE.glob("*.toml"))  # the makefile compiles such files as materials

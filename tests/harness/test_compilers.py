@@ -1,4 +1,4 @@
-"""Compilers accept correct files and refuse wrong ones, at the right line; how files become sources."""
+"""Compilers accept correct files and report the line of an error; files become sources with a language and a stage."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ GOOD = [
     Source("import math\nx = math.pi\n", "numpy", "library"),
 ]  # fmt: skip
 GLSLS = ("glsl-330", "glsl-es-300")
-BAD = [  # (what was right, what stands there instead, the line)
+BAD = [  # (the correct text, the wrong text, the line)
     *((Source(GLSL, language), "t, v_uv", "t, v_u", 5) for language in ("glsl-330", "glsl-es-300")),
     *((Source(GLSL_LIBRARY, language, "library"), "x.x *", "x *", 3) for language in GLSLS),
     (Source(HLSL, "hlsl", "fragment", "shade"), "position.xy)", "position.xy + missing)", 4),
@@ -88,7 +88,7 @@ BAD = [  # (what was right, what stands there instead, the line)
 
 
 @pytest.mark.parametrize("source", GOOD, ids=lambda s: f"{s.language}-{s.stage}")
-def test_right_text_compiles_everywhere(source: Source, assert_compiles: Callable[[Source], None]) -> None:
+def test_correct_text_compiles_everywhere(source: Source, assert_compiles: Callable[[Source], None]) -> None:
     assert_compiles(source)
 
 
@@ -103,9 +103,9 @@ def test_wrong_text_is_refused_at_its_line(
         assert messages[0].line == line, (name, messages)
 
 
-def test_driver_links_both_stages(compiler: Callable[[str], Compiler]) -> None:
-    other = "#version 330\n" + GLSL_VERTEX.replace("v_uv", "v_other")
-    assert "v_uv" in errors(compiler("gl").check(Source(GLSL, "glsl-330", companion=other)))[0].text
+def test_the_driver_links_both_stages(compiler: Callable[[str], Compiler]) -> None:
+    vertex = "#version 330\n" + GLSL_VERTEX.replace("v_uv", "v_other")
+    assert "v_uv" in errors(compiler("gl").check(Source(GLSL, "glsl-330", companion=vertex)))[0].text
 
 
 def test_tint_checks_uniformity_of_libraries_too(compiler: Callable[[str], Compiler]) -> None:
@@ -161,7 +161,7 @@ def test_unity_accepts_the_samples(file: str, language: str, assert_compiles: Ca
         ("surface.shader", "ENDCG", "", "CGPROGRAM without its other end"),
         ("urp.shader", "light.direction + normal", "light.missing", "ForwardLit"),
         ("urp.shader", "min(positionCS.z,", "min(positionCS.missing,", "ShadowCaster vertex"),
-        ("urp.shader", "uint count =", "uint number =", "ForwardLit"),  # with _ADDITIONAL_LIGHTS alone
+        ("urp.shader", "uint count =", "uint number =", "ForwardLit"),  # only with _ADDITIONAL_LIGHTS
         ("urp.shader", "    float _Sharpness;\n        CBUFFER_END", "CBUFFER_END\n        float _Sharpness;",
          "_Sharpness is not in UnityPerMaterial"),
         ("urp.shader", "#pragma fragment frag", "", "no #pragma fragment"),
@@ -175,11 +175,11 @@ def test_unity_refuses_wrong_samples(
     text = (SAMPLES / file).read_text(encoding="utf-8")
     assert right in text
     language = {"surface.shader": "unity-builtin", "urp.shader": "unity-urp"}.get(file, "unity-shadergraph")
-    errors_found = errors(compiler("unity").check(Source(text.replace(right, wrong), language, name=file)))
-    assert any(reported in message.text for message in errors_found), errors_found
+    reported_errors = errors(compiler("unity").check(Source(text.replace(right, wrong), language, name=file)))
+    assert any(reported in message.text for message in reported_errors), reported_errors
 
 
-def test_unity_points_at_the_line_of_the_file(compiler: Callable[[str], Compiler]) -> None:
+def test_unity_reports_the_line_of_the_file(compiler: Callable[[str], Compiler]) -> None:
     text = (SAMPLES / "urp.shader").read_text(encoding="utf-8").replace("CS.z;", "CS.missing;")
     line = next(i for i, text_line in enumerate(text.splitlines(), 1) if "missing" in text_line)
     assert errors(compiler("unity").check(Source(text, "unity-urp", name="urp.shader")))[0].line == line
@@ -199,8 +199,10 @@ def test_keyword_variants_cover_every_pair() -> None:
     lists = [["", "A1", "A2"], ["", "B"], ["", "C"]]
     for first, second in itertools.combinations(lists, 2):
         for a, b in itertools.product(first, second):
-            met = [[next((x for x in row if x in one), "") for one in (first, second)] for row in rows]
-            assert [a, b] in met
+            combinations = [
+                [next((x for x in row if x in keywords), "") for keywords in (first, second)] for row in rows
+            ]
+            assert [a, b] in combinations
     assert len(rows) <= 7
     assert all("D" not in row for row in rows)
 
@@ -214,7 +216,7 @@ def test_surface_lighting_and_output_must_agree() -> None:
 # --- Files
 
 
-def test_sources_know_languages_stages_and_companions() -> None:
+def test_languages_stages_and_companions_of_sources() -> None:
     files = {
         "sub/ice.glsl-330.vert": "v", "sub/ice.glsl-330.frag": "f", "ice.hlsl": "h",
         "ice.functions.hlsl": "l", "ice.unity-urp.shader": "u", "ice.unity-urp.hlsl": "p",

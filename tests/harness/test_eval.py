@@ -1,4 +1,4 @@
-"""`sssgen eval`: a technique on arrays of inputs, on every back end, and its messages for inputs that do not fit."""
+"""`sssgen eval`: a technique on arrays of inputs, on every back end, and the messages for wrong inputs."""
 
 from __future__ import annotations
 
@@ -42,18 +42,18 @@ def write_inputs(tmp_path: Path) -> Callable[..., str]:
 
 
 def answer(capsys: pytest.CaptureFixture[str], *arguments: str, status: int = 0) -> Any:
-    """What the command prints as JSON."""
+    """The JSON that the command prints."""
     assert main(["eval", *arguments, "--json"]) == status
     return json.loads(capsys.readouterr().out)
 
 
 def complaint(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
-    """The command's error for wrong input."""
+    """The error message of the command for wrong input."""
     assert main(["eval", *arguments]) == 2
     return capsys.readouterr().err
 
 
-# What it computes
+# Results
 
 
 def test_outputs_of_the_oracle(capsys: pytest.CaptureFixture[str], write_inputs: Callable[..., str]) -> None:
@@ -61,7 +61,7 @@ def test_outputs_of_the_oracle(capsys: pytest.CaptureFixture[str], write_inputs:
     values = {**LOBE, "distortion": 0.2, "power": 2.0, "scale": 3.0, "ambient": 0.1, "attenuation": 1.0}
     report = answer(capsys, "lobe_gdc2011", "-i", write_inputs(values | {"subsurface_color": [1.0, 0.5, 0.25]}))
     lobe = [(light[2] + 0.2) ** 2 * 3.0 for light in LOBE["L"]]
-    expected = [[(each + 0.1) * 0.5 * part for part in (1.0, 0.5, 0.25)] for each in lobe]
+    expected = [[(power + 0.1) * 0.5 * part for part in (1.0, 0.5, 0.25)] for power in lobe]
     np.testing.assert_allclose(report["outputs"]["result"], expected, rtol=1e-6)
     assert report["lanes"] == 2 and report["backend"] == "numpy"
 
@@ -77,8 +77,8 @@ def test_all_back_ends_agree(capsys: pytest.CaptureFixture[str], write_inputs: C
 def test_precisions(capsys: pytest.CaptureFixture[str], write_inputs: Callable[..., str]) -> None:
     file = write_inputs(LOBE)
     wide, single, half = (
-        np.array(answer(capsys, "lobe_gdc2011", "-i", file, "--precision", one)["outputs"]["result"])
-        for one in ("f64", "f32", "f16")
+        np.array(answer(capsys, "lobe_gdc2011", "-i", file, "--precision", precision)["outputs"]["result"])
+        for precision in ("f64", "f32", "f16")
     )
     assert 0.0 < np.abs(single - wide).max() < 1e-6 < np.abs(half - wide).max() < 1e-2
 
@@ -92,7 +92,7 @@ def test_out_parameters_are_outputs(capsys: pytest.CaptureFixture[str], write_in
 def test_a_function_of_a_file_for_a_slot(
     capsys: pytest.CaptureFixture[str], write_inputs: Callable[..., str], tmp_path: Path
 ) -> None:
-    """Full space is not thin, empty space is."""
+    """The thinness is 0 in full space, 1 in empty space."""
     own = tmp_path / "own.sss"
     own.write_text(
         "float full(world_position p) { return -10.0; }\nfloat empty(world_position p) { return p.y + 10.0; }\n",
@@ -101,15 +101,15 @@ def test_a_function_of_a_file_for_a_slot(
     file = write_inputs({"P": [[0.0, 0.0, 0.0]], "N": [0.0, 1.0, 0.0]})
     output = complaint(capsys, "thinness_uniform", "-i", file, "--bind", "nowhere=sphere")
     assert "has no slot 'nowhere'" in output and "body_distance" in output
-    for name, wanted in (("full", 0.0), ("empty", 1.0)):
+    for name, expected in (("full", 0.0), ("empty", 1.0)):
         report = answer(capsys, "thinness_uniform", "-i", file, "--bind", f"body_distance={own}:{name}", "-b", "numpy")
-        assert report["outputs"]["result"] == [wanted]
+        assert report["outputs"]["result"] == [expected]
     assert evaluate(subject(f"{own}:empty"), {"p": [1.0, 2.0, 3.0]}, backends.get("numpy"))["result"] == [12.0]
 
 
 @pytest.mark.parametrize("name", ["numpy", "gl", "gl-es", "webgpu", "browser", "hlsl", "hlsl-glslang", "unity"])
 def test_textures_of_all_kinds_of_files(name: str, backend: Callable[[str], Backend], tmp_path: Path) -> None:
-    """A picture's lowest row is at v = 0; an sRGB texture's colours are decoded, in .exr and .npy they are linear."""
+    """The lowest row of a picture is at v = 0. sRGB colours are decoded; those of .exr and .npy files are linear."""
     rows = np.array([[[0.0, 1.0, 0.5], [1.0, 0.0, 0.5]], [[0.25, 0.25, 0.25], [0.75, 0.5, 0.125]]])
     write_png(tmp_path / "a.png", rows)
     write_exr(tmp_path / "a.exr", rows)
@@ -134,15 +134,15 @@ def test_ten_thousand_lanes_are_one_draw(backend: Callable[[str], Backend], monk
     draw = gpu.draw  # type: ignore[attr-defined]
     monkeypatch.setattr(gpu, "draw", lambda drawing: draws.append(drawing) or draw(drawing))
     rng = np.random.default_rng(3)
-    many = {name: rng.normal(size=(10_000, 3)) for name in "VNL"}
-    many = {name: v / np.linalg.norm(v, axis=1, keepdims=True) for name, v in many.items()} | {"through": 0.5}
+    inputs = {name: rng.normal(size=(10_000, 3)) for name in "VNL"}
+    inputs = {name: v / np.linalg.norm(v, axis=1, keepdims=True) for name, v in inputs.items()} | {"through": 0.5}
     technique = subject("lobe_gdc2011")
-    result, wanted = (evaluate(technique, many, one) for one in (gpu, backends.get("numpy")))
+    result, expected = (evaluate(technique, inputs, back_end) for back_end in (gpu, backends.get("numpy")))
     assert len(draws) == 1
-    assert deviation(result, wanted).largest < 1e-5
+    assert deviation(result, expected).largest < 1e-5
 
 
-# How far apart
+# Deviations
 
 
 def test_deviation_is_relative_above_one_and_absolute_below() -> None:
@@ -154,7 +154,7 @@ def test_deviation_is_relative_above_one_and_absolute_below() -> None:
     assert (worst.output, worst.lane, worst.largest) == ("b", 1, 2.0)
 
 
-# Inputs that do not fit
+# Wrong inputs
 
 
 @pytest.mark.parametrize(
@@ -206,9 +206,9 @@ def test_wrong_files(capsys: pytest.CaptureFixture[str], write_inputs: Callable[
     assert "not UTF-8" in complaint(capsys, "lobe_gdc2011", "-i", str(tmp_path / "binary.json"))
     np.save(tmp_path / "volume.npy", np.ones((2, 2, 2, 1)))
     np.save(tmp_path / "bad.npy", np.full((2, 2, 3), np.nan))
-    for file, said in (("volume.npy", "takes a sampler2D"), ("bad.npy", "NaN or infinity"), ("x.jpg", "'.jpg'")):
+    for file, message in (("volume.npy", "takes a sampler2D"), ("bad.npy", "NaN or infinity"), ("x.jpg", "'.jpg'")):
         values = {"uv": [0.5, 0.5], "base_color_texture": file}
-        assert said in complaint(capsys, "base_color", "-i", write_inputs(values))
+        assert message in complaint(capsys, "base_color", "-i", write_inputs(values))
 
 
 def test_wrong_arguments(capsys: pytest.CaptureFixture[str], write_inputs: Callable[..., str]) -> None:
@@ -220,7 +220,7 @@ def test_wrong_arguments(capsys: pytest.CaptureFixture[str], write_inputs: Calla
 
 
 def test_a_missing_back_end(write_inputs: Callable[..., str]) -> None:
-    """Requested alone it is an error with instructions; among all it is a line, and the others run."""
+    """A back end requested by name gives an error with instructions; with `all` it gives a line, and the others run."""
     environment = {**os.environ, "SSSGEN_CHROMIUM": "/nowhere/chromium", "CI": ""}
     command = [sys.executable, "-m", "sssgen", "eval", "lobe_gdc2011", "-i", write_inputs(LOBE), "-b"]
     alone = subprocess.run([*command, "browser"], env=environment, capture_output=True, text=True, check=False)
@@ -238,7 +238,7 @@ def test_a_missing_back_end(write_inputs: Callable[..., str]) -> None:
 
 
 def test_a_refusal_names_the_techniques_line(backend: Callable[[str], Backend]) -> None:
-    """A text that the driver refuses: its message has the line of the technique."""
+    """If the driver refuses a text, the message has the line of the technique."""
     from sssgen.harness.backends import Call, Text
     from sssgen.ir.types import FLOAT
 
@@ -275,7 +275,7 @@ def test_a_crashed_back_end_is_restarted(backend: Callable[[str], Backend]) -> N
 
 
 def test_a_lost_device_is_reported_and_replaced(backend: Callable[[str], Backend]) -> None:
-    """As when a driver is reset. The browser's and the processes' own losses are in test_browser.py and here below."""
+    """Imitates the reset of a driver. Lost browsers are in test_browser.py, lost processes below."""
     gpu = backend("webgpu")
     technique, write_inputs = subject("beer_lambert"), {"d": [0.1, 0.2], "attenuation_distance": 0.1}
     gpu.gpu.destroy()  # type: ignore[attr-defined]
@@ -299,12 +299,12 @@ def test_a_back_end_that_hangs_is_ended(backend: Callable[[str], Backend]) -> No
 
 
 def test_no_driver_on_this_machine(tmp_path: Path) -> None:
-    """Without EGL's libraries the message names the packages."""
+    """Without the libraries of EGL, the message names the packages."""
     fails = "lambda **_: (_ for _ in ()).throw(Exception('libEGL.so not loaded'))"
     before = f"import moderngl\nmoderngl.create_context = {fails}"
     text = f"{before}\nfrom sssgen.harness import backends\nprint(dict(backends.missing())['gl'])"
-    done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, check=True)
-    assert "libegl1" in done.stdout and "libEGL.so not loaded" in done.stdout
+    process = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, check=True)
+    assert "libegl1" in process.stdout and "libEGL.so not loaded" in process.stdout
 
 
 def test_half_float_textures_are_converted_once() -> None:

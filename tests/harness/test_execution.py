@@ -1,4 +1,4 @@
-"""Whole functions run on real back ends and compared with the numpy target; uniforms by the reflection's offsets."""
+"""Runs whole functions on real back ends and compares them with the numpy target; sets uniforms by their offsets."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from against_numpy import (
     Array,
     arguments,
     differences,
-    drawn_per_quad,
+    random_per_quad,
     textures,
     transpiled,
 )
-from against_numpy import drawn as drawn_freely
+from against_numpy import random_argument as random_argument
 from pitfall_cases import program as pitfalls
 from sssgen.harness.backends import Backend, Block, Call, DrawingBackend, Place, Text
 from sssgen.harness.backends.call_program import drawing, results
@@ -42,13 +42,13 @@ def gpu(request: pytest.FixtureRequest, backend: Callable[[str], Backend]) -> Ba
 
 
 def test_pitfalls(gpu: Backend) -> None:
-    """Each case's function, against the text that the numpy target makes of it."""
+    """The function of each case is compared with its text for the numpy target."""
     module, functions = pitfalls()
     calls = []
     for case, function in functions:
         params = tuple(param.type for param in function.params)
         textured = any(isinstance(type_, Sampler) for type_ in params)
-        args = arguments(function, drawn_per_quad if textured else drawn_freely, LANES)
+        args = arguments(function, random_per_quad if textured else random_argument, LANES)
         calls.append((case.source, Call(function.name, params, function.result, args)))
     failures = differences(gpu, module, calls, textures())
     assert not failures, "\n\n".join(failures)
@@ -63,7 +63,7 @@ uniform bvec2 s; uniform float t; uniform mat3 u[2]; uniform mat2 v[2]; uniform 
 
 float total(float values[3]) { return values[0] + 2.0 * values[1] + 3.0 * values[2]; }
 
-/** Shows the uniforms, one after the other.
+/** Returns the uniforms in turn.
 role: lighting
 */
 vec3 layout_probe(uv_position uv) {
@@ -90,7 +90,7 @@ MATERIAL = '[material]\nname = "layout"\nshading = "unlit"\n[lighting]\ntechniqu
 
 
 def uniforms_of(reflection: dict[str, Any]) -> tuple[bytes, dict[str, tuple[float, ...]]]:
-    """Other numbers in each component, in a block at the places that the reflection names, and by name."""
+    """Different numbers for all components: a block with the offsets of the reflection, and values by name."""
     block = np.zeros((reflection["uniform_block_size"] or 0) // 4, np.uint32)
     values: dict[str, tuple[float, ...]] = {}
     for number, uniform in enumerate(sorted(reflection["uniforms"], key=lambda uniform: str(uniform["name"]))):
@@ -100,7 +100,7 @@ def uniforms_of(reflection: dict[str, Any]) -> tuple[bytes, dict[str, tuple[floa
         kind = kind_of(type_)
         inputs = np.arange(1, count + 1) + 10 * number if kind != "bool" else np.arange(1, count + 1) % 2
         values[uniform["name"]] = tuple(inputs.tolist())
-        if "offset" in uniform:  # std140: a row of 16 bytes for each column and each element
+        if "offset" in uniform:  # std140 uses 16 bytes for each column and each element
             rows = inputs.astype(DTYPES[kind]).astype(np.float32 if kind == "float" else np.int32)
             size = type_.size if isinstance(type_, Matrix | Vector) else 1
             for place, row in enumerate(rows.reshape(-1, size)):
@@ -109,7 +109,9 @@ def uniforms_of(reflection: dict[str, Any]) -> tuple[bytes, dict[str, tuple[floa
     return block.tobytes(), values
 
 
-@pytest.mark.parametrize("gpu", [name for name in TARGETS if name != "unity"], indirect=True)  # has no block
+@pytest.mark.parametrize(
+    "gpu", [name for name in TARGETS if name != "unity"], indirect=True
+)  # unity has no uniform block
 def test_uniforms_have_the_offsets_of_the_reflection(gpu: Backend, tmp_path: Path) -> None:
     (tmp_path / "layout_probe.sss").write_text(PROBE, encoding="utf-8")
     (tmp_path / "layout.toml").write_text(MATERIAL, encoding="utf-8")
@@ -135,6 +137,6 @@ def test_uniforms_have_the_offsets_of_the_reflection(gpu: Backend, tmp_path: Pat
 
 
 def in_layout(type_: Type, is_array: bool, numbers: tuple[float, ...]) -> Array:
-    """A uniform's numbers as the numpy target has them, in one lane."""
+    """The numbers of a uniform in the layout of the numpy target, for one lane."""
     dtype = np.float64 if kind_of(type_) == "float" else DTYPES[kind_of(type_)]
     return np.array(numbers, dtype).reshape(*([-1] if is_array else []), *shape_of(type_), 1)

@@ -1,4 +1,4 @@
-"""Random programs, run on real back ends against the numpy target's text. The techniques: test_parity_techniques.py."""
+"""Random programs on real back ends, compared with the numpy target. Techniques: see test_parity_techniques.py."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def called(title: str, function: Function, draw: Draw, lanes: int) -> tuple[str,
 
 
 class ProgramsInBounds(Programs):
-    """Random programs that stay inside their array."""
+    """Random programs with indices inside their array."""
 
     def number(self, depth: int = 2) -> str:
         return self.inside(super().number(depth))
@@ -46,7 +46,7 @@ class ProgramsInBounds(Programs):
 
 @cache
 def random_module() -> tuple[Module, tuple[Function, ...]]:
-    """A module of random functions, and their probes."""
+    """A module with random functions, and the probes of these functions."""
     functions = []
     for seed in range(24):
         source = ProgramsInBounds(Random(seed), size=3).program()
@@ -57,16 +57,16 @@ def random_module() -> tuple[Module, tuple[Function, ...]]:
     return module._replace(functions=(*module.functions, *result)), tuple(result)
 
 
-def drawn_exactly(param: Param, rng: np.random.Generator, lanes: int) -> Array:
-    """Numbers with which float32 computes exactly, so that no condition differs."""
+def exact_argument(param: Param, rng: np.random.Generator, lanes: int) -> Array:
+    """Numbers that float32 computes with exactly, so that no condition differs."""
     if kind_of(param.type) == "int":
         return rng.integers(0, 4, lanes).astype(np.int32)
     return (rng.integers(-8, 9, lanes) / 2).astype(np.float32)
 
 
 def test_random_programs(gpu: Backend) -> None:
-    """Control flow that differs from lane to lane, out parameters, choices, loops."""
-    module, made = random_module()
-    calls = [called(function.name, function, drawn_exactly, LANES) for function in made]
+    """Programs have control flow that differs between lanes, out parameters, conditional expressions and loops."""
+    module, probes = random_module()
+    calls = [called(function.name, function, exact_argument, LANES) for function in probes]
     failures = differences(gpu, module, calls, {}, "float32", 1e-4)
     assert not failures, "\n\n".join([f"{len(failures)} of {len(calls)}", *failures])

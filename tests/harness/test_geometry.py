@@ -1,4 +1,4 @@
-"""Geometry that rays meet: against closed forms, implicit functions, and finite differences."""
+"""Intersections of rays with geometry, compared with closed forms, implicit functions and finite differences."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ SOLIDS: list[Geometry] = [
 
 
 def surface_points(shape: Geometry, width: int = 80, height: int = 60) -> tuple[Any, ...]:
-    """Of the rays that hit: object position, world position, directions, N, T, w, uv."""
+    """For the rays that hit: object position, world position, directions, N, T, w, uv."""
     origin, directions = CAMERA.rays(width, height)
     hits = shape.hits(origin, directions)
     hit = hits.hit
@@ -60,7 +60,7 @@ def test_a_ray_and_a_ball_in_closed_form() -> None:
 
 
 @pytest.mark.parametrize("shape", [Ball(1.0), Box(size=(2.0, 2.0, 2.0)), Slab(4.0, 4.0, 2.0)])
-def test_from_inside_a_ray_meets_the_far_side_whose_normal_looks_outward(shape: Geometry) -> None:
+def test_a_ray_from_inside_hits_the_far_side_and_the_normal_points_outward(shape: Geometry) -> None:
     hits = shape.hits((0.0, 0.0, 0.5), [[0.0, 0.0, -1.0]])
     assert hits.position[0] == pytest.approx([0.0, 0.0, -1.0])
     assert hits.normal[0] == pytest.approx([0.0, 0.0, -1.0])
@@ -103,7 +103,9 @@ def test_rays_that_miss_stay_outside(shape: Geometry) -> None:
 def test_normals_are_the_gradient_of_the_distance(shape: Geometry) -> None:
     local, _, _, normal, *_ = surface_points(shape)
     step = 1e-6
-    outside = local + 1e-4 * normal @ shape.to_world()[:3, :3] / shape.scale  # beyond a box's edge the nearest changes
+    outside = (
+        local + 1e-4 * normal @ shape.to_world()[:3, :3] / shape.scale
+    )  # near the edge of a box the nearest face changes
     slopes = [shape.distance(outside + step * way) - shape.distance(outside - step * way) for way in np.eye(3)]
     turned = np.stack(slopes, axis=1) @ shape.to_world()[:3, :3].T / (2.0 * step * shape.scale)
     assert np.abs(turned - normal).max() < 1e-5
@@ -118,7 +120,7 @@ def test_frames_are_orthonormal_and_follow_uv(shape: Geometry) -> None:
     assert np.abs(np.linalg.norm(tangent, axis=1) - 1.0).max() < 1e-12
     assert np.abs(np.einsum("nc,nc->n", normal, tangent)).max() < 1e-9
     assert set(np.unique(w)) <= {-1.0, 1.0}
-    # a neighbouring point along T has the same v and a greater u; one along B has a greater v
+    # a neighbouring point along T has the same v and a larger u; a neighbouring point along B has a larger v
     step = 1e-5
     bitangent = np.cross(normal, tangent) * w[:, None]
     facing = np.einsum("nc,nc->n", normal, directions) < -0.2
@@ -128,7 +130,9 @@ def test_frames_are_orthonormal_and_follow_uv(shape: Geometry) -> None:
         near = shape.hits(CAMERA.position, towards)
         change = near.uv - uv
         smooth = facing & near.hit & (np.abs(change) < 0.01).all(axis=1)
-        smooth &= (np.abs(near.position - world - step * way) < 1e-7).all(axis=1)  # the same side of an edge
+        smooth &= (np.abs(near.position - world - step * way) < 1e-7).all(
+            axis=1
+        )  # both points are on the same side of an edge
         assert smooth.sum() > 0.3 * len(uv)
         assert (change[smooth, grows] > 0.0).all()
         if grows == 0:
@@ -147,18 +151,20 @@ def test_a_ray_and_a_capsule_in_closed_form() -> None:
     assert side.hit.tolist() == [True, False]
     assert side.position[0] == pytest.approx([0.3, 0.5, 0.4], abs=1e-12)
     assert side.normal[0] == pytest.approx([0.6, 0.0, 0.8])
-    cap = capsule.hits((0.3, 5.0, 0.0), [[0.0, -1.0, 0.0]])  # along its axis, where its side is never met
+    cap = capsule.hits((0.3, 5.0, 0.0), [[0.0, -1.0, 0.0]])  # along its axis a ray never hits the side
     assert cap.position[0] == pytest.approx([0.3, 1.4, 0.0], abs=1e-12)
     assert cap.normal[0] == pytest.approx([0.6, 0.8, 0.0])
     inside = capsule.hits((0.0, 0.0, 0.0), [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
     assert inside.position == pytest.approx(np.array([[0.0, 1.5, 0.0], [0.5, 0.0, 0.0]]))
-    # a capsule without length is a ball, uv and all
+    # a capsule without length is a ball, and has its uv
     origin, directions = CAMERA.rays(40, 30)
-    for one, other in zip(Capsule(0.8, 0.0).hits(origin, directions), Ball(0.8).hits(origin, directions), strict=True):
-        assert one == pytest.approx(other, abs=1e-7)
+    for capsule_hits, ball_hits in zip(
+        Capsule(0.8, 0.0).hits(origin, directions), Ball(0.8).hits(origin, directions), strict=True
+    ):
+        assert capsule_hits == pytest.approx(ball_hits, abs=1e-7)
 
 
-def test_a_union_shows_of_each_ray_the_nearest_part_with_that_part_s_own_uv() -> None:
+def test_a_ray_hits_the_nearest_part_of_a_union_with_the_uv_of_that_part() -> None:
     origin, directions = CAMERA.rays(60, 45)
     parts = (
         Ball(0.6, position=(-0.4, 0.0, 0.0)),
@@ -167,26 +173,28 @@ def test_a_union_shows_of_each_ray_the_nearest_part_with_that_part_s_own_uv() ->
     )
     whole = Union(parts).hits(origin, directions)
     alone = [part.hits(origin, directions) for part in parts]
-    seen = [0, 0, 0]
+    rays_of_part = [0, 0, 0]
     for ray in range(len(directions)):
-        ways = [np.linalg.norm(one.position[ray] - origin) if one.hit[ray] else np.inf for one in alone]
+        ways = [
+            np.linalg.norm(part_hits.position[ray] - origin) if part_hits.hit[ray] else np.inf for part_hits in alone
+        ]
         nearest = int(np.argmin(ways))
         assert whole.hit[ray] == np.isfinite(ways[nearest])
-        for mine, its in zip(whole, alone[nearest], strict=True):
-            assert (mine[ray] == its[ray]).all()
-        seen[nearest] += bool(whole.hit[ray])
-    assert min(seen) > 50  # every part shows
+        for actual, expected in zip(whole, alone[nearest], strict=True):
+            assert (actual[ray] == expected[ray]).all()
+        rays_of_part[nearest] += bool(whole.hit[ray])
+    assert min(rays_of_part) > 50  # rays hit every part
     planar = Union(parts, "planar").hits(origin, directions)
     assert (planar.position == whole.position).all()
     assert planar.uv[planar.hit] == pytest.approx(planar.position[planar.hit][:, :2] + 0.5)
 
 
-def test_the_distance_of_a_union_is_right_outside_and_no_more_than_the_depth_inside() -> None:
+def test_the_distance_of_a_union_is_exact_outside_and_at_most_the_depth_inside() -> None:
     union = Union((Ball(0.6), Ball(0.5, position=(0.5, 0.0, 0.0), scale=1.2)))
     at = np.array([[-1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.25, 2.0, 0.0], [0.3, 0.0, 0.0]])
     two = np.minimum(np.linalg.norm(at, axis=1) - 0.6, np.linalg.norm(at - [0.5, 0.0, 0.0], axis=1) - 0.6)
     assert union.distance(at) == pytest.approx(two)
-    # the two balls are equally large: their rim lies in the plane between them
+    # the balls have equal radii, so their surfaces intersect in the plane between them
     assert -union.distance(at[3:]) < np.hypot(0.3 - 0.25, np.sqrt(0.6**2 - 0.25**2))
 
 
@@ -207,7 +215,7 @@ def needs_trimesh() -> None:
 
 
 def write_ball(path: Path, rings: int = 48, with_uv: bool = True) -> None:
-    """A ball as .obj: a grid of longitudes and latitudes, with uv as Ball has them."""
+    """Writes a ball as .obj: a grid of longitudes and latitudes, with the uv of Ball."""
     lines, columns = [], 2 * rings
     for row in range(rings + 1):
         for column in range(columns + 1):
@@ -232,15 +240,20 @@ def test_a_mesh_of_a_ball_is_close_to_the_ball(tmp_path: Path, with_uv: bool) ->
     write_ball(tmp_path / "ball.obj", with_uv=with_uv)
     origin, directions = CAMERA.rays(80, 60)
     mesh = Mesh(path=str(tmp_path / "ball.obj"), rotation=(5.0, 20.0, 0.0), scale=1.1)
-    one, other = mesh.hits(origin, directions), Ball(rotation=(5.0, 20.0, 0.0), scale=1.1).hits(origin, directions)
-    assert (one.hit != other.hit).sum() < 0.02 * other.hit.sum()
-    both = one.hit & other.hit & (np.einsum("nc,nc->n", other.normal, directions) < -0.3)
-    both &= (np.abs(other.uv[:, 1] - 0.5) < 0.4) & (np.abs(other.uv[:, 0] - 0.5) < 0.48)  # not the poles, the seam
+    mesh_hits, ball_hits = (
+        mesh.hits(origin, directions),
+        Ball(rotation=(5.0, 20.0, 0.0), scale=1.1).hits(origin, directions),
+    )
+    assert (mesh_hits.hit != ball_hits.hit).sum() < 0.02 * ball_hits.hit.sum()
+    both = mesh_hits.hit & ball_hits.hit & (np.einsum("nc,nc->n", ball_hits.normal, directions) < -0.3)
+    both &= (np.abs(ball_hits.uv[:, 1] - 0.5) < 0.4) & (
+        np.abs(ball_hits.uv[:, 0] - 0.5) < 0.48
+    )  # without the poles and the seam
     assert both.sum() > 500
-    assert np.abs(one.position - other.position)[both].max() < 0.01
-    assert np.abs(one.normal - other.normal)[both].max() < 0.005
-    assert np.abs(one.tangent - other.tangent)[both].max() < 0.05
-    assert np.abs(one.uv - other.uv)[both].max() < 0.005
+    assert np.abs(mesh_hits.position - ball_hits.position)[both].max() < 0.01
+    assert np.abs(mesh_hits.normal - ball_hits.normal)[both].max() < 0.005
+    assert np.abs(mesh_hits.tangent - ball_hits.tangent)[both].max() < 0.05
+    assert np.abs(mesh_hits.uv - ball_hits.uv)[both].max() < 0.005
 
 
 @pytest.mark.usefixtures("needs_trimesh")
@@ -292,14 +305,17 @@ def test_faulty_meshes(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["sphere", "sphere:sphere_object"])
-def test_a_distance_function_is_the_solid(name: str) -> None:
+def test_a_distance_function_equals_the_solid(name: str) -> None:
     origin, directions = CAMERA.rays(60, 45)
-    one, other = Distance(name, parameters={"radius": 0.8}).hits(origin, directions), Ball(0.8).hits(origin, directions)
-    assert (one.hit == other.hit).all()
-    facing = np.einsum("nc,nc->n", other.normal, directions) < -0.1
-    assert np.abs(one.position - other.position)[facing].max() < 1e-9
-    assert np.abs(one.normal - other.normal)[facing].max() < 1e-6
-    assert np.abs(one.uv - other.uv)[facing].max() < 1e-6
+    field_hits, ball_hits = (
+        Distance(name, parameters={"radius": 0.8}).hits(origin, directions),
+        Ball(0.8).hits(origin, directions),
+    )
+    assert (field_hits.hit == ball_hits.hit).all()
+    facing = np.einsum("nc,nc->n", ball_hits.normal, directions) < -0.1
+    assert np.abs(field_hits.position - ball_hits.position)[facing].max() < 1e-9
+    assert np.abs(field_hits.normal - ball_hits.normal)[facing].max() < 1e-6
+    assert np.abs(field_hits.uv - ball_hits.uv)[facing].max() < 1e-6
     inside = Distance(name, parameters={"radius": 0.8}).hits((0.0, 0.0, 0.0), [[0.0, 0.0, 1.0]])
     assert inside.position[0] == pytest.approx([0.0, 0.0, 0.8])
 

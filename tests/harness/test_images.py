@@ -1,4 +1,4 @@
-"""Picture files: each format reads back as written, and files that are no pictures are refused. And the camera."""
+"""Picture files: written files are read back unchanged, other files are refused. Also tests the camera."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def png(
     width: int, height: int, depth: int, color: int, rows: bytes, *chunks: tuple[bytes, bytes], interlaced: int = 0
 ) -> bytes:
-    """A PNG written by hand; `rows` with the filter byte before each."""
+    """A PNG with these rows, each after its filter byte."""
 
     def chunk(kind: bytes, data: bytes) -> bytes:
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
@@ -51,7 +51,7 @@ def test_written_files_are_read_back(channels: int) -> None:
     assert [path.name for path in sorted(Path("out").iterdir())] == ["ramp.exr", "ramp.png"]
 
 
-def test_row_0_is_the_top_one() -> None:
+def test_row_0_is_at_the_top() -> None:
     Path("two.png").write_bytes(png(1, 2, 8, 0, bytes([0, 255, 0, 51])))
     assert read("two.png").tolist() == [[[1.0]], [[0.2]]]
 
@@ -68,33 +68,33 @@ def test_the_kinds_of_png() -> None:
     assert read("glass.png").tolist() == [[[0.0, 0.0, 1.0, 1.0], [1.0, 0.0, 0.0, 0.0]]]
 
 
-def test_written_values_are_cut_and_rounded() -> None:
+def test_written_values_are_clamped_and_rounded() -> None:
     write_png("odd.png", np.array([[-1.0, 2.0, np.nan, 0.4999 / 255, 0.5001 / 255, np.inf]]))
     assert (read("odd.png")[0, :, 0] * 255).tolist() == [0, 255, 0, 0, 1, 255]
 
 
 @pytest.mark.parametrize("channels", [1, 2, 3, 4])
-def test_sixteen_bits_a_channel(channels: int) -> None:
+def test_sixteen_bits_per_channel(channels: int) -> None:
     picture = np.random.default_rng(channels).random((9, 5, channels))
     write_png("deep.png", picture, bits=16)
     assert np.array_equal(read("deep.png"), np.rint(picture * 65535) / 65535)
-    with Image.open("deep.png") as image:  # another reader, which keeps the upper halves of colours
+    with Image.open("deep.png") as image:  # Pillow keeps the upper 8 bits of colours
         high = np.asarray(image).reshape(9, 5, -1)[..., -1]
     assert np.array_equal(high, np.rint(picture[..., -1] * 65535).astype(np.uint16) >> (0 if channels == 1 else 8))
 
 
 def filtered(picture: Any, filters: list[int]) -> bytes:
-    """The rows of a picture of 16 bits a channel, each with the filter of its number in the standard (9.2)."""
+    """The rows of a picture with 16 bits per channel, each encoded with its filter (PNG standard, 9.2)."""
     height, width, channels = picture.shape
-    here = picture.astype(">u2").view(np.uint8).reshape(height, width, 2 * channels).astype(int)
-    around = np.pad(here, ((1, 0), (1, 0), (0, 0)))
+    samples = picture.astype(">u2").view(np.uint8).reshape(height, width, 2 * channels).astype(int)
+    around = np.pad(samples, ((1, 0), (1, 0), (0, 0)))
     left, above, corner = around[1:, :-1], around[:-1, 1:], around[:-1, :-1]
     guess = left + above - corner
-    paeth = np.empty_like(here)
-    for at in np.ndindex(here.shape):
+    paeth = np.empty_like(samples)
+    for at in np.ndindex(samples.shape):
         paeth[at] = min((left[at], above[at], corner[at]), key=lambda value, at=at: abs(guess[at] - value))
-    of_filter = [0 * here, left, above, (left + above) // 2, paeth]
-    stored = [(here[row] - of_filter[kind][row]) % 256 for row, kind in enumerate(filters)]
+    of_filter = [0 * samples, left, above, (left + above) // 2, paeth]
+    stored = [(samples[row] - of_filter[kind][row]) % 256 for row, kind in enumerate(filters)]
     return b"".join(bytes([kind]) + row.astype(np.uint8).tobytes() for kind, row in zip(filters, stored, strict=True))
 
 
@@ -103,7 +103,7 @@ def filtered(picture: Any, filters: list[int]) -> bytes:
 def test_every_filter_of_a_deep_png_is_undone(height: int, width: int, channels: int, color: int) -> None:
     random = np.random.default_rng(height)
     picture = random.integers(0, 65536, (height, width, channels), np.uint16)
-    picture[: height // 2] //= 7  # some that do not wrap round
+    picture[: height // 2] //= 7  # small values, whose sums do not overflow
     rows = filtered(picture, [row * 7 % 5 for row in range(height)])
     Path("filtered.png").write_bytes(png(width, height, 16, color, rows))
     assert np.array_equal(read("filtered.png"), picture / 65535)
@@ -136,7 +136,7 @@ def test_unsupported_deep_pngs_are_refused() -> None:
         png16.decode(b"P6" + whole)
     with pytest.raises(ValueError, match="colour type 3"):
         png16.decode(png(1, 1, 8, 3, b"\0\0"))
-    with pytest.raises(ValueError, match="decompressed"):  # its checksum is right
+    with pytest.raises(ValueError, match="decompressed"):  # its checksum is correct
         png16.decode(png(1, 1, 16, 2, row, (b"IDAT", b"not packed")))
     with pytest.raises(SssgenError, match="12 bits per channel"):
         png_bytes(RAMP, bits=12)
@@ -156,7 +156,7 @@ def test_numpy_files(array: Any, expected: Any) -> None:
     assert read("map.npy").tolist() == expected
 
 
-def test_srgb_at_values_of_the_standard() -> None:
+def test_srgb_at_the_values_of_the_standard() -> None:
     assert encode_srgb([0.0, 0.0031308, 0.21404114, 1.0]) == pytest.approx([0.0, 0.040449936, 0.5, 1.0], abs=1e-7)
     assert encode_srgb([-1.0, 9.0]) == pytest.approx([0.0, 1.0], abs=1e-12)
 
@@ -190,7 +190,7 @@ def test_files_that_end_early(suffix: str) -> None:
     data = Path(f"whole.{suffix}").read_bytes()
     for part in (9, len(data) // 2, len(data) - 20):
         Path(f"part.{suffix}").write_bytes(data[:part])
-        if (suffix, part) != ("png", len(data) - 20):  # files that lack only their last bytes may be read
+        if (suffix, part) != ("png", len(data) - 20):  # a file that lacks only its last bytes may be readable
             assert "part" in error_of(f"part.{suffix}")
 
 
@@ -208,7 +208,7 @@ def test_unsupported_pictures_are_refused() -> None:
     assert "empty" in error_of("empty.npy")
 
 
-def test_where_nothing_can_be_written() -> None:
+def test_pictures_that_cannot_be_written() -> None:
     Path("file").write_text("mine", encoding="utf-8")
     for write, name in ((write_png, "a.png"), (write_exr, "a.exr")):
         with pytest.raises(SssgenError, match="a file has the name of the folder"):
@@ -265,7 +265,7 @@ def test_the_picture_is_upright_and_not_mirrored() -> None:
 
 
 def test_interrupts_wait_for_imports(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A package that catches whatever is raised while it is imported does not swallow Ctrl-C."""
+    """A package that catches every exception during its import does not suppress Ctrl-C."""
     (tmp_path / "swallows.py").write_text(
         "import signal\ntry:\n    signal.raise_signal(signal.SIGINT)\nexcept BaseException:\n    pass\n",
         encoding="utf-8",

@@ -1,4 +1,4 @@
-"""`sssgen lint`: the operations that may fail, their places and inputs, and those that are proven safe."""
+"""`sssgen lint`: operations that may fail, with places and example inputs, and operations that are proven safe."""
 
 from __future__ import annotations
 
@@ -63,22 +63,22 @@ def test_proven_functions_pass(tmp_path: Path, capsys: pytest.CaptureFixture[str
 
 
 def test_the_example_fails(capsys: pytest.CaptureFixture[str]) -> None:
-    """The printed line gives NaN when it is run."""
-    assert main(["lint", "lobe_normalized"]) == 0  # emitted text is guarded
-    line = next(one for one in capsys.readouterr().out.splitlines() if "example: " in one)
+    """The printed command gives NaN."""
+    assert main(["lint", "lobe_normalized"]) == 0  # the emitted text has guards
+    line = next(text for text in capsys.readouterr().out.splitlines() if "example: " in text)
     command = line.split("example: ")[1].replace("sssgen eval", f"{sys.executable} -m sssgen eval")
-    done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, check=True)
-    assert "nan" in done.stdout
+    process = subprocess.run(["sh", "-c", command], capture_output=True, text=True, check=True)
+    assert "nan" in process.stdout
     guarded = command.replace("--guards none", "--guards auto")
-    done = subprocess.run(["sh", "-c", guarded], capture_output=True, text=True, check=True)
-    assert "nan" not in done.stdout
+    process = subprocess.run(["sh", "-c", guarded], capture_output=True, text=True, check=True)
+    assert "nan" not in process.stdout
 
 
 def test_json_for_editors(hazards: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["lint", "--json", hazards]) == 1
     data = json.loads(capsys.readouterr().out)
     assert not data["ok"]
-    results = {one["operation"]: one for one in data["results"][0]["findings"] if one["verdict"] == MAY_FAIL}
+    results = {entry["operation"]: entry for entry in data["results"][0]["findings"] if entry["verdict"] == MAY_FAIL}
     assert results["/"]["line"] == 6
     assert results["/"]["severity"] == "warning"
     assert results["normalize"]["example"].startswith("echo")
@@ -94,12 +94,12 @@ def test_examples_are_optional(hazards: str, capsys: pytest.CaptureFixture[str])
 
 
 def test_a_material_is_analysed_as_a_whole() -> None:
-    """In a chain a quantity is in its range; alone a function takes any number."""
-    alone = {(one.site.what, one.verdict) for one in lint("thickness_from_thinness")}
+    """In a chain each quantity is in its range; a single function accepts any number."""
+    alone = {(entry.site.what, entry.verdict) for entry in lint("thickness_from_thinness")}
     assert ("thickness", MAY_FAIL) in alone
     chained = lint("paper_lantern", with_examples=False)
-    assert all(one.guarded for one in chained)
-    assert sum(one.verdict == PROVEN for one in chained) > sum(one.verdict == UNKNOWN for one in chained)
+    assert all(entry.guarded for entry in chained)
+    assert sum(entry.verdict == PROVEN for entry in chained) > sum(entry.verdict == UNKNOWN for entry in chained)
 
 
 def test_fixed_values_prove_more(tmp_path: Path) -> None:
@@ -116,12 +116,14 @@ technique = "lobe_normalized"
 {fixed}
 """
     path.write_text(text.format(fixed=""))
-    assert any(one.site.place.startswith("translucency") for one in lint(str(path), False) if one.verdict != PROVEN)
+    assert any(
+        entry.site.place.startswith("translucency") for entry in lint(str(path), False) if entry.verdict != PROVEN
+    )
     path.write_text(text.format(fixed="distortion = { value = 0.0, fixed = true }"))
-    # the light's direction may still be missing
-    assert [one.site.what for one in lint(str(path), False) if "lobe" in one.site.place and one.verdict != PROVEN] == [
-        "normalize"
-    ]
+    # the direction of the light may still be 0
+    assert [
+        entry.site.what for entry in lint(str(path), False) if "lobe" in entry.site.place and entry.verdict != PROVEN
+    ] == ["normalize"]
 
 
 @pytest.mark.parametrize(
@@ -154,10 +156,10 @@ def test_wrong_files(tmp_path: Path) -> None:
 
 
 def test_names_mean_nothing_in_plain_functions(tmp_path: Path) -> None:
-    """`roughness` is a number of its caller's there; in a technique it is kept in its range by who makes it."""
+    """In a plain function `roughness` is any number; in a technique it is a quantity with a range."""
     path = tmp_path / "names.glsl"
     path.write_text("float f(float roughness, float L) { return sqrt(1.0 - roughness) + sqrt(2.0 - L); }\n")
-    assert [one.verdict for one in lint(str(path))] == [MAY_FAIL, MAY_FAIL]
+    assert [entry.verdict for entry in lint(str(path))] == [MAY_FAIL, MAY_FAIL]
 
 
 def test_parameters_that_cannot_be_sampled_have_no_example(tmp_path: Path) -> None:
@@ -166,4 +168,4 @@ def test_parameters_that_cannot_be_sampled_have_no_example(tmp_path: Path) -> No
         "struct S { float a; };\nfloat f(S s) { return sqrt(s.a); }\nfloat g(float a[3]) { return 1.0 / a[1]; }\n"
         "float h(sampler2D t) { return sqrt(texture(t, vec2(0.5)).x - 2.0); }\nmat2 i(mat2 m) { return inverse(m); }\n"
     )
-    assert {one.verdict for one in lint(str(path))} <= {MAY_FAIL, UNKNOWN}
+    assert {entry.verdict for entry in lint(str(path))} <= {MAY_FAIL, UNKNOWN}

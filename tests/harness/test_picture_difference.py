@@ -1,4 +1,4 @@
-"""Comparing pictures: known differences give known numbers."""
+"""Comparisons of pictures with a known difference."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def test_equal_pictures_have_no_difference() -> None:
     difference = compare(GRAY, GRAY)
     assert difference[:4] == (0.0, 0.0, 0.0, 0.0)
     assert difference.picture.shape == GRAY.shape
-    assert difference.picture.max() < 0.02  # magma begins almost black
+    assert difference.picture.max() < 0.02  # magma is almost black at 0
 
 
 def test_black_and_white_differ_most() -> None:
@@ -25,10 +25,10 @@ def test_black_and_white_differ_most() -> None:
     assert difference.flip == pytest.approx(0.97, abs=0.01)
     assert difference.relmse == pytest.approx(100.0)
     assert difference.p99 == difference.max == pytest.approx(255.0)
-    assert difference.picture.min() > 0.5  # and ends almost white
+    assert difference.picture.min() > 0.5  # magma is almost white at 1
 
 
-def test_one_pixel_is_the_largest_difference_but_not_the_99th_part() -> None:
+def test_a_single_pixel_changes_the_largest_difference_but_not_the_99th_percentile() -> None:
     other = GRAY.copy()
     other[3, 4, 1] += 10 / 255
     difference = compare(other, GRAY)

@@ -14,8 +14,8 @@ import pytest
 from folders import ROOT
 from sssgen.harness.backends import Backend, missing
 
-# pytester forgets the modules that a run was the first to import: their classes and contexts would then exist twice.
-# So the renderer is imported here, and `_start_back_ends` starts every back end.
+# pytester removes modules that a run imports first: their classes and contexts would then exist twice.
+# So this file imports the renderer, and `_start_back_ends` starts every back end.
 from sssgen.harness.render import scene_render as render  # noqa: F401
 
 pytest.importorskip("flip_evaluator", reason="flip-evaluator is missing: pip install 'sssgen[render]'")
@@ -62,12 +62,12 @@ def run(
 
 
 def test_compile(run: Run) -> None:
-    done = run("def test_it(sssgen_compile):\n    sssgen_compile('lamp.toml', targets='wgsl,glsl-330')\n")
-    done.assert_outcomes(passed=1)
+    result = run("def test_it(sssgen_compile):\n    sssgen_compile('lamp.toml', targets='wgsl,glsl-330')\n")
+    result.assert_outcomes(passed=1)
 
 
 def test_a_compiler_s_error_is_at_the_technique_s_line(run: Run, pytester: pytest.Pytester) -> None:
-    """No material that this machine's compilers refuse is known, so the compiler is one that refuses everything."""
+    """The compiler is a substitute that refuses every text, because real compilers accept all emitted text."""
     refuse = pytester.path / "glslangValidator"
     refuse.write_text(
         '#!/bin/sh\n[ "$1" = --version ] && echo "Glslang Version: 1:1" && exit 0\ncat >/dev/null\n'
@@ -80,9 +80,9 @@ def test_it(sssgen_compile, monkeypatch):
     monkeypatch.setenv("PATH", HERE, prepend=":")
     sssgen_compile("lamp.toml", targets=["glsl-330"])
 """
-    done = run(test.replace("HERE", repr(str(pytester.path))))
-    done.assert_outcomes(failed=1)
-    done.stdout.fnmatch_lines(["*refused it*", "*glslang: *no such thing*", "*--> surface/base_color.sss:*"])
+    result = run(test.replace("HERE", repr(str(pytester.path))))
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*refused it*", "*glslang: *no such thing*", "*--> surface/base_color.sss:*"])
 
 
 @pytest.mark.parametrize(
@@ -102,10 +102,10 @@ def test_it(sssgen_compile, monkeypatch):
 )
 def test_wrong_input_is_reported_at_the_test_s_line(run: Run, call: str, message: str) -> None:
     fixture = call.partition("(")[0]
-    done = run(f"def test_it({fixture}):\n    {call}\n")
-    done.assert_outcomes(failed=1)
-    done.stdout.fnmatch_lines([f">*{call.replace('[', '[[]')}", message])
-    done.stdout.no_fnmatch_line("*harness*.py:*")
+    result = run(f"def test_it({fixture}):\n    {call}\n")
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines([f">*{call.replace('[', '[[]')}", message])
+    result.stdout.no_fnmatch_line("*harness*.py:*")
 
 
 def test_run_returns_outputs_and_checks_them(run: Run, pytester: pytest.Pytester) -> None:
@@ -123,9 +123,9 @@ def test_right(sssgen_run):
 def test_wrong(sssgen_run):
     sssgen_run("beer_lambert", d=[0.3], tolerance=0.0)
 """
-    done = run(test)
-    done.assert_outcomes(passed=1, failed=1)
-    done.stdout.fnmatch_lines(["*gl deviates by *, more than 0*", "*float64 gives*"])
+    result = run(test)
+    result.assert_outcomes(passed=1, failed=1)
+    result.stdout.fnmatch_lines(["*gl deviates by *, more than 0*", "*float64 gives*"])
 
 
 def test_golden_pictures(run: Run, pytester: pytest.Pytester) -> None:
@@ -141,7 +141,7 @@ def test_golden_pictures(run: Run, pytester: pytest.Pytester) -> None:
     run(LOOKS.replace("'lamp'", "'lamp', flip=0.9")).assert_outcomes(passed=1)
 
 
-def test_the_folder_of_golden_pictures_is_the_ini_file_s(run: Run, pytester: pytest.Pytester) -> None:
+def test_the_ini_file_sets_the_folder_of_golden_pictures(run: Run, pytester: pytest.Pytester) -> None:
     pytester.makeini("[pytest]\nsssgen_golden = kept/pictures\n")
     pytester.mkdir("tests")
     run(LOOKS, "--sssgen-update").assert_outcomes(passed=1)
@@ -177,9 +177,9 @@ def test_each_back_end(run: Run, pytester: pytest.Pytester) -> None:
     test = LOOKS + "\ndef test_backend(sssgen_backend):\n    assert sssgen_backend in ('gl', 'numpy')\n"
     test += "\ndef test_none():\n    pass\n"
     options = ("--sssgen-backend", "numpy,gl", "--sssgen-backend", "gl", "-v")
-    done = run(test, *options, "--sssgen-update")
-    done.assert_outcomes(passed=5)
-    done.stdout.fnmatch_lines_random(["*test_looks[[]gl]*", "*test_looks[[]numpy]*", "*test_none PASSED*"])
+    result = run(test, *options, "--sssgen-update")
+    result.assert_outcomes(passed=5)
+    result.stdout.fnmatch_lines_random(["*test_looks[[]gl]*", "*test_looks[[]numpy]*", "*test_none PASSED*"])
     (pytester.path / "golden" / "lamp.png").unlink()
     run(test, *options).assert_outcomes(passed=3, failed=2)
     stored = sorted(path.name for path in (pytester.path / "sssgen-failures").iterdir())
@@ -195,19 +195,19 @@ def test_each_back_end(run: Run, pytester: pytest.Pytester) -> None:
     ],
 )
 def test_wrong_options(run: Run, options: tuple[str, ...], message: str) -> None:
-    done = run("def test_none():\n    pass\n", *options)
-    assert done.ret == pytest.ExitCode.USAGE_ERROR
-    assert message in "\n".join(done.errlines)
+    result = run("def test_none():\n    pass\n", *options)
+    assert result.ret == pytest.ExitCode.USAGE_ERROR
+    assert message in "\n".join(result.errlines)
 
 
 def test_the_fixtures_are_documented(run: Run) -> None:
-    done = run("", "--fixtures")
+    result = run("", "--fixtures")
     for name in ("compile", "run", "render", "golden"):
-        done.stdout.fnmatch_lines_random([f"    `sssgen_{name}(*)` *"])
+        result.stdout.fnmatch_lines_random([f"    `sssgen_{name}(*)` *"])
 
 
 def python(folder: Path, *arguments: str, **variables: str) -> str:
-    """What a Python process of its own prints, with the entry points of this checkout's pyproject.toml."""
+    """The output of a Python process that has the entry points of this checkout's pyproject.toml."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     packages = folder / "packages"
     facts = packages / "sssgen-0.dist-info"
@@ -220,9 +220,9 @@ def python(folder: Path, *arguments: str, **variables: str) -> str:
     environment = {**os.environ, "PYTHONPATH": path, **variables}
     environment.pop("PYTEST_DISABLE_PLUGIN_AUTOLOAD", None)
     command = [sys.executable, *arguments]
-    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout
+    process = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    assert process.returncode == 0, process.stdout + process.stderr
+    return process.stdout
 
 
 def test_pytest_loads_the_plugin_and_it_imports_little(tmp_path: Path) -> None:
@@ -239,7 +239,7 @@ def test_pytest_loads_the_plugin_and_it_imports_little(tmp_path: Path) -> None:
 
 
 def test_without_numpy(tmp_path: Path) -> None:
-    """Without NumPy materials compile, and the other fixtures name the package to install."""
+    """Without NumPy, materials compile, and the other fixtures name the package to install."""
     packages = tmp_path / "packages"
     packages.mkdir()
     (packages / "numpy.py").write_text("raise ImportError('not installed', name='numpy')\n", encoding="utf-8")
@@ -248,6 +248,6 @@ def test_without_numpy(tmp_path: Path) -> None:
         "def test_compile(sssgen_compile):\n    sssgen_compile('ice', 'wgsl')\n",
         encoding="utf-8",
     )
-    done = python(tmp_path, "-m", "pytest", "-rs", "-p", "no:cacheprovider", CI="")
-    assert "1 passed, 1 skipped" in done
-    assert "the package 'numpy' is missing: pip install \"sssgen[render]\"" in done
+    output = python(tmp_path, "-m", "pytest", "-rs", "-p", "no:cacheprovider", CI="")
+    assert "1 passed, 1 skipped" in output
+    assert "the package 'numpy' is missing: pip install \"sssgen[render]\"" in output

@@ -1,4 +1,4 @@
-"""The records of back ends and compilers: what they name exists, and the documentation has the same list."""
+"""The records of back ends and compilers name existing modules; the documentation has the same list."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def test_the_lists_of_back_ends() -> None:
 
 
 def test_the_documentation_lists_every_back_end() -> None:
-    """The table of docs/harness.md names each back end, and every package that a record says it needs."""
+    """The table of docs/harness.md names each back end and every package that its record requires."""
     text = (ROOT / "docs" / "harness.md").read_text(encoding="utf-8").partition("## Back ends")[2].partition("\n## ")[0]
     rows = [line.split("|") for line in text.splitlines() if line.startswith("| `")]
     assert {name for row in rows for name in re.findall(r"`([\w-]+)`", row[1] + row[2])} >= set(BACKENDS)

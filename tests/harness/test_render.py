@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from drawn import BALL, LAMP, SIZE, apart
+from lamp_scene import BALL, LAMP, SIZE, largest_difference
 from sssgen.cli.main import main
 from sssgen.harness import backends
 from sssgen.harness.backends import Backend
@@ -59,7 +59,7 @@ def scene(tmp_path: Path) -> Callable[..., str]:
 
 @pytest.fixture
 def probe(tmp_path: Path) -> Callable[..., Path]:
-    """Writes a material that shows the inputs of its shell, and a texture."""
+    """Writes a texture, and a material whose colour depends on all inputs of its shell."""
 
     def write(alpha_mode: str = "opaque") -> Path:
         (tmp_path / "probe.sss").write_text(PROBE, encoding="utf-8")
@@ -77,14 +77,14 @@ def probe(tmp_path: Path) -> Callable[..., Path]:
 def test_every_input_of_a_shell(
     name: str, alpha_mode: str, backend: Callable[[str], Backend], scene: Callable[..., str], probe: Callable[..., Path]
 ) -> None:
-    """Positions, frames, matrices, uniforms in their blocks, textures, lights, time and alpha: all as in NumPy."""
+    """Positions, frames, matrices, uniform blocks, textures, lights, time and alpha are as in NumPy."""
     probe(alpha_mode)
     values = "[parameters]\nshade = 0.75\nmixed = [0.1, 0.9, 0.4]\nturn = [1, 0, 0.5, 2]\nsteps = 5\n"
     text = f'material = "probe.toml"\nsamples = 2\ntime = 3.0\nambient = [0.2, 0.3, 0.4]\n{BALL}{LAMP}{values}'
-    shown = load(scene(text + '[textures]\nmarks = "marks.png"\n'))
-    oracle = render(shown, backends.get("numpy"), SIZE)
+    described = load(scene(text + '[textures]\nmarks = "marks.png"\n'))
+    oracle = render(described, backends.get("numpy"), SIZE)
     assert oracle.encoded[SIZE[1] // 2, SIZE[0] // 2].std() > 0.01
-    assert apart(render(shown, backend(name), SIZE), oracle) < 0.2
+    assert largest_difference(render(described, backend(name), SIZE), oracle) < 0.2
     covered = oracle.covered.mean()
     assert covered == pytest.approx({"opaque": 0.262, "mask": 0.2, "blend": 0.22}[alpha_mode], abs=0.03)
 
@@ -95,17 +95,17 @@ def test_examples_equal_numpy(
     name: str, material: str, backend: Callable[[str], Backend], scene: Callable[..., str]
 ) -> None:
     surface = "" if material == "jelly_cubes" else BALL
-    shown = load(scene(f'material = "{material}"\nsamples = 1\n{surface}{LAMP}'))
-    oracle = render(shown, backends.get("numpy"), SIZE)
-    assert apart(render(shown, backend(name), SIZE), oracle) < 0.5
+    described = load(scene(f'material = "{material}"\nsamples = 1\n{surface}{LAMP}'))
+    oracle = render(described, backends.get("numpy"), SIZE)
+    assert largest_difference(render(described, backend(name), SIZE), oracle) < 0.5
     assert oracle.encoded.std() > 0.05
 
 
 def test_the_ball_is_where_the_camera_sees_it(backend: Callable[[str], Backend], scene: Callable[..., str]) -> None:
-    """Right is right and up is up: a ball above on the right, lit from above."""
-    where = '[geometry]\nkind = "ball"\nradius = 0.5\nposition = [0.6, 0.4, 0.0]\n'
+    """A ball at the upper right, lit from above, appears at the upper right of the picture."""
+    ball = '[geometry]\nkind = "ball"\nradius = 0.5\nposition = [0.6, 0.4, 0.0]\n'
     light = "[[light]]\ndirection = [0.0, 1.0, 0.0]\ncolor = [1.0, 1.0, 1.0]\n"
-    path = scene(f'material = "resin_inlay"\nambient = [0.1, 0.1, 0.1]\n{where}{light}')
+    path = scene(f'material = "resin_inlay"\nambient = [0.1, 0.1, 0.1]\n{ball}{light}')
     for name in ("gl", "webgpu", "numpy"):
         result = render(load(path), backend(name), (64, 48))
         rows, columns = np.nonzero(result.covered > 0.5)
@@ -118,7 +118,7 @@ def test_the_ball_is_where_the_camera_sees_it(backend: Callable[[str], Backend],
 def test_transmitted_light_is_a_factor_on_each_lights_color(
     backend: Callable[[str], Backend], scene: Callable[..., str], tmp_path: Path
 ) -> None:
-    """Though it reads no light: without one it is dark, and two give the sum. What glows is there without a lamp."""
+    """Without a lamp it is dark, and two lamps add up, although the technique reads no light. A glow needs no lamp."""
     head = '[material]\nname = "shade"\nshading = "lit"\n[[surface]]\ntechnique = "base_color"\ntint = [0, 0, 0, 1]\n'
     parts = '[[surface]]\ntechnique = "pbr_constants"\nsurface_roughness = 1.0\n[thickness]\n'
     through = 'technique = "constant_thickness"\n[[translucency]]\ntechnique = "absorption_tint"\nweight = 0.5\n'
@@ -131,9 +131,9 @@ def test_transmitted_light_is_a_factor_on_each_lights_color(
 
     for name in ("numpy", "gl"):
         red, green = (middle(name, through, [color]) for color in ((1.0, 0.0, 0.0), (0.0, 0.5, 0.0)))
-        both = middle(name, through, [(1.0, 0.0, 0.0), (0.0, 0.5, 0.0)])
+        both_lamps = middle(name, through, [(1.0, 0.0, 0.0), (0.0, 0.5, 0.0)])
         assert red[0] > 0.01 and red[1] == red[2] == 0.0 and green[1] > 0.005 and not green[[0, 2]].any()
-        np.testing.assert_allclose(both, red + green, rtol=1e-5)
+        np.testing.assert_allclose(both_lamps, red + green, rtol=1e-5)
         assert not middle(name, through, []).any() and middle(name, sky, []).min() > 0.01
 
 
@@ -147,7 +147,7 @@ def test_background_exposure_and_averaging(scene: Callable[..., str]) -> None:
 
 
 def test_dicing_places_a_vertex_at_each_pixels_centre() -> None:
-    """Projected again, a hit's vertex is the pixel's centre, to a thousandth of a pixel in float32."""
+    """The vertex of a hit projects to the centre of the pixel, within a thousandth of a pixel in float32."""
     camera, size, ball = Camera((0.3, 0.4, 3.0)), (40, 30), Ball(radius=1.0, rotation=(10.0, 20.0, 30.0), scale=0.8)
     origin, directions = camera.rays(*size)
     hits = ball.hits(origin, directions)
@@ -242,7 +242,7 @@ def test_wrong_arguments(
     capsys: pytest.CaptureFixture[str], scene: Callable[..., str], arguments: list[str], message: str
 ) -> None:
     path = scene(f'material = "paper_lantern"\n{BALL}')
-    assert main(["render", *[path if one == "SCENE" else one for one in arguments]]) == 2
+    assert main(["render", *[path if argument == "SCENE" else argument for argument in arguments]]) == 2
     assert message in capsys.readouterr().err
 
 
@@ -280,7 +280,7 @@ def test_nan_is_reported_and_not_written(scene: Callable[..., str], tmp_path: Pa
 
 
 def test_field_of_view_grows_by_the_border() -> None:
-    """A picture with a border shows the same points in the same pixels."""
+    """The pixels inside the border show the same points as without a border."""
     camera, (width, height) = Camera(), (10, 6)
     wider = math.degrees(2.0 * math.atan(math.tan(math.radians(20.0)) * (height + 2) / height))
     inner = camera.rays(width, height)[1].reshape(height, width, 3)
@@ -302,7 +302,7 @@ def test_a_texture_too_large_for_the_driver(
 
 
 @pytest.mark.parametrize("texel", [np.nan, 1e300])
-def test_a_texture_with_no_numbers_in_it(scene: Callable[..., str], tmp_path: Path, texel: float) -> None:
+def test_a_texture_with_nan(scene: Callable[..., str], tmp_path: Path, texel: float) -> None:
     np.save(tmp_path / "none.npy", np.full((2, 2, 3), texel))
     path = scene(f'material = "resin_inlay"\n{BALL}[textures]\nbase_color_texture = "none.npy"\n')
     with pytest.raises(SssgenError, match="a texture contains NaN, infinity or numbers beyond 65504"):

@@ -1,7 +1,7 @@
-"""Unity's programs, drawn: the forward pass of the emitted .shader, with the engine's inputs.
+"""Draws the forward pass of the emitted .shader for Unity, with the inputs of the engine.
 
-With the stand-in headers the lighting is that of the other targets' shells, so that pictures must be the same. With
-Unity's own (SSSGEN_UNITY_INCLUDES) only what does not depend on Unity's standard lighting must.
+With the stand-in headers, the lighting is that of the other targets' shells, so all pictures must be the same. With
+Unity's own headers (SSSGEN_UNITY_INCLUDES), only pictures that do not depend on Unity's standard lighting must.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from drawn import BALL, LAMP, SIZE, apart
 from folders import EXAMPLES
+from lamp_scene import BALL, LAMP, SIZE, largest_difference
 from sssgen.cli.main import main
 from sssgen.harness import backends
 from sssgen.harness.backends import Backend, Text
@@ -65,7 +65,7 @@ LIT_FROM_BEHIND = {
     "both": "[[light]]\nposition = [0.2, 0.1, -0.2]\ncolor = [0.1, 0.2, 0.1]\n"
     "[[light]]\ndirection = [0.0, 0.0, -1.0]\ncolor = [0.3, 0.3, 0.3]\n",
 }
-"""On a ball in the middle these reach no side that the camera sees: all its light comes through."""
+"""Lamps behind a ball in the middle: all visible light is transmitted."""
 
 
 @pytest.fixture(params=UNITY)
@@ -87,28 +87,28 @@ def scene(text: str, folder: Path = EXAMPLES) -> Scene:
 
 
 def example(name: str) -> Scene:
-    """An example's scene, one sample a pixel."""
+    """The scene of an example, with one sample per pixel."""
     text = (EXAMPLES / name / "scene.toml").read_text(encoding="utf-8")
     lines = [line for line in text.splitlines() if not line.startswith("samples")]
     return scene("\n".join(["samples = 1", *lines]), EXAMPLES / name)
 
 
-def drawn(shown: Scene, machine: Backend) -> Rendered:
-    return render(shown, machine, SIZE)
+def picture_of(described: Scene, machine: Backend) -> Rendered:
+    return render(described, machine, SIZE)
 
 
 def test_a_raymarched_scene(unity: UnityHLSL) -> None:
-    """The same picture as in GLSL, which encodes it with a gamma of 2.2; in Unity the engine encodes."""
-    shown = scene('material = "jelly_cubes"\nsamples = 1\ntime = 1.0\n[parameters]\nglow_strength = 2.0\n')
-    encoded = drawn(shown, backends.get("gl")).encoded
+    """The picture is the same as in GLSL, which encodes it with a gamma of 2.2; in Unity the engine encodes."""
+    described = scene('material = "jelly_cubes"\nsamples = 1\ntime = 1.0\n[parameters]\nglow_strength = 2.0\n')
+    encoded = picture_of(described, backends.get("gl")).encoded
     result = images.encode_srgb(encoded**2.2)
-    assert 255.0 * np.abs(drawn(shown, unity).encoded - result).max() < 0.5
+    assert 255.0 * np.abs(picture_of(described, unity).encoded - result).max() < 0.5
     assert result.std() > 0.1
 
 
 @pytest.mark.parametrize("alpha_mode", ["opaque", "mask", "blend"])
 def test_every_input_of_the_engine(unity: UnityHLSL, alpha_mode: str, tmp_path: Path) -> None:
-    """Spaces, uniforms of every kind, textures, time and alpha: all as in NumPy; with our own lighting, light too."""
+    """Spaces, uniforms of every kind, textures, time, alpha are as in NumPy; with the stand-in headers, light too."""
     (tmp_path / "probe.sss").write_text(PROBE, encoding="utf-8")
     images.write_png(tmp_path / "marks.png", np.random.default_rng(5).random((8, 16, 3)))
     head = f'[material]\nname = "probe"\nshading = "lit"\nalpha_mode = "{alpha_mode}"\n'
@@ -116,55 +116,55 @@ def test_every_input_of_the_engine(unity: UnityHLSL, alpha_mode: str, tmp_path: 
     values = "[parameters]\nshade = 0.75\nmixed = [0.1, 0.9, 0.4]\nturn = [1, 0, 0.5, 2]\nsteps = 5\n"
     ambient, lights = ("[0, 0, 0]", "") if unity.unity.real else ("[0.2, 0.3, 0.4]", LAMP)
     text = f'material = "probe.toml"\nsamples = 2\ntime = 3.0\nambient = {ambient}\n{BALL}{lights}{values}'
-    shown = scene(text + '[textures]\nmarks = "marks.png"\n', tmp_path)
-    result, oracle = drawn(shown, unity), drawn(shown, backends.get("numpy"))
-    assert apart(result, oracle) < 0.3
+    described = scene(text + '[textures]\nmarks = "marks.png"\n', tmp_path)
+    result, oracle = picture_of(described, unity), picture_of(described, backends.get("numpy"))
+    assert largest_difference(result, oracle) < 0.3
     np.testing.assert_allclose(result.covered, oracle.covered)
 
 
 @pytest.mark.parametrize("name", ["paper_lantern", "ice", "resin_inlay"])
 def test_examples_equal_glsl(standin: UnityHLSL, name: str) -> None:
-    shown = example(name)
-    gl = drawn(shown, backends.get("gl"))
-    assert apart(drawn(shown, standin), gl) < 0.3
+    described = example(name)
+    gl = picture_of(described, backends.get("gl"))
+    assert largest_difference(picture_of(described, standin), gl) < 0.3
     assert gl.encoded.std() > 0.05
 
 
-def test_an_unlit_surface_with_a_lighting_of_its_own(unity: UnityHLSL, tmp_path: Path) -> None:
-    """The main light, in the material's own formulas: the same whatever Unity's lighting is."""
+def test_an_unlit_surface_with_its_own_lighting(unity: UnityHLSL, tmp_path: Path) -> None:
+    """The material's own formulas use the main light, so the result does not depend on Unity's lighting."""
     (tmp_path / "own.toml").write_text(OWN_LIGHTING, encoding="utf-8")
     light = "[[light]]\ndirection = [1, 2, 2]\ncolor = [0.9, 0.8, 0.7]\n"
-    shown = scene(f'material = "own.toml"\nsamples = 1\n{BALL}{light}', tmp_path)
-    gl = drawn(shown, backends.get("gl"))
-    assert apart(drawn(shown, unity), gl) < 0.3
+    described = scene(f'material = "own.toml"\nsamples = 1\n{BALL}{light}', tmp_path)
+    gl = picture_of(described, backends.get("gl"))
+    assert largest_difference(picture_of(described, unity), gl) < 0.3
     assert gl.linear.max() > 0.3
 
 
 @pytest.mark.parametrize("lights", LIT_FROM_BEHIND.values(), ids=LIT_FROM_BEHIND)
 def test_transmitted_light_is_equal_in_glsl(unity: UnityHLSL, lights: str) -> None:
-    """The translucency lobe of each kind of light, counted once, with any lighting."""
+    """The translucency lobe of each kind of light counts once, with any lighting."""
     ball = '[geometry]\nkind = "ball"\nrotation = [20, 30, 40]\nscale = 0.9\n'
     values = "[parameters]\npower = 2.0\nscale = 1.5\ndistortion = 0.4\n"
-    shown = scene(f'material = "paper_lantern"\nsamples = 1\n{ball}{lights}{values}')
-    gl = drawn(shown, backends.get("gl"))
+    described = scene(f'material = "paper_lantern"\nsamples = 1\n{ball}{lights}{values}')
+    gl = picture_of(described, backends.get("gl"))
     assert gl.linear.max() > 0.1
-    assert apart(drawn(shown, unity), gl) < 0.3
+    assert largest_difference(picture_of(described, unity), gl) < 0.3
 
 
 def test_ambient_light(unity: UnityHLSL) -> None:
-    """Unity subtracts the 4 percent that a surface reflects."""
-    shown = scene(f'material = "paper_lantern"\nsamples = 1\nambient = [0.2, 0.4, 0.6]\n{BALL}')
-    result, gl = drawn(shown, unity), drawn(shown, backends.get("gl"))
+    """Unity subtracts the 4 % that a dielectric surface reflects."""
+    described = scene(f'material = "paper_lantern"\nsamples = 1\nambient = [0.2, 0.4, 0.6]\n{BALL}')
+    result, gl = picture_of(described, unity), picture_of(described, backends.get("gl"))
     on = gl.covered > 0.99
     expected = 0.96 if unity.unity.real else 1.0
     np.testing.assert_allclose(result.linear[on], expected * gl.linear[on], rtol=2e-3)
     assert gl.linear[on].min() > 0.1
 
 
-def test_a_lantern_looks_like_itself(unity: UnityHLSL) -> None:
-    """With Unity's own lighting too: two lights, ambient, normal map, thickness map."""
-    shown = example("paper_lantern")
-    result, gl = drawn(shown, unity).encoded, drawn(shown, backends.get("gl")).encoded
+def test_the_lantern_equals_glsl_approximately(unity: UnityHLSL) -> None:
+    """Two lights, ambient light, normal map and thickness map, also with Unity's own lighting."""
+    described = example("paper_lantern")
+    result, gl = picture_of(described, unity).encoded, picture_of(described, backends.get("gl")).encoded
     assert np.corrcoef(result.ravel(), gl.ravel())[0, 1] > 0.99
     assert result.mean() == pytest.approx(gl.mean(), rel=0.02)
 
@@ -191,8 +191,8 @@ def test_a_shader_that_does_not_compile(unity: UnityHLSL) -> None:
         unity.whole.glsl(unity.forward(shader, "fragment", ()), "fragment")
 
 
-def test_in_a_process_of_its_own(unity: UnityHLSL, backend: Callable[[str], Backend]) -> None:
-    """As `sssgen ci` draws. The lamp's parameters are packed as GLSL packs none: a colour behind a number."""
+def test_in_another_process(unity: UnityHLSL, backend: Callable[[str], Backend]) -> None:
+    """`sssgen ci` draws in another process. The lamp has a colour after a number, which GLSL would not pack so."""
     backend("gl")
     path = EXAMPLES / "ci" / "scenes" / "lamp.toml"
     scene = parse_scene(path.read_text(encoding="utf-8"), str(path))
@@ -201,6 +201,6 @@ def test_in_a_process_of_its_own(unity: UnityHLSL, backend: Callable[[str], Back
         moved = render(scene, other, SIZE)
     finally:
         other.close()
-    here = render(scene, unity, SIZE)
-    assert np.array_equal(moved.linear, here.linear)
-    assert apart(here, render(scene, backends.get("gl"), SIZE)) < (10.0 if unity.unity.real else 0.3)
+    expected = render(scene, unity, SIZE)
+    assert np.array_equal(moved.linear, expected.linear)
+    assert largest_difference(expected, render(scene, backends.get("gl"), SIZE)) < (10.0 if unity.unity.real else 0.3)

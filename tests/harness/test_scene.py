@@ -1,4 +1,4 @@
-"""Scenes: the contents of a file, and every error in it, with its place."""
+"""Scene files: their contents, and every error with its place."""
 
 from __future__ import annotations
 
@@ -180,11 +180,13 @@ def test_a_distance_texture_has_the_technique_s_convention() -> None:
 def test_errors_are_reported_at_their_place(text: str, message: str, line: int) -> None:
     error = error_of(text)
     assert message in str(error)
-    reported = next(one for one in error.diagnostics if message in f"{one.message} {one.hint}")
+    reported = next(
+        diagnostic for diagnostic in error.diagnostics if message in f"{diagnostic.message} {diagnostic.hint}"
+    )
     assert (reported.span.file, reported.span.line) == ("scene.toml", line)
 
 
-def test_many_errors_at_once() -> None:
+def test_all_errors_of_a_file_are_reported() -> None:
     assert len(error_of("size = 3\ntime = true\n[camera]\nnear = nan\n").diagnostics) == 4
 
 

@@ -1,7 +1,8 @@
-"""The computations of our shells are finite on hostile points too, for any input of a mesh or a program.
+"""The computations of the shells are finite on hostile points, for any input of a mesh or a program.
 
-Drawn on a mesh of one vertex a pixel, as `sssgen render` does, into pictures of floats, which nothing clamps. What the
-built-in pipeline's surface shaders do with a normal of 0 is Unity's own: there the unlit shader is drawn.
+The tests draw a mesh with one vertex per pixel, as `sssgen render` does, into float pictures, which are not clamped.
+The result of the built-in pipeline's surface shaders for a normal of 0 is Unity's own computation, so the tests draw
+the unlit shader there.
 """
 
 from __future__ import annotations
@@ -25,10 +26,10 @@ from sssgen.material.material_loading import examples, load_material
 from sssgen.pipeline.compiler import Compiled, all_targets, compile
 
 PLAIN = ["numpy", "numpy-f32", "gl", "gl-es", "webgpu", "hlsl", "hlsl-glslang"]
-DRAWN = [*((name, probe) for name in [*PLAIN, "unity-urp"] for probe in ("lit", "unlit")), ("unity", "unlit")]
+DRAWN_SHELLS = [*((name, probe) for name in [*PLAIN, "unity-urp"] for probe in ("lit", "unlit")), ("unity", "unlit")]
 SIZE = (8, 6)
 BRIGHT = 1e8
-"""More than the lights here can give."""
+"""More than the lights of these tests can give."""
 
 INPUTS = "world_direction V, world_direction N, world_direction T, world_direction B, object_direction V_object, "
 INPUTS += "object_direction N_object"
@@ -82,7 +83,7 @@ MATERIALS = {
 }
 
 FRONT = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.5, 0.5])
-"""A vertex that faces +z; its place is filled in."""
+"""A vertex that faces +z; `grid` sets its position."""
 LAMPS = np.array([[0.0, 0.0, 1.0, 0.0], [1.0, 2.0, 3.0, 1.0]])
 
 
@@ -103,13 +104,13 @@ SHELL = Shell(
     light_positions=LAMPS, light_colors=np.ones((2, 3)),
 )  # fmt: skip
 NEAR = 1e-30
-"""So near to each other are the points where something stands at the surface: their distance squared is 0."""
+"""The distance of points if a camera or light is at the surface; its square is 0."""
 MAGNIFIED = dataclasses.replace(SHELL, view_projection=np.diag([1.0 / NEAR, 1.0 / NEAR, 1.0, 1.0]))
-HERE = np.array([[0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
-"""A light from afar without a direction, and one at the surface."""
+LIGHTS_AT_SURFACE = np.array([[0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
+"""A directional light with direction 0, and a light at the surface."""
 
 
-def at_one_place() -> Array:
+def coinciding_points() -> Array:
     points = grid()
     points[:, :2] *= NEAR
     return points
@@ -119,11 +120,11 @@ HOSTILE: dict[str, tuple[Array, Shell]] = {
     "normal 0": (grid(normal=np.zeros(3)), SHELL),
     "tiny normal": (grid(normal=np.array([0.0, 0.0, 1e-25])), SHELL),
     "tangent 0": (grid(tangent=np.zeros(3)), SHELL),
-    "camera at the surface": (at_one_place(), dataclasses.replace(MAGNIFIED, camera_position=(0.0, 0.0, 0.0))),
-    "light at the surface": (at_one_place(), dataclasses.replace(MAGNIFIED, light_positions=HERE)),
+    "camera at the surface": (coinciding_points(), dataclasses.replace(MAGNIFIED, camera_position=(0.0, 0.0, 0.0))),
+    "light at the surface": (coinciding_points(), dataclasses.replace(MAGNIFIED, light_positions=LIGHTS_AT_SURFACE)),
     "camera and light at the surface": (
-        at_one_place(),
-        dataclasses.replace(MAGNIFIED, light_positions=HERE, camera_position=(0.0, 0.0, 0.0)),
+        coinciding_points(),
+        dataclasses.replace(MAGNIFIED, light_positions=LIGHTS_AT_SURFACE, camera_position=(0.0, 0.0, 0.0)),
     ),
     "flattened": (grid(), dataclasses.replace(SHELL, model=np.diag([1.0, 1.0, 0.0, 1.0]))),
     "model 0": (grid(), dataclasses.replace(SHELL, model=np.zeros((4, 4)))),
@@ -145,28 +146,28 @@ def compiled_shell(tmp_path: Path) -> Callable[[str, str], Compiled]:
 
 
 def assert_numbers(picture: Array) -> None:
-    """No NaN and no infinity by the bits, and no value that clamping them would give."""
+    """Asserts that no number is NaN or infinite, or a value that results from clamping these."""
     bits = np.ascontiguousarray(picture, np.float32).view(np.uint32)
     assert ((bits >> 23) & 0xFF != 0xFF).all()
     assert np.abs(picture).max() < BRIGHT
 
 
 def inner(picture: Array) -> Array:
-    """Without the outermost pixels, which the mesh may not cover."""
+    """The picture without its border, which the mesh may not cover."""
     return picture[1:-1, 1:-1]
 
 
-@pytest.mark.parametrize(("name", "probe"), DRAWN)
+@pytest.mark.parametrize(("name", "probe"), DRAWN_SHELLS)
 @pytest.mark.parametrize("case", HOSTILE)
 def test_hostile_points(
     case: str, probe: str, name: str, backend: Callable[[str], Backend], compiled_shell: Callable[[str, str], Compiled]
 ) -> None:
     machine, (points, shell) = backend(name), HOSTILE[case]
-    if name.startswith("numpy"):  # without triangles, and with smaller numbers: the points may be one
+    if name.startswith("numpy"):  # NumPy draws without triangles, so the points may coincide
         points = np.where(np.abs(points) < 1e-20, 0.0, points)
     picture = shade(machine, compiled_shell(probe, machine.target.name), shell, SIZE, points)
     assert_numbers(picture)
-    if case != "model 0":  # which draws nothing
+    if case != "model 0":  # with a model matrix of 0, nothing is drawn
         assert inner(picture)[..., :3].min() > 0.05
 
 
@@ -183,7 +184,7 @@ def test_rays_of_a_matrix_of_0(
 def test_rays_from_the_surface(
     name: str, backend: Callable[[str], Backend], compiled_shell: Callable[[str, str], Compiled]
 ) -> None:
-    """In Unity a ray ends on the mesh that it is drawn on."""
+    """In Unity a ray ends on the mesh that is drawn."""
     machine, (points, shell) = backend(name), HOSTILE["camera at the surface"]
     picture = shade(machine, compiled_shell("rays", machine.target.name), shell, SIZE, points)
     assert_numbers(picture)
@@ -201,7 +202,7 @@ def test_examples_on_hostile_points(material: str, name: str, backend: Callable[
 
 @pytest.mark.parametrize("name", ["gl", "gl-es", "webgpu", "hlsl", "unity-urp", "numpy-f32"])
 def test_a_short_normal_does_not_sharpen_the_highlight(name: str, backend: Callable[[str], Backend]) -> None:
-    """A direction shorter than 1 gives a highlight of its inverse cube: a normal has length 1, or 0 and is not lit."""
+    """A short direction would scale the highlight by its inverse cube. A normal has length 1, or 0 and no light."""
     machine = backend(name)
     compiled = compile(load_material("resin_inlay"), machine.target.name)
     brightest = []
@@ -215,7 +216,7 @@ def test_a_short_normal_does_not_sharpen_the_highlight(name: str, backend: Calla
 def test_hostile_ports_of_a_graph(
     backend: Callable[[str], Backend], compiled_shell: Callable[[str, str], Compiled]
 ) -> None:
-    """Shader Graph's function, called with directions of 0 and in an object whose matrices are 0."""
+    """Calls the function of Shader Graph with directions of 0, for an object whose matrices are 0."""
     backend("unity-urp")
     machine = UnityHLSL("unity-shadergraph", "unity-shadergraph", "dxc")
     (text,) = (
@@ -234,14 +235,14 @@ NORMALISING = re.compile(
     r"\b(?:normalize|UnityObjectToWorldNormal|UnityObjectToWorldDir|UnityWorldToObjectDir|TransformWorldToObjectDir"
     r"|GetWorldSpaceNormalizeViewDir)\((?!float3\(0\.5, 0\.5, -0\.5\))"
 )
-"""What makes NaN of 0, of any other than a constant."""
+"""Operations that give NaN for 0, with an argument that is not a constant."""
 
 
 @pytest.mark.parametrize("probe", MATERIALS)
 def test_the_probes_compile(
     probe: str, compiled_shell: Callable[[str, str], Compiled], assert_compiles: Callable[[Source], None]
 ) -> None:
-    """In all passes, the built-in pipeline's surface shader with every direction among them."""
+    """The probes compile in all passes, as does a surface shader of the built-in pipeline with every direction."""
     for target in all_targets():
         for source in sources(compiled_shell(probe, target).files):
             assert_compiles(source)
@@ -249,21 +250,21 @@ def test_the_probes_compile(
 
 @pytest.mark.parametrize("target", [target for target in all_targets() if target != "numpy"])
 def test_no_shell_normalises_by_itself(target: str, compiled_shell: Callable[[str, str], Compiled]) -> None:
-    """In no pass, those that are not drawn here among them; and the function is there just where it is called."""
+    """No pass normalises without a guard, not even those that are not drawn. Guards are defined exactly where used."""
     compiled = [compile(load_material(name), target) for name in examples()]
     compiled += [compiled_shell(probe, target) for probe in MATERIALS]
-    for one in compiled:
-        for file, places in one.reflection["source_map"].items():
-            lines = enumerate(one.files[file].splitlines(), 1)
+    for shader in compiled:
+        for file, places in shader.reflection["source_map"].items():
+            lines = enumerate(shader.files[file].splitlines(), 1)
             shell = [line for number, line in lines if str(number) not in places]
             assert [line for line in shell if NORMALISING.search(line)] == [], file
             calls = sum(len(re.findall(r"\bunit_vector\(", line)) for line in shell)
-            assert calls != 1, f"{file}: defined and not called, or called and not defined"
+            assert calls != 1, f"{file}: a function is defined and not called, or called and not defined"
 
 
 @pytest.mark.parametrize("target", [target for target in all_targets() if target != "numpy"])
 def test_a_technique_can_use_a_name_of_the_shell(target: str, tmp_path: Path) -> None:
-    """The author's function of that name gets another one; the shell's keeps it."""
+    """The author's function gets another name; the function of the shell keeps its name."""
     text = UNLIT.replace("/**", "vec3 unit_vector(world_direction v) { return vec3(v) * 0.5; }\n/**", 1)
     (tmp_path / "unlit.sss").write_text(text.replace("0.5 + 0.1", "unit_vector(N) + 0.1"), encoding="utf-8")
     (tmp_path / "unlit.toml").write_text(MATERIALS["unlit"], encoding="utf-8")

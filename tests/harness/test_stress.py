@@ -1,4 +1,4 @@
-"""`sssgen stress`: the rows of the table of dangerous inputs, the judge, the shrinker and the report."""
+"""`sssgen stress`: the table of dangerous inputs, the checks of results, the reduction of faults, the report."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ transmittance planted(float a, vec3 b, thickness d)
 
 @pytest.fixture(scope="module")
 def machines(backend: Callable[[str], Backend]) -> Iterator[Callable[[str], Machines]]:
-    """`machines("gl")`: that back end, kept for the module; a skip (in CI: a failure) where it is missing."""
+    """`machines("gl")` is the back end `gl`, opened once per module. If missing, it skips the test (in CI: fails)."""
     result: dict[str, Machines] = {}
 
     def get(name: str) -> Machines:
@@ -57,8 +57,8 @@ def machines(backend: Callable[[str], Backend]) -> Iterator[Callable[[str], Mach
         return result[name]
 
     yield get
-    for one in result.values():
-        one.__exit__(None, None, None)
+    for opened in result.values():
+        opened.__exit__(None, None, None)
 
 
 @pytest.fixture
@@ -74,7 +74,7 @@ def planted(tmp_path: Path) -> Callable[..., str]:
 
 
 def faults_in(specimen: Specimen, result: Machines, settings: Settings) -> list[Fault]:
-    """The faults that count."""
+    """The faults of a technique that count."""
     (column,) = stress(specimen, result, settings).columns
     assert not column.error
     return [fault for fault in column.faults if fault.counts]
@@ -86,7 +86,7 @@ def faults_in(specimen: Specimen, result: Machines, settings: Settings) -> list[
 @pytest.mark.parametrize("name", QUICK)
 @pytest.mark.parametrize("row", ROWS)
 def test_dangerous_row(row: str, name: str, machines: Callable[[str], Machines]) -> None:
-    """Every technique of the library that the row concerns."""
+    """No technique of the library fails on the row."""
     result = machines(name)
     faults, concerned = [], 0
     for specimen in specimens([]):
@@ -109,7 +109,7 @@ def test_the_table_is_complete() -> None:
 
 
 def test_dangerous_row_meshes(tmp_path: Path) -> None:
-    """An open box: below 0 inside, above 0 outside. A mesh without triangles is refused by name."""
+    """The distance to an open box is negative inside, positive outside. An error names a mesh without triangles."""
     reason = "a mesh's distance needs libigl and trimesh: pip install 'sssgen[render]'"
     pytest.importorskip("igl", reason=reason)
     trimesh = pytest.importorskip("trimesh", reason=reason)
@@ -127,7 +127,7 @@ def test_dangerous_row_meshes(tmp_path: Path) -> None:
 
 
 def test_dangerous_row_lamp_at_surface_in_the_shell(backend: Callable[[str], Backend], tmp_path: Path) -> None:
-    """A lamp that touches the ball, in a whole shader: the falloff is bounded."""
+    """In a whole shader, the falloff of a lamp that touches the ball is bounded."""
     (tmp_path / "lamp.toml").write_text(
         'material = "ice"\nsize = [32, 32]\n[geometry]\nkind = "ball"\n'
         "[[light]]\nposition = [0.0, 0.0, 1.0]\ncolor = [100.0, 100.0, 100.0]\n",
@@ -144,7 +144,7 @@ def test_dangerous_row_lamp_at_surface_in_the_shell(backend: Callable[[str], Bac
 def test_a_planted_nan_is_caught_and_shrunk(
     name: str, planted: Callable[..., str], machines: Callable[[str], Machines]
 ) -> None:
-    """The simplest input of each: 10 is the first plain number above 3; nothing else matters.
+    """Shrinking finds the simplest input: 10 is the first plain number above 3; no other input matters.
 
     The square root of a negative number is undefined in a shader: a driver may give a number.
     """
@@ -168,7 +168,7 @@ def test_the_printed_line_shows_the_fault(
     fault = next(fault for fault in result if fault.kind == "out of range")
     before, _, command = fault.command.partition(" | sssgen ")
     (tmp_path / "in.json").write_text(shlex.split(before)[1], encoding="utf-8")
-    assert main([str(tmp_path / "in.json") if one == "-" else one for one in shlex.split(command)]) == 0
+    assert main([str(tmp_path / "in.json") if word == "-" else word for word in shlex.split(command)]) == 0
     assert "1.5" in capsys.readouterr().out
 
 
@@ -200,7 +200,7 @@ def test_a_jump_of_the_formula_is_reported(planted: Callable[..., str]) -> None:
 
 
 def test_a_jump_of_a_back_end_alone() -> None:
-    """A back end that rounds to 25ths leaps where the formula is smooth."""
+    """A back end that rounds to 1/25 jumps where the formula is smooth."""
     specimen = technique("transmittance_from_thinness")
     oracle = exact(specimen, Settings(1))
 
@@ -213,7 +213,7 @@ def test_a_jump_of_a_back_end_alone() -> None:
 
 
 def test_a_back_end_with_wrong_results(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A thousandth off: a failure in a row of the table, a remark on random inputs."""
+    """An error of 0.001 is a failure in a row of the table, and only a remark on random inputs."""
     off = Machines(["numpy-f32"])
     right = off.here["numpy-f32"]
     off.here["numpy-f32"] = wrong = copy.copy(right)
@@ -224,21 +224,21 @@ def test_a_back_end_with_wrong_results(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_back_end_may_not_jump_on_a_path() -> None:
-    """Against the oracle: a leap of its own excuses one of the back end a step later."""
+    """A jump of a back end is a fault unless the oracle has a jump within a step."""
     specimen = technique("transmittance_from_thinness")
     inputs = drawn(specimen, 10, np.random.default_rng(0))
     trial = Trial("", specimen, inputs, path=True)
     leap = np.where(np.arange(10) < 5, 0.2, 0.9)
     late = {"result": np.where(np.arange(10) < 6, 0.2, 0.9)}
-    assert [one.kind for one in faults_of(trial, {"result": leap}, {"result": np.full(10, 0.2)})] == ["jump"]
+    assert [fault.kind for fault in faults_of(trial, {"result": leap}, {"result": np.full(10, 0.2)})] == ["jump"]
     assert not faults_of(trial, {"result": leap}, late)
 
 
-# What is tried
+# Inputs
 
 
-def test_random_inputs_keep_the_contract_and_fill_it() -> None:
-    """Nothing is beyond it, the ends and 0 are among it, and directions are of all lengths up to 1."""
+def test_random_inputs_are_in_the_contract_and_reach_its_ends() -> None:
+    """All inputs are in the contract; the ends and 0 occur; directions have all lengths up to 1."""
     specimen = technique("lobe_normalized")
     inputs = drawn(specimen, 1 << 16, np.random.default_rng(1))
     for name, value in inputs.values.items():
@@ -248,19 +248,22 @@ def test_random_inputs_keep_the_contract_and_fill_it() -> None:
         if name not in ("V", "N", "L"):
             assert (value == low).any() and (value == high).any() and (value == 0.0).any() == (low <= 0.0), name
     length = {name: np.linalg.norm(inputs.values[name], axis=0) for name in "VNL"}
-    assert all(one.max() <= 1.001 and (one == 0.0).any() and (one > 1.0 + 1e-5).any() for one in length.values())
+    assert all(
+        lengths.max() <= 1.001 and (lengths == 0.0).any() and (lengths > 1.0 + 1e-5).any()
+        for lengths in length.values()
+    )
     assert (np.abs(inputs.values["L"] + inputs.values["N"]).max(axis=0) == 0.0).sum() > 100
 
 
 def test_random_inputs_are_the_same_for_a_seed() -> None:
     specimen = technique("thickness_map")
-    one, same, other = (drawn(specimen, 64, np.random.default_rng(seed)) for seed in (1, 1, 2))
-    assert np.array_equal(one.values["uv"], same.values["uv"])
-    assert not np.array_equal(one.values["uv"], other.values["uv"])
+    first, again, other = (drawn(specimen, 64, np.random.default_rng(seed)) for seed in (1, 1, 2))
+    assert np.array_equal(first.values["uv"], again.values["uv"])
+    assert not np.array_equal(first.values["uv"], other.values["uv"])
 
 
 def test_boundary_values_come_in_pairs() -> None:
-    """Every value of each input meets every value of each other one."""
+    """Every pair of values of two inputs occurs."""
     specimen = technique("beer_lambert")
     d, distance = (boundaries.values(specimen, name) for name in ("d", "attenuation_distance"))
     assert d is not None and distance is not None
@@ -273,13 +276,13 @@ def test_boundary_values_come_in_pairs() -> None:
 
 
 def test_techniques_that_are_checked_for_energy() -> None:
-    held = [one.title for one in specimens([]) if any(True for _ in energy.trials(one, 0))]
-    assert {"beer_lambert", "absorption_tint", "thinness_from_thickness"} <= set(held)
-    assert "lobe_normalized" not in held
+    checked = [specimen.title for specimen in specimens([]) if any(True for _ in energy.trials(specimen, 0))]
+    assert {"beer_lambert", "absorption_tint", "thinness_from_thickness"} <= set(checked)
+    assert "lobe_normalized" not in checked
 
 
 def test_materials_are_stressed_stage_by_stage() -> None:
-    results = {one.title: one for one in specimens(["jelly_cubes"])}
+    results = {specimen.title: specimen for specimen in specimens(["jelly_cubes"])}
     assert results["jelly_cubes: thinness_traced"].bind == {"body_distance": "jelly_cubes"}
     fixed = results["jelly_cubes: gamma"]
     assert fixed.settings["display_gamma"] == pytest.approx((2.2,))
@@ -288,8 +291,8 @@ def test_materials_are_stressed_stage_by_stage() -> None:
 
 
 def test_a_row_skips_what_a_material_fixes(machines: Callable[[str], Machines]) -> None:
-    """Resin in air: there is no critical angle to be past."""
-    (resin,) = [one for one in specimens(["resin_inlay"]) if one.technique == "parallax_refracted"]
+    """Resin in air has no critical angle."""
+    (resin,) = [specimen for specimen in specimens(["resin_inlay"]) if specimen.technique == "parallax_refracted"]
     assert not list(dangerous.trials(resin, ("critical-angle",)))
     assert list(dangerous.trials(technique("parallax_refracted"), ("critical-angle",)))
     assert not faults_in(resin, machines("numpy-f32"), Settings(100))
@@ -332,9 +335,9 @@ def test_the_report_in_json(capsys: pytest.CaptureFixture[str], planted: Callabl
         "ok": False, "samples": 1000, "seed": 3, "precision": "f32",
     }  # fmt: skip
     assert [row["name"] for row in report["rows"]] == [row.name for row in dangerous.ROWS]
-    (one,) = report["techniques"]
-    assert (one["name"], one["role"], one["baseline"], one["ok"]) == (file, "conversion", False, False)
-    (column,) = one["backends"]
+    (entry,) = report["techniques"]
+    assert (entry["name"], entry["role"], entry["baseline"], entry["ok"]) == (file, "conversion", False, False)
+    (column,) = entry["backends"]
     assert column["name"] == "numpy-f32" and column["evaluations"] > 1000 and column["error"] == ""
     fault = column["faults"][0]
     assert set(fault) == {"trial", "kind", "output", "counts", "lanes", "of", "got", "inputs", "eval"}
@@ -352,7 +355,7 @@ def test_the_report_in_markdown(capsys: pytest.CaptureFixture[str], tmp_path: Pa
 
 
 def test_the_library_without_baselines() -> None:
-    names = [one.title for one in specimens([])]
+    names = [specimen.title for specimen in specimens([])]
     assert "lobe_normalized" in names and "alisavakis_lobe" not in names
     assert specimens(["alisavakis_lobe"])[0].baseline
 
@@ -378,14 +381,14 @@ def test_wrong_arguments(arguments: list[str], message: str, capsys: pytest.Capt
 
 
 def test_a_missing_back_end_is_reported() -> None:
-    """The others run; with CI set it is a failure, and also where none is available."""
+    """The other back ends run. A missing back end is a failure if CI is set, or if none is available."""
     command = [sys.executable, "-m", "sssgen", "stress", "beer_lambert", "--samples", "10", "-b"]
     bare = {**os.environ, "SSSGEN_CHROMIUM": "/nowhere/chromium", "CI": ""}
     among = subprocess.run([*command, "numpy-f32,browser"], env=bare, capture_output=True, text=True, check=False)
     assert among.returncode == 0 and "browser    not here: chromium" in among.stdout
     for environment, names in ((bare, "browser"), ({**bare, "CI": "true"}, "numpy-f32,browser")):
-        done = subprocess.run([*command, names], env=environment, capture_output=True, check=False)
-        assert done.returncode == 1
+        process = subprocess.run([*command, names], env=environment, capture_output=True, check=False)
+        assert process.returncode == 1
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")
@@ -411,8 +414,8 @@ def test_half_precision_has_its_own_limits(capsys: pytest.CaptureFixture[str]) -
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["gl", "webgpu"])
-def test_random_inputs_in_number(name: str, machines: Callable[[str], Machines]) -> None:
-    """A million of each technique's; the full sweep is in docs/harness.md."""
+def test_many_random_inputs(name: str, machines: Callable[[str], Machines]) -> None:
+    """A million random inputs for each technique; docs/harness.md has the command for more."""
     for specimen in specimens([]):
         faults = [fault for fault in faults_in(specimen, machines(name), Settings(1_000_000)) if fault.trial == RANDOM]
         assert not faults, (specimen.title, faults[0].command)

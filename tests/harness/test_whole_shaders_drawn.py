@@ -1,4 +1,4 @@
-"""Whole shaders on two devices: a picture drawn by OpenGL is the one that WebGPU draws, upright and with its depths."""
+"""OpenGL and WebGPU draw the same picture with whole shaders: the same orientation, and the same depths."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ function void main() {
 
 
 def by_opengl() -> Any:
-    """The picture, its lowest row first."""
+    """The picture; the first row is at the bottom."""
     try:
         context = compilers.get("gl").context  # type: ignore[attr-defined]  # the driver's
     except CompilerMissing as missing:
@@ -60,7 +60,7 @@ def by_opengl() -> Any:
 
 
 def by_webgpu() -> Any:
-    """The picture, its highest row first."""
+    """The picture; the first row is at the top."""
     try:
         gpu = compilers.get("naga").gpu  # type: ignore[attr-defined]  # naga's device
     except CompilerMissing as missing:
@@ -83,16 +83,16 @@ def by_webgpu() -> Any:
     drawing.draw(3)
     drawing.end()
     gpu.queue.submit([encoder.finish()])
-    where, how = {"texture": target}, {"bytes_per_row": 16 * SIZE[0], "rows_per_image": SIZE[1]}
-    data = gpu.queue.read_texture(where, how, (*SIZE, 1))
+    source, layout = {"texture": target}, {"bytes_per_row": 16 * SIZE[0], "rows_per_image": SIZE[1]}
+    data = gpu.queue.read_texture(source, layout, (*SIZE, 1))
     return np.frombuffer(data, np.float32).reshape(SIZE[1], SIZE[0], 4)
 
 
 def test_both_draw_the_same_picture() -> None:
-    """Of each pixel: where it is, how a coordinate rises up the screen, and its depth."""
+    """The shader writes the position of each pixel, the vertical derivative of a coordinate, and the depth."""
     width, height = SIZE
     x, y = np.meshgrid((np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height)
-    # the depth is 0.75, 1 / w a half; the slope is 1 / height, times a step that was doubled by then
+    # the depth is 0.75, 1 / w is 0.5; the derivative is 1 / height, multiplied by a step that has been doubled
     expected = np.stack([x, y, np.full_like(x, 0.5 + height * 0.25), 0.375 + 0.75 * y], axis=-1)
     np.testing.assert_allclose(by_opengl(), expected, atol=1e-5)
     np.testing.assert_allclose(by_webgpu()[::-1], expected, atol=1e-5)

@@ -1,4 +1,4 @@
-"""What the tests of measuring share."""
+"""Fixtures of the tests of measurements."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Charts: measured once, independent of where the work runs, a valid record, and readable errors."""
+"""Charts: each point is measured once, results do not depend on the executor, records are valid, errors readable."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ SAMPLES = 8
 
 @pytest.fixture(autouse=True)
 def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    work.code_stamp.cache_clear()  # somebody may edit sssgen while its tests run
+    work.code_stamp.cache_clear()  # the source files may change while the tests run
     work._package_digest.cache_clear()
     in_cache(tmp_path / "cache", monkeypatch)
     yield
@@ -51,7 +51,7 @@ def in_cache(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(autouse=True)
 def few_candidates(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Small pictures, two thickness techniques, and of the materials those that follow from them."""
+    """Small pictures, three settings of thickness techniques, and the materials that use them."""
     monkeypatch.setattr(references, "TRAINING_SIDE", 8)
     monkeypatch.setattr(measured_scene, "SIDE", 8)
     lengths, lights, whole = candidates.thickness, candidates.translucency, candidates.materials
@@ -103,12 +103,12 @@ def test_measurements_are_cached(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     del ran[:]
     assert to_json(chart.chart_record([scene], settings())) == to_json(first)
     assert not ran
-    # without the scene's file the items' results make it again
+    # without the file of the scene, the stored results of the items are used
     (stored,) = (tmp_path / "cache").glob("chart-*.json")
     stored.unlink()
     assert to_json(chart.chart_record([scene], settings())) == to_json(first)
     assert not ran
-    # and a damaged one is no harm
+    # a damaged file is replaced
     stored.write_bytes(b"{")
     assert to_json(chart.chart_record([scene], settings())) == to_json(first)
     assert not ran
@@ -119,7 +119,7 @@ def test_measurements_are_cached(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
         path.unlink()
     assert to_json(chart.chart_record([scene], settings())) == to_json(first)
     assert 0 < len(ran) <= len(lost)
-    # another seed is another chart
+    # a chart with another seed is measured
     chart.chart_record([scene], settings(seed=1))
     assert len(ran) > 20
 
@@ -129,7 +129,9 @@ def test_roles_without_light_need_no_reference(monkeypatch: pytest.MonkeyPatch) 
     points = chart.chart_record([cube()], settings(roles=("thickness",)))["points"]
     assert ran and not any("reference" in title for title in ran)
     chart.chart_record([cube()], settings(roles=("thickness", "translucency")))
-    assert sum("reference" in title for title in ran) == 2 + 14  # own views, and what is fitted to: a light each
+    assert (
+        sum("reference" in title for title in ran) == 2 + 14
+    )  # the two views and the training views, each with a light
     assert [point["label"] for point in points] == [candidate.label for candidate in candidates.thickness()]
 
 
@@ -164,7 +166,7 @@ def test_a_record_is_valid_and_complete() -> None:
         assert set(point["views"]) == {"own", "held out"}
         assert ("flip" in point["error"]) == (point["role"] == "material")
     assert len(to_csv(record).splitlines()) == 1 + len(record["points"])
-    # fronts, by asking of each point whether another beats it
+    # a point is on the front if no other point dominates it
     for point in record["points"]:
         rivals = [
             other for other in record["points"] if (other["scene"], other["role"]) == (point["scene"], point["role"])
@@ -176,7 +178,7 @@ def test_a_record_is_valid_and_complete() -> None:
             for rival in rivals
         )  # fmt: skip
         assert point["front"] == (not beaten), point["label"]
-    # known answers: without a chain it costs least; steps buy accuracy; the wrong slide is off, none is off by more
+    # expected: no chain has the least cost, more steps are more accurate, no parallax has the largest error
     error = {(entry["role"], entry["label"]): entry["error"]["value"] for entry in record["points"]}
     assert error["thickness", "march_light, 6 steps"] < error["thickness", "constant_thickness"]
     assert error["coordinates", "parallax_refracted"] < 1e-6
@@ -185,7 +187,7 @@ def test_a_record_is_valid_and_complete() -> None:
     assert "cube, material:" in message and "inlay_plate, coordinates:" in message
 
 
-def test_hypervolumes_are_of_ours_and_of_the_baselines() -> None:
+def test_hypervolumes_of_the_library_and_of_the_baselines() -> None:
     def point(cost: float, error: float, baseline: bool, name: str = "a") -> dict[str, Any]:
         return {"scene": "s", "role": "material", "name": name, "cost": {"value": cost}, "error": {"value": error},
                 "baseline": baseline, "failed": ""}  # fmt: skip
@@ -203,8 +205,8 @@ def test_hypervolumes_are_of_ours_and_of_the_baselines() -> None:
     assert result["ours"] > result["baselines"] > 0.0
 
 
-def test_costlier_settings_are_tried_while_the_error_falls(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.undo()  # the library's own list
+def test_more_expensive_settings_are_used_while_they_lower_the_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.undo()  # restores the complete list of candidates
     chains = {candidate.label: list(candidate.techniques) for candidate in candidates.thickness()}
     errors = {"march_light, 1 steps": 0.5, "march_light, 2 steps": 0.46, "march_light, 4 steps": 0.3,
               "march_light, 8 steps": 0.31, "march_light, 16 steps": 0.2, "constant_thickness": 0.9}  # fmt: skip
@@ -240,7 +242,7 @@ def test_equal_scenes_are_measured_once(monkeypatch: pytest.MonkeyPatch) -> None
 # --- all candidates ---
 
 
-def test_every_technique_that_has_a_reference_is_charted(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_every_technique_with_a_reference_is_a_candidate(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.undo()
     lengths = candidates.thickness()
     whole = candidates.materials([length for length in lengths if not length.settings or length.settings[0][1] == 4])
@@ -264,7 +266,7 @@ def test_every_technique_that_has_a_reference_is_charted(monkeypatch: pytest.Mon
             inputs = technique.function.quantity or inputs
 
 
-# --- costs on a GPU, from times that are given ---
+# --- costs on a GPU, computed from fixed times ---
 
 
 def test_ranks_and_their_correlation() -> None:
@@ -278,7 +280,7 @@ def test_ranks_and_their_correlation() -> None:
     assert chart_gpu.correlations(points) == {"material": pytest.approx(spearmanr(values, times).statistic)}
 
 
-def test_by_gpu_times_are_the_costs() -> None:
+def test_gpu_times_as_costs() -> None:
     points = [{"cost": {"value": 10.0, "gpu_ms": 0.5}}, {"cost": {"value": 20.0, "gpu_ms": None}}]
     result = chart_gpu.by_gpu({"points": points, "record": {"software": False}})
     assert result["points"] == [{"cost": {"value": 0.5, "gpu_ms": 0.5, "static": 10.0}}]

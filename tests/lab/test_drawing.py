@@ -82,19 +82,19 @@ NUMBERS = st.sampled_from([0.0, 1e-7, 0.1, 0.25, 1.0, 3.0, 40.0])
 
 
 @given(st.lists(st.tuples(NUMBERS, NUMBERS, st.booleans()), max_size=12))
-def test_the_front_has_the_points_that_none_dominates(values: list[tuple[float, float, bool]]) -> None:
+def test_the_front_has_the_points_that_no_point_dominates(values: list[tuple[float, float, bool]]) -> None:
     points = [point(cost, error, failed="NaN" if failed else "") for cost, error, failed in values]
 
     def rounded(entry: dict[str, Any]) -> tuple[float, float]:
         cost, error = measures(entry)
         return cost, max(error, LEAST)
 
-    def beaten(entry: dict[str, Any]) -> bool:
+    def dominated(entry: dict[str, Any]) -> bool:
         x, y = rounded(entry)
         remaining = [rounded(other) for other in points if not other["failed"]]
         return any(cost <= x and error <= y and (cost, error) != (x, y) for cost, error in remaining)
 
-    expected = [id(entry) for entry in points if not entry["failed"] and not beaten(entry)]
+    expected = [id(entry) for entry in points if not entry["failed"] and not dominated(entry)]
     result = front(points)
     assert sorted(id(entry) for entry in result) == sorted(expected)
     assert [measures(entry)[0] for entry in result] == sorted(measures(entry)[0] for entry in result)
@@ -108,11 +108,13 @@ def test_hypervolume_in_closed_form() -> None:
     assert hypervolume(stairs, corner) == pytest.approx(2.0 * 1.0 + 1.0 * 2.0)
     assert hypervolume([*stairs, point(1.0, 1e-5, failed="NaN")], corner) == pytest.approx(4.0)
     assert hypervolume([point(2000.0, 0.1), point(10.0, 2.0)], corner) == hypervolume([], corner) == 0.0
-    assert hypervolume([point(100.0, 0.0)], corner) == pytest.approx(6.0)  # as much as the least error that counts
+    assert hypervolume([point(100.0, 0.0)], corner) == pytest.approx(6.0)  # an error of 0 counts as the least error
 
 
 @given(st.lists(st.tuples(NUMBERS, NUMBERS), max_size=8), NUMBERS, NUMBERS)
-def test_one_point_more_is_no_less_hypervolume(measured: list[tuple[float, float]], cost: float, error: float) -> None:
+def test_another_point_never_reduces_the_hypervolume(
+    measured: list[tuple[float, float]], cost: float, error: float
+) -> None:
     points = [point(*values) for values in measured]
     assert hypervolume([*points, point(cost, error)], (50.0, 2.0)) >= hypervolume(points, (50.0, 2.0))
 
@@ -123,7 +125,7 @@ def test_checks() -> None:
     odd = json.loads(json.dumps(good))
     odd["points"][0]["error"] |= {"bias": math.nan, "high": math.inf}
     assert checked(odd)["points"][0]["error"]["bias"] is None is checked(odd)["points"][0]["error"]["high"]
-    assert math.isnan(odd["points"][0]["error"]["bias"])  # it is a copy
+    assert math.isnan(odd["points"][0]["error"]["bias"])  # the record itself is unchanged
 
     wrong = json.loads(json.dumps(good))
     wrong |= {"format": 2, "cost": 3}
@@ -201,8 +203,8 @@ CHARTS = {
 
 
 @pytest.mark.parametrize("name", CHARTS)
-def test_texts_overlap_nothing(name: str) -> None:
-    """No text of a chart covers another one or a marker, or crosses the picture's edge; few labels are left out."""
+def test_texts_do_not_overlap(name: str) -> None:
+    """No text of a chart covers another text or a marker, or crosses the edge of the picture; few are omitted."""
     pytest.importorskip("textalloc")
     for chart in CHARTS[name]():
         with figure.settings():
@@ -279,7 +281,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return result
 
 
-def test_drawing_again_gives_the_same_files(folder: Path, tmp_path: Path) -> None:
+def test_the_same_record_gives_the_same_files(folder: Path, tmp_path: Path) -> None:
     import matplotlib
 
     with matplotlib.rc_context({"font.size": 30.0, "lines.linewidth": 9.0, "savefig.facecolor": "red"}):

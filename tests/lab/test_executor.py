@@ -1,4 +1,4 @@
-"""Work items: the same bytes on any executor, each run once, although processes die."""
+"""Work items: every executor gives the same bytes and runs each item once, even if processes die."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from sssgen.support.progress import ProgressBar
 
 @pytest.fixture(autouse=True)
 def current_stamps() -> None:
-    """Somebody may edit sssgen while its tests run; then only the test of that moment fails."""
+    """The source files may change while the tests run; then only the current test fails."""
     work.code_stamp.cache_clear()
     work._package_digest.cache_clear()
 
@@ -60,7 +60,7 @@ def test_results_do_not_depend_on_processes(tmp_path: Path) -> None:
     assert runs(tmp_path) == sorted([*range(6)] * 2)
 
 
-def test_bytes_depend_on_values_alone() -> None:
+def test_bytes_depend_only_on_values() -> None:
     grid = np.arange(6.0).reshape(2, 3)
     text = "".join(["one", "two"])
     fixed = grid.copy()
@@ -111,7 +111,7 @@ def test_damaged_entries_are_recomputed(tmp_path: Path) -> None:
     assert len(runs(notes)) == 3
 
 
-def test_no_cache_folder_is_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_cache_folder_results_stay_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sssgen.support.cache._folder", "")
     store = Store()
     run([Item("executor_items:echo", (1,))], processes=0, store=store)
@@ -119,7 +119,7 @@ def test_no_cache_folder_is_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("processes", [0, 2])
-def test_a_failure_concerns_its_item_alone(processes: int) -> None:
+def test_a_failure_affects_only_its_item(processes: int) -> None:
     jobs = [Item("executor_items:fail", (how,), how) for how in ("said", "raised", "exit")]
     jobs += [Item("executor_items:missing", (), "missing"), Item("no_such_module:name", (), "module")]
     jobs += [Item("executor_items:echo", (1,), "good")]
@@ -133,7 +133,7 @@ def test_a_failure_concerns_its_item_alone(processes: int) -> None:
     assert len(store.memory) == 1  # failed items are run again
 
 
-def test_a_killed_process_costs_nothing(tmp_path: Path) -> None:
+def test_items_of_a_killed_process_are_repeated(tmp_path: Path) -> None:
     jobs = [*items(tmp_path, 3, name="die_first"), *items(tmp_path, 6)[3:]]
     results = run(jobs, processes=2, store=Store(""))
     assert results[:3] == [0, 1, 2] and not failures(results)
@@ -174,12 +174,11 @@ def test_an_interrupted_run_continues(tmp_path: Path, how: int) -> None:
     open_gate(notes)
     assert process.wait(timeout=HANG) != 0
     started, finished = len(runs(notes)), len(stored_files())
-    assert (
-        GATE <= finished < 12 and started <= finished + 4
-    )  # its two workers had items in hand, or had just finished them
+    # the two workers were computing items, or had just finished them
+    assert GATE <= finished < 12 and started <= finished + 4
     jobs = items(notes, 12, "measure_behind_gate")
     results = run(jobs, processes=2, store=Store(str(folder)))
-    assert len(runs(notes)) == started + 12 - finished  # no worker went on alone
+    assert len(runs(notes)) == started + 12 - finished  # no worker continued after the interrupt
     assert as_bytes(results) == as_bytes(run(jobs, processes=0, store=Store(str(folder))))
 
 
@@ -209,7 +208,7 @@ def test_no_bar_without_rich(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Cap
 
 @pytest.fixture(scope="module")
 def dask() -> Iterator[Any]:
-    """A scheduler and two workers, each in a process of its own."""
+    """A scheduler and two workers, in separate processes."""
     distributed = pytest.importorskip("distributed")
     import dask
 
@@ -262,7 +261,7 @@ def test_an_item_that_kills_every_dask_worker_is_named(tmp_path: Path, dask: Any
 
 
 @pytest.mark.filterwarnings("default")
-@pytest.mark.parametrize("where", ["processes", "dask"])
+@pytest.mark.parametrize("runner", ["processes", "dask"])
 def test_distributed_stress_gives_the_same_results(
     runner: str, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -295,7 +294,7 @@ def test_no_scheduler(monkeypatch: pytest.MonkeyPatch) -> None:
         run([Item("executor_items:echo", (1,))], "tcp://127.0.0.1:9", store=Store(""))
 
 
-def test_the_command_shares_out(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_distributes_its_items(capsys: pytest.CaptureFixture[str]) -> None:
     command = ["stress", "lobe_normalized", "--backend", "numpy-f32", "--samples", "100"]
     assert cli.main(command) == 0
     alone = capsys.readouterr().out

@@ -1,4 +1,4 @@
-"""The fit of a chain to measured light, and the emitted material, which is the point that was measured."""
+"""The fit of a chain to measured light, and the emitted material, which must equal the measured point."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def test_the_fit_recovers_the_parameters_of_synthetic_light(
     assert result.factor == "subsurface_color"
     for name in {"distortion", "power", "anisotropy", "attenuation_distance"} & set(values):
         assert result.parameters[name] == pytest.approx((values[name],), rel=2e-3)
-    if "scale" in values:  # strength and ambient light share the colour's factor: their ratio is what shows
+    if "scale" in values:  # scale and ambient light share the factor of the colour, so only their ratio is determined
         ratio = result.parameters["ambient"][0] / result.parameters["scale"][0]
         assert ratio == pytest.approx(values["ambient"] / values["scale"], rel=2e-3)
     channels = np.array(result.scale)
@@ -88,7 +88,7 @@ def test_the_fit_is_deterministic(training: tuple[View, ...]) -> None:
 
 
 def test_scale_and_matte_are_not_negative(training: tuple[View, ...], tmp_path: Path) -> None:
-    # light that the lobe would have to take away: the best there is, is none of it
+    # the target is darker than the front reflection, so the best scale of the lobe is 0
     view = training[0]
     chosen = candidate("exact_thickness", "beer_lambert", "lobe_gdc2011")
     built = chain(chosen, view, tmp_path)
@@ -110,12 +110,12 @@ def test_scale_and_matte_are_not_negative(training: tuple[View, ...], tmp_path: 
 
 
 def test_scale_and_matte_are_least_squares(training: tuple[View, ...], tmp_path: Path) -> None:
-    # without a colour to set, all channels have one scale; wrap lighting has none of its own
+    # the factor is `weight`, which is a number: all channels have the same scale
     view = training[1]
     built = chain(candidate("exact_thickness", "absorption_tint"), view, tmp_path)
     fit_problem = measure.problem_of("material", view, summed=False)
     assert fit_problem is not None
-    fit_problem = fit_problem.thinned(300)  # fewer than are left out of a fit
+    fit_problem = fit_problem.thinned(300)  # fewer lanes than the limit of a fit
     result = fit.fit([built], [fit_problem])
     values = fit_problem.values(built, fit.chain_values(result.parameters))
 
@@ -133,8 +133,8 @@ def test_scale_and_matte_are_least_squares(training: tuple[View, ...], tmp_path:
             assert error(scale, matte * np.where(np.arange(3) == channel, more, 1.0)) >= result.error
 
 
-def test_the_scale_is_no_more_than_its_parameter_can_be(training: tuple[View, ...], tmp_path: Path) -> None:
-    # `weight` is 0.5 by default and goes to 1: light that is brighter cannot be reached
+def test_the_scale_is_within_the_range_of_its_parameter(training: tuple[View, ...], tmp_path: Path) -> None:
+    # `weight` is 0.5 by default and at most 1, so the scale is at most 2
     built = chain(candidate("exact_thickness", "absorption_tint"), training[0], tmp_path)
     fit_problem = measure.problem_of("translucency", training[0], summed=False)
     assert fit_problem is not None
@@ -150,7 +150,7 @@ def test_an_empty_chain_is_fitted_by_front_reflection(training: tuple[View, ...]
     assert [round(matte, 1) for matte in result.matte] != [0.0, 0.0, 0.0]
 
 
-# --- the emitted material is the point that was measured ---
+# --- the emitted material equals the measured point ---
 
 CHAINS = {
     "a colour takes the scale": ("exact_thickness", "beer_lambert", "lobe_gdc2011"),
@@ -189,7 +189,7 @@ def test_the_emitted_material_gives_the_measured_light(
         (tmp_path / name).write_text(text, encoding="utf-8")
     emitted = Chain(parse_material(files["mine.toml"], str(tmp_path / "mine.toml")))
     albedo = emitted.surface(fit_problem.parts[0].inputs, "albedo")
-    # its parameters are in its text; only those of the scene's body are set
+    # its text contains the fitted parameters; only those of the scene's body are set
     light = fit_problem.values(emitted, {}) + albedo * fit_problem.lambert
     assert light == pytest.approx(picture, rel=1e-4, abs=1e-6)
     assert albedo[:, 0] == pytest.approx(result.matte, rel=1e-5)
@@ -213,7 +213,7 @@ def test_the_emitted_material_compiles_for_every_target(
 
 
 def test_every_translucency_technique_has_a_scale_parameter(training: tuple[View, ...], tmp_path: Path) -> None:
-    # else the emitted material could not be as bright as the measured one
+    # otherwise the emitted material could not be as bright as the measured point
     for option in candidates.translucency():
         if option.techniques and not candidates.is_published(candidates.load(option.name)):
             fit_problem = measure.problem_of("translucency", training[0], summed=False)

@@ -1,6 +1,6 @@
-"""The cost on a GPU, on any OpenGL: what is timed computes what it should, and how times become figures.
+"""The cost on a GPU, with any OpenGL: timed programs compute the right values, and figures follow from the times.
 
-No test depends on a clock: where figures are compared, a draw takes as many milliseconds as its loop has rounds.
+No test depends on a clock: tests of figures count the rounds of a loop instead of milliseconds.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def opengl(backend: Callable[[str], Backend]) -> Backend:
 
 @pytest.fixture(scope="module")
 def benchmark() -> ModuleType:
-    """benchmarks/gpu.py, which is no module of the package."""
+    """The module benchmarks/gpu.py, which is not part of the package."""
     result = importlib.util.spec_from_file_location("gpu", ROOT / "benchmarks" / "gpu.py")
     assert result is not None and result.loader is not None
     module = importlib.util.module_from_spec(result)
@@ -64,7 +64,7 @@ def benchmark() -> ModuleType:
 
 @pytest.fixture
 def counted(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Counts the rounds of LOOP in place of milliseconds."""
+    """Counts the rounds of LOOP instead of milliseconds."""
     monkeypatch.setattr(gpu_cost._TimedFrame, "time", lambda frame, linked: float(linked.array.program["count"].value))
 
 
@@ -72,7 +72,7 @@ def measured(*programs: Program) -> Measured:
     return gpu_cost.measure(programs, (128, 72), rounds=5, sample=1.0)
 
 
-def test_a_ratio_is_that_of_the_times(counted: None) -> None:
+def test_a_ratio_is_the_quotient_of_the_times(counted: None) -> None:
     timing = measured(Program("few", LOOP, {"count": 20}), Program("many", LOOP, {"count": 2000}))
     assert timing.ratio("many", "few") == (100.0, 100.0, 100.0)
     assert timing.ratio("few", "many").median == 0.01
@@ -130,7 +130,7 @@ def test_a_technique_is_computed() -> None:
 def test_values_of_a_technique() -> None:
     points = gpu_programs.ball_points(SIZE)
     ball = {"body_distance": "sphere"}
-    # a ball reads (1 - diameter / (2 reach))^2, and 0 while the taps stay in its nearer half
+    # the result is (1 - diameter / (2 reach))^2 on a ball, and 0 if all taps are in its nearer half
     for reach, expected in ((0.9, 0.0), (2.0, 0.25)):
         program = gpu_programs.of_technique("thinness_uniform", points, ball, values={"reach": reach, "taps": 60})
         np.testing.assert_allclose(gpu_cost.picture(program, SIZE)[..., 0], expected, atol=0.01)
@@ -143,11 +143,11 @@ def test_evaluations_add_up() -> None:
     programs = [gpu_programs.of_technique("wrap_lighting", points, evaluations=count) for count in (1, 8)]
     once, often = (gpu_cost.picture(program, SIZE) for program in programs)
     np.testing.assert_allclose(often[..., :3], 8.0 * once[..., :3], atol=0.01)
-    assert np.abs(often - 8.0 * once).max() > 1e-4  # each at a place of its own
+    assert np.abs(often - 8.0 * once).max() > 1e-4  # each evaluation is at another place
 
 
 def test_a_material_has_its_scene_s_colours(opengl: Backend) -> None:
-    """The pass over points stretches what the camera sees, so that only the mean is that of the picture."""
+    """The timing pass stretches the visible points over the picture, so only the mean is compared."""
     scene = render.with_samples(scene_loading.load("paper_lantern"), 1)
     points = gpu_programs.surface_points(scene, SIZE)
     result = gpu_cost.picture(gpu_programs.of_material("lantern", scene.material, scene, points), SIZE)[..., :3]
@@ -180,7 +180,7 @@ def test_a_camera_that_sees_nothing() -> None:
 
 
 def test_emitted_techniques_equal_those_written_by_hand(benchmark: ModuleType) -> None:
-    """What is compared must compute the same: every technique that benchmarks/by_hand has."""
+    """Emitted and handwritten programs compute the same, for every technique of benchmarks/by_hand."""
     pairs = benchmark.techniques(gpu_programs.ball_points(SIZE), 1)
     assert len(pairs) > 40
     for program, reference in pairs:

@@ -44,14 +44,14 @@ def chord(shape: Geometry, origin: npt.ArrayLike, way: npt.ArrayLike) -> float:
 
 
 def rays(count: int, spread: float, seed: int = 1) -> tuple[Array, Array]:
-    """Random rays from in and about a ball of radius `spread`."""
+    """Random rays that start inside and near a ball of radius `spread`."""
     generator = np.random.default_rng(seed)
     ways = generator.normal(size=(count, 3))
     return generator.uniform(-spread, spread, (count, 3)), ways / np.linalg.norm(ways, axis=1, keepdims=True)
 
 
 def through(shape: Geometry, count: int, seed: int = 2) -> tuple[Array, Array]:
-    """Random rays from outside towards places in and about a shape that is no larger than a ball of radius 1.2."""
+    """Random rays from outside towards points inside and near a shape that fits into a ball of radius 1.2."""
     generator = np.random.default_rng(seed)
     origins = generator.normal(size=(count, 3))
     origins *= 4.0 / np.linalg.norm(origins, axis=1, keepdims=True)
@@ -62,7 +62,7 @@ def through(shape: Geometry, count: int, seed: int = 2) -> tuple[Array, Array]:
 
 
 def sampled(shape: Geometry, origins: Array, ways: Array, reach: float, count: int) -> Array:
-    """The thickness by counting, of `count` places evenly along each ray, those inside."""
+    """The thickness, estimated by counting the inside points among `count` evenly spaced points of each ray."""
     step = reach / count
     inwards = shape.to_object()
     total = np.zeros(len(origins))
@@ -97,10 +97,12 @@ def test_the_thickness_of_a_box() -> None:
     box = Box(size=(1.0, 2.0, 4.0))
     assert [chord(box, -3.0 * axis, axis) for axis in np.eye(3)] == pytest.approx([1.0, 2.0, 4.0])
     assert chord(box, (-2.0, -2.0, 0.0), (1.0, 1.0, 0.0)) == pytest.approx(np.sqrt(2.0))
-    assert chord(box, (-2.0, -2.4, 0.3), (1.0, 1.0, 0.0)) == pytest.approx(np.sqrt(2.0))  # in at the front, out above
+    assert chord(box, (-2.0, -2.4, 0.3), (1.0, 1.0, 0.0)) == pytest.approx(
+        np.sqrt(2.0)
+    )  # enters at the front, leaves at the top
     assert chord(box, (0.4, -1.9, 0.0), (1.0, 1.0, 0.0)) == 0.0  # past the edge
     assert chord(Box(size=(1.0, 1.0, 1.0)), (-5.0, -5.0, -5.0), (1.0, 1.0, 1.0)) == pytest.approx(np.sqrt(3.0))
-    # along a pair of faces: inside of them, and outside
+    # parallel to a pair of faces: between them, and outside
     assert chord(box, (0.49, -9.0, 0.0), (0.0, 1.0, 0.0)) == pytest.approx(2.0)
     assert chord(box, (0.51, -9.0, 0.0), (0.0, 1.0, 0.0)) == 0.0
 
@@ -116,7 +118,7 @@ def test_a_torus_along_its_axis(offset: float) -> None:
 @pytest.mark.parametrize("height", [0.0, 0.15, -0.25])
 @pytest.mark.parametrize("aside", [0.0, 0.3, 0.55, 0.7, 1.0])
 def test_a_torus_across(height: float, aside: float) -> None:
-    # at that height it is a ring between two circles; a line at x = aside runs in the one and not in the other
+    # the cross-section here is a ring; the line at x = aside is inside the outer circle, outside the inner one
     half = np.sqrt(0.3**2 - height**2)
     outer, inner = 0.8 + half, 0.8 - half
     expected = 2.0 * (np.sqrt(max(outer**2 - aside**2, 0.0)) - np.sqrt(max(inner**2 - aside**2, 0.0)))
@@ -124,9 +126,9 @@ def test_a_torus_across(height: float, aside: float) -> None:
 
 
 def test_a_torus_along_its_tube() -> None:
-    # from the ring's middle line, along it: a chord of the outer circle
+    # from the middle line of the tube, along its tangent: to the outer circle
     assert chord(Torus(0.8, 0.3), (0.8, 0.0, 0.0), Z) == pytest.approx(np.sqrt(1.1**2 - 0.8**2))
-    # askew through the centre: the tube twice, the gap between not counted
+    # at an angle through the centre: the line crosses the tube twice, and the gap does not count
     turned = np.radians(15.0)
     way = (np.cos(turned), np.sin(turned), 0.0)
     expected = 2.0 * np.sqrt(0.3**2 - (0.8 * np.sin(turned)) ** 2)
@@ -141,9 +143,11 @@ def test_a_capsule() -> None:
     assert chord(capsule, (0.1, 0.3, -4.0), Z) == pytest.approx(2.0 * np.sqrt(0.08))
     assert chord(capsule, (0.0, 0.7, -4.0), Z) == pytest.approx(2.0 * np.sqrt(0.05))  # through the upper end
     assert chord(capsule, (0.0, 0.81, -4.0), Z) == 0.0
-    turned = np.radians(60.0)  # through the middle, out at the sides
+    turned = np.radians(60.0)  # through the middle; the line leaves at the sides
     assert chord(capsule, (0.0, 0.0, 0.0), (np.sin(turned), np.cos(turned), 0.0)) == pytest.approx(0.3 / np.sin(turned))
-    assert chord(Capsule(0.3, 0.0), (0.1, -4.0, 0.0), (0.0, 1.0, 0.0)) == pytest.approx(2.0 * np.sqrt(0.08))  # a ball
+    assert chord(Capsule(0.3, 0.0), (0.1, -4.0, 0.0), (0.0, 1.0, 0.0)) == pytest.approx(
+        2.0 * np.sqrt(0.08)
+    )  # a capsule without length is a ball
 
 
 def test_a_union_counts_overlaps_once_and_no_gaps() -> None:
@@ -156,7 +160,7 @@ def test_a_union_counts_overlaps_once_and_no_gaps() -> None:
     assert chord(overlapping, (-5.0, 0.0, 0.0), (1.0, 0.0, 0.0)) == pytest.approx(1.5)
     touching = Union((Box(size=(1.0, 1.0, 1.0)), Box(size=(1.0, 1.0, 1.0), position=(1.0, 0.0, 0.0))))
     assert chord(touching, (-5.0, 0.2, 0.1), (1.0, 0.0, 0.0)) == pytest.approx(2.0)
-    # a part in a part's place, scaled with it
+    # a nested union with its own transform
     nested = Union((Union((Ball(0.5, scale=2.0),), scale=0.5, position=(0.0, 3.0, 0.0)),), scale=3.0)
     assert chord(nested, (0.0, 9.0, -9.0), Z) == pytest.approx(3.0)
 
@@ -164,7 +168,7 @@ def test_a_union_counts_overlaps_once_and_no_gaps() -> None:
 def test_merged_intervals_are_disjoint_sorted_and_cover_the_same() -> None:
     generator = np.random.default_rng(7)
     ends = np.sort(generator.uniform(0.0, 1.0, (300, 5, 2)), axis=2)
-    ends[:, 2] = 0.0  # an empty one
+    ends[:, 2] = 0.0  # an empty interval
     result = merged(ends)
     at = np.linspace(0.0, 1.0, 3001)
     for before, after in zip(ends, result, strict=True):
@@ -173,7 +177,7 @@ def test_merged_intervals_are_disjoint_sorted_and_cover_the_same() -> None:
         assert (again == inside).all()
 
 
-# --- places ---
+# --- transforms ---
 
 
 @pytest.mark.parametrize("shape", BODIES, ids=repr)
@@ -193,9 +197,12 @@ def test_thickness_equals_that_of_distance_samples(shape: Geometry) -> None:
     reach = 8.0 * shape.scale
     exact = thickness(shape, origins, ways)
     assert (exact > 0.0).sum() > 20
-    # a step may be counted or not at each of at most six ends
+    # at each of at most six ends, the count of samples is uncertain by one
     assert np.abs(exact - sampled(shape, origins, ways, reach, 4000)).max() < 6.0 * reach / 4000
-    starts, onwards = origins + 0.5 * reach * ways, ways  # half of it is behind, some begin inside
+    starts, onwards = (
+        origins + 0.5 * reach * ways,
+        ways,
+    )  # half of the range is behind the start; some rays start inside
     rest = thickness(shape, starts, onwards)
     assert (rest < exact - 0.05).sum() > 10
     assert np.abs(rest - sampled(shape, starts, onwards, reach, 4000)).max() < 6.0 * reach / 4000
@@ -237,14 +244,14 @@ def test_a_distance_function_has_the_thickness_of_the_solid(function: Distance, 
     assert result[~missed] == pytest.approx(exact[~missed], abs=1e-3)
     assert np.median(np.abs(result - exact)) < 1e-9
     assert (np.abs(result - exact) < 1e-6).mean() > 0.98
-    # from the surface on, into the body
+    # from the surface into the body
     at = origins + intervals_of(solid, origins, ways)[:, None] * ways
     hit = exact > 0.1
     assert thickness(function, at[hit], ways[hit]) == pytest.approx(exact[hit], abs=1e-3)
 
 
 def intervals_of(shape: Geometry, origins: Array, ways: Array) -> Array:
-    """The way to the first surface in front, world units; 0 where there is none."""
+    """The distance to the first surface ahead, in world units; 0 if there is none."""
     inwards = shape.to_object()
     result = intervals(shape, origins @ inwards[:3, :3].T + inwards[:3, 3], ways @ inwards[:3, :3].T * shape.scale)
     first: Array = np.where(result[..., 1] > result[..., 0], result[..., 0], np.inf).min(axis=1) * shape.scale
@@ -271,7 +278,7 @@ def test_a_mesh_of_a_box_is_the_box(tmp_path: Path) -> None:
         inside = origins + (intervals_of(solid, origins, ways) + 0.3 * expected)[:, None] * ways
         deep = expected > 0.1
         assert thickness(placed, inside[deep], ways[deep]) == pytest.approx(0.7 * expected[deep], abs=2e-4)
-    # straight through the diagonal that two triangles share: once in and once out
+    # through the diagonal that two triangles share: the line enters once and leaves once
     assert chord(box, (0.0, 0.0, -3.0), Z) == pytest.approx(0.7, abs=1e-5)
     assert chord(box, (0.0, 0.0, -0.35), Z) == pytest.approx(0.7, abs=1e-5)  # from the surface
     assert chord(box, (0.0, 0.0, 0.35), Z) == 0.0  # away from it
@@ -284,7 +291,7 @@ def test_a_mesh_of_a_ball_is_nearly_the_ball(tmp_path: Path) -> None:
     origins, ways = through(ball, 2000)
     exact = thickness(Ball(0.9), origins, ways)
     deep = exact > 0.2
-    # edges of 0.04 dent the ball by at most c² / 8r = 2e-4, seen at a slant
+    # triangles with edges of 0.04 are inside the ball by at most c² / 8r = 2e-4; oblique rays see more
     assert thickness(ball, origins, ways)[deep] == pytest.approx(exact[deep], abs=6e-3)
     assert (thickness(ball, origins, ways)[exact == 0.0] == 0.0).all()
 
@@ -293,7 +300,7 @@ def test_nested_parts_of_a_mesh_count_once(tmp_path: Path) -> None:
     trimesh = pytest.importorskip("trimesh")
     pytest.importorskip("embreex")
     whole, part = trimesh.creation.box((2.0, 2.0, 2.0)), trimesh.creation.box((2.0, 0.5, 0.5))
-    part.apply_translation((1.5, 0.1, 0.2))  # half in, half out
+    part.apply_translation((1.5, 0.1, 0.2))  # half inside the first part
     result = mesh(tmp_path / "two.ply", trimesh.util.concatenate([whole, part]))
     same = Union((Box(size=(2.0, 2.0, 2.0)), Box(size=(2.0, 0.5, 0.5), position=(1.5, 0.1, 0.2))))
     origins, ways = through(same, 2000)
@@ -301,7 +308,7 @@ def test_nested_parts_of_a_mesh_count_once(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not SPOT.is_file(), reason="the meshes of shared/data/meshes are not part of the project")
-def test_spot_has_the_thickness_of_her_winding_number() -> None:
+def test_the_thickness_of_spot_agrees_with_the_winding_number() -> None:
     for package in ("trimesh", "embreex", "igl"):
         pytest.importorskip(package)
     spot = Mesh(path=str(SPOT))

@@ -1,4 +1,4 @@
-"""Measuring a chain of techniques: the inputs of its scene, its errors, and independently known results."""
+"""Measurements of chains: the inputs of a scene, the errors, and results with an independent solution."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from sssgen.lab.measure import (
     scene_references as references,
 )
 from sssgen.lab.measure.fitting import Fitted
-from sssgen.lab.measure.measured_chain import Chain, Stage, material_of, material_text
+from sssgen.lab.measure.measured_chain import Chain, MaterialSection, material_of, material_text
 from sssgen.lab.measure.measurement import View
 from sssgen.lab.measure.problem import Problem
 from sssgen.lab.reference.inside_lengths import thickness
@@ -53,7 +53,7 @@ pytestmark = pytest.mark.usefixtures("no_cache")
 
 def test_a_chain_computes_its_formula(tmp_path: Path) -> None:
     names = (("thickness", "constant_thickness"), ("thickness", "beer_lambert"), ("translucency", "lobe_gdc2011"))
-    built = Chain(material_of([Stage(*section) for section in names], str(tmp_path)))
+    built = Chain(material_of([MaterialSection(*section) for section in names], str(tmp_path)))
     surface = points(small("torus"))
     light = surface.light((0.6, 0.0, -0.8))
     color = np.array([0.9, 0.5, 0.2])
@@ -68,7 +68,7 @@ def test_a_chain_computes_its_formula(tmp_path: Path) -> None:
     bent = light["L"] + 0.25 * surface.inputs["N"]
     lobe = np.clip(-(surface.inputs["V"] * bent).sum(axis=0), 0.0, 1.0) ** 3.0
     assert result == pytest.approx(color[:, None] * (1.5 * lobe + 0.1) * np.exp(-0.3 / 0.7), rel=1e-9)
-    # a parameter may have a value for each point; the others keep theirs
+    # a parameter may have a value for each point; the other parameters are unchanged
     lengths = np.linspace(0.1, 1.0, surface.count)
     built.set({"thickness_factor": lengths}, {})
     (result,) = built.run(surface.inputs, [light])
@@ -78,7 +78,11 @@ def test_a_chain_computes_its_formula(tmp_path: Path) -> None:
 def test_separate_lights_sum_and_emission_counts_once(tmp_path: Path) -> None:
     text = "/** Shines.\nrole: surface\n*/\nvoid lamp(out vec3 emission)\n{\n    emission = vec3(0.25, 0.0, 0.0);\n}\n"
     (tmp_path / "lamp.sss").write_text(text, encoding="utf-8")
-    built = Chain(material_of([Stage("surface", "lamp.sss"), Stage("translucency", "wrap_lighting")], str(tmp_path)))
+    built = Chain(
+        material_of(
+            [MaterialSection("surface", "lamp.sss"), MaterialSection("translucency", "wrap_lighting")], str(tmp_path)
+        )
+    )
     surface = points(small("torus"))
     lights = [surface.light((0.0, 0.0, 1.0)), surface.light((0.0, 0.6, -0.8))]
     first, second = built.run(surface.inputs, lights)
@@ -92,8 +96,10 @@ def test_separate_lights_sum_and_emission_counts_once(tmp_path: Path) -> None:
 
 def test_the_text_of_a_chain_lists_its_stages() -> None:
     stages = [
-        Stage("thickness", "march_light", (("steps", 5), ("reach", 1e-5)), ("steps",), (("sdf", "a.sss:b"),)),
-        Stage("surface", "base_color", (("tint", [1.0, 0.5, 1e7, np.float64(1.0)]), ("on", True), ("a", 'b"\n'))),
+        MaterialSection("thickness", "march_light", (("steps", 5), ("reach", 1e-5)), ("steps",), (("sdf", "a.sss:b"),)),
+        MaterialSection(
+            "surface", "base_color", (("tint", [1.0, 0.5, 1e7, np.float64(1.0)]), ("on", True), ("a", 'b"\n'))
+        ),
     ]
     assert material_text("mine", stages, 'A "title"', "doc").splitlines() == [
         "[material]",
@@ -134,7 +140,7 @@ def test_each_point_reads_its_own_texel() -> None:
 
 
 def thickness_error(scene: MeasuredScene, *names: str, **settings: int) -> float:
-    """The error of a thickness technique on a scene, with its own parameters as they are."""
+    """The error of a thickness technique on a scene, without a fit."""
     requests = candidate(*names, "shown_thickness", role="thickness", settings=tuple(settings.items()))
     point = measure.measure_candidate(requests, Fitted({}, (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), 0.0), [View("own", scene)])
     return float(point["error"]["value"])
@@ -146,12 +152,12 @@ def test_the_exact_length_has_no_error() -> None:
 
 
 def test_a_depth_map_counts_gaps_as_matter() -> None:
-    # its own bias is a hundredth, and its texels are a two-hundredth of the body
+    # the bias of the depth map is 0.01, and a texel is 1/200 of the body
     assert thickness_error(small("cube"), "depth_map_thickness") < 0.1
     assert thickness_error(small("bracket"), "depth_map_thickness") > 0.25
 
 
-def test_light_that_meets_no_matter_asks_for_no_thickness() -> None:
+def test_lights_without_matter_in_their_way_give_no_thickness_problem() -> None:
     scene = small("inlay_plate")
     lit = replace(scene, medium=Medium("m", (1.0,) * 3, (1.0,) * 3), lights=(Light(None, (0.0, 0.0, 1.0), (1.0,) * 3),))
     with pytest.raises(SssgenError, match="no light passes through the body of 'inlay_plate'"):
@@ -169,7 +175,7 @@ def test_lights_in_one_call_equal_separate_calls(cube: View, tmp_path: Path) -> 
         built.set({**part.values, "power": 2.0}, part.textures)
         alone.append(built.run(part.inputs, [part.light])[0])
     assert together == pytest.approx(np.concatenate(alone, axis=1)[:, fit_problem.keep] * fit_problem.gain)
-    # thinned: the same lanes' values, fewer of them
+    # the thinned problem has the values of some of the lanes
     thinned = fit_problem.thinned(10)
     assert thinned.target.shape == (3, 10)
     chosen = [int(np.flatnonzero((fit_problem.target == lane[:, None]).all(axis=0))[0]) for lane in thinned.target.T]
@@ -208,7 +214,7 @@ def test_shadowed_points_get_no_light_from_the_front() -> None:
     assert (shaded[board] == (np.hypot(x, z)[board] < 0.4)).all()
 
 
-# --- errors, and results known in advance ---
+# --- errors, and expected results ---
 
 
 def test_a_chain_with_nan_has_failed(cube: View, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -237,20 +243,20 @@ def test_the_published_seed_3_is_ambient_light_times_transmittance(
     assert (loud == silent).all() and (silent > 0.0).any()
     part = fit_problem.parts[0]
     through = part.textures["transmittance_texture"].sample(part.inputs["uv"])[0]
-    # each light's colour, added up: there is one
+    # the scene has only one light
     assert silent == pytest.approx(fit_problem.gain * part.color * (0.2 * 0.7 * through), rel=1e-6)
-    # and so is its point on the chart
+    # the point of the chart does not depend on the scale either
     result = measure.fit_candidate(ice, training)
     mute = result._replace(parameters={**result.parameters, "scale": (0.0,)})
     with_lobe, without = (measure.measure_candidate(ice, fitted, [cube]) for fitted in (result, mute))
     assert with_lobe["error"] == without["error"]
-    # the source that it follows has a lobe there
+    # the original lobe, which the source cites, depends on the scale
     other = chain(candidate("transmittance_map", "lobe_gdc2011"), cube, tmp_path)
     assert np.abs(fit_problem.values(other, {**values, "scale": 20.0}) - silent).max() > 0.1
 
 
 def test_seed_0_mistakes_a_cube_and_a_march_to_the_light_does_not() -> None:
-    # each is fitted to balls and slabs alone
+    # both are fitted only to balls and slabs
     cube = small("cube")
     fitted_to = [View(scene.name, replace(scene, size=SIZE)) for scene in references.training(cube)]
     error: dict[str, float] = {}
@@ -264,7 +270,7 @@ def test_seed_0_mistakes_a_cube_and_a_march_to_the_light_does_not() -> None:
     assert error["cheap_sss_thinness"] > 0.6
 
 
-def slides(name: str) -> dict[str, float]:
+def parallax_errors(name: str) -> dict[str, float]:
     """The errors on a scene with an inlay, by technique, in depths."""
     scene = small(name)
     plate = View("plate", replace(references.plate(scene), size=SIZE))
@@ -276,17 +282,17 @@ def slides(name: str) -> dict[str, float]:
 
 
 def test_seed_4_corrected_is_exact_on_a_plane_and_nearly_on_a_ball() -> None:
-    plane, ball = slides("inlay_plate"), slides("inlay_ball")
+    plane, ball = parallax_errors("inlay_plate"), parallax_errors("inlay_ball")
     assert plane["parallax_refracted"] < 1e-6
     assert plane["parallax_straight"] > 0.05
-    assert plane["subsurface_parallax"] < 1e-6  # with the right index of refraction, which its source never says
+    assert plane["subsurface_parallax"] < 1e-6  # with the reciprocal of the index, which the source does not state
     assert plane["none"] > 1.0
     assert 1e-3 < ball["parallax_refracted"] < ball["none"]
 
 
 @pytest.mark.slow
 def test_light_transport_ranks_the_techniques() -> None:
-    # real references: the exact thickness with a lobe comes nearer than nothing, and than the Unity ice lobe
+    # with references by light transport, exact thickness with a lobe is better than no chain and the Unity ice lobe
     pytest.importorskip("mitsuba")
     cube = small("cube")
 
@@ -315,7 +321,7 @@ def test_a_view_keeps_the_size_and_the_lanes_of_its_pixels() -> None:
     values = picture[::-1][surface.valid].T
     assert (values == surface.inputs["P"]).all()
     heights = [row[row[:, 1] != -9.0, 1].mean() for row in picture if (row[:, 1] != -9.0).any()]
-    assert len(heights) > 4 and heights == sorted(heights, reverse=True)  # row 0 is on top
+    assert len(heights) > 4 and heights == sorted(heights, reverse=True)  # row 0 is at the top
     away = np.array([[0.0], [0.0], [3.4]]) - surface.inputs["P"]
     assert surface.inputs["V"] == pytest.approx(away / np.linalg.norm(away, axis=0))
 

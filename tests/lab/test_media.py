@@ -11,7 +11,7 @@ import pytest
 from sssgen.lab.scene.media import Medium, media, preset
 from sssgen.support.diagnostics import SssgenError
 
-# The diffuse reflectance of the same table.
+# The diffuse reflectances from the same table.
 REFLECTANCES = {
     "apple": (0.85, 0.84, 0.53),
     "chicken1": (0.31, 0.15, 0.10),
@@ -30,7 +30,7 @@ JENSEN = list(REFLECTANCES)
 
 
 def diffuse_reflectance(albedo: float, ior: float) -> float:
-    """Of a half-space lit from everywhere inside: Jensen et al. 2001, equation 8 in its integrated form."""
+    """The diffuse reflectance of a half-space: Jensen et al. 2001, equation 8 in its integrated form."""
     inside = -1.440 / ior**2 + 0.710 / ior + 0.668 + 0.0636 * ior
     a = (1.0 + inside) / (1.0 - inside)
     root = np.sqrt(3.0 * (1.0 - albedo))
@@ -41,7 +41,7 @@ def diffuse_reflectance(albedo: float, ior: float) -> float:
 def test_coefficients_give_the_published_reflectance(name: str) -> None:
     medium = preset(name)
     actual = [diffuse_reflectance(albedo, medium.ior) for albedo in medium.albedo]
-    # the coefficients are rounded to two figures or so, the reflectances to two places
+    # published coefficients have about two digits, reflectances two decimal places
     assert np.allclose(actual, REFLECTANCES[name], atol=0.03), (actual, REFLECTANCES[name])
 
 
@@ -72,7 +72,7 @@ def test_similar_media_have_the_same_reduced_scattering() -> None:
     assert forward.anisotropy == 0.75
 
 
-def test_a_matched_medium_differs_in_its_index_only() -> None:
+def test_a_matched_medium_differs_only_in_its_index() -> None:
     medium = preset("skin1")
     assert medium.ior == 1.3
     assert medium.matched() == Medium("skin1", medium.absorption, medium.scattering, 0.0, 1.0, medium.source)

@@ -55,13 +55,13 @@ def trials(apart: float, noise: float, count: int = 1500, lanes: int = 400) -> t
 def test_noise_is_unbiased_and_the_bars_contain_the_truth(apart: float, noise: float) -> None:
     right, result = trials(apart, noise)
     relmse, low, high, value, plain = result.T
-    # the weight has the noisy reference in it: a bias of second order is left, a quarter of what is corrected at most
+    # the weight contains the noisy reference, so a bias of second order remains: at most a quarter of the correction
     assert plain.mean() > 1.005 * right
     assert abs(relmse.mean() - right) < 0.25 * (plain.mean() - right)
     covered = ((low <= sqrt(right)) & (sqrt(right) <= high)).mean()
     assert 0.90 <= covered <= 0.99
     assert ((low <= value) & (value <= high)).all()
-    # and they are no wider than they must be: a quarter as wide would not do
+    # the bars are not too wide: bars of a quarter of the width often miss the truth
     narrow = value + 0.25 * np.stack([low - value, high - value])
     assert ((narrow[0] <= sqrt(right)) & (sqrt(right) <= narrow[1])).mean() < 0.6
 

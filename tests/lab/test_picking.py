@@ -1,4 +1,4 @@
-"""Picking from a chart's record: the cheapest within an error, the most accurate within a cost, and why."""
+"""Picks from a chart: the cheapest chain within an error, the most accurate within a cost, and the explanation."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from sssgen.support.diagnostics import SssgenError
 
 
 def point(chain: Sequence[str], cost: float, error: float, role: str = "material", **more: Any) -> dict[str, Any]:
-    """A point whose error may be as much as a tenth more, and a fifth more from the side."""
+    """A point whose error bar ends 10 % above the error, and 20 % above it in the second view."""
     name = " → ".join(chain) or "none"
     views = {"own": {"value": error, "low": 0.9 * error, "high": 1.1 * error},
              "held out": {"value": error, "low": 0.9 * error, "high": 1.2 * error}}  # fmt: skip
@@ -55,7 +55,7 @@ def picked(max_error: float | None = None, max_cost: float | None = None) -> Pic
     ("max_error", "expected"),
     [(2.0, NONE), (0.9, WRAP), (0.85, WRAP), (0.8, PLAIN), (0.61, PLAIN), (0.5, MAP), (0.35, MARCH), (0.13, MARCH)],
 )
-def test_the_cheapest_within_an_error_at_its_worst_view_s_upper_end(max_error: float, expected: Any) -> None:
+def test_the_cheapest_chain_within_an_error_uses_the_largest_upper_end(max_error: float, expected: Any) -> None:
     result = picked(max_error)
     assert result.chain is expected and result.met
     assert limit_of(expected) == pytest.approx(1.2 * expected["error"]["value"])
@@ -76,7 +76,7 @@ def test_without_a_chain_within_the_limit_the_nearest_is_picked() -> None:
 
 def test_the_next_cheaper_and_better_chains() -> None:
     result = picked(0.5)
-    assert (result.chain, result.cheaper, result.better) == (MAP, PLAIN, MARCH)  # DEAR is on no front
+    assert (result.chain, result.cheaper, result.better) == (MAP, PLAIN, MARCH)  # EXPENSIVE is not on the front
     assert (picked(2.0).cheaper, picked(2.0).better) == (None, WRAP)
     assert (picked(0.2).cheaper, picked(0.2).better) == (MAP, None)
 
@@ -86,7 +86,7 @@ def test_published_forms_and_failed_points_are_never_picked() -> None:
     for limit in (0.001, 0.02, 0.3, 0.7, 2.0):
         for result in (picked(limit), picked(None, 100.0 * limit)):
             assert PUBLISHED not in result and BROKEN not in result and ELSEWHERE not in result
-    # which of the library's are
+    # the published forms of the library
     stored = {technique.name for technique in candidates.of_role("translucency") if candidates.is_published(technique)}
     assert {
         "alisavakis_lobe",
@@ -103,21 +103,21 @@ def test_ties_are_broken_by_cost_then_error() -> None:
     assert chosen([], 0.5, None) == (None, True)
 
 
-def why(result: Pick) -> dict[str, tuple[str, str]]:
+def reasons(result: Pick) -> dict[str, tuple[str, str]]:
     return {role.role: (role.technique, role.why) for role in result.roles}
 
 
-def test_roles_are_left_out_by_numbers() -> None:
-    message = why(picked(2.0))
+def test_roles_are_omitted_by_their_errors() -> None:
+    message = reasons(picked(2.0))
     assert message["translucency"][0] == message["thickness"][0] == ""
     assert "the error without it is 1.08" in message["translucency"][1]
     assert "there is no inlay" in message["coordinates"][1]
-    message = why(picked(0.85))
+    message = reasons(picked(0.85))
     assert message["translucency"] == ("wrap_lighting", "without transmitted light the error is 1.08")
     assert message["thickness"][0] == "" and "the best chain with one has the error 0.12" in message["thickness"][1]
-    message = why(picked(0.61))
+    message = reasons(picked(0.61))
     assert message["thickness"][0] == "constant_thickness" and "the error would be 0.12" in message["thickness"][1]
-    message = why(picked(0.5))
+    message = reasons(picked(0.5))
     assert message["thickness"][0] == "thickness_map"
     assert "with a constant thickness the error is 0.6;" in message["thickness"][1]
     assert "needs a baked thickness map" in message["thickness"][1]
@@ -132,13 +132,15 @@ def test_coordinates_have_the_same_limit() -> None:
     slide["name"] = "parallax_refracted"
     result = pick({"points": [slide, none]}, "cube", 0.1, None)
     assert (result.chain, result.coordinates, result.better, result.cheaper) == (None, slide, None, none)
-    assert why(result)["coordinates"] == (
+    assert reasons(result)["coordinates"] == (
         "parallax_refracted",
         "the relative error of the offset is 0.012; without it 1.08",
     )
-    assert why(pick({"points": [slide, none]}, "cube", 2.0, None))["coordinates"][0] == ""
+    assert reasons(pick({"points": [slide, none]}, "cube", 2.0, None))["coordinates"][0] == ""
     both = pick({"points": [slide, none, NONE]}, "cube", 0.1, None)
-    assert both.coordinates is slide and both.chain is NONE and not both.met  # the one keeps it, the other does not
+    assert (
+        both.coordinates is slide and both.chain is NONE and not both.met
+    )  # the coordinates are within the limit, the chain is not
 
 
 def test_a_scene_without_points() -> None:
@@ -151,7 +153,7 @@ def test_a_scene_without_points() -> None:
 
 @pytest.fixture
 def stored_chart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
-    """A small chart of a plate in a cache of its own; the cache's folder."""
+    """The cache folder of a small chart of a plate."""
     from sssgen.support import cache
 
     folder = tmp_path / "cache"
@@ -163,7 +165,7 @@ def stored_chart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 
 
 @pytest.fixture(autouse=True)
-def known_anew() -> Any:
+def forget_the_cache_folder() -> Any:
     from sssgen.support import cache
 
     yield

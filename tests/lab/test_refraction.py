@@ -1,4 +1,4 @@
-"""Where an inlay is seen: the plane's closed form, a two-dimensional construction on the ball, and places and turns."""
+"""The apparent place of an inlay: closed form on the plane, two-dimensional construction on the ball, transforms."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def test_on_a_plane_it_is_the_closed_form(n: float, placed: bool) -> None:
         plate = replace(plate, rotation=(20.0, -30.0, 50.0), scale=1.6, position=(0.2, 0.1, -0.4))
     normal = plate.to_world()[:3, 2] / plate.scale
     eye = np.array(plate.position) + 3.0 * plate.scale * normal + plate.to_world()[:3, 0] * 4.0
-    inlay = Inlay(0.2, 1.2 * n, 1.2)  # only the two media's ratio counts
+    inlay = Inlay(0.2, 1.2 * n, 1.2)  # only the ratio of the two indices counts
     camera = looking_at(plate, tuple(map(float, eye)), inlay, 40.0)
     surface = points(camera)
     result = visible_inlay(camera, surface)
@@ -79,10 +79,10 @@ def test_on_a_plane_it_is_the_closed_form(n: float, placed: bool) -> None:
 
 
 def arc_on_a_ball(sine: np.ndarray, radius: float, depth: float, n: float) -> np.ndarray:
-    """The way along a ball from where a ray meets it to right above where it meets the layer, in the plane of both.
+    """The arc on a ball from the point that a ray hits to the point above its hit on the layer.
 
-    The point is (R, 0) and the ray goes on at the angle θ' to the normal: the line R − t cos θ', t sin θ' meets the
-    circle of radius R − depth. NaN where it passes it.
+    The point is (R, 0), and the ray continues at the angle θ' to the normal: the line R − t cos θ', t sin θ' meets the
+    circle of radius R − depth. NaN if it misses the circle.
     """
     inner = radius - depth
     below = np.arcsin(sine / n)
@@ -113,7 +113,7 @@ def test_on_a_ball_it_is_the_construction_in_two_dimensions(depth: float, n: flo
 
 
 def test_a_ray_may_pass_the_layer_at_a_curved_edge() -> None:
-    # without refraction and a deep layer: past the inner circle nothing is seen
+    # without refraction and with a deep layer: a ray that misses the inner circle sees nothing
     camera = looking_at(Ball(0.6), (0.0, 0.0, 4.0), Inlay(0.3, 1.0))
     surface = points(camera)
     aside = np.linalg.norm(

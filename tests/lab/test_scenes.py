@@ -1,4 +1,4 @@
-"""Scenes that are measured: capsules, unions, media and inlays from files, and bodies of materials."""
+"""Measured scenes: capsules, unions, media and inlays from files, and bodies of materials."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def measured(text: str) -> MeasuredScene:
 # --- the file ---
 
 
-def test_a_capsule_and_a_union_arrive() -> None:
+def test_a_capsule_and_a_union_are_read() -> None:
     scene = parse_scene(
         UNION.replace("preset", "unit_mm = 2.0\npreset")
         + 'rotation = [0.0, 90.0, 0.0]\nprojection = "planar"\n'
@@ -81,7 +81,7 @@ def test_situations_are_compared_by_value(tmp_path: Path) -> None:
         replace(scene, name="b"),
     ):
         assert other != scene
-    # of a file the content counts
+    # the content of a file counts, not its path
     file = tmp_path / "figure.sss"
     scene = '[inlay]\n[geometry]\nkind = "distance"\ntechnique = "figure.sss"\n'
     results = []
@@ -100,7 +100,7 @@ def test_the_held_out_view_is_turned_about_the_vertical_through_the_target() -> 
     turned = np.degrees(np.arctan2(after[0], after[2]) - np.arctan2(before[0], before[2]))
     assert turned == pytest.approx(measured_scene.HELD_OUT)
     above = replace(scene, camera=replace(scene.camera, position=(0.0, 4.0, 0.0)))
-    assert above.held_out().camera.position[0] != 0.0  # not the same view again
+    assert above.held_out().camera.position[0] != 0.0  # the view is not the same
 
 
 @pytest.mark.parametrize(
@@ -162,7 +162,7 @@ def test_a_scene_without_a_material_is_not_drawn(tmp_path: Path, capsys: pytest.
     assert not (tmp_path / "a.png").exists()
 
 
-# --- the body as a material has it ---
+# --- the body of a material ---
 
 ASKEW: dict[str, Any] = {"position": (0.3, -0.2, 0.5), "rotation": (20.0, -30.0, 65.0), "scale": 1.7}
 SOLIDS: list[Geometry] = [
@@ -177,7 +177,7 @@ SOLIDS: list[Geometry] = [
 
 
 def evaluated(text: str, folder: Path) -> Callable[[npt.NDArray[np.float64]], npt.NDArray[np.float64]]:
-    """The function `body` of a file, on points (n, 3): compiled as a scene's own distance function is."""
+    """The function `body` of a file at points (n, 3), compiled like the distance function of a scene."""
     (folder / body.FILE).write_text(text, encoding="utf-8")
     return Distance(f"{body.FILE}:body", folder=str(folder)).distance
 
@@ -190,7 +190,7 @@ def test_the_text_of_a_body_computes_its_distance(shape: Geometry, tmp_path: Pat
     assert (exact < 0.0).any() and (exact > 0.0).any()
     result = body.body(shape)
     assert result.function == f"{body.FILE}:body"
-    # its numbers are float32's
+    # its numbers are rounded to float32
     assert evaluated(result.files[body.FILE], tmp_path)(at) == pytest.approx(exact, abs=3e-6)
 
 
@@ -214,7 +214,7 @@ def test_bounds_hold_the_body_and_its_texture_reads_the_distance(shape: Geometry
     at = np.random.default_rng(4).uniform(low - 1.0, high + 1.0, (4000, 3))
     inside = shape.distance(at) < 0.0
     assert inside.sum() > 20
-    cell = 0.05 if isinstance(shape, Distance) else 1e-9  # a distance function is looked for on a grid
+    cell = 0.05 if isinstance(shape, Distance) else 1e-9  # the bounds of a distance function come from a grid
     assert ((low - cell <= at[inside]) & (at[inside] <= high + cell)).all()
     result = body.distance_texture(shape)
     texture, reach = half(Texture(result.values(shape), wrap="clamp")), result.range
@@ -248,6 +248,6 @@ def test_training_sizes_are_powers_of_two() -> None:
     for training_scene in training_scenes:
         assert training_scene.medium == scene.medium
         surface = points(replace(training_scene, size=(16, 16)))
-        # each is lit from behind and from the front
+        # each scene has lights behind and in front of its body
         facing = [float((surface.inputs["V"].mean(axis=1) * light.direction).sum()) for light in training_scene.lights]
         assert min(facing) < -0.4 and max(facing) > 0.4

@@ -45,7 +45,7 @@ def grey(albedo: float, extinction: float = 1.0, anisotropy: float = 0.0) -> Med
 
 
 def wide_slab(depth: float) -> Slab:
-    """From z = 0 down, so wide that its edges do not matter."""
+    """A slab below z = 0, so wide that its edges do not matter."""
     return Slab(600.0, 600.0, depth, position=(0.0, 0.0, -0.5 * depth))
 
 
@@ -54,19 +54,19 @@ def towards(cosine: float) -> tuple[float, float, float]:
 
 
 def looking(cosines: Array, azimuth: float = 1.0) -> tuple[Array, Array]:
-    """Rays that meet (0, 0, 0) from above, at these cosines; from below where they are negative."""
+    """Rays that hit (0, 0, 0) from above at these cosines; from below if they are negative."""
     sine = np.sqrt(1.0 - cosines**2)
     out = np.stack([sine * np.cos(azimuth), sine * np.sin(azimuth), cosines], axis=1)
     return 5.0 * out / np.abs(out[:, 2:]), -out
 
 
 def assert_agrees(result: Transport, expected: npt.ArrayLike, tightest: float) -> None:
-    """Every value within three standard errors, or one in a hundred beyond; no error above `tightest` of its value."""
-    want = np.broadcast_to(np.asarray(expected, np.float64)[:, None], result.mean.shape)[:, 0]
+    """Asserts that 99 % of the values are within three standard errors, and errors are at most `tightest`, relative."""
+    predicted = np.broadcast_to(np.asarray(expected, np.float64)[:, None], result.mean.shape)[:, 0]
     actual, error = result.mean[:, 0], result.error[:, 0]
-    assert (error <= tightest * want).all(), (error / want).max()
-    off = np.abs(actual - want) / error
-    assert (off > 3.0).sum() <= 0.01 * len(off), f"{off.max():.2f} standard errors\n{actual}\n{want}"
+    assert (error <= tightest * predicted).all(), (error / predicted).max()
+    off = np.abs(actual - predicted) / error
+    assert (off > 3.0).sum() <= 0.01 * len(off), f"{off.max():.2f} standard errors\n{actual}\n{predicted}"
 
 
 # --- closed forms ---
@@ -79,7 +79,7 @@ def test_h_is_the_published_one(albedo: float, published: float) -> None:
 
 @pytest.mark.parametrize("albedo", [0.2, 0.9, 1.0])
 def test_h_solves_chandrasekhars_equation(albedo: float) -> None:
-    # written as he has it: H(μ) = 1 + a/2 μ H(μ) ∫ H(μ′) / (μ + μ′) dμ′; and its zeroth moment 2/a (1 − √(1 − a))
+    # in his notation: H(μ) = 1 + a/2 μ H(μ) ∫ H(μ′) / (μ + μ′) dμ′; and its zeroth moment 2/a (1 − √(1 − a))
     root, weight = np.polynomial.legendre.leggauss(101)
     nodes, weights = (0.5 * (root + 1.0)) ** 2, 0.5 * (root + 1.0) * weight
     h = h_function(albedo, nodes)
@@ -96,7 +96,7 @@ def test_the_phase_function_holds_all_light_and_its_mean_cosine() -> None:
 
 
 def test_a_ball_lit_along_the_ray_has_a_closed_form() -> None:
-    # light from behind: the way in and the way out are the chord together; from the front: twice the way so far
+    # light from behind travels the whole chord; light from the front travels the depth of the collision twice
     origin, along = np.array([0.3, 0.0, 4.0]), np.array([[0.0, 0.0, -1.0]])
     chord = 2.0 * np.sqrt(1.0 - 0.09)
     behind = ball_once(1.0, 0.4, 0.6, 0.5, (0.0, 0.0, -1.0), origin, along)
@@ -105,7 +105,7 @@ def test_a_ball_lit_along_the_ray_has_a_closed_form() -> None:
     assert front == pytest.approx(np.pi * 0.6 * henyey_greenstein(0.5, -1.0) * 0.5 * (1.0 - np.exp(-2.0 * chord)))
 
 
-# --- the reference against them ---
+# --- comparison with the closed forms ---
 
 
 def half_space_agrees(albedo: float, cosine_in: float, samples: int, tightest: float) -> None:
@@ -143,9 +143,11 @@ def slab_agrees(depth: float, albedo: float, anisotropy: float, samples: int, ti
     conserving = iadpython.Sample(a=1.0, b=depth, g=anisotropy, n=1.0, quad_pts=16).rt()
     assert conserving[0] + conserving[1] == pytest.approx(1.0, abs=1e-4)
     reflected, through, _, _ = iadpython.Sample(a=albedo, b=depth, g=anisotropy, n=1.0, quad_pts=16).rt()
-    for (flux, error), want in zip(fluxes, (reflected, through - unscattered(depth, 1.0)), strict=True):
-        assert error < tightest * want
-        assert abs(flux - want) < 3.0 * error, f"{(flux - want) / error:.2f} standard errors: {flux} {want}"
+    for (flux, error), predicted in zip(fluxes, (reflected, through - unscattered(depth, 1.0)), strict=True):
+        assert error < tightest * predicted
+        assert abs(flux - predicted) < 3.0 * error, (
+            f"{(flux - predicted) / error:.2f} standard errors: {flux} {predicted}"
+        )
 
 
 @pytest.mark.parametrize(
@@ -201,7 +203,7 @@ def test_little_scattering_is_nearly_once() -> None:
     origins, directions = np.array([[0.0, 0.0, 4.0]]), np.array([[0.0, 0.0, -1.0]])
     estimate = radiance_along(Ball(radius=0.1), grey(0.05), Light((1.0, 0.0, 0.0)), origins, directions, 100_000)
     once = ball_once(0.1, 0.95, 0.05, 0.0, (1.0, 0.0, 0.0), origins[0], directions)
-    # twice scattered light is at most the albedo times the optical diameter of it
+    # the light scattered twice is at most albedo × optical diameter of the light scattered once
     assert once[0] - 3.0 * estimate.error[0, 0] < estimate.mean[0, 0] < 1.01 * once[0] + 3.0 * estimate.error[0, 0]
     assert estimate.error[0, 0] < 0.05 * once[0]
 
@@ -228,7 +230,7 @@ def test_a_medium_without_absorption_vanishes_in_an_even_sky(geometry: Geometry)
 
 @pytest.mark.parametrize("geometry", SHAPES[:3], ids=lambda shape: type(shape).__name__)
 def test_each_pixel_looks_along_its_own_ray(geometry: Geometry) -> None:
-    # a purely absorbing medium shows the ray's length in the body; the shapes are rotated, which would reveal a flip
+    # an absorbing medium shows the length of each ray in the body; the rotated shapes would reveal a flipped picture
     origin, directions = CAMERA.rays(24, 18)
     first = geometry.hits(origin, directions)
     far = origin + 20.0 * directions
@@ -270,8 +272,8 @@ def test_the_error_is_that_of_equal_rays() -> None:
         estimate = radiance_along(wide_slab(40.0), grey(0.9), Light((0.0, 0.0, 1.0)), origins, directions, samples)
         spread = estimate.mean[:, 0].std(ddof=1)
         assert spread == pytest.approx(np.sqrt((estimate.error[:, 0] ** 2).mean()), rel=0.15)
-        want = half_space(0.9, 1.0, 0.8)
-        assert abs(estimate.mean[:, 0].mean() - want) < 3.0 * spread / np.sqrt(400)
+        predicted = half_space(0.9, 1.0, 0.8)
+        assert abs(estimate.mean[:, 0].mean() - predicted) < 3.0 * spread / np.sqrt(400)
 
 
 def test_channels_have_their_own_coefficients() -> None:
@@ -306,11 +308,11 @@ def test_a_refracting_boundary_conserves_energy() -> None:
     medium = Medium("glassy", (0.0,) * 3, (2.0,) * 3, ior=1.4)
     estimate = radiance(SHAPES[0], medium, SKY, CAMERA, (20, 15), 512)
     hit = SHAPES[0].hits(*CAMERA.rays(20, 15)).hit.reshape(15, 20)
-    # every path ends in the same sky with its whole weight: there is no noise, but that of single precision
+    # every path ends in the same sky with its full weight, so the only noise is rounding
     assert hit.any() and estimate.mean[hit] == pytest.approx(1.0, abs=1e-5)
 
 
-def test_a_slab_that_bends_by_adding_and_doubling() -> None:
+def test_a_refracting_slab_by_adding_and_doubling() -> None:
     # by reciprocity: the radiance of a slab under an even sky, seen from above, is R + T of a beam along the ray
     medium = Medium("resin", (0.1,) * 3, (0.9,) * 3, ior=1.5)
     estimate = radiance_along(wide_slab(2.0), medium, SKY, *looking(np.array([1.0])), 40_000)
@@ -381,7 +383,7 @@ def render(samples: int, seed: int = 0) -> Transport:
 
 
 def rendered(monkeypatch: pytest.MonkeyPatch, stop_at: int = 10**9) -> list[int]:
-    """The numbers of the batches that are rendered from now on; an interrupt instead of the batch `stop_at`."""
+    """Records the numbers of rendered batches; raises an interrupt instead of rendering the batch `stop_at`."""
     numbers: list[int] = []
     batch = Renderer.batch
 
@@ -431,7 +433,7 @@ def test_a_damaged_entry_is_recomputed(folder: Path) -> None:
     assert (render(128).mean == first.mean).all()
 
 
-def test_each_input_has_an_entry_of_its_own(folder: Path) -> None:
+def test_each_input_has_its_own_entry(folder: Path) -> None:
     render(128)
     render(128, seed=1)
     radiance(Ball(radius=0.71, **ASKEW), grey(0.9, 3.0), (0.0, 0.6, -0.8), CAMERA, (12, 9), 128)
@@ -442,6 +444,6 @@ def test_each_input_has_an_entry_of_its_own(folder: Path) -> None:
     assert len(list(folder.glob("reference-*.npz"))) == 7
 
 
-def test_versions_and_batches_are_what_kept_references_were_made_with() -> None:
-    # a change of these numbers belongs together with a new transport._VERSION
+def test_versions_and_batches_are_those_of_the_stored_references() -> None:
+    # a change of these numbers requires a new transport._VERSION
     assert (transport._VERSION, transport.BATCH, transport.FEWEST_BATCHES) == (1, 16, 8)

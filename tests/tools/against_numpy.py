@@ -49,7 +49,7 @@ def textures(mipmaps: bool = True) -> dict[str, Texture]:
     }
 
 
-def drawn(param: Param, rng: np.random.Generator, lanes: int) -> Array:
+def random_argument(param: Param, rng: np.random.Generator, lanes: int) -> Array:
     """Any argument; coordinates called `uv` are linear over the image, two texels of `map` a pixel."""
     kind, size = kind_of(param.type), (*shape_of(param.type), lanes)
     if kind == "bool":
@@ -62,9 +62,9 @@ def drawn(param: Param, rng: np.random.Generator, lanes: int) -> Array:
     return rng.uniform(-2.0, 2.0, size).astype(np.float32)
 
 
-def drawn_per_quad(param: Param, rng: np.random.Generator, lanes: int) -> Array:
+def random_per_quad(param: Param, rng: np.random.Generator, lanes: int) -> Array:
     """As `drawn`, but the same in a quad, so that a coordinate's derivatives are those of `uv`."""
-    value = drawn(param, rng, lanes)
+    value = random_argument(param, rng, lanes)
     return value if param.name == "uv" else value[..., pixels(lanes)[0] // 2]
 
 
@@ -93,8 +93,8 @@ def with_numpy(text: str, call: Call, bound: Mapping[str, Texture], lanes: int, 
     ]
     with rt.precision(floating), rt.grid(HEIGHT, lanes // HEIGHT):
         result = names[call.function](*args)
-    value, gone = result if isinstance(result, tuple) else (result, False)
-    return np.where(gone, 0, value)
+    value, discarded = result if isinstance(result, tuple) else (result, False)
+    return np.where(discarded, 0, value)
 
 
 def differences(

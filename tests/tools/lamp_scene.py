@@ -1,4 +1,4 @@
-"""The scene that the tests of rendering draw, and how far two pictures differ."""
+"""The parts of the scene that the tests of rendering draw, and the difference of two pictures."""
 
 from __future__ import annotations
 
@@ -18,6 +18,6 @@ BALL = '[geometry]\nkind = "ball"\nrotation = [20, 30, 40]\nposition = [0.1, 0, 
 SIZE = (48, 36)
 
 
-def apart(a: Rendered, b: Rendered) -> float:
+def largest_difference(a: Rendered, b: Rendered) -> float:
     """The largest difference in 1/255."""
     return float(255.0 * np.abs(a.encoded - b.encoded).max())
