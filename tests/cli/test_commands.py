@@ -208,7 +208,7 @@ def test_the_comments_of_a_new_material_are_valid(run: Run) -> None:
 def test_emit(run: Run, compiler: FakeCompiler) -> None:
     ran = run("emit", "wax.toml", "--target", "wgsl,glsl-330,wgsl", "-o", "out/shaders")
     assert (ran.status, ran.err) == (0, "")
-    assert compiler.asked == [("wax", "wgsl", "shader", None), ("wax", "glsl-330", "shader", None)]
+    assert compiler.calls == [("wax", "wgsl", "shader", None), ("wax", "glsl-330", "shader", None)]
     assert folder_content("out/shaders")["wax.wgsl.txt"] == "text 1\n"
     assert ran.out.splitlines() == [
         "wrote out/shaders/wax.wgsl.txt",
@@ -229,7 +229,7 @@ def test_emit_all_as_json(run: Run, compiler: FakeCompiler) -> None:
         ("out/wax.wgsl.txt", "wgsl"),
     ]
     assert [result["message"] for result in report["diagnostics"]] == ["beware"]
-    assert compiler.asked[0] == ("wax", "glsl-330", "functions", "tpl")
+    assert compiler.calls[0] == ("wax", "glsl-330", "functions", "tpl")
 
 
 def test_a_file_that_would_not_change_is_left_alone(run: Run, compiler: FakeCompiler) -> None:

@@ -1,7 +1,7 @@
-"""Snapshots of one whole material in every target, and of docs/intrinsics.md: changes show in the diff of a review.
+"""Snapshots of a complete material for every target; docs/intrinsics.md is current.
 
-UPDATE_SNAPSHOTS=1 rewrites them. test_material_constructs.py has the rest by construct, and benchmarks/replay.py
-compares every example and every technique with another state of the project.
+UPDATE_SNAPSHOTS=1 writes the snapshots. test_material_constructs.py tests the other constructs of materials, and
+benchmarks/replay.py compares every example and every technique with another state of the project.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from folders import DOCS, SNAPSHOTS
 from snapshot import check_snapshot
 
 MATERIAL = "ice"
-"""It has a mask, textures of several kinds, thickness and all that a lit shell needs."""
+"""It has a mask, textures of several kinds, thickness and all inputs of a lit shell."""
 FOLDER = SNAPSHOTS / "emitted" / MATERIAL
 CASES = [(target, form) for target in sssgen.all_targets() for form in ("shader", "functions")]
 
@@ -26,7 +26,7 @@ def test_emitted_files(target: str, form: str) -> None:
         check_snapshot(f"emitted/{MATERIAL}/{file}", text)
 
 
-def test_no_snapshot_is_left_over() -> None:
+def test_every_snapshot_has_an_emitted_file() -> None:
     expected = {FOLDER / file for target, form in CASES for file in sssgen.compile(MATERIAL, target, form).files}
     assert {path for path in FOLDER.rglob("*") if path.is_file()} == expected
 

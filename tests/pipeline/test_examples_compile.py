@@ -1,4 +1,4 @@
-"""Every example × every target × both forms through every compiler, and the same bytes from every process."""
+"""Every compiler accepts every example for every target in both forms; every process emits the same bytes."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ CASES = [(name, form) for name in examples() for form in FORMS]
 
 
 def emitted(name: str, form: str) -> dict[str, str]:
-    """The files of an example for all of the project's own targets."""
+    """The files of an example for all targets of the project."""
     files: dict[str, str] = {}
     for target in sssgen.all_targets():
         files |= sssgen.compile(name, target, form).files

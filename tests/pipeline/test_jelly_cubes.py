@@ -15,11 +15,11 @@ from sssgen.targets.runtime.numpy_values import precision
 
 WIDTH, HEIGHT = 80, 60
 CONSTANTS = 1.0e-5
-"""The compiler rounds constants that it computes to float32 (1 / 2.2 among them): some 1e-6 of a colour."""
+"""The compiler rounds computed constants, such as 1 / 2.2, to float32, which changes colours by about 1e-6."""
 
 
 class View(NamedTuple):
-    """What the pictures differ in."""
+    """The values that differ between the pictures."""
 
     time: float
     aspect: float = 1.0
@@ -41,13 +41,13 @@ def by_hand(view: View) -> Scene:
 
 
 def uniforms(reflection: dict[str, Any], view: View) -> dict[str, Any]:
-    """Each uniform's numbers: its default, or that of the view."""
-    values = {one["name"]: one["default"] for one in reflection["uniforms"]}
+    """The numbers of each uniform: the value of the view, or the default."""
+    values = {uniform["name"]: uniform["default"] for uniform in reflection["uniforms"]}
     return values | {"aspect": [view.aspect], "look_at": list(view.look_at)}
 
 
 def in_numpy(view: View) -> Array:
-    """The emitted function on all pixels, in float64."""
+    """The picture by the emitted NumPy function, in float64."""
     compiled = sssgen.compile("jelly_cubes", "numpy", "functions")
     functions: dict[str, Any] = {}
     exec(compiled.files["jelly_cubes_functions.py"], functions)
@@ -61,7 +61,7 @@ def in_numpy(view: View) -> Array:
 
 
 def in_opengl(view: View, context: Any) -> Array:
-    """The emitted shader, in float32; OpenGL reads the lowest row first."""
+    """The picture by the emitted shader in OpenGL, in float32; row 0 is at the bottom."""
     compiled = sssgen.compile("jelly_cubes", "glsl-330")
     vertex, fragment = (compiled.files[f"jelly_cubes.glsl-330.{stage}"] for stage in ("vert", "frag"))
     with context:
@@ -76,12 +76,12 @@ def in_opengl(view: View, context: Any) -> Array:
 
 
 def difference(picture: Array, exact: Scene) -> float:
-    """The largest, off the silhouettes; NaN where the picture has one."""
+    """The largest difference outside the silhouettes; NaN if the picture has NaN."""
     return float(np.abs(picture - exact.color)[~exact.silhouette].max())
 
 
 @views
-def test_silhouettes_are_few(view: View) -> None:
+def test_few_pixels_are_silhouettes(view: View) -> None:
     """The excluded share is small: 0.0007 of the pixels at 160 × 120."""
     assert by_hand(view).silhouette.mean() < 0.002
 

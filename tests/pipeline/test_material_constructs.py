@@ -1,7 +1,7 @@
-"""What each construct of a material changes in every target: each file of tests/material_constructs is one construct.
+"""The effect of each construct of a material on every target: a file of tests/material_constructs tests a construct.
 
 A file has two materials and, for every target and form, the lines that differ between their emitted texts.
-UPDATE_SNAPSHOTS=1 renews these, for review. A new construct is a new file with its sentence and its two materials.
+UPDATE_SNAPSHOTS=1 updates these lines, for review. To add a construct, write a file with a sentence and two materials.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ FORMS = ("shader", "functions")
 
 
 def emitted(source: str, folder: Path, target: str, form: str) -> list[str]:
-    """The lines of all texts that a target makes of a material."""
+    """The lines of all texts that are emitted for a material and a target."""
     path = folder / "made.toml"
     path.write_text(f'[material]\nname = "made"\n{source}', encoding="utf-8")
     files = sssgen.compile(str(path), target, form).files
@@ -29,7 +29,7 @@ def emitted(source: str, folder: Path, target: str, form: str) -> list[str]:
 
 
 def differences(before: str, after: str, folder: Path, target: str, form: str) -> str:
-    """The lines that only one of two materials has in a target."""
+    """The lines for a target that only one of the two materials has."""
     texts = [emitted(source, folder, target, form) for source in (before, after)]
     return "\n".join(line for line in list(unified_diff(*texts, lineterm="", n=0))[2:] if line[0] in "+-")
 
@@ -49,4 +49,4 @@ def test_construct(path: Path, tmp_path: Path) -> None:
         path.write_text(text, encoding="utf-8", newline="\n")
         return
     expected = dict(zip(sections[::2], (section.removesuffix("\n") for section in sections[1::2]), strict=True))
-    assert results == expected, "UPDATE_SNAPSHOTS=1 takes the new texts over"
+    assert results == expected, "UPDATE_SNAPSHOTS=1 stores the new lines"

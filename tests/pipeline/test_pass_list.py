@@ -14,12 +14,14 @@ from sssgen.pipeline.pass_list import KEPT, MATERIAL, PLAIN, TARGET, Pass
 
 @pytest.mark.parametrize("passes", [MATERIAL, PLAIN, KEPT, TARGET])
 def test_a_list_names_each_pass_once_with_its_reason(passes: tuple[Pass, ...]) -> None:
-    names = [one.name for one in passes]
+    names = [record.name for record in passes]
     assert len(set(names)) == len(names)
     lines = pass_list.describe(passes).splitlines()
     assert len(lines) == len(passes)
-    for one, line in zip(passes, lines, strict=True):
-        assert one.name in line and one.reason in line and (one.when is None or f"if {one.when.text}" in line)
+    for record, line in zip(passes, lines, strict=True):
+        assert (
+            record.name in line and record.reason in line and (record.when is None or f"if {record.when.text}" in line)
+        )
 
 
 def test_the_trace_of_emit_shows_each_pass_that_changed_the_module(tmp_path: Path) -> None:
@@ -27,7 +29,7 @@ def test_the_trace_of_emit_shows_each_pass_that_changed_the_module(tmp_path: Pat
     assert main(command) == 0
     untraced = (tmp_path / "ice.wgsl").read_text("utf-8")
     assert not list(tmp_path.glob("*.trace"))
-    for _ in range(2):  # no cache hides it
+    for _ in range(2):  # the second run uses the caches and has the same trace
         assert main([*command, "--trace"]) == 0
         files = sorted((tmp_path / "ice.wgsl.trace").iterdir())
         names = [path.name for path in files]

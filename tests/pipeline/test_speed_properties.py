@@ -1,4 +1,4 @@
-"""What makes emitting fast, as the modules that are loaded and the results that are cached; no clocks."""
+"""The reasons why emitting is fast: few modules are loaded, and results are cached. No test uses a clock."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ MATERIAL = '[material]\nname = "plain"\n[surface]\ntechnique = "plain.sss"\n'
 
 @pytest.fixture(autouse=True)
 def fresh(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
-    """No program and no result to begin with, in memory or on disk."""
+    """Starts each test with empty caches, in memory and on disk."""
     monkeypatch.setattr(cache, "folder", lambda: str(tmp_path))
     for memory in (compiler._programs, compiler._compiled, programs._material_programs):
         memory.clear()
@@ -45,23 +45,25 @@ def fresh(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
     compiler._programs.clear()
 
 
-# What is loaded
+# Loaded modules
 
 
 def loaded(code: str, stored: Path, *names: str) -> set[str]:
-    """Which of these modules a new process has loaded after this code."""
+    """The modules among these that a new process has loaded after running the code."""
     script = f"import sys\n{code}\nprint('loaded', *[name for name in {names!r} if name in sys.modules])"
     environment = {**os.environ, "SSSGEN_CACHE": str(stored)}
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True, env=environment)
-    return set(done.stdout.splitlines()[-1].split()[1:])
+    process = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True, env=environment
+    )
+    return set(process.stdout.splitlines()[-1].split()[1:])
 
 
-def test_the_command_line_loads_nothing_heavy(tmp_path: Path) -> None:
+def test_the_command_line_loads_no_expensive_module(tmp_path: Path) -> None:
     heavy = ("numpy", "lark", "jinja2", "json", "tomllib", "pathlib", "sssgen.pipeline.compiler")
     assert loaded("import sssgen.cli.main, sssgen.cli.emit", tmp_path, *heavy) == set()
 
 
-def test_an_emit_with_warm_caches_imports_little(tmp_path: Path) -> None:
+def test_an_emit_with_warm_caches_imports_few_modules(tmp_path: Path) -> None:
     source, stored = tmp_path / "lantern.toml", tmp_path / "cache"
     heavy = (
         "numpy",
@@ -93,9 +95,9 @@ def test_an_emit_with_warm_caches_imports_little(tmp_path: Path) -> None:
 
 def test_the_same_input_gives_the_same_result() -> None:
     material, path = load_material("ice"), examples()["ice"]
-    result, again, by_path = (compiler.compile(one, "wgsl").files for one in (material, material, path))
+    result, again, by_path = (compiler.compile(source, "wgsl").files for source in (material, material, path))
     assert result.keys() == by_path.keys()
-    assert all(text is again[name] for name, text in result.items())  # the same text, not one like it
+    assert all(text is again[name] for name, text in result.items())  # the same object, not an equal text
     assert all(text is compiler.compile(path, "wgsl").files[name] for name, text in by_path.items())
     result["ice.wgsl"] = "the caller's own"
     assert compiler.compile(material, "wgsl").files == again
@@ -128,7 +130,7 @@ def test_caches_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def edited(material: Material, number: int) -> Material:
-    """The material with other values of all its free parameters, in their ranges."""
+    """The material with other values for all free parameters, in their ranges."""
     return material._replace(stages=tuple([_edited(stage, number) for stage in material.stages]))
 
 
@@ -161,7 +163,7 @@ def test_a_variant_equals_a_compilation_from_source(name: str, monkeypatch: pyte
         assert compiler.compile(variant, target, form).files == files, (target, form)
 
 
-def test_variants_cost_no_pass_and_one_rendering_each(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_variants_run_no_pass_and_render_once_each(monkeypatch: pytest.MonkeyPatch) -> None:
     runs: list[str] = []
 
     def counted(name: str, function: Callable[..., object]) -> Callable[..., object]:
@@ -172,7 +174,7 @@ def test_variants_cost_no_pass_and_one_rendering_each(monkeypatch: pytest.Monkey
         return call
 
     for passes in ("MATERIAL", "TARGET"):
-        steps = tuple(one._replace(step=counted("pass", one.step)) for one in getattr(pass_list, passes))
+        steps = tuple(record._replace(step=counted("pass", record.step)) for record in getattr(pass_list, passes))
         monkeypatch.setattr(pass_list, passes, steps)
     monkeypatch.setattr(programs, "print_parts", counted("printing", programs.print_parts))
     monkeypatch.setattr(emit, "render", counted("rendering", emit.render))
@@ -190,11 +192,11 @@ def test_variants_cost_no_pass_and_one_rendering_each(monkeypatch: pytest.Monkey
 def test_structural_changes_compile_another_program() -> None:
     material = parse_material(LANTERN, "lantern.toml")
     fixed = parse_material(LANTERN.replace(EDITED[0], "distortion = { value = 0.15, fixed = true }"), "lantern.toml")
-    texts = [compiler.compile(one, "glsl-330").files["paper_lantern.glsl-330.frag"] for one in (material, fixed)]
+    texts = [compiler.compile(source, "glsl-330").files["paper_lantern.glsl-330.frag"] for source in (material, fixed)]
     assert ["uniform float distortion;" in text for text in texts] == [True, False]
 
 
-# What the command line keeps on disk
+# The cache of the command line on disk
 
 
 def test_a_command_is_recalled_until_something_changes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -217,7 +219,7 @@ def test_a_command_is_recalled_until_something_changes(tmp_path: Path, monkeypat
         assert emitted_cache.load(*command) is None
         path.write_text(text, encoding="utf-8")
         assert emitted_cache.load(*command) is not None
-    Path("common").mkdir()  # a file that hides the library's
+    Path("common").mkdir()  # a file with priority over the library's file
     Path("common/uv_scale.sss").write_text("", encoding="utf-8")
     assert emitted_cache.load(*command) is None
 
@@ -234,7 +236,7 @@ def test_a_damaged_entry_is_recomputed(tmp_path: Path) -> None:
     assert compiler.compile(material, "wgsl").files == first
 
 
-def test_the_reflection_is_the_files_and_the_callers_to_change() -> None:
+def test_the_reflection_equals_its_file_and_may_be_changed() -> None:
     compiled = compiler.compile("ice", "wgsl")
     assert compiled.reflection == json.loads(compiled.files["ice.wgsl.reflection.json"])
     compiled.reflection["uniforms"].clear()

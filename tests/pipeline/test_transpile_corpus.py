@@ -1,4 +1,4 @@
-"""Plain GLSL of every construct (tests/transpile): texts equal the snapshots, compile, are stable, compute the same.
+"""Plain GLSL with every construct (tests/transpile): the texts equal the snapshots, compile, and compute the same.
 
 UPDATE_SNAPSHOTS=1 writes the snapshots.
 """
@@ -16,7 +16,7 @@ from skips import compiler_or_skip
 from snapshot import check_snapshot
 from sssgen.harness.backends import Backend
 from sssgen.harness.compilers import Source, errors, readers
-from sssgen.harness.verify import verification as transpiled
+from sssgen.harness.verify import verification
 from sssgen.harness.verify.inline_includes import expanded
 from sssgen.harness.verify.verification_report import BACKENDS
 from sssgen.ir.text import print_module
@@ -30,15 +30,15 @@ TARGETS = ("wgsl", "hlsl", "glsl-330")
 SUFFIXES = {"wgsl": "wgsl", "hlsl": "hlsl", "glsl-330": "glsl"}
 COMPILERS = ("naga", "tint", "glslang", "dxc")
 REFUSED = {("array_results.glsl", "hlsl")}
-"""What a target has no way to say; the snapshot is the error."""
+"""(file, target) pairs that the target cannot express; the snapshot is the error."""
 QUICK = ("switches.glsl", "loops.glsl", "side_effects.glsl", "stores.glsl", "conversions.glsl", "macros.glsl")
-"""What is run in the fast tests, too."""
+"""Files that the fast tests run, too."""
 
 HEADER = re.compile(r"^// \w+\n// Made by sssgen .*\n(// Paste .*\n)?\n?", re.MULTILINE)
-"""What stands above each text, and would be taken for the first function's comment."""
+"""The head of each text; a second transpilation would read it as the comment of the first function."""
 
 NOTHING_TO_COMPARE = ("it has no outputs", "it reads numbers, a texture of a type that is not supported here")
-"""Why a function may not be run."""
+"""Accepted reasons why a function is not run."""
 
 
 def entry(name: str) -> str:
@@ -46,15 +46,15 @@ def entry(name: str) -> str:
 
 
 @cache
-def made(name: str, target: str) -> str:
+def transpiled(name: str, target: str) -> str:
     """The transpiled text of a file. Raises SssgenError."""
     loaded = load_glsl(CORPUS / name, name, (), None, entry(name))
     return next(iter(transpile(loaded.module, target, name.split(".")[0], keep=True).files.values()))
 
 
 def source(name: str, target: str) -> Source:
-    """What compilers are given."""
-    text = made(name, target)
+    """A text with its stage and entry, as input of a compiler."""
+    text = transpiled(name, target)
     if name.endswith((".frag", ".vert")) or entry(name):
         stage = "vertex" if name.endswith(".vert") else "fragment"
         return Source(text, target, stage, "main" if target == "glsl-330" else f"{stage}_main", name)
@@ -67,14 +67,14 @@ CASES = [(name, target) for name in FILES for target in TARGETS]
 @pytest.mark.parametrize(("name", "target"), CASES)
 def test_the_text_is_unchanged(name: str, target: str) -> None:
     try:
-        text = made(name, target)
+        text = transpiled(name, target)
     except SssgenError as error:
         assert (name, target) in REFUSED, error
         text = f"{error}\n"
     check_snapshot(f"transpile/{name}.{SUFFIXES[target]}", text)
 
 
-def test_no_snapshot_is_left_over() -> None:
+def test_every_snapshot_has_a_case() -> None:
     stored = {path.name for path in (SNAPSHOTS / "transpile").iterdir()}
     assert stored == {f"{name}.{SUFFIXES[target]}" for name, target in CASES}
 
@@ -85,7 +85,7 @@ def test_other_compilers_accept_it(compiler: str) -> None:
     failures = []
     for name, target in CASES:
         if compiler in readers(target) and (name, target) not in REFUSED:
-            failures += [f"{name} as {target}: {said}" for said in errors(result.check(source(name, target)))]
+            failures += [f"{name} as {target}: {message}" for message in errors(result.check(source(name, target)))]
     assert failures == []
 
 
@@ -93,18 +93,18 @@ def test_other_compilers_accept_it(compiler: str) -> None:
 def test_a_second_transpilation_changes_nothing(name: str) -> None:
     """Transpiling the emitted GLSL again gives the same text."""
     title = name.split(".")[0]
-    text = HEADER.sub("", made(name, "glsl-330"))
-    shown = f"{title}.vert" if name.endswith(".vert") else name
-    once = load_glsl_text(text, shown).module
+    text = HEADER.sub("", transpiled(name, "glsl-330"))
+    file = f"{title}.vert" if name.endswith(".vert") else name
+    once = load_glsl_text(text, file).module
     again = HEADER.sub("", next(iter(transpile(once, "glsl-330", title, keep=True).files.values())))
     assert again == text
-    assert print_module(load_glsl_text(again, shown).module) == print_module(once)
+    assert print_module(load_glsl_text(again, file).module) == print_module(once)
 
 
-def computed(name: str, samples: int) -> None:
+def check_results(name: str, samples: int) -> None:
     """Fails where a function's result differs from that of the original text in OpenGL's driver."""
     text = expanded((CORPUS / name).read_text("utf-8"), CORPUS / name)
-    report = transpiled.verify(text, name, samples, 0, entry(name))
+    report = verification.verify(text, name, samples, 0, entry(name))
     failures = [
         f"{row.function} as {target}: {result.error or result.at}"
         for row in report.rows
@@ -117,7 +117,7 @@ def computed(name: str, samples: int) -> None:
 
 @pytest.fixture
 def machines(backend: Callable[[str], Backend]) -> None:
-    """All that functions run on, or a skip."""
+    """Skips the test if a back end is missing."""
     for name in BACKENDS.values():
         backend(name)
 
@@ -125,11 +125,11 @@ def machines(backend: Callable[[str], Backend]) -> None:
 @pytest.mark.usefixtures("machines")
 @pytest.mark.parametrize("name", QUICK)
 def test_functions_keep_their_results(name: str) -> None:
-    computed(name, 64)
+    check_results(name, 64)
 
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("machines")
 @pytest.mark.parametrize("name", FILES)
 def test_all_functions_keep_their_results(name: str) -> None:
-    computed(name, 512)
+    check_results(name, 512)

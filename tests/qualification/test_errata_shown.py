@@ -1,4 +1,4 @@
-"""The errata in figures: the published techniques have the predicted errors, ours are right, on every back end."""
+"""Errata: on every back end, published techniques have the predicted errors, and those of the library are correct."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ PUBLISHED_FIGURES = {
     ("Unity ice", "the zero lobe"): (0.0,),
     ("Subsurface Parallax", "undefined index: total reflection"): (41.81,),
 }
-"""Known from elsewhere: worked out by hand from the sources' formulas."""
+"""Figures that were computed by hand from the formulas of the sources."""
 
 
 def description(erratum: Erratum, result: tuple[float, ...]) -> str:
@@ -51,7 +51,7 @@ def test_the_published_techniques_have_the_predicted_errors(backend: Get, name: 
 
 
 @pytest.mark.parametrize("name", BACKENDS)
-def test_the_corrected_techniques_hold(backend: Get, name: str) -> None:
+def test_the_corrected_techniques_are_within_their_bounds(backend: Get, name: str) -> None:
     machine = backend(name)
     for erratum in ERRATA:
         result = as_corrected(erratum, machine)
@@ -60,7 +60,7 @@ def test_the_corrected_techniques_hold(backend: Get, name: str) -> None:
 
 
 def test_undefined_results_are_wrong_somewhere(backend: Get) -> None:
-    """With NumPy's float32, whose pow(0, 0) is 1. A driver may give a number that happens to be right."""
+    """Undefined results are wrong in NumPy's float32, where pow(0, 0) is 1. A driver may give the right number."""
     undefined = [erratum for erratum in ERRATA if not erratum.everywhere and erratum.name != "pow(0, 0)"]
     assert len(undefined) >= 4
     for erratum in undefined:
@@ -70,9 +70,9 @@ def test_undefined_results_are_wrong_somewhere(backend: Get) -> None:
 
 def test_predicted_errors_equal_the_published_figures() -> None:
     for erratum in ERRATA:
-        if known := PUBLISHED_FIGURES.get((erratum.source, erratum.name)):
-            assert erratum.theory == pytest.approx(known, abs=6e-6, rel=1e-5)
-    assert set(PUBLISHED_FIGURES) <= {(one.source, one.name) for one in ERRATA}
+        if published := PUBLISHED_FIGURES.get((erratum.source, erratum.name)):
+            assert erratum.theory == pytest.approx(published, abs=6e-6, rel=1e-5)
+    assert set(PUBLISHED_FIGURES) <= {(erratum.source, erratum.name) for erratum in ERRATA}
 
 
 def test_every_published_source_has_errata() -> None:
@@ -80,15 +80,15 @@ def test_every_published_source_has_errata() -> None:
     assert baselines == {erratum.published.technique for erratum in (*ERRATA, *OPEN)} & baselines
     assert not {erratum.mended.technique for erratum in ERRATA} & baselines
     assert {"Cheap SSS", "Alisavakis", "3D Distance Fields", "Unity ice", "Subsurface Parallax"} <= set(CHAPTERS)
-    assert len({(one.source, one.name) for one in ERRATA}) == len(ERRATA)
-    assert all(one.reason for one in UNSHOWN)
+    assert len({(erratum.source, erratum.name) for erratum in ERRATA}) == len(ERRATA)
+    assert all(entry.reason for entry in UNSHOWN)
 
 
 def test_open_errata_are_not_fixed(backend: Get) -> None:
     for erratum in OPEN:
         assert shows(erratum, as_published(erratum, backend("numpy-f32")))
         result = as_corrected(erratum, backend("numpy-f32"))
-        assert not holds(erratum, result), f"{description(erratum, result)} is mended: move it to its chapter"
+        assert not holds(erratum, result), f"{description(erratum, result)} is within its bound: move it to its chapter"
 
 
 def test_errata_are_compared_with_tolerances() -> None:

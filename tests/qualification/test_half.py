@@ -1,4 +1,4 @@
-"""Half precision in WebGPU: the printer, every builtin and technique executed, and `sssgen eval --precision f16`."""
+"""Half precision in WebGPU: the printer, the results of all builtins and techniques, `sssgen eval --precision f16`."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ SIMPLE = {
     "transmittance_from_thinness": 1, "wrap_lighting": 2, "lobe_henyey_greenstein": 4, "lobe_gdc2011": 32,
     "lobe_exp2": 32, "lobe_normalized": 32,
 }  # fmt: skip
-"""Technique → by how many ulp of half NumPy and the shader may be apart; a lobe's power, up to 32, multiplies what its
-bases are apart."""
+"""Technique → the largest difference between NumPy and the shader, in ulp of half. The power of a lobe, up to 32,
+multiplies the difference of its base."""
 
 Get = Callable[[str], Backend]
 
@@ -53,7 +53,7 @@ def text_of(source: str) -> str:
 
 
 def call(gpu: Backend, source: str, result: Type, *args: Array) -> Array:
-    """`float f(…)` of the source for floats and ints."""
+    """The results of the function `float f(…)` of a source for arrays of floats and ints."""
     params = tuple(FLOAT if arg.dtype.kind == "f" else INT for arg in args)
     return gpu.run(Text(text_of(source)), [Call("f", params, result, args)])[0]
 
@@ -107,7 +107,7 @@ def test_whole_shaders_are_refused(capsys: pytest.CaptureFixture[str], backend: 
     assert "functions only" in capsys.readouterr().err
 
 
-# Executed
+# Results on the back end
 
 
 @pytest.mark.parametrize("name", ["numpy-f16", "webgpu-f16"])
@@ -116,14 +116,16 @@ def test_every_builtin(name: str, backend: Get) -> None:
     table = [case for case in half_cases() if supported(case, gpu)]
     assert len(table) > 250
     failures = [
-        said for case, got in zip(table, run_cases(gpu, table), strict=True) if (said := wrong_lanes(case, got))
+        message
+        for case, actual in zip(table, run_cases(gpu, table), strict=True)
+        if (message := wrong_lanes(case, actual))
     ]
     assert not failures, "\n".join(failures)
 
 
 @pytest.mark.parametrize(("target", "dtype"), [(TARGET, np.float16), ("wgsl", np.float32)])
 def test_arguments_are_rounded_before_they_are_sent(target: str, dtype: type) -> None:
-    """WGSL lets a conversion round either way."""
+    """In WGSL a conversion may round up or down, so the arguments must be halves already."""
     inputs = np.array([0.1, 2049.5, 1e6, -1.0 / 3.0])
     program, _ = drawing(registry.load(target), Text(""), [Call("f", (FLOAT,), FLOAT, (inputs,))], {})
     sent = program.textures["sssgen_data"].data
@@ -133,17 +135,17 @@ def test_arguments_are_rounded_before_they_are_sent(target: str, dtype: type) ->
 
 
 def test_every_operation_rounds_to_half(backend: Get) -> None:
-    """A sum of products in which no compiler finds anything to combine: as in NumPy, not rounded at its end only."""
+    """A sum of products that no compiler can combine equals NumPy's, so it is not only rounded at its end."""
     rng = np.random.default_rng(0)
     args = [rng.uniform(-8.0, 8.0, 2000).astype(np.float16).astype(np.float64) for _ in range(3)]
     x, y, z = (arg.astype(np.float16) for arg in args)
     source = "float f(float x, float y, float z) {{ float s = x; {} return s; }}".format("s = s * (y * 0.1) + z; " * 20)
-    each, once = x, args[0]
+    rounded, once = x, args[0]
     for _ in range(20):
-        each = each * (y * np.float16(0.1)) + z
+        rounded = rounded * (y * np.float16(0.1)) + z
         once = once * (args[1] * 0.1) + args[2]
     result = call(backend("webgpu-f16"), source, FLOAT, *args)
-    assert (result == each).mean() > 0.9 > 0.8 > (result == once.astype(np.float16)).mean()
+    assert (result == rounded).mean() > 0.9 > 0.8 > (result == once.astype(np.float16)).mean()
 
 
 def test_literals_are_exact(backend: Get) -> None:
@@ -179,7 +181,7 @@ def test_every_technique_compiles_and_runs(backend: Get, compiler: Callable[[str
         try:
             compiled = transpile(chosen.module, TARGET, name).files
             text = next(text for file, text in compiled.items() if not file.endswith(".json"))
-            messages = [(one.name, errors(one.check(Source(text, "wgsl", "library")))) for one in readers]
+            messages = [(reader.name, errors(reader.check(Source(text, "wgsl", "library")))) for reader in readers]
             failures += [f"{name}: {reader}: {result}" for reader, result in messages if result]
             outputs = run(chosen, fitted(chosen, inputs), gpu)
             failures += [f"{name}: {key}" for key, value in outputs.items() if len(value) != 20]
@@ -191,8 +193,8 @@ def test_every_technique_compiles_and_runs(backend: Get, compiler: Callable[[str
 @pytest.mark.parametrize("name", SIMPLE)
 def test_a_simple_technique_equals_numpy(name: str, backend: Get) -> None:
     gpu = backend("webgpu-f16")
-    chosen, given = technique(name, 1000)
-    fit = fitted(chosen, given)
+    chosen, sampled = technique(name, 1000)
+    fit = fitted(chosen, sampled)
     expected = run(chosen, fit, backends.get("numpy-f16"))
     for key, actual in run(chosen, fit, gpu).items():
         right = expected[key].astype(np.float64)

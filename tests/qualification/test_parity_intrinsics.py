@@ -1,4 +1,4 @@
-"""Every builtin of the intrinsic table on every back end, against NumPy in float64, within the table's limits."""
+"""Every builtin on every back end, compared with NumPy in float64: errors are within the limits of the table."""
 
 from __future__ import annotations
 
@@ -46,9 +46,9 @@ def test_the_cases_cover_all_overloads_and_are_deterministic() -> None:
     assert {case.name for case in result} == set(BUILTINS)
     assert {"mix(vec3, vec3, bvec3)", "mod(vec4, float)", "clamp(uvec2, uint, uint)", "inverse(mat4)"} <= titles
     cases.cache_clear()
-    for one, other in zip(result, cases(LANES), strict=True):
-        for arg, same in zip(one.args, other.args, strict=True):
-            np.testing.assert_array_equal(arg, same)
+    for case, repeated in zip(result, cases(LANES), strict=True):
+        for argument, repeated_argument in zip(case.args, repeated.args, strict=True):
+            np.testing.assert_array_equal(argument, repeated_argument)
 
 
 @pytest.mark.parametrize("name", ["floor", "exp", "mod", "packHalf2x16", "clamp", "inverse"])
@@ -61,12 +61,12 @@ def test_arguments_reach_the_edges_and_stay_in_the_domain(name: str) -> None:
     assert 0 in first and (first < 0).any() and len(np.unique(first)) > 50
 
 
-# A broken rule is caught
+# A faulty rule is detected
 
 
 @contextmanager
 def mod_as_fmod(monkeypatch: pytest.MonkeyPatch, native: bool) -> Iterator[None]:
-    """The table's `mod` is written as `fmod`; with `native` HLSL's own function."""
+    """A table whose `mod` computes `fmod`; with `native`, HLSL calls its own function."""
     fmod = BUILTINS["fmod"]
     texts = {**fmod.texts, "hlsl": "fmod"} if native else fmod.texts
     broken = BUILTINS["mod"]._replace(texts=texts, polyfill=fmod.polyfill.replace(" fmod(", " mod("))
@@ -82,7 +82,7 @@ def mod_as_fmod(monkeypatch: pytest.MonkeyPatch, native: bool) -> Iterator[None]
     [("gl", False), ("gl-es", False), ("webgpu", False), ("browser", False), ("hlsl", False), ("hlsl", True),
      ("hlsl-glslang", False), ("unity", False), ("unity-urp", False), ("unity-urp", True)],
 )  # fmt: skip
-def test_a_broken_rule_is_caught(
+def test_a_faulty_rule_is_detected(
     name: str, native: bool, backend: Callable[[str], Backend], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     gpu = backend(name)

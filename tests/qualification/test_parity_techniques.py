@@ -1,4 +1,4 @@
-"""Every technique on the back ends against the oracle, on random inputs; the inputs themselves; `eval --samples`."""
+"""Every technique on the back ends, compared with the oracle on random inputs; the inputs; `eval --samples`."""
 
 from __future__ import annotations
 
@@ -31,19 +31,19 @@ Get = Callable[[str], Backend]
 @pytest.mark.parametrize("name", ["gl", "webgpu", "browser", "hlsl"])
 @pytest.mark.parametrize("technique", sorted(library.index()))
 def test_technique(backend: Get, technique: str, name: str) -> None:
-    """The back ends vary fastest: `measure` keeps the oracle of the latest techniques only."""
+    """Consecutive tests use the same technique, because `measure` caches the oracle of the latest techniques."""
     gpu, case = backend(name), Case(technique)
     assert not (message := excess(case, name, measure(case, gpu, FEW), FEW)), message
 
 
 @pytest.mark.slow
 def test_techniques_on_many_inputs(backend: Get) -> None:
-    """All back ends on the inputs of docs/parity_techniques.md, with each function that fits a slot."""
+    """All back ends, with the inputs of docs/parity_techniques.md and each function that fits a slot."""
     gpus = [backend(name) for name in BACKENDS]
     failures = []
     for case in cases():
         lanes = BOUND_LANES if case.bind else LANES
-        failures += [one for gpu in gpus if (one := excess(case, gpu.name, measure(case, gpu, lanes), lanes))]
+        failures += [message for gpu in gpus if (message := excess(case, gpu.name, measure(case, gpu, lanes), lanes))]
     assert not failures, "\n".join([f"{len(failures)}", *failures])
 
 
@@ -72,14 +72,14 @@ float cells(float x)
 
 
 def test_a_lane_at_a_step_is_excluded_and_a_wrong_one_is_not(tmp_path: Path) -> None:
-    """At n / 1000 float32 may round into the cell beside; 0.4 cells further on it may not."""
+    """At n / 1000, float32 may round into the neighbouring cell; 0.4 cells further on it may not."""
     (tmp_path / "cells.sss").write_text(CELLS, encoding="utf-8")
     chosen = subject(f"{tmp_path / 'cells.sss'}:cells")
     x = np.concatenate([np.arange(1, 1000) / 1000.0, np.arange(1, 1000) / 1000.0 + 4e-4])
     inputs = fitted(chosen, {"x": x})
     oracle, (row,) = compared(chosen, inputs, ["numpy-f32"])
     assert row.deviation is not None and row.ok
-    assert 100 < row.deviation.excluded < 1000, "float32 puts many of the steps elsewhere"
+    assert 100 < row.deviation.excluded < 1000, "float32 moves many of the steps"
     assert 1.0 / 999.0 <= row.deviation.furthest <= 1.0
     assert (
         f"{row.deviation.excluded} ill-conditioned lanes excluded" in row.text
@@ -104,16 +104,16 @@ def test_nan_is_not_an_excluded_lane() -> None:
 # The inputs
 
 
-def drawn(name: str, count: int = 2000, seed: int = 3) -> dict[str, Any]:
+def sampled(name: str, count: int = 2000, seed: int = 3) -> dict[str, Any]:
     return samples(subject(name), count, seed)
 
 
-def test_samples_keep_to_the_meaning_of_a_parameter() -> None:
-    result = drawn("lobe_normalized")
+def test_samples_have_the_quantity_of_a_parameter() -> None:
+    result = sampled("lobe_normalized")
     for name in "VNL":
         assert np.linalg.norm(result[name], axis=1) == pytest.approx(np.ones(2000))
     cosine = np.abs((result["V"] * result["L"]).sum(axis=1))
-    assert 0.05 < (cosine > 0.99).mean() < 0.3, "some lie along or against one another"
+    assert 0.05 < (cosine > 0.99).mean() < 0.3, "some directions are equal or opposite"
     for name, low, high in (("through", 0.0, 1.0), ("power", 1.0, 32.0), ("scale", 0.0, 20.0), ("ambient", 0.0, 1.0)):
         assert result[name].min() == low and result[name].max() == high, name
         assert 0.005 < (result[name] == low).mean() < 0.1, name
@@ -121,37 +121,37 @@ def test_samples_keep_to_the_meaning_of_a_parameter() -> None:
 
 
 def test_samples_of_frames_and_normals() -> None:
-    result = drawn("parallax_refracted")
+    result = sampled("parallax_refracted")
     volume = np.abs((result["T"] * np.cross(result["B"], result["N"])).sum(axis=1))
     assert volume.min() > 0.3
     handed = (result["T"] * np.cross(result["B"], result["N"])).sum(axis=1) < 0.0
     assert 0.2 < handed.mean() < 0.8
-    assert drawn("normal_map")["normal"][:, 2].min() >= 0.0
+    assert sampled("normal_map")["normal"][:, 2].min() >= 0.0
 
 
 def test_samples_of_textures_and_numbers() -> None:
-    result = drawn("distance_texture")
+    result = sampled("distance_texture")
     field = result["distance_map"]
     assert isinstance(field, Texture) and field.dim == "3D" and field.levels[0].dtype == np.float16
     stored = field.levels[0][..., 0].astype(np.float64)
     steps = [np.abs(np.diff(stored, axis=axis)).max() for axis in range(3)]
     assert stored.min() < 0.5 < stored.max() and max(steps) <= 0.5 / 16 + 1e-3, "a distance field"
-    hard = drawn("base_color")["base_color_texture"].levels[0]
+    hard = sampled("base_color")["base_color_texture"].levels[0]
     assert hard.min() == 0.0 and hard.max() == 1.0
-    taps = drawn("thinness_uniform")["taps"]
+    taps = sampled("thinness_uniform")["taps"]
     assert taps.dtype.kind == "i" and taps.min() == 1 and taps.max() == 58
-    matrix = drawn("depth_map_thickness")["light_matrix"]
+    matrix = sampled("depth_map_thickness")["light_matrix"]
     assert matrix.shape == (2000, 4, 4) and (matrix[..., 3] == [0.0, 0.0, 0.0, 1.0]).all()
 
 
 def test_samples_are_the_same_for_the_same_seed() -> None:
-    first, again, other = (drawn("box", 50, seed) for seed in (3, 3, 4))
-    assert all((first[name] == again[name]).all() and (first[name] != other[name]).any() for name in first)
-    assert (drawn("sphere", 50)["p"] == first["p"]).all(), "a parameter's numbers do not depend on the others"
+    first, again, other_seed = (sampled("box", 50, seed) for seed in (3, 3, 4))
+    assert all((first[name] == again[name]).all() and (first[name] != other_seed[name]).any() for name in first)
+    assert (sampled("sphere", 50)["p"] == first["p"]).all(), "a parameter's numbers do not depend on the others"
 
 
 def test_samples_give_finite_results_for_every_technique() -> None:
-    """Finite ones, but for the baseline that marches without end."""
+    """All results are finite, except those of the baseline without a far limit."""
     for name in library.index():
         chosen = subject(name)
         outputs = run(chosen, fitted(chosen, samples(chosen, 200, 3)), backends.get("numpy"))
@@ -172,7 +172,7 @@ def test_eval_compares_on_samples(capsys: pytest.CaptureFixture[str]) -> None:
     assert data["lanes"] == 3000 and data["outputs"] == {} and data["backends"][1]["excluded"] > 0
 
 
-def test_given_inputs_of_eval_replace_samples(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_inputs_of_eval_replace_samples(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "in.json").write_text('{"through": 0.0}', encoding="utf-8")
     arguments = ["eval", "lobe_gdc2011", "--samples", "20", "--inputs", str(tmp_path / "in.json"), "--json"]
     assert cli.main(arguments) == 0

@@ -1,4 +1,4 @@
-"""The library's guards: each is needed, they cost little, and docs/safety.md is current."""
+"""The guards of the library: each is needed, their cost is small, and docs/safety.md is current."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ def counted() -> list[Safety]:
 
 
 def needed(name: str) -> None:
-    """Of each guard there is an input that needs it: NaN in its place reaches the result."""
+    """Asserts that each guard has an input that needs it: with NaN as its value, the result is NaN."""
     specimen = technique(name)
     for site in sites(specimen):
         if not site.proven:
             assert witness(specimen, site) is not None, (
-                f"{name}: nothing needs the guard of {site.what} at {site.place}"
+                f"{name}: no input needs the guard of {site.what} at {site.place}"
             )
 
 
@@ -49,25 +49,23 @@ def test_every_guard_of_the_library_is_needed(name: str) -> None:
 
 
 def test_guards_cost_little() -> None:
-    """At most a third of the cost of guards everywhere."""
-    auto, everywhere = (sum(one.added(mode) for one in counted()) for mode in ("auto", "all"))
+    """The guards add at most a third of the operations that guards everywhere would add."""
+    auto, everywhere = (sum(entry.added(mode) for entry in counted()) for mode in ("auto", "all"))
     assert 0 < auto <= everywhere / 3
 
 
 def test_most_is_proven() -> None:
-    """The guarded operations are the smaller part; none is missing."""
-    proven, guarded = sum(one.proven for one in counted()), sum(one.guarded for one in counted())
+    """At least two thirds of the operations with a domain are proven safe."""
+    proven, guarded = sum(entry.proven for entry in counted()), sum(entry.guarded for entry in counted())
     assert proven > 2 * guarded > 0
 
 
 def test_the_page_has_the_current_counts() -> None:
     text = PAGE.read_text(encoding="utf-8")
-    for one in counted():
-        row = [one.proven, one.guarded, one.costs["none"].operations, one.added("auto"), one.added("all")]
-        assert f"| {one.name} | {' | '.join(map(str, row))} |" in text, (
-            "python -m qualification.pages.safety writes it anew"
-        )
-    assert f"Of {sum(one.guarded for one in counted())} guards" in text
+    for entry in counted():
+        row = [entry.proven, entry.guarded, entry.costs["none"].operations, entry.added("auto"), entry.added("all")]
+        assert f"| {entry.name} | {' | '.join(map(str, row))} |" in text, "run python -m qualification.pages.safety"
+    assert f"Of {sum(entry.guarded for entry in counted())} guards" in text
 
 
 def test_the_page_has_no_failure_among_the_dangerous_inputs() -> None:

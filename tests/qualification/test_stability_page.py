@@ -1,4 +1,4 @@
-"""docs/stability.md: its figures and its pictures are those that are measured and drawn now."""
+"""docs/stability.md has the current figures and pictures."""
 
 from __future__ import annotations
 
@@ -32,21 +32,21 @@ def script() -> dict[str, Any]:
 
 @cache
 def rows() -> dict[str, list[str]]:
-    """The tables' cells by the first one."""
+    """First cell → all cells of the row, for all tables."""
     text = (DOCS / "stability.md").read_text(encoding="utf-8")
     cells = [line.strip("| ").split(" | ") for line in text.splitlines() if line.startswith("| ")]
     return {row[0]: row for row in cells if len(row) == 6}
 
 
 def panels(name: str) -> list[npt.NDArray[np.float64]]:
-    """The stored pictures of a row."""
+    """The stored pictures of a row of pictures."""
     stored = images.read(FOLDER / f"{name}.png")
     step = WIDTH + script()["GAP"]
     return [stored[:, start : start + WIDTH] for start in range(0, stored.shape[1], step)]
 
 
 def figures(cell: str, backend: str) -> list[float]:
-    """The figures that a cell has for a back end."""
+    """The figures of a cell for a back end."""
     groups = cell.split("<br>")
     named = [group for group in groups if f"`{backend}`" in group] if ":" in cell else groups
     numbers = named[0].rpartition(": ")[2].replace("∞", "inf").replace("NaN", "nan")
@@ -55,7 +55,7 @@ def figures(cell: str, backend: str) -> list[float]:
 
 @pytest.mark.parametrize("name", ["numpy-f32", "gl"])
 def test_the_figures_are_current(backend: Get, name: str) -> None:
-    """What a driver may decide is compared on NumPy only."""
+    """Undefined results depend on the driver, so only those of NumPy are compared."""
     machine = backend(name)
     for erratum in (*ERRATA, *OPEN):
         cells = rows()[f"{erratum.source}: {erratum.name}"]
@@ -69,12 +69,12 @@ def test_the_figures_are_current(backend: Get, name: str) -> None:
 
 
 def test_the_page_has_everything_once() -> None:
-    assert len(rows()) == len(ERRATA) + len(OPEN) + 1, "and the head"
+    assert len(rows()) == len(ERRATA) + len(OPEN) + 1, "and the head of the table"
     text = (DOCS / "stability.md").read_text(encoding="utf-8")
-    for one in UNSHOWN:
-        assert f"| {one.source} | {one.said} | {one.reason} |" in text
-    shown = re.findall(r"^!\[.+\]\(stability/(\w+)\.png\)$", text, re.MULTILINE)
-    assert sorted(shown) == sorted(script()["PICTURES"]) == sorted(path.stem for path in FOLDER.glob("*.png"))
+    for erratum in UNSHOWN:
+        assert f"| {erratum.source} | {erratum.said} | {erratum.reason} |" in text
+    linked = re.findall(r"^!\[.+\]\(stability/(\w+)\.png\)$", text, re.MULTILINE)
+    assert sorted(linked) == sorted(script()["PICTURES"]) == sorted(path.stem for path in FOLDER.glob("*.png"))
     assert sorted(path.name for path in FOLDER.iterdir() if path.is_dir()) == sorted(
         {
             panel.scene
@@ -95,7 +95,7 @@ def test_the_pictures_are_small() -> None:
 
 
 def test_the_pictures_are_current(backend: Get) -> None:
-    """Scenes drawn at a quarter of their size, and the maps as they are."""
+    """Scenes are drawn at a quarter of their size, maps at full size."""
     backend("gl"), backend("browser")
     for name, picture in script()["PICTURES"].items():
         for panel, stored in zip(picture.panels, panels(name), strict=True):
@@ -107,7 +107,7 @@ def test_the_pictures_are_current(backend: Get) -> None:
             assert far.mean() < 0.006, f"{name} {panel.material}: run make stability"
 
 
-# What the pictures show
+# The contents of the pictures
 
 
 def no_number(picture: npt.NDArray[np.float64]) -> int:
@@ -119,7 +119,7 @@ def test_the_published_cube_has_a_black_square() -> None:
     assert published < 0.02 and ours > 0.2
 
 
-def test_the_ball_is_flat_and_glows() -> None:
+def test_the_published_ball_is_flat_and_the_other_glows() -> None:
     y, x = np.mgrid[:HEIGHT, :WIDTH]
     inside = np.hypot(x - WIDTH / 2, y - HEIGHT / 2) < 90
     published, ours = (picture.mean(axis=2)[inside] for picture in panels("ball"))
@@ -127,14 +127,14 @@ def test_the_ball_is_flat_and_glows() -> None:
     assert ours.max() > published.max() + 0.3
 
 
-def test_one_text_is_two_pictures() -> None:
-    here, there, ours = panels("wax")
-    assert (np.abs(here - there).max(axis=2) > 0.5).mean() > 0.1
-    edges = [np.abs(np.diff(picture[HEIGHT // 2, 80:240], axis=0)).max() for picture in (here, ours)]
-    assert edges[0] > 0.5 and edges[1] < 0.15, "a hard rim, and none"
+def test_the_same_text_gives_two_pictures() -> None:
+    in_gl, in_browser, ours = panels("wax")
+    assert (np.abs(in_gl - in_browser).max(axis=2) > 0.5).mean() > 0.1
+    edges = [np.abs(np.diff(picture[HEIGHT // 2, 80:240], axis=0)).max() for picture in (in_gl, ours)]
+    assert edges[0] > 0.5 and edges[1] < 0.15, "the published rim is hard, the other is smooth"
 
 
-def test_the_lobe_tears() -> None:
+def test_the_published_lobe_is_discontinuous() -> None:
     numpy, gl, ours = panels("half_vector")
     assert [no_number(picture) for picture in (numpy, gl, ours)] == [64, 0, 0]
     steps = [np.abs(np.diff(picture[100, :, 0])).max() for picture in (gl, ours)]
@@ -145,16 +145,18 @@ def test_the_lobe_tears() -> None:
 def test_the_wedge_is_no_darker_where_it_is_thick() -> None:
     published, ours = (picture.mean(axis=(0, 2)) for picture in panels("wedge"))
     assert published[280:].mean() > published[:80].mean() - 0.03
-    assert np.abs(np.diff(published)).max() > 0.03 > np.abs(np.diff(ours)).max(), "stripes, and none"
+    assert np.abs(np.diff(published)).max() > 0.03 > np.abs(np.diff(ours)).max(), (
+        "the published face has stripes, the other has none"
+    )
     assert ours[:40].mean() > ours[280:].mean() + 0.3 and (np.diff(ours) < 0.004).all()
 
 
-def test_the_ring_is_blank_above() -> None:
+def test_the_published_ring_is_blank_at_the_top() -> None:
     published, ours = (picture[38:58, 145:175].mean(axis=2) for picture in panels("ring"))
     assert published.std() < 0.01 < ours.std()
 
 
-def test_the_floor_breaks_off() -> None:
+def test_the_published_floor_ends() -> None:
     published, ours = panels("floor")
     assert no_number(published) > 0.5 * WIDTH * HEIGHT and not no_number(ours)
 

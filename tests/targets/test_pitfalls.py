@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 import sssgen
-from pitfall_cases import RULES, SHOWN, program, read
+from pitfall_cases import COMPARED_WITH, RULES, program, read
 from sssgen.harness.compilers import Source
 from sssgen.pipeline.compiler import transpile
 from validate import TARGETS, module_of, validate_all
@@ -24,7 +24,7 @@ def test_rule(path: Path) -> None:
     rule, cases = read(path)
     assert rule.endswith(".")
     for case in cases:
-        assert {target for target, beside in SHOWN.items() if not beside} <= set(case.texts), case.source
+        assert {target for target, beside in COMPARED_WITH.items() if not beside} <= set(case.texts), case.source
         validate_all(case.source, case.texts)
 
 

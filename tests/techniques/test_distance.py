@@ -1,4 +1,4 @@
-"""Distance functions, and the cameras and marches that draw them, against closed forms."""
+"""Distance functions, cameras and marches, compared with closed forms."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ CENTER, HALF, START, END = np.array([[0.1, -0.2, 0.3], [0.7, 0.4, 0.5], [-0.6, 0
 
 
 def to_box(p: Array, half: Array) -> Array:
-    """Outside: the way to the nearest point of the box; inside: the nearest of the six faces."""
+    """The distance to a box: outside to its nearest point, inside to the nearest face."""
     nearest = np.clip(p, -half, half)
     faces = np.minimum(half - p, half + p).min(axis=-1)
     result: Array = np.where((nearest == p).all(axis=-1), -faces, np.linalg.norm(p - nearest, axis=-1))
@@ -24,7 +24,7 @@ def to_box(p: Array, half: Array) -> Array:
 
 
 def to_cubes(p: Array) -> Array:
-    """Two unit cubes, their corners on the axes' diagonals."""
+    """The distance to two unit cubes that are turned by 45 degrees about y."""
     results = []
     for x in (0.0, 1.45):
         q = p - [x, 0.48, 0.0]
@@ -34,7 +34,7 @@ def to_cubes(p: Array) -> Array:
 
 
 def to_points(p: Array, points: Array) -> Array:
-    """The least distance to any of many points."""
+    """The distance to the nearest of many points."""
     result: Array = np.sqrt(((p[:, None] - points[None]) ** 2).sum(axis=2).min(axis=1))
     return result
 
@@ -65,13 +65,13 @@ SHAPES: dict[str, tuple[dict[str, Any], Callable[[], Array], float]] = {
 
 @pytest.mark.parametrize("name", SHAPES)
 def test_shapes(name: str) -> None:
-    """The closed form, and the Lipschitz bound of 1 that marching needs, which is mostly reached."""
+    """The distance equals the closed form; its Lipschitz constant is mostly near 1 and at most 1, as marching needs."""
     values, expected, tolerance = SHAPES[name]
     distance = technique(name)
     close(distance(p=P, **values), expected(), atol=tolerance)
     q = P[::-1]
-    there, back = distance(p=P, **values), distance(p=q, **values)
-    assert (np.abs(there - back) <= np.linalg.norm(P - q, axis=1) * (1.0 + 1e-7)).all()
+    forward, backward = distance(p=P, **values), distance(p=q, **values)
+    assert (np.abs(forward - backward) <= np.linalg.norm(P - q, axis=1) * (1.0 + 1e-7)).all()
     e = 1e-6
     slopes = [(distance(p=P + e * axis, **values) - distance(p=P - e * axis, **values)) / (2 * e) for axis in np.eye(3)]
     assert (np.abs(np.linalg.norm(slopes, axis=0) - 1.0) < 1e-6).mean() > 0.98
@@ -90,7 +90,7 @@ MIDDLE = (LOW + HIGH) / 2
 
 
 def baked(distance: Callable[[Array], Array], size: int = 32) -> Texture:
-    """A field, stored over that box as [z, y, x, channel], texels at their centres."""
+    """A texture [z, y, x, channel] of a field over a box, sampled at the centres of the texels."""
     steps = (np.arange(size) + 0.5) / size
     z, y, x = np.meshgrid(*[LOW[i] + steps * (HIGH[i] - LOW[i]) for i in (2, 1, 0)], indexing="ij")
     field = distance(np.stack([x, y, z], axis=-1))
@@ -101,7 +101,7 @@ BOX = {"box_min": LOW, "box_max": HIGH, "distance_range": RANGE}
 
 
 def test_distance_texture() -> None:
-    """Exact for a plane; to about a texel for a ball; clamped to the box outside of it."""
+    """The texture is exact for a plane, and within about a texel for a ball; outside the box it is clamped."""
     normal = unit([1.0, 2.0, -0.5])
     inside = MIDDLE + rng().uniform(-0.45, 0.45, (200, 3)) * (HIGH - LOW)
     read = technique("distance_texture")
@@ -115,7 +115,7 @@ def test_distance_texture() -> None:
 
 def test_a_flat_box_is_padded() -> None:
     flat = {"box_min": (-1.0, 0.2, -1.0), "box_max": (1.0, 0.2, 1.0), "distance_range": 1.0}
-    # 1/1000 of the diagonal thick: a step of that size up leads from one side of the texture to the other
+    # its thickness is 1/1000 of the diagonal: a step of that size crosses the whole texture
     picture = np.linspace(0.0, 1.0, 64)[None, :, None, None] * np.ones((4, 64, 4, 1))
     thickness = 0.001 * np.sqrt(8.0)
     p = np.array([[0.0, 0.2 + part * thickness, 0.0] for part in (-0.25, 0.0, 0.25, 300.0)])
@@ -124,7 +124,7 @@ def test_a_flat_box_is_padded() -> None:
 
 
 def test_distance_texture_in_world_space() -> None:
-    """Turned, moved and scaled: inside as there, outside between 0 and the true distance, and never too far a step."""
+    """In world space: inside as in object space, outside between 0 and the true distance, never a too large step."""
     turn = np.linalg.qr(rng().normal(size=(3, 3)))[0]
     scale = 1.7
     matrix = np.eye(4)
@@ -143,7 +143,7 @@ def test_distance_texture_in_world_space() -> None:
     true = scale * (np.linalg.norm(outside - MIDDLE, axis=1) - 0.8)
     result = read(p=to_world(outside), **world)
     assert (result <= true + 0.05).all() and (result > 0.5 * true).all()
-    # how that bound is made: |(way to the box, what is stored at the nearest place there)|
+    # the bound: the length of (distance to the box, stored distance at the nearest point of the box)
     nearest = np.clip(outside, LOW, HIGH)
     moved = technique("distance_texture")(p=nearest, **values)
     close(result, scale * np.hypot(np.linalg.norm(outside - nearest, axis=1), moved), atol=1e-9)
@@ -153,7 +153,7 @@ def test_distance_texture_in_world_space() -> None:
 
 
 def test_camera_still() -> None:
-    """Perspective: through uv, a point on the plane at the focal length; straight ahead is what it looks at."""
+    """Each ray passes through the point of its uv on the plane at the focal length; the middle ray hits the target."""
     eye, target = np.array([1.0, 2.0, 3.0]), np.array([0.2, 0.1, -0.4])
     values = {"eye": eye, "look_at": target, "focal_length": 1.5, "aspect": 1.6}
     uv = rng().uniform(size=(60, 2))
@@ -175,14 +175,14 @@ def test_camera_orbit() -> None:
     uv = rng().uniform(size=(3, 2))
     origin, ray = technique("camera_orbit")(uv=uv, time=time, orbit_radius=2.0, orbit_height=1.2)
     close(origin, np.stack([2.0 * np.cos(time), np.full(3, 1.2), 2.0 * np.sin(time)], axis=1), atol=1e-15)
-    close(ray, [technique("camera_still")(uv=one, eye=eye)[1] for one, eye in zip(uv, origin, strict=True)])
+    close(ray, [technique("camera_still")(uv=point, eye=eye)[1] for point, eye in zip(uv, origin, strict=True)])
 
 
 # Marches
 
 
 def ray_to_sphere(o: Array, d: Array) -> Array:
-    """Where a ray meets the unit sphere; NaN where it does not."""
+    """The distance along a ray to the unit sphere; NaN if it misses."""
     b, c = (o * d).sum(axis=1), (o * o).sum(axis=1) - 1.0
     with np.errstate(invalid="ignore"):
         result: Array = -b - np.sqrt(b * b - c)
@@ -190,7 +190,7 @@ def ray_to_sphere(o: Array, d: Array) -> Array:
 
 
 def ray_to_box(o: Array, d: Array) -> Array:
-    """By slabs, to a box of half size 1/2."""
+    """The distance along a ray to a box of half size 1/2, by slabs; NaN if it misses."""
     near, far = np.sort([(-0.5 - o) / d, (0.5 - o) / d], axis=0)
     first, last = near.max(axis=1), far.min(axis=1)
     result: Array = np.where((first < last) & (first > 0.0), first, np.nan)
@@ -211,7 +211,7 @@ def test_marches_hit_the_analytic_intersection(march: str, shape: str) -> None:
     solve = ray_to_sphere if shape == "sphere" else ray_to_box
     t = solve(origin, ray)
     hit, p, n, v = technique(march, scene_distance=shape)(ray_origin=origin, ray_direction=ray)
-    # within the tolerance of a hit the closed form and the march may differ
+    # the march may stop within its tolerance of the surface
     meets = np.isfinite(t)
     assert 100 < meets.sum() < 400
     if shape == "sphere":
@@ -242,11 +242,11 @@ def test_raymarch_stops_at_its_maximum_distance() -> None:
     )
     away = march(ray_origin=[0.0, 5.0, 0.0], ray_direction=UP, max_distance=50.0)
     assert not upwards[0] and not away[0]
-    assert away[1][1] < 200.0 < 1e9 < upwards[1][1]  # the published one has no far limit
+    assert away[1][1] < 200.0 < 1e9 < upwards[1][1]  # the published march has no far limit
 
 
 def test_normals_of_the_march_are_central_and_those_of_seed_0_one_sided() -> None:
-    """On a paraboloid y = x^2: one-sided differences tilt the normal by half the step times the curvature."""
+    """On the paraboloid y = x^2, one-sided differences tilt the normal by half the step times the curvature."""
     bowl = "float bowl(world_position p) { return 0.5 * (p.y - p.x * p.x); }"
     x = np.array([0.0, 0.3])
     values = {"ray_origin": np.stack([x, x**2, 0 * x], axis=1), "ray_direction": UP}

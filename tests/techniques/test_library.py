@@ -1,4 +1,4 @@
-"""The library as a whole: documented, tested and, with `pytest -m slow`, compiled for every target."""
+"""All techniques are documented, tested and (with `pytest -m slow`) compiled for every target."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ NAMES = sorted(library.index())
 
 SECTIONS = {"summary", "role", "formula", "source", "units"}
 STRUCTURED = {"role", "formula", "superseded_by", "suggested", "legend", "shape", "sets", "deviation_bounds"}
-"""Sections that are no sentences."""
+"""Sections that need no sentence."""
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -51,7 +51,9 @@ def test_the_doc_comment_is_complete(name: str) -> None:
 
 
 def test_each_conversion_is_suggested_once() -> None:
-    suggested = {one.attributes.suggested: one.name for one in library.load_all() if one.attributes.suggested}
+    suggested = {
+        loaded.attributes.suggested: loaded.name for loaded in library.load_all() if loaded.attributes.suggested
+    }
     assert sorted(suggested) == sorted(permutations(SCALARS, 2))
     assert suggested_conversions() == suggested
 
@@ -98,21 +100,21 @@ UNBOUNDED = {
     "uv_per_unit": "a scale along each axis, below 0 for mirrored maps",
     "red_speed": "a speed", "green_speed": "a speed", "blue_speed": "a speed", "key_direction": "a direction",
 }  # fmt: skip
-"""Uniforms that have no range, and why."""
+"""Uniforms without a range → the reason."""
 
 
 def uniforms() -> dict[str, Uniform]:
     """Every uniform of the library, by FILE:NAME."""
     results = {}
     for path in sorted(Path(library.TECHNIQUES).glob("*/*.sss")):
-        shown = path.relative_to(library.TECHNIQUES).as_posix()
-        for uniform in load_file(path, shown, (library.TECHNIQUES,)).uniforms:
+        file = path.relative_to(library.TECHNIQUES).as_posix()
+        for uniform in load_file(path, file, (library.TECHNIQUES,)).uniforms:
             results[f"{uniform.span.file}:{uniform.name}"] = uniform
     return results
 
 
 def test_uniforms_are_documented() -> None:
-    """A sentence, and a range and unit, or a reason why not."""
+    """Each uniform has a sentence, and a range with a unit, or a reason why not."""
     failures = []
     for name, uniform in uniforms().items():
         hints = dict(uniform.hints)
@@ -133,7 +135,7 @@ def test_uniforms_are_documented() -> None:
 
 
 def test_aliases_are_unique() -> None:
-    """Within one technique a name means one uniform."""
+    """In a technique, a name or alias belongs to a single uniform."""
     for name in NAMES:
         words = [
             word
@@ -143,8 +145,8 @@ def test_aliases_are_unique() -> None:
         assert len(words) == len(set(words)), (name, words)
 
 
-def test_every_technique_is_run_by_a_test() -> None:
-    """Each is named in a test of its values (this file, which only compiles, does not count)."""
+def test_a_test_runs_every_technique() -> None:
+    """A test of values names each technique; this file does not count, because it only compiles."""
     named: set[str] = set()
     for path in Path(__file__).parent.glob("test_*.py"):
         if path != Path(__file__):
@@ -162,7 +164,7 @@ SLOTS = {"body_distance": "torus", "scene_distance": "jelly_scene", "distance_at
 
 
 def stage(section: str, name: str, **slots: str) -> str:
-    """One stage of a material file, its slots bound."""
+    """A stage of a material file, with functions bound to its slots."""
     bound = {slot.name: slots.get(slot.name, SLOTS[slot.name]) for slot in library.load(name).slots}
     table = ", ".join(f'{slot} = "{function}"' for slot, function in bound.items())
     return f'[[{section}]]\ntechnique = "{name}"\n' + (f"bind = {{ {table} }}\n" if bound else "")
@@ -197,12 +199,12 @@ def chain(technique: Technique) -> tuple[str, list[str]]:
         light = own if role == "lighting" else stage("lighting", "studio")
         return "unlit", [*scene, light]
     surface = [] if name == "base_color" or "albedo" in {param.name for param in function.params} else ["base_color"]
-    return "lit", [*before, *[stage("surface", one) for one in surface], own, *after]
+    return "lit", [*before, *[stage("surface", surface_technique) for surface_technique in surface], own, *after]
 
 
 @cache
 def material(name: str) -> Material:
-    """A small material of one technique."""
+    """A small material that uses the technique."""
     shading, stages = chain(library.load(name))
     alpha = "blend" if name in ("base_color", "alpha_erosion") else "opaque"
     head = f'[material]\nname = "{name}_alone"\nshading = "{shading}"\nalpha_mode = "{alpha}"\n'
@@ -213,13 +215,13 @@ def compiled(name: str, target: str, form: str) -> Compiled:
     return compile_material(material(name), target, form)
 
 
-# These return a value unchanged, and leave no line.
+# These techniques return a value unchanged, so no emitted line is theirs.
 IDENTITIES = {"thinness_from_transmittance", "transmittance_from_thinness"}
 
 
 @pytest.mark.parametrize("name", sorted({*NAMES} - IDENTITIES))
 def test_every_technique_makes_a_material(name: str) -> None:
-    """And its lines are in the output."""
+    """The output has lines of the technique."""
     maps = compiled(name, "glsl-330", "shader").reflection["source_map"]
     places = {place for file in maps.values() for place in file.values()}
     assert any(place.startswith(library.shown_name(library.index()[name])) for place in places), places
@@ -229,7 +231,7 @@ def test_every_technique_makes_a_material(name: str) -> None:
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("target", registry.names())
 def test_every_technique_compiles(target: str, form: str, compiler: Callable[[str], Compiler]) -> None:
-    """On every target, by every compiler for it; all that is wrong is reported together."""
+    """Every compiler accepts every technique for every target; all failures are reported together."""
     failures = []
     readers = [compiler(reader) for reader in compilers.readers(target)]
     count = 0

@@ -1,4 +1,4 @@
-"""Lobes of translucency, lighting and output: against the formulas written again in NumPy, and known facts."""
+"""Lobes of translucency, lighting and output, compared with formulas in NumPy and published facts."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ LOBES: dict[str, tuple[dict[str, Any], Callable[[], Array]]] = {
     ),
     "ice_shader_lobe": (
         {"N": N, "L": L, "through": THROUGH, **CONTROLS},
-        lambda: glow(np.zeros(COUNT)),  # the lobe is 0 everywhere: constant ambient is left
+        lambda: glow(np.zeros(COUNT)),  # the lobe is 0 everywhere, so only constant ambient light remains
     ),
     "three_js_port": (
         {"V": V, "N": N, "L": L, "through": THROUGH, "thickness_color": COLOR, "thickness_ambient": 0.2},
@@ -122,7 +122,7 @@ def test_the_published_seed_1_is_dark_by_default() -> None:
 
 @pytest.mark.parametrize("g", [-0.95, -0.3, 0.0, 0.6, 0.9])
 def test_the_phase_function_integrates_to_1_and_has_mean_cosine_g(g: float) -> None:
-    """Over the sphere, times 4 pi; by Gauss's quadrature in the cosine of the angle that light turns by."""
+    """Integrates over the sphere by Gaussian quadrature in the cosine of the scattering angle."""
     cosine, weight = np.polynomial.legendre.leggauss(400)
     out = np.stack([np.sqrt(1.0 - cosine**2), 0 * cosine, cosine], axis=1)
     lobe = technique("lobe_henyey_greenstein")(V=out, L=np.array([0.0, 0.0, -1.0]), through=1.0, anisotropy=g)[:, 0]
@@ -130,8 +130,8 @@ def test_the_phase_function_integrates_to_1_and_has_mean_cosine_g(g: float) -> N
     close((weight * lobe * cosine).sum() / 2.0, g, atol=1e-6)
 
 
-def test_the_notes_on_exp2_hold() -> None:
-    """A floor of 2^-power, and 1.44 power + 1.44 lets through as much as pow does, within 2 %."""
+def test_the_notes_on_exp2_are_correct() -> None:
+    """The minimum is 2^-power; with 1.44 power + 1.44 the lobe transmits as much light as pow, within 2 %."""
     values = {"scale": 1.0, "ambient": 0.0, "distortion": 0.0, "through": 1.0, "N": UP}
     close(technique("lobe_exp2")(V=UP, L=UP, power=6.0, **values), 2.0**-6)
     cosine, weight = np.polynomial.legendre.leggauss(200)
@@ -144,7 +144,7 @@ def test_the_notes_on_exp2_hold() -> None:
         close(cheap, exact, rtol=0.02)
 
 
-def test_the_notes_on_gdc_2011_hold() -> None:
+def test_the_notes_on_gdc_2011_are_correct() -> None:
     """Opposite the light the peak is (1 - distortion dot(n, v))^power."""
     facing = N * np.sign(dot(N, V))[:, None]
     values = {"scale": 1.0, "ambient": 0.0, "power": 6.0, "distortion": 0.3}
@@ -171,8 +171,8 @@ def test_absorption_by_colour() -> None:
         (0.3, 0.3, (0.0, 0.5, 1.0), (1e-4, 0.5, 1.0)),
         (-1.0, 0.3, (0.0, 0.5, 1.0), (1.0, 1.0, 1.0)),
         (0.0, 0.0, (0.0, 0.5, 0.99), (1.0, 1.0, 1.0)),
-        (0.1, 0.0, (0.0, 0.5, 0.99), (0.0, 0.0, 0.0)),  # no attenuation distance: opaque
-        (100.0, 1.0, (0.0, 0.99, 1.0), (0.0, 0.99**100, 1.0)),  # a nearly clear colour through a hundred distances
+        (0.1, 0.0, (0.0, 0.5, 0.99), (0.0, 0.0, 0.0)),  # an attenuation distance of 0: opaque
+        (100.0, 1.0, (0.0, 0.99, 1.0), (0.0, 0.99**100, 1.0)),  # a nearly clear colour at 100 attenuation distances
     ],
 )
 def test_limits_of_absorption(d: float, distance: float, color: Any, expected: Any) -> None:
@@ -184,7 +184,7 @@ def test_limits_of_absorption(d: float, distance: float, color: Any, expected: A
 
 
 def own_standard(albedo: Array, metallic: Array, roughness: Array) -> Array:
-    """Cook and Torrance's f_r times pi and the cosine, from the papers' own D, G and F."""
+    """Cook and Torrance's f_r times pi and the cosine, with D, G and F of the papers."""
     h = unit(V + L)
     nl, nv, nh, vh = dot(N, L), dot(N, V), dot(N, h), dot(V, h)
     a = np.maximum(roughness, 0.045) ** 2
@@ -200,23 +200,23 @@ def own_standard(albedo: Array, metallic: Array, roughness: Array) -> Array:
 
 def test_standard_light() -> None:
     albedo, metallic, roughness = rng().uniform(size=(COUNT, 3)), rng(1).uniform(size=COUNT), rng(2).uniform(size=COUNT)
-    roughness[:20] *= 0.05  # some below the floor
+    roughness[:20] *= 0.05  # some values are below the minimum
     values = {"albedo": albedo, "metallic": metallic, "roughness": roughness, "light_color": COLOR}
     result = technique("standard")(N=N, V=V, L=L, **values)
-    seen = dot(N, V) > 0.0
-    assert (result[seen].max(axis=1) > 0.01).sum() > 20
-    close(result[seen], (own_standard(albedo, metallic, roughness) * COLOR)[seen], rtol=1e-9, atol=1e-12)
+    visible = dot(N, V) > 0.0
+    assert (result[visible].max(axis=1) > 0.01).sum() > 20
+    close(result[visible], (own_standard(albedo, metallic, roughness) * COLOR)[visible], rtol=1e-9, atol=1e-12)
     assert not result[dot(N, L) <= 0.0].any()
 
 
 def test_standard_light_is_reciprocal_and_reads_1_on_white() -> None:
     above = {"N": UP, "albedo": COLOR, "metallic": 0.3, "roughness": 0.4, "light_color": np.ones(3)}
-    v, light = (unit(np.abs(one) + 0.1 * UP) for one in (V, L))
-    there, back = technique("standard")(V=v, L=light, **above), technique("standard")(V=light, L=v, **above)
-    close(there / light[:, 1:2], back / v[:, 1:2], rtol=1e-9)
+    v, light = (unit(np.abs(vectors) + 0.1 * UP) for vectors in (V, L))
+    forward, backward = technique("standard")(V=v, L=light, **above), technique("standard")(V=light, L=v, **above)
+    close(forward / light[:, 1:2], backward / v[:, 1:2], rtol=1e-9)
     white = {**above, "albedo": np.ones(3), "metallic": 0.0, "roughness": 1.0}
     straight = technique("standard")(V=UP, L=UP, **white)
-    close(straight, 0.96 + 0.04 / 4.0)  # Lambert less Schlick's 4 %, and a highlight of D = 1 / pi, G = 1
+    close(straight, 0.96 + 0.04 / 4.0)  # Lambert minus 4 % (Schlick), plus a highlight with D = 1 / pi, G = 1
 
 
 def sky(direction: Array) -> Array:
@@ -243,7 +243,7 @@ def to_ball(p: Array) -> float:
 
 
 def test_soft_shadow_of_a_ball() -> None:
-    """Black in the middle, none far away, never less farther out, and a wider rim where it is less sharp."""
+    """The shadow is black in the middle, 0 far away, monotonic, and its rim is wider if it is less sharp."""
     at = np.stack([np.linspace(0.0, 3.0, 40), np.full(40, -3.0), np.zeros(40)], axis=1)
     shadow = technique("lighting/studio.sss:soft_shadow", scene_distance="sphere")
     hard, soft = (shadow(p=at, L=UP, shadow_sharpness=sharpness) for sharpness in (20.0, 4.0))
@@ -281,11 +281,11 @@ def test_studio() -> None:
 
 
 def test_srgb_curve() -> None:
-    """IEC 61966-2-1: known values, no step where the straight part ends, and the standard's own inverse."""
+    """IEC 61966-2-1: values of the standard, continuity at the end of the linear part, the inverse of the standard."""
     encode = technique("srgb")
     table = [(0.0, 0.0), (-1.0, 0.0), (1.0, 1.0), (0.0031308, 0.04044994), (0.21404114, 0.5), (0.001, 0.01292)]
-    given, expected = np.array(table).T
-    close(encode(color=np.stack([given] * 3, axis=1))[:, 1], expected, atol=1e-7)
+    linear, expected = np.array(table).T
+    close(encode(color=np.stack([linear] * 3, axis=1))[:, 1], expected, atol=1e-7)
     joint = encode(color=np.array([0.0031308, 0.0031308 + 1e-9, 0.0]))
     close(joint[1], joint[0], atol=1e-6)
     light = rng().uniform(size=(300, 3))

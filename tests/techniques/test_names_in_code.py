@@ -1,4 +1,4 @@
-"""The code knows techniques by their attributes, not by their names."""
+"""The code distinguishes techniques by their attributes, not by their names."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ DATA = ("lab/measure/published.toml",)
 """Files that list techniques as data: the chains of the published sources."""
 
 
-def test_no_technique_is_known_by_its_name() -> None:
+def test_the_code_names_no_technique() -> None:
     quoted = re.compile(rf"[\"']({'|'.join(library.index())})(?::\w+)?[\"']")
     package = ROOT / "src" / "sssgen"
     names = {}

@@ -1,4 +1,4 @@
-"""Parallax, surface techniques and the shared functions: against closed forms, finite differences and known facts."""
+"""Parallax, surface techniques and shared functions, compared with closed forms, finite differences and facts."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from sssgen.targets.runtime.numpy_textures import Texture
 X, Y, Z = np.eye(3)
 FLAT = {"T": X, "B": Y, "N": Z}
 DEGREES = np.array([15.0, 30.0, 45.0, 60.0, 75.0, 85.0])
-OFFSETS = {  # how far the image slides, over the depth, at these angles
+OFFSETS = {  # the offset of the image in depths, at these angles
     1.5: [0.17517, 0.35355, 0.53452, 0.70711, 0.84169, 0.88833],
     1.33: [0.19839, 0.40570, 0.62773, 0.85796, 1.05650, 1.13051],
 }
 
 
 def slanted(degrees: Any) -> Array:
-    """Views at these angles to z, from the side of +x."""
+    """Views at these angles to z, on the side of +x."""
     angle = np.radians(degrees)
     return np.stack([np.sin(angle), 0 * angle, np.cos(angle)], axis=-1)
 
@@ -43,13 +43,13 @@ def test_refracted_parallax_has_the_offsets_of_the_table(ior: float) -> None:
 @pytest.mark.parametrize("side", [1.0, -1.0], ids=["front", "back"])
 def test_in_an_orthonormal_frame_the_cheap_form_is_the_refracted_one(ior: float, side: float) -> None:
     views = unit(rng().normal((0.0, 0.0, side), 1.0, (200, 3)))
-    views = views[views[:, 2] * side > 0.2]  # nearer to grazing the other one fades
+    views = views[views[:, 2] * side > 0.2]  # at grazing angles the refracted form fades
     values = {"uv": (0.3, 0.4), "V": views, "depth": 0.1, "uv_per_unit": (2.0, 0.5)}
     ours = technique("parallax_orthonormal")(relative_ior=ior, T=X, B=Y, **values)
     close(ours, technique("parallax_refracted")(ior=ior, **FLAT, **values), atol=1e-12)
 
 
-def test_the_cheap_form_slides_no_further_than_five_depths() -> None:
+def test_the_offset_of_the_cheap_form_is_at_most_five_depths() -> None:
     views = slanted(np.linspace(0.0, 90.0, 400))
     for ior in (1.0, 1.02, 1.5):
         slide = np.abs(technique("parallax_orthonormal")(uv=(0.0, 0.0), V=views, depth=0.1, relative_ior=ior, T=X, B=Y))
@@ -57,7 +57,7 @@ def test_the_cheap_form_slides_no_further_than_five_depths() -> None:
         assert np.abs(np.diff(slide[:, 0])).max() < 0.06
 
 
-FRAMES = {  # how the position moves with u and with v, and the normal
+FRAMES = {  # the derivatives of the position by u and v, and the normal
     "orthonormal": (X, Y, Z),
     "turned": (np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0]), X),
     "scaled": (2.5 * X, 0.3 * Y, Z),
@@ -71,7 +71,7 @@ FRAMES = {  # how the position moves with u and with v, and the normal
 @pytest.mark.parametrize("name", ["parallax_straight", "parallax_refracted"])
 @pytest.mark.parametrize("stretch", [1.0, 1.8], ids=["unit", "stretched"])
 def test_parallax_is_exact_on_a_plane(frame: str, name: str, stretch: float) -> None:
-    """A ray is followed in the world to a parallel plane 0.2 below, and the texture coordinates are taken there."""
+    """The expected coordinates are those of the refracted ray on a parallel plane 0.2 below, in world space."""
     du, dv, n = FRAMES[frame]
     v = units(300)
     v = v[np.abs(v @ n) > 0.21]  # from both sides
@@ -91,29 +91,29 @@ def test_parallax_is_exact_on_a_plane(frame: str, name: str, stretch: float) -> 
     result = technique(name)(uv=(0.25, 0.75), V=v, **values)
     close(result, shift + np.array([0.25, 0.75]), atol=1e-12)
     if name == "parallax_refracted" and frame in ("sheared", "scaled", "all of it") and stretch == 1.0:
-        above = (v @ n) > 0.0  # the published one, by the transpose, is wrong there
+        above = (v @ n) > 0.0  # the published form, by the transpose, is wrong there
         frame_values = {key: values[key] for key in ("T", "B", "N", "depth")}
         theirs = technique("subsurface_parallax")(uv=(0.25, 0.75), V=v[above], eta=eta, **frame_values)
         assert np.abs(theirs - result[above]).max() > 0.02
 
 
 @pytest.mark.parametrize("name", ["parallax_straight", "parallax_refracted"])
-def test_parallax_without_a_frame_slides_nothing(name: str) -> None:
+def test_parallax_without_a_frame_has_no_offset(name: str) -> None:
     for t, b in ((np.zeros(3), Y), (X, np.zeros(3)), (X, X), (np.zeros(3), np.zeros(3))):
         close(technique(name)(uv=(0.3, 0.4), V=slanted(DEGREES), T=t, B=b, N=Z), [[0.3, 0.4]] * 6)
 
 
-def slides(name: str, degrees: Array, **values: float) -> Array:
-    """How far the image slides, over the depth."""
+def offsets_in_depths(name: str, degrees: Array, **values: float) -> Array:
+    """The offsets of the image, in depths."""
     result: Array = -technique(name)(uv=(0.0, 0.0), V=slanted(degrees), depth=1.0, **values, **FLAT)[:, 0]
     return result
 
 
 def test_grazing_parallax_fades() -> None:
-    """Exact down to the cosine, bounded by 1.054 / it, without a jump, and none at all along the surface."""
+    """The offset is exact above the cosine `fade`, at most 1.054 / fade, continuous, and 0 along the surface."""
     degrees = np.linspace(0.0, 90.0, 9001)
     for fade in (0.1, 0.2, 0.5):
-        slide = slides("parallax_straight", degrees, grazing_fade=fade)
+        slide = offsets_in_depths("parallax_straight", degrees, grazing_fade=fade)
         steep = np.cos(np.radians(degrees)) >= fade
         close(slide[steep], np.tan(np.radians(degrees[steep])), atol=1e-12)
         assert 1.0 / fade < slide.max() * 1.06 and slide.max() <= 1.0541 / fade
@@ -125,8 +125,8 @@ def test_refracted_parallax_is_bounded_and_fades_past_the_critical_angle() -> No
     degrees = np.linspace(0.0, 90.0, 90001)
     for ior in (1.1, 1.5, 2.4):
         bound = 1.0 / np.sqrt(ior**2 - 1.0)
-        assert bound * 0.999 < slides("parallax_refracted", degrees, ior=ior).max() <= bound * (1.0 + 1e-9)
-    outwards = slides("parallax_refracted", degrees, ior=1.0, outside_ior=1.5)  # water into air
+        assert bound * 0.999 < offsets_in_depths("parallax_refracted", degrees, ior=ior).max() <= bound * (1.0 + 1e-9)
+    outwards = offsets_in_depths("parallax_refracted", degrees, ior=1.0, outside_ior=1.5)  # water into air
     critical = np.degrees(np.arcsin(1.0 / 1.5))
     assert not outwards[degrees > critical].any()
     assert np.isfinite(outwards).all() and np.abs(np.diff(outwards)).max() < 0.1
@@ -162,13 +162,18 @@ def test_object_space_and_back() -> None:
 
 def test_hashes_are_those_of_integers() -> None:
     x = np.array([0, 1, 2, 7, 12345, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF], np.uint32)
-    bits = [lowbias32(int(one)) for one in x]
+    bits = [lowbias32(int(value)) for value in x]
     assert technique("common/hash.sss:hash_bits")(x=x).tolist() == bits
-    close(technique("common/hash.sss:hash_unit")(x=x), np.array([one >> 8 for one in bits]) / 2.0**24, rtol=0, atol=0)
+    close(
+        technique("common/hash.sss:hash_unit")(x=x),
+        np.array([number >> 8 for number in bits]) / 2.0**24,
+        rtol=0,
+        atol=0,
+    )
 
 
 def cells(p: Array, reach: int = 2) -> tuple[Array, Array, Array]:
-    """The distances to the two nearest sites and the nearest's hash, by brute force over 5 x 5 cells."""
+    """The distances to the two nearest sites and the hash of the nearest, by brute force over 5 x 5 cells."""
     distances, levels = [], []
     for j in range(-reach, reach + 1):
         for i in range(-reach, reach + 1):
@@ -184,7 +189,7 @@ def cells(p: Array, reach: int = 2) -> tuple[Array, Array, Array]:
 
 
 def test_voronoi_thickness() -> None:
-    """Also that 3 x 3 cells are enough, left of and below 0 too."""
+    """A search of 3 x 3 cells is sufficient, also for negative coordinates."""
     uv = rng().uniform(-3.0, 3.0, (1500, 2))
     first, second, level = cells(uv * 5.0)
     x = np.clip((second - first) / 0.4, 0.0, 1.0)
@@ -193,7 +198,7 @@ def test_voronoi_thickness() -> None:
     close(result, 0.25 * (1.0 - 0.7 * level) * x * x * (3.0 - 2.0 * x), atol=1e-9)
     line = np.stack([np.linspace(0.0, 2.0, 200001), np.full(200001, 0.37)], axis=1)
     steps = np.diff(technique("voronoi_thickness")(uv=line, **values))
-    # no jump where the level does: nowhere steeper than 2 cells of F2 - F1 a cell, up the smoothstep
+    # continuous at cell borders: F2 - F1 changes by at most 2 per cell, times the slope of smoothstep
     assert 5e-5 < np.abs(steps).max() < 1e-5 * 5.0 * 2.0 * (1.5 / 0.4) * 0.25
 
 
@@ -224,14 +229,14 @@ def test_voronoi_normal_is_the_slope_of_voronoi_thickness() -> None:
 
 def test_slopes_become_normals_and_add() -> None:
     slopes, more = rng().normal(size=(50, 2)), rng(1).normal(size=(50, 2))
-    one = np.ones((50, 1))
+    ones = np.ones((50, 1))
     normal = technique("common/normals.sss:normal_of_slope")(slope=slopes)
-    close(normal, unit(np.concatenate([-slopes, one], axis=1)))
+    close(normal, unit(np.concatenate([-slopes, ones], axis=1)))
     detail = technique("common/normals.sss:normal_of_slope")(slope=more)
     both = technique("common/normals.sss:blend_normals")
     close(both(base=normal, detail=Z), normal)
     close(both(base=Z, detail=detail), detail)
-    # whiteout: x and y add, z multiplies
+    # whiteout blending: x and y are added, z is multiplied
     whiteout = np.stack([*(normal + detail)[:, :2].T, normal[:, 2] * detail[:, 2]], axis=1)
     close(both(base=normal, detail=detail), unit(whiteout))
 
@@ -249,13 +254,13 @@ def test_normal_map() -> None:
 
 
 def heights(size: int = 64) -> tuple[Texture, float, float]:
-    """A ramp along u and a parabola along v: differences over any length are exact within."""
+    """A ramp along u and a parabola along v, for which central differences of any length are exact."""
     steps = (np.arange(size) + 0.5) / size
     return Texture((0.3 * steps[None] + 0.4 * steps[:, None])[..., None], wrap="clamp"), 0.3, 0.4
 
 
 def test_normal_from_height() -> None:
-    """A bright place is high, so that the normal leans away from where it gets brighter."""
+    """Bright texels are high, so the normal points away from brighter texels."""
     picture, along_u, along_v = heights()
     uv = rng().uniform(0.1, 0.9, (50, 2))
     values = {"height_texture": picture, "relief": 0.5, "uv_per_unit": (2.0, 3.0), "texel_size": 0.01}
@@ -270,7 +275,7 @@ def test_normal_from_height() -> None:
 
 
 def test_alpha_erosion() -> None:
-    """Nothing is eroded at 0, all at 1, the dark first; the bevel is the slope of the remaining part."""
+    """At 0 nothing is eroded, at 1 everything, dark texels first; the bevel is the slope of the remaining part."""
     picture, along_u, along_v = heights()
     uv = rng().uniform(0.1, 0.9, (400, 2))
     mask = uv @ [along_u, along_v]
@@ -292,11 +297,11 @@ def test_alpha_erosion() -> None:
 
 
 def test_packed_scroll() -> None:
-    """Each channel moves on its own; a long session loses nothing."""
+    """Each channel moves independently, and a long session loses no precision."""
     picture = rng().uniform(size=(8, 16, 3))
     y, x = np.divmod(np.arange(128), 16)
     uv = np.stack([(x + 0.5) / 16, (y + 0.5) / 8], axis=1)
-    texels = {"red": (1, 0), "green": (-2, 3), "blue": (0, -5)}  # in a second
+    texels = {"red": (1, 0), "green": (-2, 3), "blue": (0, -5)}  # texels per second
     speeds = {f"{name}_speed": np.array(move) / [16, 8] for name, move in texels.items()}
     colors = {"vein_color": np.array([0.3, 0.8, 1.0]), "spark_color": np.array([0.6, 0.2, 0.1])}
     scroll = technique("packed_scroll")
@@ -307,13 +312,13 @@ def test_packed_scroll() -> None:
             for i, (dx, dy) in enumerate(texels.values())
         )
         expected = start + colors["vein_color"] * r * g + colors["spark_color"] * b
-        for later in (0.0, 16.0 * 1000):  # it all comes round after 16 seconds
+        for later in (0.0, 16.0 * 1000):  # the motion repeats after 16 seconds
             result = scroll(uv=uv, time=time + later, emission=start, packed_texture=picture, **speeds, **colors)
             close(result, expected, atol=1e-9)
 
 
 def test_ice_mask() -> None:
-    """Covered: dark; bare: all; a tenth bare is bare enough."""
+    """A covered point is dark, a bare point fully bright; a tenth counts as bare."""
     covered = np.array([0.0, 0.5, 0.9, 0.95, 0.98, 1.0])
     uv = np.stack([(np.arange(6) + 0.5) / 6, np.full(6, 0.5)], axis=1)
     x = np.clip((1.0 - covered) / 0.1, 0.0, 1.0)
@@ -334,7 +339,7 @@ def test_base_color_and_constants() -> None:
 
 
 def test_jelly_surface() -> None:
-    """The floor is a faint checker and lets nothing through; the cubes have one colour and keep their thinness."""
+    """The floor is a faint checker and transmits no light; the cubes have one colour and transmit by their thinness."""
     p = np.array([[3.1, 0.0, 2.6], [3.6, 0.0, 2.6], [-2.1, 0.0, 0.1], [0.0, 0.98, 0.0], [1.45, 0.5, 0.7]])
     albedo, thinness = technique("jelly_surface")(P=p, th=0.4, jelly_color=(1.0, 0.5, 0.0))
     close(albedo[:3], [[0.9] * 3, [1.0] * 3, [0.9] * 3])

@@ -1,4 +1,4 @@
-"""Thickness, thinness and transmittance: closed forms, the published facts, and the formulas written again in NumPy."""
+"""Thickness, thinness and transmittance, compared with closed forms, published facts and formulas in NumPy."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ float two_slabs(world_position p) { return min(slab_between(p.y, 0.0, 0.3), slab
 
 
 def slab(thickness: float) -> dict[str, Any]:
-    """The parameters of a box below y = 0, far wider than it is thick."""
+    """The parameters of a box below y = 0, much wider than thick."""
     return {"center": (0.0, -thickness / 2, 0.0), "half_size": (50.0, thickness / 2, 50.0)}
 
 
@@ -31,7 +31,7 @@ def torus_distance(p: Array) -> Array:
 
 
 def on_torus(count: int) -> tuple[Array, Array]:
-    """Points on that torus, and normals a little off (the exact ones all go through the tube's middle)."""
+    """Points on the torus, with slightly changed normals (exact normals pass through the middle of the tube)."""
     a, b = rng().uniform(0.0, 2.0 * np.pi, (2, count))
     n = np.stack([np.cos(a) * np.cos(b), np.sin(b), np.sin(a) * np.cos(b)], axis=1)
     ring = np.stack([np.cos(a), 0 * a, np.sin(a)], axis=1)
@@ -40,7 +40,7 @@ def on_torus(count: int) -> tuple[Array, Array]:
 
 # Taps along the normal
 
-OURS = 0.8 * 14.5 / 30.0  # what 42yeah's mean is for no matter at all: sum(2 d_i) / 30
+OURS = 0.8 * 14.5 / 30.0  # 42yeah's mean without any matter: sum(2 d_i) / 30
 
 
 @pytest.mark.parametrize(("thickness", "raw"), [(0.01, 0.37700), (0.1, 0.29467), (0.4, 0.09333), (0.774, 0.0)])
@@ -69,7 +69,7 @@ def test_seed_0_attenuated_reads_matter_where_there_is_none() -> None:
     taps = torus_distance((p[None] - n[None] * d[:, None, None]).reshape(-1, 3)).reshape(30, -1)
     expected = np.mean(d[:, None] + weights[:, None] * taps, axis=0)
     close(technique("cheap_sss_attenuated", body_distance="torus")(P=p, N=n), expected)
-    # "the mean, not brought to 0..1, is 0.22844 th": the source's mean as it should be, over the 29 taps that count
+    # the mean of the source, which is not normalised, is 0.22844 th; here it is over the 29 taps that count
     right = (weights[:, None] * (d[:, None] + taps))[1:].sum(axis=0) / weights[1:].sum()
     close(right, 0.22844 * technique("thinness_attenuated", body_distance="torus")(P=p, N=n), rtol=2e-5)
 
@@ -116,7 +116,7 @@ def test_taps_along_the_normal(name: str) -> None:
 @pytest.mark.parametrize("name", [*TAPS, "thinness_hemisphere", "thinness_traced"])
 @pytest.mark.parametrize(("body", "expected"), [(HALF_SPACE, 0.0), (VOID, 1.0), (FULL, 0.0)])
 def test_thinness_is_0_in_deep_matter_and_1_in_air(name: str, body: str, expected: float) -> None:
-    """Also for fields that are no distances: each tap is bounded."""
+    """The bounds also hold for fields that are not distances, because each tap is clamped."""
     close(technique(name, body_distance=body)(P=ORIGIN, N=UP), expected, atol=1e-15)
 
 
@@ -134,7 +134,7 @@ def test_the_published_xt95_formula() -> None:
 
 @pytest.mark.parametrize("thickness", [0.05, 0.2, 0.35])
 def test_hemisphere_of_rays(thickness: float) -> None:
-    """A slab D gives 1 - (D / reach)^2; a ball 1 - cos^2 = (reach / 2 R)^2 of the rays that run in its rim."""
+    """A slab D gives 1 - (D / reach)^2. In a ball, a share (reach / 2 R)^2 of the rays leaves within the reach."""
     n = units(32)
     count = 128
     slab_along = technique("thinness_hemisphere", body_distance="box")(P=ORIGIN, N=UP, rays=count, **slab(thickness))
@@ -145,7 +145,7 @@ def test_hemisphere_of_rays(thickness: float) -> None:
 
 
 def test_hemisphere_counts_rays_that_leave() -> None:
-    """Ray by ray, with exact chords of a ball."""
+    """Each ray is compared with the exact chord of a ball."""
     n = units(16)
     rays = 24
     i = np.arange(rays)
@@ -155,10 +155,10 @@ def test_hemisphere_counts_rays_that_leave() -> None:
     spiral = np.stack([r * np.cos(turn), r * np.sin(turn), z], axis=1)
     cosine = np.abs(n @ spiral.T)
     expected = (cosine * (2.0 * 0.3 * cosine < 0.4)).sum(axis=1) / cosine.sum(axis=1)
-    margin = np.abs(0.6 * cosine - 0.4).min(axis=1) > 0.002  # no ray that ends just at the surface
+    margin = np.abs(0.6 * cosine - 0.4).min(axis=1) > 0.002  # without rays that end near the surface
     result = technique("thinness_hemisphere", body_distance="sphere")(P=n * 0.3, N=n, radius=0.3)
     assert margin.sum() > 8
-    close(result[margin], expected[margin], atol=1e-8)  # the angle's cosine has nine digits
+    close(result[margin], expected[margin], atol=1e-8)  # the cosine of the angle has nine digits
 
 
 # Marches
@@ -187,11 +187,11 @@ def test_march_through_flat_faces_is_exact(degrees: float) -> None:
     march = technique("march_light", body_distance="box")
     close(march(P=ORIGIN, L=light, **slab(0.5)), 0.5 / np.cos(angle), atol=1e-12)
     close(march(P=ORIGIN, L=-light, **slab(0.5)), 0.0, atol=1e-12)
-    close(technique("march_light", body_distance=HALF_SPACE)(P=ORIGIN, L=light, reach=0.25), 0.25)  # no farther
+    close(technique("march_light", body_distance=HALF_SPACE)(P=ORIGIN, L=light, reach=0.25), 0.25)  # at most the reach
 
 
 def test_the_march_sums_the_inside_lengths() -> None:
-    """Two slabs of 0.3 and 0.5 with a gap; the depth map of the same body counts the gap as matter."""
+    """Two slabs of 0.3 and 0.5 with a gap; a depth map of this body counts the gap as matter."""
     slabs = technique("march_light", body_distance=TWO_SLABS)
     close(slabs(P=ORIGIN, L=UP, steps=50), 0.8, atol=1e-12)
     slanted = np.array([0.6, 0.8, 0.0])
@@ -208,7 +208,7 @@ WIDE = {"box_min": (-2.0, -1.0, -2.0), "box_max": (2.0, 1.0, 2.0), "half_size": 
 @pytest.mark.parametrize("degrees", [0.0, 40.0, 60.0])
 @pytest.mark.parametrize("scale", [1.0, 2.5])
 def test_mean_way_of_the_light_in_a_plate(degrees: float, scale: float) -> None:
-    """Seen along its normal, a plate D that is lit from the front at an angle: in D/2 / cos on average, out D/2."""
+    """A plate D, viewed along its normal, lit from the front: on average D/2 / cos from the light, D/2 to the eye."""
     angle = np.radians(degrees)
     light = np.array([np.sin(angle), np.cos(angle), 0.0])
     march = technique("march_distance_texture", distance_at="box:box_object")
@@ -217,7 +217,7 @@ def test_mean_way_of_the_light_in_a_plate(degrees: float, scale: float) -> None:
     close(march(L_object=light * [1, -1, 1], **common), scale * (0.3 + 0.3 / np.cos(angle)), atol=1e-9)
 
 
-def test_mean_way_opposite_the_eye_is_the_chord() -> None:
+def test_mean_way_with_light_opposite_the_eye_is_the_chord() -> None:
     n = units(40)
     v = unit(n + 0.9 * units(40)[::-1])
     march = technique("march_distance_texture", distance_at="sphere:sphere_object")
@@ -229,14 +229,14 @@ def test_mean_way_opposite_the_eye_is_the_chord() -> None:
         for k in (8, 64)
     ]
     assert errors[1] < 2e-3 < errors[0] < 0.15
-    # a view that only grazes, and leaves at once: the way to the light from there
+    # a grazing view leaves at once, so only the way to the light remains
     grazing = march(P_object=n, V_object=-n, L_object=-n, view_steps=8, light_steps=64, **box)
     close(march(P_object=n, V_object=n, L_object=n, view_steps=64, light_steps=64, **box), 2.0, atol=3e-3)
     close(grazing, 2.0, atol=0.05)
 
 
 def ball_texture(size: int, low: Array, high: Array, center: Array, radius: float, reach: float) -> Texture:
-    """The distance to a ball, stored over a box; [z, y, x, channel], texels at their centres."""
+    """A texture [z, y, x, channel] of the distance to a ball over a box, sampled at the centres of the texels."""
     axes = [low[i] + (np.arange(size) + 0.5) / size * (high[i] - low[i]) for i in range(3)]
     z, y, x = np.meshgrid(axes[2], axes[1], axes[0], indexing="ij")
     distance = np.sqrt((x - center[0]) ** 2 + (y - center[1]) ** 2 + (z - center[2]) ** 2) - radius
@@ -244,7 +244,7 @@ def ball_texture(size: int, low: Array, high: Array, center: Array, radius: floa
 
 
 def test_march_through_a_texture_of_a_box_off_the_origin() -> None:
-    """Not a cube, and its smallest corner above 0: the article's (p + |min|) / size would look elsewhere."""
+    """For a box above 0 that is not a cube, (p + |min|) / size, as in the article, gives the wrong place."""
     low, high, center = np.array([0.5, 1.0, -2.0]), np.array([2.9, 3.2, 0.4]), np.array([1.7, 2.1, -0.8])
     n = units(30)
     values = {"box_min": low, "box_max": high, "distance_range": 3.0, "view_steps": 32, "light_steps": 32}
@@ -273,7 +273,7 @@ def test_march_in_a_flat_box_is_finite() -> None:
 
 
 def test_the_published_seed_2_formula() -> None:
-    """Its sums; that deep voxels count least, so that more matter reads as less; and its uvw for a box above 0."""
+    """Its sums; deep voxels count least, so that more matter gives a smaller value; its uvw for a box above 0."""
     march = technique("distance_field_march", distance_at="sphere:sphere_object")
     p, v, light = 0.4 * units(20), units(20)[::-1], np.roll(units(20), 3, axis=0)
     box = {"box_min": np.array([-1.0, -1.0, -1.0]), "box_max": np.array([1.0, 2.0, 3.0])}
@@ -319,18 +319,18 @@ def test_constant_thickness() -> None:
 
 
 def lights_view() -> tuple[Array, Array, Array, Array, Array]:
-    """Points, a perspective matrix, a depth map, and at each point (u, v, z) and the texel there."""
+    """Points, a perspective matrix, a depth map, and for each point its (u, v, z) and its texel."""
     p = rng().uniform(-1.0, 1.0, (300, 3)) * [3.0, 3.0, 1.0] + [0.0, 0.0, 3.0]
     matrix = np.array([[0.6, 0.1, 0.5, 0.1], [0.0, 0.7, 0.5, -0.2], [0.1, 0.0, 1.0, 0.25], [0.0, 0.0, 1.0, 0.0]])
-    seen = np.concatenate([p, np.ones((300, 1))], axis=1) @ matrix.T
-    at = np.concatenate([seen[:, :2] / seen[:, 3:], seen[:, 2:3]], axis=1)
+    clip = np.concatenate([p, np.ones((300, 1))], axis=1) @ matrix.T
+    at = np.concatenate([clip[:, :2] / clip[:, 3:], clip[:, 2:3]], axis=1)
     depths = rng().uniform(2.0, 4.0, (16, 16, 1))
     x, y = np.clip((at[:, :2] * 16).astype(int), 0, 15).T
     return p, matrix, depths, at, depths[y, x, 0]
 
 
 def test_thickness_from_the_lights_depth_map() -> None:
-    """Where a point is before the map's surface, or off the map, there is no matter."""
+    """The thickness is 0 for points in front of the surface of the map, and outside of the map."""
     p, matrix, depths, at, entry = lights_view()
     on_map = ((at[:, :2] > 0.0) & (at[:, :2] < 1.0)).all(axis=1)
     expected = np.where(on_map, np.maximum(at[:, 2] - entry - 0.05, 0.0), 0.0)
@@ -340,7 +340,7 @@ def test_thickness_from_the_lights_depth_map() -> None:
 
 
 def test_the_published_depth_map_absorption() -> None:
-    """No bound: it may be greater than 1."""
+    """The result has no upper bound; it may be greater than 1."""
     p, matrix, depths, _, entry = lights_view()
     view = np.array([[0.0, 1.0, 0.0, 0.5], [-1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.25], [0.0, 0.0, 0.0, 1.0]])
     distance = np.linalg.norm(p @ view[:3, :3].T + view[:3, 3], axis=1)
@@ -370,19 +370,19 @@ CONVERSIONS: list[tuple[str, dict[str, float], Any, Any]] = [
 
 @pytest.mark.parametrize("case", CONVERSIONS, ids=lambda case: case[0])
 def test_conversions(case: tuple[str, dict[str, float], Any, Any]) -> None:
-    name, values, given, expected = case
-    close(convert(name, given, **values), expected, rtol=1e-6, atol=1e-30)
+    name, values, inputs, expected = case
+    close(convert(name, inputs, **values), expected, rtol=1e-6, atol=1e-30)
 
 
 def convert(name: str, inputs: Any, **values: float) -> Array:
-    """A conversion's one argument is named differently in each."""
+    """The result of a conversion, whose only parameter has its own name in each technique."""
     function = technique(name)
     result: Array = function(**{next(iter(function.types)): inputs}, **values)
     return result
 
 
 @pytest.mark.parametrize(
-    ("there", "back"),
+    ("forward", "backward"),
     [
         ("beer_lambert", "thickness_from_transmittance"),
         ("thickness_from_transmittance", "beer_lambert"),
@@ -391,13 +391,13 @@ def convert(name: str, inputs: Any, **values: float) -> Array:
         ("transmittance_from_thinness", "thinness_from_transmittance"),
     ],
 )
-def test_conversions_invert_each_other(there: str, back: str) -> None:
+def test_conversions_invert_each_other(forward: str, backward: str) -> None:
     values = np.linspace(0.01, 0.99, 21)
-    close(convert(back, convert(there, values)), values, atol=1e-12)
+    close(convert(backward, convert(forward, values)), values, atol=1e-12)
 
 
-def test_a_slab_comes_back_from_its_thinness() -> None:
-    """Within 7 % of reach at 29 taps, as its notes say; the more taps, the nearer."""
+def test_slab_from_thinness() -> None:
+    """The error is at most 7 % of the reach with 29 taps, as its notes state, and decreases with more taps."""
     inputs = np.linspace(0.0, 0.8, 1001)
     half = np.stack([0 * inputs, inputs / 2, 0 * inputs], axis=1)
     read = technique("thinness_uniform", body_distance="box")
@@ -406,4 +406,4 @@ def test_a_slab_comes_back_from_its_thinness() -> None:
         th = read(P=ORIGIN, N=UP, taps=taps, center=-half, half_size=half + np.array([50.0, 0.0, 50.0]))
         errors.append(np.abs(convert("slab_from_thinness", th, reach=0.4) - inputs).max() / 0.4)
     assert errors[1] < errors[0] < 0.07
-    assert errors[0] > 0.06  # the notes' number is not too pessimistic either
+    assert errors[0] > 0.06  # the figure of the notes is not too large

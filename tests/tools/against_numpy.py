@@ -19,24 +19,24 @@ from sssgen.targets.runtime.numpy_textures import Texture
 from validate import code
 
 HEIGHT = 2
-"""How many rows the few lanes of a test stand in."""
+"""The number of rows of a test's picture."""
 
 Array: TypeAlias = np.ndarray[Any, Any]
 Draw: TypeAlias = Callable[[Param, np.random.Generator, int], Array]
-"""Makes the argument for a parameter, over this many lanes."""
+"""Returns the argument for a parameter, with this many lanes."""
 
 DTYPES = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.bool_}
 TEXTURES = {"2D": "map", "3D": "volume", "Cube": "cube"}
 
 
 def pixels(lanes: int) -> tuple[Array, Array]:
-    """The pixel of each lane in the image."""
+    """The column and the row of each lane's pixel."""
     return np.arange(lanes) % (lanes // HEIGHT), np.arange(lanes) // (lanes // HEIGHT)
 
 
 @cache
 def textures(mipmaps: bool = True) -> dict[str, Texture]:
-    """A texture of each kind, of numbers that float16 holds."""
+    """A texture of each kind, with numbers that are exact in float16."""
     rng = np.random.default_rng(11)
 
     def noise(*size: int) -> Array:
@@ -50,7 +50,7 @@ def textures(mipmaps: bool = True) -> dict[str, Texture]:
 
 
 def random_argument(param: Param, rng: np.random.Generator, lanes: int) -> Array:
-    """Any argument; coordinates called `uv` are linear over the image, two texels of `map` a pixel."""
+    """A random argument. Coordinates called `uv` are linear over the picture, with two texels of `map` per pixel."""
     kind, size = kind_of(param.type), (*shape_of(param.type), lanes)
     if kind == "bool":
         return rng.random(size) < 0.5
@@ -63,13 +63,13 @@ def random_argument(param: Param, rng: np.random.Generator, lanes: int) -> Array
 
 
 def random_per_quad(param: Param, rng: np.random.Generator, lanes: int) -> Array:
-    """As `drawn`, but the same in a quad, so that a coordinate's derivatives are those of `uv`."""
+    """A random argument that is constant in each quad, so that the derivatives of a coordinate are those of `uv`."""
     value = random_argument(param, rng, lanes)
     return value if param.name == "uv" else value[..., pixels(lanes)[0] // 2]
 
 
 def arguments(function: Function, draw: Draw, lanes: int) -> tuple[Any, ...]:
-    """An argument for each parameter, the same at each call."""
+    """An argument for each parameter; each call gives the same."""
     rng = np.random.default_rng(3)
     return tuple(
         TEXTURES[param.type.dim] if isinstance(param.type, Sampler) else draw(param, rng, lanes)
@@ -84,7 +84,7 @@ def transpiled(module: Module, target: str) -> str:
 
 
 def with_numpy(text: str, call: Call, bound: Mapping[str, Texture], lanes: int, floating: str = "float64") -> Array:
-    """A call's result by the numpy target's text; 0 in the lanes that it discards."""
+    """The result of a call by the text of the numpy target; 0 in discarded lanes."""
     names: dict[str, Any] = {}
     exec(compile(text, "numpy", "exec"), names)
     args = [
@@ -108,7 +108,7 @@ def differences(
 ) -> list[str]:
     """The differences between a back end's results for the calls and those of the numpy target.
 
-    Each call has a title; `loose` has the tolerance, relative and absolute, of those that need another.
+    Each call has a title; `loose` maps titles to another tolerance, relative and absolute.
     """
     lanes = next(arg.shape[-1] for _, call in calls for arg in call.args if not isinstance(arg, str))
     oracle, wrong = transpiled(module, "numpy"), []

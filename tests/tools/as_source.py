@@ -1,4 +1,4 @@
-"""Writes IR as source in the language: the front end gives the same module for it, apart from spans."""
+"""Writes IR as source in the language; the front end makes the same module of the source, apart from spans."""
 
 from __future__ import annotations
 
@@ -43,8 +43,8 @@ class _Source:
     def uniform(self, uniform: ir.Uniform) -> str:
         hints = []
         for name, args in uniform.hints:
-            shown = ", ".join(f'"{arg}"' if isinstance(arg, str) else repr(arg) for arg in args)
-            hints.append(f"{name}({shown})" if args else name)
+            texts = ", ".join(f'"{arg}"' if isinstance(arg, str) else repr(arg) for arg in args)
+            hints.append(f"{name}({texts})" if args else name)
         text = f"uniform {self.declared(uniform.type, uniform.quantity, uniform.name)}"
         text += f" : {', '.join(hints)}" if hints else ""
         if uniform.default:
@@ -93,10 +93,10 @@ class _Source:
         if isinstance(stmt, ir.While):
             return f"while ({self.expr(stmt.condition)}) {self.block(stmt.body)}"
         if isinstance(stmt, ir.Return) and stmt.value is not None:
-            return f"return {self.wanted(stmt.value, self.result)};"
+            return f"return {self.of_quantity(stmt.value, self.result)};"
         return f"{type(stmt).__name__.lower()};"
 
-    def wanted(self, expr: ir.Expr, quantity: str) -> str:
+    def of_quantity(self, expr: ir.Expr, quantity: str) -> str:
         text = self.expr(expr)
         return f"{quantity}({text})" if quantity else text
 
@@ -138,7 +138,7 @@ class _Source:
             name, quantities = function.name, [param.quantity for param in function.params]
         elif isinstance(expr.type, Struct):
             quantities = [field.quantity for field in expr.type.fields]
-        args = [self.wanted(arg, quantity) for arg, quantity in zip(expr.args, quantities, strict=True)]
+        args = [self.of_quantity(arg, quantity) for arg, quantity in zip(expr.args, quantities, strict=True)]
         return f"{name}({', '.join(args)})"
 
     def inner(self, expr: ir.Expr) -> str:

@@ -23,7 +23,7 @@ needs_meshes = pytest.mark.skipif(
 
 
 class MeshData(NamedTuple):
-    """A mesh: vertices (v, 3), faces (f, 3), counter-clockwise seen from outside, and uv (f, 3, 2) where it has some"""
+    """A mesh: vertices (v, 3), faces (f, 3), counter-clockwise seen from outside, and optionally uv (f, 3, 2)"""
 
     vertices: Array
     faces: Faces
@@ -46,14 +46,14 @@ class MeshData(NamedTuple):
 
 
 def joined(*parts: MeshData) -> MeshData:
-    """Meshes side by side, as they are."""
+    """The meshes as a single mesh."""
     offsets = np.cumsum([0, *(len(part.vertices) for part in parts)])
     faces = [part.faces + offset for part, offset in zip(parts, offsets, strict=False)]
     return MeshData(np.concatenate([part.vertices for part in parts]), np.concatenate(faces))
 
 
 def box(size: npt.ArrayLike = (1.0, 1.0, 1.0), gap: float = 0.04) -> MeshData:
-    """A box about the origin; its faces are charts, three by two, that are `gap` apart. Two triangles a face."""
+    """A box about the origin; its faces are charts, three by two, that are `gap` apart. Each face has two triangles."""
     vertices, faces, uv = [], [], []
     half = 0.5 * np.asarray(size, float)
     for number, (axis, sign) in enumerate((axis, sign) for axis in range(3) for sign in (1.0, -1.0)):
@@ -71,12 +71,12 @@ def box(size: npt.ArrayLike = (1.0, 1.0, 1.0), gap: float = 0.04) -> MeshData:
 
 
 def icosphere(radius: float, level: int) -> MeshData:
-    """20 · 4^level triangles with their corners on a ball."""
+    """A ball of 20 · 4^level triangles."""
     golden = 0.5 * (1.0 + np.sqrt(5.0))
     ring = [(-1, golden, 0), (1, golden, 0), (-1, -golden, 0), (1, -golden, 0)]
     vertices = np.array([np.roll(corner, turn) for turn in range(3) for corner in ring], float)
     vertices /= np.linalg.norm(vertices, axis=1, keepdims=True)
-    # an edge of the icosahedron is its shortest distance between corners: every three such neighbours are a face
+    # edges join the nearest vertices, and three vertices that are joined by edges are a face
     near = np.linalg.norm(vertices[:, None] - vertices, axis=2) < 1.1
     threes = [
         (a, b, c) for a in range(12) for b in range(a) for c in range(b) if near[a, b] and near[b, c] and near[a, c]
@@ -84,8 +84,8 @@ def icosphere(radius: float, level: int) -> MeshData:
     faces = np.array([three if np.linalg.det(vertices[list(three)]) > 0.0 else three[::-1] for three in threes])
     for _ in range(level):
         edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
-        known, edge_of = np.unique(edges[:, 0] * len(vertices) + edges[:, 1], return_inverse=True)
-        first, second = known // len(vertices), known % len(vertices)
+        unique_edges, edge_of = np.unique(edges[:, 0] * len(vertices) + edges[:, 1], return_inverse=True)
+        first, second = unique_edges // len(vertices), unique_edges % len(vertices)
         middles = vertices[first] + vertices[second]
         ab, bc, ca = (len(vertices) + edge_of).reshape(3, -1)
         a, b, c = faces.T
@@ -96,7 +96,7 @@ def icosphere(radius: float, level: int) -> MeshData:
 
 
 def globe(radius: float, across: int, up: int) -> MeshData:
-    """A ball by longitude and latitude, which are its uv."""
+    """A ball with faces along longitude and latitude, which are its uv."""
     u, v = np.meshgrid(np.arange(across + 1) / across, np.arange(up + 1) / up)
     uv = np.stack([u.ravel(), v.ravel()], axis=1)
     longitude, latitude = 2.0 * np.pi * (uv[:, 0] % 1.0), np.pi * (uv[:, 1] - 0.5)
@@ -115,9 +115,9 @@ def torus(major: float, minor: float, around: int, about: int) -> MeshData:
     a, b = 2.0 * np.pi * row / around, 2.0 * np.pi * column / about
     ring = major + minor * np.cos(b)
     vertices = np.stack([ring * np.cos(a), minor * np.sin(b), -ring * np.sin(a)], axis=1)
-    here, on = row * about, (row + 1) % around * about
+    start, next_start = row * about, (row + 1) % around * about
     up = (column + 1) % about
-    quad = here + column, on + column, on + up, here + up
+    quad = start + column, next_start + column, next_start + up, start + up
     faces = np.concatenate(
         [np.stack([quad[0], quad[1], quad[2]], axis=1), np.stack([quad[0], quad[2], quad[3]], axis=1)]
     )
@@ -125,7 +125,7 @@ def torus(major: float, minor: float, around: int, about: int) -> MeshData:
 
 
 def write(path: Path, result: MeshData) -> str:
-    """The mesh as a file: an .obj, or without its uv a binary .ply; the path as text."""
+    """Writes the mesh as .obj, or without uv as binary .ply; returns the path."""
     if path.suffix == ".ply":
         head = ["ply", "format binary_little_endian 1.0", f"element vertex {len(result.vertices)}"]
         head += [f"property double {axis}" for axis in "xyz"]
@@ -148,18 +148,18 @@ def write(path: Path, result: MeshData) -> str:
 def crossings(
     triangles: Array, origins: Array, ways: Array, at_once: int = 2**22
 ) -> tuple[Array, npt.NDArray[np.bool_]]:
-    """How far along rays (n, 3) triangles (f, 3, 3) are met, (n, f), and whether they are (Möller, Trumbore 1997)."""
-    edge, other = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+    """Distances along rays (n, 3) to triangles (f, 3, 3), and whether they are hit: (n, f) (Möller, Trumbore 1997)."""
+    first_edge, second_edge = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
     lengths, met = [], []
-    for some in np.array_split(np.arange(len(origins)), max(1, len(origins) * len(triangles) // at_once)):
-        across = np.cross(ways[some, None], other)
-        scale = np.einsum("nfc,fc->nf", across, edge)
+    for chunk in np.array_split(np.arange(len(origins)), max(1, len(origins) * len(triangles) // at_once)):
+        across = np.cross(ways[chunk, None], second_edge)
+        scale = np.einsum("nfc,fc->nf", across, first_edge)
         with np.errstate(divide="ignore", invalid="ignore"):
-            from_corner = origins[some, None] - triangles[:, 0]
+            from_corner = origins[chunk, None] - triangles[:, 0]
             u = np.einsum("nfc,nfc->nf", from_corner, across) / scale
-            turned = np.cross(from_corner, edge)
-            v = np.einsum("nc,nfc->nf", ways[some], turned) / scale
-            t = np.einsum("fc,nfc->nf", other, turned) / scale
+            turned = np.cross(from_corner, first_edge)
+            v = np.einsum("nc,nfc->nf", ways[chunk], turned) / scale
+            t = np.einsum("fc,nfc->nf", second_edge, turned) / scale
             met.append((u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (t > 0.0))
         lengths.append(t)
     return np.concatenate(lengths), np.concatenate(met)
@@ -171,5 +171,5 @@ def bake(*arguments: str) -> None:
 
 
 def facts(path: str) -> Any:
-    """The JSON file of a baked file."""
+    """The contents of the JSON file of a baked file."""
     return json.loads(Path(path + ".json").read_text(encoding="utf-8"))

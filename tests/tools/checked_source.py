@@ -1,4 +1,4 @@
-"""Source as the IR that the front end makes of it."""
+"""Compiles source to checked IR."""
 
 from __future__ import annotations
 

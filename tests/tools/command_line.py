@@ -36,11 +36,11 @@ class Target(NamedTuple):
 
 
 class FakeCompiler(types.ModuleType):
-    """A compiler that records its arguments, so that these tests cover the command line alone."""
+    """A compiler that records its arguments, so that the tests cover only the command line."""
 
     def __init__(self) -> None:
         super().__init__("sssgen.pipeline.compiler")
-        self.asked: list[tuple[str, str, str, Path | None]] = []
+        self.calls: list[tuple[str, str, str, Path | None]] = []
         self.text = "text 1"
         self.name = "{}.{}.txt"
         self.failing: dict[str, Exception] = {}
@@ -52,7 +52,7 @@ class FakeCompiler(types.ModuleType):
     def compile(
         self, material: Material, target: str, form: str, templates: Path | None, guards: str, trace: object = None
     ) -> Compiled:
-        self.asked.append((material.name, target, form, templates))
+        self.calls.append((material.name, target, form, templates))
         if target in self.failing:
             raise self.failing[target]
         name = self.name.format(material.name, target)
@@ -74,4 +74,4 @@ Run = Callable[..., Ran]
 
 
 def folder_content(path: str = "out") -> dict[str, str]:
-    return {one.name: one.read_text(encoding="utf-8") for one in sorted(Path(path).iterdir())}
+    return {file.name: file.read_text(encoding="utf-8") for file in sorted(Path(path).iterdir())}

@@ -1,17 +1,17 @@
 """The tests of the documents' code blocks: a comment before a block states how it is checked.
 
     <!-- file: PATH -->            the block is that file of the project
-    <!-- part of: PATH -->         its lines stand in that file, in this order
-    <!-- emitted: MATERIAL TARGET FORM FILE -->   the block is that file as `sssgen.compile` makes it
-    <!-- write: PATH -->           the block is written there, in the reader's folder
-    <!-- change: PATH -->          a diff without line numbers, applied to that file in the reader's folder
-    <!-- run -->                   its commands succeed there; `<!-- run: gl -->` where there is an OpenGL driver
-    <!-- output: sssgen … -->      the block is what the command prints
-    <!-- findings: sssgen … -->    the same, where the command ends with status 1
-    <!-- errors: sssgen … -->      the block is what the command says when it fails with status 2
-    <!-- python -->                a session of the interpreter
+    <!-- part of: PATH -->         that file contains the lines of the block, in this order
+    <!-- emitted: MATERIAL TARGET FORM FILE -->   the block is that file, emitted by `sssgen.compile`
+    <!-- write: PATH -->           the block is written to that file in the reader's folder
+    <!-- change: PATH -->          the block is a diff without line numbers for that file in the reader's folder
+    <!-- run -->                   its commands succeed there; `<!-- run: gl -->` requires an OpenGL driver
+    <!-- output: sssgen … -->      the block is the output of the command
+    <!-- findings: sssgen … -->    the block is the output of a command that ends with status 1
+    <!-- errors: sssgen … -->      the block is the error output of a command that ends with status 2
+    <!-- python -->                the block is a session of the interpreter
 
-UPDATE_SNAPSHOTS=1 fills in the blocks that are made: file, emitted, output, findings, errors.
+UPDATE_SNAPSHOTS=1 writes the blocks with generated contents: file, emitted, output, findings, errors.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _BLOCK = re.compile(
 
 
 class Block(NamedTuple):
-    """One code block with its comment."""
+    """A code block with its comment."""
 
     document: Path
     line: int
@@ -51,7 +51,7 @@ def read(document: Path) -> str:
 
 
 def blocks(document: Path, under: str = "") -> list[Block]:
-    """The blocks with a comment, of a whole document or of the part under one heading."""
+    """The blocks with a comment, in a whole document or in the part below a heading."""
     text = read(document)
     start, end = 0, len(text)
     if under:
@@ -84,14 +84,14 @@ class Reader:
     def run(self, command: str, status: int = 0) -> tuple[str, str]:
         """The standard output and the standard error of a command."""
         shell = ["bash", "-euc", command]
-        done = subprocess.run(
+        process = subprocess.run(
             shell, cwd=self.folder, env=self.environment, capture_output=True, text=True, encoding="utf-8", check=False
         )
-        assert done.returncode == status, f"{command}\n{done.returncode}\n{done.stdout}\n{done.stderr}"
-        return done.stdout, done.stderr
+        assert process.returncode == status, f"{command}\n{process.returncode}\n{process.stdout}\n{process.stderr}"
+        return process.stdout, process.stderr
 
     def follow(self, block: Block) -> None:
-        """Executes or checks the block. Raises AssertionError where it does not hold."""
+        """Executes or checks the block. Raises AssertionError if the check fails."""
         if block.verb == "write":
             path = self.folder / block.argument
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -118,7 +118,7 @@ class Reader:
             return self.run(block.argument)[0]
         if block.verb == "findings":
             return self.run(block.argument, status=1)[0]
-        assert block.verb == "errors", f"{block}: what is this?"
+        assert block.verb == "errors", f"{block}: unknown comment"
         return self.run(block.argument, status=2)[1]
 
 
@@ -133,7 +133,7 @@ def programs(folder: Path, python: str = sys.executable) -> Path:
 
 
 def check(block: Block, expected: str) -> None:
-    """Fails where the block is not that text; UPDATE_SNAPSHOTS=1 writes it."""
+    """Fails if the block is not that text; UPDATE_SNAPSHOTS=1 writes it."""
     expected = "".join(f"{line.rstrip()}\n" for line in expected.rstrip().splitlines())
     if os.environ.get("UPDATE_SNAPSHOTS") and block.text != expected:
         text = read(block.document)
@@ -142,14 +142,14 @@ def check(block: Block, expected: str) -> None:
         assert text[start:].startswith(f"{block.text}```")
         block.document.write_text(text[:start] + expected + text[start + len(block.text) :], encoding="utf-8")
         return
-    assert block.text == expected, f"{block} is not so any more; UPDATE_SNAPSHOTS=1 puts it right"
+    assert block.text == expected, f"{block} is not current; UPDATE_SNAPSHOTS=1 updates it"
 
 
 def _change(path: Path, block: Block) -> None:
     lines = block.text.splitlines(keepends=True)
     before, after = ("".join(line[1:] for line in lines if line[0] in f" {sign}") for sign in "-+")
     text = read(path)
-    assert text.count(before) == 1, f"{block}: the lines to change are not in the file once"
+    assert text.count(before) == 1, f"{block}: the file does not contain the lines to change exactly once"
     path.write_text(text.replace(before, after), encoding="utf-8", newline="\n")
 
 
@@ -163,4 +163,4 @@ def _session(block: Block) -> None:
 def _part(block: Block) -> None:
     lines = iter([line.strip() for line in read(ROOT / block.argument).splitlines()])
     for line in filter(None, map(str.strip, block.text.splitlines())):
-        assert line in lines, f"{block}: this line is not there, or not in this order: {line}"
+        assert line in lines, f"{block}: the file does not contain this line, or not in this order: {line}"

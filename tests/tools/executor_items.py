@@ -1,4 +1,4 @@
-"""Functions that the tests of the executor run as work items. Each writes a file for every time that it runs."""
+"""Functions that the tests of the executor run as work items. Each run writes a file."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from sssgen.support.diagnostics import failure
 
 
 class Measured(NamedTuple):
-    """With every kind of value that results contain."""
+    """A result with values of every kind."""
 
     name: str
     numbers: np.ndarray[Any, Any]
-    told: dict[str, Any]
+    details: dict[str, Any]
 
 
 def note(folder: str, number: int) -> None:
@@ -31,7 +31,7 @@ def note(folder: str, number: int) -> None:
 
 
 def runs(folder: str | Path) -> list[int]:
-    """The numbers of the items that ran, as often as they ran."""
+    """The numbers of the items that ran, repeated for each run."""
     return sorted(int(path.name.partition("-")[0]) for path in Path(folder).glob("*-*"))
 
 
@@ -52,7 +52,7 @@ GATE = 5
 
 
 def measure_behind_gate(folder: str, number: int) -> Measured:
-    """As `measure`; from number GATE on it waits until `open_gate` is called."""
+    """Calls `measure`; from number GATE on, it waits for `open_gate` first."""
     note(folder, number)
     while number >= GATE and not Path(folder, "gate").exists():
         time.sleep(0.01)
@@ -60,17 +60,17 @@ def measure_behind_gate(folder: str, number: int) -> Measured:
 
 
 def open_gate(folder: Path) -> None:
-    """Lets the items behind the gate run."""
+    """Starts the items behind the gate."""
     (folder / "gate").touch()
 
 
 def echo(value: Any) -> Any:
-    """What it was given."""
+    """Returns its arguments."""
     return value, value
 
 
 def die_first(folder: str, number: int) -> int:
-    """Kills its process when it runs for the first time."""
+    """Kills its process in the first run."""
     first = number not in runs(folder)
     note(folder, number)
     if first:
@@ -79,21 +79,21 @@ def die_first(folder: str, number: int) -> int:
 
 
 def die(folder: str, number: int) -> int:
-    """Kills its process each time."""
+    """Kills its process in each run."""
     note(folder, number)
     os.kill(os.getpid(), signal.SIGKILL)
     return number
 
 
 def fail(how: str) -> None:
-    """Raises."""
+    """Raises an exception."""
     if how == "exit":
         raise SystemExit(3)
     raise failure("the scene has no light", "add one") if how == "said" else ValueError("no such thing")
 
 
 def interrupted(number: int) -> int:
-    """Stands for Ctrl-C at the third item."""
+    """Imitates Ctrl-C at the third item."""
     if number == 2:
         raise KeyboardInterrupt
     return number
@@ -105,5 +105,5 @@ def items(folder: Path, count: int, name: str = "measure") -> list[Item]:
 
 
 def run_behind_gate(notes: str, store: str) -> None:
-    """Twelve items, of which those from number GATE on wait, in two processes."""
+    """Runs twelve items in two processes; those from number GATE on wait."""
     run(items(Path(notes), 12, "measure_behind_gate"), processes=2, store=Store(store))

@@ -31,11 +31,11 @@ LONG = {
     "this macro expands to more than": "\n".join(f"#define A{n} A{n + 1} A{n + 1}" for n in range(60)) + "\nA0\n",
     "'##' makes a token of more than": "#define J(a, b) a ## b\n#define D(a) J(a, a)\nD(" + "x" * 100_000 + ")\n",
 }
-"""The errors of texts that are too long to be shown."""
+"""The errors of texts that are too long for the file of cases."""
 
 
 def errors_of(source: str) -> SssgenError:
-    """What plain GLSL is refused with. A file that includes itself is found by its own name."""
+    """The errors of plain GLSL. The text can include itself by its name."""
     original = glsl._Finder.find
 
     def find(finder: glsl._Finder, name: str, place: glsl.Span, angled: bool) -> tuple[str, str]:

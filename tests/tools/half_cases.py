@@ -1,4 +1,4 @@
-"""The cases and limits of builtins in half precision, with arguments for which nothing overflows."""
+"""The cases and limits of builtins in half precision, with arguments for which no result overflows."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from sssgen.ir.types import Matrix, Type, kind_of
 
 LANES = 400
 LARGEST, LEAST = 8.0, 2.0**-6
-"""Sizes of arguments: products of four of the largest, and its exp, are halves; squares of the least are normal."""
+"""The range of magnitudes: products of four arguments, and exp, are finite halves; squares are normal halves."""
 
 DOMAINS: dict[str, Any] = {
     "acosh": ((1.0, 8.0),), "pow": ((0.125, 8.0), (-4.0, 4.0)), "atanh": ((-0.9, 0.9),),
 }  # fmt: skip
-"""Where the table's domain leads to halves too large or too small."""
+"""Smaller domains, where the domain of the table leads to halves that overflow or underflow."""
 
 ROUNDING = {"mod": 2.0**-7, "fmod": 2.0**-7, "faceforward": 1e-2, "reflect": 1e-2, "refract": 1e-2}
 """The rounding errors in half precision that the table's `inside` allows for."""
@@ -48,29 +48,29 @@ LIMITS = {
     "intBitsToFloat": (1.0, 2.0**-14),  # a float32 rounded to half, whose denormals may be lost
     "uintBitsToFloat": (1.0, 2.0**-14),
 }
-"""(ulp of half, or absolute): WGSL, "Accuracy of Concrete Floating Point Expressions", where its column of f16 is not
-that of f32; else the table's own limits, which come from counting roundings."""
+"""(ulp of half, absolute): the limits for f16 in WGSL, "Accuracy of Concrete Floating Point Expressions", if they
+differ from those for f32. All other builtins have the limits of the table, which are counts of roundings."""
 
 
 @cache
 def half_cases() -> tuple[Case, ...]:
-    """Every overload that has a float in it."""
+    """The cases of every overload with a float parameter or result."""
     return tuple(case._replace(args=_args(case)) for case in cases(FEW) if _has_floats((*case.params, case.result)))
 
 
 def wrong_lanes(case: Case, actual: Array) -> str:
-    """A message about the lane that exceeds the limits most; '' where all are within them."""
+    """A message about the lane that exceeds the limits most; '' if all are within the limits."""
     expected = np.broadcast_to(oracle(case), actual.shape)
     if kind_of(case.result) != "float":
         error = np.where(actual == expected, 0.0, np.inf).reshape(-1, case.lanes).max(axis=0)
         return _message(case, actual, expected, error, np.zeros(case.lanes))
-    each = np.abs(expected).reshape(-1, case.lanes).max(axis=0)
-    size = evaluated(case.row.size, widened(case.args)) if case.row.size else each
+    magnitude = np.abs(expected).reshape(-1, case.lanes).max(axis=0)
+    size = evaluated(case.row.size, widened(case.args)) if case.row.size else magnitude
     ulp, absolute = LIMITS.get(case.name, (case.row.ulp, case.row.absolute))
     with np.errstate(all="ignore"):
         error = np.abs(actual - expected).reshape(-1, case.lanes).max(axis=0)
         limit = np.maximum(ulp * np.spacing(size.astype(np.float16)).astype(np.float64), absolute)
-    error = np.where(each < 65504.0, error, 0.0)  # of bits that are no half
+    error = np.where(magnitude < 65504.0, error, 0.0)  # bits that are not a finite half
     return _message(case, actual, expected, np.nan_to_num(error, nan=np.inf), limit)
 
 
@@ -88,7 +88,7 @@ def _has_floats(types: tuple[Type, ...]) -> bool:
 
 
 def _args(case: Case) -> tuple[Any, ...]:
-    """The parity's own arguments of reads, derivatives and bits, in halves; of the others, halves of the domain."""
+    """For reads, derivatives and bits the arguments of the parity tests, as halves; otherwise halves of the domain."""
     if case.row.kind in ("fetch", "derivative") or not _has_floats(case.params):
         return tuple(arg if isinstance(arg, str) else _halves(arg) for arg in case.args)
     rng = np.random.default_rng([16, zlib.crc32(case.title.encode())])
@@ -101,7 +101,7 @@ def _args(case: Case) -> tuple[Any, ...]:
 
 
 def _column(case: Case, index: int, type_: Type, count: int, rng: np.random.Generator) -> Array:
-    """One argument: even numbers and even magnitudes, with zeros."""
+    """A random argument: uniform in value or in magnitude, with zeros."""
     size, kind = (*shape_of(type_), count), kind_of(type_)
     if kind == "bool":
         return rng.random(size) < 0.5

@@ -1,8 +1,8 @@
-"""Runs checked IR for one lane with plain Python values: an independent second opinion on the NumPy target.
+"""Runs checked IR for one lane with plain Python values, independently of the NumPy target.
 
 It follows the text statement by statement, with Python's own control flow, and shares no code with the passes, the
 printer or the runtime. Values: float, int and bool; a vector is a tuple of these, a matrix a tuple of columns, an
-array or struct a tuple of its elements. It knows the builtins of `BUILTINS` below, those that need no rounding rule.
+array or struct a tuple of its elements. `BUILTINS` below has the supported builtins, which need no rounding rule.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ Value: TypeAlias = Any
 
 
 class Discarded(Exception):
-    """The lane is dropped."""
+    """The lane is discarded."""
 
 
 class _Break(Exception):
@@ -37,7 +37,7 @@ class Returned(Exception):
 
 
 class Interpreter:
-    """Runs the functions of one module. `uniforms` gives the values of its globals; variables have one without."""
+    """Runs the functions of a module. `uniforms` has the values of its uniforms."""
 
     def __init__(self, module: ir.Module, uniforms: dict[str, Value] | None = None) -> None:
         self.functions = {function.key: function for function in module.functions}
@@ -50,7 +50,7 @@ class Interpreter:
             self.globals.setdefault(variable.name, begin)
 
     def call(self, key: str, *args: Value) -> tuple[Value, ...]:
-        """Calls a function with its in and inout arguments; gives its result (if it has one), then its outs."""
+        """Calls a function with its in and inout arguments; returns its result (if any), then its out parameters."""
         function = self.functions[key]
         inputs = iter(args)
         outer, self.frame = self.frame, {}
@@ -111,10 +111,10 @@ class Interpreter:
                 self.statement(step)
 
     def store(self, target: ir.Expr, value: Value) -> None:
-        """Assigns to a variable or a part of one."""
+        """Assigns to a variable or to a part of a variable."""
         if isinstance(target, ir.Local | ir.Global):
-            where = self.frame if isinstance(target, ir.Local) else self.globals
-            where[target.name] = value
+            variables = self.frame if isinstance(target, ir.Local) else self.globals
+            variables[target.name] = value
             return
         assert isinstance(target, ir.Swizzle | ir.Index | ir.Member)
         whole = list(self.value(target.value))
@@ -184,7 +184,7 @@ class Interpreter:
         return results[0] if len(results) > len(outs) else None
 
     def pinned(self, place: ir.Expr) -> ir.Expr:
-        """A place to write to with its indices as they are now."""
+        """The target of an assignment, with its indices evaluated."""
         if isinstance(place, ir.Index):
             index = ir.Literal(place.index.type, self.value(place.index), place.span)
             return place._replace(value=self.pinned(place.value), index=index)
@@ -218,7 +218,7 @@ def flat(value: Value) -> list[Any]:
 
 
 def convert(kind: str, value: Value) -> Value:
-    """A scalar as another kind."""
+    """A scalar converted to another kind."""
     if kind == "float":
         return float(value)
     if kind == "bool":
@@ -230,7 +230,7 @@ def convert(kind: str, value: Value) -> Value:
 
 
 def wrapped(kind: str, value: int) -> int:
-    """An integer of 32 bits."""
+    """An integer wrapped to 32 bits."""
     value &= 0xFFFFFFFF
     return value - (1 << 32) if kind == "int" and value >= 1 << 31 else value
 
@@ -300,7 +300,7 @@ def dot(x: Value, y: Value) -> Value:
 
 
 def componentwise(function: Callable[..., Value], *values: Value) -> Value:
-    """A function of scalars on vectors and matrices, to which scalars are widened."""
+    """Applies a function of scalars to vectors and matrices, component by component; scalars are repeated."""
     sizes = [len(value) for value in values if isinstance(value, tuple)]
     if not sizes:
         return function(*values)
@@ -337,28 +337,28 @@ def divided(x: float, y: float) -> float:
     return math.nan if x == 0.0 or math.isnan(x) else math.copysign(math.inf, x) * math.copysign(1.0, y)
 
 
-def _each(function: Callable[..., Value]) -> Callable[..., Value]:
+def _componentwise(function: Callable[..., Value]) -> Callable[..., Value]:
     return lambda *values: componentwise(function, *values)
 
 
 def _compare(op: str) -> Callable[..., Value]:
-    return _each(_COMPARE[op])
+    return _componentwise(_COMPARE[op])
 
 
 BUILTINS: dict[str, Callable[..., Value]] = {
-    "abs": _each(abs),
-    "floor": _each(lambda x: x if math.isinf(x) or math.isnan(x) else float(math.floor(x))),
-    "sqrt": _each(lambda x: math.sqrt(x) if x >= 0.0 else math.nan),
-    "min": _each(lambda x, y: y if y < x else x),
-    "max": _each(lambda x, y: y if x < y else x),
-    "clamp": _each(lambda x, low, high: min(max(x, low), high)),
-    "step": _each(lambda edge, x: 0.0 if x < edge else 1.0),
-    "mix": _each(lambda x, y, a: (y if a else x) if isinstance(a, bool) else x * (1.0 - a) + y * a),
+    "abs": _componentwise(abs),
+    "floor": _componentwise(lambda x: x if math.isinf(x) or math.isnan(x) else float(math.floor(x))),
+    "sqrt": _componentwise(lambda x: math.sqrt(x) if x >= 0.0 else math.nan),
+    "min": _componentwise(lambda x, y: y if y < x else x),
+    "max": _componentwise(lambda x, y: y if x < y else x),
+    "clamp": _componentwise(lambda x, low, high: min(max(x, low), high)),
+    "step": _componentwise(lambda edge, x: 0.0 if x < edge else 1.0),
+    "mix": _componentwise(lambda x, y, a: (y if a else x) if isinstance(a, bool) else x * (1.0 - a) + y * a),
     "dot": dot,
     "lessThan": _compare("<"),
     "greaterThan": _compare(">"),
     "equal": _compare("=="),
-    "not": _each(lambda x: not x),
+    "not": _componentwise(lambda x: not x),
     "any": any,
     "all": all,
     "transpose": lambda x: tuple(zip(*x, strict=True)),

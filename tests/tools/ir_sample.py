@@ -54,7 +54,7 @@ SAMPLE_MODULE = of_source(SAMPLE)
 
 
 def exact(value: Any) -> Any:
-    """A value with the classes of all that is in it, and floats by their text: what `==` on tuples does not see."""
+    """A value with the classes of its parts, and floats as text, because `==` on tuples ignores these differences."""
     if isinstance(value, tuple):
         return (type(value).__name__, *map(exact, value))
     return (type(value).__name__, repr(value))

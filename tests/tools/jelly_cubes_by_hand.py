@@ -1,11 +1,11 @@
 """42yeah's scene written by hand: jelly cubes on a floor, in float64, as a reference for the compiled jelly_cubes.
 
 It is written from the formulas (`sssgen show TECHNIQUE`, docs/errata.md; 42yeah, Raymarching Cheap Subsurface
-Scattering) and uses nothing of the project. Rays stand first and components last: (n, 3).
+Scattering) and imports nothing of the project. Arrays have their rays first and their components last: (n, 3).
 
     picture = image(160, 120)
-    picture.color[0]                 # the lowest row of pixels, encoded for the display
-    picture.silhouette               # where a rounding error decides what is seen
+    picture.color[0]                 # the bottom row of pixels, encoded for the display
+    picture.silhouette               # the pixels that depend on rounding errors
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ JELLY = np.array([1.0, 0.5, 0.0])
 SKY = np.array([0.67, 0.86, 0.98])
 
 TOLERANCE = 1.0e-3
-"""Of a hit; normals are measured over the same length."""
+"""The tolerance of a hit; the differences for normals have the same length."""
 STEPS, FARTHEST = 200, 50.0
 TETRAHEDRON = np.array([[1.0, -1.0, -1.0], [-1.0, -1.0, 1.0], [-1.0, 1.0, -1.0], [1.0, 1.0, 1.0]])
 KEY = np.ones(3) / np.sqrt(3.0)
@@ -35,13 +35,13 @@ GLOW = 0.6
 
 LEVEL = 1.0 / 255.0
 RAY_ROUNDING = 2.0**-20
-"""What float32 may move a ray by on the image: eight units in the last place of 1."""
+"""The largest error of a ray on the image in float32: eight units in the last place of 1."""
 WAY_ROUNDING = 2.0**-18
-"""What float32 may lose of a distance: a unit in the last place of a way of 32 to 64, the longest."""
+"""The largest error of a distance in float32: a unit in the last place of a way of 32 to 64, the longest."""
 
 
 class Scene(NamedTuple):
-    """A picture, its lowest row first."""
+    """A picture; row 0 is at the bottom."""
 
     color: Array
     """(height, width, 3), encoded."""
@@ -56,16 +56,16 @@ class Scene(NamedTuple):
 
 
 class Hits(NamedTuple):
-    """Where rays end."""
+    """The ends of rays."""
 
     points: Array
     """(n, 3)."""
     steps: Array
-    """(n,), how many the ray has made; -1 where it meets nothing."""
+    """(n,): the number of steps of the ray; -1 if it misses."""
 
 
-def each_cube(p: Array) -> Array:
-    """The distances to the two cubes, (..., 2): to the nearest point from outside, to the nearest face from inside."""
+def cube_distances(p: Array) -> Array:
+    """The distances to the two cubes, (..., 2): outside to the nearest point, inside to the nearest face."""
     local = (p[..., None, :] - CENTERS) @ TURN.T
     nearest = np.clip(local, -HALF_SIZE, HALF_SIZE)
     to_face: Array = HALF_SIZE - np.abs(local).max(axis=-1)
@@ -74,16 +74,16 @@ def each_cube(p: Array) -> Array:
 
 def scene(p: Array) -> Array:
     """The distance to the cubes or to the floor, y = 0."""
-    result: Array = np.minimum(each_cube(p).min(axis=-1), p[..., 1])
+    result: Array = np.minimum(cube_distances(p).min(axis=-1), p[..., 1])
     return result
 
 
 def rays(
     width: int, height: int, eye: Array, look_at: Array, aspect: float, shift: tuple[float, float] = (0.0, 0.0)
 ) -> Array:
-    """Unit directions through the pixels' centers, (height * width, 3): an image 2 high, 2 before the eye.
+    """Unit directions through the pixels' centers, (height * width, 3): an image of height 2, at a distance of 2.
 
-    `shift` moves all of them on that image.
+    `shift` moves all rays on that image.
     """
     v, u = 2.0 * (np.mgrid[0:height, 0:width] + 0.5) / np.array([height, width])[:, None, None] - 1.0
     plane = np.stack([aspect * u + shift[0], v + shift[1], np.full(u.shape, 2.0)], axis=-1)
@@ -99,7 +99,7 @@ def unit(v: Array) -> Array:
 
 
 def trace(eye: Array, directions: Array, tolerance: float) -> Hits:
-    """Sphere tracing: steps as long as the distance, until that is below the tolerance or the way is too long."""
+    """Sphere tracing: each step is the distance, until it is below the tolerance or the way is too long."""
     way, steps = np.zeros(len(directions)), np.full(len(directions), -1)
     going = np.arange(len(directions))
     for step in range(STEPS):
@@ -113,15 +113,15 @@ def trace(eye: Array, directions: Array, tolerance: float) -> Hits:
 
 
 def normals(p: Array) -> Array:
-    """The gradient, from four points about each point."""
+    """The gradient, from four points near each point."""
     around = TOLERANCE * TETRAHEDRON
     return unit(scene(p[:, None] + around) @ TETRAHEDRON)
 
 
 def shadow(p: Array) -> Array:
-    """What reaches `p` of the key light: the least of 20 gap / way, along the first 4 units to the light.
+    """The share of the key light that reaches `p`: the minimum of 20 gap / way, along the first 4 units to the light.
 
-    Once that is 0 it stays so, thus there is no need to stop there.
+    It need not stop at 0, because it remains 0.
     """
     way, least = np.full(len(p), 1.0e-3), np.ones(len(p))
     for _ in range(SHADOW_STEPS):
@@ -132,24 +132,24 @@ def shadow(p: Array) -> Array:
 
 
 def thinness(p: Array, n: Array) -> Array:
-    """The integral of depth + distance to the cubes there, by trapezoids between four depths; 1 where nothing is.
+    """The integral of depth + distance to the cubes, by trapezoids between four depths; 1 in empty space.
 
-    The first depth is the reach; each other one is halfway to where the last two would reach 0, the fourth all the way.
-    Below the fourth it is a triangle.
+    The first depth is the reach. Each other depth is halfway to the zero of the line through the last two values, the
+    fourth is at that zero. Below the fourth depth, the area is a triangle.
     """
 
-    def taken(depth: Array) -> Array:
-        result: Array = np.clip(depth + each_cube(p - depth[:, None] * n).min(axis=-1), 0.0, 2.0 * depth)
+    def integrand(depth: Array) -> Array:
+        result: Array = np.clip(depth + cube_distances(p - depth[:, None] * n).min(axis=-1), 0.0, 2.0 * depth)
         return result
 
     depths = [np.full(len(p), REACH)]
-    values = [taken(depths[0])]
+    values = [integrand(depths[0])]
     slope, area = np.full(len(p), 2.0), np.zeros(len(p))
     for tap in range(2, TAPS + 1):
         going = (values[-1] > NOTHING * REACH) & (values[-1] < 2.0 * depths[-1])
         way = np.minimum(values[-1] / slope, depths[-1])
         depth = np.where(going, depths[-1] - (way if tap == TAPS else 0.5 * way), depths[-1])
-        value = np.where(going, np.minimum(taken(depth), values[-1]), values[-1])
+        value = np.where(going, np.minimum(integrand(depth), values[-1]), values[-1])
         area += (depths[-1] - depth) * (values[-1] + value) / 2.0
         slope = np.where(
             going, np.maximum((values[-1] - value) / np.where(going, depths[-1] - depth, 1.0), 1e-9), slope
@@ -161,21 +161,21 @@ def thinness(p: Array, n: Array) -> Array:
 
 
 def sky(height: Array) -> Array:
-    """The sky in a direction whose y is `height`: white from 0.2 up."""
+    """The sky in a direction with y = `height`; white above 0.2."""
     white = np.clip(5.0 * height, 0.0, 1.0)[:, None]
     result: Array = (1.0 - white) * SKY + white
     return result
 
 
 def kinds(p: Array) -> Array:
-    """What is at a point: 0 and 1 the cubes, 2 and 3 the dark and the bright tiles of the floor."""
-    cubes = each_cube(p)
+    """The object at a point: 0 and 1 are the cubes, 2 and 3 the dark and bright tiles of the floor."""
+    cubes = cube_distances(p)
     bright = (np.floor(2.0 * p[:, 0]) - np.floor(2.0 * p[:, 2])) % 2.0 == 0.0
     return np.where(p[:, 1] < cubes.min(axis=-1), np.where(bright, 3, 2), cubes.argmin(axis=-1))
 
 
 def radiance(p: Array, directions: Array) -> Array:
-    """The light from the places that rays have hit, (n, 3), linear."""
+    """The light from the hit points, (n, 3), linear."""
     n, kind = normals(p), kinds(p)
     free, facing, up = shadow(p + TOLERANCE * n), np.maximum(n @ KEY, 0.0), n[:, 1]
     behind = np.maximum(n @ (KEY * [-1.0, 0.0, -1.0]), 0.0)
@@ -189,7 +189,7 @@ def radiance(p: Array, directions: Array) -> Array:
 
 
 def draw(eye: Array, directions: Array, tolerance: float) -> Array:
-    """What rays see, (n, 3), encoded."""
+    """The colours of rays, (n, 3), encoded."""
     hits = trace(eye, directions, tolerance)
     color, met = sky(directions[:, 1]), hits.steps >= 0
     color[met] = radiance(hits.points[met], directions[met])

@@ -27,26 +27,26 @@ def small(name: str) -> MeasuredScene:
     return replace(measured_scene.load(name), size=SIZE)
 
 
-def synthetic_view(one: MeasuredScene, name: str = "own") -> View:
+def synthetic_view(scene: MeasuredScene, name: str = "own") -> View:
     """A view with a synthetic reference: light that falls off with the thickness, more from the front, and noise."""
-    surface = points(one)
+    surface = points(scene)
     references: list[LightReference] = []
-    for light in one.lights:
+    for light in scene.lights:
         assert light.direction is not None
         towards = np.tile(light.direction, (surface.count, 1))
-        length = thickness(one.geometry, np.ascontiguousarray(surface.inputs["P"].T), towards)
+        length = thickness(scene.geometry, np.ascontiguousarray(surface.inputs["P"].T), towards)
         front = np.maximum(surface.inputs["N"].T @ light.direction, 0.0)
         colors = np.array([0.9, 0.5, 0.3])[:, None]
         mean = colors * (0.4 * np.exp(-length / colors) + 0.5 * front)
         references.append((mean, np.full_like(mean, 1e-3)))
-    return View(name, one, tuple(references), "made up")
+    return View(name, scene, tuple(references), "synthetic")
 
 
 def candidate(*chain: str, role: str = "material", settings: tuple[tuple[str, int], ...] = ()) -> Candidate:
     return Candidate(role, chain[-1], " → ".join(chain), settings, chain)
 
 
-def chain(one: Candidate, view: View, folder: Path) -> Chain:
-    result = measure.chain_of(one, body(view.scene.geometry), str(folder))
+def chain(tested: Candidate, view: View, folder: Path) -> Chain:
+    result = measure.chain_of(tested, body(view.scene.geometry), str(folder))
     assert result is not None
     return result

@@ -1,4 +1,4 @@
-"""Tests of the NumPy target: source to Python, and a run of both the Python and the interpreter."""
+"""Compiles source for the NumPy target, and compares its results with those of the interpreter."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def run(source: str, *args: Any, name: str = "f", **uniforms: Any) -> Any:
 
 
 def lanes_of(type_: Type, values: list[Any]) -> Any:
-    """Values of single lanes, as the interpreter has them, as one value of the runtime."""
+    """Combines values of the interpreter, one per lane, into a value of the runtime."""
     if isinstance(type_, Struct):
         fields = enumerate(type_.fields)
         return Record(**{field.name: lanes_of(field.type, [value[i] for value in values]) for i, field in fields})
@@ -61,7 +61,8 @@ def lanes_of(type_: Type, values: list[Any]) -> Any:
         return Record(
             **{
                 field.name: lanes_of(
-                    Array(field.type, type_.length), [tuple(row[i] for row in each) for each in zip(*rows, strict=True)]
+                    Array(field.type, type_.length),
+                    [tuple(row[i] for row in element_rows) for element_rows in zip(*rows, strict=True)],
                 )
                 for i, field in fields
             }
@@ -71,7 +72,7 @@ def lanes_of(type_: Type, values: list[Any]) -> Any:
 
 
 def assert_agrees(source: str, lanes: list[tuple[Any, ...]], name: str = "f", **uniforms: Any) -> None:
-    """The printed function equals the interpreter in every lane, bit for bit.
+    """Asserts that the printed function and the interpreter give the same bits in every lane.
 
     `lanes` holds the in and inout arguments of each lane.
     """

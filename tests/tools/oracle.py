@@ -5,9 +5,9 @@
     technique("march_light", body_distance="sphere")     # a slot: a library function, FILE:FUNCTION, or source text
     technique("common/hash.sss:hash_unit")(x=7)          # any function of a library file
 
-Values go by the name of the technique's parameter or uniform. Scalars are () or (count,), vectors and matrices have
+Values are passed by the name of the parameter or uniform. Scalars are () or (count,), vectors and matrices have
 their components last: (count, 3), (count, row, column). A texture is an array as `Texture` takes it, or a `Texture`.
-Uniforms that are left out have their defaults. The result has the same layout; with out parameters it is a tuple.
+Omitted uniforms have their defaults. The result has the same layout; with out parameters it is a tuple.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def unit(v: Any) -> Array:
 
 
 def units(count: int, seed: int = 7) -> Array:
-    """Random directions."""
+    """Random unit vectors."""
     return unit(rng(seed).normal(size=(count, 3)))
 
 
@@ -99,7 +99,7 @@ def technique(name: str, **slots: str) -> Technique:
 @cache
 def _technique(name: str, slots: tuple[tuple[str, str], ...]) -> Technique:
     module, function = _function(name)
-    declared = {one.name: one for one in module.functions if one.body is None}
+    declared = {declaration.name: declaration for declaration in module.functions if declaration.body is None}
     bound = {slot: _bound(text, declared[slot]) for slot, text in slots}
     linked = link([LinkStage(function.name, "", module, function, bound, {}, frozenset())])
     compiled = transpile(linked.module, "numpy", function.name)
@@ -109,9 +109,9 @@ def _technique(name: str, slots: tuple[tuple[str, str], ...]) -> Technique:
     own = {param.name: param.type for param in function.params if param.direction != "out"}
     declared_uniforms = {uniform.name: uniform for uniform in linked.module.uniforms}
     renamed = list(signature(result).parameters)[len(own) :]
-    # a name that some language reserves (HLSL's `center`) has a suffix
-    rest = [name if name in declared_uniforms else re.sub(r"_\d*$", "", name) for name in renamed]
-    uniforms = {name: declared_uniforms[name] for name in rest}
+    # a name that a language reserves (`center` in HLSL) has a suffix
+    uniform_names = [name if name in declared_uniforms else re.sub(r"_\d*$", "", name) for name in renamed]
+    uniforms = {name: declared_uniforms[name] for name in uniform_names}
     results = [function.result] if function.result != VOID else []
     results += [param.type for param in function.params if param.direction != "in"]
     return Technique(
@@ -128,7 +128,7 @@ def _function(name: str) -> tuple[Module, Function]:
         loaded = library.load(name)
         return loaded.module, loaded.function
     module = load_file(Path(TECHNIQUES) / file, file, (TECHNIQUES,))
-    return module, next(one for one in module.functions if one.name == inner)
+    return module, next(function for function in module.functions if function.name == inner)
 
 
 def _bound(text: str, slot: Function) -> tuple[Module, Function]:
@@ -150,7 +150,7 @@ def _default(type_: Type, value: tuple[float, ...]) -> Any:
 
 
 def _inwards(type_: Type, value: Any) -> Any:
-    """From the layout of the tests to that of the runtime, where components come first."""
+    """Converts the layout of the tests to that of the runtime, which has components first."""
     if isinstance(type_, Sampler):
         return value if isinstance(value, Texture) else Texture(value)
     array = np.asarray(value, DTYPES[kind_of(type_)])
@@ -160,7 +160,7 @@ def _inwards(type_: Type, value: Any) -> Any:
 
 
 def _outwards(type_: Type, value: Any, counts: set[int]) -> Any:
-    """The inverse; where no argument has lanes the result has none."""
+    """The inverse conversion; the result has no lanes if no argument has lanes."""
     rank = _rank(type_)
     array = np.asarray(value)
     array = np.moveaxis(array, -1, 0) if array.ndim > rank else array

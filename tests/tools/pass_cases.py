@@ -1,4 +1,4 @@
-"""For tests of passes: modules from source, and comparing them with the source of the expected result."""
+"""Helpers for tests of passes: modules from source, and their comparison with the source of the expected result."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def key(module: Module, name: str) -> str:
 
 
 def assert_is(module: Module, source: str) -> None:
-    """The module is valid, and equals that of the source apart from spans."""
+    """Asserts that the module is valid and equals that of the source, apart from spans."""
     assert verify(module) == []
     assert text(module) == text(module_of(source))
 

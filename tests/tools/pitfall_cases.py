@@ -1,8 +1,8 @@
 """The cases of tests/pitfalls: one rule per file, each case a source and its text in the targets.
 
-A case is a source under `=== source` (see `validate`), followed by the output of each target. GLSL ES is given
-where it differs from GLSL 3.30, and Unity's dialects where they differ from HLSL. A new case is a new source;
-UPDATE_SNAPSHOTS=1 adds and renews the rest, for review.
+A case is a source under `=== source` (see `validate`), followed by the output of each target. The output of GLSL ES
+is listed if it differs from GLSL 3.30, that of Unity's dialects if it differs from HLSL. To add a case, write its
+source; UPDATE_SNAPSHOTS=1 writes the outputs, for review.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from sssgen.lang.loader import merge
 from validate import module_of, printed
 
 FOLDER = TESTS / "pitfalls"
-SHOWN = {"glsl": "", "glsl-es": "glsl", "hlsl": "", "dx9": "hlsl", "urp": "hlsl", "wgsl": ""}
-"""The targets that are shown, and for some the one that they are shown beside only where they differ."""
+COMPARED_WITH = {"glsl": "", "glsl-es": "glsl", "hlsl": "", "dx9": "hlsl", "urp": "hlsl", "wgsl": ""}
+"""Target → the target whose output must differ for its own to be listed; '' if it is always listed."""
 
 
 class Case(NamedTuple):
-    """One source and its texts, by target."""
+    """A source and its texts by target."""
 
     rule: str
     source: str
@@ -37,7 +37,7 @@ class Case(NamedTuple):
 
 
 def read(path: Path) -> tuple[str, list[Case]]:
-    """The rule, which is the text before the first case, and the cases."""
+    """The rule (the text before the first case), and the cases."""
     rule, *parts = re.split(r"^=== source\n", path.read_text(encoding="utf-8"), flags=re.MULTILINE)
     cases = []
     for part in parts:
@@ -48,13 +48,13 @@ def read(path: Path) -> tuple[str, list[Case]]:
 
 
 def renewed(path: Path) -> str:
-    """The file's text with the current texts of its sources."""
+    """The text of the file with the current outputs of its sources."""
     rule, cases = read(path)
     lines = [rule, ""]
     for case in cases:
         lines += ["=== source", case.source]
-        result = {target: printed(case.source, target) for target in SHOWN}
-        for target, beside in SHOWN.items():
+        result = {target: printed(case.source, target) for target in COMPARED_WITH}
+        for target, beside in COMPARED_WITH.items():
             same = beside and plain(result[target]) == plain(result[beside])
             lines += [] if same else [f"--- {target}", result[target]]
         lines.append("")
@@ -62,7 +62,7 @@ def renewed(path: Path) -> str:
 
 
 def plain(text: str) -> str:
-    """A text without the name of the target that refuses."""
+    """A text without the target's name, which error messages contain."""
     return re.sub(r"(?m)^(error: .*) \([\w-]+\)$", r"\1", text)
 
 
@@ -74,13 +74,13 @@ CASES = [case for path in RULES for case in read(path)[1]]
 
 
 def called(module: Module) -> Function:
-    """The function that a case is about: the last one."""
+    """The tested function of a case, which is its last one."""
     return module.functions[-1]
 
 
 @cache
 def program() -> tuple[Module, tuple[tuple[Case, Function], ...]]:
-    """All cases that no target refuses in one module, and the function of each."""
+    """A module with all cases that no target refuses, and the function of each case."""
     whole, functions = Module(), []
     for number, case in enumerate(CASES):
         if case.refused:

@@ -1,4 +1,4 @@
-"""For tests of the preprocessor: texts with included files, and their tokens."""
+"""Helpers for tests of the preprocessor: texts with included files, and their tokens."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from watchdog import bounded
 
 def run(text: str, files: Mapping[str, str] | None = None, **defines: str) -> Preprocessed:
     def find(name: str, place: Span, angled: bool) -> tuple[str, str]:
-        shown = f"<{name}>" if angled else name
-        if shown not in (files or {}):
-            raise failure(f"no {shown} at {place.line}:{place.column}-{place.end_column}")
-        return shown, (files or {})[shown]
+        key = f"<{name}>" if angled else name
+        if key not in (files or {}):
+            raise failure(f"no {key} at {place.line}:{place.column}-{place.end_column}")
+        return key, (files or {})[key]
 
     return preprocess(text, "main", find, defines)
 
@@ -28,12 +28,12 @@ def words(text: str, files: Mapping[str, str] | None = None, **defines: str) -> 
 
 
 def spaced(text: str) -> str:
-    """A text's tokens, separated by spaces, as from `words`."""
+    """The tokens of a text, separated by spaces."""
     return " ".join(token.text for token in scan(text, "")[0])
 
 
 def faults(text: str, files: Mapping[str, str] | None = None, **defines: str) -> list[tuple[str, str, int, int]]:
-    """Of each error its message, its file, its line and its column."""
+    """The message, file, line and column of each error."""
     with bounded(), pytest.raises(SssgenError) as caught:
         run(text, files, **defines)
-    return [(one.message, *one.span[:3]) for one in caught.value.diagnostics]
+    return [(error.message, *error.span[:3]) for error in caught.value.diagnostics]

@@ -1,4 +1,4 @@
-"""Random programs of the language whose control flow differs from lane to lane, for property tests."""
+"""Random programs of the language with control flow that differs between lanes, for property tests."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ float keep(float x) { if (x > 3.0) discard; return x + 0.5; }
 
 
 class Programs:
-    """Makes the text of one function `f(float a, float b, int n, inout float c, out float d)`.
+    """Generates the text of a function `f(float a, float b, int n, inout float c, out float d)`.
 
     All arithmetic is exact or correctly rounded in float64, so that two runs can be compared to the last bit.
     """
@@ -37,12 +37,12 @@ class Programs:
         self.discards = discards
         self.size = size
         self.declared: list[str] = []
-        """The names that may not be declared again here; sibling blocks use the same ones."""
+        """The names that may not be declared again in the block; sibling blocks use the same names."""
         self.floats: list[str] = []
         self.ints: list[str] = []
         self.counters: list[str] = []
         self.loops: list[bool] = []
-        """The loops around, and whether each may be continued."""
+        """The enclosing loops, and whether each allows `continue`."""
 
     def program(self) -> str:
         self.floats = ["a", "b", "c", "d", "v.x", "v.y", "v.z", "pair.first", "pair.second.y"]

@@ -51,11 +51,11 @@ class ShadedPrograms(Programs):
 
 
 def module_for(seed: int, discards: bool) -> Module:
-    """A random module whose `f` is as in `Programs`; only inside a property test."""
+    """A random module with the function `f` of `Programs`; for use inside a property test."""
     source = ShadedPrograms(Random(seed), discards).program()
     try:
         module = check(parse(source, "random.sss"), source)
-    except SssgenError:  # an index that is outside its array
+    except SssgenError:  # an index is outside its array
         reject()
     assume(not verify(module))
     return module

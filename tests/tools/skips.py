@@ -11,11 +11,11 @@ import pytest
 from sssgen.harness import compilers
 from sssgen.harness.compilers import Compiler, CompilerMissing
 
-Found = TypeVar("Found")
+Tool = TypeVar("Tool")
 
 
-def or_skip(get: Callable[[str], Found], name: str) -> Found:
-    """The compiler or back end of that name. Where it is missing the test is skipped; with CI set it fails."""
+def or_skip(get: Callable[[str], Tool], name: str) -> Tool:
+    """The compiler or back end of that name. If it is missing, the test is skipped; with CI set, it fails."""
     try:
         return get(name)
     except CompilerMissing as reason:

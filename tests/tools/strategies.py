@@ -1,7 +1,7 @@
 """Hypothesis strategies for well-typed IR.
 
-`modules()` makes modules as the checker leaves them: nothing in them is longer than it has to be (no constructor that
-does nothing, no sign before a literal), so that what `as_source` writes of them gives the same module back.
+`modules()` generates modules in the form of the checker's output, without redundant nodes (no constructor without an
+effect, no sign before a literal), so that the source that `as_source` writes gives the same module again.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ BINARY = ("+", "-", "*", "/", "%", "<<", ">>", "<", ">", "<=", ">=", "==", "!=",
 ASSIGNED = ("+", "-", "*", "/", "%", "<<", ">>", "&", "|", "^")
 
 floats32 = st.floats(width=32, allow_nan=False, allow_infinity=False)
-# no \\ at a line's end: there it joins the next line on
+# no \\ at the end of a line, where it would join the next line
 _lines = st.text("ab \"\\'*é→\x00\x1b", max_size=8).map(lambda line: line.rstrip().rstrip("\\").rstrip())
 docs = st.lists(_lines, max_size=3).map("\n".join).map(lambda doc: doc.strip("\n").rstrip())
 spans = st.builds(
@@ -59,7 +59,7 @@ class Overload(NamedTuple):
 
 
 def _overloads() -> dict[Type, list[Overload]]:
-    """The builtins by their result; those that want constants are left out."""
+    """The builtins by their result, without those that require constants."""
     results: dict[Type, dict[Overload, None]] = {}
     for name, row in BUILTINS.items():
         if row.constant:
@@ -103,7 +103,7 @@ def literals(kind: str) -> st.SearchStrategy[ir.Expr]:
 @st.composite
 def modules(draw: st.DrawFn) -> ir.Module:
     """A whole module without spans: structs, constants, uniforms, functions and slots."""
-    return _Maker(draw).module()
+    return _Generator(draw).module()
 
 
 @st.composite
@@ -113,7 +113,7 @@ def placed_modules(draw: st.DrawFn) -> ir.Module:
 
 
 def placed(module: ir.Module, choices: list[ir.Span]) -> ir.Module:
-    """The module with these spans dealt out to its nodes, some getting none."""
+    """The module with these spans assigned to its nodes; some nodes get none."""
     count = 0
 
     def deal(node: T) -> T:
@@ -139,13 +139,13 @@ def placed(module: ir.Module, choices: list[ir.Span]) -> ir.Module:
 
     return ir.Module(
         tuple(map(deal, module.structs)),
-        tuple(deal(one._replace(value=rewrite(one.value, deal))) for one in module.constants),
+        tuple(deal(constant._replace(value=rewrite(constant.value, deal))) for constant in module.constants),
         tuple(map(deal, module.uniforms)),
         tuple(map(function, module.functions)),
     )
 
 
-class _Maker:
+class _Generator:
     """Draws the parts of one module, and tracks the scope."""
 
     def __init__(self, draw: st.DrawFn) -> None:
@@ -154,8 +154,8 @@ class _Maker:
         self.globals: list[ir.Global] = []
         self.functions: list[ir.Function] = []
         self.scopes: list[list[ir.Local]] = []
-        self.kept: set[str] = set()
-        """Loop counters and quantities, which nothing is assigned to."""
+        self.read_only: set[str] = set()
+        """Loop counters and quantities, which are never assigned."""
         self.constant = False
         self.result: Type = VOID
         self.names = 0
@@ -163,10 +163,10 @@ class _Maker:
     def pick(self, choices: list[T]) -> T:
         return self.draw(st.sampled_from(choices))
 
-    def chance(self, one_in: int) -> bool:
-        return self.draw(st.integers(1, one_in)) == one_in
+    def chance(self, count: int) -> bool:
+        return self.draw(st.integers(1, count)) == count
 
-    def some(self, fewest: int, most: int) -> range:
+    def repetitions(self, fewest: int, most: int) -> range:
         return range(self.draw(st.integers(fewest, most)))
 
     def name(self, letter: str) -> str:
@@ -186,19 +186,19 @@ class _Maker:
     # Declarations
 
     def module(self) -> ir.Module:
-        structs = [self.struct() for _ in self.some(0, 2)]
+        structs = [self.struct() for _ in self.repetitions(0, 2)]
         self.constant = True
-        constants = [self.module_constant() for _ in self.some(0, 2)]
+        constants = [self.module_constant() for _ in self.repetitions(0, 2)]
         self.constant = False
-        uniforms = [self.uniform() for _ in self.some(1, 4)]
-        for _ in self.some(1, 4):
+        uniforms = [self.uniform() for _ in self.repetitions(1, 4)]
+        for _ in self.repetitions(1, 4):
             function = self.function()
             if all(function.key != other.key for other in self.functions):
                 self.functions.append(function)
         return ir.Module(tuple(structs), tuple(constants), tuple(uniforms), tuple(self.functions))
 
     def struct(self) -> ir.StructDecl:
-        types = [self.type() for _ in self.some(1, 3)]
+        types = [self.type() for _ in self.repetitions(1, 3)]
         fields = tuple(Field(self.name("m"), type_, self.quantity(type_)) for type_ in types)
         self.structs.append(Struct(self.name("S"), fields))
         return ir.StructDecl(self.structs[-1], self.draw(docs), NOWHERE)
@@ -221,8 +221,8 @@ class _Maker:
             type_ = Array(type_, 2) if self.chance(8) else type_
             quantity = self.quantity(type_)
             kind = kind_of(type_.element if isinstance(type_, Array) else type_)
-            drawn = [self.draw(literals(kind)) for _ in range(components(type_))]
-            default = tuple(float(literal.value) for literal in drawn if isinstance(literal, ir.Literal))
+            values = [self.draw(literals(kind)) for _ in range(components(type_))]
+            default = tuple(float(literal.value) for literal in values if isinstance(literal, ir.Literal))
             if kind != "bool" and kind_of(type_) and max(map(abs, default)) < 1e6 and self.chance(2):
                 hints.append(("hint_range", (min(default) - 1.0, max(default) + 0.5)))
         if self.chance(3):
@@ -233,13 +233,13 @@ class _Maker:
 
     def function(self) -> ir.Function:
         params: list[ir.Param] = []
-        for _ in self.some(0, 3):
+        for _ in self.repetitions(0, 3):
             type_ = self.type() if self.chance(2) else self.pick(_USUAL)
             direction = self.pick(["in", "in", "in", "out", "inout"])
             quantity = self.quantity(type_) if direction == "in" else ""
             params.append(ir.Param(self.name("p"), type_, direction, quantity, NOWHERE))
         self.scopes = [[ir.Local(param.type, param.name, NOWHERE) for param in params]]
-        self.kept = {param.name for param in params if param.quantity}
+        self.read_only = {param.name for param in params if param.quantity}
         self.result = VOID if self.chance(4) else self.type()
         quantity = self.quantity(self.result)
         body: ir.Block | None = None
@@ -254,7 +254,7 @@ class _Maker:
 
     def block(self, depth: int, loop: bool) -> ir.Block:
         self.scopes.append([])
-        block = tuple(stmt for _ in self.some(1, 4) for stmt in self.stmt(depth, loop))
+        block = tuple(stmt for _ in self.repetitions(1, 4) for stmt in self.stmt(depth, loop))
         self.scopes.pop()
         return block
 
@@ -293,7 +293,7 @@ class _Maker:
         start, stop, step = (ir.Literal(type_, value, NOWHERE) for value in (0, 4, 1))
         condition = ir.Binary(BOOL, "<", counter, stop, NOWHERE)
         next_round = ir.Assign(counter, "+", step, NOWHERE)
-        self.kept.add(counter.name)
+        self.read_only.add(counter.name)
         outer = self.declare(counter.name, type_, start)
         body = self.block(depth, True)
         if is_for:
@@ -303,10 +303,10 @@ class _Maker:
         return (outer, ir.While(condition, (*body, next_round), NOWHERE))
 
     def targets(self, type_: Type | None = None) -> list[ir.Expr]:
-        """What may be assigned to: variables, and parts of them."""
+        """Possible targets of an assignment: variables, and their parts."""
         results: list[ir.Expr] = []
         for local in self.locals():
-            if local.name in self.kept:
+            if local.name in self.read_only:
                 continue
             results.append(local)
             if isinstance(local.type, Vector):
@@ -337,9 +337,9 @@ class _Maker:
         return [local for scope in self.scopes for local in scope] if not self.constant else []
 
     def expr(self, type_: Type, depth: int) -> ir.Expr:
-        """An expression of a type, at most `depth` operators deep where the type allows."""
+        """An expression of a type, with a depth of at most `depth` operators if the type allows it."""
         table: list[ir.Expr] = [*self.locals(), *self.globals]
-        named = [one for one in table if one.type == type_]
+        named = [variable for variable in table if variable.type == type_]
         if named and self.chance(2):
             return self.pick(named)
         makers = [self.operation, self.builtin, self.select, self.part, self.prefix, self.called]
@@ -352,7 +352,7 @@ class _Maker:
             if depth > 0 and self.chance(3):
                 other = Scalar(self.pick([kind for kind in KINDS if kind != type_.kind]))
                 inner = self.expr(other, depth - 1)
-                if not isinstance(inner, ir.Literal):  # a literal is converted by the checker
+                if not isinstance(inner, ir.Literal):  # the checker converts literals
                     return ir.Construct(type_, (inner,), NOWHERE)
             return self.draw(literals(type_.kind))
         return ir.Construct(type_, tuple(self.expr(part, depth - 1) for part in self.parts(type_)), NOWHERE)
@@ -382,7 +382,7 @@ class _Maker:
     def prefix(self, type_: Type, depth: int) -> ir.Expr | None:
         ops = [op for op in "-!~" if prefix_type(op, type_) is not None]
         operand = self.expr(type_, depth) if ops else None
-        if operand is None or isinstance(operand, ir.Literal):  # the checker folds a literal's sign
+        if operand is None or isinstance(operand, ir.Literal):  # the checker folds the sign of a literal
             return None
         return ir.Unary(type_, self.pick(ops), operand, NOWHERE)
 
@@ -398,7 +398,7 @@ class _Maker:
             return None
         args: list[ir.Expr] = []
         for param in overload.types:
-            samplers = [one for one in self.globals if one.type == param]
+            samplers = [sampler for sampler in self.globals if sampler.type == param]
             if isinstance(param, Sampler):
                 if not samplers:
                     return None

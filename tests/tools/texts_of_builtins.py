@@ -1,8 +1,8 @@
 """The text of every builtin of the intrinsic table in each target.
 
-SAME has the texts that are equal everywhere; the rest is in CASES (and in texts_of_glsl_4.py and texts_of_reads.py), each for
-GLSL 3.30, HLSL and WGSL. GLSL ES is as GLSL, and Unity's two dialects are as HLSL, where a case does not say otherwise.
-NumPy has each builtin under its own name.
+SAME has the texts that are equal in all targets. CASES, texts_of_glsl_4.py and texts_of_reads.py have the other texts,
+each for GLSL 3.30, HLSL and WGSL. GLSL ES uses the text of GLSL, and Unity's two dialects that of HLSL, unless a case
+has another text. NumPy has each builtin under its own name.
 """
 
 from __future__ import annotations
@@ -449,7 +449,7 @@ def refusals(builtin: str, *targets: str) -> dict[str, str]:
 
 
 def sized(name: str) -> str:
-    """The function that HLSL gets for a texture's size, and its call."""
+    """The HLSL function for the size of a texture, and its call."""
     spelt = load("hlsl").types[SAMPLERS[name]]
     parts = "width, height" + ", depth" * ("3D" in spelt) + ", layers" * ("Array" in spelt)
     size = f"int{parts.count(',') + 1}"

@@ -1,4 +1,4 @@
-"""What the targets make of the builtins of GLSL 4.00 to 4.60; a part of test_targets_intrinsics.py."""
+"""The texts of the builtins of GLSL 4.00 to 4.60 in the targets; a part of texts_of_builtins.py."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the targets make of texture reads beyond those of plain textures; a part of test_targets_intrinsics.py."""
+"""The texts of reads of arrays, cubes and shadow textures in the targets; a part of texts_of_builtins.py."""
 
 from __future__ import annotations
 

@@ -1,14 +1,14 @@
-"""One text of the language and its text in every target.
+"""Compares the texts that the targets emit for a source with the expected texts.
 
     validate_all("saturate(x)", {"glsl": "clamp(x, 0.0, 1.0)", "hlsl": "saturate(x)", "wgsl": "saturate(x)"})
 
 An expression's free variables are typed by their names: x, y, z, t are floats, i, j, k ints, u, v, w uints, p, q bools, m, n
-matrices, and a digit behind the letter is the size: x3 is a vec3, p2 a bvec2, m4 a mat4. `map` is a sampler2D, `volume`
-a sampler3D, `cube` a samplerCube, and SAMPLERS has more. What is compared is the text behind `return`, or, where a target needs more than that,
-its statements, with the functions that it calls above them.
+matrices, and a digit after the letter is the size: x3 is a vec3, p2 a bvec2, m4 a mat4. `map` is a sampler2D, `volume`
+a sampler3D, `cube` a samplerCube, and SAMPLERS has more. The compared text is the expression after `return`, or, if a target needs several statements, the statements, after
+the functions that they call.
 
-A text with a brace in it is one or more functions, and whole functions are compared. Where a target refuses, it is the
-message: `error: …`.
+If the source contains a brace, it is one or more functions, and whole functions are compared. If a target refuses the
+source, the text is the message: `error: …`.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ TARGETS = {
     "wgsl": "wgsl",
     "numpy": "numpy",
 }
-"""How the tests call the targets: `dx9` and `urp` are HLSL as Unity's two pipelines have it."""
+"""Name of a target in the tests → target: `dx9` and `urp` are the HLSL dialects of Unity's two pipelines."""
 
 _KINDS = {"x": "float", "y": "float", "z": "float", "t": "float", "i": "int", "j": "int", "k": "int", "u": "uint", "v": "uint", "w": "uint",
           "p": "bool", "q": "bool"}  # fmt: skip
@@ -47,7 +47,7 @@ _VARIABLE = re.compile(rf"(?<![.\w])(?:[xyztijkuvwpq][234]?|[mn][234]|{'|'.join(
 
 
 def validate_all(source: str, expected: Mapping[str, str]) -> None:
-    """Fails with all targets' texts where one is not the expected one."""
+    """Fails, with the texts of all targets, if a text is not as expected."""
     results = {target: printed(source, target) for target in expected}
     reference = {target: dedent(text).strip() for target, text in expected.items()}
     texts = "\n".join(f"{target}:\n{text}" for target, text in results.items())
@@ -56,7 +56,7 @@ def validate_all(source: str, expected: Mapping[str, str]) -> None:
 
 
 def printed(source: str, target: str) -> str:
-    """What a target makes of an expression or of functions."""
+    """The text of an expression or of functions in a target."""
     try:
         text = code(module_of(source), TARGETS.get(target, target))
     except SssgenError as error:
@@ -99,7 +99,7 @@ def variable_type(name: str) -> Type:
 
 
 def code(module: ir.Module, target: str) -> str:
-    """The functions form of a module without the file's head and include guard."""
+    """The functions form of a module, without the head of the file and the include guard."""
     files = transpile(module, target, "case").files
     (text,) = [text for name, text in files.items() if not name.endswith(".json")]
     lines = text.splitlines()

@@ -10,13 +10,13 @@ from types import FrameType
 
 try:
     import resource
-except ImportError:  # Windows
+except ImportError:  # on Windows
     resource = None  # type: ignore[assignment]  # a module's name holds None
 
 SECONDS = 30
-"""The processor time of one input: ten times what the slowest takes."""
+"""The limit of processor time for an input: ten times that of the slowest input."""
 HANG = 600
-"""The seconds of the clock after which an input hangs, for instance in a read of a pipe that nobody writes to."""
+"""The number of seconds after which an input counts as hanging, for instance in a read of an unused pipe."""
 
 
 class TooSlow(BaseException):
@@ -25,7 +25,7 @@ class TooSlow(BaseException):
 
 @contextlib.contextmanager
 def bounded(seconds: int = SECONDS, what: str = "the input") -> Iterator[None]:
-    """Raises TooSlow in the block, where the system has signals, once it has used `seconds` of processor time."""
+    """Raises TooSlow in the block if it uses `seconds` of processor time (on systems with signals)."""
     if not hasattr(signal, "setitimer"):
         yield
         return
@@ -47,7 +47,7 @@ def bounded(seconds: int = SECONDS, what: str = "the input") -> Iterator[None]:
 
 @contextlib.contextmanager
 def roomy(mebibytes: int) -> Iterator[None]:
-    """Lets the process have this much more memory in the block than it has at its start; more is a MemoryError."""
+    """Limits the additional memory of the process in the block; more gives a MemoryError."""
     if resource is None or not hasattr(resource, "RLIMIT_AS"):
         yield
         return
@@ -61,7 +61,7 @@ def roomy(mebibytes: int) -> Iterator[None]:
 
 
 def _used() -> int:
-    """The bytes of address space that the process has now; 0 where the system does not tell."""
+    """The current size of the address space in bytes; 0 if the system does not report it."""
     try:
         return int(Path("/proc/self/statm").read_text("ascii").split()[0]) * resource.getpagesize()
     except OSError:

@@ -1,4 +1,4 @@
-"""Complete shaders in the IR's text form, and their text in the targets."""
+"""Complete shaders in the text form of the IR, and their texts in the targets."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def emitted_shader(text: str, target: str, keep: bool = True) -> str:
 
 
 def compile_errors(text: str, target: str, stage: Stage = "fragment") -> list[str]:
-    """The errors of other compilers in a complete shader."""
+    """The errors that external compilers report for a complete shader."""
     entry = "main" if target.startswith("glsl") else f"{stage}_main"
     result = check(Source(text, target, stage, entry))
-    return [str(one) for messages in result.values() for one in errors(messages)]
+    return [str(message) for messages in result.values() for message in errors(messages)]
