@@ -28,13 +28,13 @@ from public_code import (
     COMPILERS,
     Code,
     TargetResult,
-    accepted,
-    blank,
+    file_errors,
     glslang,
     naga_glsl,
     preprocessed,
     read,
     target_results,
+    without_names,
 )
 
 from sssgen.support.worker_process import LostError, Process
@@ -87,7 +87,7 @@ class Pool:
         self.threads.shutdown()
 
 
-def judged(
+def verdicts_on(
     kind: str, codes: Sequence[Code], folders: Sequence[Path], targets: Sequence[str], pool: Pool
 ) -> list[Verdict]:
     """The verdict on each file."""
@@ -150,9 +150,13 @@ def report(verdicts: Sequence[Verdict], skipped: Counter[str], targets: Sequence
             cells.append(f"{good}/{len(chosen)} {100.0 * good / max(1, len(chosen)):.1f} %")
         uncounted = sum(skipped.values()) if kind == "all" else skipped[kind]
         print(f"{kind:14}" + "".join(f"{cell:>18}" for cell in cells) + f"   {uncounted}")
-    counted = Counter(f"{step}: {blank(problem)}" for verdict in verdicts for step, problem in verdict.problems.items())
+    counted = Counter(
+        f"{step}: {without_names(problem)}" for verdict in verdicts for step, problem in verdict.problems.items()
+    )
     examples = {
-        f"{step}: {blank(problem)}": verdict for verdict in verdicts for step, problem in verdict.problems.items()
+        f"{step}: {without_names(problem)}": verdict
+        for verdict in verdicts
+        for step, problem in verdict.problems.items()
     }
     print(f"\nThe most frequent of {len(counted)} problems, each with a file")
     for reason, count in counted.most_common(reasons):
@@ -205,10 +209,10 @@ def measure(kinds: dict[str, Path], targets: Sequence[str], inputs: argparse.Nam
                 read(path, inputs.include_dir)
                 for path in files_of(folder, inputs.ext or [".glsl", ".frag", ".vert"])[:: inputs.every]
             ]
-            refusals = accepted(codes)
+            refusals = file_errors(codes)
             counting = [code for code, refusal in zip(codes, refusals, strict=True) if not refusal]
             skipped[kind] = len(codes) - len(counting)
-            result = judged(kind, counting, inputs.include_dir, targets, pool)
+            result = verdicts_on(kind, counting, inputs.include_dir, targets, pool)
             verdicts += with_naga_messages(result, inputs.include_dir, pool) if inputs.naga else result
             print(f"{kind}: {len(codes)} files", file=sys.stderr)
     finally:

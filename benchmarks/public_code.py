@@ -84,7 +84,7 @@ def read(path: Path, folders: Sequence[Path]) -> Code:
         return Code(path, f"#error {error.diagnostics[0].message}\n")
 
 
-def accepted(codes: Sequence[Code]) -> list[str]:
+def file_errors(codes: Sequence[Code]) -> list[str]:
     """The error of glslang for each file; '' if the file counts."""
     reported = _in_batches([(code.stage, _whole(code, own_version=True)) for code in codes])
     again = [index for index, message in enumerate(reported) if message and _VERSION.search(codes[index].text)]
@@ -244,7 +244,7 @@ def _reason(error: Exception) -> str:
     return f"BROKEN: {type(error).__name__}{place}: {error}"
 
 
-def blank(message: str) -> str:
+def without_names(message: str) -> str:
     """A message without its names and numbers, so that equal problems are counted together."""
     message = re.sub(r"'[^']*'|\"[^\"]*\"|`[^`]*`", "'…'", message.splitlines()[0] if message else "")
     return re.sub(r"\d+", "N", message)[:150]

@@ -34,8 +34,8 @@ def page() -> str:
     lines = [
         "# Parity of the builtins",
         "",
-        "The largest deviation of every builtin of the [table](intrinsics.md) from NumPy in float64, on every back "
-        "end.",
+        "This page shows the largest deviation of every builtin of the [table](intrinsics.md) from NumPy in float64, "
+        "on every back end.",
         "`python -m qualification.pages.parity` writes this page;",
         "`tests/qualification/test_parity_intrinsics.py` checks the limits on every back end.",
         "",

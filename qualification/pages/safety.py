@@ -46,8 +46,9 @@ def counts(rows: list[Safety]) -> list[str]:
         "## The library",
         "",
         *_paragraph(
-            "Each technique as a function that other code calls, for all inputs that its contract allows. Operations "
-            "are those of the static cost; `auto` and `all` add operations in these modes of `--guards`."
+            "The table analyses each technique as a function that other code calls, for all inputs that its contract "
+            "allows. Operations are those of the static cost; `auto` and `all` add operations in these modes of "
+            "`--guards`."
         ),
         "| Technique | Proven | Guarded | Operations | `auto` adds | `all` adds |",
         "|---|---|---|---|---|---|",
@@ -83,7 +84,7 @@ def guards(removed: list[Mutant]) -> list[str]:
         "## Each guard removed",
         "",
         *_paragraph(
-            f"Of {len(removed)} guards {needed} have an input that needs them: if an undefined result is taken as "
+            f"Of {len(removed)} guards {needed} have an input that needs them: if an undefined result counts as "
             f"NaN, the technique returns NaN. On the devices below, {failing} fail without the guard"
             + (
                 f"; {len(by_specification)} are undefined only by the language's specification."
@@ -121,8 +122,8 @@ def dangers(chosen: list[Specimen], machines: Machines) -> list[str]:
         "## Dangerous inputs",
         "",
         *_paragraph(
-            "The number of failures, over the techniques that each row applies to. `sssgen stress --row NAME` runs "
-            "one row."
+            "The table shows the number of failures over the techniques that each row applies to. `sssgen stress --row "
+            "NAME` runs a single row."
         ),
         f"| Row | Input | Required | Techniques | Inputs | {' | '.join(BACKENDS)} |",
         "|---" * (5 + len(BACKENDS)) + "|",

@@ -1,1 +1,1 @@
-"""Measuring techniques: reference, error, cost, charts of them, and the choice of one."""
+"""Measures techniques: references, errors, costs, charts, and the choice of a chain."""

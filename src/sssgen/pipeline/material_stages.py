@@ -12,7 +12,7 @@ from sssgen.targets.descriptor import Target
 
 
 class TargetStage(NamedTuple):
-    """One stage of a chain."""
+    """A stage of the chain for a target."""
 
     link: LinkStage
     span: Span

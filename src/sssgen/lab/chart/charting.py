@@ -1,4 +1,4 @@
-"""Fits and measures every candidate on every scene, and returns a chart's record, to draw or to pick from.
+"""Fits and measures every candidate on every scene, and returns the record of a chart, for drawing and picking.
 
     record = chart_record([measured_scene.load("cube")], Settings())
 
@@ -245,7 +245,7 @@ def _results(items: Sequence[Item], settings: Settings) -> list[Any]:
             failed.setdefault(result.message, {})[result.name] = None
     if failed:
         diagnostics = []
-        for message, names in failed.items():  # an error in a scene appears in all of its items
+        for message, names in failed.items():  # an error of a scene appears in all of its items
             first, more = next(iter(names)), f" and {len(names) - 1} more" if len(names) > 1 else ""
             diagnostics.append(failure(f"{first}{more}: {message}").diagnostics[0])
         raise SssgenError(diagnostics)

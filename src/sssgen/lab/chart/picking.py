@@ -38,7 +38,7 @@ class Pick(NamedTuple):
     better: Point | None
     """The cheapest of the more accurate points"""
     met: bool
-    """Whether the choice is within the limit; otherwise it is the nearest to it"""
+    """Whether the choice is within the limit; if not, it is the nearest point"""
 
 
 def limit_of(point: Point) -> float:

@@ -125,7 +125,7 @@ def _rays(camera: Camera, size: tuple[int, int]) -> Points:
 
 
 def _visible_points(geometry: Geometry, camera: Camera, size: tuple[int, int]) -> Points | None:
-    """The hit points, row by row, each row resampled to the full width; None without a hit."""
+    """The hit points by rows, each resampled to the full width; None without a hit."""
     tiles = math.ceil(math.sqrt(size[0] * size[1] / MOST_RAYS))
     width, height = (math.ceil(side / tiles) for side in size)
     origin, directions = camera.rays(width, height)

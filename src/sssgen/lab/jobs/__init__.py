@@ -1,1 +1,1 @@
-"""Work items and where they run: this process, local processes, or a cluster."""
+"""Work items, which run in this process, in local processes, or on a cluster."""

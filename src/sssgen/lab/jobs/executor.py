@@ -1,4 +1,4 @@
-"""Runs work items: here, in processes of this machine, or on a Dask cluster, with the same results to the byte.
+"""Runs work items in this process, in processes of this machine, or on a Dask cluster; all give the same bytes.
 
     items = [Item("package.measurement:error_of", (technique, setting, scene), f"{technique} on {scene}") for ...]
     with ProgressBar() as progress:

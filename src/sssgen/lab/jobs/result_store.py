@@ -1,6 +1,6 @@
 """Results as bytes, and the folder that stores each atomically under its item's key.
 
-A run finds the results of an interrupted one here. The folder may be deleted: that only costs time.
+A run continues with the results of an interrupted run. The folder may be deleted; results are then computed again.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def encoded(value: Any) -> bytes:
     """
     file = io.BytesIO()
     pickler = _Pickler(file, protocol=5)
-    pickler.fast = True  # without references to earlier objects
+    pickler.fast = True  # fast mode writes no references to earlier objects
     pickler.dump(value)
     return file.getvalue()
 

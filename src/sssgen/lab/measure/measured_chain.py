@@ -23,7 +23,7 @@ NAME = "measured"
 
 
 class MaterialSection(NamedTuple):
-    """A stage of a chain, as in a material file."""
+    """A stage of a chain, as a section of a material file."""
 
     section: str
     technique: str

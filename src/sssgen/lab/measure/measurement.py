@@ -35,7 +35,7 @@ COST_TARGET = "glsl-330"
 """The target whose emitted text the static cost is counted on."""
 
 Parameters = Mapping[str, tuple[float, ...]]
-"""By the techniques' own names"""
+"""Names as in the techniques"""
 
 
 class View(NamedTuple):

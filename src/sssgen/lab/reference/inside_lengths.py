@@ -62,7 +62,7 @@ def _box(size: Array, origins: Array, directions: Array) -> Array:
     with np.errstate(divide="ignore", invalid="ignore"):
         ends = (np.array([[-0.5], [0.5]])[:, None] * size - origins) / directions
     between = np.where(np.abs(origins) <= 0.5 * size, np.inf, -np.inf)
-    along = directions == 0.0  # parallel to a pair of faces: always or never between them
+    along = directions == 0.0  # a ray parallel to a pair of faces is always or never between them
     enters = np.where(along, -between, ends.min(axis=0)).max(axis=1)
     leaves = np.where(along, between, ends.max(axis=0)).min(axis=1)
     return _single(enters, leaves)

@@ -122,7 +122,7 @@ def radiance_along(
         Channel(extinction, albedo, medium.anisotropy, medium.ior)
         for extinction, albedo in zip(medium.extinction, medium.albedo, strict=True)
     ]
-    # each channel separately: free paths sampled for one channel have a far larger variance in another
+    # each channel separately, because free paths that are sampled for a channel have a large variance in another one
     for channel in dict.fromkeys(channels):
         state = _converge(body, channel, light, rays, batches, seed, scatterings)
         equal_channels = [index for index, candidate in enumerate(channels) if candidate == channel]

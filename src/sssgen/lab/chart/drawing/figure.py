@@ -15,11 +15,11 @@ from sssgen.lab.chart.record import LEAST, Point, measures
 from sssgen.support.extras import need
 
 WIDTH, TALL, SHORT, KEY_LINE = 9.0, 4.2, 3.8, 0.21
-"""Inches: the chart's width, the height of a panel across the chart and of one of two in a row, a line of the key."""
+"""In inches: the width of the chart, the height of a full-width panel, of a half-width panel, of a line of the key."""
 DPI = 200
 KEY_COLUMNS = 4
 LABEL_WIDTH, LABEL_SIZE = 20, 6.5
-"""Letters in a line of a label, more only for a long name; their size in points."""
+"""The letters in a line of a label (a long name may have more), and their size in points."""
 MOST_LINES = 60
 """The largest number of techniques whose settings are joined by lines: more lines would hide the points."""
 MARKER_AREAS = {True: 34.0, False: 18.0}
@@ -64,7 +64,7 @@ def figure_of(chart: Chart) -> Any:
     """The matplotlib figure of a chart."""
     figures = need("matplotlib.figure", extra="chart")
     need("matplotlib.backends.backend_agg", extra="chart")
-    wide = len(chart.panels) % 2  # the panel of the medians, or the only one
+    wide = len(chart.panels) % 2  # a full-width panel: the medians, or the only scene
     rows = wide + len(chart.panels) // 2
     key_lines = 3 + math.ceil(len(chart.styles) / KEY_COLUMNS)
     height = 0.5 + TALL * wide + SHORT * (rows - wide) + KEY_LINE * key_lines
@@ -180,7 +180,7 @@ def _draw_front(axes: Any, panel: Panel) -> None:
 
 
 def _front_steps(axes: Any, panel: Panel) -> list[tuple[float, float]]:
-    """The corners of the front's line, from the panel's top to its right."""
+    """The corners of the front's line, from the top of the panel to its right edge."""
     steps: list[tuple[float, float]] = []
     error = axes.get_ylim()[1]
     for x, y in (_place(point) for point in panel.points if point.get("front")):
