@@ -42,7 +42,7 @@ PAIRS = 2**25
 GROWTH = (64, 128, 256)
 
 
-def ours(places: Array, corners: Indices, grid: Grid, _: Array) -> npt.NDArray[np.float32]:
+def sssgen_distances(places: Array, corners: Indices, grid: Grid, _: Array) -> npt.NDArray[np.float32]:
     solid = MeshDistance(places, corners)
     unsigned = distances(solid, grid)
     return np.where(inside(solid, grid, unsigned), -unsigned, unsigned).ravel()
@@ -85,7 +85,7 @@ def by_mesh_to_sdf(surface: str, sign: str) -> Bake:
 
 OURS = "sssgen bake sdf"
 TOOLS: dict[str, Callable[[], Bake]] = {
-    OURS: lambda: ours,
+    OURS: lambda: sssgen_distances,
     "libigl signed_distance": lambda: by_libigl(igl.SIGNED_DISTANCE_TYPE_DEFAULT),
     "  fast winding number": lambda: by_libigl(igl.SIGNED_DISTANCE_TYPE_FAST_WINDING_NUMBER),
     "Open3D RaycastingScene": by_open3d,

@@ -21,7 +21,7 @@ from sssgen.harness.pictures.picture_difference import compare
 from sssgen.harness.scenes import scene_loading
 from sssgen.lab.gpu import gpu_timing as gpu_cost
 from sssgen.lab.gpu import timed_programs as gpu_programs
-from sssgen.lab.gpu.gpu_timing import Measured, Program, Spread
+from sssgen.lab.gpu.gpu_timing import Program, ProgramTimes, Spread
 from sssgen.material import library
 from sssgen.material.material_loading import examples
 from sssgen.material.slots import needs
@@ -90,7 +90,7 @@ def times(spread: Spread) -> str:
     return f"{spread.median:.2f} ({spread.low:.2f}–{spread.high:.2f})"
 
 
-def jelly_cubes(size: tuple[int, int], rounds: int) -> tuple[Table, Measured, dict[str, Any]]:
+def jelly_cubes(size: tuple[int, int], rounds: int) -> tuple[Table, ProgramTimes, dict[str, Any]]:
     """The table of 42yeah's scene."""
     pair = published(size[0] / size[1]), emitted(size[0] / size[1])
     pictures = [gpu_cost.picture(program, size)[::-1, :, :3] for program in pair]
@@ -108,7 +108,7 @@ def jelly_cubes(size: tuple[int, int], rounds: int) -> tuple[Table, Measured, di
     return Table(title, ["", "ms per frame", "× published"], rows), result, {"flip": flip}
 
 
-def by_technique(size: tuple[int, int], rounds: int, evaluations: int) -> tuple[Table, Measured, dict[str, Any]]:
+def by_technique(size: tuple[int, int], rounds: int, evaluations: int) -> tuple[Table, ProgramTimes, dict[str, Any]]:
     """The table of the techniques, with the ratio to the handwritten form."""
     pairs = techniques(gpu_programs.ball_points(size), evaluations)
     result = gpu_cost.measure([program for pair in pairs for program in pair], size, rounds)
@@ -124,7 +124,7 @@ def by_technique(size: tuple[int, int], rounds: int, evaluations: int) -> tuple[
     return Table(title, ["", "emitted", "by hand", "emitted / by hand"], rows), result, {"ratios": ratios}
 
 
-def by_example(size: tuple[int, int], rounds: int) -> tuple[Table, Measured, dict[str, Any]]:
+def by_example(size: tuple[int, int], rounds: int) -> tuple[Table, ProgramTimes, dict[str, Any]]:
     """The table of the examples' materials in their scenes."""
     scenes = {name: scene_loading.load(name) for name in examples()}
     chosen = [gpu_programs.TimedMaterial(name, scene.material, scene) for name, scene in scenes.items()]

@@ -77,8 +77,9 @@ def page(record: Record, trial: Sequence[Mapping[str, Any]]) -> None:
     write_files(str(FOLDER), files)
     text = (FOLDER / "page.md.in").read_text(encoding="utf-8")
     parts: dict[str, Callable[[], str]] = {
-        "scenes": lambda: scene_table(record), "fronts": lambda: fronts(record), "volumes": lambda: volumes(record),
-        "known": lambda: expected_results(record), "losses": lambda: losses(record),
+        "scenes": lambda: scene_table(record), "fronts": lambda: fronts(record),
+        "volumes": lambda: hypervolumes(record),
+        "known": lambda: expected_results(record), "losses": lambda: baselines_on_fronts(record),
         "implementation": lambda: implementation(record), "gpu": gpu, "by_hand": by_hand,
         "pick": lambda: pick_trial.table(trial),
     }  # fmt: skip
@@ -143,7 +144,7 @@ def error(point: Point) -> str:
     return f"{figures['value']:.3f} ({figures['low']:.3f}–{figures['high']:.3f})"
 
 
-def volumes(record: Record) -> str:
+def hypervolumes(record: Record) -> str:
     """The hypervolumes."""
     rows = ["| scene | role | library | all baselines together |", "|---|---|---:|---:|"]
     rows += [
@@ -161,7 +162,7 @@ def expected_results(record: Record) -> str:
         ice, gdc = by_label["Unity ice"], by_label["GDC 2011"]
         rows.append(
             "| the Unity ice lobe adds nothing to its ambient light, so its fit does not change power, scale and "
-            f"distortion ({scene}) | {untouched(ice)}; error {error(ice)}, with a correct lobe {error(gdc)} |"
+            f"distortion ({scene}) | {lobe_parameters(ice)}; error {error(ice)}, with a correct lobe {error(gdc)} |"
         )
         thickness = {point["label"]: point for point in points_of(record, scene, "thickness")}
         cheap = min((point for point in thickness.values() if point["name"] == "cheap_sss_thinness"), key=value)
@@ -190,12 +191,12 @@ def value(point: Point) -> float:
     return float(point["error"]["value"])
 
 
-def untouched(point: Point) -> str:
+def lobe_parameters(point: Point) -> str:
     """The fitted values of a lobe's power, scale and distortion."""
     return ", ".join(f"{name} {point['parameters'][name][0]:.3g}" for name in ("power", "scale", "distortion"))
 
 
-def losses(record: Record) -> str:
+def baselines_on_fronts(record: Record) -> str:
     """The baselines on a front, each with the cheapest technique of the library that is as accurate."""
     rows = [
         "| scene | role | baseline | cost | error | library, at most this error | cost |",

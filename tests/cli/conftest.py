@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from command_line import WAX, FakeCompiler, Ran, Run
+from command_line import WAX, CommandResult, FakeCompiler, Run
 from sssgen.cli import listing, transpile
 from sssgen.cli import main as cli
 from sssgen.pipeline import emitted_cache
@@ -34,8 +34,8 @@ def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def run(capsys: pytest.CaptureFixture[str]) -> Run:
-    def call(*arguments: str) -> Ran:
+    def call(*arguments: str) -> CommandResult:
         status = cli.main(arguments)
-        return Ran(status, *capsys.readouterr())
+        return CommandResult(status, *capsys.readouterr())
 
     return call

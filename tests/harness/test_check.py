@@ -36,7 +36,7 @@ float4 shade(Varyings input) : SV_Target { return tint(input.uv); }
 WGSL = "@fragment fn shade() -> @location(0) vec4<f32> {\n    return vec4<f32>(1.0);\n}\n"
 
 
-class Ran(NamedTuple):
+class CommandResult(NamedTuple):
     status: int
     out: str
     err: str
@@ -47,7 +47,7 @@ class Ran(NamedTuple):
         return report
 
 
-Run = Callable[..., Ran]
+Run = Callable[..., CommandResult]
 
 
 @pytest.fixture(autouse=True)
@@ -58,9 +58,9 @@ def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def run(capsys: pytest.CaptureFixture[str]) -> Run:
-    def call(*arguments: str) -> Ran:
+    def call(*arguments: str) -> CommandResult:
         status = cli.main(["check", *arguments])
-        return Ran(status, *capsys.readouterr())
+        return CommandResult(status, *capsys.readouterr())
 
     return call
 

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 from folders import DOCS
-from processes import HANG, heed_interrupts, wait_until_busy
+from processes import HANG, enable_interrupts, wait_until_busy
 from sssgen.cli.main import main
 from sssgen.harness.backends import Backend
 from sssgen.harness.evaluate.evaluation import Inputs
@@ -395,7 +395,7 @@ def test_a_missing_back_end_is_reported() -> None:
 def test_an_interrupted_run_leaves_no_report(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "sssgen", "stress", "beer_lambert", "--samples", "900000000", "-b", "numpy-f32"]
     process = subprocess.Popen(
-        [*command, "-o", str(tmp_path / "report.md")], stderr=subprocess.PIPE, preexec_fn=heed_interrupts
+        [*command, "-o", str(tmp_path / "report.md")], stderr=subprocess.PIPE, preexec_fn=enable_interrupts
     )
     try:
         wait_until_busy(process, 4.0)

@@ -82,7 +82,7 @@ def cube() -> MeasuredScene:
     return measured_scene.load("cube")
 
 
-def counted(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+def record_titles(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """The titles of the items that are computed from now on, in this process."""
     ran: list[str] = []
     real = executor.execute
@@ -96,7 +96,7 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 
 def test_measurements_are_cached(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    ran = counted(monkeypatch)
+    ran = record_titles(monkeypatch)
     scene = cube()
     first = chart.chart_record([scene], settings())
     assert len(ran) > 20
@@ -125,7 +125,7 @@ def test_measurements_are_cached(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 
 
 def test_roles_without_light_need_no_reference(monkeypatch: pytest.MonkeyPatch) -> None:
-    ran = counted(monkeypatch)
+    ran = record_titles(monkeypatch)
     points = chart.chart_record([cube()], settings(roles=("thickness",)))["points"]
     assert ran and not any("reference" in title for title in ran)
     chart.chart_record([cube()], settings(roles=("thickness", "translucency")))
@@ -214,7 +214,7 @@ def test_more_expensive_settings_are_used_while_they_lower_the_error(monkeypatch
         {"label": label, "chain": chains[label], "training_error": error, "cost": {"value": cost}}
         for cost, (label, error) in enumerate(errors.items())
     ]
-    labels = [candidate.label for candidate in chart.worthwhile(points)]
+    labels = [candidate.label for candidate in chart.useful_thickness(points)]
     assert labels == ["march_light, 1 steps", "march_light, 4 steps", "march_light, 16 steps", "constant_thickness"]
 
 
@@ -233,7 +233,7 @@ def test_failures_are_named() -> None:
 
 
 def test_equal_scenes_are_measured_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    ran = counted(monkeypatch)
+    ran = record_titles(monkeypatch)
     plate = measured_scene.load("inlay_plate")
     chart.chart_record([plate, replace(plate)], settings())
     assert ran and len(set(ran)) == len(ran)

@@ -17,7 +17,7 @@ import pytest
 
 from executor_items import GATE, items, open_gate, runs
 from folders import TESTS
-from processes import HANG, heed_interrupts, wait_until
+from processes import HANG, enable_interrupts, wait_until
 from sssgen.cli import main as cli
 from sssgen.harness.stress.stress_report import Report, as_json
 from sssgen.harness.stress.stress_run import Machines, Settings, stress
@@ -163,7 +163,7 @@ def test_an_interrupted_run_continues(tmp_path: Path, how: int) -> None:
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(TESTS / "tools"), *filter(None, sys.path)])}
     code = "import sys, executor_items; executor_items.run_behind_gate(*sys.argv[1:])"
     command = [sys.executable, "-c", code, str(notes), str(folder)]
-    process = subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL, preexec_fn=heed_interrupts)
+    process = subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL, preexec_fn=enable_interrupts)
 
     def stored_files() -> list[Path]:
         return [path for path in folder.rglob("*") if path.is_file() and path.suffix != ".tmp"]

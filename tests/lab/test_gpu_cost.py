@@ -25,7 +25,7 @@ from sssgen.harness.scenes import scene_loading
 from sssgen.harness.scenes.camera import Camera
 from sssgen.lab.gpu import gpu_timing as gpu_cost
 from sssgen.lab.gpu import timed_programs as gpu_programs
-from sssgen.lab.gpu.gpu_timing import Measured, Program
+from sssgen.lab.gpu.gpu_timing import Program, ProgramTimes
 from sssgen.support.diagnostics import SssgenError
 
 SIZE = (64, 36)
@@ -63,35 +63,35 @@ def benchmark() -> ModuleType:
 
 
 @pytest.fixture
-def counted(monkeypatch: pytest.MonkeyPatch) -> None:
+def loop_rounds(monkeypatch: pytest.MonkeyPatch) -> None:
     """Counts the rounds of LOOP instead of milliseconds."""
     monkeypatch.setattr(gpu_cost._TimedFrame, "time", lambda frame, linked: float(linked.array.program["count"].value))
 
 
-def measured(*programs: Program) -> Measured:
+def measure_times(*programs: Program) -> ProgramTimes:
     return gpu_cost.measure(programs, (128, 72), rounds=5, sample=1.0)
 
 
-def test_a_ratio_is_the_quotient_of_the_times(counted: None) -> None:
-    timing = measured(Program("few", LOOP, {"count": 20}), Program("many", LOOP, {"count": 2000}))
+def test_a_ratio_is_the_quotient_of_the_times(loop_rounds: None) -> None:
+    timing = measure_times(Program("few", LOOP, {"count": 20}), Program("many", LOOP, {"count": 2000}))
     assert timing.ratio("many", "few") == (100.0, 100.0, 100.0)
     assert timing.ratio("few", "many").median == 0.01
 
 
-def test_the_floor_is_subtracted(counted: None) -> None:
+def test_the_floor_is_subtracted(loop_rounds: None) -> None:
     floored = Program("floored", LOOP, {"count": 500}, floor=LOOP.replace("sin", "cos"))
-    timing = measured(floored, Program("bare", LOOP, {"count": 500}))
+    timing = measure_times(floored, Program("bare", LOOP, {"count": 500}))
     assert timing.raw("floored").median == 500.0 and timing.net("floored").median == 0.0
     assert timing.net("bare") == timing.raw("bare") == (500.0, 500.0, 500.0)
 
 
-def test_the_net_time_is_per_evaluation(counted: None) -> None:
-    timing = measured(Program("ten", LOOP, {"count": 1000}, evaluations=10))
+def test_the_net_time_is_per_evaluation(loop_rounds: None) -> None:
+    timing = measure_times(Program("ten", LOOP, {"count": 1000}, evaluations=10))
     assert timing.net("ten").median == 100.0 and timing.raw("ten").median == 1000.0
 
 
 def test_the_record_names_the_device(opengl: Backend) -> None:
-    timing = measured(Program("one", LOOP, {"count": 10}, floor=FLOOR))
+    timing = measure_times(Program("one", LOOP, {"count": 10}, floor=FLOOR))
     record = timing.record()
     assert record["device"] in opengl.device() and record["size"] == [128, 72] and record["rounds"] == 5
     assert record["software"] == ("llvmpipe" in record["device"] or "softpipe" in record["device"])
@@ -101,7 +101,7 @@ def test_the_record_names_the_device(opengl: Backend) -> None:
 
 def test_a_program_that_the_driver_refuses() -> None:
     with pytest.raises(SssgenError, match=r"gl: broken: .*unknown"):
-        measured(Program("broken", FLOOR.replace("v_uv.xyxy", "unknown")))
+        measure_times(Program("broken", FLOOR.replace("v_uv.xyxy", "unknown")))
 
 
 def test_without_opengl(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -110,7 +110,7 @@ def test_without_opengl(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(backends, "get", lacks)
     with pytest.raises(SssgenError, match="the back end gl is missing"):
-        measured(Program("one", FLOOR))
+        measure_times(Program("one", FLOOR))
 
 
 def test_a_technique_is_computed() -> None:

@@ -50,7 +50,7 @@ def rays(count: int, spread: float, seed: int = 1) -> tuple[Array, Array]:
     return generator.uniform(-spread, spread, (count, 3)), ways / np.linalg.norm(ways, axis=1, keepdims=True)
 
 
-def through(shape: Geometry, count: int, seed: int = 2) -> tuple[Array, Array]:
+def rays_through(shape: Geometry, count: int, seed: int = 2) -> tuple[Array, Array]:
     """Random rays from outside towards points inside and near a shape that fits into a ball of radius 1.2."""
     generator = np.random.default_rng(seed)
     origins = generator.normal(size=(count, 3))
@@ -61,7 +61,7 @@ def through(shape: Geometry, count: int, seed: int = 2) -> tuple[Array, Array]:
     return origins @ matrix[:3, :3].T + matrix[:3, 3], ways @ matrix[:3, :3].T / shape.scale
 
 
-def sampled(shape: Geometry, origins: Array, ways: Array, reach: float, count: int) -> Array:
+def sampled_thickness(shape: Geometry, origins: Array, ways: Array, reach: float, count: int) -> Array:
     """The thickness, estimated by counting the inside points among `count` evenly spaced points of each ray."""
     step = reach / count
     inwards = shape.to_object()
@@ -193,19 +193,19 @@ def test_thickness_follows_rotation_scale_and_translation(shape: Geometry) -> No
 
 @pytest.mark.parametrize("shape", [*BODIES, *(replace(body, **ASKEW) for body in BODIES)], ids=repr)
 def test_thickness_equals_that_of_distance_samples(shape: Geometry) -> None:
-    origins, ways = through(shape, 150)
+    origins, ways = rays_through(shape, 150)
     reach = 8.0 * shape.scale
     exact = thickness(shape, origins, ways)
     assert (exact > 0.0).sum() > 20
     # at each of at most six ends, the count of samples is uncertain by one
-    assert np.abs(exact - sampled(shape, origins, ways, reach, 4000)).max() < 6.0 * reach / 4000
+    assert np.abs(exact - sampled_thickness(shape, origins, ways, reach, 4000)).max() < 6.0 * reach / 4000
     starts, onwards = (
         origins + 0.5 * reach * ways,
         ways,
     )  # half of the range is behind the start; some rays start inside
     rest = thickness(shape, starts, onwards)
     assert (rest < exact - 0.05).sum() > 10
-    assert np.abs(rest - sampled(shape, starts, onwards, reach, 4000)).max() < 6.0 * reach / 4000
+    assert np.abs(rest - sampled_thickness(shape, starts, onwards, reach, 4000)).max() < 6.0 * reach / 4000
 
 
 def test_another_part_never_reduces_thickness() -> None:
@@ -235,7 +235,7 @@ def test_another_part_never_reduces_thickness() -> None:
 def test_a_distance_function_has_the_thickness_of_the_solid(function: Distance, solid: Geometry, placed: bool) -> None:
     if placed:
         function, solid = replace(function, **ASKEW), replace(solid, **ASKEW)
-    origins, ways = through(solid, 400)
+    origins, ways = rays_through(solid, 400)
     exact = thickness(solid, origins, ways)
     result = thickness(function, origins, ways)
     # lengths below the shortest step may be missed
@@ -272,7 +272,7 @@ def test_a_mesh_of_a_box_is_the_box(tmp_path: Path) -> None:
     box = mesh(tmp_path / "box.ply", trimesh.creation.box((1.0, 1.4, 0.7)))
     exact = Box(size=(1.0, 1.4, 0.7))
     for placed, solid in ((box, exact), (replace(box, **ASKEW), replace(exact, **ASKEW))):
-        origins, ways = through(solid, 2000)
+        origins, ways = rays_through(solid, 2000)
         expected = thickness(solid, origins, ways)
         assert thickness(placed, origins, ways) == pytest.approx(expected, abs=2e-4)
         inside = origins + (intervals_of(solid, origins, ways) + 0.3 * expected)[:, None] * ways
@@ -288,7 +288,7 @@ def test_a_mesh_of_a_ball_is_nearly_the_ball(tmp_path: Path) -> None:
     trimesh = pytest.importorskip("trimesh")
     pytest.importorskip("embreex")
     ball = mesh(tmp_path / "ball.ply", trimesh.creation.icosphere(5, 0.9))
-    origins, ways = through(ball, 2000)
+    origins, ways = rays_through(ball, 2000)
     exact = thickness(Ball(0.9), origins, ways)
     deep = exact > 0.2
     # triangles with edges of 0.04 are inside the ball by at most c² / 8r = 2e-4; oblique rays see more
@@ -303,7 +303,7 @@ def test_nested_parts_of_a_mesh_count_once(tmp_path: Path) -> None:
     part.apply_translation((1.5, 0.1, 0.2))  # half inside the first part
     result = mesh(tmp_path / "two.ply", trimesh.util.concatenate([whole, part]))
     same = Union((Box(size=(2.0, 2.0, 2.0)), Box(size=(2.0, 0.5, 0.5), position=(1.5, 0.1, 0.2))))
-    origins, ways = through(same, 2000)
+    origins, ways = rays_through(same, 2000)
     assert thickness(result, origins, ways) == pytest.approx(thickness(same, origins, ways), abs=2e-4)
 
 
@@ -322,4 +322,4 @@ def test_the_thickness_of_spot_agrees_with_the_winding_number() -> None:
     ways /= np.linalg.norm(ways, axis=1, keepdims=True)
     exact = thickness(spot, origins, ways)
     assert (exact > 0.1).sum() > 20
-    assert np.abs(exact - sampled(spot, origins, ways, 6.0, steps)).max() < 8.0 * 6.0 / steps
+    assert np.abs(exact - sampled_thickness(spot, origins, ways, 6.0, steps)).max() < 8.0 * 6.0 / steps

@@ -231,13 +231,13 @@ def test_eval_refuses(named: str, precision: str, capsys: pytest.CaptureFixture[
 def test_an_adapter_without_halves_is_reported(backend: Get, monkeypatch: pytest.MonkeyPatch) -> None:
     backend("webgpu")
 
-    class Without:
+    class AdapterWithoutHalves:
         def __init__(self, gpu: object) -> None:
             self.features: set[str] = set()
             self.limits = gpu.limits  # type: ignore[attr-defined]  # an adapter; wgpu is not imported here
 
     gpu = backends.get("webgpu")
     assert isinstance(gpu, WebGPU)
-    monkeypatch.setattr(gpu.naga, "gpu", Without(gpu.gpu))
+    monkeypatch.setattr(gpu.naga, "gpu", AdapterWithoutHalves(gpu.gpu))
     with pytest.raises(CompilerMissing, match=r"shader-f16, which naga in wgpu .* lacks"):
         WebGPU("webgpu-f16", TARGET)

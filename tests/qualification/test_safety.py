@@ -23,11 +23,11 @@ QUICK = [
 
 
 @cache
-def counted() -> list[Safety]:
+def library_counts() -> list[Safety]:
     return [safety(subject(name)) for name in NAMES]
 
 
-def needed(name: str) -> None:
+def assert_guards_needed(name: str) -> None:
     """Asserts that each guard has an input that needs it: with NaN as its value, the result is NaN."""
     specimen = technique(name)
     for site in sites(specimen):
@@ -39,33 +39,33 @@ def needed(name: str) -> None:
 
 @pytest.mark.parametrize("name", QUICK)
 def test_every_guard_is_needed(name: str) -> None:
-    needed(name)
+    assert_guards_needed(name)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in NAMES if name not in QUICK])
 def test_every_guard_of_the_library_is_needed(name: str) -> None:
-    needed(name)
+    assert_guards_needed(name)
 
 
 def test_guards_cost_little() -> None:
     """The guards add at most a third of the operations that guards everywhere would add."""
-    auto, everywhere = (sum(entry.added(mode) for entry in counted()) for mode in ("auto", "all"))
+    auto, everywhere = (sum(entry.added(mode) for entry in library_counts()) for mode in ("auto", "all"))
     assert 0 < auto <= everywhere / 3
 
 
 def test_most_is_proven() -> None:
     """At least two thirds of the operations with a domain are proven safe."""
-    proven, guarded = sum(entry.proven for entry in counted()), sum(entry.guarded for entry in counted())
+    proven, guarded = sum(entry.proven for entry in library_counts()), sum(entry.guarded for entry in library_counts())
     assert proven > 2 * guarded > 0
 
 
 def test_the_page_has_the_current_counts() -> None:
     text = PAGE.read_text(encoding="utf-8")
-    for entry in counted():
+    for entry in library_counts():
         row = [entry.proven, entry.guarded, entry.costs["none"].operations, entry.added("auto"), entry.added("all")]
         assert f"| {entry.name} | {' | '.join(map(str, row))} |" in text, "run python -m qualification.pages.safety"
-    assert f"Of {sum(entry.guarded for entry in counted())} guards" in text
+    assert f"Of {sum(entry.guarded for entry in library_counts())} guards" in text
 
 
 def test_the_page_has_no_failure_among_the_dangerous_inputs() -> None:

@@ -15,7 +15,7 @@ P = rng().uniform(-1.5, 1.5, (400, 3))
 CENTER, HALF, START, END = np.array([[0.1, -0.2, 0.3], [0.7, 0.4, 0.5], [-0.6, 0.2, 0.1], [0.5, 0.9, -0.4]])
 
 
-def to_box(p: Array, half: Array) -> Array:
+def box_distance(p: Array, half: Array) -> Array:
     """The distance to a box: outside to its nearest point, inside to the nearest face."""
     nearest = np.clip(p, -half, half)
     faces = np.minimum(half - p, half + p).min(axis=-1)
@@ -23,17 +23,17 @@ def to_box(p: Array, half: Array) -> Array:
     return result
 
 
-def to_cubes(p: Array) -> Array:
+def cubes_distance(p: Array) -> Array:
     """The distance to two unit cubes that are turned by 45 degrees about y."""
     results = []
     for x in (0.0, 1.45):
         q = p - [x, 0.48, 0.0]
         x_axis, z_axis = np.array([1.0, 0.0, -1.0]) / np.sqrt(2.0), np.array([1.0, 0.0, 1.0]) / np.sqrt(2.0)
-        results.append(to_box(np.stack([q @ x_axis, q[:, 1], q @ z_axis], axis=1), np.full(3, 0.5)))
+        results.append(box_distance(np.stack([q @ x_axis, q[:, 1], q @ z_axis], axis=1), np.full(3, 0.5)))
     return np.minimum(*results)
 
 
-def to_points(p: Array, points: Array) -> Array:
+def points_distance(p: Array, points: Array) -> Array:
     """The distance to the nearest of many points."""
     result: Array = np.sqrt(((p[:, None] - points[None]) ** 2).sum(axis=2).min(axis=1))
     return result
@@ -46,20 +46,20 @@ def ring(radius: float) -> Array:
 
 SHAPES: dict[str, tuple[dict[str, Any], Callable[[], Array], float]] = {
     "sphere": ({"center": CENTER, "radius": 0.6}, lambda: np.linalg.norm(P - CENTER, axis=1) - 0.6, 1e-12),
-    "box": ({"center": CENTER, "half_size": HALF}, lambda: to_box(P - CENTER, HALF), 1e-12),
+    "box": ({"center": CENTER, "half_size": HALF}, lambda: box_distance(P - CENTER, HALF), 1e-12),
     "torus": (
         {"center": CENTER, "ring_radius": 0.8, "tube_radius": 0.2},
-        lambda: to_points(P, CENTER + ring(0.8)) - 0.2,
+        lambda: points_distance(P, CENTER + ring(0.8)) - 0.2,
         1e-4,
     ),
     "capsule": (
         {"start": START, "end": END, "radius": 0.3},
-        lambda: to_points(P, START + np.linspace(0.0, 1.0, 2000)[:, None] * (END - START)) - 0.3,
+        lambda: points_distance(P, START + np.linspace(0.0, 1.0, 2000)[:, None] * (END - START)) - 0.3,
         1e-4,
     ),
     "ground_plane": ({}, lambda: P[:, 1], 1e-12),
-    "jelly_cubes": ({}, lambda: to_cubes(P), 1e-7),
-    "jelly_scene": ({}, lambda: np.minimum(to_cubes(P), P[:, 1]), 1e-7),
+    "jelly_cubes": ({}, lambda: cubes_distance(P), 1e-7),
+    "jelly_scene": ({}, lambda: np.minimum(cubes_distance(P), P[:, 1]), 1e-7),
 }
 
 

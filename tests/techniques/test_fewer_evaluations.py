@@ -98,7 +98,7 @@ def marched(name: str, method: str, steps: int) -> Array:
     return function
 
 
-class Counting(Interpreter):
+class CountingInterpreter(Interpreter):
     """Runs a technique for one point with real branches, and counts its evaluations of the distance."""
 
     def __init__(self, module: Module, values: dict[str, Any], slot: str, body: Geometry) -> None:
@@ -127,7 +127,7 @@ def evaluations(method: str, name: str, **values: Any) -> float:
     shape, places = SHAPES[name], points(name)._asdict()
     module, key, params = linked(method, shape.function)
     uniforms = {uniform.name: uniform.default[0] for uniform in module.uniforms if len(uniform.default) == 1} | values
-    run = Counting(module, uniforms, shape.function, shape.body)
+    run = CountingInterpreter(module, uniforms, shape.function, shape.body)
     chosen = range(0, len(places["P"]), 3)
     for at in chosen:
         run.call(key, *[tuple(map(float, places[param][at])) for param in params])
@@ -201,13 +201,13 @@ def test_a_traced_march_is_more_accurate_with_fewer_evaluations(name: str) -> No
 def test_a_traced_march_improves_the_front() -> None:
     """With the same number of evaluations, at least 7, the error over all shapes is little more than half."""
 
-    def both(method: str, steps: int) -> tuple[float, float]:
+    def count_and_error(method: str, steps: int) -> tuple[float, float]:
         errors = [relative_error(marched(name, method, steps), marched(name, "march_light", 4000)) for name in SHAPES]
         counts = [evaluations(method, name, reach=WAY, steps=steps) for name in SHAPES]
         return float(np.mean(counts)), float(np.mean(errors))
 
-    traced = [both("march_light_traced", steps) for steps in (4, 6, 8, 12, 16)]
-    for count, error in [both("march_light", steps) for steps in (8, 12, 16, 24, 32)]:
+    traced = [count_and_error("march_light_traced", steps) for steps in (4, 6, 8, 12, 16)]
+    for count, error in [count_and_error("march_light", steps) for steps in (8, 12, 16, 24, 32)]:
         assert min(result for evaluated, result in traced if evaluated <= count) < 0.6 * error
 
 

@@ -64,13 +64,13 @@ class FakeCompiler(types.ModuleType):
         return Compiled({f"{name}.{target}.txt": text, f"{name}.{target}.reflection.json": "{}\n"}, [])
 
 
-class Ran(NamedTuple):
+class CommandResult(NamedTuple):
     status: int
     out: str
     err: str
 
 
-Run = Callable[..., Ran]
+Run = Callable[..., CommandResult]
 
 
 def folder_content(path: str = "out") -> dict[str, str]:

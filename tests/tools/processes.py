@@ -34,6 +34,6 @@ def wait_until_busy(process: subprocess.Popen[Any], seconds: float) -> None:
     wait_until(lambda: used() >= seconds, f"{seconds} seconds of work")
 
 
-def heed_interrupts() -> None:
+def enable_interrupts() -> None:
     """A `preexec_fn` that enables interrupts, which background processes of a shell and their children ignore."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)

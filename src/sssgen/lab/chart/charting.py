@@ -73,7 +73,7 @@ def chart_record(scenes: Sequence[MeasuredScene], settings: Settings) -> dict[st
     results = [result for scene in scenes if (result := by_key[scene.key])]
     points = _on_fronts([point for result in results for point in result["points"]])
     return {
-        "format": FORMAT, "record": about(settings), "cost": "static",
+        "format": FORMAT, "record": conditions(settings), "cost": "static",
         "cost_unit": "weighted operations",
         "scenes": [result["scene"] for result in results],
         "points": points, "hypervolume": hypervolumes(points),
@@ -104,9 +104,11 @@ def _measured(scenes: Sequence[MeasuredScene], settings: Settings) -> list[dict[
         before: dict[tuple[str, tuple[str, ...], Any], Mapping[str, tuple[float, ...]]] = {}
         for scene in scenes:
             if scene.medium is not None:
-                lengths = worthwhile([point for point in points[scene.key] if point["role"] == "thickness"])
+                lengths = useful_thickness([point for point in points[scene.key] if point["role"] == "thickness"])
                 jobs += [(scene, candidate) for candidate in candidates.materials(lengths)]
-                before |= {(scene.key, *key): values for key, values in expensive(points[scene.key]).items()}
+                before |= {
+                    (scene.key, *key): values for key, values in distance_function_parameters(points[scene.key]).items()
+                }
         for scene, point in _points(jobs, views, settings, before):
             points[scene.key].append(point)
     return [{"scene": _description(scene, views[scene.key]), "points": points[scene.key]} for scene in scenes]
@@ -252,7 +254,9 @@ def _results(items: Sequence[Item], settings: Settings) -> list[Any]:
     return results
 
 
-def expensive(points: Sequence[dict[str, Any]]) -> dict[tuple[tuple[str, ...], Any], dict[str, tuple[float, ...]]]:
+def distance_function_parameters(
+    points: Sequence[dict[str, Any]],
+) -> dict[tuple[tuple[str, ...], Any], dict[str, tuple[float, ...]]]:
     """The fitted parameters of the thickness techniques that evaluate a distance function: by technique and settings.
 
     Complete chains use them unchanged, because fitting them again in each chain would take hours.
@@ -270,7 +274,7 @@ def expensive(points: Sequence[dict[str, Any]]) -> dict[tuple[tuple[str, ...], A
     return parameters
 
 
-def worthwhile(points: Sequence[dict[str, Any]]) -> list[Candidate]:
+def useful_thickness(points: Sequence[dict[str, Any]]) -> list[Candidate]:
     """The thickness candidates for complete chains: each technique's cheapest setting, and those that lower the error.
 
     The training error decides, not the error on the scene.
@@ -322,7 +326,7 @@ def hypervolumes(points: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     return volumes
 
 
-def about(settings: Settings) -> dict[str, Any]:
+def conditions(settings: Settings) -> dict[str, Any]:
     """The conditions for repeating the measurement: versions, seed, samples."""
     packages = ("numpy", "scipy", "mitsuba", "embreex", "libigl", "flip-evaluator")
     return {

@@ -18,7 +18,7 @@ from sssgen.harness.scenes.scene_loading import parse_scene
 from sssgen.lab.chart.picked_material import stages_of
 from sssgen.lab.gpu import gpu_timing as gpu_cost
 from sssgen.lab.gpu import timed_programs as gpu_programs
-from sssgen.lab.gpu.gpu_timing import Measured
+from sssgen.lab.gpu.gpu_timing import ProgramTimes
 from sssgen.lab.measure.measured_chain import MaterialSection, material_of
 from sssgen.lab.scene import scene_body as body
 from sssgen.lab.scene.measured_scene import MeasuredScene
@@ -68,7 +68,7 @@ def with_gpu_cost(
     return {**record, "record": about, "points": points}
 
 
-def _cost(low: float, median: float, high: float, times: Measured) -> dict[str, Any]:
+def _cost(low: float, median: float, high: float, times: ProgramTimes) -> dict[str, Any]:
     """Times as a cost; on a software rasteriser only the ratio to the shader without the chain."""
     without = max(float(np.median(times.net_times[EMPTY])), LEAST)
     ratio = {"gpu_ratio": max(median, LEAST) / without}
@@ -92,7 +92,7 @@ def by_gpu(record: Mapping[str, Any]) -> dict[str, Any]:
 
 def _timed(
     measured: MeasuredScene, points: Sequence[Mapping[str, Any]], size: tuple[int, int], rounds: int
-) -> Measured:
+) -> ProgramTimes:
     scene = _drawable(measured)
     surface_points = gpu_programs.surface_points(scene, size)
     shape = body.body(measured.geometry)

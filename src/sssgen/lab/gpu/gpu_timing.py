@@ -84,7 +84,7 @@ class Spread(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Measured:
+class ProgramTimes:
     """The times of several programs."""
 
     device: Device
@@ -133,7 +133,7 @@ class Measured:
 
 def measure(
     programs: Sequence[Program], size: tuple[int, int] = SIZE, rounds: int = ROUNDS, sample: float = SAMPLE
-) -> Measured:
+) -> ProgramTimes:
     """Times the programs alternately; `sample` is the least time of one timer query, in ms.
 
     Raises SssgenError without OpenGL, and for a program that the driver rejects.
@@ -158,7 +158,7 @@ def measure(
             for program in programs
         }
         counts = {program.name: program.evaluations for program in programs}
-        return Measured(frame.device, size, rounds, counts, raw, net)
+        return ProgramTimes(frame.device, size, rounds, counts, raw, net)
 
 
 def picture(program: Program, size: tuple[int, int]) -> npt.NDArray[np.float32]:

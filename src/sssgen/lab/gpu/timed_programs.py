@@ -28,7 +28,7 @@ from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Ball, Geometry
 from sssgen.harness.scenes.scene import Scene
 from sssgen.ir.types import Sampler
-from sssgen.lab.gpu.gpu_timing import ROUNDS, SIZE, Measured, Program, measure
+from sssgen.lab.gpu.gpu_timing import ROUNDS, SIZE, Program, ProgramTimes, measure
 from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import compile, transpile
@@ -358,7 +358,7 @@ class TimedMaterial(NamedTuple):
 
 def costs(
     materials: Sequence[TimedMaterial], size: tuple[int, int] = SIZE, rounds: int = ROUNDS, evaluations: int = 1
-) -> Measured:
+) -> ProgramTimes:
     """The times of complete materials: `costs(...).net(name).median` is the time of shading a picture, in ms.
 
     The time includes the standard light, for all lights of the scene, and excludes the reads of the points. Raises

@@ -62,7 +62,7 @@ class Medium:
 
 
 @dataclass(frozen=True)
-class Measured:
+class MediumData:
     """An entry of a file of media."""
 
     reduced_scattering: Spectrum
@@ -102,7 +102,7 @@ def preset(name: str, unit_mm: float = 1.0, anisotropy: float = 0.0, file: str =
     )
 
 
-def media(file: str = "") -> Mapping[str, Measured]:
+def media(file: str = "") -> Mapping[str, MediumData]:
     """The media of `media.toml`, or of `file`, by name. Raises SssgenError with all errors in the file."""
     path = file or _FILE
     document = parse(read_text(path, posix(path)), posix(path))
@@ -115,7 +115,7 @@ def media(file: str = "") -> Mapping[str, Measured]:
         measured = table.content.get("measured", False)
         if not isinstance(measured, bool):
             table.error("measured", "'measured' is true or false")
-        result[name] = Measured(
+        result[name] = MediumData(
             table.vector("reduced_scattering", (1.0, 1.0, 1.0), _COEFFICIENT),
             table.vector("absorption", (0.0, 0.0, 0.0), _COEFFICIENT),
             table.number("ior", 1.0, (1.0, 10.0)),
