@@ -18,6 +18,7 @@ from sssgen.ir.walk import calls_of, subexpressions
 from sssgen.passes import uniform_blocks as blocks
 from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.constant_expressions import literal
+from sssgen.passes.legal.array_results import by_out_parameter, filling
 from sssgen.passes.legal.constant_calls import ConstantCalls, as_literals
 from sssgen.passes.legal.integer_operators import counts_up, with_result
 from sssgen.passes.legal.legal_operators import is_integer_division, legal_operator, widened
@@ -116,10 +117,12 @@ class _Legaliser(Transformer):
             return self.initial(as_literals(value.type, numbers, value.span))
 
     def function(self, function: ir.Function) -> ir.Function:
-        if isinstance(function.result, Array) and not self.capabilities.array_constructors:
-            raise Unsupported(
-                "a function cannot return an array for this target: give it an out parameter", function.span
-            )
+        new = self.in_order(function)
+        fills = isinstance(new.result, Array) and not self.capabilities.array_constructors
+        return by_out_parameter(new) if fills else new
+
+    def in_order(self, function: ir.Function) -> ir.Function:
+        """A function whose writing calls are executed in their order."""
         if not self.writing or not self.calls.changing(function):
             return self.lifted(function)
         if not self.capabilities.out_parameters:
@@ -233,6 +236,10 @@ class _Legaliser(Transformer):
             is_dynamic_store(part) and not self.capabilities.dynamic_stores
         )
 
+    def evaluate(self, stmt: ir.Evaluate) -> ir.Stmt | None:
+        new = super().evaluate(stmt)
+        return None if isinstance(new, ir.Evaluate) and isinstance(new.call, ir.Local) else new
+
     def leave(self, stmt: ir.Return) -> ir.Stmt | None:
         value = self.returned(stmt.value, stmt.span) if stmt.value is not None else None
         return stmt if value is stmt.value else ir.Return(value, stmt.span)
@@ -309,7 +316,13 @@ class _Legaliser(Transformer):
             return self.select(expr)
         if isinstance(expr, ir.Index) and isinstance(expr.value, ir.Global) and expr.value.name in self.uniforms:
             return blocks.element(expr._replace(index=self.expression(expr.index)), self.capabilities)
-        return self.legal(super().expression(expr))
+        new = super().expression(expr)
+        if isinstance(new, ir.Call) and isinstance(new.type, Array) and not self.capabilities.array_constructors:
+            place = ir.Local(new.type, self.new_name("values"), new.span)
+            self.out.append(ir.Declare(place.name, new.type, None, new.span))
+            self.out.append(ir.Evaluate(filling(new, self.functions[new.function], place), new.span))
+            return place
+        return self.legal(new)
 
     def legal(self, expr: ir.Expr) -> ir.Expr:
         """A node whose operands are legal already."""
